@@ -1,0 +1,28 @@
+# mote_folder(NAME PUBLIC libs... PRIVATE libs...): the static library mote_NAME of every .cpp below NAME/.
+# Executables that live beside a library (main_*.cpp) are left out.
+
+add_library(mote_options INTERFACE)
+target_include_directories(mote_options INTERFACE ${CMAKE_SOURCE_DIR})
+target_compile_definitions(mote_options INTERFACE GLM_FORCE_CTOR_INIT MOTE_VERSION="${PROJECT_VERSION}")
+target_compile_options(mote_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+                       -Wno-unknown-pragmas -fno-math-errno -fno-trapping-math)
+if(MOTE_WERROR)
+  target_compile_options(mote_options INTERFACE -Werror)
+endif()
+if(MOTE_ARCH)
+  target_compile_options(mote_options INTERFACE -march=${MOTE_ARCH})
+endif()
+# Contraction into fused multiply-adds would let one source give two pictures on two compilers.
+target_compile_options(mote_options INTERFACE -ffp-contract=off)
+if(MOTE_SANITIZE)
+  target_compile_options(mote_options INTERFACE -fsanitize=${MOTE_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(mote_options INTERFACE -fsanitize=${MOTE_SANITIZE})
+endif()
+
+function(mote_folder name)
+  cmake_parse_arguments(ARG "" "" "PUBLIC;PRIVATE" ${ARGN})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${name}/*.cpp)
+  list(FILTER sources EXCLUDE REGEX "/main_[^/]*\\.cpp$")
+  add_library(mote_${name} STATIC ${sources})
+  target_link_libraries(mote_${name} PUBLIC mote_options ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
+endfunction()

@@ -1,0 +1,66 @@
+// Embree behind one small class.
+//
+// Surfaces come in two groups, each a scene of its own: `opaque_to_connections` surfaces (every BSDF but
+// null) and `boundaries` (null BSDFs: borders between media that light passes straight). Shadow rays look at
+// the first group only; what the boundaries change is the medium, which Scene::transmittance walks through.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/geometry/shape.h"
+#include "core/math/ray.h"
+
+namespace mote::core {
+
+/// Sixteen shadow rays as a structure of arrays, in Embree's own layout. Inactive lanes have t_max < t_min.
+/// After RayTracer::occluded() an occluded lane has t_max = -infinity.
+struct alignas(64) ShadowPacket {
+    static constexpr int width = 16;
+    float origin_x[width], origin_y[width], origin_z[width];
+    float t_min[width];
+    float direction_x[width], direction_y[width], direction_z[width];  ///< need not have unit length
+    float time[width];
+    float t_max[width];
+    std::uint32_t mask[width];
+    std::uint32_t id[width];
+    std::uint32_t flags[width];
+
+    /// Sets what the caller never needs to touch again (time, mask, id, flags).
+    void clear();
+    bool occluded(int lane) const { return t_max[lane] < 0.0f; }
+};
+
+class RayTracer {
+  public:
+    enum class Group { surfaces, boundaries };
+
+    /// Keeps pointers to the shapes, which must outlive it. A shape is a boundary when its BSDF is null.
+    explicit RayTracer(std::span<const std::shared_ptr<Shape>> shapes);
+    ~RayTracer();
+    RayTracer(const RayTracer&) = delete;
+    RayTracer& operator=(const RayTracer&) = delete;
+
+    bool has_boundaries() const;
+    Bounds3 bounds() const;
+
+    /// Closest hit in one group within (t_min, t_max).
+    std::optional<SurfaceHit> closest(const Ray& ray, Group group = Group::surfaces) const;
+    /// Is anything among the surfaces within (t_min, t_max)?
+    bool occluded(const Ray& ray) const;
+    /// The same for sixteen rays at once.
+    void occluded(ShadowPacket& packet) const;
+    /// Many packets in one call, in the fastest form this Embree offers.
+    void occluded(std::span<ShadowPacket> packets) const;
+    /// All hits of one group within (t_min, t_max), sorted by distance. Clears `hits` first.
+    void all_hits(const Ray& ray, Group group, std::vector<SurfaceHit>& hits) const;
+
+    std::size_t memory_bytes() const;  ///< of Embree's structures
+
+  private:
+    struct Implementation;
+    std::unique_ptr<Implementation> impl_;
+};
+
+}  // namespace mote::core

@@ -1,0 +1,73 @@
+// Shapes: triangle meshes and a few analytic primitives, in world space.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/math/bounds.h"
+#include "core/math/frame.h"
+#include "core/scene/object.h"
+
+namespace mote::core {
+
+class Bsdf;
+class Emitter;
+class Medium;
+class Shape;
+
+/// What a ray found. `position` lies on the shape up to rounding; leave it through offset_origin().
+struct SurfaceHit {
+    float t = 0.0f;
+    Vec3 position{0, 0, 0};
+    Vec3 geometric_normal{0, 0, 1};  ///< unit; the side it points to is the shape's outside
+    Frame shading;                   ///< n is the interpolated normal, on the geometric normal's side
+    Vec2 uv{0, 0};
+    const Shape* shape = nullptr;
+    std::uint32_t primitive = 0;  ///< triangle index; 0 for analytic shapes
+    float error = 0.0f;           ///< bound on the rounding error of `position` [m]
+};
+
+/// A point drawn on a shape.
+struct ShapeSample {
+    Vec3 position;
+    Vec3 normal;  ///< geometric, unit
+    Vec2 uv;
+    float pdf_area;  ///< [1/m^2]
+    float error = 0.0f;
+};
+
+class Shape : public Object {
+  public:
+    std::shared_ptr<Bsdf> bsdf;
+    std::shared_ptr<Emitter> emitter;  ///< area light, or null
+    std::shared_ptr<Medium> interior, exterior;
+    bool has_medium_boundary =
+        false;                ///< interior or exterior was named (vacuum counts when the other is named)
+    std::uint32_t index = 0;  ///< position in Scene::shapes
+    std::vector<std::string> notes;  ///< what was repaired at load, e.g. "12 degenerate triangles dropped"
+
+    virtual Bounds3 bounds() const = 0;
+    virtual float area() const = 0;
+    /// Uniform by area.
+    virtual ShapeSample sample_area(const Vec2& u) const = 0;
+    /// Draws a point for lighting `p`: uniform by area unless the shape knows better (a sphere samples its
+    /// cone). The density is returned per solid angle at p in pdf_solid_angle.
+    virtual std::optional<ShapeSample> sample_visible(const Vec3& p, const Vec2& u,
+                                                      float& pdf_solid_angle) const;
+    /// Density of sample_visible() for the point `hit` seen from p in direction wi, per solid angle.
+    virtual float pdf_visible(const Vec3& p, const Vec3& wi, const SurfaceHit& hit) const;
+    /// True when the surface has no border, so that inside and outside are defined.
+    virtual bool closed() const = 0;
+    virtual std::size_t primitive_count() const = 0;
+};
+
+/// The origin for a ray leaving `position` in `direction`, moved off the surface to the direction's side far
+/// enough that the ray cannot hit the surface it starts on.
+Vec3 offset_origin(const Vec3& position, const Vec3& geometric_normal, float error, const Vec3& direction);
+inline Vec3 offset_origin(const SurfaceHit& hit, const Vec3& direction) {
+    return offset_origin(hit.position, hit.geometric_normal, hit.error, direction);
+}
+
+}  // namespace mote::core

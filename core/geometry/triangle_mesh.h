@@ -1,0 +1,55 @@
+// Indexed triangle meshes in world space, with optional normals and texture coordinates.
+#pragma once
+
+#include <array>
+
+#include "core/geometry/shape.h"
+#include "core/math/distribution.h"
+#include "core/math/transform.h"
+
+namespace mote::core {
+
+struct MeshData {
+    std::vector<Vec3> positions;
+    std::vector<Vec3> normals;  ///< per vertex, or empty: geometric normals are used
+    std::vector<Vec2> uvs;      ///< per vertex, or empty: barycentric coordinates are used
+    std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+class TriangleMesh final : public Shape {
+  public:
+    /// Takes the data as it is (world space). Throws InputError for an index out of range, a position that is
+    /// not finite or beyond 1e18, or no triangle left; triangles without area are dropped and counted in
+    /// notes.
+    explicit TriangleMesh(MeshData data);
+
+    const MeshData& data() const { return data_; }
+    /// Fills everything of a hit but t, from the barycentric coordinates (u, v) that Embree reports.
+    void fill_hit(std::uint32_t primitive, float u, float v, SurfaceHit& hit) const;
+
+    Bounds3 bounds() const override { return bounds_; }
+    float area() const override { return float(area_distribution_.total()); }
+    ShapeSample sample_area(const Vec2& u) const override;
+    bool closed() const override { return closed_; }
+    std::size_t primitive_count() const override { return data_.triangles.size(); }
+
+  private:
+    MeshData data_;
+    Bounds3 bounds_;
+    Distribution1D area_distribution_;
+    bool closed_ = false;
+};
+
+/// Applies a transform to positions and normals (in double precision) and keeps the orientation of the faces:
+/// a mirroring transform swaps two indices of each triangle.
+void transform_mesh(MeshData& data, const Transform& to_world);
+
+/// [-1,1]^2 facing +z, and [-1,1]^3 facing outwards, as Mitsuba 3 has them.
+MeshData make_rectangle();
+MeshData make_cube();
+
+/// Reads OBJ, PLY and what else assimp reads. Throws InputError naming the file. `flip_v` follows Mitsuba:
+/// OBJ flips V, PLY does not. Counts dropped faces in `notes`.
+MeshData load_mesh(const std::string& path, bool face_normals, bool flip_v, std::vector<std::string>& notes);
+
+}  // namespace mote::core

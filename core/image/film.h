@@ -1,0 +1,69 @@
+// The running sum of every layer of a picture, in double precision.
+//
+// Passes are summed in blocks of `block_size`, and blocks are added in index order, so that the bits of the
+// result depend on the pass count alone: not on interruptions, nor on which machine rendered which block.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/render/integrator.h"
+
+namespace mote::core {
+
+class Film {
+  public:
+    static constexpr std::uint32_t block_size = 16;
+
+    /// `all_squares`: keep the sum of squares of every layer, not of the beauty alone.
+    Film(int width, int height, std::vector<Layer> layers, bool all_squares = false);
+
+    int width() const { return width_; }
+    int height() const { return height_; }
+    std::size_t pixels() const { return std::size_t(width_) * std::size_t(height_); }
+    std::span<const Layer> layers() const { return layers_; }
+    std::uint32_t pass_count() const { return passes_; }
+    /// Pixels of passes that held a NaN or an infinity. They add zero to the sums; anything but 0 is a
+    /// defect.
+    std::uint64_t non_finite() const { return non_finite_; }
+
+    /// Adds the next pass. Must be called in index order.
+    void add_pass(const PassImage& image);
+
+    /// Mean over passes of one layer, as float.
+    std::vector<Rgb> mean(std::size_t layer) const;
+    /// The beauty: the float sum of the float means of all layers that are not auxiliary, in order, so that
+    /// whoever adds up the layers of a written file gets the same bits.
+    std::vector<Rgb> beauty() const;
+    /// Variance of the beauty's mean per pixel and channel: (sum of squares / n - mean^2) / (n - 1). Zero for
+    /// n < 2.
+    std::vector<Rgb> beauty_variance_of_mean() const;
+    /// The same for a layer; needs all_squares.
+    std::vector<Rgb> layer_variance_of_mean(std::size_t layer) const;
+    /// Replaces the mean of a layer, for post-processes (Estimator::finish).
+    void set_mean(std::size_t layer, std::span<const Rgb> values);
+    /// Relative noise: RMS over pixels of the standard error of the beauty's luminance, over its mean
+    /// luminance.
+    double relative_noise() const;
+
+    /// The bits of the film, for checkpoints: sums, counts, block state.
+    std::vector<std::byte> serialize() const;
+    /// Throws InputError when the bytes do not fit this film's size and layers.
+    void deserialize(std::span<const std::byte> bytes);
+
+  private:
+    struct Sums;  // one accumulator of doubles per layer, plus squares
+    int width_, height_;
+    std::vector<Layer> layers_;
+    bool all_squares_;
+    std::uint32_t passes_ = 0;
+    std::uint64_t non_finite_ = 0;
+    // [layer][pixel * 3 + channel]; `total_` holds finished blocks, `block_` the one that is open.
+    std::vector<std::vector<double>> total_, block_;
+    // Sums of squares: index 0 is the beauty, 1 + i layer i when all_squares.
+    std::vector<std::vector<double>> total_squares_, block_squares_;
+};
+
+}  // namespace mote::core

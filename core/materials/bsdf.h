@@ -1,0 +1,66 @@
+// The interface of surface scattering.
+//
+// Directions are unit vectors in the local shading frame (z is the shading normal) and point away from the
+// surface: wo to the viewer, wi to the light. `eval` never holds the cosine.
+#pragma once
+
+#include <optional>
+
+#include "core/math/vec.h"
+#include "core/scene/object.h"
+
+namespace mote::core {
+
+/// Which quantity travels along the path: radiance from the eye, or power (importance's adjoint) from a
+/// light. Matters where light crosses a refractive boundary: radiance is scaled by (eta_i/eta_o)^2, power is
+/// not.
+enum class TransportMode : std::uint8_t { radiance, power };
+
+struct BsdfTraits {
+    bool smooth = false;        ///< has a part that eval() sees (non-delta)
+    bool delta = false;         ///< has a part that only sample() can produce
+    bool transmissive = false;  ///< lets light through
+    bool null = false;     ///< the surface is invisible: light passes straight (a boundary between media)
+    bool diffuse = false;  ///< exactly Lambertian reflection: diffuse_reflectance() says all
+    bool textured = false;
+};
+
+struct BsdfSample {
+    Vec3 wi;                ///< local
+    Rgb weight;             ///< f * |cos(wi)| / pdf; for a delta part, the weight of that part
+    float pdf_solid_angle;  ///< density of wi over the smooth part; 0 for a delta part
+    bool delta = false;
+    bool transmitted = false;  ///< wi lies on the other side of the surface
+    float eta = 1.0f;          ///< relative index of refraction along the path (for Russian roulette)
+};
+
+/// Where on the surface: textures are looked up here.
+struct BsdfPoint {
+    Vec2 uv{0, 0};
+};
+
+class Bsdf : public Object {
+  public:
+    virtual BsdfTraits traits() const = 0;
+
+    /// Smooth part of the BSDF [1/sr], without cosine. Zero for delta parts.
+    virtual Rgb eval(const BsdfPoint& p, const Vec3& wo, const Vec3& wi, TransportMode mode) const = 0;
+
+    /// Density of sample() choosing wi given wo, per solid angle, over the smooth part, and including the
+    /// chance of choosing the smooth part at all.
+    virtual float pdf_solid_angle(const BsdfPoint& p, const Vec3& wo, const Vec3& wi,
+                                  TransportMode mode) const = 0;
+
+    /// Draws wi given wo. `u_lobe` chooses among lobes, `u` the direction. Nothing when absorbed.
+    virtual std::optional<BsdfSample> sample(const BsdfPoint& p, const Vec3& wo, float u_lobe, const Vec2& u,
+                                             TransportMode mode) const = 0;
+
+    /// Reflectance of a purely Lambertian BSDF seen from wo's side; nothing when it is anything else.
+    virtual std::optional<Rgb> diffuse_reflectance(const BsdfPoint&, const Vec3& /*wo*/) const {
+        return std::nullopt;
+    }
+    /// Estimate of the albedo for auxiliary channels and Russian roulette.
+    virtual Rgb albedo(const BsdfPoint& p, const Vec3& wo) const = 0;
+};
+
+}  // namespace mote::core

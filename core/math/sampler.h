@@ -1,0 +1,44 @@
+// Points for one sample of one pixel (or one light path), keyed by (seed, pass, pixel, dimension).
+//
+// Two kinds: independent numbers, and Owen-scrambled Sobol points. The latter follow Burley 2020 ("Practical
+// hash-based Owen scrambling"): pairs of dimensions are padded, each with its own shuffle of the pass index
+// and its own nested uniform scramble, so that the passes of one pixel form a (0,2)-sequence in every pair.
+#pragma once
+
+#include <cstdint>
+
+#include "core/math/random.h"
+
+namespace mote::core {
+
+enum class SamplerKind : std::uint8_t { independent, sobol };
+
+class Sampler {
+  public:
+    /// `item` is a pixel index or a light path's index; `stream` keeps unrelated uses of one item apart.
+    Sampler(SamplerKind kind, std::uint64_t seed, std::uint32_t pass, std::uint64_t item,
+            std::uint32_t stream = 0)
+        : kind_(kind), pass_(pass), key_(hash_keys(seed, item, stream)) {}
+
+    float next_1d() { return next_2d().x; }
+    Vec2 next_2d() {
+        const std::uint32_t d = dimension_++;
+        return kind_ == SamplerKind::sobol ? sobol(d) : independent(d);
+    }
+    /// A generator for an unbounded number of draws (tracking), independent of the dimensions used before.
+    Rng make_rng() const { return Rng(hash_keys(key_, pass_, 0x7261636bull, dimension_)); }
+
+  private:
+    Vec2 independent(std::uint32_t dimension) const {
+        const std::uint64_t h = hash_keys(key_, pass_, dimension);
+        return {to_unit_float(std::uint32_t(h)), to_unit_float(std::uint32_t(h >> 32))};
+    }
+    Vec2 sobol(std::uint32_t dimension) const;
+
+    SamplerKind kind_;
+    std::uint32_t pass_;
+    std::uint32_t dimension_ = 0;
+    std::uint64_t key_;
+};
+
+}  // namespace mote::core

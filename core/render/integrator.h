@@ -1,0 +1,102 @@
+// A render is a sum of independent passes (docs/design.md).
+//
+//   Integrator::prepare(scene, options) -> Estimator       once per view: maps, trees
+//   Estimator::pass(context, layers)                       one independent, seeded estimate of the picture
+//   Estimator::finish(film)                                optional post-processes on the mean
+//
+// The driver (render_driver.h) does everything else once for all integrators: sums, noise, stopping,
+// progress, checkpoints, resume. (scene, seed, pass index) determines every bit of a pass, whatever the
+// number of threads.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/math/sampler.h"
+#include "core/math/vec.h"
+#include "core/render/plan.h"
+#include "core/render/statistics.h"
+#include "core/scene/object.h"
+#include "core/scene/requirements.h"
+
+namespace mote::core {
+
+class Film;
+class Scene;
+
+struct Layer {
+    std::string name;         ///< "direct", "indirect_bounded"
+    std::string description;  ///< one line for docs and metadata
+    bool auxiliary = false;   ///< not part of the beauty (Albedo, N, P, Depth)
+};
+
+struct RenderOptions {
+    std::uint64_t seed = 0;
+    int width = 0, height = 0;
+    SamplerKind sampler = SamplerKind::sobol;
+};
+
+/// The picture of one pass: one value per pixel and layer, row by row from the top. Zero at the start.
+class PassImage {
+  public:
+    PassImage(int width, int height, std::size_t layers);
+    int width() const { return width_; }
+    int height() const { return height_; }
+    std::size_t layers() const { return planes_.size(); }
+    std::span<Rgb> layer(std::size_t i) { return planes_[i]; }
+    std::span<const Rgb> layer(std::size_t i) const { return planes_[i]; }
+    Rgb& at(std::size_t layer, int x, int y) {
+        return planes_[layer][std::size_t(y) * std::size_t(width_) + std::size_t(x)];
+    }
+    void clear();
+
+  private:
+    int width_, height_;
+    std::vector<std::vector<Rgb>> planes_;
+};
+
+/// Where within pixel (x, y) a sample falls so that its plain mean is the filtered picture (filter importance
+/// sampling, Ernst et al. 2006): the filter's own distribution around the pixel centre. No sample is shared
+/// between pixels, which keeps pixels independent and the sum of passes exact.
+class PixelFilter {
+  public:
+    virtual ~PixelFilter() = default;
+    virtual Vec2 sample_offset(const Vec2& u) const = 0;  ///< relative to the pixel centre [pixels]
+};
+
+struct PassContext {
+    std::uint32_t index;  ///< which pass
+    const PixelFilter& filter;
+    const std::atomic<bool>& cancelled;  ///< poll between tiles; a cancelled pass is thrown away
+};
+
+/// Runs `body(x0, y0, x1, y1)` over tiles of the picture in parallel, until done or cancelled. Returns false
+/// when cancelled. The order of tiles must not matter to the result.
+bool for_each_tile(int width, int height, int tile_size, const std::atomic<bool>& cancelled,
+                   const std::function<void(int, int, int, int)>& body);
+
+class Estimator {
+  public:
+    virtual ~Estimator() = default;
+    /// Fills the layers with one independent estimate. Returns false when it was cancelled half-way.
+    virtual bool pass(const PassContext& context, PassImage& image) = 0;
+    /// Post-processes on the mean, after the last pass.
+    virtual void finish(Film& /*film*/) {}
+    /// Adds this estimator's counters (rays, lookups, VPLs, ...).
+    virtual void add_statistics(Statistics& /*statistics*/) const {}
+};
+
+class Integrator : public Object {
+  public:
+    virtual std::string type() const = 0;
+    /// The layers it fills, in order; those that are not auxiliary add up to the beauty.
+    virtual std::vector<Layer> layers(const Scene& scene) const = 0;
+    virtual Plan plan(const Scene& scene, const Requirements& requirements) const = 0;
+    virtual std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const = 0;
+};
+
+}  // namespace mote::core

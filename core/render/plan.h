@@ -1,0 +1,28 @@
+// What an integrator will run on a scene, with the reason for every choice, and what it leaves out.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace mote::core {
+
+struct PlanEntry {
+    std::string topic;   ///< "transmittance", "bound", "light per VPL"
+    std::string choice;  ///< "analytic"
+    std::string reason;  ///< "every medium is homogeneous"
+};
+
+struct Plan {
+    std::string integrator;
+    std::vector<PlanEntry> runs;
+    std::vector<PlanEntry> left_out;  ///< code and data that this scene does not need
+    std::vector<PlanEntry> missing;   ///< transport that this integrator cannot compute in this scene
+
+    void run(std::string topic, std::string choice, std::string reason);
+    void leave_out(std::string topic, std::string choice, std::string reason);
+    void miss(std::string topic, std::string choice, std::string reason);
+    /// A table for people.
+    std::string to_text() const;
+};
+
+}  // namespace mote::core

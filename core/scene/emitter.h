@@ -1,0 +1,81 @@
+// The interface of lights: sampled from a receiver (direct light), or from the light itself (particles).
+#pragma once
+
+#include <optional>
+
+#include "core/math/bounds.h"
+#include "core/math/vec.h"
+#include "core/scene/object.h"
+
+namespace mote::core {
+
+class Medium;
+class Shape;
+struct SurfaceHit;
+
+enum class EmitterKind : std::uint8_t { point, spot, directional, area, environment };
+
+struct EmitterTraits {
+    EmitterKind kind = EmitterKind::point;
+    bool delta_position = false;   ///< point-like: cannot be hit
+    bool delta_direction = false;  ///< parallel light: cannot be hit
+    bool infinite = false;         ///< surrounds the scene
+    bool textured = false;
+    bool can_be_hit() const { return !delta_position && !delta_direction; }
+};
+
+/// A connection from a reference point to the light.
+struct DirectSample {
+    Vec3 wi;         ///< unit, from the reference point to the light
+    float distance;  ///< to the point on the light; infinity for lights at infinity
+    Rgb weight;      ///< L_e (with the light's fall-off) / pdf, without visibility, transmittance and the
+                     ///< receiver's cosine
+    float pdf_solid_angle;  ///< at the reference point; 0 for delta lights (then weight is the full value)
+    bool delta = false;
+    Vec3 normal{0, 0, 0};  ///< of the light's surface; zero where there is none
+};
+
+/// The start of a light particle.
+struct EmissionSample {
+    Vec3 origin;
+    Vec3 direction;  ///< unit, away from the light
+    Vec3 normal;     ///< of the light's surface at the origin; zero where there is none
+    Rgb weight;      ///< L_e * |cos| / (pdf_area * pdf_solid_angle): the power carried by the particle [W]
+    float pdf_area;  ///< of the origin; 1 for a delta position. Lights at infinity: over the disk they start
+                     ///< from
+    float pdf_solid_angle;  ///< of the direction; 1 for a delta direction
+    const Shape* shape = nullptr;
+};
+
+class Emitter : public Object {
+  public:
+    virtual EmitterTraits traits() const = 0;
+
+    /// Called once when the scene is complete: bounding sphere of everything. Lights at infinity need it.
+    virtual void set_scene_bounds(const Vec3& /*center*/, float /*radius*/) {}
+
+    /// Draws a direction to the light as seen from p. Nothing when the light is black there.
+    virtual std::optional<DirectSample> sample_direct(const Vec3& p, const Vec2& u) const = 0;
+    /// Density, per solid angle at p, of sample_direct() choosing the light point that a ray from p hit:
+    /// `hit` for area lights, the direction wi alone for lights at infinity (hit is null then).
+    virtual float pdf_direct(const Vec3& p, const Vec3& wi, const SurfaceHit* hit) const = 0;
+
+    /// Radiance leaving an area light at `hit` towards wo (world, away from the light). Black behind.
+    virtual Rgb radiance(const SurfaceHit& /*hit*/, const Vec3& /*wo*/) const { return Rgb(0.0f); }
+    /// Radiance arriving from direction wi (away from the receiver) for lights at infinity.
+    virtual Rgb environment(const Vec3& /*wi*/) const { return Rgb(0.0f); }
+
+    /// Draws a particle. Nothing when the sample carries no light.
+    virtual std::optional<EmissionSample> sample_emission(const Vec2& u_position,
+                                                          const Vec2& u_direction) const = 0;
+
+    /// Emitted power [W]; a good estimate is enough: it only steers how often the light is chosen.
+    virtual Rgb power() const = 0;
+
+    /// Area lights belong to a shape.
+    virtual void set_shape(const Shape* /*shape*/) {}
+
+    const Medium* medium = nullptr;  ///< the medium around the light where the scene file names one
+};
+
+}  // namespace mote::core

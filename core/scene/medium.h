@@ -1,0 +1,85 @@
+// The interface of participating media.
+//
+// One virtual call per ray segment; the loops over collisions live below it. Coefficients are per metre in
+// world space. Spectral variation (RGB) is handled by spectral multiple importance sampling: one channel, the
+// hero, drives the random decisions of a path, and PathWeights carries the ratio of every channel's pdf to
+// the hero's (Wilkie et al. 2014; Miller et al. 2019; the book-keeping is that of pbrt-v4, section 14.2).
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "core/math/bounds.h"
+#include "core/math/random.h"
+#include "core/scene/phase_function.h"
+
+namespace mote::core {
+
+/// What was spent on tracking; added up per thread and reported in the statistics.
+struct TrackingCounters {
+    std::uint64_t lookups = 0;     ///< density lookups
+    std::uint64_t collisions = 0;  ///< tentative collisions, real and null
+    std::uint64_t fallbacks = 0;   ///< walks that hit the step limit and were ended
+    void add(const TrackingCounters& o) {
+        lookups += o.lookups, collisions += o.collisions, fallbacks += o.fallbacks;
+    }
+};
+
+/// Throughput of a path with its rescaled pdfs. The contribution of light L found along it is
+///   throughput * L / average(unidirectional)                    where no other technique could find it,
+///   throughput * L / average(unidirectional + light)            where light sampling could (balance
+///   heuristic).
+struct PathWeights {
+    Rgb throughput{1.0f};
+    Rgb unidirectional{1.0f};  ///< pdf_c / pdf_hero of the path as sampled, per channel c
+    Rgb light{1.0f};           ///< the same with the last vertex found by light sampling
+    int hero = 0;              ///< the channel that drives distance sampling: 0, 1 or 2
+};
+
+struct MediumCoefficients {
+    Rgb sigma_t{0.0f};   ///< extinction [1/m]
+    Rgb sigma_s{0.0f};   ///< scattering [1/m]
+    Rgb emission{0.0f};  ///< sigma_a * L_e [W/(m^3 sr)]
+};
+
+struct MediumTraits {
+    bool homogeneous = false;
+    bool emissive = false;
+    bool isotropic = true;    ///< phase function
+    bool chromatic = false;   ///< extinction differs between channels
+    bool scattering = true;   ///< false: sigma_s is zero everywhere
+    bool empty = false;       ///< vacuum: no extinction anywhere
+    std::string description;  ///< for plans: "homogeneous", "vdbvolume 'density' 128x96x80, 3.1 MB, majorants
+                              ///< 16x12x10"
+};
+
+class Medium : public Object {
+  public:
+    virtual MediumTraits traits() const = 0;
+    virtual const PhaseFunction& phase() const = 0;
+    virtual MediumCoefficients coefficients(const Vec3& p) const = 0;
+
+    /// Upper bound of the extinction anywhere (largest channel) [1/m], and where the medium is not vacuum.
+    virtual float majorant() const = 0;
+    virtual Bounds3 bounds() const = 0;
+
+    /// Delta tracking along the ray from t_min to t_max. Returns the distance of a real collision, with
+    /// `weights` updated by everything up to and including the scattering coefficient there (so that
+    /// throughput holds the single-scattering albedo), or nothing when the ray leaves at t_max. Emission met
+    /// on the way is added to `emitted`, divided by average(unidirectional). Exact for homogeneous media.
+    virtual std::optional<float> sample_collision(const Ray& ray, PathWeights& weights, Rgb& emitted,
+                                                  Rng& rng, TrackingCounters& counters) const = 0;
+
+    /// Ratio tracking of the transmittance from t_min to t_max for a connection to a light: multiplies
+    /// `weights` so that throughput holds the estimate, `light` the pdf ratio of this technique, and
+    /// `unidirectional` that of sample_collision() having passed the same way. Deterministic for homogeneous
+    /// media.
+    virtual void connect(const Ray& ray, PathWeights& weights, Rng& rng,
+                         TrackingCounters& counters) const = 0;
+
+    /// Unbiased estimate of the transmittance per channel, for connections without another technique (VPLs).
+    virtual Rgb transmittance(const Ray& ray, Rng& rng, TrackingCounters& counters) const = 0;
+};
+
+}  // namespace mote::core

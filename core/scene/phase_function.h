@@ -1,0 +1,29 @@
+// The interface of scattering at a point of a medium.
+//
+// Both directions point away from the point: wo to the viewer, wi to the light. The phase function is
+// normalised to one over the sphere [1/sr]; its cosine is dot(wo, wi), so forward scattering is a cosine of
+// -1.
+#pragma once
+
+#include "core/math/vec.h"
+#include "core/scene/object.h"
+
+namespace mote::core {
+
+struct PhaseSample {
+    Vec3 wi;
+    Rgb weight;  ///< value / pdf
+    float pdf_solid_angle;
+};
+
+class PhaseFunction : public Object {
+  public:
+    virtual Rgb eval(const Vec3& wo, const Vec3& wi) const = 0;
+    virtual float pdf_solid_angle(const Vec3& wo, const Vec3& wi) const = 0;
+    virtual PhaseSample sample(const Vec3& wo, const Vec2& u) const = 0;
+    virtual bool isotropic() const = 0;
+    /// Mean cosine of the scattering angle (0 for isotropic, > 0 forward).
+    virtual float mean_cosine() const = 0;
+};
+
+}  // namespace mote::core

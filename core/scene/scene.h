@@ -1,0 +1,104 @@
+// A complete scene: shapes, lights, media, the ray tracer, and the questions that integrators ask of it.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/geometry/ray_tracer.h"
+#include "core/geometry/shape.h"
+#include "core/materials/bsdf.h"
+#include "core/math/distribution.h"
+#include "core/scene/camera.h"
+#include "core/scene/emitter.h"
+#include "core/scene/medium.h"
+#include "core/scene/medium_state.h"
+
+namespace mote::core {
+
+class Integrator;
+
+/// What the film of a scene file asks for.
+struct FilmSettings {
+    int width = 768, height = 576;
+    bool half = false;                ///< write float16
+    std::string filter = "gaussian";  ///< box, tent, gaussian
+    float filter_radius = 2.0f;       ///< pixels
+    float filter_stddev = 0.5f;       ///< gaussian only
+    std::string sampler = "sobol";    ///< independent, sobol
+    int sample_count = 16;            ///< passes when the command line does not say
+};
+
+/// A light drawn from the scene for direct lighting.
+struct LightChoice {
+    const Emitter* emitter;
+    float probability;
+};
+
+class Scene {
+  public:
+    /// Builds the ray tracer and the light tables. Throws InputError when there is nothing to see or no
+    /// light.
+    struct Parts {
+        std::vector<std::shared_ptr<Shape>> shapes;
+        std::vector<std::shared_ptr<Emitter>> emitters;  ///< all lights, those of shapes included
+        std::vector<std::shared_ptr<Medium>> media;
+        std::shared_ptr<Camera> camera;
+        std::shared_ptr<Integrator> integrator;  ///< the one the file names, or null
+        FilmSettings film;
+        std::string file;                      ///< path of the scene file, or "" when built in code
+        std::vector<std::string> input_files;  ///< every file read, for the content hash
+        std::vector<std::string> warnings;
+    };
+    explicit Scene(Parts parts);
+    ~Scene();
+
+    std::span<const std::shared_ptr<Shape>> shapes() const { return parts_.shapes; }
+    std::span<const std::shared_ptr<Emitter>> emitters() const { return parts_.emitters; }
+    std::span<const std::shared_ptr<Medium>> media() const { return parts_.media; }
+    const Camera& camera() const { return *parts_.camera; }
+    const Integrator* integrator() const { return parts_.integrator.get(); }
+    const FilmSettings& film() const { return parts_.film; }
+    FilmSettings& film() { return parts_.film; }
+    const Parts& parts() const { return parts_; }
+    const RayTracer& rays() const { return *rays_; }
+
+    /// Everything with a surface, the camera, and the lights that have a position.
+    Bounds3 bounds() const { return bounds_; }
+    const Emitter* environment() const {
+        return environment_;
+    }  ///< the light at infinity with a picture, or null
+
+    /// Light for a receiver: half the chances follow power, half are equal, so that no light is starved.
+    LightChoice choose_light(float u, float* remapped = nullptr) const;
+    float light_probability(const Emitter* emitter) const;
+    /// Light for a particle: proportional to power.
+    LightChoice choose_emitter_by_power(float u, float* remapped = nullptr) const;
+
+    /// The media around a point: found by casting rays against the medium boundaries, see medium_state.h.
+    MediumState medium_state_at(const Vec3& p, const Medium* declared) const;
+    MediumState camera_medium_state() const { return camera_state_; }
+    /// State at the origin of a light particle or at a light's position.
+    MediumState emitter_medium_state(const Emitter& emitter, const EmissionSample& sample) const;
+
+    /// The transmittance from one point to another through all media and null boundaries, estimated without
+    /// bias; opaque surfaces are not looked at. `state` holds the media at `from`.
+    Rgb transmittance(const Vec3& from, const Vec3& to, const MediumState& state, Rng& rng,
+                      TrackingCounters& counters) const;
+    /// The same as a connection to a light, for multiple importance sampling (see Medium::connect).
+    void connect(const Ray& ray, const MediumState& state, PathWeights& weights, Rng& rng,
+                 TrackingCounters& counters) const;
+    bool has_media() const { return !parts_.media.empty(); }
+
+  private:
+    Parts parts_;
+    std::unique_ptr<RayTracer> rays_;
+    Bounds3 bounds_;
+    const Emitter* environment_ = nullptr;
+    Distribution1D direct_lights_, particle_lights_;
+    std::map<const Emitter*, std::size_t> emitter_index_;
+    MediumState camera_state_;
+};
+
+}  // namespace mote::core

@@ -1,0 +1,12 @@
+// Hands everything in lights/ to the registry.
+#pragma once
+
+namespace mote::core {
+class Registry;
+}
+
+namespace mote::lights {
+
+void register_lights(core::Registry& registry);
+
+}  // namespace mote::lights
