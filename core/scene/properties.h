@@ -41,6 +41,7 @@ class Properties {
     SourceLocation where;
     std::vector<std::string> search_paths;         ///< folders that relative file names are looked up in
     std::vector<std::string>* warnings = nullptr;  ///< sink for warnings; may be null
+    std::vector<std::string>* files = nullptr;     ///< sink for the paths require_file() found; may be null
 
     std::map<std::string, Value> values;
     std::vector<Child> children;

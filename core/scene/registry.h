@@ -7,7 +7,9 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -40,6 +42,7 @@ class Registry {
     void add(Manual manual, Factory factory);
     /// Returns null when unknown.
     const Manual* find(Category category, const std::string& type) const;
+    /// Throws std::out_of_range when unknown.
     const Factory& factory(Category category, const std::string& type) const;
     std::vector<std::string> types(Category category) const;
     std::vector<const Manual*> manuals() const;
@@ -58,7 +61,8 @@ void register_materials(Registry& registry);  // core/materials/register_materia
 void register_geometry(Registry& registry);   // core/geometry/register_geometry.cpp
 void register_sensors(Registry& registry);    // core/scene/register_sensors.cpp
 
-/// "bsdf", "texture", ... and back; category_of throws std::out_of_range for an unknown word.
+/// "bsdf", "texture", ... and back; nothing for an unknown word.
 const std::string& category_name(Category category);
+std::optional<Category> find_category(std::string_view name);
 
 }  // namespace mote::core
