@@ -1,0 +1,55 @@
+#include "core/scene/ray_walk.h"
+
+namespace mote::core {
+namespace {
+
+/// Tracks through one segment of one medium. Returns the distance of a real collision, if any.
+std::optional<float> cross_segment(const MediumState& state, const Ray& ray, float t0, float t1,
+                                   PathWeights& weights, Rgb& emitted, WalkContext& context) {
+    const Medium* medium = state.current();
+    if (!medium || !(t0 < t1)) return std::nullopt;
+    Ray segment = ray;
+    segment.t_min = t0, segment.t_max = t1;
+    return medium->sample_collision(segment, weights, emitted, context.rng, context.tracking);
+}
+
+WalkEvent collision_at(float t, const Medium* medium) {
+    WalkEvent event;
+    event.kind = WalkEvent::Kind::collision, event.distance = t, event.medium = medium;
+    return event;
+}
+
+}  // namespace
+
+template <bool Media>
+WalkEvent walk(const Scene& scene, const Ray& ray, MediumState& state, PathWeights& weights, Rgb& emitted,
+               WalkContext& context) {
+    ++context.rays.closest;
+    const auto hit = scene.rays().closest(ray);
+    if constexpr (Media) {
+        float t = ray.t_min;
+        const float t_end = hit ? hit->t : ray.t_max;
+        if (scene.rays().has_boundaries()) {
+            Ray boundary_ray = ray;
+            boundary_ray.t_max = t_end;
+            ++context.rays.boundary;
+            scene.rays().all_hits(boundary_ray, RayTracer::Group::boundaries, context.boundary_hits);
+            for (const SurfaceHit& boundary : context.boundary_hits) {
+                if (const auto c = cross_segment(state, ray, t, boundary.t, weights, emitted, context))
+                    return collision_at(*c, state.current());
+                state.cross(*boundary.shape, boundary.geometric_normal, ray.direction);
+                t = boundary.t;
+            }
+        }
+        if (const auto c = cross_segment(state, ray, t, t_end, weights, emitted, context))
+            return collision_at(*c, state.current());
+    }
+    WalkEvent event;
+    if (hit) event.kind = WalkEvent::Kind::surface, event.distance = hit->t, event.hit = *hit;
+    return event;
+}
+
+template WalkEvent walk<true>(const Scene&, const Ray&, MediumState&, PathWeights&, Rgb&, WalkContext&);
+template WalkEvent walk<false>(const Scene&, const Ray&, MediumState&, PathWeights&, Rgb&, WalkContext&);
+
+}  // namespace mote::core

@@ -1,0 +1,40 @@
+// Follows a ray through null boundaries and media to its next real event: a surface, a collision, or the outside.
+//
+// Everything that traces paths (path tracers, light particles, eye paths of many-light methods) advances by this
+// one function, so that all of them agree on which medium lies where. Without media it is one closest-hit query.
+#pragma once
+
+#include <vector>
+
+#include "core/render/statistics.h"
+#include "core/scene/scene.h"
+
+namespace mote::core {
+
+/// Generator, counters and scratch memory of one task; made once a tile, never shared between threads.
+struct WalkContext {
+    Rng rng;
+    RayCounters rays;
+    TrackingCounters tracking;
+    std::vector<SurfaceHit> boundary_hits;  ///< reused between rays
+};
+
+struct WalkEvent {
+    enum class Kind : std::uint8_t { escaped, surface, collision };
+    Kind kind = Kind::escaped;
+    float distance = infinity;       ///< along the ray [m]
+    SurfaceHit hit;                  ///< surface only
+    const Medium* medium = nullptr;  ///< collision only
+};
+
+/// Advances along `ray` and updates `state` (media at the end), `weights` (see Medium::sample_collision) and
+/// `emitted` (emission of media met on the way). `Media` = false compiles the media away: state, weights and
+/// emitted are left alone.
+template <bool Media>
+WalkEvent walk(const Scene& scene, const Ray& ray, MediumState& state, PathWeights& weights, Rgb& emitted,
+               WalkContext& context);
+
+extern template WalkEvent walk<true>(const Scene&, const Ray&, MediumState&, PathWeights&, Rgb&, WalkContext&);
+extern template WalkEvent walk<false>(const Scene&, const Ray&, MediumState&, PathWeights&, Rgb&, WalkContext&);
+
+}  // namespace mote::core

@@ -1,0 +1,58 @@
+#include "core/scene/scattering_vertex.h"
+
+namespace mote::core {
+namespace {
+
+/// Do shading and geometric normal agree on whether wo and wi lie on the same side?
+bool sides_agree(const SurfaceHit& hit, const Vec3& wo, const Vec3& wi) {
+    const float geometric = glm::dot(hit.geometric_normal, wo) * glm::dot(hit.geometric_normal, wi);
+    const float shading = glm::dot(hit.shading.n, wo) * glm::dot(hit.shading.n, wi);
+    return geometric * shading > 0.0f;
+}
+
+}  // namespace
+
+Rgb ScatteringVertex::eval_cos(const Vec3& wi, TransportMode mode) const {
+    if (phase) return phase->eval(wo, wi);
+    if (!sides_agree(hit, wo, wi)) return Rgb(0.0f);
+    const Vec3 local_wi = hit.shading.to_local(wi);
+    return bsdf->eval(bsdf_point(), hit.shading.to_local(wo), local_wi, mode) * abs_cos_theta(local_wi);
+}
+
+float ScatteringVertex::pdf_solid_angle(const Vec3& wi, TransportMode mode) const {
+    if (phase) return phase->pdf_solid_angle(wo, wi);
+    return bsdf->pdf_solid_angle(bsdf_point(), hit.shading.to_local(wo), hit.shading.to_local(wi), mode);
+}
+
+std::optional<ScatterSample> ScatteringVertex::sample(float u_lobe, const Vec2& u, TransportMode mode) const {
+    if (phase) {
+        const PhaseSample s = phase->sample(wo, u);
+        return ScatterSample{s.wi, s.weight, s.pdf_solid_angle};
+    }
+    const auto s = bsdf->sample(bsdf_point(), hit.shading.to_local(wo), u_lobe, u, mode);
+    if (!s || is_black(s->weight)) return std::nullopt;
+    const Vec3 wi = glm::normalize(hit.shading.to_world(s->wi));
+    if (!sides_agree(hit, wo, wi)) return std::nullopt;
+    return ScatterSample{wi, s->weight, s->pdf_solid_angle, s->eta, s->delta, s->transmitted};
+}
+
+ScatteringVertex make_vertex(const WalkEvent& event, const Ray& ray) {
+    ScatteringVertex v;
+    v.wo = -ray.direction;
+    if (event.kind == WalkEvent::Kind::surface) {
+        v.position = event.hit.position, v.hit = event.hit, v.bsdf = event.hit.shape->bsdf.get();
+    } else {
+        v.position = ray.at(event.distance), v.phase = &event.medium->phase();
+    }
+    return v;
+}
+
+float adjoint_correction(const ScatteringVertex& vertex, const Vec3& towards_light, const Vec3& away) {
+    if (!vertex.on_surface()) return 1.0f;
+    const Vec3 &ns = vertex.hit.shading.n, &ng = vertex.hit.geometric_normal;
+    const float numerator = std::fabs(glm::dot(towards_light, ns) * glm::dot(away, ng));
+    const float denominator = std::fabs(glm::dot(towards_light, ng) * glm::dot(away, ns));
+    return denominator > 0.0f ? numerator / denominator : 0.0f;
+}
+
+}  // namespace mote::core

@@ -1,0 +1,63 @@
+// A vertex of a path where light scatters: a point on a surface or in a medium, behind one face.
+//
+// f* is the BSDF on a surface and the phase function in a medium (Engelhardt 2013, Sec. 10.1); the coefficient
+// sigma_s of a medium is carried by the distance sampling that made the vertex, so it does not appear here.
+#pragma once
+
+#include <optional>
+
+#include "core/math/sampler.h"
+#include "core/scene/medium_state.h"
+#include "core/scene/ray_walk.h"
+
+namespace mote::core {
+
+struct ScatterSample {
+    Vec3 wi;                ///< world
+    Rgb weight;             ///< f* C* / pdf
+    float pdf_solid_angle;  ///< 0 for a delta part
+    float eta = 1.0f;
+    bool delta = false, transmitted = false;
+};
+
+struct ScatteringVertex {
+    Vec3 position;
+    Vec3 wo;                            ///< unit, away from the vertex, towards where the path came from
+    const Bsdf* bsdf = nullptr;         ///< surface
+    const PhaseFunction* phase = nullptr;  ///< medium
+    SurfaceHit hit;                     ///< surface only
+
+    bool on_surface() const { return bsdf != nullptr; }
+    BsdfPoint bsdf_point() const { return {hit.uv}; }
+
+    /// f*(wo, wi) times the shading cosine of wi (1 in a medium). Zero where shading and geometric normal disagree
+    /// on the side, so that no light leaks through smooth-shaded surfaces.
+    Rgb eval_cos(const Vec3& wi, TransportMode mode) const;
+    /// Density of sample() choosing wi, per solid angle.
+    float pdf_solid_angle(const Vec3& wi, TransportMode mode) const;
+    std::optional<ScatterSample> sample(float u_lobe, const Vec2& u, TransportMode mode) const;
+
+    /// Has a part that can be connected to a light.
+    bool connectable() const { return phase || bsdf->traits().smooth; }
+    /// Origin for a ray that leaves in `direction`.
+    Vec3 ray_origin(const Vec3& direction) const {
+        return on_surface() ? offset_origin(hit, direction) : position;
+    }
+    /// C*(this -> direction) with the shading normal (the receiver's end of a connection); 1 in a medium.
+    float shading_cosine(const Vec3& direction) const {
+        return on_surface() ? std::fabs(glm::dot(hit.shading.n, direction)) : 1.0f;
+    }
+    /// C*(this -> direction) with the geometric normal (the light's end of a connection); 1 in a medium.
+    float geometric_cosine(const Vec3& direction) const {
+        return on_surface() ? std::fabs(glm::dot(hit.geometric_normal, direction)) : 1.0f;
+    }
+};
+
+/// The vertex at the end of a walk along `direction`. Precondition: the event is a surface or a collision.
+ScatteringVertex make_vertex(const WalkEvent& event, const Ray& ray);
+
+/// Light traced from the light through a vertex with a shading normal needs the factor
+/// |wi.ns| |wo.ng| / (|wi.ng| |wo.ns|), where wi is towards the light (Veach 1997, Eq. 5.19). 1 in a medium.
+float adjoint_correction(const ScatteringVertex& vertex, const Vec3& towards_light, const Vec3& away);
+
+}  // namespace mote::core
