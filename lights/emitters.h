@@ -1,0 +1,59 @@
+// The primary lights of a scene, for callers that build scenes in code; scene files reach them through the
+// registry. Angles are in radians, directions need not have unit length, colours are linear RGB.
+//
+// Every maker throws core::InputError for values that are negative, not finite or out of range.
+#pragma once
+
+#include <memory>
+
+#include "core/image/image_file.h"
+#include "core/materials/texture.h"
+#include "core/math/transform.h"
+#include "core/scene/emitter.h"
+
+namespace mote::core {
+class Registry;
+}
+
+namespace mote::lights {
+
+/// Equal intensity [W/sr] in all directions.
+std::shared_ptr<core::Emitter> make_point_light(const core::Vec3d& position, const core::Rgb& intensity);
+
+/// A cone around +z of to_world: full intensity [W/sr] inside `beam_width`, falling linearly in the angle to
+/// zero at `cutoff_angle`. The texture, where there is one, is projected through the cone and multiplies.
+struct SpotSettings {
+    core::Transform to_world;
+    core::Rgb intensity{1.0f};
+    double cutoff_angle = 20.0 * 3.14159265358979323846 / 180.0;
+    double beam_width = 15.0 * 3.14159265358979323846 / 180.0;
+    std::shared_ptr<core::Texture> texture;
+};
+std::shared_ptr<core::Emitter> make_spot_light(const SpotSettings& settings);
+
+/// Parallel light; `irradiance` [W/m^2] is what a surface facing the light receives.
+std::shared_ptr<core::Emitter> make_directional_light(const core::Vec3d& direction,
+                                                      const core::Rgb& irradiance);
+
+/// The front side of a shape (where its geometric normal points to) emits `radiance` [W/(m^2 sr)] in all
+/// directions. One light belongs to one shape: call set_shape() before use.
+std::shared_ptr<core::Emitter> make_area_light(const core::Rgb& radiance);
+/// The same with radiance by the shape's texture coordinates.
+std::shared_ptr<core::Emitter> make_area_light(std::shared_ptr<core::Texture> radiance);
+
+/// The same radiance [W/(m^2 sr)] from every direction.
+std::shared_ptr<core::Emitter> make_constant_light(const core::Rgb& radiance);
+
+/// Radiance from a latitude-longitude picture (see latlong_map.h); to_world may rotate and mirror.
+std::shared_ptr<core::Emitter> make_environment_map(core::Bitmap picture,
+                                                    const core::Transform& to_world = {}, float scale = 1.0f);
+
+// Called by register_lights(); each is defined beside its light.
+void register_point(core::Registry& registry);
+void register_spot(core::Registry& registry);
+void register_directional(core::Registry& registry);
+void register_area(core::Registry& registry);
+void register_constant(core::Registry& registry);
+void register_envmap(core::Registry& registry);
+
+}  // namespace mote::lights
