@@ -1,0 +1,154 @@
+// <medium type="homogeneous">: analytic transmittance, distances and emission.
+//
+// Distances follow the hero channel h: p(t) = sigma_t,h exp(-sigma_t,h t); the ratios of the other channels'
+// densities to it go into PathWeights (Wilkie et al. 2014).
+#include "media/homogeneous_medium.h"
+
+#include <fmt/format.h>
+
+#include "core/scene/properties.h"
+#include "core/scene/registry.h"
+#include "media/medium_parameters.h"
+#include "media/tracking_random.h"
+
+namespace mote::media {
+
+using core::Ray, core::Rgb, core::Rng;
+
+namespace {
+
+double length_of(const Ray& ray) { return double(ray.t_max) - double(ray.t_min); }
+
+Rgb transmittance_over(const Rgb& sigma_t, double length) {
+    Rgb t;
+    for (int c = 0; c < 3; ++c) t[c] = float(std::exp(-optical_depth(sigma_t[c], length)));
+    return t;
+}
+
+/// The integral of exp(-sigma_t t) * emission over [0, length]: emission (1 - exp(-tau)) / sigma_t.
+Rgb emission_along(const Rgb& sigma_t, const Rgb& emission, double length) {
+    Rgb sum(0.0f);
+    for (int c = 0; c < 3; ++c)
+        if (emission[c] > 0.0f)  // implies sigma_t > 0
+            sum[c] = float(double(emission[c]) * -std::expm1(-double(sigma_t[c]) * length) / sigma_t[c]);
+    return sum;
+}
+
+}  // namespace
+
+HomogeneousMedium::HomogeneousMedium(const Rgb& sigma_t, const Rgb& sigma_s, const Rgb& emitted_radiance,
+                                     std::shared_ptr<core::PhaseFunction> phase)
+    : sigma_t_(sigma_t), sigma_s_(sigma_s), phase_(std::move(phase)) {
+    for (int c = 0; c < 3; ++c) {
+        if (!(sigma_t[c] >= 0.0f && sigma_s[c] >= 0.0f && emitted_radiance[c] >= 0.0f) ||
+            !std::isfinite(sigma_t[c]) || !std::isfinite(emitted_radiance[c]))
+            throw core::InputError("a medium's coefficients must be finite and not negative");
+        if (sigma_s[c] > sigma_t[c] * 1.000001f)
+            throw core::InputError("a medium cannot scatter more than its extinction (albedo above 1)");
+        sigma_s_[c] = std::fmin(sigma_s[c], sigma_t[c]);
+    }
+    emission_ = (sigma_t_ - sigma_s_) * emitted_radiance;
+}
+
+core::Bounds3 HomogeneousMedium::bounds() const {
+    return {core::Vec3(-core::infinity), core::Vec3(core::infinity)};
+}
+
+core::MediumTraits HomogeneousMedium::traits() const {
+    core::MediumTraits t;
+    t.homogeneous = true;
+    t.emissive = !core::is_black(emission_);
+    t.isotropic = phase_->isotropic();
+    t.chromatic = sigma_t_.x != sigma_t_.y || sigma_t_.y != sigma_t_.z;
+    t.scattering = !core::is_black(sigma_s_);
+    t.empty = core::is_black(sigma_t_);
+    t.description = t.chromatic ? fmt::format("homogeneous, extinction {:.3g} {:.3g} {:.3g} 1/m", sigma_t_.x,
+                                              sigma_t_.y, sigma_t_.z)
+                                : fmt::format("homogeneous, extinction {:.3g} 1/m", sigma_t_.x);
+    return t;
+}
+
+std::optional<float> HomogeneousMedium::sample_collision(const Ray& ray, core::PathWeights& weights,
+                                                         Rgb& emitted, Rng& rng,
+                                                         core::TrackingCounters& counters) const {
+    const double length = length_of(ray);
+    if (!core::is_black(emission_))
+        emitted += weights.throughput * emission_along(sigma_t_, emission_, length) /
+                   core::average(weights.unidirectional);
+
+    const double sigma_h = sigma_t_[weights.hero];
+    const double t = sigma_h > 0.0 ? sample_optical_depth(rng) / sigma_h : double(core::infinity);
+    const bool collides = t < length;
+    const double travelled = collides ? t : length;
+    for (int c = 0; c < 3; ++c) {
+        // exp of the difference, so that neither transmittance underflows alone
+        const double ratio =
+            std::exp(optical_depth(sigma_h, travelled) - optical_depth(sigma_t_[c], travelled));
+        weights.throughput[c] *= float(collides ? ratio * sigma_s_[c] / sigma_h : ratio);
+        weights.unidirectional[c] *= float(collides ? ratio * sigma_t_[c] / sigma_h : ratio);
+    }
+    if (!collides) {
+        weights.light *= float(std::exp(optical_depth(sigma_h, length)));
+        return std::nullopt;
+    }
+    ++counters.collisions;
+    return std::fmin(float(ray.t_min + t), ray.t_max);
+}
+
+void HomogeneousMedium::connect(const Ray& ray, core::PathWeights& weights, Rng&,
+                                core::TrackingCounters&) const {
+    const Rgb t = transmittance_over(sigma_t_, length_of(ray));
+    weights.throughput *= t;
+    weights.unidirectional *= t;
+}
+
+Rgb HomogeneousMedium::transmittance(const Ray& ray, Rng&, core::TrackingCounters&) const {
+    return transmittance_over(sigma_t_, length_of(ray));
+}
+
+namespace {
+
+std::shared_ptr<HomogeneousMedium> make_homogeneous(const core::Properties& p) {
+    const bool by_albedo = p.has("albedo") || p.has("sigma_t");
+    const bool by_parts = p.has("sigma_s") || p.has("sigma_a");
+    if (by_albedo && by_parts)
+        throw core::InputError("give either 'sigma_t' and 'albedo', or 'sigma_s' and 'sigma_a'", p.where);
+    const float scale = float(p.get_float_in("scale", 1.0, 0.0, 1e30));
+    const auto coefficient = [&](const char* name, float value) {
+        return p.get_rgb_in(name, Rgb(value), 0.0f, 1e30f);
+    };
+    Rgb sigma_t, sigma_s;
+    if (by_parts) {
+        sigma_s = coefficient("sigma_s", 0.0f);
+        sigma_t = sigma_s + coefficient("sigma_a", 0.0f);
+    } else {
+        sigma_t = coefficient("sigma_t", 1.0f);
+        sigma_s = sigma_t * p.get_rgb_in("albedo", Rgb(0.75f), 0.0f, 1.0f);
+    }
+    const Rgb radiance =
+        p.get_rgb_in("Le", Rgb(0.0f), 0.0f, 1e30f) * float(p.get_float_in("Lescale", 1.0, 0.0, 1e30));
+    return std::make_shared<HomogeneousMedium>(scale * sigma_t, scale * sigma_s, radiance, phase_of(p));
+}
+
+}  // namespace
+
+void register_homogeneous_medium(core::Registry& registry) {
+    registry.add(
+        {core::Category::medium,
+         "homogeneous",
+         "The same coefficients everywhere; transmittance and distances are analytic.",
+         {{"sigma_t", "rgb", "1", "Extinction [1/m], times `scale`."},
+          {"albedo", "rgb", "0.75", "Single-scattering albedo, 0 to 1."},
+          {"sigma_s", "rgb", "",
+           "Scattering [1/m], times `scale`; with sigma_a instead of sigma_t and albedo."},
+          {"sigma_a", "rgb", "",
+           "Absorption [1/m], times `scale`; with sigma_s instead of sigma_t and albedo."},
+          {"scale", "float", "1", "Multiplies the coefficients."},
+          {"Le", "rgb", "0", "Emitted radiance [W/(m^2 sr)]; the source term is sigma_a Le, as in pbrt."},
+          {"Lescale", "float", "1", "Multiplies Le."},
+          {"phase", "phase", "isotropic", "The phase function."}},
+         R"(<medium type="homogeneous"><rgb name="sigma_t" value="1 2 3"/><rgb name="albedo" value="0.9"/></medium>)"},
+        make_homogeneous);
+}
+
+}  // namespace mote::media

@@ -1,0 +1,22 @@
+// <phase type="isotropic">: the same value in every direction.
+#include "core/math/warp.h"
+#include "core/scene/properties.h"
+#include "core/scene/registry.h"
+#include "media/phase_functions.h"
+
+namespace mote::media {
+
+core::PhaseSample IsotropicPhase::sample(const core::Vec3&, const core::Vec2& u) const {
+    return {core::square_to_sphere(u), core::Rgb(1.0f), core::inv_four_pi};
+}
+
+void register_isotropic_phase(core::Registry& registry) {
+    registry.add({core::Category::phase,
+                  "isotropic",
+                  "Scatters equally into all directions.",
+                  {},
+                  R"(<phase type="isotropic"/>)"},
+                 [](const core::Properties&) { return std::make_shared<IsotropicPhase>(); });
+}
+
+}  // namespace mote::media

@@ -1,0 +1,15 @@
+// Everything in media/ by name.
+#include "media/register_media.h"
+
+#include "media/homogeneous_medium.h"
+#include "media/phase_functions.h"
+
+namespace mote::media {
+
+void register_media(core::Registry& registry) {
+    register_isotropic_phase(registry);
+    register_hg_phase(registry);
+    register_homogeneous_medium(registry);
+}
+
+}  // namespace mote::media
