@@ -23,11 +23,11 @@ std::shared_ptr<core::Emitter> make_point_light(const core::Vec3d& position, con
 /// A cone around +z of to_world: full intensity [W/sr] inside `beam_width`, falling linearly in the angle to
 /// zero at `cutoff_angle`. The texture, where there is one, is projected through the cone and multiplies.
 struct SpotSettings {
-    core::Transform to_world;
+    core::Transform to_world{};
     core::Rgb intensity{1.0f};
     double cutoff_angle = 20.0 * 3.14159265358979323846 / 180.0;
     double beam_width = 15.0 * 3.14159265358979323846 / 180.0;
-    std::shared_ptr<core::Texture> texture;
+    std::shared_ptr<core::Texture> texture{};
 };
 std::shared_ptr<core::Emitter> make_spot_light(const SpotSettings& settings);
 
