@@ -12,11 +12,14 @@ bool sides_agree(const SurfaceHit& hit, const Vec3& wo, const Vec3& wi) {
 
 }  // namespace
 
-Rgb ScatteringVertex::eval_cos(const Vec3& wi, TransportMode mode) const {
+Rgb ScatteringVertex::eval(const Vec3& wi, TransportMode mode) const {
     if (phase) return phase->eval(wo, wi);
     if (!sides_agree(hit, wo, wi)) return Rgb(0.0f);
-    const Vec3 local_wi = hit.shading.to_local(wi);
-    return bsdf->eval(bsdf_point(), hit.shading.to_local(wo), local_wi, mode) * abs_cos_theta(local_wi);
+    return bsdf->eval(bsdf_point(), hit.shading.to_local(wo), hit.shading.to_local(wi), mode);
+}
+
+Rgb ScatteringVertex::eval_cos(const Vec3& wi, TransportMode mode) const {
+    return eval(wi, mode) * shading_cosine(wi);
 }
 
 float ScatteringVertex::pdf_solid_angle(const Vec3& wi, TransportMode mode) const {
@@ -34,6 +37,16 @@ std::optional<ScatterSample> ScatteringVertex::sample(float u_lobe, const Vec2& 
     const Vec3 wi = glm::normalize(hit.shading.to_world(s->wi));
     if (!sides_agree(hit, wo, wi)) return std::nullopt;
     return ScatterSample{wi, s->weight, s->pdf_solid_angle, s->eta, s->delta, s->transmitted};
+}
+
+MediumState ScatteringVertex::state_towards(const MediumState& state, const Vec3& direction) const {
+    MediumState result = state;
+    const auto crosses = [&] {
+        return glm::dot(hit.geometric_normal, direction) * glm::dot(hit.geometric_normal, wo) < 0.0f;
+    };
+    if (on_surface() && hit.shape->has_medium_boundary && crosses())
+        result.cross(*hit.shape, hit.geometric_normal, direction);
+    return result;
 }
 
 ScatteringVertex make_vertex(const WalkEvent& event, const Ray& ray) {

@@ -1,7 +1,8 @@
 // A vertex of a path where light scatters: a point on a surface or in a medium, behind one face.
 //
-// f* is the BSDF on a surface and the phase function in a medium (Engelhardt 2013, Sec. 10.1); the coefficient
-// sigma_s of a medium is carried by the distance sampling that made the vertex, so it does not appear here.
+// f* is the BSDF on a surface and the phase function in a medium (Engelhardt 2013, Sec. 10.1); the
+// coefficient sigma_s of a medium is carried by the distance sampling that made the vertex, so it does not
+// appear here.
 #pragma once
 
 #include <optional>
@@ -22,16 +23,18 @@ struct ScatterSample {
 
 struct ScatteringVertex {
     Vec3 position;
-    Vec3 wo;                            ///< unit, away from the vertex, towards where the path came from
-    const Bsdf* bsdf = nullptr;         ///< surface
+    Vec3 wo;                               ///< unit, away from the vertex, towards where the path came from
+    const Bsdf* bsdf = nullptr;            ///< surface
     const PhaseFunction* phase = nullptr;  ///< medium
-    SurfaceHit hit;                     ///< surface only
+    SurfaceHit hit;                        ///< surface only
 
     bool on_surface() const { return bsdf != nullptr; }
     BsdfPoint bsdf_point() const { return {hit.uv}; }
 
-    /// f*(wo, wi) times the shading cosine of wi (1 in a medium). Zero where shading and geometric normal disagree
-    /// on the side, so that no light leaks through smooth-shaded surfaces.
+    /// f*(wo, wi) [1/sr], without cosine. Zero where shading and geometric normal disagree on the side, so
+    /// that no light leaks through smooth-shaded surfaces.
+    Rgb eval(const Vec3& wi, TransportMode mode) const;
+    /// f*(wo, wi) times the shading cosine of wi (1 in a medium).
     Rgb eval_cos(const Vec3& wi, TransportMode mode) const;
     /// Density of sample() choosing wi, per solid angle.
     float pdf_solid_angle(const Vec3& wi, TransportMode mode) const;
@@ -43,6 +46,8 @@ struct ScatteringVertex {
     Vec3 ray_origin(const Vec3& direction) const {
         return on_surface() ? offset_origin(hit, direction) : position;
     }
+    /// Media on the side that `direction` leaves to, given those on the side of wo.
+    MediumState state_towards(const MediumState& state, const Vec3& direction) const;
     /// C*(this -> direction) with the shading normal (the receiver's end of a connection); 1 in a medium.
     float shading_cosine(const Vec3& direction) const {
         return on_surface() ? std::fabs(glm::dot(hit.shading.n, direction)) : 1.0f;

@@ -1,0 +1,41 @@
+// Direct light at a vertex by two techniques, combined by the balance heuristic (Veach 1997, Sec. 9.2):
+// next-event estimation, and directions from the BSDF or phase function that happen to hit a light.
+//
+// With media, the weights follow the spectral book-keeping of PathWeights; without, they reduce to scalars.
+#pragma once
+
+#include "core/math/sampler.h"
+#include "core/scene/scattering_vertex.h"
+
+namespace mote::integrators {
+
+/// Average over channels of the rescaled pdfs; exactly 1 without media, where no channel differs.
+template <bool Media>
+inline float channel_average(const core::Rgb& pdfs) {
+    if constexpr (Media) return core::average(pdfs);
+    return pdfs.x;
+}
+
+/// Next-event estimation: the light at `vertex` from one light drawn from the scene, weighted against
+/// directions from vertex.sample(). `weights` and `state` describe the path up to the vertex.
+template <bool Media>
+core::Rgb sample_light(const core::Scene& scene, const core::ScatteringVertex& vertex,
+                       const core::PathWeights& weights, const core::MediumState& state,
+                       core::Sampler& sampler, core::WalkContext& context);
+
+/// Light emitted at the end of a walk: an area light at the surface, or the environment outside. `previous`
+/// is the vertex whose sampled direction led here, null where next-event estimation could not have found this
+/// light (the eye itself, or a delta scattering): then the full contribution counts.
+template <bool Media>
+core::Rgb found_light(const core::Scene& scene, const core::WalkEvent& event, const core::Ray& ray,
+                      const core::PathWeights& weights, const core::Vec3* previous);
+
+/// Multiplies `weights` by a sampled scattering and prepares its rescaled pdfs for the next event.
+template <bool Media>
+inline void apply_scattering(core::PathWeights& weights, const core::ScatterSample& s) {
+    weights.throughput *= s.weight;
+    const core::Rgb base = Media ? weights.unidirectional : core::Rgb(1.0f);
+    weights.light = s.delta || !(s.pdf_solid_angle > 0.0f) ? core::Rgb(0.0f) : base / s.pdf_solid_angle;
+}
+
+}  // namespace mote::integrators

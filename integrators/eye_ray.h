@@ -1,0 +1,27 @@
+// The start of every eye path: the sampler and the camera ray of a pixel in a pass.
+#pragma once
+
+#include "core/math/sampler.h"
+#include "core/render/integrator.h"
+#include "core/scene/scene.h"
+
+namespace mote::integrators {
+
+struct EyeRay {
+    core::Ray ray;
+    core::Sampler sampler;  ///< its first dimensions have been used for film and lens
+    core::Rng rng;          ///< for tracking and roulette
+};
+
+inline EyeRay make_eye_ray(const core::Scene& scene, const core::RenderOptions& options,
+                           const core::PassContext& pass, int x, int y) {
+    const std::uint64_t pixel = std::uint64_t(y) * std::uint64_t(options.width) + std::uint64_t(x);
+    core::Sampler sampler(options.sampler, options.seed, pass.index, pixel);
+    core::Rng rng = sampler.make_rng();
+    const core::Vec2 offset = pass.filter.sample_offset(sampler.next_2d());
+    const core::Vec2 film = core::Vec2(float(x) + 0.5f, float(y) + 0.5f) + offset;
+    const core::Ray ray = scene.camera().sample_ray(film, sampler.next_2d());
+    return {ray, sampler, rng};
+}
+
+}  // namespace mote::integrators

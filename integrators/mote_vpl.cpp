@@ -1,0 +1,335 @@
+// `mote_vpl`: light from virtual point lights, on surfaces and in media.
+//
+// Every pass traces a fresh set of light paths, leaves a VPL at each of their vertices, and gathers all of
+// them at the first connectable vertex of every pixel's eye path: on a surface, or where delta tracking met
+// the medium (Engelhardt 2013, Eqs. 10.4 to 10.9). Light from the primary lights that scatters once is
+// computed apart, by next-event estimation and scattering directions, so VPLs stand for everything that
+// scatters at least twice.
+//
+// The geometry term G* of a connection is bounded by b (Sec. 10.1.3), which removes the bright splotches
+// around VPLs together with the light that travels short distances; unbounded, the mean is right but its
+// variance is infinite. Paths that cross a delta surface between the VPL and the receiver cannot be connected
+// and are missing.
+#include <atomic>
+
+#include "integrators/direct_light.h"
+#include "integrators/eye_ray.h"
+#include "integrators/path_estimator.h"
+#include "integrators/register_parts.h"
+#include "integrators/russian_roulette.h"
+#include "lights/particle_tracer.h"
+#include "lights/vpl_gather.h"
+
+namespace mote::integrators {
+
+using namespace core;
+using lights::ReceiverTile;
+
+namespace {
+
+struct VplSettings {
+    PathSettings eye;  ///< max_depth counts the whole path from light to eye
+    std::uint32_t paths = 256;
+    bool bounded = true;
+    std::optional<float> bound;  ///< b [1/m^2]; nothing: automatic
+
+    /// b from the scene's size and the number of light paths: inside r = b^(-1/2) a VPL stands for the light
+    /// of the paths around it, and N paths spread over a scene of radius R are about R / sqrt(N) apart.
+    float bound_for(const Bounds3& bounds) const {
+        if (!bounded) return infinity;
+        if (bound) return *bound;
+        const float radius = bounds.radius();
+        return radius > 0.0f ? float(paths) / sqr(radius) : infinity;
+    }
+    lights::LightPathSettings light_paths() const {
+        lights::LightPathSettings s;
+        s.paths = paths, s.rr_depth = eye.rr_depth;
+        s.max_vertices = eye.max_depth < 0 ? -1 : std::max(0, eye.max_depth - 2);
+        return s;
+    }
+};
+
+/// The eye paths of a 4x4 tile of pixels, advanced together from one connectable vertex to the next.
+template <bool Media>
+class EyeTile {
+  public:
+    static constexpr int side = 4;
+    static_assert(side * side == ReceiverTile::width);
+
+    EyeTile(const Scene& scene, const VplSettings& settings, float bound, const lights::VplSet& vpls,
+            lights::GatherScratch& scratch, WalkContext& walk)
+        : scene_(scene), settings_(settings), bound_(bound), vpls_(vpls), scratch_(scratch), walk_(walk) {}
+
+    void start(int lane, const EyeRay& eye, const MediumState& state) {
+        Lane& l = lanes_[std::size_t(lane)];
+        l = Lane{};
+        l.ray = eye.ray, l.sampler.emplace(eye.sampler), l.rng = eye.rng, l.state = state, l.alive = true;
+        if constexpr (Media) l.weights.hero = std::min(int(l.rng.next_float() * 3.0f), 2);
+    }
+    void stop(int lane) { lanes_[std::size_t(lane)] = Lane{}; }
+    const TransportSum& sum(int lane) const { return lanes_[std::size_t(lane)].sum; }
+
+    void run() {
+        for (bool any = true; any;) {
+            receivers_.clear();
+            any = false;
+            for (int i = 0; i < ReceiverTile::width; ++i) {
+                Lane& lane = lanes_[std::size_t(i)];
+                if (lane.alive) lane.alive = advance(lane, i);
+                any |= lane.alive;
+            }
+            const auto light =
+                lights::gather(scene_, vpls_, bound_, receivers_, scratch_, walk_.rays, walk_.tracking);
+            for (int i = 0; i < ReceiverTile::width; ++i) {
+                Lane& lane = lanes_[std::size_t(i)];
+                lane.sum[lane.receiver_layer] += light[std::size_t(i)];
+            }
+        }
+    }
+
+  private:
+    struct Lane {
+        Ray ray;
+        std::optional<Sampler> sampler;
+        Rng rng;
+        MediumState state;
+        PathWeights weights;
+        ScatteringVertex vertex;  ///< of the current receiver
+        TransportSum sum;
+        Transport receiver_layer = Transport::indirect;
+        int depth = 0;
+        float eta = 1.0f;
+        bool alive = false;
+    };
+
+    /// Follows one eye path to its next vertex; makes it a receiver where it can be connected. Returns
+    /// whether the path goes on behind it, through a mirror or glass.
+    bool advance(Lane& lane, int index) {
+        walk_.rng = lane.rng;
+        const bool goes_on = advance_with_rng(lane, index);
+        lane.rng = walk_.rng;
+        return goes_on;
+    }
+
+    bool advance_with_rng(Lane& lane, int index) {
+        const int max_depth = settings_.eye.max_depth;
+        ++lane.depth;
+        Rgb emitted(0.0f);
+        const WalkEvent event = walk<Media>(scene_, lane.ray, lane.state, lane.weights, emitted, walk_);
+        lane.sum[Transport::emission] +=
+            emitted + found_light<Media>(scene_, event, lane.ray, lane.weights, nullptr);
+        if (event.kind == WalkEvent::Kind::escaped || lane.depth == max_depth) return false;
+
+        lane.vertex = make_vertex(event, lane.ray);
+        const bool surface = lane.vertex.on_surface();
+        const Transport direct = surface ? Transport::direct : Transport::single_scattering;
+        if (lane.vertex.connectable()) {
+            lane.sum[direct] +=
+                sample_light<Media>(scene_, lane.vertex, lane.weights, lane.state, *lane.sampler, walk_);
+            add_receiver(lane, index);
+        }
+        if (lane.depth >= settings_.eye.rr_depth &&
+            !survives<Media>(lane.weights, lane.eta, walk_.rng.next_float()))
+            return false;
+        const float u_lobe = lane.sampler->next_1d();
+        const auto next = lane.vertex.sample(u_lobe, lane.sampler->next_2d(), TransportMode::radiance);
+        if (!next) return false;
+        apply_scattering<Media>(lane.weights, *next);
+        lane.eta *= next->eta;
+        if (Media && surface) lane.state = lane.vertex.state_towards(lane.state, next->wi);
+        lane.ray = Ray{lane.vertex.ray_origin(next->wi), next->wi};
+        if (next->delta) return true;
+        lane.sum[direct] += light_along(lane);
+        return false;
+    }
+
+    void add_receiver(Lane& lane, int index) {
+        const int max_depth = settings_.eye.max_depth;
+        const std::int32_t vpl_depth =
+            max_depth < 0 ? std::numeric_limits<std::int32_t>::max() : max_depth - lane.depth - 1;
+        lane.receiver_layer = lane.vertex.on_surface() ? Transport::indirect : Transport::multiple_scattering;
+        const Rgb throughput = lane.weights.throughput / channel_average<Media>(lane.weights.unidirectional);
+        receivers_.set(index, lane.vertex, throughput, lane.state, Rng(walk_.rng.next_u32()), vpl_depth);
+    }
+
+    /// The other technique for direct light: what the sampled direction happens to hit.
+    Rgb light_along(Lane& lane) {
+        Rgb emitted(0.0f);
+        MediumState state = lane.state;
+        const WalkEvent event = walk<Media>(scene_, lane.ray, state, lane.weights, emitted, walk_);
+        return emitted + found_light<Media>(scene_, event, lane.ray, lane.weights, &lane.vertex.position);
+    }
+
+    const Scene& scene_;
+    const VplSettings& settings_;
+    float bound_;
+    const lights::VplSet& vpls_;
+    lights::GatherScratch& scratch_;
+    WalkContext& walk_;
+    std::array<Lane, ReceiverTile::width> lanes_;
+    ReceiverTile receivers_;
+};
+
+template <bool Media>
+class VplEstimator final : public Estimator {
+  public:
+    VplEstimator(const Scene& scene, const RenderOptions& options, const VplSettings& settings)
+        : scene_(scene), options_(options), settings_(settings), bound_(settings.bound_for(scene.bounds())) {}
+
+    bool pass(const PassContext& context, PassImage& image) override {
+        if (context.cancelled) return false;
+        const lights::VplSet vpls = lights::trace_light_paths(scene_, settings_.light_paths(), options_.seed,
+                                                              context.index, options_.sampler);
+        counters_.add(vpls.rays, vpls.tracking);
+        vpls_ += vpls.lights.size(), paths_ += vpls.paths;
+        bytes_ = std::max(bytes_, vpls.memory_bytes());
+        return for_each_tile(
+            options_.width, options_.height, tile_size, context.cancelled,
+            [&](int x0, int y0, int x1, int y1) { render_tile(context, image, vpls, x0, y0, x1, y1); });
+    }
+
+    void add_statistics(Statistics& statistics) const override {
+        counters_.report(statistics, Media);
+        statistics.values["vpls"] += double(vpls_);
+        statistics.values["light_paths"] += double(paths_);
+        statistics.values["vpl_bytes_peak"] = double(bytes_);
+        if (std::isfinite(bound_)) statistics.values["bound"] = bound_;
+    }
+
+  private:
+    static constexpr int tile_size = 16;
+
+    void render_tile(const PassContext& context, PassImage& image, const lights::VplSet& vpls, int x0, int y0,
+                     int x1, int y1) {
+        WalkContext walk;
+        const auto scratch = std::make_unique<lights::GatherScratch>();
+        const auto tile = std::make_unique<EyeTile<Media>>(scene_, settings_, bound_, vpls, *scratch, walk);
+        constexpr int side = EyeTile<Media>::side;
+        for (int y = y0; y < y1; y += side)
+            for (int x = x0; x < x1; x += side) {
+                if (context.cancelled) return;  // a tile of many VPLs takes long
+                render_lanes(context, image, *tile, x, y, x1, y1);
+            }
+        counters_.add(walk.rays, walk.tracking);
+    }
+
+    void render_lanes(const PassContext& context, PassImage& image, EyeTile<Media>& tile, int x0, int y0,
+                      int x1, int y1) const {
+        constexpr int side = EyeTile<Media>::side;
+        for (int lane = 0; lane < side * side; ++lane) {
+            const int x = x0 + lane % side, y = y0 + lane / side;
+            if (x < x1 && y < y1)
+                tile.start(lane, make_eye_ray(scene_, options_, context, x, y), scene_.camera_medium_state());
+            else
+                tile.stop(lane);
+        }
+        tile.run();
+        for (int lane = 0; lane < side * side; ++lane) {
+            const int x = x0 + lane % side, y = y0 + lane / side;
+            if (x < x1 && y < y1) store(tile.sum(lane), image, x, y, Media);
+        }
+    }
+
+    const Scene& scene_;
+    RenderOptions options_;
+    VplSettings settings_;
+    float bound_;
+    SharedCounters counters_;
+    std::uint64_t vpls_ = 0, paths_ = 0;
+    std::size_t bytes_ = 0;
+};
+
+class MoteVpl final : public Integrator {
+  public:
+    explicit MoteVpl(const Properties& properties) {
+        settings_.eye = read_path_settings(properties);
+        const auto paths = properties.get_int("paths", 256);
+        if (paths < 0 || paths > (std::int64_t(1) << 26))
+            throw InputError("paths must lie between 0 and 2^26", properties.where_of("paths"));
+        settings_.paths = std::uint32_t(paths);
+        settings_.bounded = properties.get_bool("bounded", true);
+        if (properties.has("bound")) {
+            const double bound = properties.require_float("bound");
+            if (!(bound > 0.0) || !std::isfinite(float(bound)))
+                throw InputError("bound must be positive and finite; bounded=false renders without a bound",
+                                 properties.where_of("bound"));
+            settings_.bound = float(bound);
+            if (!settings_.bounded) properties.warn("bound has no effect: bounded is false");
+        }
+    }
+
+    std::string type() const override { return "mote_vpl"; }
+    std::vector<Layer> layers(const Scene& scene) const override {
+        return transport_layers(scene.has_media(), settings_.bounded);
+    }
+    Plan plan(const Scene& scene, const Requirements& requirements) const override;
+    std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
+        if (scene.has_media()) return std::make_unique<VplEstimator<true>>(scene, options, settings_);
+        return std::make_unique<VplEstimator<false>>(scene, options, settings_);
+    }
+
+  private:
+    void plan_bound(Plan& plan, const Requirements& requirements) const;
+    VplSettings settings_;
+};
+
+void MoteVpl::plan_bound(Plan& plan, const Requirements& requirements) const {
+    if (!settings_.bounded) {
+        plan.run("bound", "none", "bounded is false: right in the mean, with splotches around VPLs");
+        return;
+    }
+    const float bound = settings_.bound_for(requirements.bounds);
+    const std::string choice =
+        std::to_string(bound) + " /m^2, radius " + std::to_string(1.0f / std::sqrt(bound)) + " m";
+    plan.run("bound", choice,
+             settings_.bound
+                 ? "asked for"
+                 : "automatic: light paths / R^2, with R = " + std::to_string(requirements.bounds.radius()) +
+                       " m the radius of the scene");
+}
+
+Plan MoteVpl::plan(const Scene&, const Requirements& r) const {
+    Plan plan;
+    plan.integrator = type();
+    plan.run("light paths", std::to_string(settings_.paths) + " a pass", "a fresh set every pass");
+    plan_bound(plan, r);
+    const bool directional = r.any_glossy() || (r.media_anisotropic && r.media_scattering);
+    if (directional)
+        plan.run("light per VPL", "64 bytes, and the vertex where f* depends on direction",
+                 "there are glossy surfaces or anisotropic media");
+    else
+        plan.run("light per VPL", "64 bytes, one colour",
+                 "every surface is diffuse and every medium isotropic");
+    plan.run("visibility", "shadow rays, sixteen at a time", "exact");
+    plan_media(plan, r);
+    if (r.any_media())
+        plan.run("eye rays", "one distance by tracking per pixel and pass", "Engelhardt 2013, Eq. 10.9");
+    if (settings_.bounded)
+        plan.miss("short distances", "light between points closer than the bound's radius is darkened",
+                  "the bound removes it; compensation is not part of this integrator's settings");
+    if (r.any_delta())
+        plan.miss("caustics", "light that reaches a receiver through a delta surface",
+                  "a VPL cannot be connected through mirrors and glass; volpath renders it");
+    if (r.media_emissive)
+        plan.miss("emission of media", "as a source of VPLs",
+                  "it is seen directly and lights receivers once; "
+                  "what scatters more often is left out");
+    return plan;
+}
+
+}  // namespace
+
+void register_mote_vpl(Registry& registry) {
+    auto parameters = path_parameters();
+    parameters.push_back({"paths", "integer", "256", "light paths traced in every pass"});
+    parameters.push_back(
+        {"bound", "float", "automatic",
+         "bound b [1/m^2] on the geometry term; automatic: light paths / R^2 with the scene's radius R"});
+    parameters.push_back({"bounded", "boolean", "true", "false: no bound on the geometry term"});
+    registry.add({Category::integrator, "mote_vpl",
+                  "Virtual point lights on surfaces and in media, with a bounded geometry term.", parameters,
+                  R"(<integrator type="mote_vpl"><integer name="paths" value="512"/></integrator>)"},
+                 [](const Properties& p) { return std::make_shared<MoteVpl>(p); });
+}
+
+}  // namespace mote::integrators

@@ -1,0 +1,100 @@
+#include "integrators/path_kernel.h"
+
+#include <algorithm>
+
+#include "integrators/russian_roulette.h"
+
+namespace mote::integrators {
+
+using namespace core;
+
+namespace {
+
+/// Sorts light into layers, and holds the weight of the bounded edge.
+class PathClassifier {
+  public:
+    /// Called at every vertex whose sampled event is not a delta one, or whose light is connected.
+    Transport layer_of_connection(const ScatteringVertex& v) const {
+        if (scatterings_ == 0) return v.on_surface() ? Transport::direct : Transport::single_scattering;
+        return surface_first_ ? Transport::indirect : Transport::multiple_scattering;
+    }
+    /// Layer of light found at the end of the current edge.
+    Transport layer_of_emission() const {
+        if (scatterings_ == 0) return Transport::emission;
+        if (scatterings_ == 1) return surface_first_ ? Transport::direct : Transport::single_scattering;
+        return surface_first_ ? Transport::indirect : Transport::multiple_scattering;
+    }
+    int scatterings() const { return scatterings_; }
+
+    void scatter(const ScatteringVertex& v, const ScatterSample& s) {
+        if (s.delta && scatterings_ == 0) return;  // mirrors and glass before the first connectable vertex
+        if (scatterings_ == 0) surface_first_ = v.on_surface(), start_cosine_ = v.shading_cosine(s.wi);
+        ++scatterings_;
+    }
+    /// min(G*, b)/G* of the edge that starts at the first connectable vertex and ends at `v`.
+    float bound_weight(const ScatteringVertex& v, float distance, float bound) const {
+        const float g = start_cosine_ * v.geometric_cosine(v.wo) / std::max(sqr(distance), 1e-30f);
+        return g > bound ? bound / g : 1.0f;
+    }
+
+  private:
+    int scatterings_ = 0;
+    bool surface_first_ = true;
+    float start_cosine_ = 1.0f;
+};
+
+}  // namespace
+
+template <bool Media>
+TransportSum trace_path(const Scene& scene, const PathSettings& settings, Ray ray, MediumState state,
+                        Sampler& sampler, WalkContext& context) {
+    TransportSum sum;
+    PathWeights weights;
+    if constexpr (Media) weights.hero = std::min(int(context.rng.next_float() * 3.0f), 2);
+    PathClassifier classifier;
+    const bool bounded = std::isfinite(settings.bound);
+    Vec3 previous_position;
+    bool connected = false;  // could next-event estimation have found what the current edge leads to?
+    float eta = 1.0f;
+
+    for (int depth = 1; settings.max_depth < 0 || depth <= settings.max_depth; ++depth) {
+        Rgb emitted(0.0f);
+        const WalkEvent event = walk<Media>(scene, ray, state, weights, emitted, context);
+        const Transport found = classifier.layer_of_emission();
+        if constexpr (Media) sum[found] += emitted;
+        sum[found] +=
+            found_light<Media>(scene, event, ray, weights, connected ? &previous_position : nullptr);
+        if (event.kind == WalkEvent::Kind::escaped || depth == settings.max_depth) break;
+
+        const ScatteringVertex vertex = make_vertex(event, ray);
+        const bool vpl_edge = bounded && classifier.scatterings() == 1;
+        if (vpl_edge) weights.throughput *= classifier.bound_weight(vertex, event.distance, settings.bound);
+
+        if (vertex.connectable()) {
+            sum[classifier.layer_of_connection(vertex)] +=
+                sample_light<Media>(scene, vertex, weights, state, sampler, context);
+        }
+        if (depth >= settings.rr_depth && !survives<Media>(weights, eta, context.rng.next_float())) break;
+
+        const float u_lobe = sampler.next_1d();
+        const auto next = vertex.sample(u_lobe, sampler.next_2d(), TransportMode::radiance);
+        if (!next) break;
+        // No VPL stands on a delta surface: what goes on from there is not part of the bounded transport.
+        if (vpl_edge && next->delta) break;
+        classifier.scatter(vertex, *next);
+        apply_scattering<Media>(weights, *next);
+        if (is_black(weights.throughput)) break;
+        if (Media && vertex.on_surface()) state = vertex.state_towards(state, next->wi);
+        eta *= next->eta;
+        connected = !next->delta, previous_position = vertex.position;
+        ray = Ray{vertex.ray_origin(next->wi), next->wi};
+    }
+    return sum;
+}
+
+template TransportSum trace_path<true>(const Scene&, const PathSettings&, Ray, MediumState, Sampler&,
+                                       WalkContext&);
+template TransportSum trace_path<false>(const Scene&, const PathSettings&, Ray, MediumState, Sampler&,
+                                        WalkContext&);
+
+}  // namespace mote::integrators

@@ -1,0 +1,13 @@
+#include "integrators/register_integrators.h"
+
+#include "integrators/register_parts.h"
+
+namespace mote::integrators {
+
+void register_integrators(core::Registry& registry) {
+    register_path(registry);
+    register_volpath(registry);
+    register_mote_vpl(registry);
+}
+
+}  // namespace mote::integrators

@@ -1,0 +1,17 @@
+// What the integrators of this folder hand to the registry, one function a file, and plan entries they share.
+#pragma once
+
+#include "core/render/plan.h"
+#include "core/scene/registry.h"
+#include "core/scene/requirements.h"
+
+namespace mote::integrators {
+
+void register_path(core::Registry& registry);
+void register_volpath(core::Registry& registry);
+void register_mote_vpl(core::Registry& registry);
+
+/// What runs for the media of a scene, with reasons.
+void plan_media(core::Plan& plan, const core::Requirements& requirements);
+
+}  // namespace mote::integrators

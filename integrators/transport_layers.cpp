@@ -1,0 +1,24 @@
+#include "integrators/transport_layers.h"
+
+namespace mote::integrators {
+
+std::vector<core::Layer> transport_layers(bool media, bool bounded) {
+    const std::string suffix = bounded ? "_bounded" : "";
+    std::vector<core::Layer> layers = {
+        {"emission", "light sources seen directly or through mirrors and glass"},
+        {"direct", "light scattered once, on a surface"},
+        {"indirect" + suffix, "light scattered more than once, first on a surface as seen from the eye"}};
+    if (media) {
+        layers.push_back({"single_scattering", "light scattered once, in a medium"});
+        layers.push_back(
+            {"multiple_scattering" + suffix, "light scattered more than once, first in a medium"});
+    }
+    return layers;
+}
+
+void store(const TransportSum& sum, core::PassImage& image, int x, int y, bool media) {
+    const std::size_t count = media ? transport_count : 3;
+    for (std::size_t i = 0; i < count; ++i) image.at(i, x, y) = sum.light[i];
+}
+
+}  // namespace mote::integrators

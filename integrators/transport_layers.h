@@ -1,0 +1,35 @@
+// The layers that all integrators of this folder share: light sorted by where the eye path first scatters.
+//
+//   emission               seen directly, through delta surfaces too, and emission of media in view
+//   direct                 one scattering, on a surface
+//   single_scattering      one scattering, in a medium
+//   indirect               more scatterings, the first on a surface
+//   multiple_scattering    more scatterings, the first in a medium
+// Scatterings are counted from the first vertex that is not a delta reflection or refraction.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "core/render/integrator.h"
+
+namespace mote::integrators {
+
+enum class Transport : std::uint8_t { emission, direct, indirect, single_scattering, multiple_scattering };
+inline constexpr std::size_t transport_count = 5;
+
+/// One estimate of a pixel, by layer.
+struct TransportSum {
+    std::array<core::Rgb, transport_count> light{};
+    core::Rgb& operator[](Transport t) { return light[std::size_t(t)]; }
+};
+
+/// The layers in the order of Transport; the two of media are left out where there are none. `bounded`
+/// renames the layers that a bound on the geometry term darkens.
+std::vector<core::Layer> transport_layers(bool media, bool bounded);
+
+/// Adds `sum` to pixel (x, y) of the first layers of the image.
+void store(const TransportSum& sum, core::PassImage& image, int x, int y, bool media);
+
+}  // namespace mote::integrators

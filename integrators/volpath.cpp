@@ -1,0 +1,94 @@
+// `volpath`: the unbiased volumetric path tracer, the reference of everything in this project.
+//
+// Delta tracking for distances, ratio tracking for connections, spectral multiple importance sampling over
+// the channel that drives tracking, light and scattering directions combined at every vertex. On a scene
+// without media it is `path`, compiled from the same kernel.
+//
+// `bound` renders the transport that VPLs with a bounded geometry term estimate (see path_kernel.h).
+#include "integrators/path_estimator.h"
+#include "integrators/register_parts.h"
+
+namespace mote::integrators {
+
+using namespace core;
+
+namespace {
+
+class Volpath final : public Integrator {
+  public:
+    explicit Volpath(const Properties& properties) : settings_(read_path_settings(properties)) {
+        const double bound = properties.get_float("bound", 0.0);
+        if (bound < 0.0) throw InputError("bound must not be negative", properties.where_of("bound"));
+        if (bound > 0.0) settings_.bound = float(bound);
+    }
+
+    std::string type() const override { return "volpath"; }
+    std::vector<Layer> layers(const Scene& scene) const override {
+        return transport_layers(scene.has_media(), bounded());
+    }
+    Plan plan(const Scene&, const Requirements& requirements) const override;
+    std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
+        return scene.has_media() ? make_path_estimator<true>(scene, options, settings_)
+                                 : make_path_estimator<false>(scene, options, settings_);
+    }
+
+  private:
+    bool bounded() const { return std::isfinite(settings_.bound); }
+    PathSettings settings_;
+};
+
+Plan Volpath::plan(const Scene&, const Requirements& requirements) const {
+    Plan plan;
+    plan.integrator = type();
+    plan.run("paths", "one per pixel and pass", "light and scattering directions combined at every vertex");
+    plan_media(plan, requirements);
+    if (bounded())
+        plan.run("bound", std::to_string(settings_.bound) + " /m^2",
+                 "asked for: second edges are weighted by min(G*, b)/G*, the transport of bounded VPLs");
+    if (requirements.any_delta())
+        plan.run("caustics", "by chance only",
+                 "paths that reach a light through delta surfaces are found when they "
+                 "hit it; expect noise, and none at all from point lights");
+    return plan;
+}
+
+}  // namespace
+
+void plan_media(Plan& plan, const Requirements& r) {
+    if (!r.any_media()) {
+        plan.leave_out("media", "no code for media runs", "the scene has none");
+        return;
+    }
+    for (const std::string& description : r.media_descriptions)
+        plan.run("medium", description, "in the scene");
+    if (r.media_homogeneous > 0)
+        plan.run("transmittance", "analytic",
+                 std::to_string(r.media_homogeneous) + " of " + std::to_string(r.media) +
+                     " media are homogeneous");
+    if (r.media_heterogeneous > 0) {
+        plan.run("transmittance", "ratio tracking against the grid's majorants, cell by cell",
+                 std::to_string(r.media_heterogeneous) + " of " + std::to_string(r.media) +
+                     " media are heterogeneous");
+        plan.run("distances", "delta tracking against the grid's majorants",
+                 "unbiased in heterogeneous media");
+    }
+    if (r.media_heterogeneous == 0)
+        plan.leave_out("tracking", "no null collisions",
+                       "every medium is homogeneous: distances are analytic");
+    if (!r.media_emissive) plan.leave_out("volume emission", "not looked up", "no medium emits");
+    if (!r.media_chromatic)
+        plan.leave_out("spectral weights", "all channels alike", "extinction is grey in every medium");
+}
+
+void register_volpath(Registry& registry) {
+    auto parameters = path_parameters();
+    parameters.push_back({"bound", "float", "0",
+                          "bound b [1/m^2] on the geometry term of the edge where VPLs connect; 0: none"});
+    registry.add(
+        {Category::integrator, "volpath",
+         "Unbiased volumetric path tracer: the reference that approximations are held against.", parameters,
+         R"(<integrator type="volpath"><integer name="max_depth" value="-1"/></integrator>)"},
+        [](const Properties& p) { return std::make_shared<Volpath>(p); });
+}
+
+}  // namespace mote::integrators

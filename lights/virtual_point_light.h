@@ -1,0 +1,59 @@
+// Virtual point lights: the vertices of light paths, kept as light sources (Keller 1997; Engelhardt 2013,
+// Sec. 10.1).
+//
+// A VPL at y lights a receiver at x by  f*(x) G*(x,y) V*(x,y) I_j,  where I_j = f*(x<-y<-y') alpha / paths
+// holds all that does not depend on x (Engelhardt 2013, Eqs. 10.3 to 10.5). On a diffuse surface and in an
+// isotropic medium I_j is one colour. Everything else keeps the vertex it stands on, to evaluate f* per
+// receiver: a VplDetail, stored apart, so that a plain VPL stays within one cache line.
+#pragma once
+
+#include <vector>
+
+#include "core/scene/scattering_vertex.h"
+
+namespace mote::lights {
+
+struct VirtualPointLight {
+    static constexpr std::uint32_t no_detail = 0xffffffffu;
+
+    core::Vec3 position;  ///< moved off the surface to its lit side, ready to be the end of a shadow ray
+    std::uint32_t detail = no_detail;
+    core::Vec3 normal{0, 0, 0};          ///< geometric, on the lit side; zero in a medium
+    std::uint32_t depth = 1;             ///< vertices on the light path after the light: 1 for the first hit
+    core::Vec3 shading_normal{0, 0, 0};  ///< on the lit side; zero in a medium
+    std::uint32_t path = 0;              ///< index of the light path
+    core::Rgb intensity{
+        0.0f};  ///< I_j without detail [W/(sr m^2) on a surface's area measure]; with one: alpha / paths
+    std::uint32_t reserved = 0;
+
+    bool on_surface() const { return normal.x != 0.0f || normal.y != 0.0f || normal.z != 0.0f; }
+};
+static_assert(sizeof(VirtualPointLight) <= 64, "a diffuse or isotropic VPL fits one cache line");
+
+/// What a directional VPL keeps: its vertex, whose `wo` points back to where the light came from.
+struct VplDetail {
+    core::ScatteringVertex vertex;
+
+    /// f*(x <- y <- y') with the adjoint correction of a shading normal; `to_receiver` is unit length.
+    core::Rgb eval(const core::Vec3& to_receiver) const;
+};
+
+/// The VPLs of one set of light paths, in path order.
+struct VplSet {
+    std::vector<VirtualPointLight> lights;
+    std::vector<VplDetail> details;
+    std::uint32_t paths = 0;  ///< light paths traced, whether or not they left a VPL
+    core::RayCounters rays;
+    core::TrackingCounters tracking;
+
+    std::size_t memory_bytes() const {
+        return lights.size() * sizeof(VirtualPointLight) + details.size() * sizeof(VplDetail);
+    }
+};
+
+/// The VPL for a vertex that light of weight alpha / paths arrived at, or nothing when it reflects no light
+/// that could be connected. `vertex.wo` points back along the light path.
+void append_vpl(VplSet& set, const core::ScatteringVertex& vertex, const core::Rgb& alpha,
+                std::uint32_t depth, std::uint32_t path);
+
+}  // namespace mote::lights
