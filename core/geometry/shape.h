@@ -26,7 +26,7 @@ struct SurfaceHit {
     Vec2 uv{0, 0};
     const Shape* shape = nullptr;
     std::uint32_t primitive = 0;  ///< triangle index; 0 for analytic shapes
-    float error = 0.0f;           ///< bound on the rounding error of `position` [m]
+    float error = 0.0f;  ///< how far along the normal rounding can put `position` off the surface [m]
 };
 
 /// A point drawn on a shape.

@@ -28,15 +28,19 @@ class TriangleMesh final : public Shape {
     void fill_hit(std::uint32_t primitive, float u, float v, SurfaceHit& hit) const;
 
     Bounds3 bounds() const override { return bounds_; }
-    float area() const override { return float(area_distribution_.total()); }
+    float area() const override { return area_; }
     ShapeSample sample_area(const Vec2& u) const override;
     bool closed() const override { return closed_; }
     std::size_t primitive_count() const override { return data_.triangles.size(); }
 
   private:
+    Vec3 shading_normal(std::uint32_t primitive, float u, float v, const Vec3& geometric) const;
+    Vec2 texture_coordinates(std::uint32_t primitive, float u, float v) const;
+
     MeshData data_;
     Bounds3 bounds_;
-    Distribution1D area_distribution_;
+    Distribution1D area_distribution_;  ///< areas relative to the largest
+    float area_ = 0.0f;
     bool closed_ = false;
 };
 

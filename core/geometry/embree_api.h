@@ -1,0 +1,89 @@
+// Embree 3 and 4 under one set of calls: what differs is where flags, filters and user data travel.
+#pragma once
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include <memory>
+#include <vector>
+
+namespace mote::core::embree {
+
+template <auto release>
+struct Releaser {
+    template <typename Handle>
+    void operator()(Handle* handle) const {
+        release(handle);
+    }
+};
+using Device = std::unique_ptr<RTCDeviceTy, Releaser<rtcReleaseDevice>>;
+using Scene = std::unique_ptr<RTCSceneTy, Releaser<rtcReleaseScene>>;
+using Geometry = std::unique_ptr<RTCGeometryTy, Releaser<rtcReleaseGeometry>>;
+
+/// One hit of many along a ray.
+struct RawHit {
+    float t, u, v;
+    unsigned geometry, primitive;
+};
+
+/// What travels with a query to the callbacks. `collected` is null unless all hits are asked for. `base`
+/// comes first: the callbacks get its address.
+#if RTC_VERSION_MAJOR >= 4
+struct Query {
+    RTCRayQueryContext base;
+    std::vector<RawHit>* collected = nullptr;
+    Query() { rtcInitRayQueryContext(&base); }
+};
+inline constexpr auto filter_scene_flag = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
+
+inline void intersect(RTCScene scene, Query& query, RTCRayHit& ray) {
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.context = &query.base;
+    rtcIntersect1(scene, &ray, &arguments);
+}
+inline void intersect_filtered(RTCScene scene, Query& query, RTCRayHit& ray, RTCFilterFunctionN filter) {
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.context = &query.base;
+    arguments.filter = filter;
+    arguments.flags = RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER;
+    rtcIntersect1(scene, &ray, &arguments);
+}
+inline void occluded(RTCScene scene, Query& query, RTCRay& ray) {
+    RTCOccludedArguments arguments;
+    rtcInitOccludedArguments(&arguments);
+    arguments.context = &query.base;
+    rtcOccluded1(scene, &ray, &arguments);
+}
+inline void occluded(const int* valid, RTCScene scene, Query& query, RTCRay16& rays) {
+    RTCOccludedArguments arguments;
+    rtcInitOccludedArguments(&arguments);
+    arguments.context = &query.base;
+    rtcOccluded16(valid, scene, &rays, &arguments);
+}
+#else
+struct Query {
+    RTCIntersectContext base;
+    std::vector<RawHit>* collected = nullptr;
+    Query() { rtcInitIntersectContext(&base); }  // with the incoherent flag, the faster one for shadow rays
+};
+inline constexpr auto filter_scene_flag = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
+
+inline void intersect(RTCScene scene, Query& query, RTCRayHit& ray) {
+    rtcIntersect1(scene, &query.base, &ray);
+}
+inline void intersect_filtered(RTCScene scene, Query& query, RTCRayHit& ray, RTCFilterFunctionN filter) {
+    query.base.filter = filter;
+    rtcIntersect1(scene, &query.base, &ray);
+}
+inline void occluded(RTCScene scene, Query& query, RTCRay& ray) { rtcOccluded1(scene, &query.base, &ray); }
+inline void occluded(const int* valid, RTCScene scene, Query& query, RTCRay16& rays) {
+    rtcOccluded16(valid, scene, &query.base, &rays);
+}
+#endif
+
+}  // namespace mote::core::embree

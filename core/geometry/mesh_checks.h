@@ -1,0 +1,25 @@
+// What is asked of a mesh before it is used: finite positions, valid indices, triangles with an area, and
+// whether its surface is closed.
+#pragma once
+
+#include "core/geometry/triangle_mesh.h"
+#include "core/scene/error.h"
+
+namespace mote::core {
+
+/// Coordinates beyond this are refused: Embree ignores such triangles without a word.
+inline constexpr float largest_coordinate = 1e18f;
+
+/// Throws InputError (at `where`, naming the first offending vertex or triangle) when there is no triangle,
+/// an index is out of range, a position is not finite or beyond largest_coordinate, or the normals or texture
+/// coordinates do not fit the positions.
+void check_mesh(const MeshData& data, const SourceLocation& where);
+
+/// Removes triangles whose corners are collinear as far as double precision can tell. Returns how many.
+std::size_t drop_degenerate_triangles(MeshData& data);
+
+/// True when, after joining vertices at equal positions, every edge is passed as often in one direction as in
+/// the other: the surface has no border and its triangles agree on which side is out.
+bool is_closed(const MeshData& data);
+
+}  // namespace mote::core

@@ -1,0 +1,175 @@
+// Two Embree scenes, one for surfaces and one for boundaries, and the queries on them.
+#include "core/geometry/ray_tracer.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <cstring>
+#include <mutex>
+#include <new>
+#include <stdexcept>
+
+#include "core/geometry/embree_shapes.h"
+#include "core/materials/bsdf.h"
+
+namespace mote::core {
+namespace {
+
+// A ShadowPacket is an RTCRay16 under our own names.
+static_assert(sizeof(ShadowPacket) == sizeof(RTCRay16) && alignof(ShadowPacket) == alignof(RTCRay16));
+static_assert(offsetof(ShadowPacket, origin_x) == offsetof(RTCRay16, org_x) &&
+              offsetof(ShadowPacket, t_min) == offsetof(RTCRay16, tnear) &&
+              offsetof(ShadowPacket, direction_x) == offsetof(RTCRay16, dir_x) &&
+              offsetof(ShadowPacket, time) == offsetof(RTCRay16, time) &&
+              offsetof(ShadowPacket, t_max) == offsetof(RTCRay16, tfar) &&
+              offsetof(ShadowPacket, mask) == offsetof(RTCRay16, mask) &&
+              offsetof(ShadowPacket, id) == offsetof(RTCRay16, id) &&
+              offsetof(ShadowPacket, flags) == offsetof(RTCRay16, flags));
+
+RTCRay embree_ray(const Ray& ray) {
+    RTCRay r{};
+    r.org_x = ray.origin.x, r.org_y = ray.origin.y, r.org_z = ray.origin.z, r.tnear = ray.t_min;
+    r.dir_x = ray.direction.x, r.dir_y = ray.direction.y, r.dir_z = ray.direction.z, r.tfar = ray.t_max;
+    r.mask = 0xffffffffu;
+    return r;
+}
+
+RTCRayHit embree_ray_hit(const Ray& ray) {
+    RTCRayHit query{};
+    query.ray = embree_ray(ray);
+    query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    return query;
+}
+
+bool count_memory(void* user_pointer, ssize_t bytes, bool) {
+    static_cast<std::atomic<std::int64_t>*>(user_pointer)->fetch_add(bytes, std::memory_order_relaxed);
+    return true;
+}
+
+bool is_boundary(const Shape& shape) { return shape.bsdf && shape.bsdf->traits().null; }
+
+}  // namespace
+
+struct RayTracer::Implementation {
+    struct Entry {
+        const Shape* shape;
+        const TriangleMesh* mesh;       // or null
+        const AnalyticShape* analytic;  // or null
+    };
+    std::atomic<std::int64_t> memory{0};  // outlives the device
+    embree::Device device;
+    embree::Scene scenes[2];
+    std::vector<Entry> entries;  // by Embree's geometry number
+    std::size_t boundaries = 0;
+    Bounds3 bounds;
+
+    void check(const char* step) const {
+        const RTCError error = rtcGetDeviceError(device.get());
+        if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+        if (error != RTC_ERROR_NONE)
+            throw std::runtime_error(std::string("Embree: ") + step + " failed with error " +
+                                     std::to_string(int(error)));
+    }
+    RTCScene scene(Group group) const { return scenes[int(group)].get(); }
+    void open() {
+        device.reset(rtcNewDevice(nullptr));
+        if (!device) throw std::runtime_error("Embree: no device");
+        rtcSetDeviceMemoryMonitorFunction(device.get(), count_memory, &memory);
+        for (auto& s : scenes) {
+            s.reset(rtcNewScene(device.get()));
+            rtcSetSceneFlags(s.get(), RTCSceneFlags(RTC_SCENE_FLAG_ROBUST | embree::filter_scene_flag));
+        }
+        check("opening");
+    }
+    void attach(const Shape& shape) {
+        const Entry entry{&shape, dynamic_cast<const TriangleMesh*>(&shape),
+                          dynamic_cast<const AnalyticShape*>(&shape)};
+        if (!entry.mesh && !entry.analytic) throw std::logic_error("a shape of an unknown kind");
+        const auto geometry = entry.mesh ? embree::make_geometry(device.get(), *entry.mesh)
+                                         : embree::make_geometry(device.get(), *entry.analytic);
+        const Group group = is_boundary(shape) ? Group::boundaries : Group::surfaces;
+        boundaries += group == Group::boundaries;
+        rtcAttachGeometryByID(scene(group), geometry.get(), unsigned(entries.size()));
+        entries.push_back(entry);
+        bounds.extend(shape.bounds());
+    }
+    SurfaceHit hit(const Ray& ray, const embree::RawHit& raw) const {
+        SurfaceHit hit;
+        const Entry& entry = entries[raw.geometry];
+        if (entry.mesh) {
+            entry.mesh->fill_hit(raw.primitive, raw.u, raw.v, hit);
+        } else {
+            entry.analytic->fill_hit(ray.origin, ray.direction, raw.t, hit);
+        }
+        hit.t = raw.t;
+        return hit;
+    }
+};
+
+void ShadowPacket::clear() {
+    for (int lane = 0; lane < width; ++lane)
+        time[lane] = 0.0f, mask[lane] = 0xffffffffu, id[lane] = std::uint32_t(lane), flags[lane] = 0;
+}
+
+RayTracer::RayTracer(std::span<const std::shared_ptr<Shape>> shapes)
+    : impl_(std::make_unique<Implementation>()) {
+    impl_->open();
+    for (const auto& shape : shapes) impl_->attach(*shape);
+    for (auto& scene : impl_->scenes) rtcCommitScene(scene.get());
+    impl_->check("building");
+}
+
+RayTracer::~RayTracer() = default;
+
+bool RayTracer::has_boundaries() const { return impl_->boundaries > 0; }
+Bounds3 RayTracer::bounds() const { return impl_->bounds; }
+std::size_t RayTracer::memory_bytes() const { return std::size_t(std::max<std::int64_t>(0, impl_->memory)); }
+
+std::optional<SurfaceHit> RayTracer::closest(const Ray& ray, Group group) const {
+    embree::Query query;
+    RTCRayHit r = embree_ray_hit(ray);
+    embree::intersect(impl_->scene(group), query, r);
+    if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+    return impl_->hit(ray, {r.ray.tfar, r.hit.u, r.hit.v, r.hit.geomID, r.hit.primID});
+}
+
+bool RayTracer::occluded(const Ray& ray) const {
+    embree::Query query;
+    RTCRay r = embree_ray(ray);
+    embree::occluded(impl_->scene(Group::surfaces), query, r);
+    return r.tfar < 0.0f;
+}
+
+void RayTracer::occluded(ShadowPacket& packet) const {
+    embree::Query query;
+    alignas(64) int valid[ShadowPacket::width];
+    for (int lane = 0; lane < ShadowPacket::width; ++lane)
+        valid[lane] = packet.t_max[lane] >= packet.t_min[lane] ? -1 : 0;
+    embree::occluded(valid, impl_->scene(Group::surfaces), query, reinterpret_cast<RTCRay16&>(packet));
+}
+
+void RayTracer::occluded(std::span<ShadowPacket> packets) const {
+    for (ShadowPacket& packet : packets) occluded(packet);
+}
+
+void RayTracer::all_hits(const Ray& ray, Group group, std::vector<SurfaceHit>& hits) const {
+    hits.clear();
+    std::vector<embree::RawHit> raw;
+    embree::Query query;
+    query.collected = &raw;
+    RTCRayHit r = embree_ray_hit(ray);
+    embree::intersect_filtered(impl_->scene(group), query, r, embree::collect_hits);
+
+    // Embree may offer a triangle more than once; a quadric's two hits differ in t.
+    const auto key = [&](const embree::RawHit& h) {
+        return std::tuple(h.geometry, h.primitive, impl_->entries[h.geometry].mesh ? 0.0f : h.t);
+    };
+    std::sort(raw.begin(), raw.end(), [&](auto& a, auto& b) { return key(a) < key(b); });
+    raw.erase(std::unique(raw.begin(), raw.end(), [&](auto& a, auto& b) { return key(a) == key(b); }),
+              raw.end());
+    std::stable_sort(raw.begin(), raw.end(), [](auto& a, auto& b) { return a.t < b.t; });
+    hits.reserve(raw.size());
+    for (const embree::RawHit& h : raw) hits.push_back(impl_->hit(ray, h));
+}
+
+}  // namespace mote::core
