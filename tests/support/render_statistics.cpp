@@ -1,0 +1,209 @@
+#include "tests/support/render_statistics.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/image/film.h"
+#include "core/render/render_driver.h"
+#include "core/scene/scene_loader.h"
+#include "integrators/register_integrators.h"
+#include "lights/register_lights.h"
+#include "media/register_media.h"
+
+namespace mote::tests {
+
+using namespace core;
+
+const Registry& registry() {
+    static const Registry instance = [] {
+        Registry r;
+        register_core(r);
+        media::register_media(r);
+        lights::register_lights(r);
+        integrators::register_integrators(r);
+        return r;
+    }();
+    return instance;
+}
+
+std::unique_ptr<Scene> scene_from(const std::string& xml, const std::string& folder) {
+    return load_scene_from_string(xml, folder, registry());
+}
+
+std::shared_ptr<const Integrator> integrator_from(const std::string& xml) {
+    // A scene of its own around the element: the loader is the only way from XML to objects.
+    const auto scene = scene_from("<scene version=\"3.0.0\">" + xml +
+                                  "<sensor type=\"perspective\"/><emitter type=\"constant\"/></scene>");
+    return scene->parts().integrator;
+}
+
+std::size_t RenderStatistics::layer(const std::string& name) const {
+    const auto it = std::find(layers.begin(), layers.end(), name);
+    if (it == layers.end()) throw std::out_of_range("no layer '" + name + "'");
+    return std::size_t(it - layers.begin());
+}
+
+RenderStatistics RenderStatistics::scaled(double factor) const {
+    RenderStatistics result = *this;
+    const auto scale = [&](Estimate& e) { e.mean *= factor, e.variance_of_mean *= factor * factor; };
+    for (auto& layer : result.blocks)
+        for (Estimate& e : layer) scale(e);
+    for (auto& layer : result.whole)
+        for (Estimate& e : layer) scale(e);
+    return result;
+}
+
+namespace {
+
+/// Running mean and squared deviations (Welford), stable for small variances.
+struct Accumulator {
+    double mean = 0.0, squares = 0.0;
+    std::uint32_t n = 0;
+    void add(double x) {
+        ++n;
+        const double delta = x - mean;
+        mean += delta / n;
+        squares += delta * (x - mean);
+    }
+    Estimate estimate() const { return {mean, n > 1 ? squares / (double(n) - 1.0) / n : 0.0}; }
+};
+
+class BlockAccumulator {
+  public:
+    BlockAccumulator(const RenderSpec& spec, std::size_t layers)
+        : spec_(spec),
+          bx_((spec.width + spec.block - 1) / spec.block),
+          by_((spec.height + spec.block - 1) / spec.block),
+          blocks_(layers, std::vector<Accumulator>(std::size_t(bx_ * by_ * 3))),
+          whole_(layers) {}
+
+    void add(std::size_t layer, const std::vector<Vec3d>& pixels) {
+        std::vector<Vec3d> sums(std::size_t(bx_ * by_), Vec3d(0.0));
+        std::vector<int> counts(sums.size(), 0);
+        Vec3d total(0.0);
+        for (int y = 0; y < spec_.height; ++y)
+            for (int x = 0; x < spec_.width; ++x) {
+                const auto b = std::size_t((y / spec_.block) * bx_ + x / spec_.block);
+                const Vec3d& value = pixels[std::size_t(y * spec_.width + x)];
+                sums[b] += value, ++counts[b], total += value;
+            }
+        for (std::size_t b = 0; b < sums.size(); ++b)
+            for (int c = 0; c < 3; ++c) blocks_[layer][b * 3 + std::size_t(c)].add(sums[b][c] / counts[b]);
+        for (int c = 0; c < 3; ++c)
+            whole_[layer][std::size_t(c)].add(total[c] / (spec_.width * spec_.height));
+    }
+    void finish(RenderStatistics& result) const {
+        result.blocks_x = bx_, result.blocks_y = by_;
+        for (std::size_t l = 0; l < blocks_.size(); ++l) {
+            result.blocks.emplace_back();
+            for (const Accumulator& a : blocks_[l]) result.blocks.back().push_back(a.estimate());
+            result.whole.push_back(
+                {whole_[l][0].estimate(), whole_[l][1].estimate(), whole_[l][2].estimate()});
+        }
+    }
+
+  private:
+    RenderSpec spec_;
+    int bx_, by_;
+    std::vector<std::vector<Accumulator>> blocks_;
+    std::vector<std::array<Accumulator, 3>> whole_;
+};
+
+}  // namespace
+
+RenderStatistics render_statistics(const Scene& scene, const Integrator& integrator, const RenderSpec& spec) {
+    const std::vector<Layer> layers = integrator.layers(scene);
+    RenderStatistics result;
+    result.passes = spec.passes;
+    for (const Layer& layer : layers) result.layers.push_back(layer.name);
+    result.layers.push_back("beauty");
+
+    const auto estimator =
+        integrator.prepare(scene, {spec.seed, spec.width, spec.height, SamplerKind::independent});
+    const auto filter = make_pixel_filter("box", 0.5f, 0.5f);
+    const std::atomic<bool> cancelled{false};
+    PassImage image(spec.width, spec.height, layers.size());
+    BlockAccumulator blocks(spec, layers.size() + 1);
+    for (std::uint32_t pass = 0; pass < spec.passes; ++pass) {
+        image.clear();
+        estimator->pass({pass, *filter, cancelled}, image);
+        std::vector<Vec3d> beauty(std::size_t(spec.width * spec.height), Vec3d(0.0));
+        for (std::size_t l = 0; l < layers.size(); ++l) {
+            std::vector<Vec3d> pixels;
+            for (const Rgb& value : image.layer(l)) {
+                if (!is_finite(value)) ++result.non_finite;
+                pixels.emplace_back(value);
+            }
+            if (!layers[l].auxiliary)
+                for (std::size_t i = 0; i < pixels.size(); ++i) beauty[i] += pixels[i];
+            blocks.add(l, pixels);
+        }
+        blocks.add(layers.size(), beauty);
+    }
+    blocks.finish(result);
+    return result;
+}
+
+namespace {
+
+/// Upper quantile of the standard normal distribution, by bisection of erfc.
+double normal_quantile(double upper_tail) {
+    double low = 0.0, high = 40.0;
+    for (int i = 0; i < 200; ++i) {
+        const double mid = 0.5 * (low + high);
+        (0.5 * std::erfc(mid / std::sqrt(2.0)) > upper_tail ? low : high) = mid;
+    }
+    return 0.5 * (low + high);
+}
+
+double z_of(const Estimate& a, const Estimate& b) {
+    const double floor = 1e-10 * (a.mean * a.mean + b.mean * b.mean) + 1e-30;
+    return std::fabs(a.mean - b.mean) / std::sqrt(a.variance_of_mean + b.variance_of_mean + floor);
+}
+
+}  // namespace
+
+ZTest same_mean(const RenderStatistics& A, const std::string& a, const RenderStatistics& B,
+                const std::string& b) {
+    const auto la = A.layer(a), lb = B.layer(b);
+    const std::size_t tests = A.blocks[la].size() + 3;
+    const double level = 1.0 - std::pow(1.0 - 0.01, 1.0 / double(tests));
+    ZTest result{A.non_finite == 0 && B.non_finite == 0, 0.0, normal_quantile(0.5 * level), ""};
+    result.report = fmt::format("layers '{}' and '{}', {} and {} passes, non-finite {} and {}\n", a, b,
+                                A.passes, B.passes, A.non_finite, B.non_finite);
+    const auto check = [&](const std::string& what, const Estimate& x, const Estimate& y) {
+        const double z = z_of(x, y);
+        result.worst_z = std::max(result.worst_z, z);
+        if (z > result.critical_z || what[0] == 'p')
+            result.report +=
+                fmt::format("  {}: {:.6g} +- {:.2g} against {:.6g} +- {:.2g}, z = {:.2f}\n", what, x.mean,
+                            std::sqrt(x.variance_of_mean), y.mean, std::sqrt(y.variance_of_mean), z);
+    };
+    for (std::size_t c = 0; c < 3; ++c)
+        check(fmt::format("picture channel {}", c), A.whole[la][c], B.whole[lb][c]);
+    for (std::size_t i = 0; i < A.blocks[la].size(); ++i)
+        check(fmt::format("block {} channel {}", i / 3, i % 3), A.blocks[la][i], B.blocks[lb][i]);
+    result.passed = result.passed && result.worst_z <= result.critical_z;
+    result.report += fmt::format("  worst z {:.2f}, critical {:.2f}\n", result.worst_z, result.critical_z);
+    return result;
+}
+
+ZTest mean_is(const RenderStatistics& A, const std::string& a, double value) {
+    const auto la = A.layer(a);
+    const double level = 1.0 - std::pow(1.0 - 0.01, 1.0 / 3.0);
+    ZTest result{A.non_finite == 0, 0.0, normal_quantile(0.5 * level), ""};
+    for (const Estimate& e : A.whole[la]) {
+        const double z = z_of(e, {value, 0.0});
+        result.worst_z = std::max(result.worst_z, z);
+        result.report += fmt::format("layer '{}': {:.6g} +- {:.2g} against {:.6g}, z = {:.2f}\n", a, e.mean,
+                                     std::sqrt(e.variance_of_mean), value, z);
+    }
+    result.passed = result.passed && result.worst_z <= result.critical_z;
+    return result;
+}
+
+}  // namespace mote::tests
