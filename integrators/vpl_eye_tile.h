@@ -1,0 +1,164 @@
+// The eye paths of a 4x4 tile of pixels, advanced together to their connectable vertices, where all VPLs are
+// gathered at once (lights/vpl_gather.h).
+#pragma once
+
+#include <limits>
+#include <optional>
+
+#include "integrators/direct_light.h"
+#include "integrators/eye_ray.h"
+#include "integrators/path_kernel.h"
+#include "integrators/russian_roulette.h"
+#include "lights/particle_tracer.h"
+#include "lights/vpl_gather.h"
+
+namespace mote::integrators {
+
+struct VplSettings {
+    PathSettings eye;  ///< max_depth counts the whole path from light to eye
+    std::uint32_t paths = 256;
+    bool bounded = true;
+    std::optional<float> bound;  ///< b [1/m^2]; nothing: automatic
+
+    /// b from the scene's size and the number of light paths: inside r = b^(-1/2) a VPL stands for the light
+    /// of the paths around it, and N paths spread over a scene of radius R are about R / sqrt(N) apart.
+    float bound_for(const core::Bounds3& bounds) const {
+        if (!bounded) return core::infinity;
+        if (bound) return *bound;
+        const float radius = bounds.radius();
+        return radius > 0.0f ? float(paths) / core::sqr(radius) : core::infinity;
+    }
+    lights::LightPathSettings light_paths() const {
+        lights::LightPathSettings s;
+        s.paths = paths, s.rr_depth = eye.rr_depth;
+        s.max_vertices = eye.max_depth < 0 ? -1 : std::max(0, eye.max_depth - 2);
+        return s;
+    }
+};
+
+/// Advances the lanes from one connectable vertex to the next, until no eye path goes on.
+template <bool Media>
+class EyeTile {
+  public:
+    static constexpr int side = 4;
+    static_assert(side * side == lights::ReceiverTile::width);
+
+    EyeTile(const core::Scene& scene, const VplSettings& settings, float bound, const lights::VplSet& vpls,
+            lights::GatherScratch& scratch, core::WalkContext& walk)
+        : scene_(scene), settings_(settings), bound_(bound), vpls_(vpls), scratch_(scratch), walk_(walk) {}
+
+    void start(int lane, const EyeRay& eye, const core::MediumState& state) {
+        Lane& l = lanes_[std::size_t(lane)];
+        l = Lane{};
+        l.ray = eye.ray, l.sampler.emplace(eye.sampler), l.rng = eye.rng, l.state = state, l.alive = true;
+        if constexpr (Media) l.weights.hero = std::min(int(l.rng.next_float() * 3.0f), 2);
+    }
+    void stop(int lane) { lanes_[std::size_t(lane)] = Lane{}; }
+    const TransportSum& sum(int lane) const { return lanes_[std::size_t(lane)].sum; }
+
+    void run() {
+        for (bool any = true; any;) {
+            receivers_.clear();
+            any = false;
+            for (int i = 0; i < lights::ReceiverTile::width; ++i) {
+                Lane& lane = lanes_[std::size_t(i)];
+                if (lane.alive) lane.alive = advance(lane, i);
+                any |= lane.alive;
+            }
+            const auto light =
+                lights::gather(scene_, vpls_, bound_, receivers_, scratch_, walk_.rays, walk_.tracking);
+            for (int i = 0; i < lights::ReceiverTile::width; ++i) {
+                Lane& lane = lanes_[std::size_t(i)];
+                lane.sum[lane.receiver_layer] += light[std::size_t(i)];
+            }
+        }
+    }
+
+  private:
+    struct Lane {
+        core::Ray ray;
+        std::optional<core::Sampler> sampler;
+        core::Rng rng;
+        core::MediumState state;
+        core::PathWeights weights;
+        core::ScatteringVertex vertex;  ///< of the current receiver
+        TransportSum sum;
+        Transport receiver_layer = Transport::indirect;
+        int depth = 0;
+        float eta = 1.0f;
+        bool alive = false;
+    };
+
+    /// Follows one eye path to its next vertex; makes it a receiver where it can be connected. Returns
+    /// whether the path goes on behind it, through a mirror or glass.
+    bool advance(Lane& lane, int index) {
+        walk_.rng = lane.rng;
+        const bool goes_on = advance_with_rng(lane, index);
+        lane.rng = walk_.rng;
+        return goes_on;
+    }
+
+    bool advance_with_rng(Lane& lane, int index) {
+        const int max_depth = settings_.eye.max_depth;
+        ++lane.depth;
+        core::Rgb emitted(0.0f);
+        const core::WalkEvent event =
+            core::walk<Media>(scene_, lane.ray, lane.state, lane.weights, emitted, walk_);
+        lane.sum[Transport::emission] +=
+            emitted + found_light<Media>(scene_, event, lane.ray, lane.weights, nullptr);
+        if (event.kind == core::WalkEvent::Kind::escaped || lane.depth == max_depth) return false;
+
+        lane.vertex = make_vertex(event, lane.ray);
+        const bool surface = lane.vertex.on_surface();
+        const Transport direct = surface ? Transport::direct : Transport::single_scattering;
+        if (lane.vertex.connectable()) {
+            lane.sum[direct] +=
+                sample_light<Media>(scene_, lane.vertex, lane.weights, lane.state, *lane.sampler, walk_);
+            add_receiver(lane, index);
+        }
+        if (lane.depth >= settings_.eye.rr_depth &&
+            !survives<Media>(lane.weights, lane.eta, walk_.rng.next_float()))
+            return false;
+        const float u_lobe = lane.sampler->next_1d();
+        const auto next = lane.vertex.sample(u_lobe, lane.sampler->next_2d(), core::TransportMode::radiance);
+        if (!next) return false;
+        apply_scattering<Media>(lane.weights, *next);
+        lane.eta *= next->eta;
+        if (Media && surface) lane.state = lane.vertex.state_towards(lane.state, next->wi);
+        lane.ray = core::Ray{lane.vertex.ray_origin(next->wi), next->wi};
+        if (next->delta) return true;
+        lane.sum[direct] += light_along(lane);
+        return false;
+    }
+
+    void add_receiver(Lane& lane, int index) {
+        const int max_depth = settings_.eye.max_depth;
+        const std::int32_t vpl_depth =
+            max_depth < 0 ? std::numeric_limits<std::int32_t>::max() : max_depth - lane.depth - 1;
+        lane.receiver_layer = lane.vertex.on_surface() ? Transport::indirect : Transport::multiple_scattering;
+        const core::Rgb throughput =
+            lane.weights.throughput / channel_average<Media>(lane.weights.unidirectional);
+        receivers_.set(index, lane.vertex, throughput, lane.state, core::Rng(walk_.rng.next_u32()),
+                       vpl_depth);
+    }
+
+    /// The other technique for direct light: what the sampled direction happens to hit.
+    core::Rgb light_along(Lane& lane) {
+        core::Rgb emitted(0.0f);
+        core::MediumState state = lane.state;
+        const core::WalkEvent event =
+            core::walk<Media>(scene_, lane.ray, state, lane.weights, emitted, walk_);
+        return emitted + found_light<Media>(scene_, event, lane.ray, lane.weights, &lane.vertex.position);
+    }
+
+    const core::Scene& scene_;
+    const VplSettings& settings_;
+    float bound_;
+    const lights::VplSet& vpls_;
+    lights::GatherScratch& scratch_;
+    core::WalkContext& walk_;
+    std::array<Lane, lights::ReceiverTile::width> lanes_;
+    lights::ReceiverTile receivers_;
+};
+
+}  // namespace mote::integrators
