@@ -25,11 +25,11 @@ class Film {
     std::size_t pixels() const { return std::size_t(width_) * std::size_t(height_); }
     std::span<const Layer> layers() const { return layers_; }
     std::uint32_t pass_count() const { return passes_; }
-    /// Pixels of passes that held a NaN or an infinity. They add zero to the sums; anything but 0 is a
-    /// defect.
+    /// Pixels of passes that held a NaN or an infinity in some layer. Such a pixel adds zero to every layer;
+    /// anything but 0 is a defect.
     std::uint64_t non_finite() const { return non_finite_; }
 
-    /// Adds the next pass. Must be called in index order.
+    /// Adds the next pass. Must be called in index order. Undoes set_mean().
     void add_pass(const PassImage& image);
 
     /// Mean over passes of one layer, as float.
@@ -42,28 +42,46 @@ class Film {
     std::vector<Rgb> beauty_variance_of_mean() const;
     /// The same for a layer; needs all_squares.
     std::vector<Rgb> layer_variance_of_mean(std::size_t layer) const;
-    /// Replaces the mean of a layer, for post-processes (Estimator::finish).
+    /// Replaces what mean() returns for a layer, for post-processes (Estimator::finish). The sums, and with
+    /// them the variances, the noise and the serialised film, stay those of the passes.
     void set_mean(std::size_t layer, std::span<const Rgb> values);
     /// Relative noise: RMS over pixels of the standard error of the beauty's luminance, over its mean
     /// luminance.
     double relative_noise() const;
 
-    /// The bits of the film, for checkpoints: sums, counts, block state.
+    /// The bits of the film, for checkpoints: sums, counts, block state, and a checksum.
     std::vector<std::byte> serialize() const;
-    /// Throws InputError when the bytes do not fit this film's size and layers.
+    /// Throws InputError when the bytes are damaged or do not fit this film's size and layers; the film is
+    /// unchanged then.
     void deserialize(std::span<const std::byte> bytes);
 
   private:
-    struct Sums;  // one accumulator of doubles per layer, plus squares
+    /// [pixel * channels + channel]: `total` holds finished blocks, `block` the one that is open.
+    struct Sums {
+        std::vector<double> total, block;
+        explicit Sums(std::size_t size) : total(size, 0.0), block(size, 0.0) {}
+        double at(std::size_t i) const { return total[i] + block[i]; }
+        void close_block();
+    };
+    struct Mean {
+        double value, variance_of_mean;
+    };
+    void add_pixel(const PassImage& image, std::size_t pixel);
+    Mean beauty_luminance(std::size_t pixel) const;
+    std::vector<Rgb> variance_of_mean(std::span<const std::size_t> layers, const Sums& squares) const;
+    std::vector<std::size_t> beauty_layers() const;
+    std::vector<const Sums*> all_sums() const;
+
     int width_, height_;
     std::vector<Layer> layers_;
     bool all_squares_;
     std::uint32_t passes_ = 0;
     std::uint64_t non_finite_ = 0;
-    // [layer][pixel * 3 + channel]; `total_` holds finished blocks, `block_` the one that is open.
-    std::vector<std::vector<double>> total_, block_;
-    // Sums of squares: index 0 is the beauty, 1 + i layer i when all_squares.
-    std::vector<std::vector<double>> total_squares_, block_squares_;
+    std::vector<Sums> sums_;                        ///< one per layer, three channels
+    Sums beauty_squares_;                           ///< three channels
+    Sums luminance_squares_;                        ///< of the beauty, one channel
+    std::vector<Sums> layer_squares_;               ///< one per layer when all_squares_
+    std::vector<std::vector<Rgb>> replaced_means_;  ///< per layer; empty unless set_mean() was called
 };
 
 }  // namespace mote::core

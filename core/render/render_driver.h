@@ -13,17 +13,20 @@
 
 namespace mote::core {
 
+/// The first rule that holds ends the render. Without any rule, the film's sample_count is the number of
+/// passes.
 struct StopRule {
-    std::optional<std::uint32_t> passes;  ///< this many in all
-    std::optional<double> seconds;        ///< wall time of this run's passes
-    std::optional<double> noise;          ///< Film::relative_noise()
+    std::optional<std::uint32_t> passes;  ///< this many in all, those of a checkpoint included
+    std::optional<double> seconds;        ///< wall time of this run's passes: ends as near to it as whole
+                                          ///< passes allow, after one at least
+    std::optional<double> noise;          ///< Film::relative_noise(), looked at from 8 passes on
 };
 
 struct RenderProgress {
     std::uint32_t passes;
     std::optional<std::uint32_t> passes_wanted;
     double seconds, seconds_left;  ///< seconds_left < 0: unknown
-    double noise;
+    double noise;                  ///< infinity before two passes; refreshed twice a second
 };
 
 struct RenderRequest {
@@ -31,8 +34,9 @@ struct RenderRequest {
     StopRule stop;
     std::string checkpoint_path;  ///< "" for none
     double checkpoint_every_seconds = 60.0;
-    bool resume = false;
-    std::string content_hash;  ///< of the scene, its files and the options that change the picture
+    bool checkpoint_at_end = true;  ///< also after the last pass; an interrupted render always writes one
+    bool resume = false;            ///< continue from checkpoint_path; from the start where there is none
+    std::string content_hash;       ///< of the scene, its files and the options that change the picture
     bool all_squares = false;
     std::function<void(const RenderProgress&)> progress;  ///< called after every pass; may be empty
     const std::atomic<bool>* interrupted = nullptr;       ///< set by Ctrl-C
@@ -45,13 +49,17 @@ struct RenderResult {
     std::uint32_t resumed_at = 0;  ///< pass index the checkpoint held
 };
 
-/// Renders until a stop rule holds. Throws InputError when a checkpoint does not belong to this render.
+/// Renders until a stop rule holds. When interrupted, the running pass is dropped and everything before it
+/// kept; Estimator::finish is then not called. Throws InputError when a checkpoint does not belong to this
+/// render, is damaged, or cannot be written (the one before it stays intact).
 RenderResult render(const Scene& scene, const Integrator& integrator, const RenderRequest& request);
 
 /// The filter of a film as a distribution of offsets. Throws InputError for an unknown name.
 std::unique_ptr<PixelFilter> make_pixel_filter(const std::string& name, float radius, float stddev);
 
-/// FNV-1a 64 over the contents of files and strings: changes when any input of a render changes.
+/// Checksum over the contents of every file that the scene was read from, and over `settings`: changes when
+/// any input of a render changes, but not when its files move. 16 hexadecimal digits. Throws InputError for a
+/// file that cannot be read.
 std::string content_hash(const Scene& scene, const std::vector<std::string>& settings);
 
 }  // namespace mote::core

@@ -1,0 +1,186 @@
+// The sums of a film: one pass at a time into the open block, sixteen passes to a block, blocks in index
+// order.
+#include "core/image/film.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+
+#include <cmath>
+#include <functional>
+#include <stdexcept>
+
+namespace mote::core {
+
+namespace {
+
+constexpr std::size_t grain = 4096;  // pixels a task: large enough to hide the scheduling
+
+double luminance_of(const double c[3]) { return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; }
+
+// Variance of a mean of n values from their sum and sum of squares: (sum of squares / n - mean^2) / (n - 1).
+// Rounding can leave a tiny negative number where all values are equal.
+double variance_from_sums(double sum, double squares, std::uint32_t n) {
+    if (n < 2) return 0.0;
+    const double mean = sum / n;
+    return std::fmax(0.0, (squares / n - mean * mean) / (n - 1.0));
+}
+
+bool pixel_is_finite(const PassImage& image, std::size_t pixel) {
+    for (std::size_t layer = 0; layer < image.layers(); ++layer)
+        if (!is_finite(image.layer(layer)[pixel])) return false;
+    return true;
+}
+
+}  // namespace
+
+void Film::Sums::close_block() {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, total.size(), 3 * grain), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+            total[i] += block[i];
+            block[i] = 0.0;
+        }
+    });
+}
+
+Film::Film(int width, int height, std::vector<Layer> layers, bool all_squares)
+    : width_(width),
+      height_(height),
+      layers_(std::move(layers)),
+      all_squares_(all_squares),
+      beauty_squares_(width > 0 && height > 0 ? 3 * pixels() : 0),
+      luminance_squares_(width > 0 && height > 0 ? pixels() : 0) {
+    if (width < 1 || height < 1) throw std::invalid_argument("a film needs at least one pixel");
+    sums_.assign(layers_.size(), Sums(3 * pixels()));
+    if (all_squares_) layer_squares_.assign(layers_.size(), Sums(3 * pixels()));
+    replaced_means_.resize(layers_.size());
+}
+
+void Film::add_pixel(const PassImage& image, std::size_t pixel) {
+    double beauty[3] = {0.0, 0.0, 0.0};
+    for (std::size_t layer = 0; layer < layers_.size(); ++layer) {
+        const Rgb value = image.layer(layer)[pixel];
+        for (int c = 0; c < 3; ++c) {
+            const double v = value[c];
+            const std::size_t i = 3 * pixel + std::size_t(c);
+            sums_[layer].block[i] += v;
+            if (all_squares_) layer_squares_[layer].block[i] += v * v;
+            if (!layers_[layer].auxiliary) beauty[c] += v;
+        }
+    }
+    for (int c = 0; c < 3; ++c) beauty_squares_.block[3 * pixel + std::size_t(c)] += beauty[c] * beauty[c];
+    const double y = luminance_of(beauty);
+    luminance_squares_.block[pixel] += y * y;
+}
+
+void Film::add_pass(const PassImage& image) {
+    if (image.width() != width_ || image.height() != height_ || image.layers() != layers_.size())
+        throw std::invalid_argument("the pass does not fit the film");
+    for (auto& replaced : replaced_means_) replaced.clear();
+
+    // Pixels are independent of each other, so the order of tasks does not matter to any bit.
+    non_finite_ += tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(0, pixels(), grain), std::uint64_t(0),
+        [&](const auto& range, std::uint64_t dropped) {
+            for (std::size_t pixel = range.begin(); pixel < range.end(); ++pixel) {
+                if (pixel_is_finite(image, pixel))
+                    add_pixel(image, pixel);
+                else
+                    ++dropped;
+            }
+            return dropped;
+        },
+        std::plus<>());
+
+    if (++passes_ % block_size != 0) return;
+    for (auto& sums : sums_) sums.close_block();
+    for (auto& squares : layer_squares_) squares.close_block();
+    beauty_squares_.close_block();
+    luminance_squares_.close_block();
+}
+
+std::vector<Rgb> Film::mean(std::size_t layer) const {
+    if (!replaced_means_.at(layer).empty()) return replaced_means_[layer];
+    std::vector<Rgb> result(pixels(), Rgb(0.0f));
+    if (passes_ == 0) return result;
+    const Sums& sums = sums_[layer];
+    for (std::size_t p = 0; p < pixels(); ++p)
+        for (int c = 0; c < 3; ++c) result[p][c] = float(sums.at(3 * p + std::size_t(c)) / passes_);
+    return result;
+}
+
+std::vector<std::size_t> Film::beauty_layers() const {
+    std::vector<std::size_t> indices;
+    for (std::size_t layer = 0; layer < layers_.size(); ++layer)
+        if (!layers_[layer].auxiliary) indices.push_back(layer);
+    return indices;
+}
+
+std::vector<Rgb> Film::beauty() const {
+    std::vector<Rgb> result(pixels(), Rgb(0.0f));
+    for (const std::size_t layer : beauty_layers()) {
+        const std::vector<Rgb> part = mean(layer);
+        for (std::size_t p = 0; p < pixels(); ++p) result[p] += part[p];
+    }
+    return result;
+}
+
+std::vector<Rgb> Film::variance_of_mean(std::span<const std::size_t> layers, const Sums& squares) const {
+    std::vector<Rgb> result(pixels(), Rgb(0.0f));
+    for (std::size_t p = 0; p < pixels(); ++p) {
+        for (int c = 0; c < 3; ++c) {
+            const std::size_t i = 3 * p + std::size_t(c);
+            double sum = 0.0;
+            for (const std::size_t layer : layers) sum += sums_[layer].at(i);
+            result[p][c] = float(variance_from_sums(sum, squares.at(i), passes_));
+        }
+    }
+    return result;
+}
+
+std::vector<Rgb> Film::beauty_variance_of_mean() const {
+    return variance_of_mean(beauty_layers(), beauty_squares_);
+}
+
+std::vector<Rgb> Film::layer_variance_of_mean(std::size_t layer) const {
+    if (!all_squares_) throw std::logic_error("the film keeps the squares of the beauty alone");
+    return variance_of_mean(std::span(&layer, 1), layer_squares_.at(layer));
+}
+
+void Film::set_mean(std::size_t layer, std::span<const Rgb> values) {
+    if (values.size() != pixels()) throw std::invalid_argument("the layer does not fit the film");
+    replaced_means_.at(layer).assign(values.begin(), values.end());
+}
+
+Film::Mean Film::beauty_luminance(std::size_t pixel) const {
+    double sum[3] = {0.0, 0.0, 0.0};
+    for (std::size_t layer = 0; layer < layers_.size(); ++layer) {
+        if (layers_[layer].auxiliary) continue;
+        for (std::size_t c = 0; c < 3; ++c) sum[c] += sums_[layer].at(3 * pixel + c);
+    }
+    const double y = luminance_of(sum);
+    return {y / passes_, variance_from_sums(y, luminance_squares_.at(pixel), passes_)};
+}
+
+double Film::relative_noise() const {
+    if (passes_ < 2) return std::numeric_limits<double>::infinity();
+    // Split at fixed places, so that the number of threads cannot change the sum and with it the last pass.
+    const Mean sum = tbb::parallel_deterministic_reduce(
+        tbb::blocked_range<std::size_t>(0, pixels(), grain), Mean{0.0, 0.0},
+        [&](const auto& range, Mean partial) {
+            for (std::size_t p = range.begin(); p < range.end(); ++p) {
+                const Mean y = beauty_luminance(p);
+                partial.value += y.value, partial.variance_of_mean += y.variance_of_mean;
+            }
+            return partial;
+        },
+        [](const Mean& a, const Mean& b) {
+            return Mean{a.value + b.value, a.variance_of_mean + b.variance_of_mean};
+        });
+    const double mean = sum.value, variance = sum.variance_of_mean;
+    const auto n = double(pixels());
+    if (mean == 0.0) return variance == 0.0 ? 0.0 : std::numeric_limits<double>::infinity();
+    return std::sqrt(variance / n) / std::fabs(mean / n);
+}
+
+}  // namespace mote::core

@@ -1,0 +1,94 @@
+// The bits of a film as bytes: header, sums, checksum. Little-endian, as every machine this runs on.
+#include <array>
+#include <cstring>
+
+#include "core/image/checksum.h"
+#include "core/image/film.h"
+#include "core/scene/error.h"
+
+namespace mote::core {
+
+namespace {
+
+struct Header {
+    std::array<char, 8> magic = {'m', 'o', 't', 'e', 'f', 'i', 'l', 'm'};
+    std::uint32_t version = 1;
+    std::uint32_t width = 0, height = 0, layers = 0, all_squares = 0, passes = 0;
+    std::uint64_t non_finite = 0;
+};
+static_assert(sizeof(Header) == 40, "the header has no padding whose bytes could vary");
+
+void append(std::vector<std::byte>& bytes, const void* data, std::size_t size) {
+    const auto* begin = static_cast<const std::byte*>(data);
+    bytes.insert(bytes.end(), begin, begin + size);
+}
+
+}  // namespace
+
+std::vector<const Film::Sums*> Film::all_sums() const {
+    std::vector<const Sums*> all;
+    for (const Sums& sums : sums_) all.push_back(&sums);
+    for (const Sums& sums : layer_squares_) all.push_back(&sums);
+    all.push_back(&beauty_squares_);
+    all.push_back(&luminance_squares_);
+    return all;
+}
+
+std::vector<std::byte> Film::serialize() const {
+    Header header;
+    header.width = std::uint32_t(width_), header.height = std::uint32_t(height_);
+    header.layers = std::uint32_t(layers_.size()), header.all_squares = all_squares_ ? 1 : 0;
+    header.passes = passes_, header.non_finite = non_finite_;
+
+    std::size_t size = sizeof(header) + sizeof(std::uint64_t);
+    for (const Sums* sums : all_sums()) size += 2 * sums->total.size() * sizeof(double);
+    std::vector<std::byte> bytes;
+    bytes.reserve(size);
+    append(bytes, &header, sizeof(header));
+    for (const Sums* sums : all_sums()) {
+        append(bytes, sums->total.data(), sums->total.size() * sizeof(double));
+        append(bytes, sums->block.data(), sums->block.size() * sizeof(double));
+    }
+    const std::uint64_t sum = checksum(bytes);
+    append(bytes, &sum, sizeof(sum));
+    return bytes;
+}
+
+void Film::deserialize(std::span<const std::byte> bytes) {
+    std::size_t expected = sizeof(Header) + sizeof(std::uint64_t);
+    for (const Sums* sums : all_sums()) expected += 2 * sums->total.size() * sizeof(double);
+    if (bytes.size() < sizeof(Header) + sizeof(std::uint64_t)) throw InputError("the film is cut short");
+
+    Header header;
+    std::memcpy(&header, bytes.data(), sizeof(header));
+    if (header.magic != Header().magic) throw InputError("not a film");
+    if (header.version != Header().version)
+        throw InputError("the film has format " + std::to_string(header.version) + ", not " +
+                         std::to_string(Header().version));
+    if (header.width != std::uint32_t(width_) || header.height != std::uint32_t(height_))
+        throw InputError("the film has " + std::to_string(header.width) + " x " +
+                         std::to_string(header.height) + " pixels, not " + std::to_string(width_) + " x " +
+                         std::to_string(height_));
+    if (header.layers != layers_.size() || (header.all_squares != 0) != all_squares_)
+        throw InputError("the film has other layers");
+    if (bytes.size() != expected) throw InputError("the film is damaged: its length is wrong");
+    std::uint64_t sum;
+    std::memcpy(&sum, bytes.data() + expected - sizeof(sum), sizeof(sum));
+    if (sum != checksum(bytes.first(expected - sizeof(sum))))
+        throw InputError("the film is damaged: its checksum is wrong");
+
+    const std::byte* from = bytes.data() + sizeof(header);
+    const auto read = [&from](std::vector<double>& values) {
+        std::memcpy(values.data(), from, values.size() * sizeof(double));
+        from += values.size() * sizeof(double);
+    };
+    const auto read_sums = [&read](Sums& sums) { read(sums.total), read(sums.block); };
+    for (Sums& sums : sums_) read_sums(sums);
+    for (Sums& sums : layer_squares_) read_sums(sums);
+    read_sums(beauty_squares_);
+    read_sums(luminance_squares_);
+    passes_ = header.passes, non_finite_ = header.non_finite;
+    for (auto& replaced : replaced_means_) replaced.clear();
+}
+
+}  // namespace mote::core

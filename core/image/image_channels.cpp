@@ -1,0 +1,49 @@
+// A picture as named planes of floats.
+#include <algorithm>
+#include <stdexcept>
+
+#include "core/image/image_file.h"
+
+namespace mote::core {
+
+namespace {
+
+std::string channel_name(const std::string& layer, const char* channel) {
+    return layer.empty() ? channel : layer + "." + channel;
+}
+
+}  // namespace
+
+void ImageChannels::add(const std::string& name, std::vector<float> plane) {
+    if (width < 1 || height < 1 || plane.size() != std::size_t(width) * std::size_t(height))
+        throw std::invalid_argument("the plane '" + name + "' does not fit the picture");
+    if (find(name)) throw std::invalid_argument("the picture has a channel '" + name + "' already");
+    names.push_back(name);
+    channels.push_back(std::move(plane));
+}
+
+void ImageChannels::add_rgb(const std::string& layer, std::span<const Rgb> pixels) {
+    const char* channel[3] = {"R", "G", "B"};
+    for (int c = 0; c < 3; ++c) {
+        std::vector<float> plane(pixels.size());
+        std::transform(pixels.begin(), pixels.end(), plane.begin(), [c](const Rgb& p) { return p[c]; });
+        add(channel_name(layer, channel[c]), std::move(plane));
+    }
+}
+
+const std::vector<float>* ImageChannels::find(const std::string& name) const {
+    const auto found = std::find(names.begin(), names.end(), name);
+    return found == names.end() ? nullptr : &channels[std::size_t(found - names.begin())];
+}
+
+std::vector<Rgb> ImageChannels::rgb(const std::string& layer) const {
+    const std::vector<float>* plane[3] = {find(channel_name(layer, "R")), find(channel_name(layer, "G")),
+                                          find(channel_name(layer, "B"))};
+    if (!plane[0] || !plane[1] || !plane[2]) return {};
+    std::vector<Rgb> pixels(plane[0]->size());
+    for (std::size_t i = 0; i < pixels.size(); ++i)
+        pixels[i] = {(*plane[0])[i], (*plane[1])[i], (*plane[2])[i]};
+    return pixels;
+}
+
+}  // namespace mote::core

@@ -1,0 +1,47 @@
+// 8-bit previews.
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/image/image_file.h"
+#include "core/scene/error.h"
+
+namespace mote::core {
+
+namespace {
+
+// Linear to sRGB (IEC 61966-2-1), rounded to eight bits.
+std::uint8_t encode_srgb(float linear) {
+    const float v = std::clamp(linear, 0.0f, 1.0f);
+    const float s = v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1.0f / 2.4f) - 0.055f;
+    return std::uint8_t(std::lround(255.0f * s));
+}
+
+}  // namespace
+
+void write_png(const std::string& path, int width, int height, std::span<const Rgb> pixels, float exposure) {
+    if (width < 1 || height < 1 || pixels.size() != std::size_t(width) * std::size_t(height))
+        throw std::invalid_argument("the pixels do not fit the picture");
+    const float scale = std::exp2(exposure);
+    std::vector<std::uint8_t> bytes(3 * pixels.size());
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+        const Rgb shown = is_finite(pixels[i]) ? pixels[i] * scale : Rgb(1.0f, 0.0f, 1.0f);
+        for (int c = 0; c < 3; ++c) bytes[3 * i + std::size_t(c)] = encode_srgb(shown[c]);
+    }
+
+    // Encoded in memory: the writer of PNG files does not notice a full disk, write_file_atomically() does.
+    const auto output = OIIO::ImageOutput::create("png");
+    if (!output) throw InputError("cannot be written: OpenImageIO has no PNG writer", {path, 0});
+    OIIO::Filesystem::IOVecOutput memory;
+    OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    if (!output->set_ioproxy(&memory) || !output->open("preview.png", spec) ||
+        !output->write_image(OIIO::TypeDesc::UINT8, bytes.data()) || !output->close())
+        throw InputError("cannot be written: " + printable(output->geterror()), {path, 0});
+    write_file_atomically(path, std::as_bytes(std::span(memory.buffer())));
+}
+
+}  // namespace mote::core

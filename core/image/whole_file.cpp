@@ -1,0 +1,27 @@
+// Reading whole files.
+#include "core/image/whole_file.h"
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "core/scene/error.h"
+
+namespace mote::core {
+
+std::vector<std::byte> read_whole_file(const std::string& path) {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored)) throw InputError("is a folder");
+    std::ifstream file(path, std::ios::binary | std::ios::ate);
+    if (!file) throw InputError(std::string("cannot be opened: ") + std::strerror(errno));
+    const std::streamoff size = file.tellg();
+    if (size < 0) throw InputError("cannot be read");
+    std::vector<std::byte> bytes(std::size_t(size), std::byte(0));
+    file.seekg(0);
+    file.read(reinterpret_cast<char*>(bytes.data()), size);
+    if (!file) throw InputError("cannot be read");
+    return bytes;
+}
+
+}  // namespace mote::core

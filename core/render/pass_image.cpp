@@ -1,0 +1,32 @@
+// The picture of one pass, and the loop over its tiles.
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "core/render/integrator.h"
+
+namespace mote::core {
+
+PassImage::PassImage(int width, int height, std::size_t layers) : width_(width), height_(height) {
+    if (width < 1 || height < 1) throw std::invalid_argument("a picture needs at least one pixel");
+    planes_.assign(layers, std::vector<Rgb>(std::size_t(width) * std::size_t(height), Rgb(0.0f)));
+}
+
+void PassImage::clear() {
+    for (auto& plane : planes_) std::fill(plane.begin(), plane.end(), Rgb(0.0f));
+}
+
+bool for_each_tile(int width, int height, int tile_size, const std::atomic<bool>& cancelled,
+                   const std::function<void(int, int, int, int)>& body) {
+    if (tile_size < 1) throw std::invalid_argument("a tile needs at least one pixel");
+    const int columns = (width + tile_size - 1) / tile_size, rows = (height + tile_size - 1) / tile_size;
+    tbb::parallel_for(0, rows * columns, [&](int tile) {
+        if (cancelled.load(std::memory_order_relaxed)) return;
+        const int x0 = tile % columns * tile_size, y0 = tile / columns * tile_size;
+        body(x0, y0, std::min(x0 + tile_size, width), std::min(y0 + tile_size, height));
+    });
+    return !cancelled.load(std::memory_order_relaxed);
+}
+
+}  // namespace mote::core

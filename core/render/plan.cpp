@@ -1,0 +1,51 @@
+// Plans as people read them.
+#include "core/render/plan.h"
+
+#include <algorithm>
+
+namespace mote::core {
+
+namespace {
+
+void append_table(std::string& text, const std::string& title, const std::vector<PlanEntry>& entries) {
+    if (entries.empty()) return;
+    std::size_t topic_width = 0, choice_width = 0;
+    for (const PlanEntry& e : entries) {
+        topic_width = std::max(topic_width, e.topic.size());
+        choice_width = std::max(choice_width, e.choice.size());
+    }
+    // A long choice breaks its own line instead of pushing every reason to the right.
+    choice_width = std::min<std::size_t>(choice_width, 40);
+    const auto padded = [](const std::string& s, std::size_t width) {
+        return s.size() < width ? s + std::string(width - s.size(), ' ') : s;
+    };
+    text += "\n" + title + "\n";
+    for (const PlanEntry& e : entries) {
+        std::string line = "  " + padded(e.topic, topic_width) + "  " + padded(e.choice, choice_width);
+        if (!e.reason.empty()) line += "  " + e.reason;
+        line.erase(line.find_last_not_of(' ') + 1);
+        text += line + "\n";
+    }
+}
+
+}  // namespace
+
+void Plan::run(std::string topic, std::string choice, std::string reason) {
+    runs.push_back({std::move(topic), std::move(choice), std::move(reason)});
+}
+void Plan::leave_out(std::string topic, std::string choice, std::string reason) {
+    left_out.push_back({std::move(topic), std::move(choice), std::move(reason)});
+}
+void Plan::miss(std::string topic, std::string choice, std::string reason) {
+    missing.push_back({std::move(topic), std::move(choice), std::move(reason)});
+}
+
+std::string Plan::to_text() const {
+    std::string text = "integrator: " + integrator + "\n";
+    append_table(text, "runs", runs);
+    append_table(text, "left out: this scene does not need it", left_out);
+    append_table(text, "missing: this integrator cannot compute it", missing);
+    return text;
+}
+
+}  // namespace mote::core

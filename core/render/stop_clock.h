@@ -1,0 +1,44 @@
+// When a render ends, and how long that will take.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/render/render_driver.h"
+
+namespace mote::core {
+
+/// What the rules look at: passes in all, passes and seconds of this run, and the noise (infinity: unknown).
+struct RenderState {
+    std::uint32_t passes = 0, passes_of_this_run = 0;
+    double seconds = 0.0, noise = 0.0;
+    double seconds_per_pass() const { return passes_of_this_run > 0 ? seconds / passes_of_this_run : 0.0; }
+};
+
+inline constexpr std::uint32_t noise_rule_from = 8;  ///< fewer passes say too little about their spread
+
+inline bool must_stop(const StopRule& rule, const RenderState& state) {
+    if (rule.passes && state.passes >= *rule.passes) return true;
+    // One more pass would end farther from the wanted time than none.
+    if (rule.seconds && state.passes_of_this_run > 0 &&
+        state.seconds + 0.5 * state.seconds_per_pass() >= *rule.seconds)
+        return true;
+    return rule.noise && state.passes >= noise_rule_from && state.noise <= *rule.noise;
+}
+
+/// Seconds until the first rule will hold, if passes go on as before; negative where unknown.
+inline double seconds_left(const StopRule& rule, const RenderState& state) {
+    double left = infinity;
+    const double per_pass = state.seconds_per_pass();
+    if (rule.passes && per_pass > 0.0)
+        left = std::min(left, per_pass * (*rule.passes - std::min(state.passes, *rule.passes)));
+    if (rule.seconds) left = std::min(left, std::max(0.0, *rule.seconds - state.seconds));
+    if (rule.noise && std::isfinite(state.noise) && per_pass > 0.0) {
+        // The noise falls as 1 / sqrt(passes).
+        const double ratio = state.noise / *rule.noise;
+        left = std::min(left, std::max(0.0, per_pass * state.passes * (ratio * ratio - 1.0)));
+    }
+    return std::isfinite(left) ? left : -1.0;
+}
+
+}  // namespace mote::core
