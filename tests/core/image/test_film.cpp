@@ -1,0 +1,179 @@
+// The film: sums to the exact bits, blocks, noise, non-finite pixels, serialisation.
+#include <cmath>
+#include <limits>
+
+#include "core/image/film.h"
+#include "core/image/film_image.h"
+#include "core/math/random.h"
+#include "core/scene/error.h"
+#include "tests/support/catch.h"
+
+using namespace mote::core;
+
+namespace {
+
+const std::vector<Layer> layers = {{"direct", "", false}, {"Albedo", "", true}, {"indirect", "", false}};
+
+PassImage random_pass(int width, int height, std::uint32_t index) {
+    PassImage image(width, height, layers.size());
+    Rng rng(hash_keys(77, index));
+    for (std::size_t l = 0; l < layers.size(); ++l)
+        for (Rgb& p : image.layer(l))
+            for (int c = 0; c < 3; ++c) p[c] = std::exp(6.0f * rng.next_float() - 3.0f);
+    return image;
+}
+
+Film film_of(int width, int height, std::uint32_t passes, bool all_squares = false) {
+    Film film(width, height, layers, all_squares);
+    for (std::uint32_t i = 0; i < passes; ++i) film.add_pass(random_pass(width, height, i));
+    return film;
+}
+
+// What the documentation promises: blocks of sixteen summed in doubles, blocks added in order.
+double block_sum(std::uint32_t passes, std::size_t layer, std::size_t pixel, int channel, int power,
+                 int width, int height) {
+    double total = 0.0, block = 0.0;
+    for (std::uint32_t i = 0; i < passes; ++i) {
+        const PassImage image = random_pass(width, height, i);
+        const double v = image.layer(layer)[pixel][channel];
+        block += power == 2 ? v * v : v;
+        if (i % 16 == 15) total += block, block = 0.0;
+    }
+    return total + block;
+}
+
+}  // namespace
+
+TEST_CASE("A film sums passes in blocks of sixteen, to the exact bits", "[film]") {
+    REQUIRE(Film::block_size == 16);
+    const int w = 7, h = 5;
+    for (const std::uint32_t passes : {1u, 15u, 16u, 17u, 40u}) {
+        const Film film = film_of(w, h, passes);
+        REQUIRE(film.pass_count() == passes);
+        for (const std::size_t layer : {0u, 1u, 2u}) {
+            const auto mean = film.mean(layer);
+            for (const std::size_t pixel : {0u, 13u, 34u})
+                for (int c = 0; c < 3; ++c)
+                    CHECK(mean[pixel][c] == float(block_sum(passes, layer, pixel, c, 1, w, h) / passes));
+        }
+    }
+}
+
+TEST_CASE("The beauty is the float sum of the layers that are not auxiliary", "[film]") {
+    const Film film = film_of(6, 6, 21);
+    const auto beauty = film.beauty(), direct = film.mean(0), indirect = film.mean(2);
+    for (std::size_t p = 0; p < film.pixels(); ++p) CHECK(beauty[p] == direct[p] + indirect[p]);
+}
+
+TEST_CASE("Variance and noise agree with the two-pass formula", "[film]") {
+    const int w = 4, h = 3;
+    const std::uint32_t n = 37;
+    const Film film = film_of(w, h, n, true);
+    const auto variance = film.beauty_variance_of_mean(), of_layer = film.layer_variance_of_mean(1);
+    double noise = 0.0, luminance_mean = 0.0;
+    for (std::size_t p = 0; p < film.pixels(); ++p) {
+        std::vector<double> y, red, albedo;
+        for (std::uint32_t i = 0; i < n; ++i) {
+            const PassImage image = random_pass(w, h, i);
+            const auto a = image.layer(0)[p], b = image.layer(2)[p];
+            red.push_back(double(a.x) + b.x);
+            albedo.push_back(image.layer(1)[p].z);
+            y.push_back(0.2126 * (double(a.x) + b.x) + 0.7152 * (double(a.y) + b.y) +
+                        0.0722 * (double(a.z) + b.z));
+        }
+        const auto moments = [n](const std::vector<double>& v) {
+            double mean = 0.0, spread = 0.0;
+            for (const double x : v) mean += x / n;
+            for (const double x : v) spread += (x - mean) * (x - mean);
+            return std::pair(mean, spread / n / (n - 1.0));
+        };
+        CHECK(variance[p].x == Approx(moments(red).second).epsilon(1e-6));
+        CHECK(of_layer[p].z == Approx(moments(albedo).second).epsilon(1e-6));
+        luminance_mean += moments(y).first / double(film.pixels());
+        noise += moments(y).second / double(film.pixels());
+    }
+    CHECK(film.relative_noise() == Approx(std::sqrt(noise) / luminance_mean).epsilon(1e-9));
+
+    CHECK(film_of(w, h, 1).beauty_variance_of_mean()[0] == Rgb(0.0f));
+    CHECK(std::isinf(film_of(w, h, 1).relative_noise()));
+    CHECK_THROWS_AS(film_of(w, h, 2).layer_variance_of_mean(0), std::logic_error);
+    Film black(w, h, layers);
+    black.add_pass(PassImage(w, h, 3)), black.add_pass(PassImage(w, h, 3));
+    CHECK(black.relative_noise() == 0.0);
+}
+
+TEST_CASE("Pixels that are not finite are counted and add zero", "[film]") {
+    Film film(3, 2, layers);
+    for (std::uint32_t i = 0; i < 4; ++i) {
+        PassImage image(3, 2, 3);
+        for (std::size_t l = 0; l < 3; ++l)
+            for (Rgb& p : image.layer(l)) p = Rgb(1.0f);
+        if (i == 1) image.at(0, 2, 1).y = std::numeric_limits<float>::quiet_NaN();
+        if (i == 1) image.at(2, 2, 1).x = infinity;  // the same pixel: counted once
+        if (i == 3) image.at(1, 0, 0).z = -infinity;
+        film.add_pass(image);
+    }
+    CHECK(film.non_finite() == 2);
+    CHECK(film.mean(0)[5] == Rgb(0.75f));
+    CHECK(film.mean(2)[5] == Rgb(0.75f));
+    CHECK(film.mean(0)[0] == Rgb(0.75f));
+    CHECK(film.beauty()[1] == Rgb(2.0f));
+}
+
+TEST_CASE("A post-process replaces a mean but not the statistics", "[film]") {
+    Film film = film_of(4, 4, 9);
+    const auto variance = film.beauty_variance_of_mean();
+    const auto bytes = film.serialize();
+    std::vector<Rgb> values(film.pixels());
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = Rgb(0.1f * float(i));
+    film.set_mean(2, values);
+    CHECK(film.mean(2) == values);
+    CHECK(film.beauty()[5] == film.mean(0)[5] + values[5]);
+    CHECK(film.beauty_variance_of_mean() == variance);
+    CHECK(film.serialize() == bytes);
+    film.add_pass(random_pass(4, 4, 9));
+    CHECK(film.mean(2) == film_of(4, 4, 10).mean(2));
+    CHECK_THROWS_AS(film.set_mean(0, std::span<const Rgb>(values).first(3)), std::invalid_argument);
+}
+
+TEST_CASE("A film survives serialisation to the same bits", "[film][checkpoint]") {
+    for (const bool all_squares : {false, true}) {
+        const Film whole = film_of(5, 4, 43, all_squares);
+        Film resumed(5, 4, layers, all_squares);
+        resumed.deserialize(film_of(5, 4, 21, all_squares).serialize());
+        REQUIRE(resumed.pass_count() == 21);
+        for (std::uint32_t i = 21; i < 43; ++i) resumed.add_pass(random_pass(5, 4, i));
+        CHECK(resumed.serialize() == whole.serialize());
+        CHECK(resumed.beauty() == whole.beauty());
+    }
+}
+
+TEST_CASE("Bytes that are damaged or of another film are refused, and leave the film as it was",
+          "[film][checkpoint]") {
+    const auto good = film_of(3, 3, 5).serialize();
+    Film film = film_of(3, 3, 2);
+    const auto before = film.serialize();
+    for (std::size_t i = 0; i < good.size(); ++i) {
+        auto bytes = good;
+        bytes[i] ^= std::byte(1u << (i % 8));
+        REQUIRE_THROWS_AS(film.deserialize(bytes), InputError);
+    }
+    for (std::size_t size = 0; size < good.size(); ++size)
+        REQUIRE_THROWS_AS(film.deserialize(std::span(good).first(size)), InputError);
+    auto longer = good;
+    longer.push_back(std::byte(0));
+    CHECK_THROWS_AS(film.deserialize(longer), InputError);
+    CHECK_THROWS_AS(film.deserialize(film_of(3, 4, 5).serialize()), InputError);
+    CHECK_THROWS_AS(film.deserialize(film_of(3, 3, 5, true).serialize()), InputError);
+    CHECK(film.serialize() == before);
+}
+
+TEST_CASE("Channels of a film's picture bear the names that other programs know", "[film][exr]") {
+    Film film(2, 1, {{"direct", "", false}, {"Depth", "", true}, {"N", "", true}, {"Albedo", "", true}});
+    film.add_pass(PassImage(2, 1, 4));
+    CHECK(film_image(film).names == std::vector<std::string>{"R", "G", "B", "direct.R", "direct.G",
+                                                             "direct.B", "Depth.Z", "N.X", "N.Y", "N.Z",
+                                                             "Albedo.R", "Albedo.G", "Albedo.B"});
+    film.add_pass(PassImage(2, 1, 4));
+    CHECK(film_image(film).find("Variance.G") != nullptr);
+}
