@@ -1,0 +1,137 @@
+// Texture "bitmap": a picture over the unit square, bilinear or nearest, repeated, mirrored or clamped.
+#include <algorithm>
+
+#include "core/materials/register_materials.h"
+#include "core/materials/textures.h"
+#include "core/materials/uv_transform.h"
+#include "core/scene/properties.h"
+
+namespace mote::core {
+namespace {
+
+/// The coordinate brought into [0, 1]. Coordinates that are not finite count as 0.
+float wrap_coordinate(double x, TextureWrap wrap) {
+    if (!std::isfinite(x)) return 0.0f;
+    if (wrap == TextureWrap::clamp) return float(std::clamp(x, 0.0, 1.0));
+    if (wrap == TextureWrap::repeat) return float(x - std::floor(x));
+    const double t = x - 2.0 * std::floor(0.5 * x);
+    return float(t > 1.0 ? 2.0 - t : t);
+}
+
+class BitmapTexture final : public Texture {
+  public:
+    BitmapTexture(Bitmap bitmap, const BitmapTextureParameters& parameters)
+        : bitmap_(std::move(bitmap)), parameters_(parameters), to_uv_(parameters.to_uv) {
+        const auto size = std::size_t(bitmap_.width) * std::size_t(bitmap_.height);
+        if (bitmap_.width < 1 || bitmap_.height < 1 || bitmap_.pixels.size() != size)
+            throw InputError("texture '" + printable(parameters_.name, 300) + "' holds no pixels");
+        summarise();
+    }
+
+    Rgb eval(const Vec2& uv) const override {
+        const glm::dvec2 p = to_uv_(uv);
+        const float u = wrap_coordinate(p.x, parameters_.wrap), v = wrap_coordinate(p.y, parameters_.wrap);
+        if (parameters_.filter == TextureFilter::nearest)
+            return texel(std::min(int(u * float(bitmap_.width)), bitmap_.width - 1),
+                         std::min(int(v * float(bitmap_.height)), bitmap_.height - 1));
+        const float x = u * float(bitmap_.width) - 0.5f, y = v * float(bitmap_.height) - 0.5f;
+        const float x0 = std::floor(x), y0 = std::floor(y), fx = x - x0, fy = y - y0;
+        const int i0 = neighbour(int(x0), bitmap_.width), i1 = neighbour(int(x0) + 1, bitmap_.width);
+        const int j0 = neighbour(int(y0), bitmap_.height), j1 = neighbour(int(y0) + 1, bitmap_.height);
+        return (1.0f - fy) * ((1.0f - fx) * texel(i0, j0) + fx * texel(i1, j0)) +
+               fy * ((1.0f - fx) * texel(i0, j1) + fx * texel(i1, j1));
+    }
+    Rgb mean() const override { return mean_; }
+    float maximum() const override { return maximum_; }
+    float minimum() const override { return minimum_; }
+    bool constant() const override { return constant_; }
+
+  private:
+    const Rgb& texel(int x, int y) const {
+        return bitmap_.pixels[std::size_t(y) * std::size_t(bitmap_.width) + std::size_t(x)];
+    }
+    /// Index -1 or n, one beyond the border: the other end when repeated, else the border itself (the mirror
+    /// image of the texel beyond is the border's own).
+    int neighbour(int i, int n) const {
+        if (parameters_.wrap == TextureWrap::repeat) return i < 0 ? i + n : (i >= n ? i - n : i);
+        return std::clamp(i, 0, n - 1);
+    }
+
+    void summarise() {
+        Vec3d sum(0.0);
+        for (std::size_t i = 0; i < bitmap_.pixels.size(); ++i) {
+            const Rgb& c = bitmap_.pixels[i];
+            if (!is_finite(c)) refuse(i);
+            sum += Vec3d(c);
+            maximum_ = std::max(maximum_, max_component(c));
+            minimum_ = std::min(minimum_, min_component(c));
+            constant_ = constant_ && c == bitmap_.pixels.front();
+        }
+        mean_ = Rgb(sum / double(bitmap_.pixels.size()));
+    }
+    [[noreturn]] void refuse(std::size_t first) const {
+        const auto count = std::count_if(bitmap_.pixels.begin(), bitmap_.pixels.end(),
+                                         [](const Rgb& c) { return !is_finite(c); });
+        const auto width = std::size_t(bitmap_.width);
+        throw InputError("texture '" + printable(parameters_.name, 300) + "' has " + std::to_string(count) +
+                         " pixels that are not finite, the first at (" + std::to_string(first % width) +
+                         ", " + std::to_string(first / width) + ")");
+    }
+
+    Bitmap bitmap_;
+    BitmapTextureParameters parameters_;
+    UvTransform to_uv_;
+    Rgb mean_{0.0f};
+    float maximum_ = -infinity, minimum_ = infinity;
+    bool constant_ = true;
+};
+
+std::shared_ptr<Object> create(const Properties& p) {
+    BitmapTextureParameters parameters;
+    parameters.filter = p.get_choice("filter_type", "bilinear", {"bilinear", "nearest"}) == "nearest"
+                            ? TextureFilter::nearest
+                            : TextureFilter::bilinear;
+    const std::string wrap = p.get_choice("wrap_mode", "repeat", {"repeat", "mirror", "clamp"});
+    parameters.wrap = wrap == "repeat"   ? TextureWrap::repeat
+                      : wrap == "mirror" ? TextureWrap::mirror
+                                         : TextureWrap::clamp;
+    parameters.to_uv = p.get_transform("to_uv");
+    for (const char* name : {"format", "accel"})
+        if (p.has(name)) p.warn(std::string("'") + name + "' is without effect: texels are stored as floats");
+    parameters.name = p.get_string("filename", "");
+    const std::string path = p.require_file("filename");
+    try {
+        return make_bitmap_texture(read_bitmap(path, p.get_bool("raw", false)), parameters);
+    } catch (const InputError& e) {
+        if (e.where().line > 0) throw;
+        throw InputError(e.what(), p.where_of("filename"));
+    }
+}
+
+}  // namespace
+
+std::shared_ptr<Texture> make_bitmap_texture(Bitmap bitmap, const BitmapTextureParameters& parameters) {
+    return std::make_shared<BitmapTexture>(std::move(bitmap), parameters);
+}
+
+void register_bitmap_texture(Registry& registry) {
+    Manual manual{
+        Category::texture,
+        "bitmap",
+        "A picture file over the unit square of uv. The top row of the picture lies at v = 0 (the OBJ reader "
+        "turns v over, as in Mitsuba).",
+        {{"filename", "string", "", "the picture: PNG, JPEG, EXR, HDR, TGA, ..."},
+         {"filter_type", "string", "bilinear", "bilinear or nearest"},
+         {"wrap_mode", "string", "repeat", "repeat, mirror or clamp: what lies outside the unit square"},
+         {"raw", "boolean", "false", "take 8-bit values as linear instead of sRGB"},
+         {"to_uv", "transform", "identity", "applied to the uv coordinates first"},
+         {"format", "string", "auto", "known to Mitsuba, without effect here"},
+         {"accel", "boolean", "true", "known to Mitsuba, without effect here"}},
+        R"(<texture type="bitmap" name="reflectance">
+    <string name="filename" value="wood.png"/>
+    <string name="wrap_mode" value="mirror"/>
+</texture>)"};
+    registry.add(std::move(manual), create);
+}
+
+}  // namespace mote::core

@@ -1,0 +1,62 @@
+// Texture "checkerboard": two alternating colours.
+#include <algorithm>
+
+#include "core/materials/register_materials.h"
+#include "core/materials/textures.h"
+#include "core/materials/uv_transform.h"
+#include "core/scene/properties.h"
+
+namespace mote::core {
+namespace {
+
+class CheckerboardTexture final : public Texture {
+  public:
+    CheckerboardTexture(std::shared_ptr<Texture> color0, std::shared_ptr<Texture> color1,
+                        const Transform& to_uv)
+        : color0_(std::move(color0)), color1_(std::move(color1)), to_uv_(to_uv) {}
+
+    Rgb eval(const Vec2& uv) const override {
+        const glm::dvec2 p = to_uv_(uv);
+        const bool u = p.x - std::floor(p.x) > 0.5, v = p.y - std::floor(p.y) > 0.5;
+        return (u == v ? color0_ : color1_)->eval(uv);
+    }
+    /// Of a whole number of squares.
+    Rgb mean() const override { return 0.5f * (color0_->mean() + color1_->mean()); }
+    float maximum() const override { return std::max(color0_->maximum(), color1_->maximum()); }
+    float minimum() const override { return std::min(color0_->minimum(), color1_->minimum()); }
+    bool constant() const override {
+        return color0_->constant() && color1_->constant() && color0_->mean() == color1_->mean();
+    }
+
+  private:
+    std::shared_ptr<Texture> color0_, color1_;
+    UvTransform to_uv_;
+};
+
+}  // namespace
+
+std::shared_ptr<Texture> make_checkerboard_texture(std::shared_ptr<Texture> color0,
+                                                   std::shared_ptr<Texture> color1, const Transform& to_uv) {
+    return std::make_shared<CheckerboardTexture>(std::move(color0), std::move(color1), to_uv);
+}
+
+void register_checkerboard_texture(Registry& registry) {
+    Manual manual{Category::texture,
+                  "checkerboard",
+                  "Squares of two alternating colours, two by two in every unit of uv.",
+                  {{"color0", "texture", "0.4", "colour of the square at the origin"},
+                   {"color1", "texture", "0.2", "colour of its neighbours"},
+                   {"to_uv", "transform", "identity", "applied to the uv coordinates first"}},
+                  R"(<texture type="checkerboard" name="reflectance">
+    <rgb name="color0" value="0.7, 0.7, 0.7"/>
+    <rgb name="color1" value="0.1, 0.1, 0.2"/>
+    <transform name="to_uv"><scale x="10" y="10"/></transform>
+</texture>)"};
+    registry.add(std::move(manual), [](const Properties& p) -> std::shared_ptr<Object> {
+        return make_checkerboard_texture(texture_or_constant(p, "color0", Rgb(0.4f)),
+                                         texture_or_constant(p, "color1", Rgb(0.2f)),
+                                         p.get_transform("to_uv"));
+    });
+}
+
+}  // namespace mote::core

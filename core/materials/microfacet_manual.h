@@ -1,0 +1,11 @@
+// The rows that every rough BSDF shares in its manual page.
+#pragma once
+
+#include "core/scene/registry.h"
+
+namespace mote::core {
+
+/// Adds distribution, alpha, sample_visible and, where allowed, alpha_u and alpha_v.
+void append_microfacet_parameters(Manual& manual, bool anisotropic);
+
+}  // namespace mote::core

@@ -1,0 +1,22 @@
+// The plugins of this folder: each registers its manual page and factory. Called by register_materials().
+#pragma once
+
+#include "core/scene/registry.h"
+
+namespace mote::core {
+
+void register_diffuse(Registry& registry);
+void register_conductor(Registry& registry);
+void register_rough_conductor(Registry& registry);
+void register_dielectric(Registry& registry);
+void register_thin_dielectric(Registry& registry);
+void register_rough_dielectric(Registry& registry);
+void register_plastic(Registry& registry);
+void register_rough_plastic(Registry& registry);
+void register_phong(Registry& registry);
+void register_null(Registry& registry);
+void register_twosided(Registry& registry);
+void register_bitmap_texture(Registry& registry);
+void register_checkerboard_texture(Registry& registry);
+
+}  // namespace mote::core

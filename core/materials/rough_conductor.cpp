@@ -1,0 +1,89 @@
+// BSDF "roughconductor": reflection by a metallic microsurface (Walter 2007), single scattering.
+#include "core/materials/bsdfs.h"
+#include "core/materials/fresnel.h"
+#include "core/materials/microfacet_manual.h"
+#include "core/materials/register_materials.h"
+#include "core/materials/texture_slot.h"
+#include "core/materials/textures.h"
+#include "core/scene/properties.h"
+
+namespace mote::core {
+namespace {
+
+class RoughConductor final : public Bsdf {
+  public:
+    RoughConductor(const ConductorParameters& p, const Microfacet& microfacet)
+        : index_(p.index), microfacet_(microfacet), specular_(p.specular_reflectance) {}
+
+    BsdfTraits traits() const override { return {.smooth = true, .textured = specular_.textured()}; }
+
+    /// Walter 2007, Eq. 20, with G = G1(wo) G1(wi).
+    Rgb eval(const BsdfPoint& p, const Vec3& wo, const Vec3& wi, TransportMode) const override {
+        if (!(wo.z > 0.0f && wi.z > 0.0f)) return Rgb(0.0f);
+        const Vec3 m = half_vector(wo, wi);
+        const float d = microfacet_.density(m);
+        if (d == 0.0f) return Rgb(0.0f);
+        const float value = d / (4.0f * microfacet_.projected_area(wo) * microfacet_.projected_area(wi));
+        return specular_.eval(p.uv) * fresnel(wo, m) * value;
+    }
+    float pdf_solid_angle(const BsdfPoint&, const Vec3& wo, const Vec3& wi, TransportMode) const override {
+        if (!(wo.z > 0.0f && wi.z > 0.0f)) return 0.0f;
+        return microfacet_.density(half_vector(wo, wi)) / (4.0f * microfacet_.projected_area(wo));
+    }
+    std::optional<BsdfSample> sample(const BsdfPoint& p, const Vec3& wo, float, const Vec2& u,
+                                     TransportMode mode) const override {
+        if (!(wo.z > 0.0f)) return std::nullopt;
+        const Vec3 m = microfacet_.sample_visible(wo, u);
+        const Vec3 wi = 2.0f * glm::dot(wo, m) * m - wo;
+        if (!(wi.z > 0.0f)) return std::nullopt;  // would meet the surface again: lost
+        const float pdf = pdf_solid_angle(p, wo, wi, mode);
+        const Rgb weight = specular_.eval(p.uv) * fresnel(wo, m) * microfacet_.masking(wi);
+        if (!(pdf > 0.0f) || is_black(weight)) return std::nullopt;
+        return BsdfSample{.wi = wi, .weight = weight, .pdf_solid_angle = pdf};
+    }
+    /// Without the loss between facets.
+    Rgb albedo(const BsdfPoint& p, const Vec3& wo) const override {
+        return wo.z > 0.0f ? specular_.eval(p.uv) * fresnel(wo, Vec3(0, 0, 1)) : Rgb(0.0f);
+    }
+
+  private:
+    Rgb fresnel(const Vec3& wo, const Vec3& m) const {
+        return fresnel_conductor(glm::clamp(glm::dot(wo, m), 0.0f, 1.0f), index_.eta, index_.k);
+    }
+
+    ComplexIndex index_;
+    Microfacet microfacet_;
+    TextureSlot specular_;
+};
+
+}  // namespace
+
+std::shared_ptr<Bsdf> make_rough_conductor(const ConductorParameters& parameters,
+                                           const Microfacet& microfacet) {
+    return std::make_shared<RoughConductor>(parameters, microfacet);
+}
+
+void register_rough_conductor(Registry& registry) {
+    Manual manual{Category::bsdf,
+                  "roughconductor",
+                  "A rough metal: mirror-like facets whose slopes spread the reflection.",
+                  {{"material", "string", "none", "name of a metal (Cu, Au, Ag, Al, ...); none: a mirror"},
+                   {"eta", "rgb", "0", "real part of the index of refraction, instead of material"},
+                   {"k", "rgb", "1", "imaginary part (absorption)"},
+                   {"ext_eta", "float", "vacuum", "index of the outside, a number or a name; divides eta, k"},
+                   {"specular_reflectance", "texture", "1", "factor on the reflection, 0 to 1"}},
+                  R"(<bsdf type="roughconductor">
+    <string name="material" value="Al"/>
+    <string name="distribution" value="ggx"/>
+    <float name="alpha_u" value="0.05"/>
+    <float name="alpha_v" value="0.3"/>
+</bsdf>)"};
+    append_microfacet_parameters(manual, true);
+    registry.add(std::move(manual), [](const Properties& p) -> std::shared_ptr<Object> {
+        return make_rough_conductor(
+            {conductor_parameters(p), reflectance_texture(p, "specular_reflectance", Rgb(1.0f))},
+            microfacet_parameters(p));
+    });
+}
+
+}  // namespace mote::core

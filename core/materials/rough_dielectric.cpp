@@ -1,0 +1,152 @@
+// BSDF "roughdielectric": reflection and refraction by a transparent microsurface (Walter 2007), single
+// scattering.
+//
+// With n_o, n_i the indices on the sides of wo and wi, and h = n_o wo + n_i wi, the refracting facet has the
+// normal m = +-h/|h|, and the Jacobian of Walter's Eq. 17 is n_i^2 |wi.m| / |h|^2. Computing |h| in double
+// precision avoids the cancellation in (n_o wo.m + n_i wi.m)^2 when the indices are close.
+#include "core/materials/bsdfs.h"
+#include "core/materials/fresnel.h"
+#include "core/materials/microfacet_manual.h"
+#include "core/materials/register_materials.h"
+#include "core/materials/texture_slot.h"
+#include "core/materials/textures.h"
+#include "core/scene/error.h"
+#include "core/scene/properties.h"
+
+namespace mote::core {
+namespace {
+
+class RoughDielectric final : public Bsdf {
+  public:
+    RoughDielectric(const DielectricParameters& p, const Microfacet& microfacet)
+        : eta_(p.int_ior / p.ext_ior),
+          microfacet_(microfacet),
+          reflectance_(p.specular_reflectance),
+          transmittance_(p.specular_transmittance) {
+        if (!(std::fabs(eta_ - 1.0f) > 1e-4f))
+            throw InputError("a rough dielectric needs two different indices of refraction");
+    }
+
+    BsdfTraits traits() const override {
+        return {.smooth = true,
+                .transmissive = true,
+                .textured = reflectance_.textured() || transmittance_.textured()};
+    }
+
+    Rgb eval(const BsdfPoint& p, const Vec3& wo, const Vec3& wi, TransportMode mode) const override {
+        const Facet f = facet(wo, wi);
+        if (f.density == 0.0f) return Rgb(0.0f);
+        const float area = microfacet_.projected_area(wo) * microfacet_.projected_area(wi);
+        // Walter 2007, Eqs. 20 and 21 with G / (cos cos) = 1 / area; Eq. 21 is for radiance.
+        if (!f.transmitted) return reflectance_.eval(p.uv) * (f.reflectance * f.density / (4.0f * area));
+        const float scale = mode == TransportMode::radiance ? 1.0f / sqr(f.eta) : 1.0f;
+        return transmittance_.eval(p.uv) *
+               (scale * (1.0f - f.reflectance) * f.density * f.jacobian * f.cos_o / area);
+    }
+
+    float pdf_solid_angle(const BsdfPoint&, const Vec3& wo, const Vec3& wi, TransportMode) const override {
+        const Facet f = facet(wo, wi);
+        if (f.density == 0.0f) return 0.0f;
+        const float area = microfacet_.projected_area(wo);
+        if (!f.transmitted) return f.reflectance * f.density / (4.0f * area);
+        return (1.0f - f.reflectance) * f.density * f.jacobian * f.cos_o / area;
+    }
+
+    std::optional<BsdfSample> sample(const BsdfPoint& p, const Vec3& wo, float u_lobe, const Vec2& u,
+                                     TransportMode mode) const override {
+        if (wo.z == 0.0f) return std::nullopt;
+        const float side = wo.z > 0.0f ? 1.0f : -1.0f, eta = side > 0.0f ? eta_ : 1.0f / eta_;
+        const Vec3 m = side * microfacet_.sample_visible(side * wo, u);  // on wo's side
+        const float cos_o = std::fmin(glm::dot(wo, m), 1.0f);
+        if (!(cos_o > 0.0f)) return std::nullopt;
+        const auto fresnel = fresnel_dielectric(cos_o, eta);
+        BsdfSample s{.wi = 2.0f * cos_o * m - wo, .weight = reflectance_.eval(p.uv), .pdf_solid_angle = 0.0f};
+        if (u_lobe >= fresnel.reflectance) {
+            s.wi = glm::normalize(refract(wo, m, cos_o, fresnel.cos_t, eta));
+            s.weight = transmittance_.eval(p.uv) * (mode == TransportMode::radiance ? 1.0f / sqr(eta) : 1.0f);
+            s.transmitted = true, s.eta = eta;
+        }
+        if ((s.wi.z * side > 0.0f) == s.transmitted || s.wi.z == 0.0f) return std::nullopt;  // masked: lost
+        s.weight *= microfacet_.masking(s.wi);
+        s.pdf_solid_angle = pdf_solid_angle(p, wo, s.wi, mode);
+        if (!(s.pdf_solid_angle > 0.0f) || is_black(s.weight)) return std::nullopt;
+        return s;
+    }
+
+    /// Of power, for the smooth surface.
+    Rgb albedo(const BsdfPoint& p, const Vec3& wo) const override {
+        const float eta = wo.z > 0.0f ? eta_ : 1.0f / eta_;
+        const float f = fresnel_dielectric(std::fmin(std::fabs(wo.z), 1.0f), eta).reflectance;
+        return f * reflectance_.eval(p.uv) + (1.0f - f) * transmittance_.eval(p.uv);
+    }
+
+  private:
+    /// The facet that takes light from wi to wo.
+    struct Facet {
+        float density = 0.0f;  ///< D(m); 0 when there is no such facet
+        float cos_o = 0.0f;    ///< dot(wo, m), m on wo's side
+        float reflectance = 0.0f;
+        float jacobian = 0.0f;  ///< solid angle of m over that of wi, refraction only
+        float eta = 1.0f;       ///< wi's side over wo's side
+        bool transmitted = false;
+    };
+
+    Facet facet(const Vec3& wo, const Vec3& wi) const {
+        Facet f;
+        if (wo.z == 0.0f || wi.z == 0.0f) return f;
+        f.transmitted = (wo.z > 0.0f) != (wi.z > 0.0f);
+        const float eta = wo.z > 0.0f ? eta_ : 1.0f / eta_;
+        if (f.transmitted) f.eta = eta;
+        const Vec3d h = Vec3d(wo) + double(f.eta) * Vec3d(wi);
+        const double length = glm::length(h);
+        if (!(length > 0.0)) return f;
+        Vec3d m = h / length;
+        if ((m.z > 0.0) != (wo.z > 0.0f)) m = -m;
+        const double cos_o = glm::dot(Vec3d(wo), m), cos_i = glm::dot(Vec3d(wi), m);
+        // Both directions must see the facet from the side on which they see the surface.
+        if (!(cos_o > 0.0) || !(f.transmitted ? cos_i < 0.0 : cos_i > 0.0)) return f;
+        f.cos_o = float(cos_o);
+        f.reflectance = fresnel_dielectric(std::fmin(f.cos_o, 1.0f), eta).reflectance;
+        f.jacobian = float(sqr_double(double(f.eta)) * -cos_i / (length * length));
+        f.density = microfacet_.density(wo.z > 0.0f ? Vec3(m) : Vec3(-m));
+        return f;
+    }
+    static double sqr_double(double x) { return x * x; }
+
+    float eta_;  ///< inside over outside
+    Microfacet microfacet_;
+    TextureSlot reflectance_, transmittance_;
+};
+
+}  // namespace
+
+std::shared_ptr<Bsdf> make_rough_dielectric(const DielectricParameters& parameters,
+                                            const Microfacet& microfacet) {
+    return std::make_shared<RoughDielectric>(parameters, microfacet);
+}
+
+void register_rough_dielectric(Registry& registry) {
+    Manual manual{
+        Category::bsdf,
+        "roughdielectric",
+        "A rough boundary between transparent materials, such as ground glass.",
+        {{"int_ior", "float", "bk7", "index of refraction inside (against the normal): number or name"},
+         {"ext_ior", "float", "air", "index of refraction outside: number or name"},
+         {"specular_reflectance", "texture", "1", "factor on reflected light, 0 to 1"},
+         {"specular_transmittance", "texture", "1", "factor on transmitted light, 0 to 1"}},
+        R"(<bsdf type="roughdielectric">
+    <string name="distribution" value="beckmann"/>
+    <float name="alpha" value="0.2"/>
+    <string name="int_ior" value="bk7"/>
+    <string name="ext_ior" value="air"/>
+</bsdf>)"};
+    append_microfacet_parameters(manual, true);
+    registry.add(std::move(manual), [](const Properties& p) -> std::shared_ptr<Object> {
+        const DielectricParameters parameters = dielectric_parameters(p);
+        if (!(std::fabs(parameters.int_ior / parameters.ext_ior - 1.0f) > 1e-4f))
+            throw InputError("'int_ior' and 'ext_ior' of a roughdielectric must differ", p.where);
+        return make_rough_dielectric(parameters, microfacet_parameters(p));
+    });
+}
+
+}  // namespace mote::core

@@ -1,0 +1,130 @@
+// BSDF "roughplastic": a diffuse base under a rough dielectric coating.
+//
+// As "plastic", with transmittances of the rough coating from tables, and the coating's own reflection a
+// glossy lobe (Walter 2007).
+#include <algorithm>
+
+#include "core/materials/bsdfs.h"
+#include "core/materials/fresnel.h"
+#include "core/materials/microfacet_manual.h"
+#include "core/materials/register_materials.h"
+#include "core/materials/rough_transmittance.h"
+#include "core/materials/texture_slot.h"
+#include "core/materials/textures.h"
+#include "core/math/warp.h"
+#include "core/scene/properties.h"
+
+namespace mote::core {
+namespace {
+
+class RoughPlastic final : public Bsdf {
+  public:
+    RoughPlastic(const PlasticParameters& p, const Microfacet& microfacet)
+        : eta_(p.int_ior / p.ext_ior),
+          inv_eta2_(1.0f / sqr(eta_)),
+          microfacet_(microfacet.kind(), microfacet.alpha_u()),
+          transmittance_(microfacet_, eta_),
+          nonlinear_(p.nonlinear),
+          diffuse_(p.diffuse_reflectance, Rgb(0.5f)),
+          specular_(p.specular_reflectance) {
+        // What single scattering loses between facets counts as transmitted here. From inside a medium of
+        // smaller index that could add up to more light than came in: the bound excludes it.
+        internal_ =
+            std::min(rough_internal_reflectance(microfacet_, eta_), 1.0f - inv_eta2_ * transmittance_.mean());
+        const float d = average(diffuse_.mean()), s = average(specular_.mean());
+        specular_weight_ = d + s > 0.0f ? s / (d + s) : 0.5f;
+    }
+
+    BsdfTraits traits() const override {
+        return {.smooth = true, .textured = diffuse_.textured() || specular_.textured()};
+    }
+
+    Rgb eval(const BsdfPoint& p, const Vec3& wo, const Vec3& wi, TransportMode) const override {
+        if (!(wo.z > 0.0f && wi.z > 0.0f)) return Rgb(0.0f);
+        Rgb result = base(p) * (transmittance_(wo.z) * transmittance_(wi.z) * inv_eta2_ * inv_pi);
+        const Vec3 m = half_vector(wo, wi);
+        if (const float d = microfacet_.density(m); d > 0.0f) {
+            const float f = fresnel_dielectric(std::fmin(glm::dot(wo, m), 1.0f), eta_).reflectance;
+            result += specular_.eval(p.uv) *
+                      (f * d / (4.0f * microfacet_.projected_area(wo) * microfacet_.projected_area(wi)));
+        }
+        return result;
+    }
+    float pdf_solid_angle(const BsdfPoint&, const Vec3& wo, const Vec3& wi, TransportMode) const override {
+        if (!(wo.z > 0.0f && wi.z > 0.0f)) return 0.0f;
+        const float specular = specular_probability(wo);
+        const float d = microfacet_.density(half_vector(wo, wi));
+        return specular * d / (4.0f * microfacet_.projected_area(wo)) +
+               (1.0f - specular) * cosine_hemisphere_pdf(wi);
+    }
+    std::optional<BsdfSample> sample(const BsdfPoint& p, const Vec3& wo, float u_lobe, const Vec2& u,
+                                     TransportMode mode) const override {
+        if (!(wo.z > 0.0f)) return std::nullopt;
+        Vec3 wi;
+        if (u_lobe < specular_probability(wo)) {
+            const Vec3 m = microfacet_.sample_visible(wo, u);
+            wi = 2.0f * glm::dot(wo, m) * m - wo;
+        } else {
+            wi = square_to_cosine_hemisphere(u);
+        }
+        const float pdf = pdf_solid_angle(p, wo, wi, mode);
+        if (!(pdf > 0.0f)) return std::nullopt;
+        const Rgb weight = eval(p, wo, wi, mode) * (wi.z / pdf);
+        if (is_black(weight)) return std::nullopt;
+        return BsdfSample{.wi = wi, .weight = weight, .pdf_solid_angle = pdf};
+    }
+    Rgb albedo(const BsdfPoint& p, const Vec3& wo) const override {
+        if (!(wo.z > 0.0f)) return Rgb(0.0f);
+        const float t = transmittance_(wo.z);
+        return (1.0f - t) * specular_.eval(p.uv) + base(p) * (t * inv_eta2_ * transmittance_.mean());
+    }
+
+  private:
+    /// The base with all orders of internal reflection.
+    Rgb base(const BsdfPoint& p) const {
+        const Rgb d = diffuse_.eval(p.uv);
+        return nonlinear_ ? d / (Rgb(1.0f) - d * internal_) : d / (1.0f - internal_);
+    }
+    float specular_probability(const Vec3& wo) const {
+        const float t = transmittance_(wo.z);
+        const float s = (1.0f - t) * specular_weight_, d = t * (1.0f - specular_weight_);
+        return s + d > 0.0f ? s / (s + d) : 0.5f;
+    }
+
+    float eta_, inv_eta2_;
+    Microfacet microfacet_;
+    RoughTransmittance transmittance_;
+    float internal_ = 0.0f, specular_weight_ = 0.5f;
+    bool nonlinear_;
+    TextureSlot diffuse_, specular_;
+};
+
+}  // namespace
+
+std::shared_ptr<Bsdf> make_rough_plastic(const PlasticParameters& parameters, const Microfacet& microfacet) {
+    return std::make_shared<RoughPlastic>(parameters, microfacet);
+}
+
+void register_rough_plastic(Registry& registry) {
+    Manual manual{
+        Category::bsdf,
+        "roughplastic",
+        "A diffuse base under a rough clear coating.",
+        {{"int_ior", "float", "polypropylene", "index of refraction of the coating: number or name"},
+         {"ext_ior", "float", "air", "index of refraction outside: number or name"},
+         {"diffuse_reflectance", "texture", "0.5", "reflectance of the base, 0 to 1"},
+         {"specular_reflectance", "texture", "1", "factor on the coating's reflection, 0 to 1"},
+         {"nonlinear", "boolean", "false", "let multiple scattering inside shift the colour"}},
+        R"(<bsdf type="roughplastic">
+    <string name="distribution" value="beckmann"/>
+    <float name="int_ior" value="1.61"/>
+    <rgb name="diffuse_reflectance" value="0.07, 0.09, 0.13"/>
+    <float name="alpha" value="0.3"/>
+</bsdf>)"};
+    append_microfacet_parameters(manual, false);
+    registry.add(std::move(manual), [](const Properties& p) -> std::shared_ptr<Object> {
+        return make_rough_plastic(plastic_parameters(p), microfacet_parameters(p, false));
+    });
+}
+
+}  // namespace mote::core

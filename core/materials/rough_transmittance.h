@@ -1,0 +1,35 @@
+// How much light a rough dielectric boundary reflects and lets pass, tabulated once per material.
+#pragma once
+
+#include <array>
+
+#include "core/materials/microfacet.h"
+
+namespace mote::core {
+
+/// Share of the power arriving at angle acos(mu) that leaves by a single reflection at a rough boundary of
+/// relative index eta (far side over near side): the integral of F(wo.m) G1(wi) over the visible normals.
+double rough_reflectance(const Microfacet& microfacet, float eta, float mu);
+
+/// 1 - rough_reflectance() against mu, interpolated linearly.
+class RoughTransmittance {
+  public:
+    RoughTransmittance(const Microfacet& microfacet, float eta);
+    float operator()(float mu) const {
+        const float x = std::fmin(std::fmax(mu, 0.0f), 1.0f) * float(size - 1);
+        const auto i = std::size_t(std::fmin(x, float(size - 2)));
+        return lerp(table_[i], table_[i + 1], x - float(i));
+    }
+    /// The integral of T(mu) 2 mu over [0, 1]: under uniform illumination. Exact for the interpolant.
+    float mean() const { return mean_; }
+
+  private:
+    static constexpr std::size_t size = 64;
+    std::array<float, size> table_{};
+    float mean_ = 0.0f;
+};
+
+/// Mean reflectance of the boundary seen from inside, under uniform illumination.
+float rough_internal_reflectance(const Microfacet& microfacet, float eta);
+
+}  // namespace mote::core

@@ -1,0 +1,43 @@
+// Factories of textures, for the scene loader, for code that builds scenes itself, and for tests.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "core/image/image_file.h"
+#include "core/materials/texture.h"
+#include "core/math/transform.h"
+
+namespace mote::core {
+
+class Properties;
+
+std::shared_ptr<Texture> make_constant_texture(const Rgb& value);
+
+/// Squares of half a unit of the transformed uv; color0 holds at the origin.
+std::shared_ptr<Texture> make_checkerboard_texture(std::shared_ptr<Texture> color0,
+                                                   std::shared_ptr<Texture> color1,
+                                                   const Transform& to_uv = {});
+
+enum class TextureFilter : std::uint8_t { bilinear, nearest };
+enum class TextureWrap : std::uint8_t { repeat, mirror, clamp };
+
+struct BitmapTextureParameters {
+    TextureFilter filter = TextureFilter::bilinear;
+    TextureWrap wrap = TextureWrap::repeat;
+    Transform to_uv;
+    std::string name = "bitmap";  ///< used in error messages
+};
+/// The first row of the bitmap lies at v = 0, texel centres at half-integers (Mitsuba 3; its OBJ reader turns
+/// v over). Throws InputError when the bitmap is empty or holds values that are not finite.
+std::shared_ptr<Texture> make_bitmap_texture(Bitmap bitmap, const BitmapTextureParameters& parameters = {});
+
+/// The nested texture called `name`, or a constant one from an rgb or a float, or from the default.
+std::shared_ptr<Texture> texture_or_constant(const Properties& properties, const std::string& name,
+                                             const Rgb& default_value);
+/// The same, and throws InputError (file, line) where a value lies outside [0, 1].
+std::shared_ptr<Texture> reflectance_texture(const Properties& properties, const std::string& name,
+                                             const Rgb& default_value);
+
+}  // namespace mote::core

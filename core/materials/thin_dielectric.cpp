@@ -1,0 +1,79 @@
+// BSDF "thindielectric": a thin pane. Light passes straight on; reflections between its two faces are summed.
+#include "core/materials/bsdfs.h"
+#include "core/materials/fresnel.h"
+#include "core/materials/register_materials.h"
+#include "core/materials/texture_slot.h"
+#include "core/materials/textures.h"
+#include "core/scene/properties.h"
+
+namespace mote::core {
+namespace {
+
+class ThinDielectric final : public Bsdf {
+  public:
+    explicit ThinDielectric(const DielectricParameters& p)
+        : eta_(p.int_ior / p.ext_ior),
+          reflectance_(p.specular_reflectance),
+          transmittance_(p.specular_transmittance) {}
+
+    BsdfTraits traits() const override {
+        return {.delta = true,
+                .transmissive = true,
+                .textured = reflectance_.textured() || transmittance_.textured()};
+    }
+    Rgb eval(const BsdfPoint&, const Vec3&, const Vec3&, TransportMode) const override { return Rgb(0.0f); }
+    float pdf_solid_angle(const BsdfPoint&, const Vec3&, const Vec3&, TransportMode) const override {
+        return 0.0f;
+    }
+    std::optional<BsdfSample> sample(const BsdfPoint& p, const Vec3& wo, float u_lobe, const Vec2&,
+                                     TransportMode) const override {
+        if (wo.z == 0.0f) return std::nullopt;
+        BsdfSample s{.wi = reflect_local(wo), .weight = reflectance_.eval(p.uv), .pdf_solid_angle = 0.0f};
+        s.delta = true;
+        if (u_lobe >= reflected_share(wo)) {
+            s.wi = -wo;
+            s.weight = transmittance_.eval(p.uv);
+            s.transmitted = true;
+        }
+        if (is_black(s.weight)) return std::nullopt;
+        return s;
+    }
+    Rgb albedo(const BsdfPoint& p, const Vec3& wo) const override {
+        const float r = reflected_share(wo);
+        return r * reflectance_.eval(p.uv) + (1.0f - r) * transmittance_.eval(p.uv);
+    }
+
+  private:
+    /// R + T R T + T R^3 T + ... = 2 R / (1 + R) with T = 1 - R: both faces and all orders.
+    float reflected_share(const Vec3& wo) const {
+        const float r = fresnel_dielectric(std::fmin(std::fabs(wo.z), 1.0f), eta_).reflectance;
+        return 2.0f * r / (1.0f + r);
+    }
+
+    float eta_;
+    TextureSlot reflectance_, transmittance_;
+};
+
+}  // namespace
+
+std::shared_ptr<Bsdf> make_thin_dielectric(const DielectricParameters& parameters) {
+    return std::make_shared<ThinDielectric>(parameters);
+}
+
+void register_thin_dielectric(Registry& registry) {
+    Manual manual{Category::bsdf,
+                  "thindielectric",
+                  "A thin pane of glass: reflects like a mirror, or lets light pass straight on.",
+                  {{"int_ior", "float", "bk7", "index of refraction of the pane: number or name"},
+                   {"ext_ior", "float", "air", "index of refraction around it: number or name"},
+                   {"specular_reflectance", "texture", "1", "factor on reflected light, 0 to 1"},
+                   {"specular_transmittance", "texture", "1", "factor on transmitted light, 0 to 1"}},
+                  R"(<bsdf type="thindielectric">
+    <string name="int_ior" value="bk7"/>
+</bsdf>)"};
+    registry.add(std::move(manual), [](const Properties& p) -> std::shared_ptr<Object> {
+        return make_thin_dielectric(dielectric_parameters(p));
+    });
+}
+
+}  // namespace mote::core

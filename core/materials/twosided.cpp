@@ -1,0 +1,92 @@
+// BSDF "twosided": makes opaque BSDFs scatter on both sides of a surface.
+#include <vector>
+
+#include "core/materials/bsdfs.h"
+#include "core/materials/register_materials.h"
+#include "core/scene/error.h"
+#include "core/scene/properties.h"
+
+namespace mote::core {
+namespace {
+
+/// Seen from behind, the frame is turned over by mirroring z, as Mitsuba does: textures and anisotropy keep
+/// their orientation on the surface.
+Vec3 mirrored(const Vec3& w) { return {w.x, w.y, -w.z}; }
+
+class TwoSided final : public Bsdf {
+  public:
+    TwoSided(BsdfPtr front, BsdfPtr back) : front_(std::move(front)), back_(back ? std::move(back) : front_) {
+        for (const BsdfPtr& side : {front_, back_})
+            if (side->traits().transmissive)
+                throw InputError("a twosided BSDF cannot hold one that transmits light");
+    }
+
+    BsdfTraits traits() const override {
+        const BsdfTraits f = front_->traits(), b = back_->traits();
+        return {.smooth = f.smooth || b.smooth,
+                .delta = f.delta || b.delta,
+                .diffuse = f.diffuse && b.diffuse,
+                .textured = f.textured || b.textured};
+    }
+    Rgb eval(const BsdfPoint& p, const Vec3& wo, const Vec3& wi, TransportMode mode) const override {
+        if (wo.z > 0.0f) return front_->eval(p, wo, wi, mode);
+        return back_->eval(p, mirrored(wo), mirrored(wi), mode);
+    }
+    float pdf_solid_angle(const BsdfPoint& p, const Vec3& wo, const Vec3& wi,
+                          TransportMode mode) const override {
+        if (wo.z > 0.0f) return front_->pdf_solid_angle(p, wo, wi, mode);
+        return back_->pdf_solid_angle(p, mirrored(wo), mirrored(wi), mode);
+    }
+    std::optional<BsdfSample> sample(const BsdfPoint& p, const Vec3& wo, float u_lobe, const Vec2& u,
+                                     TransportMode mode) const override {
+        if (wo.z > 0.0f) return front_->sample(p, wo, u_lobe, u, mode);
+        auto s = back_->sample(p, mirrored(wo), u_lobe, u, mode);
+        if (s) s->wi = mirrored(s->wi);
+        return s;
+    }
+    std::optional<Rgb> diffuse_reflectance(const BsdfPoint& p, const Vec3& wo) const override {
+        return wo.z > 0.0f ? front_->diffuse_reflectance(p, wo) : back_->diffuse_reflectance(p, mirrored(wo));
+    }
+    Rgb albedo(const BsdfPoint& p, const Vec3& wo) const override {
+        return wo.z > 0.0f ? front_->albedo(p, wo) : back_->albedo(p, mirrored(wo));
+    }
+
+  private:
+    BsdfPtr front_, back_;
+};
+
+std::shared_ptr<Object> create(const Properties& p) {
+    std::vector<BsdfPtr> sides;
+    for (const Properties::Child& c : p.children) {
+        const auto bsdf = std::dynamic_pointer_cast<const Bsdf>(c.object);
+        if (!bsdf) throw InputError("twosided holds BSDFs only", c.where);
+        if (sides.size() == 2) throw InputError("twosided holds one BSDF or two, not more", c.where);
+        if (bsdf->traits().transmissive)
+            throw InputError("a twosided BSDF cannot hold one that transmits light", c.where);
+        sides.push_back(bsdf);
+    }
+    if (sides.empty()) throw InputError("twosided needs a nested BSDF", p.where);
+    return make_twosided(sides.front(), sides.size() == 2 ? sides.back() : nullptr);
+}
+
+}  // namespace
+
+std::shared_ptr<Bsdf> make_twosided(BsdfPtr front, BsdfPtr back) {
+    return std::make_shared<TwoSided>(std::move(front), std::move(back));
+}
+
+void register_twosided(Registry& registry) {
+    Manual manual{Category::bsdf,
+                  "twosided",
+                  "Lets opaque BSDFs scatter on both sides: one for both, or one for each.",
+                  {{"bsdf", "bsdf", "", "the BSDF of the front, or of both sides (any name)"},
+                   {"bsdf2", "bsdf", "the first", "the BSDF of the back (any name)"}},
+                  R"(<bsdf type="twosided">
+    <bsdf type="diffuse">
+        <rgb name="reflectance" value="0.4"/>
+    </bsdf>
+</bsdf>)"};
+    registry.add(std::move(manual), create);
+}
+
+}  // namespace mote::core
