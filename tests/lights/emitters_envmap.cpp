@@ -215,3 +215,9 @@ TEST_CASE("real panoramas", "[lights][emitters][envmap][data]") {
         CHECK(agree(particle_power(*light, 100000), light->power()));
     }
 }
+
+TEST_CASE("a real picture with NaN and infinity is refused", "[lights][emitters][envmap][data]") {
+    const auto path = test_data("env/openexr-images/TestImages/BrightRingsNanInf.exr");
+    if (!path) return;
+    CHECK_THROWS_AS(make_environment_map(read_bitmap(*path, false)), InputError);
+}
