@@ -96,8 +96,6 @@ std::shared_ptr<Object> create(const Properties& p) {
                       : wrap == "mirror" ? TextureWrap::mirror
                                          : TextureWrap::clamp;
     parameters.to_uv = p.get_transform("to_uv");
-    for (const char* name : {"format", "accel"})
-        if (p.has(name)) p.warn(std::string("'") + name + "' is without effect: texels are stored as floats");
     parameters.name = p.get_string("filename", "");
     const std::string path = p.require_file("filename");
     try {
@@ -124,9 +122,7 @@ void register_bitmap_texture(Registry& registry) {
          {"filter_type", "string", "bilinear", "bilinear or nearest"},
          {"wrap_mode", "string", "repeat", "repeat, mirror or clamp: what lies outside the unit square"},
          {"raw", "boolean", "false", "take 8-bit values as linear instead of sRGB"},
-         {"to_uv", "transform", "identity", "applied to the uv coordinates first"},
-         {"format", "string", "auto", "known to Mitsuba, without effect here"},
-         {"accel", "boolean", "true", "known to Mitsuba, without effect here"}},
+         {"to_uv", "transform", "identity", "applied to the uv coordinates first"}},
         R"(<texture type="bitmap" name="reflectance">
     <string name="filename" value="wood.png"/>
     <string name="wrap_mode" value="mirror"/>

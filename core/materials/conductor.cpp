@@ -47,7 +47,6 @@ void register_conductor(Registry& registry) {
                   {{"material", "string", "none", "name of a metal (Cu, Au, Ag, Al, ...); none: a mirror"},
                    {"eta", "rgb", "0", "real part of the index of refraction, instead of material"},
                    {"k", "rgb", "1", "imaginary part (absorption)"},
-                   {"ext_eta", "float", "vacuum", "index of the outside, a number or a name; divides eta, k"},
                    {"specular_reflectance", "texture", "1", "factor on the reflection, 0 to 1"}},
                   R"(<bsdf type="conductor">
     <string name="material" value="Au"/>

@@ -103,12 +103,7 @@ ComplexIndex conductor_parameters(const Properties& p) {
     const bool explicit_index = p.has("eta") || p.has("k");
     if (explicit_index && material != "none")
         throw InputError("give either 'material' or 'eta' and 'k', not both", p.where_of("material"));
-    for (const char* name : {"eta", "k"})
-        if (p.child<Object>(name))
-            throw InputError(std::string("'") + name + "' must be an rgb or a float", p.where_of(name));
-    const float exterior = dielectric_index_parameter(p, "ext_eta", "vacuum");
-    return {p.get_rgb_in("eta", named->eta, 0.0f, 1e4f) / exterior,
-            p.get_rgb_in("k", named->k, 0.0f, 1e4f) / exterior};
+    return {p.get_rgb_in("eta", named->eta, 0.0f, 1e4f), p.get_rgb_in("k", named->k, 0.0f, 1e4f)};
 }
 
 }  // namespace mote::core

@@ -26,7 +26,7 @@ std::optional<ComplexIndex> conductor_index(std::string_view name);
 float dielectric_index_parameter(const Properties& properties, const std::string& name,
                                  const std::string& default_name);
 
-/// `material`, or `eta` and `k` (rgb or float), divided by `ext_eta` (version 0.x of the scene language).
+/// `material`, or `eta` and `k` (rgb or float). Throws InputError when both are given.
 ComplexIndex conductor_parameters(const Properties& properties);
 
 }  // namespace mote::core

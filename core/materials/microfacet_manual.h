@@ -5,7 +5,7 @@
 
 namespace mote::core {
 
-/// Adds distribution, alpha, sample_visible and, where allowed, alpha_u and alpha_v.
+/// Adds distribution, alpha and, where allowed, alpha_u and alpha_v.
 void append_microfacet_parameters(Manual& manual, bool anisotropic);
 
 }  // namespace mote::core

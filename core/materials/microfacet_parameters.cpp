@@ -9,9 +9,6 @@ namespace {
 constexpr double default_alpha = 0.1, largest_alpha = 10.0;
 
 float alpha_parameter(const Properties& p, const std::string& name) {
-    if (p.child<Object>(name))
-        throw InputError("'" + name + "' must be a float: textured roughness is not supported",
-                         p.where_of(name));
     const double alpha = p.get_float_in(name, default_alpha, 0.0, largest_alpha);
     if (alpha < double(Microfacet::smallest_alpha))
         p.warn("'" + name + "' is raised to 0.0001, the smallest roughness that rough surfaces resolve");
@@ -23,8 +20,6 @@ float alpha_parameter(const Properties& p, const std::string& name) {
 Microfacet microfacet_parameters(const Properties& p, bool allow_anisotropic) {
     const bool ggx = p.get_choice("distribution", "beckmann", {"beckmann", "ggx"}) == "ggx";
     const MicrofacetKind kind = ggx ? MicrofacetKind::ggx : MicrofacetKind::beckmann;
-    if (!p.get_bool("sample_visible", true))
-        p.warn("'sample_visible' is without effect: visible normals are always sampled");
     const bool u = allow_anisotropic && p.has("alpha_u"), v = allow_anisotropic && p.has("alpha_v");
     if (!u && !v) return Microfacet(kind, alpha_parameter(p, "alpha"));
     if (u != v)
@@ -43,8 +38,6 @@ void append_microfacet_parameters(Manual& manual, bool anisotropic) {
         rows.push_back({"alpha_u", "float", "alpha", "roughness along the tangent, with alpha_v"});
         rows.push_back({"alpha_v", "float", "alpha", "roughness along the bitangent, with alpha_u"});
     }
-    rows.push_back(
-        {"sample_visible", "boolean", "true", "known to Mitsuba; visible normals are always sampled"});
 }
 
 }  // namespace mote::core

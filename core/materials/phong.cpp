@@ -92,9 +92,6 @@ void register_phong(Registry& registry) {
     <rgb name="specular_reflectance" value="0.3"/>
 </bsdf>)"};
     registry.add(std::move(manual), [](const Properties& p) -> std::shared_ptr<Object> {
-        if (p.child<Object>("exponent"))
-            throw InputError("'exponent' must be a float: textured exponents are not supported",
-                             p.where_of("exponent"));
         const auto diffuse = reflectance_texture(p, "diffuse_reflectance", Rgb(0.5f));
         const auto specular = reflectance_texture(p, "specular_reflectance", Rgb(0.2f));
         if (diffuse->maximum() + specular->maximum() > 1.0f)

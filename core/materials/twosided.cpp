@@ -79,8 +79,7 @@ void register_twosided(Registry& registry) {
     Manual manual{Category::bsdf,
                   "twosided",
                   "Lets opaque BSDFs scatter on both sides: one for both, or one for each.",
-                  {{"bsdf", "bsdf", "", "the BSDF of the front, or of both sides (any name)"},
-                   {"bsdf2", "bsdf", "the first", "the BSDF of the back (any name)"}},
+                  {{"bsdf", "bsdf", "", "one for both sides, or two: the front and the back (any names)"}},
                   R"(<bsdf type="twosided">
     <bsdf type="diffuse">
         <rgb name="reflectance" value="0.4"/>

@@ -1,0 +1,52 @@
+// Pearson's chi-square test of a sampling routine against the density it claims, over directions.
+//
+// Directions are counted in equal cells of (cos theta, phi); the expected counts are integrals of the density
+// over the cells. Whatever falls outside (absorbed samples, delta parts, and directions beyond the cap) is
+// one more cell, expected with the probability that the density leaves over: so a density that is off by a
+// factor, or samples that get lost, are found as well. Cells with fewer than five expected samples are
+// pooled.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "core/math/frame.h"
+#include "core/math/random.h"
+
+namespace mote::tests {
+
+/// One draw, or nothing for a sample without a smooth direction.
+using DirectionSampler = std::function<std::optional<core::Vec3>(core::Rng&)>;
+/// Claimed density per solid angle.
+using DirectionDensity = std::function<double(const core::Vec3&)>;
+
+struct Chi2Options {
+    std::string name = "unnamed";  ///< of the table written on failure
+    int cos_cells = 16, phi_cells = 32;
+    std::size_t samples = 250000;
+    std::uint64_t seed = 1;
+    double significance = 0.01;
+    int tests = 1;  ///< how many tests of one family share the significance (Šidák's correction)
+    /// The cells cover the cap 1 - cos <= `cap` around the z axis of this frame: 2 is the sphere. Narrow
+    /// lobes need a small one.
+    core::Frame frame;
+    double cap = 2.0;
+    bool write_table = true;
+};
+
+struct Chi2Result {
+    bool passed = false;
+    double statistic = 0.0, p_value = 0.0, integral = 0.0;  ///< integral of the density over the cap
+    int degrees = 0;
+    std::string message;  ///< one line for a test's report
+};
+
+Chi2Result chi2_test(const DirectionSampler& sampler, const DirectionDensity& density,
+                     const Chi2Options& options);
+
+/// Probability that a chi-square variable with `degrees` degrees of freedom is at least `statistic`.
+double chi2_survival(double statistic, int degrees);
+
+}  // namespace mote::tests
