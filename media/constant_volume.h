@@ -1,0 +1,27 @@
+// <volume type="constvolume">: the same value everywhere.
+#pragma once
+
+#include "media/volume.h"
+
+namespace mote::core {
+class Registry;
+}
+
+namespace mote::media {
+
+class ConstantVolume final : public Volume {
+  public:
+    /// Throws InputError for a negative or non-finite value.
+    explicit ConstantVolume(const core::Rgb& value);
+    core::Rgb eval(const core::Vec3&) const override { return value_; }
+    core::Rgb upper_bound() const override { return value_; }
+    std::optional<core::Rgb> constant() const override { return value_; }
+    std::shared_ptr<HeterogeneousMedium> make_medium(MediumParts parts) const override;
+
+  private:
+    core::Rgb value_;
+};
+
+void register_constant_volume(core::Registry& registry);
+
+}  // namespace mote::media

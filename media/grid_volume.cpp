@@ -1,0 +1,95 @@
+// Dense grids as volumes and as the extinction of a medium.
+#include "media/grid_volume.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "core/scene/properties.h"
+#include "core/scene/registry.h"
+#include "media/tracked_medium.h"
+#include "media/vol_file.h"
+
+namespace mote::media {
+
+using core::Rgb, core::Transform, core::Vec3d;
+
+namespace {
+
+/// Index space (voxel centres at integers) to the unit cube or the file's box: (i + 1/2) / n.
+Transform index_to_box(const VolFile& file, bool use_grid_bbox) {
+    glm::dmat4 m(1.0);
+    if (use_grid_bbox) {
+        const Vec3d lower(file.bounds.lower), upper(file.bounds.upper);
+        m = glm::scale(glm::translate(m, lower), upper - lower);
+    }
+    m = glm::scale(m, 1.0 / Vec3d(file.resolution));
+    return Transform(glm::translate(m, Vec3d(0.5)));
+}
+
+}  // namespace
+
+GridVolume::GridVolume(VolFile file, const Transform& to_world, bool use_grid_bbox, std::string name) {
+    const Transform index_to_world = to_world * index_to_box(file, use_grid_bbox);
+    if (!index_to_world.valid())
+        throw core::InputError("the grid's transform or bounding box is singular or not finite");
+    world_to_index_ = index_to_world.inverse();
+    const std::size_t step = std::size_t(file.channels);
+    for (std::size_t i = 0; i < file.values.size(); i += step)
+        upper_bound_ =
+            glm::max(upper_bound_, step == 1 ? Rgb(file.values[i])
+                                             : Rgb(file.values[i], file.values[i + 1], file.values[i + 2]));
+    description_ =
+        fmt::format("gridvolume '{}' {}x{}x{}, {:.1f} MB", core::printable(name, 40), file.resolution.x,
+                    file.resolution.y, file.resolution.z, double(file.values.size() * sizeof(float)) * 1e-6);
+    voxels_ =
+        std::make_shared<DenseVoxels>(DenseVoxels{file.resolution, file.channels, std::move(file.values)});
+}
+
+Rgb GridVolume::eval(const core::Vec3& p) const {
+    const Vec3d index = world_to_index_.point(Vec3d(p));
+    return voxels_->channels == 1 ? Rgb(voxels_->interpolate<float>(index))
+                                  : voxels_->interpolate<Rgb>(index);
+}
+
+std::shared_ptr<HeterogeneousMedium> GridVolume::make_medium(MediumParts parts) const {
+    const auto make = [&]<typename V>(V) -> std::shared_ptr<HeterogeneousMedium> {
+        DenseGrid<V> grid{voxels_, world_to_index_, dense_majorants<V>(*voxels_), description_};
+        return std::make_shared<TrackedMedium<DenseGrid<V>>>(std::move(grid), std::move(parts));
+    };
+    return voxels_->channels == 1 ? make(0.0f) : make(Rgb(0.0f));
+}
+
+void register_grid_volume(core::Registry& registry) {
+    registry.add(
+        {core::Category::volume,
+         "gridvolume",
+         "A dense grid from a .vol file: cell-centred, trilinear, clamped outside its box.",
+         {{"filename", "string", "", "The .vol file: float32, one or three channels."},
+          {"to_world", "transform", "identity", "Places the unit cube (or the file's box) in the world."},
+          {"use_grid_bbox", "boolean", "false", "Use the bounding box in the file instead of the unit cube."},
+          {"clamp_negative", "boolean", "false", "Raise negative voxels to 0 instead of refusing them."},
+          {"filter_type", "string", "trilinear", "Only trilinear."},
+          {"wrap_mode", "string", "clamp", "Only clamp."},
+          {"raw", "boolean", "true", "Without effect: values are used as they are."}},
+         R"(<volume type="gridvolume"><string name="filename" value="smoke.vol"/></volume>)"},
+        [](const core::Properties& p) {
+            p.get_choice("filter_type", "trilinear", {"trilinear"});
+            p.get_choice("wrap_mode", "clamp", {"clamp"});
+            if (p.has("raw")) p.warn("gridvolume: 'raw' has no effect, values are used as they are");
+            const std::string path = p.require_file("filename");
+            VolFile file = read_vol_file(path, p.get_bool("clamp_negative", false));
+            if (file.clamped > 0)
+                p.warn(fmt::format("{}: {} negative voxels raised to 0, the lowest was {}", path,
+                                   file.clamped, file.lowest));
+            try {
+                return std::make_shared<GridVolume>(std::move(file), p.get_transform(),
+                                                    p.get_bool("use_grid_bbox", false),
+                                                    std::filesystem::path(path).filename().string());
+            } catch (const core::InputError& e) {
+                throw core::InputError(e.what(), p.where);
+            }
+        });
+}
+
+}  // namespace mote::media

@@ -1,0 +1,66 @@
+// <medium type="heterogeneous">: the extinction is a volume; that volume builds the medium.
+#include "media/heterogeneous_medium.h"
+
+#include "core/scene/properties.h"
+#include "core/scene/registry.h"
+#include "media/medium_parameters.h"
+#include "media/volume.h"
+
+namespace mote::media {
+
+using core::Rgb;
+
+HeterogeneousMedium::HeterogeneousMedium(MediumParts parts)
+    : parts_(std::move(parts)),
+      constant_albedo_(parts_.albedo->constant()),
+      emissive_(parts_.emission.any() &&
+                !(constant_albedo_ && core::min_component(*constant_albedo_) == 1.0f)) {}
+
+Rgb HeterogeneousMedium::albedo_at(const core::Vec3& p) const {
+    return constant_albedo_ ? *constant_albedo_ : parts_.albedo->eval(p);
+}
+
+namespace {
+
+std::shared_ptr<HeterogeneousMedium> make_heterogeneous(const core::Properties& p) {
+    const auto given = [&](const std::string& name) { return p.has(name) || p.child<Volume>(name); };
+    if (given("sigma_t") && given("density"))
+        throw core::InputError("'density' is another name for 'sigma_t': give one of them", p.where);
+    const auto extinction = volume_of(p, given("density") ? "density" : "sigma_t", Rgb(1.0f));
+    MediumParts parts;
+    parts.scale = float(p.get_float_in("scale", 1.0, 0.0, 1e30));
+    parts.albedo = volume_of(p, "albedo", Rgb(0.75f));
+    parts.phase = phase_of(p);
+    parts.emission = emission_of(p);
+    const float largest_albedo = core::max_component(parts.albedo->upper_bound());
+    if (largest_albedo > 1.0f)
+        throw core::InputError("'albedo' reaches " + std::to_string(largest_albedo) + ", above 1",
+                               p.where_of("albedo"));
+    auto medium = extinction->make_medium(std::move(parts));
+    if (medium->traits().empty) p.warn("the medium is empty: it is treated as vacuum");
+    return medium;
+}
+
+}  // namespace
+
+void register_heterogeneous_medium(core::Registry& registry) {
+    registry.add(
+        {core::Category::medium,
+         "heterogeneous",
+         "Coefficients that vary over space, by delta and ratio tracking with majorants on a coarse grid.",
+         {{"sigma_t", "volume", "1", "Extinction, times `scale` [1/m]."},
+          {"density", "volume", "", "Another name for sigma_t (that of version 0.x)."},
+          {"albedo", "volume", "0.75", "Single-scattering albedo, 0 to 1."},
+          {"scale", "float", "1", "Multiplies the extinction."},
+          {"phase", "phase", "isotropic", "The phase function."},
+          {"Le", "volume", "0", "Emitted radiance [W/(m^2 sr)]; the source term is sigma_a Le, as in pbrt."},
+          {"Lescale", "float", "1", "Multiplies Le, or the black body's relative radiance."},
+          {"temperature", "volume", "", "Black-body emission instead of Le: temperature, see the next two."},
+          {"temperature_scale", "float", "1",
+           "Kelvin = (temperature - temperature_offset) * temperature_scale."},
+          {"temperature_offset", "float", "0", "See temperature_scale."}},
+         R"(<medium type="heterogeneous"><volume name="sigma_t" type="constvolume"><rgb name="value" value="1 2 3"/></volume><rgb name="albedo" value="0.9"/></medium>)"},
+        make_heterogeneous);
+}
+
+}  // namespace mote::media

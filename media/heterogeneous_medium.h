@@ -1,0 +1,53 @@
+// Media whose coefficients vary over space: what they share, whatever grid holds the extinction.
+//
+// The tracking loops are in tracked_medium.h, compiled once per kind of grid.
+#pragma once
+
+#include <memory>
+
+#include "core/scene/medium.h"
+#include "media/emission.h"
+
+namespace mote::core {
+class Registry;
+}
+
+namespace mote::media {
+
+class Volume;
+
+/// Everything about a medium except the grid of its extinction.
+struct MediumParts {
+    float scale = 1.0f;                    ///< multiplies the grid's values to give sigma_t [1/m]
+    std::shared_ptr<const Volume> albedo;  ///< single-scattering albedo, 0 to 1
+    std::shared_ptr<core::PhaseFunction> phase;
+    Emission emission;
+    float plant_majorant_factor = 1.0f;  ///< for tests that need a wrong majorant; 1 in every other use
+};
+
+class HeterogeneousMedium : public core::Medium {
+  public:
+    /// Tentative collisions of one segment after which a walk is ended and counted as a fallback: a path is
+    /// then lost (throughput 0), which darkens, rather than spins. 2^26 take about two seconds.
+    static constexpr std::uint64_t step_limit = std::uint64_t(1) << 26;
+
+    const core::PhaseFunction& phase() const override { return *parts_.phase; }
+
+    /// Optical depth per channel by the midpoint rule: deterministic, biased by the step. The segment,
+    /// clipped to the grid where the medium ends there, is cut into equal steps of at most `step` metres. The
+    /// segment must be finite unless the medium is bounded.
+    virtual core::Vec3d optical_depth_by_marching(const core::Ray& ray, float step,
+                                                  core::TrackingCounters& counters) const = 0;
+
+  protected:
+    explicit HeterogeneousMedium(MediumParts parts);
+    core::Rgb albedo_at(const core::Vec3& p) const;
+
+    MediumParts parts_;
+    std::optional<core::Rgb> constant_albedo_;
+    bool emissive_;
+};
+
+void register_heterogeneous_medium(core::Registry& registry);
+
+}  // namespace mote::media

@@ -1,0 +1,165 @@
+// The template bodies of majorant_grid.h.
+#pragma once
+
+#include "media/majorant_grid.h"
+
+namespace mote::media {
+
+namespace detail {
+inline double largest(float v) { return v; }
+inline double largest(const core::Rgb& v) { return core::max_component(v); }
+inline std::int64_t floor_div(std::int64_t a, std::int64_t b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
+}  // namespace detail
+
+template <typename Value>
+MajorantGrid<Value>::MajorantGrid(const Voxel& lower, const Voxel& upper, const Range& outside)
+    : lower_(lower),
+      upper_(upper),
+      outside_(outside),
+      outside_is_zero_(detail::largest(outside.upper) == 0.0) {
+    const Voxel extent = glm::max(upper - lower, Voxel(1));
+    const auto cells_along = [&](int axis) { return (extent[axis] + edge_ - 1) / edge_; };
+    for (edge_ = 4;
+         double(cells_along(0)) * double(cells_along(1)) * double(cells_along(2)) > double(max_cells);)
+        edge_ *= 2;
+    for (int axis = 0; axis < 3; ++axis) resolution_[axis] = int(cells_along(axis));
+    const std::size_t count =
+        std::size_t(resolution_.x) * std::size_t(resolution_.y) * std::size_t(resolution_.z);
+    const float largest = std::numeric_limits<float>::max();
+    cells_.assign(count, Range{Value(largest), Value(0.0f)});
+    covered_.assign(count, 0.0);
+}
+
+template <typename Value>
+template <typename Body>
+void MajorantGrid<Value>::for_each_cell(const Voxel& block_lower, const Voxel& block_upper, Body&& body) {
+    const Voxel lo = glm::max(block_lower, lower_), hi = glm::min(block_upper, upper_);
+    if (lo.x > hi.x || lo.y > hi.y || lo.z > hi.z) return;
+    // A voxel's hat function reaches less than one voxel to each side: the cells from (v - 1) to v, in cells.
+    glm::ivec3 first, last;
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::int64_t n = resolution_[axis] - 1;
+        first[axis] =
+            int(std::clamp<std::int64_t>(detail::floor_div(lo[axis] - lower_[axis] - 1, edge_), 0, n));
+        last[axis] = int(std::clamp<std::int64_t>(detail::floor_div(hi[axis] - lower_[axis], edge_), 0, n));
+    }
+    for (int z = first.z; z <= last.z; ++z)
+        for (int y = first.y; y <= last.y; ++y)
+            for (int x = first.x; x <= last.x; ++x) {
+                const Voxel begin = lower_ + Voxel(x, y, z) * edge_;
+                const Voxel support_lower = glm::max(lo, begin), support_upper = glm::min(hi, begin + edge_);
+                body(cell_index(x, y, z), support_lower, support_upper);
+            }
+}
+
+template <typename Value>
+template <typename ValueAt>
+void MajorantGrid<Value>::add_block(const Voxel& lower, const Voxel& upper, ValueAt&& value_at) {
+    for_each_cell(lower, upper, [&](std::size_t cell, const Voxel& lo, const Voxel& hi) {
+        Range& range = cells_[cell];
+        Voxel v;
+        for (v.z = lo.z; v.z <= hi.z; ++v.z)
+            for (v.y = lo.y; v.y <= hi.y; ++v.y)
+                for (v.x = lo.x; v.x <= hi.x; ++v.x) {
+                    const Value value = value_at(v);
+                    range.lower = glm::min(range.lower, value), range.upper = glm::max(range.upper, value);
+                    covered_[cell] += 1.0;
+                }
+    });
+}
+
+template <typename Value>
+void MajorantGrid<Value>::add_constant(const Voxel& lower, const Voxel& upper, const Value& value) {
+    for_each_cell(lower, upper, [&](std::size_t cell, const Voxel& lo, const Voxel& hi) {
+        if (lo.x > hi.x || lo.y > hi.y || lo.z > hi.z) return;
+        cells_[cell].lower = glm::min(cells_[cell].lower, value);
+        cells_[cell].upper = glm::max(cells_[cell].upper, value);
+        const glm::dvec3 size = glm::dvec3(hi - lo) + 1.0;
+        covered_[cell] += size.x * size.y * size.z;
+    });
+}
+
+template <typename Value>
+void MajorantGrid<Value>::finish(const Value& background) {
+    for (int z = 0; z < resolution_.z; ++z)
+        for (int y = 0; y < resolution_.y; ++y)
+            for (int x = 0; x < resolution_.x; ++x) {
+                const Voxel begin = lower_ + Voxel(x, y, z) * edge_, end = glm::min(begin + edge_, upper_);
+                const glm::dvec3 size = glm::dvec3(end - begin) + 1.0;
+                const std::size_t cell = cell_index(x, y, z);
+                if (covered_[cell] >= size.x * size.y * size.z) continue;
+                cells_[cell].lower = glm::min(cells_[cell].lower, background);
+                cells_[cell].upper = glm::max(cells_[cell].upper, background);
+            }
+    covered_ = {};
+}
+
+template <typename Value>
+auto MajorantGrid<Value>::total() const -> Range {
+    Range total = outside_;
+    for (const Range& r : cells_)
+        total.lower = glm::min(total.lower, r.lower), total.upper = glm::max(total.upper, r.upper);
+    return total;
+}
+
+template <typename Value>
+bool MajorantGrid<Value>::clip(const core::Vec3d& origin, const core::Vec3d& direction, double& t_begin,
+                               double& t_end) const {
+    for (int axis = 0; axis < 3; ++axis) {
+        const double lo = double(lower_[axis]), hi = double(upper_[axis]);
+        if (direction[axis] == 0.0) {
+            if (origin[axis] < lo || origin[axis] > hi) return false;
+            continue;
+        }
+        const double inverse = 1.0 / direction[axis];
+        const double a = (lo - origin[axis]) * inverse, b = (hi - origin[axis]) * inverse;
+        t_begin = std::max(t_begin, std::min(a, b)), t_end = std::min(t_end, std::max(a, b));
+    }
+    return t_begin < t_end;
+}
+
+template <typename Value>
+template <typename Visit>
+void MajorantGrid<Value>::walk(const core::Vec3d& origin, const core::Vec3d& direction, double t_begin,
+                               double t_end, Visit&& visit) const {
+    double enter = t_begin, leave = t_end;
+    if (!has_cells() || !clip(origin, direction, enter, leave)) {
+        if (!outside_is_zero_ && t_begin < t_end) visit(outside_, t_begin, t_end);
+        return;
+    }
+    if (!outside_is_zero_ && t_begin < enter && !visit(outside_, t_begin, enter)) return;
+
+    // Amanatides & Woo 1987, with every crossing computed from the cell's integer coordinate: nothing
+    // accumulates, and each step moves one cell in a fixed direction, so the walk ends.
+    const double to_cells = 1.0 / double(edge_);
+    std::array<int, 3> cell, step;
+    std::array<double, 3> next, offset, inverse;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double d = direction[axis] * to_cells;
+        offset[std::size_t(axis)] = (origin[axis] - double(lower_[axis])) * to_cells;
+        const double position = offset[std::size_t(axis)] + enter * d;
+        const int c = int(std::clamp(std::floor(position), 0.0, double(resolution_[axis] - 1)));
+        cell[std::size_t(axis)] = c;
+        step[std::size_t(axis)] = d > 0.0 ? 1 : -1;
+        inverse[std::size_t(axis)] = d != 0.0 ? 1.0 / d : 0.0;
+        next[std::size_t(axis)] =
+            d != 0.0 ? (double(d > 0.0 ? c + 1 : c) - offset[std::size_t(axis)]) * inverse[std::size_t(axis)]
+                     : std::numeric_limits<double>::infinity();
+    }
+    double t = enter;
+    for (;;) {
+        const std::size_t axis =
+            next[0] < next[1] ? (next[0] < next[2] ? 0 : 2) : (next[1] < next[2] ? 1 : 2);
+        const double t_exit = std::min(next[axis], leave);
+        if (t_exit > t) {
+            if (!visit(cells_[cell_index(cell[0], cell[1], cell[2])], t, t_exit)) return;
+            t = t_exit;
+        }
+        cell[axis] += step[axis];
+        if (next[axis] >= leave || cell[axis] < 0 || cell[axis] >= resolution_[int(axis)]) break;
+        next[axis] = (double(step[axis] > 0 ? cell[axis] + 1 : cell[axis]) - offset[axis]) * inverse[axis];
+    }
+    if (!outside_is_zero_ && leave < t_end) visit(outside_, leave, t_end);
+}
+
+}  // namespace mote::media

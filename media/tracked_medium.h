@@ -1,0 +1,107 @@
+// Delta and ratio tracking through a grid, compiled for each kind of grid.
+//
+// The majorant is one number per cell, the largest channel's: a tentative collision of its Poisson process is
+// real with the probability sigma_t,h / majorant of the hero channel h. Since the exponential of the majorant
+// is the same in every channel it cancels from all ratios of densities, and PathWeights changes at tentative
+// collisions only (Woodcock et al. 1965; Miller et al. 2019; pbrt-v4, section 14.2).
+//
+// Grid must provide: Value (float: grey, or Rgb), world_to_index, cursor() with lookup(index position),
+// majorants, description, kind.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <type_traits>
+
+#include "core/math/transform.h"
+#include "media/heterogeneous_medium.h"
+#include "media/majorant_grid.h"
+#include "media/tracking_random.h"
+
+namespace mote::media {
+
+namespace detail {
+
+inline double channel(double v, int) { return v; }
+inline double channel(const core::Vec3d& v, int c) { return v[c]; }
+inline double widen(float v) { return v; }
+inline core::Vec3d widen(const core::Rgb& v) { return core::Vec3d(v); }
+inline double largest(double v) { return v; }
+inline double largest(const core::Vec3d& v) { return std::fmax(v.x, std::fmax(v.y, v.z)); }
+inline core::Rgb exp_minus_rgb(double v) { return core::Rgb(float(std::exp(-v))); }
+inline core::Rgb exp_minus_rgb(const core::Vec3d& v) {
+    return {float(std::exp(-v.x)), float(std::exp(-v.y)), float(std::exp(-v.z))};
+}
+
+/// Below this weight a ratio-tracking walk survives by chance (Russian roulette), so that it ends soon in a
+/// medium much thinner than its majorant. Survivors carry the threshold itself: no weight ever grows.
+inline constexpr double roulette_threshold = 1e-3;
+
+/// Returns false when the walk dies.
+template <typename Wide>
+bool russian_roulette(Wide& weight, core::Rng& rng) {
+    const double w = largest(weight);
+    if (w >= roulette_threshold) return true;
+    const double survival = w / roulette_threshold;
+    if (!sample_event(survival, rng)) {
+        weight = Wide(0.0);
+        return false;
+    }
+    weight /= survival;
+    return true;
+}
+
+}  // namespace detail
+
+template <typename Grid>
+class TrackedMedium final : public HeterogeneousMedium {
+  public:
+    using Value = typename Grid::Value;
+    using Wide = std::conditional_t<std::is_same_v<Value, float>, double, core::Vec3d>;
+    using Range = typename MajorantGrid<Value>::Range;
+    static constexpr bool chromatic = !std::is_same_v<Value, float>;
+
+    TrackedMedium(Grid grid, MediumParts parts)
+        : HeterogeneousMedium(std::move(parts)), grid_(std::move(grid)) {
+        grid_.majorants.scale_upper(parts_.plant_majorant_factor);
+        majorant_ = float(detail::largest(grid_.majorants.total().upper) * double(parts_.scale));
+    }
+
+    core::MediumTraits traits() const override;
+    core::MediumCoefficients coefficients(const core::Vec3& p) const override;
+    float majorant() const override { return majorant_; }
+    core::Bounds3 bounds() const override;
+
+    std::optional<float> sample_collision(const core::Ray& ray, core::PathWeights& weights,
+                                          core::Rgb& emitted, core::Rng& rng,
+                                          core::TrackingCounters& counters) const override;
+    void connect(const core::Ray& ray, core::PathWeights& weights, core::Rng& rng,
+                 core::TrackingCounters& counters) const override;
+    core::Rgb transmittance(const core::Ray& ray, core::Rng& rng,
+                            core::TrackingCounters& counters) const override;
+    core::Vec3d optical_depth_by_marching(const core::Ray& ray, float step,
+                                          core::TrackingCounters& counters) const override;
+
+  private:
+    /// Walks the Poisson process with rate `rate_of(range)` along the ray: `at_piece(range, length)` for
+    /// every piece, `at_collision(range, rate, t, density) -> bool` (false stops) for every tentative
+    /// collision. Rates and densities are in the grid's own unit; the scale is applied to lengths. False on
+    /// the step limit.
+    template <typename RateOf, typename AtPiece, typename AtCollision>
+    bool track(const core::Ray& ray, core::Rng& rng, core::TrackingCounters& counters, RateOf&& rate_of,
+               AtPiece&& at_piece, AtCollision&& at_collision) const;
+
+    core::Vec3d index_origin(const core::Ray& ray) const {
+        return grid_.world_to_index.point(core::Vec3d(ray.origin));
+    }
+    core::Vec3d index_direction(const core::Ray& ray) const {
+        return grid_.world_to_index.vector(core::Vec3d(ray.direction));
+    }
+
+    Grid grid_;
+    float majorant_ = 0.0f;
+};
+
+}  // namespace mote::media
+
+#include "media/tracked_medium_impl.h"

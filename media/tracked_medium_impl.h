@@ -1,0 +1,196 @@
+// The loops of tracked_medium.h.
+#pragma once
+
+#include "media/tracked_medium.h"
+
+namespace mote::media {
+
+template <typename Grid>
+template <typename RateOf, typename AtPiece, typename AtCollision>
+bool TrackedMedium<Grid>::track(const core::Ray& ray, core::Rng& rng, core::TrackingCounters& counters,
+                                RateOf&& rate_of, AtPiece&& at_piece, AtCollision&& at_collision) const {
+    const core::Vec3d origin = index_origin(ray), direction = index_direction(ray);
+    const double scale = parts_.scale;
+    auto cursor = grid_.cursor();
+    double depth =
+        sample_optical_depth(rng);  // majorant optical depth left until the next tentative collision
+    std::uint64_t steps = 0;
+    bool complete = true;
+    const auto visit = [&](const Range& range, double t0, double t1) {
+        const double length = t1 - t0, rate = rate_of(range), rate_per_metre = rate * scale;
+        at_piece(range, length);
+        if (!(rate_per_metre > 0.0)) return true;
+        double s = 0.0;  // from the start of the piece, so that short steps are not lost beside a large t
+        for (;;) {
+            const double ds = depth / rate_per_metre;
+            if (!(s + ds < length)) {
+                depth = std::fmax(0.0, depth - rate_per_metre * (length - s));
+                return true;
+            }
+            s += ds;
+            if (++steps > step_limit) {
+                complete = false;
+                return false;
+            }
+            const double t = t0 + s;
+            const Wide density = detail::widen(cursor.lookup(origin + t * direction));
+            if (!at_collision(range, rate, t, density)) return false;
+            depth = sample_optical_depth(rng);
+        }
+    };
+    grid_.majorants.walk(origin, direction, double(ray.t_min), double(ray.t_max), visit);
+    counters.lookups += steps, counters.collisions += steps;
+    if (!complete) ++counters.fallbacks;
+    return complete;
+}
+
+template <typename Grid>
+std::optional<float> TrackedMedium<Grid>::sample_collision(const core::Ray& ray, core::PathWeights& weights,
+                                                           core::Rgb& emitted, core::Rng& rng,
+                                                           core::TrackingCounters& counters) const {
+    std::optional<float> found;
+    const int hero = weights.hero;
+    const auto at_collision = [&](const Range&, double majorant, double t, Wide density) {
+        density = glm::min(density, Wide(majorant));  // interpolation may round above the bound
+        const core::Vec3 p = ray.at(float(t));
+        if (emissive_) {
+            // every tentative collision is a sample of density majorant * exp(...) of the source sigma_a L_e
+            const core::Rgb absorbed = core::Rgb(density / majorant) * (core::Rgb(1.0f) - albedo_at(p));
+            emitted +=
+                weights.throughput * absorbed * parts_.emission.at(p) / core::average(weights.unidirectional);
+        }
+        const double real = detail::channel(density, hero);
+        if (sample_event(real / majorant, rng)) {
+            if constexpr (chromatic) {
+                const core::Rgb ratio(density / real);
+                weights.throughput *= ratio;
+                weights.unidirectional *= ratio;
+            }
+            weights.throughput *= albedo_at(p);
+            found = std::fmin(float(t), ray.t_max);
+            return false;
+        }
+        if constexpr (chromatic) {
+            const core::Rgb ratio((Wide(majorant) - density) / (majorant - real));
+            weights.throughput *= ratio;
+            weights.unidirectional *= ratio;
+        }
+        weights.light *= float(majorant / (majorant - real));
+        return true;
+    };
+    const bool complete = track(
+        ray, rng, counters, [](const Range& r) { return detail::largest(r.upper); },
+        [](const Range&, double) {}, at_collision);
+    if (!complete) weights.throughput = core::Rgb(0.0f);
+    return found;
+}
+
+template <typename Grid>
+void TrackedMedium<Grid>::connect(const core::Ray& ray, core::PathWeights& weights, core::Rng& rng,
+                                  core::TrackingCounters& counters) const {
+    // `passed` is both the estimate and the chance that sample_collision() passes the same tentative
+    // collisions; roulette divides the estimate alone.
+    Wide passed(1.0), estimate(1.0);
+    const auto at_collision = [&](const Range&, double majorant, double, const Wide& density) {
+        const Wide factor = Wide(1.0) - glm::min(density, Wide(majorant)) / majorant;
+        passed *= factor, estimate *= factor;
+        return detail::russian_roulette(estimate, rng);
+    };
+    const bool complete = track(
+        ray, rng, counters, [](const Range& r) { return detail::largest(r.upper); },
+        [](const Range&, double) {}, at_collision);
+    weights.throughput *= core::Rgb(complete ? estimate : Wide(0.0));
+    weights.unidirectional *= core::Rgb(passed);
+}
+
+template <typename Grid>
+core::Rgb TrackedMedium<Grid>::transmittance(const core::Ray& ray, core::Rng& rng,
+                                             core::TrackingCounters& counters) const {
+    // Residual ratio tracking (Novák et al. 2014): a cell's lower bound is integrated analytically, the rest
+    // is tracked. Where a cell is constant, nothing random is left.
+    Wide sure_depth(0.0), estimate(1.0);
+    const auto rate_of = [](const Range& r) { return detail::largest(r.upper - r.lower); };
+    const auto at_piece = [&](const Range& r, double length) {
+        const Wide sigma = detail::widen(r.lower) * double(parts_.scale);
+        if constexpr (chromatic) {
+            for (int c = 0; c < 3; ++c) sure_depth[c] += optical_depth(sigma[c], length);
+        } else {
+            sure_depth += optical_depth(sigma, length);
+        }
+    };
+    const auto at_collision = [&](const Range& r, double rate, double, const Wide& density) {
+        const Wide residual = glm::clamp(density - detail::widen(r.lower), Wide(0.0), Wide(rate));
+        estimate *= Wide(1.0) - residual / rate;
+        return detail::russian_roulette(estimate, rng);
+    };
+    const bool complete = track(ray, rng, counters, rate_of, at_piece, at_collision);
+    if (!complete || detail::largest(estimate) == 0.0) return core::Rgb(0.0f);
+    return core::Rgb(estimate) * detail::exp_minus_rgb(sure_depth);
+}
+
+template <typename Grid>
+core::Vec3d TrackedMedium<Grid>::optical_depth_by_marching(const core::Ray& ray, float step,
+                                                           core::TrackingCounters& counters) const {
+    const core::Vec3d origin = index_origin(ray), direction = index_direction(ray);
+    double t0 = ray.t_min, t1 = ray.t_max;
+    if (detail::largest(grid_.majorants.outside().upper) == 0.0 &&
+        !(grid_.majorants.has_cells() && grid_.majorants.clip(origin, direction, t0, t1)))
+        return core::Vec3d(0.0);
+    const auto count = std::uint64_t(std::ceil((t1 - t0) / double(step)));
+    const double h = (t1 - t0) / double(count);
+    const core::Vec3d start = origin + (t0 + 0.5 * h) * direction, delta = h * direction;
+    auto cursor = grid_.cursor();
+    Wide sum(0.0);
+    for (std::uint64_t i = 0; i < count; ++i) sum += detail::widen(cursor.lookup(start + double(i) * delta));
+    counters.lookups += count;
+    return core::Vec3d(sum) * (h * double(parts_.scale));
+}
+
+template <typename Grid>
+core::MediumCoefficients TrackedMedium<Grid>::coefficients(const core::Vec3& p) const {
+    const Value density = grid_.cursor().lookup(grid_.world_to_index.point(core::Vec3d(p)));
+    core::MediumCoefficients c;
+    c.sigma_t = parts_.scale * core::Rgb(density);
+    c.sigma_s = c.sigma_t * albedo_at(p);
+    if (emissive_) c.emission = (c.sigma_t - c.sigma_s) * parts_.emission.at(p);
+    return c;
+}
+
+template <typename Grid>
+core::Bounds3 TrackedMedium<Grid>::bounds() const {
+    core::Bounds3 box;
+    if (detail::largest(grid_.majorants.outside().upper) > 0.0)
+        return {core::Vec3(-core::infinity), core::Vec3(core::infinity)};
+    if (!grid_.majorants.has_cells()) return box;
+    const core::Transform to_world = grid_.world_to_index.inverse();
+    for (int corner = 0; corner < 8; ++corner) {
+        const Voxel v(corner & 1 ? grid_.majorants.upper().x : grid_.majorants.lower().x,
+                      corner & 2 ? grid_.majorants.upper().y : grid_.majorants.lower().y,
+                      corner & 4 ? grid_.majorants.upper().z : grid_.majorants.lower().z);
+        const core::Vec3 p(to_world.point(core::Vec3d(v)));
+        for (int axis = 0; axis < 3; ++axis) {  // outwards, so that rounding cannot cut the medium
+            box.lower[axis] = std::fmin(box.lower[axis], std::nextafter(p[axis], -core::infinity));
+            box.upper[axis] = std::fmax(box.upper[axis], std::nextafter(p[axis], core::infinity));
+        }
+    }
+    return box;
+}
+
+template <typename Grid>
+core::MediumTraits TrackedMedium<Grid>::traits() const {
+    core::MediumTraits t;
+    t.emissive = emissive_;
+    t.isotropic = parts_.phase->isotropic();
+    t.chromatic = chromatic;
+    t.scattering = majorant_ > 0.0f && !core::is_black(parts_.albedo->upper_bound());
+    t.empty = majorant_ == 0.0f;
+    t.description = grid_.description;
+    if (t.empty)
+        t.description += ", empty";
+    else if (grid_.majorants.has_cells())
+        t.description += fmt::format(", majorants {}x{}x{}", grid_.majorants.resolution().x,
+                                     grid_.majorants.resolution().y, grid_.majorants.resolution().z);
+    return t;
+}
+
+}  // namespace mote::media
