@@ -64,6 +64,7 @@ Element& find_one(Element& parent, const std::string& word, const SourceLocation
 
 /// The value tag that a parameter of this type is written with.
 std::string tag_for(const std::string& type, const std::string& value) {
+    if (type == "float" && value.find_first_of("0123456789") == std::string::npos) return "string";
     if (type == "boolean" || type == "integer" || type == "float" || type == "string" || type == "rgb" ||
         type == "point" || type == "vector")
         return type;

@@ -29,41 +29,6 @@ void remove(Element& e, const std::string& name) {
     std::erase_if(e.children, [&](const Element& c) { return c.get("name") == name; });
 }
 
-std::string rgb_text(const Rgb& c) {
-    return number_to_text(double(c.x)) + " " + number_to_text(double(c.y)) + " " +
-           number_to_text(double(c.z));
-}
-
-Rgb colour(const Element& e, std::vector<std::string>& warnings) {
-    const PropertyValue value = parse_value(e, false, warnings);
-    if (const auto* c = std::get_if<Rgb>(&value)) return *c;
-    if (const auto* f = std::get_if<double>(&value)) return Rgb(float(*f));
-    throw InputError("'" + printable(e.get("name")) + "' must be a colour or a number", e.where);
-}
-
-/// 0.x: sigma_s and sigma_a. Today: sigma_t and albedo.
-void upgrade_homogeneous(Element& e, std::vector<std::string>& warnings) {
-    Element *s = e.child("sigma_s"), *a = e.child("sigma_a");
-    if (!s && !a) return;
-    if (e.child("sigma_t") || e.child("albedo"))
-        throw InputError("give either sigma_s and sigma_a or sigma_t and albedo", e.where);
-    if (!s || !a) throw InputError("sigma_s and sigma_a belong together; one of them is missing", e.where);
-    const Rgb sigma_s = colour(*s, warnings), sigma_a = colour(*a, warnings), sigma_t = sigma_s + sigma_a;
-    for (int c = 0; c < 3; ++c)
-        if (!(sigma_s[c] >= 0.0f) || !(sigma_a[c] >= 0.0f))
-            throw InputError("a coefficient of a medium is negative",
-                             sigma_s[c] >= 0.0f ? a->where : s->where);
-    Rgb albedo(0.0f);
-    for (int c = 0; c < 3; ++c)
-        if (sigma_t[c] > 0.0f) albedo[c] = sigma_s[c] / sigma_t[c];
-    const SourceLocation where = s->where;
-    remove(e, "sigma_s"), remove(e, "sigma_a");
-    for (const auto& [name, value] : {std::pair("sigma_t", sigma_t), std::pair("albedo", albedo)}) {
-        e.children.push_back(e.make_value("rgb", name, rgb_text(value)));
-        e.children.back().where = where;
-    }
-}
-
 /// uscale, vscale, uoffset, voffset of textures as a to_uv transform.
 void upgrade_texture(Element& e, std::vector<std::string>& warnings) {
     if (Element* filter = e.child("filter_type"); filter && filter->get("value") != "nearest") {
@@ -123,7 +88,6 @@ void upgrade_element(Element& e, std::vector<std::string>& warnings) {
     for (Element& c : e.children)
         if (c.legacy) upgrade_element(c, warnings);
     const std::string type = e.get("type");
-    if (e.tag == "medium" && type == "homogeneous") upgrade_homogeneous(e, warnings);
     if (e.tag == "medium" && type == "heterogeneous") rename(e, "density", "sigma_t");
     if (e.tag == "texture") upgrade_texture(e, warnings);
     if (e.tag == "integrator" && type == "direct") upgrade_direct(e, warnings);

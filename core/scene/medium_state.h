@@ -29,6 +29,7 @@ class MediumState {
     void enter(const Shape& shape);
     void leave(const Shape& shape);
     bool inside(const Shape& shape) const;
+    bool inside_any() const { return count_ > 0; }
     /// True when more than `capacity` shapes were entered; the state is no longer reliable.
     bool overflow() const { return overflow_; }
 

@@ -3,6 +3,8 @@
 
 #include <map>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,7 @@
 namespace mote::core {
 
 class Integrator;
+class ProbeRays;
 
 /// What the film of a scene file asks for.
 struct FilmSettings {
@@ -92,6 +95,19 @@ class Scene {
     bool has_media() const { return !parts_.media.empty(); }
 
   private:
+    void check() const;
+    void find_bounds();
+    void build_light_tables();
+    void find_boundaries();
+    void find_emitter_states();
+    static std::optional<Vec3> light_position(const Emitter& emitter);
+    MediumState medium_state_near(const Vec3& p, const Medium* declared, const Shape* excluded) const;
+    MediumState area_light_state(const Emitter& emitter, const Shape& shape, const Vec3& p,
+                                 const Vec3& normal) const;
+    const Medium* outside_medium(const MediumState& inside, ProbeRays& probes, const Shape* excluded) const;
+    template <typename Segment>
+    void for_each_segment(const Ray& ray, MediumState state, const Segment& segment) const;
+
     Parts parts_;
     std::unique_ptr<RayTracer> rays_;
     Bounds3 bounds_;
@@ -99,6 +115,14 @@ class Scene {
     Distribution1D direct_lights_, particle_lights_;
     std::map<const Emitter*, std::size_t> emitter_index_;
     MediumState camera_state_;
+    /// Shapes with a medium on either side; a closed one whose normals point inwards (a room) is `inward`.
+    struct Boundary {
+        const Shape* shape;
+        bool closed, inward;
+    };
+    std::vector<Boundary> boundaries_;
+    /// Lights whose media are the same wherever on the light a particle starts.
+    std::map<const Emitter*, MediumState> emitter_states_;
 };
 
 }  // namespace mote::core

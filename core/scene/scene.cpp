@@ -1,0 +1,120 @@
+// A complete scene: checks, bounds and light tables. Media are in scene_media.cpp.
+#include "core/scene/scene.h"
+
+#include <algorithm>
+
+#include "core/render/integrator.h"
+#include "core/scene/error.h"
+
+namespace mote::core {
+namespace {
+
+bool any_emissive(const std::vector<std::shared_ptr<Medium>>& media) {
+    return std::any_of(media.begin(), media.end(), [](const auto& m) { return m->traits().emissive; });
+}
+
+/// The power of a light in one number, never negative.
+float scalar_power(const Emitter& emitter, const std::string& file) {
+    const Rgb power = emitter.power();
+    if (!is_finite(power) || !(average(power) >= 0.0f))
+        throw InputError("a light has a power that is negative or not finite", {file, 0});
+    return average(power);
+}
+
+}  // namespace
+
+Scene::Scene(Parts parts) : parts_(std::move(parts)) {
+    check();
+    for (std::size_t i = 0; i < parts_.shapes.size(); ++i) {
+        Shape& shape = *parts_.shapes[i];
+        shape.index = std::uint32_t(i);
+        shape.has_medium_boundary = shape.has_medium_boundary || shape.interior || shape.exterior;
+        if (shape.emitter) shape.emitter->set_shape(&shape);
+    }
+    rays_ = std::make_unique<RayTracer>(parts_.shapes);
+    find_bounds();
+    build_light_tables();
+    find_boundaries();
+    camera_state_ = medium_state_at(parts_.camera->position(), parts_.camera->medium.get());
+    find_emitter_states();
+}
+
+Scene::~Scene() = default;
+
+void Scene::check() const {
+    const SourceLocation where{parts_.file, 0};
+    if (!parts_.camera) throw InputError("the scene has no sensor", where);
+    for (const auto& shape : parts_.shapes)
+        if (!shape->bsdf) throw InputError("a shape has no BSDF", where);
+    if (parts_.emitters.empty() && !any_emissive(parts_.media))
+        throw InputError("the scene has no light", where);
+    const auto environments =
+        std::count_if(parts_.emitters.begin(), parts_.emitters.end(),
+                      [](const auto& e) { return e->traits().kind == EmitterKind::environment; });
+    if (environments > 1) throw InputError("the scene has more than one environment light", where);
+    if (parts_.shapes.empty() && environments == 0 && parts_.media.empty())
+        throw InputError("there is nothing to see: no shapes, no media, no environment", where);
+}
+
+/// Where a light with a position stands. Lights at infinity and area lights (part of the shapes) have none.
+std::optional<Vec3> Scene::light_position(const Emitter& emitter) {
+    const EmitterTraits traits = emitter.traits();
+    if (!traits.delta_position || traits.infinite) return std::nullopt;
+    // A textured light is black in some directions; one of these draws will do.
+    for (const float u : {0.5f, 0.1f, 0.9f, 0.3f, 0.7f})
+        if (const auto sample = emitter.sample_emission({u, u}, {u, 1.0f - u})) return sample->origin;
+    return std::nullopt;
+}
+
+void Scene::find_bounds() {
+    for (const auto& shape : parts_.shapes) bounds_.extend(shape->bounds());
+    bounds_.extend(parts_.camera->position());
+    for (const auto& emitter : parts_.emitters)
+        if (const auto p = light_position(*emitter)) bounds_.extend(*p);
+    const float radius = bounds_.radius();
+    for (const auto& emitter : parts_.emitters)
+        emitter->set_scene_bounds(bounds_.center(), radius > 0.0f ? radius : 1.0f);
+}
+
+void Scene::build_light_tables() {
+    std::vector<float> power;
+    double total = 0.0;
+    std::size_t lit = 0;
+    for (const auto& emitter : parts_.emitters) {
+        emitter_index_.emplace(emitter.get(), power.size());
+        if (emitter->traits().kind == EmitterKind::environment) environment_ = emitter.get();
+        power.push_back(scalar_power(*emitter, parts_.file));
+        total += double(power.back());
+        lit += power.back() > 0.0f;
+    }
+    if (lit == 0) std::fill(power.begin(), power.end(), 1.0f);  // all black: any choice is right
+    std::vector<float> relative, mixed;
+    for (const float p : power) {
+        relative.push_back(lit == 0 ? p : float(double(p) / total));
+        const float equal = p > 0.0f ? 1.0f / float(std::max<std::size_t>(lit, 1)) : 0.0f;
+        mixed.push_back(lit == 0 ? 1.0f : 0.5f * relative.back() + 0.5f * equal);
+    }
+    direct_lights_ = Distribution1D(mixed);
+    particle_lights_ = Distribution1D(relative);
+}
+
+LightChoice Scene::choose_light(float u, float* remapped) const {
+    if (direct_lights_.empty()) return {nullptr, 0.0f};
+    const auto chosen = direct_lights_.sample_discrete(u);
+    if (remapped) *remapped = chosen.remapped;
+    return {parts_.emitters[chosen.index].get(), chosen.probability};
+}
+
+float Scene::light_probability(const Emitter* emitter) const {
+    const auto it = emitter_index_.find(emitter);
+    return it == emitter_index_.end() ? 0.0f : direct_lights_.probability(it->second);
+}
+
+LightChoice Scene::choose_emitter_by_power(float u, float* remapped) const {
+    if (particle_lights_.empty()) return {nullptr, 0.0f};
+    const auto chosen = particle_lights_.sample_discrete(u);
+    if (remapped) *remapped = chosen.remapped;
+    return {parts_.emitters[chosen.index].get(), chosen.probability};
+}
+
+}  // namespace mote::core

@@ -1,0 +1,72 @@
+// Which media surround the lights: found once for every light that does not reach through a boundary.
+#include <algorithm>
+
+#include "core/geometry/triangle_mesh.h"
+#include "core/scene/scene.h"
+
+namespace mote::core {
+
+/// The state at a point of an area light, on the side that its normal points to.
+MediumState Scene::area_light_state(const Emitter& emitter, const Shape& shape, const Vec3& p,
+                                    const Vec3& normal) const {
+    const ShapeSample anywhere = shape.sample_area({0.5f, 0.5f});
+    const Vec3 start = offset_origin(p, normal, anywhere.error, normal);
+    const Medium* declared = emitter.medium ? emitter.medium : shape.exterior.get();
+    return medium_state_near(start, declared, &shape);
+}
+
+namespace {
+
+/// May a boundary pass through the box, so that its two ends lie in different media? Triangles are compared
+/// by their bounds; of analytic shapes the bounds of the whole are all that is known.
+bool may_cross(const Shape& boundary, const Bounds3& box) {
+    const auto overlap = [&](const Bounds3& b) {
+        return glm::all(glm::lessThanEqual(b.lower, box.upper)) &&
+               glm::all(glm::greaterThanEqual(b.upper, box.lower));
+    };
+    if (!overlap(boundary.bounds())) return false;
+    const auto* mesh = dynamic_cast<const TriangleMesh*>(&boundary);
+    if (!mesh) return true;
+    const MeshData& data = mesh->data();
+    return std::any_of(data.triangles.begin(), data.triangles.end(), [&](const auto& triangle) {
+        Bounds3 b;
+        for (const std::uint32_t vertex : triangle) b.extend(data.positions[vertex]);
+        return overlap(b);
+    });
+}
+
+}  // namespace
+
+void Scene::find_emitter_states() {
+    for (const auto& shape : parts_.shapes) {
+        if (!shape->emitter) continue;
+        const Bounds3 box = shape->bounds();
+        const bool straddles = std::any_of(boundaries_.begin(), boundaries_.end(), [&](const Boundary& b) {
+            return b.shape != shape.get() && may_cross(*b.shape, box);
+        });
+        if (straddles) continue;  // found particle by particle
+        const ShapeSample s = shape->sample_area({0.37f, 0.61f});
+        emitter_states_[shape->emitter.get()] =
+            area_light_state(*shape->emitter, *shape, s.position, s.normal);
+    }
+    for (const auto& emitter : parts_.emitters) {
+        const EmitterTraits traits = emitter->traits();
+        if (traits.kind == EmitterKind::area) continue;
+        MediumState state;
+        state.set_outside(emitter->medium);
+        if (!traits.infinite) {
+            const auto position = light_position(*emitter);
+            if (!position) continue;
+            state = medium_state_at(*position, emitter->medium);
+        }
+        emitter_states_[emitter.get()] = state;
+    }
+}
+
+MediumState Scene::emitter_medium_state(const Emitter& emitter, const EmissionSample& sample) const {
+    if (const auto it = emitter_states_.find(&emitter); it != emitter_states_.end()) return it->second;
+    if (sample.shape) return area_light_state(emitter, *sample.shape, sample.origin, sample.normal);
+    return medium_state_at(sample.origin, emitter.medium);
+}
+
+}  // namespace mote::core

@@ -1,0 +1,53 @@
+// The transmittance between two points: the boundaries on the way cut the ray into segments of one medium
+// each.
+#include "core/scene/scene.h"
+
+namespace mote::core {
+
+/// Calls segment(medium, ray) for every part of the ray that lies in a medium, until it returns false.
+template <typename Segment>
+void Scene::for_each_segment(const Ray& ray, MediumState state, const Segment& segment) const {
+    const auto pass = [&](float t0, float t1) {
+        const Medium* medium = state.current();
+        if (!medium || !(t0 < t1)) return true;
+        return bool(segment(*medium, Ray{ray.origin, ray.direction, t0, t1}));
+    };
+    if (!rays_->has_boundaries()) {
+        pass(ray.t_min, ray.t_max);
+        return;
+    }
+    std::vector<SurfaceHit> hits;  // takes memory only when a boundary is met
+    rays_->all_hits(ray, RayTracer::Group::boundaries, hits);
+    float t = ray.t_min;
+    for (const SurfaceHit& hit : hits) {
+        if (!pass(t, hit.t)) return;
+        state.cross(*hit.shape, hit.geometric_normal, ray.direction);
+        t = hit.t;
+    }
+    pass(t, ray.t_max);
+}
+
+Rgb Scene::transmittance(const Vec3& from, const Vec3& to, const MediumState& state, Rng& rng,
+                         TrackingCounters& counters) const {
+    Rgb result(1.0f);
+    if (!has_media()) return result;
+    const Vec3 d = to - from;
+    const float distance = glm::length(d);
+    if (!(distance > 0.0f)) return result;
+    for_each_segment(Ray{from, d / distance, 0.0f, distance}, state, [&](const Medium& m, const Ray& r) {
+        result *= m.transmittance(r, rng, counters);
+        return !is_black(result);
+    });
+    return result;
+}
+
+void Scene::connect(const Ray& ray, const MediumState& state, PathWeights& weights, Rng& rng,
+                    TrackingCounters& counters) const {
+    if (!has_media()) return;
+    for_each_segment(ray, state, [&](const Medium& m, const Ray& r) {
+        m.connect(r, weights, rng, counters);
+        return !is_black(weights.throughput);
+    });
+}
+
+}  // namespace mote::core
