@@ -1,0 +1,32 @@
+// Mesh files: one reader for each format, all giving the same plain data.
+//
+// OBJ and PLY are read by our own code: files of these formats come from anywhere, assimp's PLY reader
+// crashes on damaged ones, and its OBJ reader forgets which corners share a vertex, which decides where
+// computed normals are smooth. Every other format goes through assimp, in a child process.
+#pragma once
+
+#include <string_view>
+
+#include "core/geometry/triangle_mesh.h"
+#include "core/scene/error.h"
+
+namespace mote::core {
+
+/// What a reader hands over: polygons are triangulated already, nothing is checked yet.
+struct MeshFile {
+    MeshData data;                  ///< no normals when the file has none
+    std::size_t other_dropped = 0;  ///< lines, points and faces with less than three corners
+};
+
+/// Wavefront OBJ from text. Throws InputError with the line at fault.
+MeshFile read_obj(std::string text, const std::string& path, bool flip_v);
+/// Stanford PLY (ASCII, little- and big-endian binary) from bytes. Throws InputError.
+MeshFile read_ply(std::string_view bytes, const std::string& path, bool flip_v);
+/// Whatever assimp reads, in a child process with limits on time (60 s) and memory. Throws InputError.
+MeshFile read_with_assimp(const std::string& path, bool flip_v);
+
+/// load_mesh() for a format given by name: "obj", "ply", or "" for what the file's extension says.
+MeshData load_mesh_as(const std::string& format, const std::string& path, bool face_normals, bool flip_v,
+                      std::vector<std::string>& notes);
+
+}  // namespace mote::core

@@ -1,0 +1,28 @@
+// The shapes of the scene language: each function hands one or more types to the registry.
+#pragma once
+
+#include "core/scene/properties.h"
+#include "core/scene/registry.h"
+
+namespace mote::core {
+
+void register_mesh_files(Registry& registry);  // obj, ply, mesh
+void register_primitives(Registry& registry);  // rectangle, cube
+void register_quadrics(Registry& registry);    // sphere, disk, cylinder
+
+/// The rows of the manual pages that many shapes share.
+Parameter to_world_parameter(const std::string& description);
+Parameter flip_normals_parameter();
+
+/// Runs `make` and gives errors that name no place the place of the element.
+template <typename Make>
+auto at_element(const Properties& p, Make make) {
+    try {
+        return make();
+    } catch (const InputError& error) {
+        if (!error.where().file.empty() || error.where().line > 0) throw;
+        throw InputError(error.what(), p.where);
+    }
+}
+
+}  // namespace mote::core
