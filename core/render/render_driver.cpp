@@ -123,7 +123,7 @@ RenderResult render(const Scene& scene, const Integrator& integrator, const Rend
     const Clock::time_point prepare_start = Clock::now();
     const auto estimator = integrator.prepare(
         scene, {request.seed, settings.width, settings.height, sampler_kind(settings.sampler)});
-    result.statistics.seconds["prepare"] = seconds_since(prepare_start);
+    result.statistics.seconds["build"] = seconds_since(prepare_start);
 
     PassLoop(request, stop, *filter, *estimator, result).run();
 

@@ -23,7 +23,7 @@ struct StopRule {
 };
 
 struct RenderProgress {
-    std::uint32_t passes;
+    std::uint32_t passes, passes_of_this_run;  ///< the first holds those of a checkpoint too
     std::optional<std::uint32_t> passes_wanted;
     double seconds, seconds_left;  ///< seconds_left < 0: unknown
     double noise;                  ///< infinity before two passes; refreshed twice a second

@@ -1,0 +1,140 @@
+// Parsing the command line, and turning what went wrong into one line and an exit code.
+#include "apps/command.h"
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <new>
+
+#include "apps/subcommands.h"
+#include "core/scene/error.h"
+
+namespace mote::apps {
+
+namespace {
+
+void print_error(const std::string& message) {
+    // One write, so that lines of several threads or processes do not mix.
+    std::string line = "mote: " + message;
+    for (char& c : line)
+        if (c == '\n' || c == '\r') c = ' ';
+    std::fflush(stdout);
+    std::fputs((line + "\n").c_str(), stderr);
+}
+
+void add_scene_options(CLI::App& command, SceneArguments& arguments) {
+    command.add_option("SCENE", arguments.scene, "The scene file")->required();
+    command.add_option("--integrator", arguments.integrator, "Render with this type instead of the scene's")
+        ->type_name("TYPE");
+    command
+        .add_option("-D,--define", arguments.defines,
+                    "Set a $parameter of the scene file, or a value such as integrator.paths (repeatable)")
+        ->type_name("NAME=VALUE")
+        ->expected(1)
+        ->allow_extra_args(false)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void add_render(CLI::App& app, RenderArguments& a, std::function<int()>& action) {
+    CLI::App& command = *app.add_subcommand("render", "Render a scene into a layered EXR and a PNG preview");
+    add_scene_options(command, a.scene);
+    command.add_option("-o,--output", a.output, "The EXR file to write (default: the scene's name)");
+    command
+        .add_option("--passes", a.passes, "Stop after this many passes (default: the scene's sample_count)")
+        ->check(CLI::Range(std::uint32_t(1), std::uint32_t(1) << 30));
+    command.add_option("--time", a.seconds, "Stop after this many seconds")->check(CLI::PositiveNumber);
+    command.add_option("--noise", a.noise, "Stop at this relative noise, such as 0.02")
+        ->check(CLI::PositiveNumber);
+    command.add_option("--seed", a.seed, "Another seed gives another, independent picture");
+    command.add_option("-t,--threads", a.threads, "Number of threads (default: one for every core)")
+        ->check(CLI::Range(0, 4096));
+    command.add_flag("--resume", a.resume, "Continue from the checkpoint of an interrupted render");
+    command.add_option("--checkpoint-every", a.checkpoint_every, "Seconds between checkpoints (default: 60)")
+        ->check(CLI::NonNegativeNumber);
+    command.add_option("--stats", a.stats, "Write statistics to this JSON file");
+    command.add_flag("--half", a.half, "Write float16 instead of float32");
+    command.add_flag("--quiet", a.quiet, "No progress, no warnings");
+    command.add_flag("-v,--verbose", a.verbose, "Also print the plan and where the time went");
+    command.callback([&a, &action] { action = [&a] { return render_command(a); }; });
+}
+
+int parse_and_run(int argc, char** argv) {
+    CLI::App app("mote: many-light rendering and participating media");
+    app.name("mote");
+    app.set_version_flag("--version", std::string("mote ") + MOTE_VERSION);
+    app.require_subcommand(1);
+    std::function<int()> action;
+
+    RenderArguments render;
+    for (int i = 0; i < argc; ++i) render.command_line.emplace_back(argv[i]);
+    add_render(app, render, action);
+
+    SceneArguments plan;
+    CLI::App& plan_app = *app.add_subcommand("plan", "Print what a scene requires, and what will run");
+    add_scene_options(plan_app, plan);
+    plan_app.callback([&] { action = [&] { return plan_command(plan); }; });
+
+    std::string info;
+    CLI::App& info_app =
+        *app.add_subcommand("info", "Describe a scene, mesh, picture or volume in a few lines");
+    info_app.add_option("FILE", info, "The file")->required();
+    info_app.callback([&] { action = [&] { return info_command(info); }; });
+
+    ConvertArguments convert;
+    CLI::App& convert_app = *app.add_subcommand("convert", "Convert a picture to EXR or PNG");
+    convert_app.add_option("IN", convert.input, "EXR, PNG, JPEG, HDR, PNM, PFM, BMP or TGA")->required();
+    convert_app.add_option("OUT", convert.output, "A file that ends in .exr or .png")->required();
+    convert_app.add_option("--exposure", convert.exposure, "Brighten by this many stops")
+        ->check(CLI::Range(-100.0, 100.0));
+    convert_app.add_option("--layer", convert.layer, "This layer of an EXR instead of the beauty");
+    convert_app.add_flag("--half", convert.half, "Write float16 instead of float32");
+    convert_app.callback([&] { action = [&] { return convert_command(convert); }; });
+
+    CLI::App& formats_app = *app.add_subcommand("formats", "Print the scene language as Markdown");
+    formats_app.callback([&] { action = [] { return formats_command(); }; });
+
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == int(CLI::ExitCodes::Success))
+            return app.exit(error);  // --help, --version
+        throw UsageError(error.what());
+    }
+    return action();
+}
+
+// An exception that no thread caught, or a second one while the first is on its way.
+[[noreturn]] void terminate_quietly() {
+    static const char message[] = "mote: internal error: an exception could not be handled\n";
+    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, message, sizeof(message) - 1);
+    ::_exit(exit_internal);
+}
+
+}  // namespace
+
+int run_command(int argc, char** argv) {
+    std::set_terminate(terminate_quietly);
+    try {
+        return parse_and_run(argc, argv);
+    } catch (const UsageError& error) {
+        print_error(std::string(error.what()) + " (see 'mote --help')");
+        return exit_usage;
+    } catch (const core::InputError& error) {
+        print_error(error.what());
+        return exit_input;
+    } catch (const std::bad_alloc&) {
+        print_error("there is not enough memory for this");
+        return exit_internal;
+    } catch (const std::exception& error) {
+        print_error(std::string("internal error: ") + error.what());
+        return exit_internal;
+    } catch (...) {
+        print_error("internal error");
+        return exit_internal;
+    }
+}
+
+}  // namespace mote::apps

@@ -1,0 +1,15 @@
+// mote formats: the scene language, from the manual pages that the program itself uses.
+#include <cstdio>
+
+#include "apps/command.h"
+#include "apps/subcommands.h"
+#include "core/scene/scene_format.h"
+
+namespace mote::apps {
+
+int formats_command() {
+    std::fputs(core::scene_format_markdown(make_registry()).c_str(), stdout);
+    return exit_ok;
+}
+
+}  // namespace mote::apps

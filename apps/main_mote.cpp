@@ -1,0 +1,26 @@
+// The entry point: looks at the processor, then hands over.
+//
+// This file is compiled for any x86-64, the rest of the program perhaps for processors with AVX2. The check
+// runs before the constructors of all other files, for these may use such instructions already.
+#include <unistd.h>
+
+#include "apps/command.h"
+
+#if defined(MOTE_NEEDS_AVX2)
+namespace {
+
+__attribute__((constructor(101))) void check_processor() {
+    __builtin_cpu_init();
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2"))
+        return;
+    static const char message[] =
+        "mote: this program was built for processors with AVX2 and FMA (from about 2013), which this one "
+        "lacks; build it with -DMOTE_ARCH=x86-64 (cmake --preset portable)\n";
+    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, message, sizeof(message) - 1);
+    ::_exit(3);
+}
+
+}  // namespace
+#endif
+
+int main(int argc, char* argv[]) { return mote::apps::run_command(argc, argv); }

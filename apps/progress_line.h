@@ -1,0 +1,28 @@
+// How far a render is, on stderr: one live line on a terminal, a plain line every few seconds elsewhere.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "core/render/render_driver.h"
+
+namespace mote::apps {
+
+/// "pass 12/64, 3.1 passes/s, 17 s left, noise 2.4 %"
+std::string progress_text(const core::RenderProgress& progress);
+
+class ProgressLine {
+  public:
+    /// Prints nothing when `quiet`.
+    explicit ProgressLine(bool quiet);
+    void update(const core::RenderProgress& progress);
+    /// Ends the live line, so that other output starts on a line of its own.
+    void end();
+
+  private:
+    bool quiet_, terminal_, open_ = false;
+    bool shown_ = false;
+    std::chrono::steady_clock::time_point last_;
+};
+
+}  // namespace mote::apps

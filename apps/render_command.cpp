@@ -1,0 +1,183 @@
+// mote render: from a scene file to a layered EXR, a PNG preview and statistics.
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+
+#include "apps/command.h"
+#include "apps/interruption.h"
+#include "apps/progress_line.h"
+#include "apps/render_report.h"
+#include "apps/subcommands.h"
+#include "core/image/film_image.h"
+#include "core/image/image_file.h"
+#include "core/render/render_driver.h"
+#include "core/scene/error.h"
+
+namespace mote::apps {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+void note(const std::string& text) { std::fputs(("mote: " + text + "\n").c_str(), stderr); }
+
+struct OutputFiles {
+    std::string picture, preview, checkpoint;
+};
+
+OutputFiles output_files(const RenderArguments& arguments) {
+    std::string picture = arguments.output;
+    if (picture.empty())
+        picture = fs::path(arguments.scene.scene).filename().replace_extension(".exr").string();
+    if (fs::path(picture).extension() != ".exr")
+        throw UsageError("the output '" + core::printable(picture) +
+                         "' does not end in .exr (a PNG preview is written beside it)");
+    return {picture, fs::path(picture).replace_extension(".png").string(), picture + ".checkpoint"};
+}
+
+// Hours of rendering must not end with the discovery that the folder does not exist.
+void check_writable(const std::string& path) {
+    const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
+    std::error_code ignored;
+    if (!fs::is_directory(folder, ignored))
+        throw core::InputError("cannot be written: there is no folder '" + folder.string() + "'", {path, 0});
+    if (fs::is_directory(path, ignored))
+        throw core::InputError("cannot be written: it is a folder", {path, 0});
+    if (::access(folder.c_str(), W_OK | X_OK) != 0)
+        throw core::InputError(std::string("cannot be written: ") + std::strerror(errno), {path, 0});
+}
+
+void warn_about_scene(const core::Scene& scene, const core::Plan& plan) {
+    for (const std::string& warning : scene.parts().warnings) note("warning: " + warning);
+    for (const core::PlanEntry& e : plan.missing)
+        note("warning: " + plan.integrator + " leaves out " + e.topic + ": " + e.reason);
+}
+
+// What changes the picture besides the contents of files.
+std::string hash_of(const core::Scene& scene, const core::Integrator& integrator,
+                    const SceneArguments& arguments) {
+    std::vector<std::string> settings = {MOTE_VERSION, integrator.type(), arguments.integrator};
+    settings.insert(settings.end(), arguments.defines.begin(), arguments.defines.end());
+    return core::content_hash(scene, settings);
+}
+
+void write_outputs(const OutputFiles& files, const RenderReport& report, bool half) {
+    core::ImageChannels image = core::film_image(report.result.film);
+    image.metadata = picture_metadata(report);
+    core::write_exr(files.picture, image, half);
+    core::write_png(files.preview, image.width, image.height, image.rgb(""));
+}
+
+void print_times(const core::Statistics& statistics) {
+    for (const auto& [name, seconds] : statistics.seconds)
+        std::fputs(fmt::format("  {:12} {:9.3f} s\n", name, seconds).c_str(), stderr);
+    std::fputs(fmt::format("  {:12} {:9.1f} MB\n", "peak memory", double(peak_memory_bytes()) * 1e-6).c_str(),
+               stderr);
+}
+
+int report_interruption(const RenderArguments& arguments, const OutputFiles& files,
+                        const core::RenderResult& result, int signal_number) {
+    if (result.film.pass_count() == 0) {
+        note("interrupted before the first pass was complete: there is nothing to write");
+    } else {
+        std::vector<std::string> command = arguments.command_line;
+        if (!arguments.resume) command.emplace_back("--resume");
+        note(fmt::format("interrupted after {} passes: {} holds the picture so far", result.film.pass_count(),
+                         files.picture));
+        note("continue with: " + quoted(command));
+    }
+    return 128 + signal_number;
+}
+
+}  // namespace
+
+int render_command(const RenderArguments& arguments) {
+    const OutputFiles files = output_files(arguments);
+    const int threads = arguments.threads > 0 ? arguments.threads : tbb::info::default_concurrency();
+    const tbb::global_control thread_limit(tbb::global_control::max_allowed_parallelism,
+                                           std::size_t(threads));
+
+    const Clock::time_point load_start = Clock::now();
+    const core::Registry registry = make_registry();
+    const auto scene = load(arguments.scene, registry);
+    const core::Integrator& integrator = require_integrator(*scene, registry);
+    const core::Plan plan = integrator.plan(*scene, core::find_requirements(*scene));
+    for (const std::string& path : {files.picture, files.preview}) check_writable(path);
+    if (!arguments.stats.empty()) check_writable(arguments.stats);
+
+    core::RenderRequest request;
+    request.seed = arguments.seed;
+    request.stop = {arguments.passes, arguments.seconds, arguments.noise};
+    request.checkpoint_path = files.checkpoint;
+    request.checkpoint_every_seconds = arguments.checkpoint_every;
+    request.checkpoint_at_end = false;
+    request.resume = arguments.resume;
+    request.content_hash = hash_of(*scene, integrator, arguments.scene);
+    const double load_seconds = seconds_since(load_start);
+
+    if (!arguments.quiet) {
+        warn_about_scene(*scene, plan);
+        if (!arguments.resume && fs::exists(files.checkpoint))
+            note("'" + core::printable(files.checkpoint) +
+                 "' of an interrupted render is not used (--resume would continue it)");
+        if (arguments.verbose) std::fputs(plan.to_text().c_str(), stderr);
+        note(fmt::format("{}: {}, {} x {} pixels, {} thread{}", scene->parts().file, plan.integrator,
+                         scene->film().width, scene->film().height, threads, threads == 1 ? "" : "s"));
+    }
+
+    const Interruption interruption;
+    ProgressLine progress(arguments.quiet);
+    request.interrupted = &interruption.flag();
+    request.progress = [&progress](const core::RenderProgress& p) { progress.update(p); };
+    core::RenderResult result = [&] {
+        try {
+            return core::render(*scene, integrator, request);
+        } catch (...) {
+            progress.end();
+            throw;
+        }
+    }();
+    progress.end();
+    result.statistics.seconds["load"] = load_seconds;
+
+    if (result.film.pass_count() > 0) {
+        const Clock::time_point write_start = Clock::now();
+        RenderReport report{
+            *scene, plan, result, request.content_hash, arguments.seed, threads, arguments.command_line};
+        write_outputs(files, report, arguments.half || scene->film().half);
+        result.statistics.seconds["write"] = seconds_since(write_start);
+        if (!arguments.stats.empty()) {
+            const std::string json = statistics_json(report);
+            core::write_file_atomically(arguments.stats, std::as_bytes(std::span(json.data(), json.size())));
+        }
+    }
+    if (!arguments.quiet) {
+        for (const std::string& warning : result.statistics.warnings) note("warning: " + warning);
+        if (arguments.verbose) print_times(result.statistics);
+    }
+    if (result.statistics.non_finite_samples > 0)  // a defect of ours: said even when asked to be quiet
+        note(
+            fmt::format("WARNING: {} pixel samples were NaN or infinite and count as black; please report "
+                        "this scene",
+                        result.statistics.non_finite_samples));
+    if (result.interrupted)
+        return report_interruption(arguments, files, result, interruption.signal_number());
+
+    std::error_code ignored;
+    fs::remove(files.checkpoint, ignored);  // there may be none
+    if (!arguments.quiet) std::fputs(fmt::format("{}\n{}\n", files.picture, files.preview).c_str(), stdout);
+    return exit_ok;
+}
+
+}  // namespace mote::apps

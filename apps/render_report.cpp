@@ -1,0 +1,127 @@
+// Metadata and statistics.
+#include "apps/render_report.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "git_hash.h"
+
+namespace mote::apps {
+
+namespace {
+
+using nlohmann::json;
+
+// OpenEXR's camera space is left-handed: x to the right, y up, z forward. Ours has x to the left. Its
+// matrices act on row vectors, so the transpose is written.
+std::string world_to_camera(const core::Camera& camera) {
+    glm::dmat4 flip(1.0);
+    flip[0][0] = -1.0;
+    const glm::dmat4 m = flip * camera.to_world().inverse().matrix;
+    std::string text;
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row)
+            text += fmt::format("{}{:.9g}", text.empty() ? "" : " ", m[column][row]);
+    return text;
+}
+
+json entries_json(const std::vector<core::PlanEntry>& entries) {
+    json list = json::array();
+    for (const core::PlanEntry& e : entries)
+        list.push_back({{"topic", e.topic}, {"choice", e.choice}, {"reason", e.reason}});
+    return list;
+}
+
+json number_or_null(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+
+double total_seconds(const core::Statistics& statistics) {
+    double total = 0.0;
+    for (const auto& [name, seconds] : statistics.seconds)
+        if (name != "checkpoints") total += seconds;  // part of "render"
+    return total;
+}
+
+}  // namespace
+
+std::string quoted(const std::vector<std::string>& command_line) {
+    static const std::string plain =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%";
+    std::string text;
+    for (const std::string& word : command_line) {
+        if (!text.empty()) text += ' ';
+        if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) {
+            text += word;
+            continue;
+        }
+        text += '\'';
+        for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+        text += '\'';
+    }
+    return text;
+}
+
+std::size_t peak_memory_bytes() {
+    rusage usage{};
+    ::getrusage(RUSAGE_SELF, &usage);
+    return std::size_t(usage.ru_maxrss) * 1024;
+}
+
+std::string git_hash() { return MOTE_GIT_HASH; }
+
+std::map<std::string, std::string> picture_metadata(const RenderReport& r) {
+    return {{"software", std::string("mote ") + MOTE_VERSION},
+            {"integrator", r.plan.integrator},
+            {"seed", std::to_string(r.seed)},
+            {"passes", std::to_string(r.result.film.pass_count())},
+            {"seconds", fmt::format("{:.3f}", total_seconds(r.result.statistics))},
+            {"gitHash", git_hash()},
+            {"sceneHash", r.scene_hash},
+            {"commandLine", quoted(r.command_line)},
+            {"worldToCamera", world_to_camera(r.scene.camera())}};
+}
+
+std::string statistics_json(const RenderReport& r) {
+    const core::Statistics& s = r.result.statistics;
+    json values = json::object();
+    for (const auto& [name, value] : s.values)
+        if (name != "noise" && name != "vpls") values[name] = number_or_null(value);
+    json warnings = json::array();
+    for (const std::string& w : r.scene.parts().warnings) warnings.push_back(w);
+    for (const std::string& w : s.warnings) warnings.push_back(w);
+
+    json j;
+    j["mote"] = MOTE_VERSION;
+    j["git_hash"] = git_hash();
+    j["scene"] = r.scene.parts().file;
+    j["scene_hash"] = r.scene_hash;
+    j["command_line"] = r.command_line;
+    j["integrator"] = r.plan.integrator;
+    j["plan"] = {{"runs", entries_json(r.plan.runs)},
+                 {"left_out", entries_json(r.plan.left_out)},
+                 {"missing", entries_json(r.plan.missing)}};
+    j["width"] = r.result.film.width();
+    j["height"] = r.result.film.height();
+    j["seed"] = r.seed;
+    j["threads"] = r.threads;
+    j["passes"] = r.result.film.pass_count();
+    j["resumed_at"] = r.result.resumed_at;
+    j["interrupted"] = r.result.interrupted;
+    j["seconds"] = s.seconds;
+    j["seconds"]["total"] = total_seconds(s);
+    j["rays"] = s.rays;
+    j["lookups"] = s.lookups;
+    if (const auto vpls = s.values.find("vpls"); vpls != s.values.end()) j["vpls"] = vpls->second;
+    j["values"] = values;
+    j["peak_memory_bytes"] = peak_memory_bytes();
+    j["noise"] = number_or_null(r.result.film.relative_noise());
+    j["warnings"] = warnings;
+    j["non_finite_samples"] = s.non_finite_samples;
+    j["clamped_samples"] = s.clamped_samples;
+    // File names need not be UTF-8.
+    return j.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace mote::apps

@@ -1,0 +1,33 @@
+// What a render says about itself: metadata of the picture, and stats.json.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/render/render_driver.h"
+#include "core/scene/scene.h"
+
+namespace mote::apps {
+
+/// Everything that is known when a render has ended.
+struct RenderReport {
+    const core::Scene& scene;
+    const core::Plan& plan;
+    const core::RenderResult& result;
+    std::string scene_hash;
+    std::uint64_t seed;
+    int threads;
+    std::vector<std::string> command_line;
+};
+
+/// The command line as a shell would take it.
+std::string quoted(const std::vector<std::string>& command_line);
+/// Largest resident size of this process so far.
+std::size_t peak_memory_bytes();
+std::string git_hash();
+
+std::map<std::string, std::string> picture_metadata(const RenderReport& report);
+std::string statistics_json(const RenderReport& report);
+
+}  // namespace mote::apps

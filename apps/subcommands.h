@@ -1,0 +1,63 @@
+// What each subcommand needs, as the command line gave it, and the functions that run them.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/render/integrator.h"
+#include "core/scene/registry.h"
+#include "core/scene/scene.h"
+
+namespace mote::apps {
+
+/// The command line is at fault: exit code 2.
+class UsageError : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+};
+
+/// Which scene, and what of it is changed: shared by render, plan and info.
+struct SceneArguments {
+    std::string scene;
+    std::string integrator;
+    std::vector<std::string> defines;  ///< "name=value"
+};
+
+struct RenderArguments {
+    SceneArguments scene;
+    std::string output;  ///< "": the scene's name with .exr, in the current folder
+    std::optional<std::uint32_t> passes;
+    std::optional<double> seconds, noise;
+    std::uint64_t seed = 0;
+    int threads = 0;  ///< 0: one for every core
+    bool resume = false, quiet = false, verbose = false, half = false;
+    double checkpoint_every = 60.0;
+    std::string stats;
+    std::vector<std::string> command_line;
+};
+
+struct ConvertArguments {
+    std::string input, output, layer;
+    float exposure = 0.0f;
+    bool half = false;
+};
+
+core::Registry make_registry();
+/// Loads the scene with everything that the command line changes. Throws InputError, or UsageError for a
+/// malformed definition.
+std::unique_ptr<core::Scene> load(const SceneArguments& arguments, const core::Registry& registry);
+/// The integrator to run. Throws InputError when the scene names none.
+const core::Integrator& require_integrator(const core::Scene& scene, const core::Registry& registry);
+
+int render_command(const RenderArguments& arguments);
+int plan_command(const SceneArguments& arguments);
+int info_command(const std::string& path);
+int convert_command(const ConvertArguments& arguments);
+int formats_command();
+
+}  // namespace mote::apps
