@@ -30,7 +30,7 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-void note(const std::string& text) { std::fputs(("mote: " + text + "\n").c_str(), stderr); }
+void note(const std::string& text) { std::fputs(fmt::format("mote: {}\n", text).c_str(), stderr); }
 
 struct OutputFiles {
     std::string picture, preview, checkpoint;
@@ -129,8 +129,8 @@ int render_command(const RenderArguments& arguments) {
     if (!arguments.quiet) {
         warn_about_scene(*scene, plan);
         if (!arguments.resume && fs::exists(files.checkpoint))
-            note("'" + core::printable(files.checkpoint) +
-                 "' of an interrupted render is not used (--resume would continue it)");
+            note(fmt::format("'{}' of an interrupted render is not used (--resume would continue it)",
+                             core::printable(files.checkpoint)));
         if (arguments.verbose) std::fputs(plan.to_text().c_str(), stderr);
         note(fmt::format("{}: {}, {} x {} pixels, {} thread{}", scene->parts().file, plan.integrator,
                          scene->film().width, scene->film().height, threads, threads == 1 ? "" : "s"));

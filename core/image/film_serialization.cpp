@@ -1,6 +1,7 @@
 // The bits of a film as bytes: header, sums, checksum. Little-endian, as every machine this runs on.
 #include <array>
 #include <cstring>
+#include <utility>
 
 #include "core/image/checksum.h"
 #include "core/image/film.h"
@@ -18,10 +19,21 @@ struct Header {
 };
 static_assert(sizeof(Header) == 40, "the header has no padding whose bytes could vary");
 
-void append(std::vector<std::byte>& bytes, const void* data, std::size_t size) {
-    const auto* begin = static_cast<const std::byte*>(data);
-    bytes.insert(bytes.end(), begin, begin + size);
-}
+// Fills a buffer of known size from front to back.
+class Writer {
+  public:
+    explicit Writer(std::size_t size) : bytes_(size) {}
+    void write(const void* data, std::size_t size) {
+        std::memcpy(bytes_.data() + position_, data, size);
+        position_ += size;
+    }
+    std::span<const std::byte> written() const { return std::span(bytes_).first(position_); }
+    std::vector<std::byte> take() { return std::move(bytes_); }
+
+  private:
+    std::vector<std::byte> bytes_;
+    std::size_t position_ = 0;
+};
 
 }  // namespace
 
@@ -42,16 +54,15 @@ std::vector<std::byte> Film::serialize() const {
 
     std::size_t size = sizeof(header) + sizeof(std::uint64_t);
     for (const Sums* sums : all_sums()) size += 2 * sums->total.size() * sizeof(double);
-    std::vector<std::byte> bytes;
-    bytes.reserve(size);
-    append(bytes, &header, sizeof(header));
+    Writer writer(size);
+    writer.write(&header, sizeof(header));
     for (const Sums* sums : all_sums()) {
-        append(bytes, sums->total.data(), sums->total.size() * sizeof(double));
-        append(bytes, sums->block.data(), sums->block.size() * sizeof(double));
+        writer.write(sums->total.data(), sums->total.size() * sizeof(double));
+        writer.write(sums->block.data(), sums->block.size() * sizeof(double));
     }
-    const std::uint64_t sum = checksum(bytes);
-    append(bytes, &sum, sizeof(sum));
-    return bytes;
+    const std::uint64_t sum = checksum(writer.written());
+    writer.write(&sum, sizeof(sum));
+    return writer.take();
 }
 
 void Film::deserialize(std::span<const std::byte> bytes) {

@@ -72,8 +72,8 @@ class PassLoop {
         // do.
         if (stop_.noise || seconds_since(noise_time_) > 0.5 || state_.passes <= 2) refresh_noise();
         if (request_.progress)
-            request_.progress(
-                {state_.passes, stop_.passes, state_.seconds, seconds_left(stop_, state_), state_.noise});
+            request_.progress({state_.passes, state_.passes_of_this_run, stop_.passes, state_.seconds,
+                               seconds_left(stop_, state_), state_.noise});
         if (seconds_since(checkpoint_time_) >= request_.checkpoint_every_seconds) write_checkpoint_now();
     }
     void refresh_noise() {
