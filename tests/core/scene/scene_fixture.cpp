@@ -1,0 +1,138 @@
+// Lights, media and integrators for tests of the scene language.
+#include "tests/core/scene/scene_fixture.h"
+
+#include "core/geometry/shape.h"
+
+namespace mote::tests {
+
+using namespace core;
+
+std::optional<EmissionSample> FakeEmitter::sample_emission(const Vec2& u, const Vec2&) const {
+    EmissionSample s{};
+    s.origin = position, s.direction = {0, 0, 1}, s.weight = strength, s.pdf_area = s.pdf_solid_angle = 1.0f;
+    if (shape) {
+        const ShapeSample on_shape = shape->sample_area(u);
+        s.origin = on_shape.position, s.normal = s.direction = on_shape.normal, s.shape = shape;
+    }
+    return s;
+}
+
+MediumTraits FakeMedium::traits() const {
+    MediumTraits t;
+    t.homogeneous = true, t.emissive = emissive, t.scattering = false;
+    t.description = "fake";
+    return t;
+}
+
+namespace {
+
+Factory emitter_factory(const EmitterTraits& traits, const char* strength) {
+    return [=](const Properties& p) {
+        auto e = std::make_shared<FakeEmitter>();
+        e->kind = traits;
+        e->position = Vec3(p.get_vec3("position", Vec3d(0.0)));
+        e->strength = p.get_rgb_in(strength, Rgb(1.0f), 0.0f, 1e30f);
+        return e;
+    };
+}
+
+void register_fakes(Registry& r) {
+    const EmitterTraits point{EmitterKind::point, true};
+    const EmitterTraits area{EmitterKind::area};
+    const EmitterTraits constant{EmitterKind::environment, false, false, true};
+    r.add({Category::emitter,
+           "point",
+           "",
+           {{"position", "point", "", ""}, {"intensity", "rgb", "", ""}},
+           "<emitter type='point'/>"},
+          emitter_factory(point, "intensity"));
+    r.add({Category::emitter, "area", "", {{"radiance", "texture", "", ""}}, "<emitter type='area'/>"},
+          emitter_factory(area, "radiance"));
+    r.add({Category::emitter, "constant", "", {{"radiance", "rgb", "", ""}}, "<emitter type='constant'/>"},
+          emitter_factory(constant, "radiance"));
+    r.add({Category::medium,
+           "homogeneous",
+           "",
+           {{"sigma_t", "volume", "1", ""}, {"emissive", "boolean", "false", ""}},
+           "<medium type='homogeneous'/>"},
+          [](const Properties& p) {
+              auto m = std::make_shared<FakeMedium>();
+              m->sigma_t = p.get_rgb("sigma_t", Rgb(1.0f));
+              m->emissive = p.get_bool("emissive", false);
+              return m;
+          });
+    const Factory integrator = [](const Properties& p) {
+        auto i = std::make_shared<FakeIntegrator>();
+        i->properties = p;
+        return i;
+    };
+    r.add({Category::integrator,
+           "fake",
+           "",
+           {{"max_depth", "integer", "-1", ""},
+            {"bound", "float", "1", ""},
+            {"flag", "boolean", "false", ""},
+            {"word", "string", "", ""},
+            {"colour", "rgb", "0", ""},
+            {"centre", "point", "0", ""},
+            {"axis", "vector", "0", ""},
+            {"to_world", "transform", "", ""},
+            {"picture", "texture", "0", ""},
+            {"filename", "string", "", ""},
+            {"depth_of_things", "integer", "0", ""}},
+           "<integrator type='fake'/>"},
+          integrator);
+    r.add({Category::integrator,
+           "other",
+           "",
+           {{"max_depth", "integer", "-1", ""}},
+           "<integrator type='other'/>"},
+          integrator);
+}
+
+}  // namespace
+
+const Registry& test_registry() {
+    static const Registry registry = [] {
+        Registry r;
+        register_core(r);
+        register_fakes(r);
+        return r;
+    }();
+    return registry;
+}
+
+std::string scene_xml(const std::string& body, const std::string& version) {
+    std::string xml = "<scene version=\"" + version + "\">\n" + body;
+    if (body.find("<sensor") == std::string::npos) xml += "\n<sensor type=\"perspective\"/>";
+    if (body.find("<emitter") == std::string::npos) xml += "\n<emitter type=\"constant\"/>";
+    return xml + "\n</scene>\n";
+}
+
+std::unique_ptr<Scene> load(const std::string& xml, const LoadOptions& options) {
+    return load_scene_from_string(xml, ".", test_registry(), options, "test.xml");
+}
+
+const Properties& integrator_of(const Scene& scene) {
+    return dynamic_cast<const FakeIntegrator&>(*scene.integrator()).properties;
+}
+
+std::string load_error(const std::string& xml, const LoadOptions& options) {
+    try {
+        load(xml, options);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+std::string file_error(const std::string& path) {
+    try {
+        load_scene(path, test_registry());
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+}  // namespace mote::tests
