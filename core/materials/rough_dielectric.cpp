@@ -95,9 +95,10 @@ class RoughDielectric final : public Bsdf {
         Facet f;
         if (wo.z == 0.0f || wi.z == 0.0f) return f;
         f.transmitted = (wo.z > 0.0f) != (wi.z > 0.0f);
-        const float eta = wo.z > 0.0f ? eta_ : 1.0f / eta_;
-        if (f.transmitted) f.eta = eta;
-        const Vec3d h = Vec3d(wo) + double(f.eta) * Vec3d(wi);
+        const double eta = wo.z > 0.0f ? double(eta_) : 1.0 / double(eta_);
+        const double along = f.transmitted ? eta : 1.0;
+        f.eta = float(along);
+        const Vec3d h = Vec3d(wo) + along * Vec3d(wi);
         const double length = glm::length(h);
         if (!(length > 0.0)) return f;
         Vec3d m = h / length;
@@ -106,12 +107,11 @@ class RoughDielectric final : public Bsdf {
         // Both directions must see the facet from the side on which they see the surface.
         if (!(cos_o > 0.0) || !(f.transmitted ? cos_i < 0.0 : cos_i > 0.0)) return f;
         f.cos_o = float(cos_o);
-        f.reflectance = fresnel_dielectric(std::fmin(f.cos_o, 1.0f), eta).reflectance;
-        f.jacobian = float(sqr_double(double(f.eta)) * -cos_i / (length * length));
+        f.reflectance = float(fresnel_dielectric(std::fmin(cos_o, 1.0), eta).reflectance);
+        f.jacobian = float(along * along * -cos_i / (length * length));
         f.density = microfacet_.density(wo.z > 0.0f ? Vec3(m) : Vec3(-m));
         return f;
     }
-    static double sqr_double(double x) { return x * x; }
 
     float eta_;  ///< inside over outside
     Microfacet microfacet_;

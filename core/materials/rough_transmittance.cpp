@@ -28,6 +28,13 @@ RoughTransmittance::RoughTransmittance(const Microfacet& microfacet, float eta) 
     const double step = 1.0 / double(size - 1);
     for (std::size_t i = 0; i < size; ++i)
         table_[i] = float(1.0 - rough_reflectance(microfacet, eta, float(double(i) * step)));
+    // Where roughness is finer than the table, 1 - R turns up again within the first interval (facets mask
+    // each other below mu = alpha). The interpolant stays below it, so that no light is made.
+    for (double mu = 1e-4; mu < step; mu *= 2.0) {
+        const double t = mu / step, here = 1.0 - rough_reflectance(microfacet, eta, float(mu));
+        const double support = (here - t * double(table_[1])) / (1.0 - t);
+        table_[0] = float(std::clamp(support, 0.0, double(table_[0])));
+    }
     double sum = 0.0;
     for (std::size_t i = 0; i + 1 < size; ++i) {
         const double x0 = double(i) * step, x1 = x0 + step, a = double(table_[i]), b = double(table_[i + 1]);

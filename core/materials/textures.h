@@ -26,7 +26,7 @@ enum class TextureWrap : std::uint8_t { repeat, mirror, clamp };
 struct BitmapTextureParameters {
     TextureFilter filter = TextureFilter::bilinear;
     TextureWrap wrap = TextureWrap::repeat;
-    Transform to_uv;
+    Transform to_uv{};
     std::string name = "bitmap";  ///< used in error messages
 };
 /// The first row of the bitmap lies at v = 0, texel centres at half-integers (Mitsuba 3; its OBJ reader turns

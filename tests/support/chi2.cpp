@@ -32,8 +32,8 @@ Vec3 direction(const core::Frame& frame, double h, double phi) {
 /// Adaptive Gauss-Legendre quadrature (3 x 3 points) of the density over one cell.
 class CellIntegral {
   public:
-    CellIntegral(const DirectionDensity& density, const core::Frame& frame, std::size_t samples)
-        : density_(density), frame_(frame), samples_(double(samples)) {}
+    CellIntegral(const DirectionDensity& density, const Chi2Options& o)
+        : density_(density), frame_(o.frame), samples_(double(o.samples)), subdivisions_(o.subdivisions) {}
 
     double operator()(double h0, double h1, double p0, double p1) const {
         return refine(h0, h1, p0, p1, quadrature(h0, h1, p0, p1), 0);
@@ -57,7 +57,7 @@ class CellIntegral {
         const double fine = parts[0] + parts[1] + parts[2] + parts[3];
         // A fiftieth of the standard deviation of the share of samples in the cell.
         const double tolerance = 0.02 * std::sqrt(std::max(fine, 5.0 / samples_) / samples_);
-        if (depth >= 7 || (depth >= 1 && std::fabs(fine - coarse) < tolerance)) return fine;
+        if (depth >= 8 || (depth >= subdivisions_ && std::fabs(fine - coarse) < tolerance)) return fine;
         return refine(h0, h, p0, p, parts[0], depth + 1) + refine(h, h1, p0, p, parts[1], depth + 1) +
                refine(h0, h, p, p1, parts[2], depth + 1) + refine(h, h1, p, p1, parts[3], depth + 1);
     }
@@ -65,6 +65,7 @@ class CellIntegral {
     const DirectionDensity& density_;
     core::Frame frame_;
     double samples_;
+    int subdivisions_;
 };
 
 /// The counted cells; the last one is everything outside.
@@ -92,7 +93,7 @@ std::vector<Cell> count_samples(const DirectionSampler& sampler, const Chi2Optio
 }
 
 void integrate_density(const DirectionDensity& density, const Chi2Options& o, std::vector<Cell>& cells) {
-    const CellIntegral integral(density, o.frame, o.samples);
+    const CellIntegral integral(density, o);
     for (int row = 0; row < o.cos_cells; ++row)
         for (int column = 0; column < o.phi_cells; ++column)
             cells[std::size_t(row * o.phi_cells + column)].expected =

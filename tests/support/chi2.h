@@ -25,7 +25,7 @@ using DirectionDensity = std::function<double(const core::Vec3&)>;
 struct Chi2Options {
     std::string name = "unnamed";  ///< of the table written on failure
     int cos_cells = 16, phi_cells = 32;
-    std::size_t samples = 250000;
+    std::size_t samples = 160000;
     std::uint64_t seed = 1;
     double significance = 0.01;
     int tests = 1;  ///< how many tests of one family share the significance (Šidák's correction)
@@ -33,6 +33,7 @@ struct Chi2Options {
     /// lobes need a small one.
     core::Frame frame;
     double cap = 2.0;
+    int subdivisions = 1;  ///< least number of times a cell is halved each way for its integral
     bool write_table = true;
 };
 
