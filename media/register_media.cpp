@@ -6,6 +6,7 @@
 #include "media/heterogeneous_medium.h"
 #include "media/homogeneous_medium.h"
 #include "media/phase_functions.h"
+#include "media/vdb_volume.h"
 
 namespace mote::media {
 
@@ -14,6 +15,7 @@ void register_media(core::Registry& registry) {
     register_hg_phase(registry);
     register_constant_volume(registry);
     register_grid_volume(registry);
+    register_vdb_volume(registry);
     register_homogeneous_medium(registry);
     register_heterogeneous_medium(registry);
 }

@@ -1,0 +1,46 @@
+// Runs the helper program that reads VDB files, and takes over what it hands back.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <new>
+#include <string>
+
+namespace mote::media {
+
+struct VdbLoadOptions;
+
+/// Memory aligned for NanoVDB.
+class AlignedBuffer {
+  public:
+    AlignedBuffer() = default;
+    explicit AlignedBuffer(std::size_t size);
+    std::byte* data() { return bytes_.get(); }
+    const std::byte* data() const { return bytes_.get(); }
+    std::size_t size() const { return size_; }
+
+  private:
+    static constexpr std::align_val_t alignment{64};
+    struct Free {
+        void operator()(std::byte* p) const { ::operator delete(p, alignment); }
+    };
+    std::unique_ptr<std::byte, Free> bytes_;
+    std::size_t size_ = 0;
+};
+
+struct GridReaderAnswer {
+    std::string text;      ///< JSON, see grid_reader_protocol.h
+    AlignedBuffer buffer;  ///< the NanoVDB grid; empty for "list"
+};
+
+/// Throws InputError with one line that names the file for every failure of the file's or of the helper's:
+/// its own refusal, a crash, too much time or memory, an answer that makes no sense, no helper to run.
+GridReaderAnswer run_grid_reader(const std::string& mode, const std::string& path,
+                                 const std::string& grid_name, const VdbLoadOptions& options);
+
+/// Where the helper is: the environment variable MOTE_GRID_READER, or `mote_grid_reader` beside this program,
+/// beside the library that holds this code, in ../libexec/mote, or where it was built.
+std::string grid_reader_path();
+
+}  // namespace mote::media

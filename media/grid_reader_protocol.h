@@ -1,0 +1,24 @@
+// What the helper program that reads VDB files hands back: a header, a JSON text, and the NanoVDB buffer, in
+// a memory file that it inherits. The header is written last, so that a helper that died leaves none.
+#pragma once
+
+#include <cstdint>
+
+namespace mote::media {
+
+struct GridReaderHeader {
+    static constexpr std::uint64_t expected_magic = 0x3252444952474d4full;
+    std::uint64_t magic = 0;
+    std::uint64_t text_size = 0;    ///< bytes of JSON after the header
+    std::uint64_t grid_offset = 0;  ///< of the NanoVDB buffer from the start of the file
+    std::uint64_t grid_size = 0;    ///< 0: no grid
+};
+
+inline constexpr int grid_reader_descriptor = 3;                ///< the memory file in the helper
+inline constexpr std::uint64_t grid_reader_max_text = 1 << 24;  ///< longer answers are refused
+
+// Arguments: mode ("read" or "list"), file, memory limit [bytes], CPU limit [s], clamp negatives ("0"/"1"),
+// grid name. The JSON is {"error": "..."} or, for "read", name, active_voxels, clamped, index_to_world (16
+// numbers, columns), warnings; for "list", {"grids": [...]}.
+
+}  // namespace mote::media
