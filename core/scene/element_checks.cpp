@@ -34,7 +34,7 @@ bool accepts_value(const std::string& type, const std::string& tag) {
 
 std::string article(const std::string& noun) {
     const bool vowel = !noun.empty() && std::string("aeiou").find(noun[0]) != std::string::npos;
-    return (vowel ? "an " : "a ") + noun;
+    return (vowel || noun == "rgb" ? "an " : "a ") + noun;
 }
 
 std::string kind(const Manual& manual) { return category_name(manual.category) + " '" + manual.type + "'"; }

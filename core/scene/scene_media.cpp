@@ -125,11 +125,15 @@ void Scene::find_boundaries() {
         boundaries_.push_back(boundary);
     }
     if (boundaries_.size() <= std::size_t(MediumState::capacity)) return;
-    for (const Boundary& b : boundaries_)
-        if (medium_state_near(b.shape->sample_area({0.37f, 0.61f}).position, nullptr, b.shape).overflow())
+    for (const Boundary& b : boundaries_) {
+        MediumState state =
+            medium_state_near(b.shape->sample_area({0.37f, 0.61f}).position, nullptr, b.shape);
+        state.enter(*b.shape);
+        if (state.overflow())
             throw InputError("more than " + std::to_string(MediumState::capacity) +
                                  " shapes with media are nested in each other",
                              {parts_.file, 0});
+    }
 }
 
 MediumState Scene::medium_state_at(const Vec3& p, const Medium* declared) const {

@@ -3,7 +3,6 @@
 #include "core/materials/bsdf.h"
 #include "core/scene/spectrum.h"
 #include "tests/core/scene/scene_fixture.h"
-#include "tests/support/test_data.h"
 
 using namespace mote::core;
 using namespace mote::tests;

@@ -1,11 +1,10 @@
 // The registry's manual pages: complete, true, and written out.
 #include "core/scene/scene_format.h"
 
-#include <algorithm>
+#include <fstream>
 #include <set>
+#include <sstream>
 
-#include "core/scene/scene_values.h"
-#include "core/scene/xml_reader.h"
 #include "integrators/register_integrators.h"
 #include "lights/register_lights.h"
 #include "media/register_media.h"
@@ -113,6 +112,21 @@ TEST_CASE("The format page holds every type and parameter", "[scene][registry]")
         CHECK(contains(page, "### `" + manual->type + "`"));
         for (const Parameter& p : manual->parameters) CHECK(contains(page, "| `" + p.name + "` | " + p.type));
     }
+}
+
+TEST_CASE("docs/scene-format.md is what the registry says", "[scene][registry]") {
+    std::ifstream file(MOTE_SOURCE_DIR "/docs/scene-format.md");
+    std::stringstream text;
+    text << file.rdbuf();
+    INFO("write the page anew with: mote_tests_core '[write-docs]'");
+    const bool same = text.str() == scene_format_markdown(full_registry());
+    CHECK(same);
+}
+
+TEST_CASE("Write docs/scene-format.md", "[.][write-docs]") {
+    std::ofstream file(MOTE_SOURCE_DIR "/docs/scene-format.md");
+    file << scene_format_markdown(full_registry());
+    CHECK(file.good());
 }
 
 TEST_CASE("The scene of the format page loads", "[scene][registry]") {

@@ -155,7 +155,8 @@ TEST_CASE("Includes are relative to their file, nest, and are hashed", "[scene][
     folder.write("parts/deeper.xml", "<scene version='3.0.0'>\n<include filename='../main.xml'/></scene>");
     CHECK(contains(file_error(main), "deeper.xml:2: "));
     CHECK(contains(file_error(main), "includes itself"));
-    folder.write("parts/deeper.xml", "<scene version='3.0.0'>\n\n<bsdf type='difuse'/></scene>");
+    folder.write("parts/deeper.xml",
+                 "<scene version='3.0.0'><default name='n' value='1'/>\n\n<bsdf type='difuse'/></scene>");
     CHECK(contains(file_error(main), "deeper.xml:3: unknown bsdf type 'difuse' (did you mean 'diffuse'?)"));
     folder.write("parts/deeper.xml", "");
     CHECK(contains(file_error(main), "deeper.xml:1: malformed XML"));

@@ -129,6 +129,6 @@ TEST_CASE("Film, filter and sampler become settings", "[scene][sensor]") {
     CHECK(scene->film().sampler == "sobol");
     CHECK(scene->film().sample_count == 8);
     REQUIRE(scene->parts().warnings.size() == 2);
-    CHECK(contains(scene->parts().warnings[0], "test.xml:4: sampler 'multijitter' is replaced by 'sobol'"));
+    CHECK(contains(scene->parts().warnings[0], "test.xml:5: sampler 'multijitter' is replaced by 'sobol'"));
     CHECK(contains(scene->parts().warnings[1], "test.xml:3: 'pixel_format' of film 'hdrfilm' has no effect"));
 }
