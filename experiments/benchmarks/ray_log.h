@@ -1,0 +1,49 @@
+// Writes down the rays that mote gives to Embree, so that bare Embree can trace the very same ones.
+//
+// The linker routes rtcIntersect1, rtcOccluded1, rtcOccluded16 and (Embree 3) rtcOccludedNM of the whole
+// program through wrappers (--wrap, see CMakeLists.txt) that log while a RayLog is open and pass the call on.
+#pragma once
+
+#include <vector>
+
+#include "core/geometry/embree_api.h"
+
+namespace mote::benchmarks {
+
+struct LoggedRay {
+    RTCRay ray;
+    RTCScene scene;
+    bool occlusion;
+};
+/// Sixteen occlusion rays as mote packed them; lanes that are not valid hold no ray.
+struct LoggedPacket {
+    RTCRay16 rays;
+    alignas(64) int valid[16];
+    RTCScene scene;
+};
+
+/// Logs from construction to close(). One at a time, on one thread.
+class RayLog {
+  public:
+    RayLog();
+    ~RayLog() { close(); }
+    RayLog(const RayLog&) = delete;
+    RayLog& operator=(const RayLog&) = delete;
+    void close();
+
+    std::vector<LoggedRay> rays;
+    std::vector<LoggedPacket> packets;
+};
+
+/// Embree itself, past the wrappers.
+void bare_intersect(RTCScene scene, RTCRayHit& ray);
+void bare_occluded(RTCScene scene, RTCRay& ray);
+/// `coherent` is Embree's hint.
+void bare_occluded(const int* valid, RTCScene scene, RTCRay16& rays, bool coherent);
+#if RTC_VERSION_MAJOR < 4
+/// A stream of `count` packets of sixteen, `stride` bytes apart.
+void bare_occluded_stream(RTCScene scene, RTCRay16* packets, unsigned count, std::size_t stride,
+                          bool coherent);
+#endif
+
+}  // namespace mote::benchmarks
