@@ -15,11 +15,11 @@ float fresnel_conductor(float cos_i, float eta, float k) {
     const float smaller = larger > 0.0f ? eta * k / larger : 0.0f;
     const float a = real >= 0.0f ? larger : smaller;
 
+    // R_s = (s0 - s1) / (s0 + s1) and R_p = R_s (p0 - p1) / (p0 + p1); their mean needs one division.
     const float s0 = modulus + cos2, s1 = 2.0f * a * cos_i;
-    const float perpendicular = (s0 - s1) / (s0 + s1);
     const float p0 = modulus * cos2 + sin2 * sin2, p1 = s1 * sin2;
-    const float ratio = p0 + p1 > 0.0f ? (p0 - p1) / (p0 + p1) : 0.0f;
-    return std::clamp(0.5f * perpendicular * (1.0f + ratio), 0.0f, 1.0f);
+    const float denominator = (s0 + s1) * (p0 + p1);
+    return denominator > 0.0f ? std::clamp((s0 - s1) * p0 / denominator, 0.0f, 1.0f) : 1.0f;
 }
 
 double fresnel_diffuse_reflectance(double eta) {

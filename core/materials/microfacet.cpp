@@ -32,15 +32,18 @@ constexpr double sqrt_pi = 1.7724538509055160273;
 /// where c > 0 is the cotangent of the viewing angle. With b = erf(x) the distribution function is
 /// proportional to  c sqrt(pi) (1 + b) + exp(-x^2),  which Newton's method inverts inside a bracket.
 double sample_beckmann_slope(double c, double u) {
-    const double upper = std::min(std::erf(c), 1.0 - 1e-9);
     const auto distribution = [c](double b, double x) { return c * sqrt_pi * (1.0 + b) + std::exp(-x * x); };
-    const double c_end = std::min(c, 5.0);
-    const double target = u * distribution(std::erf(c_end), c_end);
-    double low = -1.0 + 1e-9, high = upper;
-    double b = low + (high - low) * u, x = erf_inverse(b);
+    const double end = std::min(c, 5.0), erf_end = std::erf(end);  // erf(5) = 1 - 1.5e-12
+    const double target = u * distribution(erf_end, end);
+    double low = -1.0 + 1e-9, high = std::min(erf_end, 1.0 - 1e-9);
+    // A first guess between the limits of normal (b linear in u) and grazing incidence (near a square root).
+    const double t = c / (c + 4.0);
+    double b = high - (1.0 + high) * (t * (1.0 - u) + (1.0 - t) * std::sqrt(1.0 - u));
+    b = std::clamp(b, low, high);
+    double x = erf_inverse(b);
     for (int i = 0; i < 40; ++i) {
         const double error = distribution(b, x) - target;
-        if (std::fabs(error) < 1e-9 * (target + 1e-3)) break;
+        if (std::fabs(error) < 1e-7 * (target + 1e-3)) break;
         (error > 0.0 ? high : low) = b;
         const double slope = sqrt_pi * (c - x);  // d/db, for db = 2/sqrt(pi) exp(-x^2) dx
         const double next = slope > 0.0 ? b - error / slope : low;

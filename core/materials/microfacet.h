@@ -71,7 +71,7 @@ class Microfacet {
 /// normalize(a + b) through double precision: exact for nearly equal and for opposite grazing directions.
 inline Vec3 half_vector(const Vec3& a, const Vec3& b) {
     const Vec3d h = Vec3d(a) + Vec3d(b);
-    return Vec3(h / glm::length(h));
+    return Vec3(h * (1.0 / glm::length(h)));
 }
 
 class Properties;

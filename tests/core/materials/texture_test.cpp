@@ -1,9 +1,13 @@
 // Bitmap and checkerboard textures.
 #include "core/materials/textures.h"
 
+#include <fstream>
+
+#include "core/materials/register_materials.h"
 #include "core/materials/texture_slot.h"
-#include "core/scene/error.h"
+#include "core/scene/properties.h"
 #include "tests/support/catch.h"
+#include "tests/support/temporary_folder.h"
 
 using namespace mote::core;
 
@@ -111,4 +115,32 @@ TEST_CASE("a checkerboard has two by two squares in a unit", "[materials][textur
     CHECK(t->mean().x == Approx(0.3f));
     CHECK((t->maximum() == 0.4f && t->minimum() == 0.2f && !t->constant()));
     CHECK(make_checkerboard_texture(light, dark, scaling(10.0, 10.0))->eval({0.06f, 0.01f}).x == 0.2f);
+}
+
+TEST_CASE("bitmaps are read from files, or refused at the line that names them", "[materials][texture]") {
+    const mote::tests::TemporaryFolder folder;
+    const std::vector<Rgb> pixels = {Rgb(1, 0, 0), Rgb(0, 1, 0), Rgb(0, 0, 1), Rgb(1, 1, 1)};
+    write_png(folder.file("four.png"), 2, 2, pixels);
+    std::ofstream(folder.file("broken.png")) << "not a picture";
+    Registry registry;
+    register_materials(registry);
+    const auto make = [&](const std::string& file) {
+        Properties p;
+        p.category = Category::texture, p.type = "bitmap";
+        p.search_paths = {folder.path()};
+        p.values["filename"] = {file, {"scene.xml", 5}};
+        p.values["filter_type"] = {std::string("nearest"), {"scene.xml", 6}};
+        return std::dynamic_pointer_cast<Texture>(registry.factory(p.category, p.type)(p));
+    };
+    const auto t = make("four.png");
+    CHECK(glm::length(t->eval({0.9f, 0.1f}) - Rgb(0, 1, 0)) < 1e-5f);
+    CHECK(glm::length(t->eval({0.1f, 0.9f}) - Rgb(0, 0, 1)) < 1e-5f);
+    CHECK(t->maximum() <= 1.00001f);
+    for (const char* bad : {"broken.png", "missing.png"}) try {
+            make(bad);
+            FAIL_CHECK("not refused");
+        } catch (const InputError& e) {
+            CHECK(std::string(e.what()).find("scene.xml:5: ") == 0);
+            CHECK(std::string(e.what()).find(bad) != std::string::npos);
+        }
 }
