@@ -34,6 +34,20 @@ RTCRay embree_ray(const Ray& ray) {
     return r;
 }
 
+/// Some builds of Embree (Debian's) abort on rays that are not finite or reach beyond what it can trace:
+/// those hit nothing.
+bool traceable(float origin_x, float origin_y, float origin_z, float direction_x, float direction_y,
+               float direction_z, float t_min, float t_max) {
+    constexpr float limit = 1e18f;
+    return (std::fabs(origin_x) < limit) & (std::fabs(origin_y) < limit) & (std::fabs(origin_z) < limit) &
+           (std::fabs(direction_x) < limit) & (std::fabs(direction_y) < limit) &
+           (std::fabs(direction_z) < limit) & (std::fabs(t_min) < infinity) & (t_max >= t_min);
+}
+bool traceable(const Ray& r) {
+    return traceable(r.origin.x, r.origin.y, r.origin.z, r.direction.x, r.direction.y, r.direction.z, r.t_min,
+                     r.t_max);
+}
+
 RTCRayHit embree_ray_hit(const Ray& ray) {
     RTCRayHit query{};
     query.ray = embree_ray(ray);
@@ -126,6 +140,7 @@ Bounds3 RayTracer::bounds() const { return impl_->bounds; }
 std::size_t RayTracer::memory_bytes() const { return std::size_t(std::max<std::int64_t>(0, impl_->memory)); }
 
 std::optional<SurfaceHit> RayTracer::closest(const Ray& ray, Group group) const {
+    if (!traceable(ray)) return std::nullopt;
     embree::Query query;
     RTCRayHit r = embree_ray_hit(ray);
     embree::intersect(impl_->scene(group), query, r);
@@ -134,6 +149,7 @@ std::optional<SurfaceHit> RayTracer::closest(const Ray& ray, Group group) const 
 }
 
 bool RayTracer::occluded(const Ray& ray) const {
+    if (!traceable(ray)) return false;
     embree::Query query;
     RTCRay r = embree_ray(ray);
     embree::occluded(impl_->scene(Group::surfaces), query, r);
@@ -144,7 +160,9 @@ void RayTracer::occluded(ShadowPacket& packet) const {
     embree::Query query;
     alignas(64) int valid[ShadowPacket::width];
     for (int lane = 0; lane < ShadowPacket::width; ++lane)
-        valid[lane] = packet.t_max[lane] >= packet.t_min[lane] ? -1 : 0;
+        valid[lane] = -int(traceable(packet.origin_x[lane], packet.origin_y[lane], packet.origin_z[lane],
+                                     packet.direction_x[lane], packet.direction_y[lane],
+                                     packet.direction_z[lane], packet.t_min[lane], packet.t_max[lane]));
     embree::occluded(valid, impl_->scene(Group::surfaces), query, reinterpret_cast<RTCRay16&>(packet));
 }
 
@@ -154,6 +172,7 @@ void RayTracer::occluded(std::span<ShadowPacket> packets) const {
 
 void RayTracer::all_hits(const Ray& ray, Group group, std::vector<SurfaceHit>& hits) const {
     hits.clear();
+    if (!traceable(ray)) return;
     std::vector<embree::RawHit> raw;
     embree::Query query;
     query.collected = &raw;
