@@ -38,6 +38,7 @@ struct Query {
     Query() { rtcInitRayQueryContext(&base); }
 };
 inline constexpr auto filter_scene_flag = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
+inline constexpr bool has_streams = false;  // Embree 4 has none
 
 inline void intersect(RTCScene scene, Query& query, RTCRayHit& ray) {
     RTCIntersectArguments arguments;
@@ -65,6 +66,9 @@ inline void occluded(const int* valid, RTCScene scene, Query& query, RTCRay16& r
     arguments.context = &query.base;
     rtcOccluded16(valid, scene, &rays, &arguments);
 }
+inline void occluded_stream(RTCScene scene, Query& query, RTCRay* rays, unsigned count) {
+    for (unsigned i = 0; i < count; ++i) occluded(scene, query, rays[i]);
+}
 #else
 struct Query {
     RTCIntersectContext base;
@@ -72,6 +76,7 @@ struct Query {
     Query() { rtcInitIntersectContext(&base); }  // with the incoherent flag, the faster one for shadow rays
 };
 inline constexpr auto filter_scene_flag = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
+inline constexpr bool has_streams = true;
 
 inline void intersect(RTCScene scene, Query& query, RTCRayHit& ray) {
     rtcIntersect1(scene, &query.base, &ray);
@@ -83,6 +88,9 @@ inline void intersect_filtered(RTCScene scene, Query& query, RTCRayHit& ray, RTC
 inline void occluded(RTCScene scene, Query& query, RTCRay& ray) { rtcOccluded1(scene, &query.base, &ray); }
 inline void occluded(const int* valid, RTCScene scene, Query& query, RTCRay16& rays) {
     rtcOccluded16(valid, scene, &query.base, &rays);
+}
+inline void occluded_stream(RTCScene scene, Query& query, RTCRay* rays, unsigned count) {
+    rtcOccluded1M(scene, &query.base, rays, count, sizeof(RTCRay));
 }
 #endif
 

@@ -34,6 +34,14 @@ RTCRay embree_ray(const Ray& ray) {
     return r;
 }
 
+RTCRay embree_ray(const ShadowPacket& p, int i) {
+    RTCRay r;
+    r.org_x = p.origin_x[i], r.org_y = p.origin_y[i], r.org_z = p.origin_z[i], r.tnear = p.t_min[i];
+    r.dir_x = p.direction_x[i], r.dir_y = p.direction_y[i], r.dir_z = p.direction_z[i];
+    r.time = p.time[i], r.tfar = p.t_max[i], r.mask = p.mask[i], r.id = p.id[i], r.flags = p.flags[i];
+    return r;
+}
+
 /// Some builds of Embree (Debian's) abort on rays that are not finite or reach beyond what it can trace:
 /// those hit nothing.
 bool traceable(float origin_x, float origin_y, float origin_z, float direction_x, float direction_y,
@@ -46,6 +54,10 @@ bool traceable(float origin_x, float origin_y, float origin_z, float direction_x
 bool traceable(const Ray& r) {
     return traceable(r.origin.x, r.origin.y, r.origin.z, r.direction.x, r.direction.y, r.direction.z, r.t_min,
                      r.t_max);
+}
+bool traceable(const ShadowPacket& p, int i) {
+    return traceable(p.origin_x[i], p.origin_y[i], p.origin_z[i], p.direction_x[i], p.direction_y[i],
+                     p.direction_z[i], p.t_min[i], p.t_max[i]);
 }
 
 RTCRayHit embree_ray_hit(const Ray& ray) {
@@ -159,15 +171,35 @@ bool RayTracer::occluded(const Ray& ray) const {
 void RayTracer::occluded(ShadowPacket& packet) const {
     embree::Query query;
     alignas(64) int valid[ShadowPacket::width];
-    for (int lane = 0; lane < ShadowPacket::width; ++lane)
-        valid[lane] = -int(traceable(packet.origin_x[lane], packet.origin_y[lane], packet.origin_z[lane],
-                                     packet.direction_x[lane], packet.direction_y[lane],
-                                     packet.direction_z[lane], packet.t_min[lane], packet.t_max[lane]));
+    for (int lane = 0; lane < ShadowPacket::width; ++lane) valid[lane] = -int(traceable(packet, lane));
     embree::occluded(valid, impl_->scene(Group::surfaces), query, reinterpret_cast<RTCRay16&>(packet));
 }
 
+// Measured on 5e5 triangles, rays from tiles of 4 x 4 receivers to one point: a stream of single rays with
+// the incoherent flag, which Embree sorts by octant, is 1.4 to 1.6 times as fast as packets of 16 (with
+// either flag) and as streams of packets. Taking the packets apart costs two per cent.
 void RayTracer::occluded(std::span<ShadowPacket> packets) const {
-    for (ShadowPacket& packet : packets) occluded(packet);
+    constexpr std::size_t chunk = 64;
+    if (!embree::has_streams || packets.size() < 2) {
+        for (ShadowPacket& packet : packets) occluded(packet);
+        return;
+    }
+    embree::Query query;
+    RTCRay rays[chunk * ShadowPacket::width];
+    float* t_max[chunk * ShadowPacket::width];  // where each result goes
+    while (!packets.empty()) {
+        const auto part = packets.first(std::min(chunk, packets.size()));
+        unsigned count = 0;
+        for (ShadowPacket& packet : part)
+            for (int lane = 0; lane < ShadowPacket::width; ++lane)
+                if (traceable(packet, lane)) {
+                    t_max[count] = &packet.t_max[lane];
+                    rays[count++] = embree_ray(packet, lane);
+                }
+        embree::occluded_stream(impl_->scene(Group::surfaces), query, rays, count);
+        for (unsigned i = 0; i < count; ++i) *t_max[i] = rays[i].tfar;
+        packets = packets.subspan(part.size());
+    }
 }
 
 void RayTracer::all_hits(const Ray& ray, Group group, std::vector<SurfaceHit>& hits) const {

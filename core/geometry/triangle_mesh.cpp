@@ -19,7 +19,7 @@ constexpr double plane_error_factor = 12.0;
 
 struct Corners {
     Vec3d p0, e1, e2, cross;  // cross = e1 x e2, twice the area long
-    double length;            // of cross
+    double length, inverse;   // of cross
 
     Corners(const MeshData& data, std::uint32_t primitive) {
         const auto& index = data.triangles[primitive];
@@ -28,14 +28,15 @@ struct Corners {
         e2 = Vec3d(data.positions[index[2]]) - p0;
         cross = glm::cross(e1, e2);
         length = glm::length(cross);
+        inverse = 1.0 / length;
     }
     Vec3 point(float u, float v) const { return Vec3(p0 + double(u) * e1 + double(v) * e2); }
-    Vec3 normal() const { return Vec3(cross / length); }
+    Vec3 normal() const { return Vec3(cross * inverse); }
 
     float error(const Vec3& point, const Vec3& normal) const {
         const Vec3d zero(0.0);
         const Vec3d extent = glm::max(glm::max(e1, e2), zero) - glm::min(glm::min(e1, e2), zero);
-        const double plane = plane_error_factor * half_ulp * (extent.x * extent.y * extent.z) / length;
+        const double plane = plane_error_factor * half_ulp * (extent.x * extent.y * extent.z) * inverse;
         return quantization_error(point, normal) + float(plane);
     }
 };
