@@ -92,6 +92,7 @@ bool same_value(const std::string& a, const std::string& b) {
 
 void drop_foreign_parameters(Element& e, const Manual& manual, std::vector<std::string>& warnings) {
     std::string dropped;
+    int count = 0;
     std::erase_if(e.children, [&](const Element& c) {
         if (known(manual, c.get("name"))) return false;
         const NoEffect* entry = find_no_effect(c, manual.category);
@@ -99,12 +100,12 @@ void drop_foreign_parameters(Element& e, const Manual& manual, std::vector<std::
         if (*entry->harmless && !same_value(c.get("value"), entry->harmless))
             throw InputError("'" + c.get("name") + "' is not supported unless it is " + entry->harmless,
                              c.where);
-        dropped += (dropped.empty() ? "'" : ", '") + c.get("name") + "'";
+        dropped += (count++ == 0 ? "'" : ", '") + c.get("name") + "'";
         return true;
     });
-    if (!dropped.empty())
+    if (count > 0)
         warnings.push_back(InputError(dropped + " of " + category_name(manual.category) + " '" + manual.type +
-                                          "' has no effect here",
+                                          (count == 1 ? "' has" : "' have") + " no effect here",
                                       e.where)
                                .what());
 }

@@ -39,6 +39,7 @@ class Properties {
     Category category{};
     std::string type, id;
     SourceLocation where;
+    // The two sinks live as long as the call of the factory.
     std::vector<std::string> search_paths;         ///< folders that relative file names are looked up in
     std::vector<std::string>* warnings = nullptr;  ///< sink for warnings; may be null
     std::vector<std::string>* files = nullptr;     ///< sink for the paths require_file() found; may be null

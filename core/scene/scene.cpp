@@ -24,6 +24,7 @@ float scalar_power(const Emitter& emitter, const std::string& file) {
 }  // namespace
 
 Scene::Scene(Parts parts) : parts_(std::move(parts)) {
+    collect_media();
     check();
     for (std::size_t i = 0; i < parts_.shapes.size(); ++i) {
         Shape& shape = *parts_.shapes[i];
@@ -64,6 +65,16 @@ std::optional<Vec3> Scene::light_position(const Emitter& emitter) {
     for (const float u : {0.5f, 0.1f, 0.9f, 0.3f, 0.7f})
         if (const auto sample = emitter.sample_emission({u, u}, {u, 1.0f - u})) return sample->origin;
     return std::nullopt;
+}
+
+/// Scenes built in code need not list what their shapes and camera hold already.
+void Scene::collect_media() {
+    const auto add = [&](const std::shared_ptr<Medium>& medium) {
+        if (medium && std::find(parts_.media.begin(), parts_.media.end(), medium) == parts_.media.end())
+            parts_.media.push_back(medium);
+    };
+    for (const auto& shape : parts_.shapes) add(shape->interior), add(shape->exterior);
+    if (parts_.camera) add(parts_.camera->medium);
 }
 
 void Scene::find_bounds() {

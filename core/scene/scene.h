@@ -96,6 +96,7 @@ class Scene {
 
   private:
     void check() const;
+    void collect_media();
     void find_bounds();
     void build_light_tables();
     void find_boundaries();

@@ -1,7 +1,6 @@
 // Collects what stands directly in <scene>.
 #include "core/scene/scene_builder.h"
 
-#include <algorithm>
 #include <set>
 
 #include "core/render/integrator.h"
@@ -22,10 +21,10 @@ std::vector<std::string> unique(const std::vector<std::string>& texts) {
 /// Area lights that no shape took up.
 void check_area_lights(const std::vector<std::pair<std::shared_ptr<Emitter>, SourceLocation>>& lights,
                        const Scene::Parts& parts) {
+    std::set<const Emitter*> taken;
+    for (const auto& shape : parts.shapes) taken.insert(shape->emitter.get());
     for (const auto& [light, where] : lights)
-        if (light->traits().kind == EmitterKind::area &&
-            std::none_of(parts.shapes.begin(), parts.shapes.end(),
-                         [&](const auto& shape) { return shape->emitter == light; }))
+        if (light->traits().kind == EmitterKind::area && !taken.count(light.get()))
             throw InputError("an area light must be nested in a shape", where);
 }
 

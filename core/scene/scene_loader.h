@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/scene/error.h"
 #include "core/scene/registry.h"
 #include "core/scene/scene.h"
 

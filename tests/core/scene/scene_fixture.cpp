@@ -64,6 +64,7 @@ void register_fakes(Registry& r) {
     const Factory integrator = [](const Properties& p) {
         auto i = std::make_shared<FakeIntegrator>();
         i->properties = p;
+        i->properties.warnings = i->properties.files = nullptr;  // they end with the loading
         return i;
     };
     r.add({Category::integrator,
