@@ -48,7 +48,8 @@ void add_render(CLI::App& app, RenderArguments& a, std::function<int()>& action)
     command.add_option("--time", a.seconds, "Stop after this many seconds")->check(CLI::PositiveNumber);
     command.add_option("--noise", a.noise, "Stop at this relative noise, such as 0.02")
         ->check(CLI::PositiveNumber);
-    command.add_option("--seed", a.seed, "Another seed gives another, independent picture");
+    command.add_option("--seed", a.seed, "Another seed gives another, independent picture")
+        ->check(CLI::NonNegativeNumber);
     command.add_option("-t,--threads", a.threads, "Number of threads (default: one for every core)")
         ->check(CLI::Range(0, 4096));
     command.add_flag("--resume", a.resume, "Continue from the checkpoint of an interrupted render");

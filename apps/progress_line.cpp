@@ -32,11 +32,22 @@ std::string progress_text(const core::RenderProgress& p) {
     return text;
 }
 
-ProgressLine::ProgressLine(bool quiet)
-    : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1), last_(std::chrono::steady_clock::now()) {}
+ProgressLine::ProgressLine(std::string header, bool quiet)
+    : header_(std::move(header)),
+      quiet_(quiet),
+      terminal_(::isatty(STDERR_FILENO) == 1),
+      last_(std::chrono::steady_clock::now()) {
+    if (terminal_) print_header();
+}
+
+void ProgressLine::print_header() {
+    if (!quiet_ && !header_.empty()) std::fputs(fmt::format("{}\n", header_).c_str(), stderr);
+    header_.clear();
+}
 
 void ProgressLine::update(const core::RenderProgress& progress) {
     if (quiet_) return;
+    print_header();
     const auto now = std::chrono::steady_clock::now();
     const auto interval = terminal_ ? std::chrono::duration_cast<std::chrono::milliseconds>(live_interval)
                                     : std::chrono::duration_cast<std::chrono::milliseconds>(plain_interval);

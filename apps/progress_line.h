@@ -13,13 +13,17 @@ std::string progress_text(const core::RenderProgress& progress);
 
 class ProgressLine {
   public:
-    /// Prints nothing when `quiet`.
-    explicit ProgressLine(bool quiet);
+    /// `header` is a line to print first: at once on a terminal, elsewhere with the first pass, so that a
+    /// render that is refused leaves nothing but its error. Prints nothing when `quiet`.
+    ProgressLine(std::string header, bool quiet);
     void update(const core::RenderProgress& progress);
     /// Ends the live line, so that other output starts on a line of its own.
     void end();
 
   private:
+    void print_header();
+
+    std::string header_;
     bool quiet_, terminal_, open_ = false;
     bool shown_ = false;
     std::chrono::steady_clock::time_point last_;

@@ -132,12 +132,13 @@ int render_command(const RenderArguments& arguments) {
             note(fmt::format("'{}' of an interrupted render is not used (--resume would continue it)",
                              core::printable(files.checkpoint)));
         if (arguments.verbose) std::fputs(plan.to_text().c_str(), stderr);
-        note(fmt::format("{}: {}, {} x {} pixels, {} thread{}", scene->parts().file, plan.integrator,
-                         scene->film().width, scene->film().height, threads, threads == 1 ? "" : "s"));
     }
 
     const Interruption interruption;
-    ProgressLine progress(arguments.quiet);
+    ProgressLine progress(
+        fmt::format("mote: {}: {}, {} x {} pixels, {} thread{}", scene->parts().file, plan.integrator,
+                    scene->film().width, scene->film().height, threads, threads == 1 ? "" : "s"),
+        arguments.quiet);
     request.interrupted = &interruption.flag();
     request.progress = [&progress](const core::RenderProgress& p) { progress.update(p); };
     core::RenderResult result = [&] {

@@ -1,0 +1,324 @@
+// The driver: stop rules, interruption, checkpoints that resume to the very same bits, and refusals.
+#include <tbb/global_control.h>
+
+#include <chrono>
+#include <fstream>
+#include <thread>
+
+#include "core/render/stop_clock.h"
+#include "core/scene/error.h"
+#include "tests/core/render/fake_render.h"
+#include "tests/support/catch.h"
+#include "tests/support/temporary_folder.h"
+
+using namespace mote::core;
+using namespace mote::tests;
+
+namespace {
+
+RenderRequest request_for(std::uint32_t passes, const std::string& checkpoint = "") {
+    RenderRequest request;
+    request.seed = 9;
+    request.stop.passes = passes;
+    request.checkpoint_path = checkpoint;
+    request.content_hash = "0123456789abcdef";
+    return request;
+}
+
+std::vector<std::byte> bits(const RenderResult& result) { return result.film.serialize(); }
+
+std::string read_text(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+void write_text(const std::string& path, const std::string& text) {
+    std::ofstream(path, std::ios::binary) << text;
+}
+
+// Renders until `last` passes are done, then is interrupted in the middle of the next.
+RenderResult interrupted_render(const Scene& scene, RenderRequest request, std::uint32_t last) {
+    std::atomic<bool> flag{false};
+    const FakeIntegrator integrator([&](std::uint32_t index) {
+        if (index == last) flag = true;
+    });
+    request.interrupted = &flag;
+    return render(scene, integrator, request);
+}
+
+}  // namespace
+
+TEST_CASE("Passes run in index order, as many as asked for", "[driver]") {
+    const auto scene = fake_scene();
+    std::vector<std::uint32_t> seen;
+    const FakeIntegrator integrator([&](std::uint32_t index) { seen.push_back(index); });
+    const RenderResult result = render(*scene, integrator, request_for(5));
+    CHECK(seen == std::vector<std::uint32_t>{0, 1, 2, 3, 4});
+    CHECK(result.film.pass_count() == 5);
+    CHECK_FALSE(result.interrupted);
+    CHECK(result.film.mean(0)[0] == Rgb(7.0f));  // finish() was called
+
+    RenderRequest by_scene;  // no rule: what the film asks for
+    CHECK(render(*scene, FakeIntegrator(), by_scene).film.pass_count() == 20);
+}
+
+TEST_CASE("Another seed gives another picture, another number of threads the same", "[driver]") {
+    const auto scene = fake_scene();
+    const auto one = [&] {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
+        return bits(render(*scene, FakeIntegrator(), request_for(18)));
+    }();
+    CHECK(bits(render(*scene, FakeIntegrator(), request_for(18))) == one);
+    RenderRequest other = request_for(18);
+    other.seed = 10;
+    CHECK(bits(render(*scene, FakeIntegrator(), other)) != one);
+}
+
+TEST_CASE("The noise rule stops where the noise is below it, whatever the number of threads", "[driver]") {
+    const auto scene = fake_scene();
+    RenderRequest request;
+    // Uniform noise of half-width 0.5 and mean near 1.4: 1/sqrt(12 n) / 1.4 < 0.05 from n of about 18.
+    request.stop.noise = 0.05;
+    const RenderResult result = render(*scene, FakeIntegrator(), request);
+    CHECK(result.film.relative_noise() <= 0.05);
+    CHECK(result.film.pass_count() > noise_rule_from);
+    RenderRequest one_less = request_for(result.film.pass_count() - 1);
+    one_less.seed = 0;
+    CHECK(render(*scene, FakeIntegrator(), one_less).film.relative_noise() > 0.05);
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
+    CHECK(render(*scene, FakeIntegrator(), request).film.pass_count() == result.film.pass_count());
+}
+
+TEST_CASE("Stop rules", "[driver]") {
+    RenderState s;
+    s.passes = 10, s.passes_of_this_run = 4, s.seconds = 4.0, s.noise = 0.1;
+    CHECK(must_stop({10, {}, {}}, s));
+    CHECK_FALSE(must_stop({11, {}, {}}, s));
+    CHECK(must_stop({{}, 4.4, {}}, s));        // a fifth pass would end at 5 s
+    CHECK_FALSE(must_stop({{}, 4.6, {}}, s));  // nearer to it than 4 s
+    CHECK(must_stop({{}, {}, 0.1}, s));
+    CHECK_FALSE(must_stop({{}, {}, 0.09}, s));
+    CHECK(must_stop({100, 4.0, 0.01}, s));                   // the first that holds
+    CHECK_FALSE(must_stop({{}, 0.001, {}}, RenderState{}));  // one pass at least
+    s.passes = 7;
+    CHECK_FALSE(must_stop({{}, {}, 0.5}, s));  // too few to know the noise
+
+    s.passes = 10;
+    CHECK(seconds_left({30, {}, {}}, s) == Approx(20.0));
+    CHECK(seconds_left({30, 7.0, {}}, s) == Approx(3.0));
+    CHECK(seconds_left({{}, {}, 0.05}, s) == Approx(30.0));  // four times the passes for half the noise
+    CHECK(seconds_left({{}, {}, {}}, s) < 0.0);
+}
+
+TEST_CASE("A time limit ends the render", "[driver]") {
+    const auto scene = fake_scene(8, 8);
+    RenderRequest request;
+    request.stop.seconds = 0.05;
+    request.progress = [](const RenderProgress&) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    };
+    const RenderResult result = render(*scene, FakeIntegrator(), request);
+    CHECK(result.film.pass_count() >= 1);
+    CHECK(result.film.pass_count() <= 6);
+}
+
+TEST_CASE("Progress is told after every pass", "[driver]") {
+    const auto scene = fake_scene();
+    std::vector<RenderProgress> seen;
+    RenderRequest request = request_for(12);
+    request.progress = [&](const RenderProgress& p) { seen.push_back(p); };
+    render(*scene, FakeIntegrator(), request);
+    REQUIRE(seen.size() == 12);
+    CHECK(seen[3].passes == 4);
+    CHECK(seen[3].passes_wanted == 12u);
+    CHECK(seen[3].seconds_left > 0.0);
+    CHECK(seen.back().seconds_left == 0.0);
+    CHECK(std::isfinite(seen.back().noise));
+}
+
+TEST_CASE("An interrupted render drops the running pass and keeps the rest", "[driver][checkpoint]") {
+    const TemporaryFolder folder;
+    const auto scene = fake_scene();
+    const RenderResult cut = interrupted_render(*scene, request_for(30, folder.file("c")), 19);
+    CHECK(cut.interrupted);
+    CHECK(cut.film.pass_count() == 19);
+    CHECK(cut.film.mean(0)[0] != Rgb(7.0f));  // finish() was not called
+    CHECK(bits(cut) == bits(render(*scene, FakeIntegrator(), request_for(19))));
+    CHECK(folder.size() == 1);
+}
+
+TEST_CASE("Interrupted and resumed gives the bits of one run", "[driver][checkpoint]") {
+    const TemporaryFolder folder;
+    const auto scene = fake_scene();
+    const auto whole = bits(render(*scene, FakeIntegrator(), request_for(50)));
+    for (const std::uint32_t first : {1u, 15u, 16u, 17u, 33u}) {
+        interrupted_render(*scene, request_for(50, folder.file("c")), first);
+        RenderRequest again = request_for(50, folder.file("c"));
+        again.resume = true;
+        interrupted_render(*scene, again, first + 9);  // and once more
+        const RenderResult resumed = render(*scene, FakeIntegrator(), again);
+        CHECK(resumed.resumed_at == first + 9);
+        CHECK(bits(resumed) == whole);
+    }
+    // A complete checkpoint has nothing left to do, or can be taken further.
+    RenderRequest more = request_for(60, folder.file("c"));
+    more.resume = true;
+    CHECK(bits(render(*scene, FakeIntegrator(), more)) ==
+          bits(render(*scene, FakeIntegrator(), request_for(60))));
+}
+
+TEST_CASE("Checkpoints are written on the way, and a killed render continues from the last",
+          "[driver][checkpoint]") {
+    const TemporaryFolder folder;
+    const auto scene = fake_scene();
+    RenderRequest request = request_for(40, folder.file("c"));
+    request.checkpoint_every_seconds = 0.0;
+    const FakeIntegrator dying([](std::uint32_t index) {
+        if (index == 23) throw std::runtime_error("killed");
+    });
+    CHECK_THROWS_AS(render(*scene, dying, request), std::runtime_error);
+    request.resume = true;
+    const RenderResult resumed = render(*scene, FakeIntegrator(), request);
+    CHECK(resumed.resumed_at == 23);
+    CHECK(bits(resumed) == bits(render(*scene, FakeIntegrator(), request_for(40))));
+}
+
+TEST_CASE("Resuming without a checkpoint starts anew, with a warning", "[driver][checkpoint]") {
+    const TemporaryFolder folder;
+    const auto scene = fake_scene();
+    RenderRequest request = request_for(3, folder.file("c"));
+    request.resume = true;
+    const RenderResult result = render(*scene, FakeIntegrator(), request);
+    CHECK(result.film.pass_count() == 3);
+    CHECK(result.statistics.warnings.size() == 1);
+}
+
+TEST_CASE("A checkpoint of another render is refused", "[driver][checkpoint]") {
+    const TemporaryFolder folder;
+    const auto scene = fake_scene();
+    const RenderRequest good = [&] {
+        RenderRequest request = request_for(8, folder.file("c"));
+        render(*scene, FakeIntegrator(), request);
+        request.resume = true;
+        request.stop.passes = 9;
+        return request;
+    }();
+    const auto refused = [&](const RenderRequest& request, const Integrator& integrator, const Scene& in,
+                             const std::string& reason) {
+        try {
+            render(in, integrator, request);
+        } catch (const InputError& error) {
+            const std::string message = error.what();
+            INFO(message);
+            CHECK(message.find(folder.file("c")) == 0);
+            return message.find(reason) != std::string::npos;
+        }
+        return false;
+    };
+    RenderRequest other = good;
+    other.seed = 1;
+    CHECK(refused(other, FakeIntegrator(), *scene, "seed"));
+    other = good;
+    other.content_hash = "fedcba9876543210";
+    CHECK(refused(other, FakeIntegrator(), *scene, "changed"));
+    CHECK(refused(good, FakeIntegrator(), *fake_scene(21, 37), "picture"));
+    CHECK(refused(good, FakeIntegrator({}, "multiple"), *scene, "layers"));
+    CHECK(render(*scene, FakeIntegrator(), good).resumed_at == 8);
+}
+
+TEST_CASE("Every damage to a checkpoint is refused", "[driver][checkpoint]") {
+    const TemporaryFolder folder;
+    const auto scene = fake_scene(3, 2);
+    RenderRequest request = request_for(5, folder.file("c"));
+    render(*scene, FakeIntegrator(), request);
+    request.resume = true;
+    const std::string good = read_text(folder.file("c"));
+    REQUIRE(good.size() > 500);
+    std::size_t tried = 0;
+    for (std::size_t i = 0; i < good.size(); i += i < 200 ? 1 : 7, ++tried) {
+        std::string bad = good;
+        bad[i] = char(bad[i] ^ (1 << (i % 8)));
+        write_text(folder.file("c"), bad);
+        REQUIRE_THROWS_AS(render(*scene, FakeIntegrator(), request), InputError);
+        write_text(folder.file("c"), good.substr(0, i));
+        REQUIRE_THROWS_AS(render(*scene, FakeIntegrator(), request), InputError);
+    }
+    write_text(folder.file("c"), good + "x");
+    CHECK_THROWS_AS(render(*scene, FakeIntegrator(), request), InputError);
+    CHECK(tried > 250);
+    write_text(folder.file("c"), good);
+    CHECK(render(*scene, FakeIntegrator(), request).resumed_at == 5);
+}
+
+TEST_CASE("A checkpoint that cannot be written is an error", "[driver][checkpoint]") {
+    const TemporaryFolder folder;
+    const auto scene = fake_scene();
+    write_text(folder.file("plain"), "file");
+    CHECK_THROWS_AS(render(*scene, FakeIntegrator(), request_for(2, folder.file("plain/c"))), InputError);
+    CHECK_THROWS_AS(render(*scene, FakeIntegrator(), request_for(2, "/dev/full")), InputError);
+}
+
+TEST_CASE("Exceptions of a tile reach the caller", "[driver]") {
+    const std::atomic<bool> never{false};
+    CHECK_THROWS_AS(for_each_tile(64, 64, 8, never,
+                                  [](int x0, int, int, int) {
+                                      if (x0 == 32) throw InputError("here");
+                                  }),
+                    InputError);
+}
+
+TEST_CASE("Tiles cover every pixel once, and stop when cancelled", "[driver]") {
+    std::atomic<bool> cancelled{false};
+    for (const auto& [w, h, tile] : {std::tuple(17, 9, 8), std::tuple(1, 1, 16), std::tuple(1, 65535, 16)}) {
+        std::vector<std::atomic<int>> hits(std::size_t(w) * std::size_t(h));
+        CHECK(for_each_tile(w, h, tile, cancelled, [&, w = w](int x0, int y0, int x1, int y1) {
+            for (int y = y0; y < y1; ++y)
+                for (int x = x0; x < x1; ++x) ++hits[std::size_t(y) * std::size_t(w) + std::size_t(x)];
+        }));
+        bool once = true;
+        for (const auto& n : hits) once = once && n == 1;
+        CHECK(once);
+    }
+    std::atomic<int> tiles{0};
+    CHECK_FALSE(
+        for_each_tile(512, 512, 8, cancelled, [&](int, int, int, int) { ++tiles, cancelled = true; }));
+    CHECK(tiles < 64 * 64);
+}
+
+TEST_CASE("The content hash changes with every byte of every file and every setting, not with names",
+          "[driver]") {
+    const TemporaryFolder folder;
+    write_text(folder.file("a"), "scene");
+    write_text(folder.file("b"), "grid");
+    const auto hash = [&](std::vector<std::string> files, std::vector<std::string> settings) {
+        for (auto& f : files) f = folder.file(f);
+        return content_hash(*fake_scene(4, 4, files), settings);
+    };
+    const std::string h = hash({"a", "b"}, {"x=1"});
+    CHECK(h.size() == 16);
+    CHECK(hash({"a", "b"}, {"x=1"}) == h);
+    CHECK(hash({"a", "b"}, {"x=2"}) != h);
+    CHECK(hash({"a", "b"}, {"x=", "1"}) != h);
+    CHECK(hash({"b", "a"}, {"x=1"}) != h);
+    write_text(folder.file("renamed"), "grid");
+    CHECK(hash({"a", "renamed"}, {"x=1"}) == h);
+    write_text(folder.file("b"), "grie");
+    CHECK(hash({"a", "b"}, {"x=1"}) != h);
+    write_text(folder.file("b"), "");
+    write_text(folder.file("a"), "scenegrid");
+    CHECK(hash({"a", "b"}, {"x=1"}) != h);
+    CHECK_THROWS_AS(hash({"missing"}, {}), InputError);
+}
+
+TEST_CASE("A plan as text holds every entry with its reason", "[plan]") {
+    Plan plan;
+    plan.integrator = "fake";
+    plan.run("transmittance", "analytic", "every medium is homogeneous");
+    plan.leave_out("textures", "none", "there are none");
+    const std::string text = plan.to_text();
+    CHECK(text.find("fake") != std::string::npos);
+    CHECK(text.find("transmittance  analytic  every medium is homogeneous") != std::string::npos);
+    CHECK(text.find("there are none") != std::string::npos);
+    CHECK(text.find("missing") == std::string::npos);
+    plan.miss("caustics", "", "delta");
+    CHECK(plan.to_text().find("missing") != std::string::npos);
+}
