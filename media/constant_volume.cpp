@@ -4,6 +4,7 @@
 
 #include "core/scene/properties.h"
 #include "core/scene/registry.h"
+#include "media/medium_parameters.h"
 #include "media/tracked_medium.h"
 
 namespace mote::media {
@@ -48,18 +49,19 @@ std::shared_ptr<HeterogeneousMedium> ConstantVolume::make_medium(MediumParts par
 std::shared_ptr<const Volume> volume_of(const core::Properties& p, const std::string& name,
                                         const Rgb& default_value) {
     if (auto nested = p.child<Volume>(name)) return nested;
-    return std::make_shared<ConstantVolume>(p.get_rgb_in(name, default_value, 0.0f, 1e30f));
+    return std::make_shared<ConstantVolume>(p.get_rgb_in(name, default_value, 0.0f, unlimited));
 }
 
 void register_constant_volume(core::Registry& registry) {
-    registry.add({core::Category::volume,
-                  "constvolume",
-                  "The same value everywhere.",
-                  {{"value", "rgb", "1", "The value, not negative."}},
-                  R"(<volume type="constvolume"><rgb name="value" value="0.9 0.8 0.7"/></volume>)"},
-                 [](const core::Properties& p) {
-                     return std::make_shared<ConstantVolume>(p.get_rgb_in("value", Rgb(1.0f), 0.0f, 1e30f));
-                 });
+    registry.add(
+        {core::Category::volume,
+         "constvolume",
+         "The same value everywhere.",
+         {{"value", "rgb", "1", "The value, not negative."}},
+         R"(<volume type="constvolume"><rgb name="value" value="0.9 0.8 0.7"/></volume>)"},
+        [](const core::Properties& p) {
+            return std::make_shared<ConstantVolume>(p.get_rgb_in("value", Rgb(1.0f), 0.0f, unlimited));
+        });
 }
 
 }  // namespace mote::media

@@ -3,6 +3,7 @@
 
 #include "core/scene/properties.h"
 #include "media/blackbody.h"
+#include "media/medium_parameters.h"
 #include "media/volume.h"
 
 namespace mote::media {
@@ -19,7 +20,7 @@ Rgb Emission::at(const core::Vec3& p) const {
 
 Emission emission_of(const core::Properties& p) {
     Emission e;
-    e.scale = float(p.get_float_in("Lescale", 1.0, 0.0, 1e30));
+    e.scale = float(p.get_float_in("Lescale", 1.0, 0.0, unlimited));
     e.temperature_scale = float(p.get_float("temperature_scale", 1.0));
     e.temperature_offset = float(p.get_float("temperature_offset", 0.0));
     e.temperature = p.child<Volume>("temperature");

@@ -109,7 +109,7 @@ std::optional<int> wait_for(pid_t pid, double seconds) {
         int status = 0;
         const pid_t done = ::waitpid(pid, &status, WNOHANG);
         if (done == pid) return status;
-        if (done < 0 && errno != EINTR) return std::nullopt;
+        if (done < 0 && errno == ECHILD) return 0;  // a host that ignores SIGCHLD: the answer itself decides
         if (clock::now() > deadline) {
             ::kill(pid, SIGKILL);
             while (::waitpid(pid, &status, 0) < 0 && errno == EINTR) {
@@ -194,14 +194,15 @@ GridReaderAnswer run_grid_reader(const std::string& mode, const std::string& pat
     const Descriptor memory(::memfd_create("mote_grid", MFD_CLOEXEC));
     if (memory.get() < 0) refuse(path, fmt::format("no memory file: {}", std::strerror(errno)));
 
+    // large files may take their time: a second for every 10 MB
+    const double seconds = options.time_limit + 1e-7 * double(fs::file_size(path, error));
     const pid_t pid = SpawnSettings(memory.get())
                           .spawn(path, {helper, mode, path, std::to_string(memory_limit(path, options)),
-                                        std::to_string(long(std::ceil(options.time_limit))),
+                                        std::to_string(long(std::ceil(seconds))),
                                         options.clamp_negative ? "1" : "0", grid_name});
-    const std::optional<int> status = wait_for(pid, options.time_limit);
+    const std::optional<int> status = wait_for(pid, seconds);
     if (!status)
-        refuse(path, fmt::format("cannot be read within {:g} seconds; the file may be damaged",
-                                 options.time_limit));
+        refuse(path, fmt::format("cannot be read within {:.3g} seconds; the file may be damaged", seconds));
     auto answer = read_answer(memory.get());
     if (!WIFEXITED(*status) || WEXITSTATUS(*status) != 0 || !answer)
         refuse(path, describe_death(*status) + "; the file is damaged or too large");

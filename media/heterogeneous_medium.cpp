@@ -23,12 +23,11 @@ Rgb HeterogeneousMedium::albedo_at(const core::Vec3& p) const {
 namespace {
 
 std::shared_ptr<HeterogeneousMedium> make_heterogeneous(const core::Properties& p) {
-    const auto given = [&](const std::string& name) { return p.has(name) || p.child<Volume>(name); };
-    if (given("sigma_t") && given("density"))
+    if (p.has("sigma_t") && p.has("density"))
         throw core::InputError("'density' is another name for 'sigma_t': give one of them", p.where);
-    const auto extinction = volume_of(p, given("density") ? "density" : "sigma_t", Rgb(1.0f));
+    const auto extinction = volume_of(p, p.has("density") ? "density" : "sigma_t", Rgb(1.0f));
     MediumParts parts;
-    parts.scale = float(p.get_float_in("scale", 1.0, 0.0, 1e30));
+    parts.scale = float(p.get_float_in("scale", 1.0, 0.0, unlimited));
     parts.albedo = volume_of(p, "albedo", Rgb(0.75f));
     parts.phase = phase_of(p);
     parts.emission = emission_of(p);
@@ -37,6 +36,8 @@ std::shared_ptr<HeterogeneousMedium> make_heterogeneous(const core::Properties& 
         throw core::InputError("'albedo' reaches " + std::to_string(largest_albedo) + ", above 1",
                                p.where_of("albedo"));
     auto medium = extinction->make_medium(std::move(parts));
+    if (!std::isfinite(medium->majorant()))
+        throw core::InputError("the extinction times 'scale' is too large for a number", p.where);
     if (medium->traits().empty) p.warn("the medium is empty: it is treated as vacuum");
     return medium;
 }

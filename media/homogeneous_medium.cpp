@@ -113,9 +113,9 @@ std::shared_ptr<HomogeneousMedium> make_homogeneous(const core::Properties& p) {
     const bool by_parts = p.has("sigma_s") || p.has("sigma_a");
     if (by_albedo && by_parts)
         throw core::InputError("give either 'sigma_t' and 'albedo', or 'sigma_s' and 'sigma_a'", p.where);
-    const float scale = float(p.get_float_in("scale", 1.0, 0.0, 1e30));
+    const float scale = float(p.get_float_in("scale", 1.0, 0.0, unlimited));
     const auto coefficient = [&](const char* name, float value) {
-        return p.get_rgb_in(name, Rgb(value), 0.0f, 1e30f);
+        return p.get_rgb_in(name, Rgb(value), 0.0f, unlimited);
     };
     Rgb sigma_t, sigma_s;
     if (by_parts) {
@@ -125,8 +125,8 @@ std::shared_ptr<HomogeneousMedium> make_homogeneous(const core::Properties& p) {
         sigma_t = coefficient("sigma_t", 1.0f);
         sigma_s = sigma_t * p.get_rgb_in("albedo", Rgb(0.75f), 0.0f, 1.0f);
     }
-    const Rgb radiance =
-        p.get_rgb_in("Le", Rgb(0.0f), 0.0f, 1e30f) * float(p.get_float_in("Lescale", 1.0, 0.0, 1e30));
+    const Rgb radiance = p.get_rgb_in("Le", Rgb(0.0f), 0.0f, unlimited) *
+                         float(p.get_float_in("Lescale", 1.0, 0.0, unlimited));
     return std::make_shared<HomogeneousMedium>(scale * sigma_t, scale * sigma_s, radiance, phase_of(p));
 }
 

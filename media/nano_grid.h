@@ -28,7 +28,9 @@ struct VdbGrid::Data {
 /// Trilinear lookups with a cache of the nodes visited last: one a ray.
 class NanoCursor {
   public:
-    explicit NanoCursor(const nanovdb::FloatGrid& grid) : accessor_(grid.tree().root()) {}
+    explicit NanoCursor(const nanovdb::FloatGrid& grid) : accessor_(grid.tree().root()) {
+        enter_block(0, 0, 0);
+    }
 
     /// `p` in index space, clamped to +-1e9 (load_vdb_grid refuses grids that reach so far).
     float lookup(const core::Vec3d& p) {
@@ -36,13 +38,12 @@ class NanoCursor {
         const int x = floor_to_int(q.x), y = floor_to_int(q.y), z = floor_to_int(q.z);
         const float fx = float(q.x - x), fy = float(q.y - y), fz = float(q.z - z);
         // Within one leaf of 8^3 voxels, which is where two thirds of all lookups fall, all eight values lie
-        // at fixed offsets from the first.
+        // at fixed offsets from the first; where there is no leaf, a tile or the background gives all eight.
         if ((x & 7) != 7 && (y & 7) != 7 && (z & 7) != 7) {
-            if (const auto* leaf = accessor_.probeLeaf({x, y, z})) {
-                const float* v = leaf->data()->mValues + (((x & 7) << 6) | ((y & 7) << 3) | (z & 7));
-                return interpolate(fx, fy, fz, v[0], v[1], v[8], v[9], v[64], v[65], v[72], v[73]);
-            }
-            return accessor_.getValue({x, y, z});  // a tile or the background: the same at all eight corners
+            look_at(x, y, z);
+            if (!values_) return uniform_;
+            const float* v = values_ + (((x & 7) << 6) | ((y & 7) << 3) | (z & 7));
+            return interpolate(fx, fy, fz, v[0], v[1], v[8], v[9], v[64], v[65], v[72], v[73]);
         }
         return across_leaves(x, y, z, fx, fy, fz);
     }
@@ -59,27 +60,49 @@ class NanoCursor {
         const float y1 = mix(mix(v100, v101, fz), mix(v110, v111, fz), fy);
         return mix(y0, y1, fx);
     }
+    void enter_block(int x, int y, int z) {
+        x_ = x, y_ = y, z_ = z;
+        const auto* leaf = accessor_.probeLeaf({x, y, z});
+        values_ = leaf ? leaf->data()->mValues : nullptr;
+        if (!leaf) uniform_ = accessor_.getValue({x, y, z});
+    }
     float across_leaves(int x, int y, int z, float fx, float fy, float fz) {
-        float v[2][2][2];
-        // The axis that crosses a leaf is the outer loop, so that the accessor changes leaves once for it.
-        if ((z & 7) == 7) {
-            for (int c = 0; c < 2; ++c)
-                for (int a = 0; a < 2; ++a)
-                    for (int b = 0; b < 2; ++b) v[a][b][c] = accessor_.getValue({x + a, y + b, z + c});
-        } else if ((y & 7) == 7) {
-            for (int b = 0; b < 2; ++b)
-                for (int a = 0; a < 2; ++a)
-                    for (int c = 0; c < 2; ++c) v[a][b][c] = accessor_.getValue({x + a, y + b, z + c});
-        } else {
-            for (int a = 0; a < 2; ++a)
-                for (int b = 0; b < 2; ++b)
-                    for (int c = 0; c < 2; ++c) v[a][b][c] = accessor_.getValue({x + a, y + b, z + c});
+        const bool cx = (x & 7) == 7, cy = (y & 7) == 7, cz = (z & 7) == 7;
+        if (int(cx) + int(cy) + int(cz) > 1) return across_edges(x, y, z, fx, fy, fz);
+        // One axis crosses, as a rule: a face of four values in this block, and one in the next.
+        const int offset = ((x & 7) << 6) | ((y & 7) << 3) | (z & 7);
+        const int stride = cx ? 64 : cy ? 8 : 1, first = cx ? 8 : 64, second = cz ? 8 : 1;
+        const float f = cx ? fx : cy ? fy : fz, f1 = cx ? fy : fx, f2 = cz ? fy : fz;
+        look_at(x, y, z);
+        const float here = face(offset, first, second, f1, f2);
+        enter_block(x + int(cx), y + int(cy), z + int(cz));
+        return mix(here, face(offset - 7 * stride, first, second, f1, f2), f);
+    }
+    float face(int offset, int first, int second, float f1, float f2) const {
+        if (!values_) return uniform_;
+        const float* v = values_ + offset;
+        return mix(mix(v[0], v[second], f2), mix(v[first], v[first + second], f2), f1);
+    }
+    float across_edges(int x, int y, int z, float fx, float fy, float fz) {
+        float v[8];
+        for (int i = 0; i < 8; ++i) {
+            const int a = x + (i >> 2), b = y + ((i >> 1) & 1), c = z + (i & 1);
+            look_at(a, b, c);
+            v[i] = in_block(a, b, c);
         }
-        return interpolate(fx, fy, fz, v[0][0][0], v[0][0][1], v[0][1][0], v[0][1][1], v[1][0][0], v[1][0][1],
-                           v[1][1][0], v[1][1][1]);
+        return interpolate(fx, fy, fz, v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7]);
+    }
+    void look_at(int x, int y, int z) {
+        if ((((x ^ x_) | (y ^ y_) | (z ^ z_)) & ~7) != 0) enter_block(x, y, z);
+    }
+    float in_block(int x, int y, int z) const {
+        return values_ ? values_[((x & 7) << 6) | ((y & 7) << 3) | (z & 7)] : uniform_;
     }
 
     nanovdb::DefaultReadAccessor<float> accessor_;
+    int x_ = 0, y_ = 0, z_ = 0;      ///< a voxel of the block looked at last
+    const float* values_ = nullptr;  ///< its leaf, or null: then uniform_ holds throughout the block
+    float uniform_ = 0.0f;
 };
 
 /// The grid that TrackedMedium wants (see there).

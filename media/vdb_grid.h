@@ -18,7 +18,7 @@ namespace mote::media {
 
 struct VdbLoadOptions {
     bool clamp_negative = false;     ///< raise negative values to 0 (counted) instead of refusing them
-    double time_limit = 120.0;       ///< wall-clock seconds for the helper
+    double time_limit = 120.0;       ///< wall-clock seconds for the helper, and one more per 10 MB
     std::uint64_t memory_limit = 0;  ///< bytes for the helper; 0: 2 GB plus 64 times the file's size
 };
 
