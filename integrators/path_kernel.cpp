@@ -74,7 +74,8 @@ TransportSum trace_path(const Scene& scene, const PathSettings& settings, Ray ra
             sum[classifier.layer_of_connection(vertex)] +=
                 sample_light<Media>(scene, vertex, weights, state, sampler, context);
         }
-        if (depth >= settings.rr_depth && !survives<Media>(weights, eta, context.rng.next_float())) break;
+        if (depth >= settings.rr_depth && !survives<Media>(weights, eta, depth, context.rng.next_float()))
+            break;
 
         const float u_lobe = sampler.next_1d();
         const auto next = vertex.sample(u_lobe, sampler.next_2d(), TransportMode::radiance);

@@ -117,7 +117,7 @@ class EyeTile {
             add_receiver(lane, index);
         }
         if (lane.depth >= settings_.eye.rr_depth &&
-            !survives<Media>(lane.weights, lane.eta, walk_.rng.next_float()))
+            !survives<Media>(lane.weights, lane.eta, lane.depth, walk_.rng.next_float()))
             return false;
         const float u_lobe = lane.sampler->next_1d();
         const auto next = lane.vertex.sample(u_lobe, lane.sampler->next_2d(), core::TransportMode::radiance);

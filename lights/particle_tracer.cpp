@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "core/scene/russian_roulette.h"
+
 namespace mote::lights {
 
 using namespace core;
@@ -15,11 +17,10 @@ constexpr std::uint32_t chunk_size = 32;
 constexpr std::uint32_t light_path_stream =
     0x56504cu;  // keeps light paths apart from pixels of the same index
 
-/// Survival probability by the power that is left, relative to the path's start; capped so that paths without
-/// loss end as well.
-float survival_probability(const Rgb& alpha, const Rgb& alpha_start) {
+/// Share of the path's first power that is left; never below 1/20, so that one dark bounce does not end it.
+float remaining_power(const Rgb& alpha, const Rgb& alpha_start) {
     const float start = max_component(alpha_start);
-    return start > 0.0f ? std::clamp(max_component(alpha) / start, 0.05f, 0.95f) : 0.0f;
+    return start > 0.0f ? std::max(max_component(alpha) / start, 0.05f) : 0.0f;
 }
 
 template <bool Media>
@@ -51,7 +52,8 @@ void trace_path(const Scene& scene, const LightPathSettings& settings, std::uint
         append_vpl(set, vertex, weights.throughput / channels, std::uint32_t(depth), path);
 
         if (depth > settings.rr_depth) {
-            const float q = survival_probability(weights.throughput / channels, start);
+            const float q = survival_chance(remaining_power(weights.throughput / channels, start), depth,
+                                            long_light_path);
             if (context.rng.next_float() >= q) return;
             weights.throughput /= q;
         }

@@ -1,7 +1,9 @@
-// Follows a ray through null boundaries and media to its next real event: a surface, a collision, or the outside.
+// Follows a ray through null boundaries and media to its next real event: a surface, a collision, or the
+// outside.
 //
-// Everything that traces paths (path tracers, light particles, eye paths of many-light methods) advances by this
-// one function, so that all of them agree on which medium lies where. Without media it is one closest-hit query.
+// Everything that traces paths (path tracers, light particles, eye paths of many-light methods) advances by
+// this one function, so that all of them agree on which medium lies where. Without media it is one
+// closest-hit query.
 #pragma once
 
 #include <vector>
@@ -34,7 +36,9 @@ template <bool Media>
 WalkEvent walk(const Scene& scene, const Ray& ray, MediumState& state, PathWeights& weights, Rgb& emitted,
                WalkContext& context);
 
-extern template WalkEvent walk<true>(const Scene&, const Ray&, MediumState&, PathWeights&, Rgb&, WalkContext&);
-extern template WalkEvent walk<false>(const Scene&, const Ray&, MediumState&, PathWeights&, Rgb&, WalkContext&);
+extern template WalkEvent walk<true>(const Scene&, const Ray&, MediumState&, PathWeights&, Rgb&,
+                                     WalkContext&);
+extern template WalkEvent walk<false>(const Scene&, const Ray&, MediumState&, PathWeights&, Rgb&,
+                                      WalkContext&);
 
 }  // namespace mote::core

@@ -10,7 +10,7 @@ namespace {
 
 const std::string surface_integrators[] = {
     R"(<integrator type="path"/>)", R"(<integrator type="volpath"/>)",
-    R"(<integrator type="mote_vpl"><integer name="paths" value="16"/><boolean name="bounded" value="false"/></integrator>)"};
+    R"(<integrator type="mote_vpl"><integer name="paths" value="128"/><boolean name="bounded" value="false"/></integrator>)"};
 
 }  // namespace
 
@@ -28,7 +28,7 @@ TEST_CASE("closed emitting sphere is L_e / (1 - a)", "[analytic][furnace]") {
             <translate x="0.3" y="-0.4" z="0.2"/></transform></sensor></scene>)");
         for (const std::string& integrator : surface_integrators) {
             INFO(integrator << " albedo " << albedo);
-            const auto render = render_statistics(*scene, *integrator_from(integrator), {8, 8, 8, 400, 3});
+            const auto render = render_statistics(*scene, *integrator_from(integrator), {16, 100, 3});
             const ZTest test = mean_is(render, "beauty", 1.5 / (1.0 - albedo));
             INFO(test.report);
             CHECK(test.passed);
@@ -53,7 +53,7 @@ TEST_CASE("form factor of two parallel squares", "[analytic][form_factor]") {
             <lookat origin="0, 0, 1" target="0, 0, 0" up="0, 1, 0"/></transform></sensor></scene>)");
     for (const std::string& integrator : surface_integrators) {
         INFO(integrator);
-        const auto render = render_statistics(*scene, *integrator_from(integrator), {16, 16, 16, 400, 5});
+        const auto render = render_statistics(*scene, *integrator_from(integrator), {16, 400, 5});
         const ZTest test = mean_is(render, "beauty", 0.6 * 3.0 * f12);
         INFO(test.report);
         CHECK(test.passed);

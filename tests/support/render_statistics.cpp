@@ -30,7 +30,15 @@ const Registry& registry() {
     return instance;
 }
 
-std::unique_ptr<Scene> scene_from(const std::string& xml, const std::string& folder) {
+std::unique_ptr<Scene> scene_from(std::string xml, int size, const std::string& folder) {
+    const std::string film = fmt::format(
+        R"(<film type="hdrfilm"><integer name="width" value="{}"/><integer name="height" value="{}"/>
+        <rfilter type="box"/></film></sensor>)",
+        size, size);
+    const auto start = xml.find("<sensor");
+    const auto close = xml.find_first_of('>', start);
+    if (close != std::string::npos && xml[close - 1] == '/') xml.replace(close - 1, 2, "></sensor>");
+    if (const auto end = xml.find("</sensor>"); end != std::string::npos) xml.replace(end, 9, film);
     return load_scene_from_string(xml, folder, registry());
 }
 
@@ -72,9 +80,13 @@ struct Accumulator {
     Estimate estimate() const { return {mean, n > 1 ? squares / (double(n) - 1.0) / n : 0.0}; }
 };
 
+struct Spec {
+    int width, height, block;
+};
+
 class BlockAccumulator {
   public:
-    BlockAccumulator(const RenderSpec& spec, std::size_t layers)
+    BlockAccumulator(const Spec& spec, std::size_t layers)
         : spec_(spec),
           bx_((spec.width + spec.block - 1) / spec.block),
           by_((spec.height + spec.block - 1) / spec.block),
@@ -107,7 +119,7 @@ class BlockAccumulator {
     }
 
   private:
-    RenderSpec spec_;
+    Spec spec_;
     int bx_, by_;
     std::vector<std::vector<Accumulator>> blocks_;
     std::vector<std::array<Accumulator, 3>> whole_;
@@ -117,21 +129,21 @@ class BlockAccumulator {
 
 RenderStatistics render_statistics(const Scene& scene, const Integrator& integrator, const RenderSpec& spec) {
     const std::vector<Layer> layers = integrator.layers(scene);
+    const int width = scene.film().width, height = scene.film().height;
     RenderStatistics result;
     result.passes = spec.passes;
     for (const Layer& layer : layers) result.layers.push_back(layer.name);
     result.layers.push_back("beauty");
 
-    const auto estimator =
-        integrator.prepare(scene, {spec.seed, spec.width, spec.height, SamplerKind::independent});
+    const auto estimator = integrator.prepare(scene, {spec.seed, width, height, SamplerKind::independent});
     const auto filter = make_pixel_filter("box", 0.5f, 0.5f);
     const std::atomic<bool> cancelled{false};
-    PassImage image(spec.width, spec.height, layers.size());
-    BlockAccumulator blocks(spec, layers.size() + 1);
+    PassImage image(width, height, layers.size());
+    BlockAccumulator blocks({width, height, spec.block}, layers.size() + 1);
     for (std::uint32_t pass = 0; pass < spec.passes; ++pass) {
         image.clear();
         estimator->pass({pass, *filter, cancelled}, image);
-        std::vector<Vec3d> beauty(std::size_t(spec.width * spec.height), Vec3d(0.0));
+        std::vector<Vec3d> beauty(std::size_t(width * height), Vec3d(0.0));
         for (std::size_t l = 0; l < layers.size(); ++l) {
             std::vector<Vec3d> pixels;
             for (const Rgb& value : image.layer(l)) {

@@ -19,8 +19,9 @@ namespace mote::tests {
 /// Everything registered, built once per test program.
 const core::Registry& registry();
 
-/// Scene from XML text; relative files are looked up in `folder`.
-std::unique_ptr<core::Scene> scene_from(const std::string& xml, const std::string& folder = ".");
+/// Scene from XML text, with a square film of `size` pixels put into its sensor. Relative files are looked up
+/// in `folder`.
+std::unique_ptr<core::Scene> scene_from(std::string xml, int size = 16, const std::string& folder = ".");
 /// An integrator from its XML element.
 std::shared_ptr<const core::Integrator> integrator_from(const std::string& xml);
 
@@ -41,8 +42,9 @@ struct RenderStatistics {
     RenderStatistics scaled(double factor) const;      ///< a planted error
 };
 
+/// The picture's size is that of the scene's film.
 struct RenderSpec {
-    int width = 16, height = 16, block = 4;
+    int block = 4;  ///< pixels
     std::uint32_t passes = 256;
     std::uint64_t seed = 1;
 };

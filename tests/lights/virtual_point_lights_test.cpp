@@ -1,0 +1,145 @@
+// Particle tracing and gathering, each against something that does not share its code.
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "lights/particle_tracer.h"
+#include "lights/vpl_gather.h"
+#include "tests/support/catch.h"
+#include "tests/support/render_statistics.h"
+
+using namespace mote;
+using namespace mote::core;
+using namespace mote::tests;
+
+namespace {
+
+/// A closed box [-1,1]^3 of albedo `albedo`, open to no side, with a point light inside and maybe fog.
+std::string closed_box(const std::string& bsdf, const std::string& medium) {
+    return R"(<scene version="3.0.0"><shape type="cube"><boolean name="flip_normals" value="true"/>)" + bsdf +
+           R"(</shape><emitter type="point"><point name="position" x="0.1" y="0.3" z="-0.2"/>
+        <rgb name="intensity" value="2, 1, 0.5"/></emitter>)" +
+           medium + R"(<sensor type="perspective"/></scene>)";
+}
+const std::string diffuse = R"(<bsdf type="diffuse"><rgb name="reflectance" value="0.5"/></bsdf>)";
+const std::string glossy = R"(<bsdf type="roughconductor"><float name="alpha" value="0.4"/></bsdf>)";
+const std::string fog = R"(<shape type="sphere"><float name="radius" value="0.8"/><bsdf type="null"/>
+    <medium type="homogeneous" name="interior"><rgb name="sigma_t" value="2"/><rgb name="albedo" value="0.7"/></medium></shape>)";
+
+lights::LightPathSettings paths(std::uint32_t n) {
+    lights::LightPathSettings s;
+    s.paths = n;
+    return s;
+}
+
+}  // namespace
+
+// Every particle in a closed box arrives somewhere: the power at the first vertices is the power of the
+// light, and every diffuse bounce keeps the albedo's share of it in the mean.
+TEST_CASE("the VPLs of each depth carry the light's power times albedo^depth", "[vpl][particles]") {
+    const auto scene = scene_from(closed_box(diffuse, ""));
+    const double power = 4.0 * std::acos(-1.0) * 2.0;  // red
+    std::vector<double> sum(4, 0.0), squares(4, 0.0);
+    const int sets = 64;
+    for (int s = 0; s < sets; ++s) {
+        const auto set =
+            lights::trace_light_paths(*scene, paths(256), 5, std::uint32_t(s), SamplerKind::independent);
+        CHECK(set.paths == 256);
+        std::vector<double> set_sum(4, 0.0);
+        // I_j = albedo / pi * alpha / paths on a diffuse surface.
+        for (const auto& vpl : set.lights)
+            if (vpl.depth <= 4) set_sum[vpl.depth - 1] += double(vpl.intensity.x) * std::acos(-1.0) / 0.5;
+        for (std::size_t d = 0; d < 4; ++d) sum[d] += set_sum[d], squares[d] += set_sum[d] * set_sum[d];
+    }
+    for (std::size_t d = 0; d < 4; ++d) {
+        const double mean = sum[d] / sets, variance = (squares[d] / sets - mean * mean) / (sets - 1);
+        INFO("depth " << d + 1 << ": " << mean << " +- " << std::sqrt(variance));
+        // 4 sigma; depth 1 has no variance at all.
+        CHECK(std::fabs(mean - power * std::pow(0.5, double(d))) < 4.0 * std::sqrt(variance) + 1e-4 * power);
+    }
+}
+
+TEST_CASE("light paths are the same bits on one thread and on two", "[vpl][determinism]") {
+    const auto scene = scene_from(closed_box(glossy, fog));
+    const auto trace = [&](std::size_t threads) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        return lights::trace_light_paths(*scene, paths(500), 9, 3, SamplerKind::sobol);
+    };
+    const auto one = trace(1), two = trace(2);
+    REQUIRE(one.lights.size() == two.lights.size());
+    REQUIRE(!one.lights.empty());
+    REQUIRE(!one.details.empty());
+    CHECK(std::memcmp(one.lights.data(), two.lights.data(), one.lights.size() * sizeof one.lights[0]) == 0);
+    CHECK(one.rays.closest == two.rays.closest);
+}
+
+// The gather of a tile against a plain loop over VPLs and receivers, written from Eqs. 10.4 and 10.5.
+TEST_CASE("gathering sixteen receivers equals the plain sum", "[vpl][gather]") {
+    for (const std::string& bsdf : {diffuse, glossy})
+        for (const float bound : {infinity, 2.0f}) {
+            const auto scene = scene_from(closed_box(bsdf, ""));
+            const auto vpls = lights::trace_light_paths(*scene, paths(64), 7, 0, SamplerKind::independent);
+            lights::ReceiverTile tile;
+            std::vector<ScatteringVertex> vertices(lights::ReceiverTile::width);
+            Rng rng(3);
+            MediumState state;
+            for (int i = 0; i < lights::ReceiverTile::width; ++i) {
+                if (i == 5) continue;  // an idle lane
+                const Vec2 u = rng.next_vec2();
+                const float r = std::sqrt(1.0f - sqr(2.0f * u.x - 1.0f)), phi = 2.0f * pi * u.y;
+                const Ray ray{{0, 0, 0}, {r * std::cos(phi), r * std::sin(phi), 2.0f * u.x - 1.0f}};
+                WalkContext context;
+                PathWeights weights;
+                Rgb emitted;
+                vertices[std::size_t(i)] =
+                    make_vertex(walk<false>(*scene, ray, state, weights, emitted, context), ray);
+                tile.set(i, vertices[std::size_t(i)], Rgb(1.0f, 0.5f, 2.0f), state, rng, i == 7 ? 1 : 1000);
+            }
+            lights::GatherScratch scratch;
+            RayCounters rays;
+            TrackingCounters tracking;
+            const auto light = lights::gather(*scene, vpls, bound, tile, scratch, rays, tracking);
+            CHECK(rays.occlusion > 0);
+            for (std::size_t i = 0; i < vertices.size(); ++i) {
+                glm::dvec3 expected(0.0);
+                const ScatteringVertex& v = vertices[i];
+                for (const auto& vpl : vpls.lights) {
+                    if (i == 5 || (i == 7 && vpl.depth > 1)) continue;
+                    const Vec3 d = vpl.position - v.position;
+                    const float distance = glm::length(d);
+                    const Vec3 wi = d / distance;
+                    const float cos_x = std::max(0.0f, glm::dot(v.hit.geometric_normal, wi));
+                    const float cos_y = std::max(0.0f, -glm::dot(vpl.normal, wi));
+                    const Rgb i_j = vpl.detail == lights::VirtualPointLight::no_detail
+                                        ? vpl.intensity
+                                        : vpl.intensity * vpls.details[vpl.detail].eval(-wi);
+                    const float g = std::min(cos_x * cos_y / (distance * distance), bound);
+                    if (g > 0.0f && !scene->rays().occluded({v.ray_origin(wi), wi, 0.0f, 0.9999f * distance}))
+                        expected +=
+                            glm::dvec3(Rgb(1.0f, 0.5f, 2.0f) * v.eval(wi, TransportMode::radiance) * i_j * g);
+                }
+                for (int c = 0; c < 3; ++c)
+                    CHECK(light[i][c] == Approx(expected[c]).epsilon(2e-3).margin(1e-9));
+            }
+        }
+}
+
+TEST_CASE("no paths, a dark light, and a receiver on a VPL stay finite", "[vpl][extremes]") {
+    const auto scene = scene_from(closed_box(diffuse, fog));
+    CHECK(lights::trace_light_paths(*scene, paths(0), 1, 0, SamplerKind::sobol).lights.empty());
+
+    const auto vpls = lights::trace_light_paths(*scene, paths(32), 1, 0, SamplerKind::sobol);
+    REQUIRE(!vpls.lights.empty());
+    lights::ReceiverTile tile;
+    ScatteringVertex vertex;
+    const auto phase = scene->media()[0];
+    vertex.phase = &phase->phase(), vertex.position = vpls.lights[0].position, vertex.wo = {0, 0, 1};
+    MediumState state = scene->medium_state_at(vertex.position, nullptr);
+    tile.set(0, vertex, Rgb(1.0f), state, Rng(1), 1000);
+    lights::GatherScratch scratch;
+    RayCounters rays;
+    TrackingCounters tracking;
+    for (const float bound : {infinity, 10.0f})
+        CHECK(is_finite(lights::gather(*scene, vpls, bound, tile, scratch, rays, tracking)[0]));
+}
