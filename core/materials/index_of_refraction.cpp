@@ -31,8 +31,8 @@ struct NamedConductor {
     ComplexIndex index;
 };
 
-// Measured spectra (Palik, Handbook of Optical Constants) averaged to linear sRGB with the CIE 1931
-// observer; the same averages are found as RGB triples in many published scene files.
+// Measured spectra (mostly Palik, Handbook of Optical Constants) averaged to linear sRGB: the values
+// published with the Tungsten renderer, rounded. Mitsuba's come from the same spectra.
 const NamedConductor conductors[] = {
     {"none", {{0.0f, 0.0f, 0.0f}, {1.0f, 1.0f, 1.0f}}},
     {"Ag", {{0.15526f, 0.11672f, 0.13838f}, {4.82834f, 3.12225f, 2.14695f}}},
