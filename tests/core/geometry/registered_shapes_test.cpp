@@ -18,10 +18,10 @@ std::shared_ptr<Shape> make(const std::string& type, std::map<std::string, Prope
     for (auto& [name, value] : values) p.values[name] = {value, {"scene.xml", 13}};
     const Manual* manual = registry.find(Category::shape, type);
     REQUIRE(manual);
-    for (auto& [name, value] : values) {
-        const auto& rows = manual->parameters;
-        CHECK(std::any_of(rows.begin(), rows.end(), [&](const Parameter& row) { return row.name == name; }));
-    }
+    const std::vector<Parameter>& rows = manual->parameters;
+    for (const auto& value : values)
+        CHECK(
+            std::any_of(rows.begin(), rows.end(), [&](const auto& row) { return row.name == value.first; }));
     return std::dynamic_pointer_cast<Shape>(registry.factory(Category::shape, type)(p));
 }
 
