@@ -32,7 +32,12 @@ class OutputDescriptor {
     OutputDescriptor& operator=(const OutputDescriptor&) = delete;
 
     bool is_open() const { return descriptor_ >= 0; }
-    bool write(std::span<const std::byte> bytes) {
+    bool write(std::span<const std::span<const std::byte>> pieces) {
+        for (const auto& piece : pieces)
+            if (!write_piece(piece)) return false;
+        return true;
+    }
+    bool write_piece(std::span<const std::byte> bytes) {
         while (!bytes.empty()) {
             const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
             if (written < 0 && errno == EINTR) continue;
@@ -71,13 +76,17 @@ void sync_folder(const fs::path& folder) {
 }  // namespace
 
 void write_file_atomically(const std::string& path, std::span<const std::byte> bytes) {
+    write_file_atomically(path, std::span(&bytes, 1));
+}
+
+void write_file_atomically(const std::string& path, std::span<const std::span<const std::byte>> pieces) {
     std::error_code ignored;
     const fs::file_status status = fs::status(path, ignored);
     if (fs::is_directory(status)) throw InputError("cannot be written: it is a folder", {path, 0});
     if (fs::exists(status) && !fs::is_regular_file(status)) {
         // A device or a pipe: renaming a file over it would destroy it.
         OutputDescriptor device(path, O_WRONLY | O_CLOEXEC, false);
-        if (!device.is_open() || !device.write(bytes) || !device.sync() || !device.close()) fail(path);
+        if (!device.is_open() || !device.write(pieces) || !device.sync() || !device.close()) fail(path);
         return;
     }
     // Renaming over a link would replace the link, not what it points to.
@@ -91,7 +100,7 @@ void write_file_atomically(const std::string& path, std::span<const std::byte> b
         file.keep();
         fail(path);
     }
-    if (!file.write(bytes) || !file.sync() || !file.close()) fail(path);
+    if (!file.write(pieces) || !file.sync() || !file.close()) fail(path);
     if (::rename(temporary.c_str(), target.c_str()) != 0) fail(path);
     file.keep();
     const fs::path folder = fs::path(target).parent_path();

@@ -65,6 +65,7 @@ bool insert_matrix(Imf::Header& header, const std::string& name, const std::stri
 Imf::Header make_header(const ImageChannels& image, bool use_half) {
     Imf::Header header(image.width, image.height);
     header.compression() = Imf::ZIP_COMPRESSION;
+    header.zipCompressionLevel() = 2;  // hardly larger than the default 4, and a Ctrl-C waits for it
     for (const std::string& name : image.names)
         header.channels().insert(name, Imf::Channel(use_half && !needs_float(name) ? Imf::HALF : Imf::FLOAT));
     for (const auto& [name, text] : image.metadata)

@@ -26,6 +26,13 @@ double variance_from_sums(double sum, double squares, std::uint32_t n) {
     return std::fmax(0.0, (squares / n - mean * mean) / (n - 1.0));
 }
 
+template <typename Body>
+void for_each_pixel(std::size_t pixels, const Body& body) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels, grain), [&](const auto& range) {
+        for (std::size_t p = range.begin(); p < range.end(); ++p) body(p);
+    });
+}
+
 bool pixel_is_finite(const PassImage& image, std::size_t pixel) {
     for (std::size_t layer = 0; layer < image.layers(); ++layer)
         if (!is_finite(image.layer(layer)[pixel])) return false;
@@ -104,8 +111,9 @@ std::vector<Rgb> Film::mean(std::size_t layer) const {
     std::vector<Rgb> result(pixels(), Rgb(0.0f));
     if (passes_ == 0) return result;
     const Sums& sums = sums_[layer];
-    for (std::size_t p = 0; p < pixels(); ++p)
+    for_each_pixel(pixels(), [&](std::size_t p) {
         for (int c = 0; c < 3; ++c) result[p][c] = float(sums.at(3 * p + std::size_t(c)) / passes_);
+    });
     return result;
 }
 
@@ -120,21 +128,21 @@ std::vector<Rgb> Film::beauty() const {
     std::vector<Rgb> result(pixels(), Rgb(0.0f));
     for (const std::size_t layer : beauty_layers()) {
         const std::vector<Rgb> part = mean(layer);
-        for (std::size_t p = 0; p < pixels(); ++p) result[p] += part[p];
+        for_each_pixel(pixels(), [&](std::size_t p) { result[p] += part[p]; });
     }
     return result;
 }
 
 std::vector<Rgb> Film::variance_of_mean(std::span<const std::size_t> layers, const Sums& squares) const {
     std::vector<Rgb> result(pixels(), Rgb(0.0f));
-    for (std::size_t p = 0; p < pixels(); ++p) {
+    for_each_pixel(pixels(), [&](std::size_t p) {
         for (int c = 0; c < 3; ++c) {
             const std::size_t i = 3 * p + std::size_t(c);
             double sum = 0.0;
             for (const std::size_t layer : layers) sum += sums_[layer].at(i);
             result[p][c] = float(variance_from_sums(sum, squares.at(i), passes_));
         }
-    }
+    });
     return result;
 }
 

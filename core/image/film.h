@@ -71,6 +71,7 @@ class Film {
     std::vector<Rgb> variance_of_mean(std::span<const std::size_t> layers, const Sums& squares) const;
     std::vector<std::size_t> beauty_layers() const;
     std::vector<const Sums*> all_sums() const;
+    std::size_t serialized_size(std::uint32_t passes) const;
 
     int width_, height_;
     std::vector<Layer> layers_;

@@ -1,4 +1,8 @@
 // The bits of a film as bytes: header, sums, checksum. Little-endian, as every machine this runs on.
+//
+// Before the first block is complete all totals are zero, and right after a block the open one is: zeros are
+// not written, for a film takes hundreds of megabytes.
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <utility>
@@ -18,6 +22,9 @@ struct Header {
     std::uint64_t non_finite = 0;
 };
 static_assert(sizeof(Header) == 40, "the header has no padding whose bytes could vary");
+
+bool has_totals(std::uint32_t passes) { return passes >= Film::block_size; }
+bool has_blocks(std::uint32_t passes) { return passes % Film::block_size != 0; }
 
 // Fills a buffer of known size from front to back.
 class Writer {
@@ -46,19 +53,25 @@ std::vector<const Film::Sums*> Film::all_sums() const {
     return all;
 }
 
+std::size_t Film::serialized_size(std::uint32_t passes) const {
+    const std::size_t copies = (has_totals(passes) ? 1u : 0u) + (has_blocks(passes) ? 1u : 0u);
+    std::size_t size = sizeof(Header) + sizeof(std::uint64_t);
+    for (const Sums* sums : all_sums()) size += copies * sums->total.size() * sizeof(double);
+    return size;
+}
+
 std::vector<std::byte> Film::serialize() const {
     Header header;
     header.width = std::uint32_t(width_), header.height = std::uint32_t(height_);
     header.layers = std::uint32_t(layers_.size()), header.all_squares = all_squares_ ? 1 : 0;
     header.passes = passes_, header.non_finite = non_finite_;
 
-    std::size_t size = sizeof(header) + sizeof(std::uint64_t);
-    for (const Sums* sums : all_sums()) size += 2 * sums->total.size() * sizeof(double);
-    Writer writer(size);
+    Writer writer(serialized_size(passes_));
     writer.write(&header, sizeof(header));
     for (const Sums* sums : all_sums()) {
-        writer.write(sums->total.data(), sums->total.size() * sizeof(double));
-        writer.write(sums->block.data(), sums->block.size() * sizeof(double));
+        const std::size_t bytes = sums->total.size() * sizeof(double);
+        if (has_totals(passes_)) writer.write(sums->total.data(), bytes);
+        if (has_blocks(passes_)) writer.write(sums->block.data(), bytes);
     }
     const std::uint64_t sum = checksum(writer.written());
     writer.write(&sum, sizeof(sum));
@@ -66,8 +79,6 @@ std::vector<std::byte> Film::serialize() const {
 }
 
 void Film::deserialize(std::span<const std::byte> bytes) {
-    std::size_t expected = sizeof(Header) + sizeof(std::uint64_t);
-    for (const Sums* sums : all_sums()) expected += 2 * sums->total.size() * sizeof(double);
     if (bytes.size() < sizeof(Header) + sizeof(std::uint64_t)) throw InputError("the film is cut short");
 
     Header header;
@@ -82,6 +93,7 @@ void Film::deserialize(std::span<const std::byte> bytes) {
                          std::to_string(height_));
     if (header.layers != layers_.size() || (header.all_squares != 0) != all_squares_)
         throw InputError("the film has other layers");
+    const std::size_t expected = serialized_size(header.passes);
     if (bytes.size() != expected) throw InputError("the film is damaged: its length is wrong");
     std::uint64_t sum;
     std::memcpy(&sum, bytes.data() + expected - sizeof(sum), sizeof(sum));
@@ -89,11 +101,15 @@ void Film::deserialize(std::span<const std::byte> bytes) {
         throw InputError("the film is damaged: its checksum is wrong");
 
     const std::byte* from = bytes.data() + sizeof(header);
-    const auto read = [&from](std::vector<double>& values) {
-        std::memcpy(values.data(), from, values.size() * sizeof(double));
-        from += values.size() * sizeof(double);
+    const auto read = [&from](std::vector<double>& values, bool present) {
+        const std::size_t size = present ? values.size() * sizeof(double) : 0;
+        if (present) std::memcpy(values.data(), from, size);
+        if (!present) std::fill(values.begin(), values.end(), 0.0);
+        from += size;
     };
-    const auto read_sums = [&read](Sums& sums) { read(sums.total), read(sums.block); };
+    const auto read_sums = [&](Sums& sums) {
+        read(sums.total, has_totals(header.passes)), read(sums.block, has_blocks(header.passes));
+    };
     for (Sums& sums : sums_) read_sums(sums);
     for (Sums& sums : layer_squares_) read_sums(sums);
     read_sums(beauty_squares_);

@@ -45,5 +45,7 @@ Bitmap read_bitmap(const std::string& path, bool raw, std::size_t max_pixels = s
 
 /// Writes bytes beside the final name, syncs and renames. Throws InputError with the system's reason.
 void write_file_atomically(const std::string& path, std::span<const std::byte> bytes);
+/// The same for bytes in several pieces.
+void write_file_atomically(const std::string& path, std::span<const std::span<const std::byte>> pieces);
 
 }  // namespace mote::core

@@ -1,6 +1,7 @@
 // 8-bit previews.
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -27,10 +28,10 @@ void write_png(const std::string& path, int width, int height, std::span<const R
         throw std::invalid_argument("the pixels do not fit the picture");
     const float scale = std::exp2(exposure);
     std::vector<std::uint8_t> bytes(3 * pixels.size());
-    for (std::size_t i = 0; i < pixels.size(); ++i) {
+    tbb::parallel_for(std::size_t(0), pixels.size(), [&](std::size_t i) {
         const Rgb shown = is_finite(pixels[i]) ? pixels[i] * scale : Rgb(1.0f, 0.0f, 1.0f);
         for (int c = 0; c < 3; ++c) bytes[3 * i + std::size_t(c)] = encode_srgb(shown[c]);
-    }
+    });
 
     // Encoded in memory: the writer of PNG files does not notice a full disk, write_file_atomically() does.
     const auto output = OIIO::ImageOutput::create("png");
@@ -38,6 +39,7 @@ void write_png(const std::string& path, int width, int height, std::span<const R
     OIIO::Filesystem::IOVecOutput memory;
     OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
     spec.attribute("oiio:ColorSpace", "sRGB");
+    spec.attribute("png:compressionLevel", 3);  // a tenth larger than the best, several times faster
     if (!output->set_ioproxy(&memory) || !output->open("preview.png", spec) ||
         !output->write_image(OIIO::TypeDesc::UINT8, bytes.data()) || !output->close())
         throw InputError("cannot be written: " + printable(output->geterror()), {path, 0});

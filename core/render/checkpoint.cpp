@@ -1,4 +1,4 @@
-// Writing and reading checkpoints. The checksum is looked at before anything else in the file is believed.
+// Writing and reading checkpoints. Checksums are looked at before anything else in the file is believed.
 #include "core/render/checkpoint.h"
 
 #include <cstring>
@@ -60,24 +60,26 @@ class Reader {
     std::span<const std::byte> bytes_;
 };
 
-// The part of the file that the checksum covers.
-std::span<const std::byte> verified(std::span<const std::byte> bytes) {
-    if (bytes.size() < sizeof(magic) + sizeof(version) + sizeof(std::uint64_t))
-        throw InputError("damaged (cut short)");
+// The head, after its checksum was found to be right.
+std::span<const std::byte> verified_head(std::span<const std::byte> bytes) {
+    if (bytes.size() < sizeof(magic) + 2 * sizeof(std::uint32_t)) throw InputError("damaged (cut short)");
     if (std::memcmp(bytes.data(), magic, sizeof(magic)) != 0) throw InputError("not a checkpoint of mote");
-    const auto content = bytes.first(bytes.size() - sizeof(std::uint64_t));
-    std::uint64_t sum;
-    std::memcpy(&sum, bytes.data() + content.size(), sizeof(sum));
-    if (sum != checksum(content)) throw InputError("damaged (its checksum is wrong)");
-    return content;
-}
-
-void read_verified(std::span<const std::byte> content, const CheckpointKey& key, Film& film) {
-    Reader reader(content);
-    reader.raw(sizeof(magic));
+    Reader reader(bytes.subspan(sizeof(magic)));
     const auto found_version = reader.number<std::uint32_t>();
     if (found_version != version)
         throw InputError("of format " + std::to_string(found_version) + ", not " + std::to_string(version));
+    const std::size_t size = reader.number<std::uint32_t>();
+    if (size > bytes.size() || bytes.size() - size < sizeof(std::uint64_t))
+        throw InputError("damaged (cut short)");
+    std::uint64_t sum;
+    std::memcpy(&sum, bytes.data() + size, sizeof(sum));
+    if (sum != checksum(bytes.first(size))) throw InputError("damaged (its checksum is wrong)");
+    return bytes.first(size);
+}
+
+void read_into(std::span<const std::byte> bytes, const CheckpointKey& key, Film& film) {
+    const std::span<const std::byte> head = verified_head(bytes);
+    Reader reader(head.subspan(sizeof(magic) + 2 * sizeof(std::uint32_t)));
     const auto seed = reader.number<std::uint64_t>();
     if (seed != key.seed)
         throw InputError("of another render: its seed is " + std::to_string(seed) + ", not " +
@@ -96,27 +98,36 @@ void read_verified(std::span<const std::byte> content, const CheckpointKey& key,
     if (!same_layers) throw InputError("of another render: its layers are different");
     if (reader.text() != key.content_hash)
         throw InputError("of another render: the scene, a file that it names, or an option has changed");
-    film.deserialize(reader.raw(reader.number<std::uint64_t>()));
+    const auto film_bytes = bytes.subspan(head.size() + sizeof(std::uint64_t));
+    if (reader.number<std::uint64_t>() != film_bytes.size())
+        throw InputError("damaged (its length is wrong)");
+    try {
+        film.deserialize(film_bytes);
+    } catch (const InputError& error) {
+        throw InputError(std::string("damaged: ") + error.what());
+    }
 }
 
 }  // namespace
 
 void write_checkpoint(const std::string& path, const CheckpointKey& key, const Film& film) {
-    Writer writer;
     const std::vector<std::byte> film_bytes = film.serialize();
-    writer.bytes().reserve(film_bytes.size() + 4096);
-    writer.raw(magic, sizeof(magic));
-    writer.number(version);
-    writer.number(key.seed);
-    writer.number(std::uint32_t(film.width()));
-    writer.number(std::uint32_t(film.height()));
-    writer.number(std::uint32_t(film.layers().size()));
-    for (const Layer& layer : film.layers()) writer.text(layer.name);
-    writer.text(key.content_hash);
-    writer.number(std::uint64_t(film_bytes.size()));
-    writer.raw(film_bytes.data(), film_bytes.size());
-    writer.number(checksum(writer.bytes()));
-    write_file_atomically(path, writer.bytes());
+    Writer head;
+    head.raw(magic, sizeof(magic));
+    head.number(version);
+    head.number(std::uint32_t(0));  // the size of the head, known below
+    head.number(key.seed);
+    head.number(std::uint32_t(film.width()));
+    head.number(std::uint32_t(film.height()));
+    head.number(std::uint32_t(film.layers().size()));
+    for (const Layer& layer : film.layers()) head.text(layer.name);
+    head.text(key.content_hash);
+    head.number(std::uint64_t(film_bytes.size()));
+    const auto size = std::uint32_t(head.bytes().size());
+    std::memcpy(head.bytes().data() + sizeof(magic) + sizeof(version), &size, sizeof(size));
+    head.number(checksum(head.bytes()));
+    const std::span<const std::byte> pieces[] = {head.bytes(), film_bytes};
+    write_file_atomically(path, pieces);
 }
 
 bool read_checkpoint(const std::string& path, const CheckpointKey& key, Film& film) {
@@ -128,7 +139,7 @@ bool read_checkpoint(const std::string& path, const CheckpointKey& key, Film& fi
         throw InputError(std::string("cannot resume: ") + error.what(), {path, 0});
     }
     try {
-        read_verified(verified(bytes), key, film);
+        read_into(bytes, key, film);
     } catch (const InputError& error) {
         throw InputError(std::string("cannot resume: this checkpoint is ") + error.what(), {path, 0});
     }

@@ -1,7 +1,7 @@
 // Checkpoints: everything needed to continue a render to the very same bits, in one file.
 //
-// Little-endian: magic, version, seed, size, content hash, layer names, film bytes, and a checksum over all
-// of it.
+// Little-endian: magic, version, size of the head, seed, picture size, layer names, content hash, size of the
+// film; a checksum of this head; the film, which holds its own checksum.
 #pragma once
 
 #include <cstdint>

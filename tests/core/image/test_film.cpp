@@ -67,7 +67,7 @@ TEST_CASE("The beauty is the float sum of the layers that are not auxiliary", "[
 
 TEST_CASE("Variance and noise agree with the two-pass formula", "[film]") {
     const int w = 4, h = 3;
-    const std::uint32_t n = 37;
+    constexpr std::uint32_t n = 37;
     const Film film = film_of(w, h, n, true);
     const auto variance = film.beauty_variance_of_mean(), of_layer = film.layer_variance_of_mean(1);
     double noise = 0.0, luminance_mean = 0.0;
@@ -81,7 +81,7 @@ TEST_CASE("Variance and noise agree with the two-pass formula", "[film]") {
             y.push_back(0.2126 * (double(a.x) + b.x) + 0.7152 * (double(a.y) + b.y) +
                         0.0722 * (double(a.z) + b.z));
         }
-        const auto moments = [n](const std::vector<double>& v) {
+        const auto moments = [](const std::vector<double>& v) {
             double mean = 0.0, spread = 0.0;
             for (const double x : v) mean += x / n;
             for (const double x : v) spread += (x - mean) * (x - mean);
