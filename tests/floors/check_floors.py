@@ -1,0 +1,112 @@
+#!/usr/bin/env python3
+"""Checks the house (docs/design.md): includes go down the floors only, and no path of one machine is committed.
+
+Usage: check_floors.py ROOT
+A file includes from its own folder or from floors below. Folders on the same floor do not know each other.
+tests/ and tools/ may include from anywhere. Looks at the committed files where ROOT is a git checkout, else at
+all files. Prints every offence as file:line and ends with 1 if there is one.
+"""
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+FLOORS = [
+    ["core"],
+    ["media"],
+    ["lights"],
+    ["compensation", "screenspace", "gathering"],
+    ["integrators"],
+    ["apps", "python", "plugins"],
+    ["experiments"],
+]
+FLOOR_OF = {folder: level for level, floor in enumerate(FLOORS) for folder in floor}
+EXEMPT = {"tests", "tools"}
+SOURCES = {".h", ".hpp", ".cpp", ".c", ".cc", ".inl"}
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]')
+# Folders of people and machines. A path starts where no letter, digit, dot, slash or the like goes before it.
+MACHINE_PATH = re.compile(r"(?<![\w./~$})-])/(?:work|root|home|Users|mnt|scratch)/[\w.]")
+# What every Debian system has is no property of one machine.
+SYSTEM_PATH = re.compile(r"(?<![\w./~$})-])/usr/(?:local|share)/[\w.-]+")
+ALLOWED_SYSTEM = {"/usr/share/glmark2", "/usr/share/common-licenses", "/usr/local/lib"}
+
+
+def committed_files(root):
+    """Tracked and new files that git does not ignore; every file where root is no checkout."""
+    command = ["git", "-c", "safe.directory=*", "-C", str(root), "ls-files", "-z", "--cached", "--others",
+               "--exclude-standard"]
+    if (root / ".git").exists():
+        try:
+            names = subprocess.run(command, check=True, capture_output=True).stdout.decode().split("\0")
+            return sorted({root / name for name in names if name and (root / name).is_file()})
+        except (OSError, subprocess.CalledProcessError):
+            pass  # no git program: look at everything but the folders that .gitignore names
+    left_out = {"build", "out", ".git", "__pycache__", "generated"}
+    return sorted(p for p in root.rglob("*")
+                  if p.is_file() and not left_out & set(p.relative_to(root).parts))
+
+
+def include_offence(folder, included):
+    """Why a file in `folder` may not include `included`, or None."""
+    target = included.split("/")[0]
+    if ".." in included.split("/"):
+        return f"'{included}' climbs out of its folder; includes are written from the root"
+    if target in EXEMPT:
+        return f"'{included}' belongs to {target}/, which nothing else may include"
+    if target not in FLOOR_OF or target == folder:
+        return None
+    if FLOOR_OF[target] < FLOOR_OF[folder]:
+        return None
+    relation = "a floor above" if FLOOR_OF[target] > FLOOR_OF[folder] else "the same floor as"
+    return f"'{included}' lies on {relation} {folder}/"
+
+
+def offences_of_file(root, path):
+    """(line, reason) of every offence in one file."""
+    relative = path.relative_to(root)
+    folder = relative.parts[0]
+    data = path.read_bytes()
+    if b"\0" in data[:4096]:
+        return  # a picture or a volume
+    checks_includes = path.suffix in SOURCES and folder in FLOOR_OF
+    for number, line in enumerate(data.decode("utf-8", "replace").splitlines(), 1):
+        found = INCLUDE.match(line)
+        if found and checks_includes:
+            reason = include_offence(folder, found.group(1))
+            if reason:
+                yield number, reason
+        if MACHINE_PATH.search(line) and not is_exempt_from_paths(relative):
+            yield number, f"a path of one machine: {MACHINE_PATH.search(line).group(0)}..."
+        for place in SYSTEM_PATH.findall(line):
+            if place not in ALLOWED_SYSTEM and not is_exempt_from_paths(relative):
+                yield number, f"a system path that the project does not rely on: {place}"
+
+
+def is_exempt_from_paths(relative):
+    """These files hold the patterns themselves."""
+    return relative.parts[:2] == ("tests", "floors")
+
+
+def check(root):
+    """All offences below root, as lines of text; and how many files were looked at."""
+    files = committed_files(root)
+    lines = [f"{path.relative_to(root)}:{number}: {reason}"
+             for path in files for number, reason in offences_of_file(root, path)]
+    return lines, len(files)
+
+
+def main():
+    root = Path(sys.argv[1]).resolve()
+    offences, count = check(root)
+    for offence in offences:
+        print(offence)
+    print(f"{count} files, {len(offences)} offences")
+    if count < 10:
+        print("too few files to be the project")
+        return 1
+    return 1 if offences else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
