@@ -40,7 +40,7 @@ class Gathering {
             RayLog log;
             gather(i);
             log.close();
-            all.emplace_back(log.packets);
+            all.emplace_back(log);
         }
         return all;
     }

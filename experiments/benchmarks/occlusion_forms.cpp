@@ -2,24 +2,11 @@
 
 #include <limits>
 
+#include "core/math/vec.h"
 #include "experiments/benchmarks/turns.h"
 
 namespace mote::benchmarks {
 namespace {
-
-/// One lane of a packet as a single ray.
-RTCRay lane_of(const RTCRay16& p, int i) {
-    RTCRay ray{};
-    ray.org_x = p.org_x[i], ray.org_y = p.org_y[i], ray.org_z = p.org_z[i], ray.tnear = p.tnear[i];
-    ray.dir_x = p.dir_x[i], ray.dir_y = p.dir_y[i], ray.dir_z = p.dir_z[i], ray.tfar = p.tfar[i];
-    ray.time = p.time[i], ray.mask = p.mask[i];
-    return ray;
-}
-void set_lane(RTCRay16& p, int i, const RTCRay& ray) {
-    p.org_x[i] = ray.org_x, p.org_y[i] = ray.org_y, p.org_z[i] = ray.org_z, p.tnear[i] = ray.tnear;
-    p.dir_x[i] = ray.dir_x, p.dir_y[i] = ray.dir_y, p.dir_z[i] = ray.dir_z, p.tfar[i] = ray.tfar;
-    p.time[i] = ray.time, p.mask[i] = ray.mask, p.id[i] = 0, p.flags[i] = 0;
-}
 
 /// Embree overwrites rays, so every run gets a copy; copying is not timed and leaves the copy in the cache,
 /// as rays made on the spot are.
@@ -29,24 +16,40 @@ double timed_on_copy(const std::vector<Item>& items, Trace&& trace) {
     return seconds_of([&] { trace(copy); });
 }
 
+bool same_target(const RTCRay& a, const RTCRay& b) {
+    const core::Vec3 end_a(a.org_x + a.dir_x, a.org_y + a.dir_y, a.org_z + a.dir_z);
+    const core::Vec3 end_b(b.org_x + b.dir_x, b.org_y + b.dir_y, b.org_z + b.dir_z);
+    return glm::length(end_a - end_b) <= 1e-5f * (1.0f + glm::length(end_a));
+}
+
 }  // namespace
 
-OcclusionRays::OcclusionRays(const std::vector<LoggedPacket>& packets) : logged_(packets) {
-    for (const LoggedPacket& packet : packets) {
-        scene_ = packet.scene;
-        for (int lane = 0; lane < 16; ++lane)
-            if (packet.valid[lane]) singles_.push_back(lane_of(packet.rays, lane));
+void OcclusionRays::append(Packets& packets, int lane, const RTCRay& ray) {
+    if (lane == 0) {
+        Packet& p = packets.emplace_back();
+        for (int i = 0; i < 16; ++i) {
+            p.rays.org_x[i] = p.rays.org_y[i] = p.rays.org_z[i] = p.rays.time[i] = 0.0f;
+            p.rays.dir_x[i] = p.rays.dir_y[i] = p.rays.dir_z[i] = 1.0f;
+            p.rays.tnear[i] = 0.0f, p.rays.tfar[i] = -1.0f;
+            p.rays.mask[i] = 0xffffffffu, p.rays.id[i] = p.rays.flags[i] = 0, p.valid[i] = 0;
+        }
     }
-    for (std::size_t i = 0; i < singles_.size(); ++i) {
-        const int lane = int(i % 16);
-        if (lane == 0) full_.push_back(LoggedPacket{{}, {}, scene_});
-        set_lane(full_.back().rays, lane, singles_[i]);
-        full_.back().valid[lane] = -1;
+    Packet& p = packets.back();
+    p.rays.org_x[lane] = ray.org_x, p.rays.org_y[lane] = ray.org_y, p.rays.org_z[lane] = ray.org_z;
+    p.rays.dir_x[lane] = ray.dir_x, p.rays.dir_y[lane] = ray.dir_y, p.rays.dir_z[lane] = ray.dir_z;
+    p.rays.tnear[lane] = ray.tnear, p.rays.tfar[lane] = ray.tfar, p.valid[lane] = -1;
+}
+
+OcclusionRays::OcclusionRays(const RayLog& log) {
+    int lane = 0;
+    for (const LoggedRay& logged : log.rays) {
+        if (!logged.occlusion) continue;
+        scene_ = logged.scene;
+        lane = lane == 16 || (lane > 0 && !same_target(singles_.back(), logged.ray)) ? 0 : lane;
+        append(one_target_, lane++, logged.ray);
+        append(full_, int(singles_.size() % 16), logged.ray);
+        singles_.push_back(logged.ray);
     }
-    if (!full_.empty())  // streams know no mask: idle lanes have an empty interval
-        for (int lane = 0; lane < 16; ++lane)
-            if (!full_.back().valid[lane])
-                full_.back().rays.tnear[lane] = 1, full_.back().rays.tfar[lane] = -1;
 }
 
 double OcclusionRays::one_by_one(const OcclusionRays& rays) {
@@ -55,50 +58,31 @@ double OcclusionRays::one_by_one(const OcclusionRays& rays) {
     });
 }
 
-template <bool coherent>
-double OcclusionRays::packets_as_logged(const OcclusionRays& rays) {
-    return timed_on_copy(rays.logged_, [&](std::vector<LoggedPacket>& copy) {
-        for (LoggedPacket& p : copy) bare_occluded(p.valid, p.scene, p.rays, coherent);
-    });
-}
-
-template <bool coherent>
-double OcclusionRays::full_packets(const OcclusionRays& rays) {
-    return timed_on_copy(rays.full_, [&](std::vector<LoggedPacket>& copy) {
-        for (LoggedPacket& p : copy) bare_occluded(p.valid, p.scene, p.rays, coherent);
+template <bool coherent, OcclusionRays::Packets OcclusionRays::*packets>
+double OcclusionRays::in_packets(const OcclusionRays& rays) {
+    return timed_on_copy(rays.*packets, [&](Packets& copy) {
+        for (Packet& p : copy) bare_occluded(p.valid, rays.scene_, p.rays, coherent);
     });
 }
 
 #if RTC_VERSION_MAJOR < 4
 template <bool coherent>
-double OcclusionRays::stream_of_singles(const OcclusionRays& rays) {
+double OcclusionRays::in_stream(const OcclusionRays& rays) {
     return timed_on_copy(rays.singles_, [&](std::vector<RTCRay>& copy) {
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        if (coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-        rtcOccluded1M(rays.scene_, &context, copy.data(), unsigned(copy.size()), sizeof(RTCRay));
-    });
-}
-
-template <bool coherent>
-double OcclusionRays::stream_of_packets(const OcclusionRays& rays) {
-    return timed_on_copy(rays.full_, [&](std::vector<LoggedPacket>& copy) {
-        bare_occluded_stream(rays.scene_, &copy.front().rays, unsigned(copy.size()), sizeof(LoggedPacket),
-                             coherent);
+        bare_occluded_stream(rays.scene_, copy.data(), unsigned(copy.size()), coherent);
     });
 }
 #endif
 
 std::vector<OcclusionRays::Form> OcclusionRays::forms() {
     return {
-        {"one by one", one_by_one}, {"packets as logged", packets_as_logged<false>},
-            {"packets as logged, coherent hint", packets_as_logged<true>},
-            {"full packets", full_packets<false>}, {"full packets, coherent hint", full_packets<true>},
+        {"one by one", one_by_one}, {"packets of one target", in_packets<false, &OcclusionRays::one_target_>},
+            {"packets of one target, coherent hint", in_packets<true, &OcclusionRays::one_target_>},
+            {"full packets", in_packets<false, &OcclusionRays::full_>},
+            {"full packets, coherent hint", in_packets<true, &OcclusionRays::full_>},
 #if RTC_VERSION_MAJOR < 4
-            {"stream of rays", stream_of_singles<false>},
-            {"stream of rays, coherent hint", stream_of_singles<true>},
-            {"stream of packets", stream_of_packets<false>}, {
-            "stream of packets, coherent hint", stream_of_packets<true>
+            {"stream of rays", in_stream<false>}, {
+            "stream of rays, coherent hint", in_stream<true>
         }
 #endif
     };

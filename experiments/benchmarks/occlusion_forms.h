@@ -11,8 +11,8 @@ namespace mote::benchmarks {
 /// Rays to one Embree scene, arranged for every form.
 class OcclusionRays {
   public:
-    /// Keeps the valid lanes of the packets, in order; `packets` may be empty.
-    explicit OcclusionRays(const std::vector<LoggedPacket>& packets);
+    /// Keeps the occlusion rays of the log, in order.
+    explicit OcclusionRays(const RayLog& log);
     std::size_t size() const { return singles_.size(); }
 
     struct Form {
@@ -23,18 +23,23 @@ class OcclusionRays {
     static std::vector<Form> forms();
 
   private:
+    /// Up to sixteen rays; lanes that are not valid hold an empty interval.
+    struct Packet {
+        RTCRay16 rays;
+        alignas(64) int valid[16];
+    };
+    using Packets = std::vector<Packet>;
+
+    static void append(Packets& packets, int lane, const RTCRay& ray);
+    template <bool coherent, Packets OcclusionRays::*packets>
+    static double in_packets(const OcclusionRays&);
     static double one_by_one(const OcclusionRays&);
     template <bool coherent>
-    static double packets_as_logged(const OcclusionRays&);
-    template <bool coherent>
-    static double full_packets(const OcclusionRays&);
-    template <bool coherent>
-    static double stream_of_singles(const OcclusionRays&);
-    template <bool coherent>
-    static double stream_of_packets(const OcclusionRays&);
+    static double in_stream(const OcclusionRays&);
 
     std::vector<RTCRay> singles_;
-    std::vector<LoggedPacket> logged_, full_;
+    Packets one_target_;  ///< the neighbouring rays that end in the same point, as VPLs are gathered
+    Packets full_;        ///< sixteen consecutive rays, whatever they end in
     RTCScene scene_ = nullptr;
 };
 

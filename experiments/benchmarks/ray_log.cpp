@@ -16,7 +16,7 @@ extern "C" {
 void __real_rtcIntersect1(RTCScene scene, Intersect* context, RTCRayHit* ray);
 void __real_rtcOccluded1(RTCScene scene, Occluded* context, RTCRay* ray);
 void __real_rtcOccluded16(const int* valid, RTCScene scene, Occluded* context, RTCRay16* rays);
-void __real_rtcOccludedNM(RTCScene scene, Occluded* context, RTCRayN* rays, unsigned n, unsigned m,
+void __real_rtcOccluded1M(RTCScene scene, Occluded* context, RTCRay* rays, unsigned count,
                           std::size_t stride);
 }
 #endif
@@ -33,11 +33,14 @@ RayLog*& open_log() {
 void log_ray(RTCScene scene, const RTCRay& ray, bool occlusion) {
     if (RayLog* log = open_log()) log->rays.push_back({ray, scene, occlusion});
 }
-void log_packet(const int* valid, RTCScene scene, const RTCRay16& rays) {
-    if (RayLog* log = open_log()) {
-        LoggedPacket& packet = log->packets.emplace_back();
-        packet.rays = rays, packet.scene = scene;
-        for (int lane = 0; lane < 16; ++lane) packet.valid[lane] = valid[lane];
+void log_packet(const int* valid, RTCScene scene, const RTCRay16& p) {
+    for (int i = 0; i < 16; ++i) {
+        if (!valid[i]) continue;
+        RTCRay ray{};
+        ray.org_x = p.org_x[i], ray.org_y = p.org_y[i], ray.org_z = p.org_z[i], ray.tnear = p.tnear[i];
+        ray.dir_x = p.dir_x[i], ray.dir_y = p.dir_y[i], ray.dir_z = p.dir_z[i], ray.tfar = p.tfar[i];
+        ray.time = p.time[i], ray.mask = p.mask[i];
+        log_ray(scene, ray, true);
     }
 }
 
@@ -74,12 +77,11 @@ void bare_occluded(const int* valid, RTCScene scene, RTCRay16& rays, bool cohere
     if (coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     __real_rtcOccluded16(valid, scene, &context, &rays);
 }
-void bare_occluded_stream(RTCScene scene, RTCRay16* packets, unsigned count, std::size_t stride,
-                          bool coherent) {
+void bare_occluded_stream(RTCScene scene, RTCRay* rays, unsigned count, bool coherent) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     if (coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    __real_rtcOccludedNM(scene, &context, reinterpret_cast<RTCRayN*>(packets), 16, count, stride);
+    __real_rtcOccluded1M(scene, &context, rays, count, sizeof(RTCRay));
 }
 #endif
 
@@ -112,16 +114,12 @@ void __wrap_rtcOccluded16(const int* valid, RTCScene scene, Occluded* context, R
     mote::benchmarks::log_packet(valid, scene, *rays);
     __real_rtcOccluded16(valid, scene, context, rays);
 }
-void __wrap_rtcOccludedNM(RTCScene scene, Occluded* context, RTCRayN* rays, unsigned n, unsigned m,
+void __wrap_rtcOccluded1M(RTCScene scene, Occluded* context, RTCRay* rays, unsigned count,
                           std::size_t stride) {
-    for (unsigned i = 0; i < m && n == 16; ++i) {
-        const auto& packet =
-            *reinterpret_cast<const RTCRay16*>(reinterpret_cast<const char*>(rays) + i * stride);
-        int valid[16];
-        for (int lane = 0; lane < 16; ++lane) valid[lane] = packet.tfar[lane] >= packet.tnear[lane] ? -1 : 0;
-        mote::benchmarks::log_packet(valid, scene, packet);
-    }
-    __real_rtcOccludedNM(scene, context, rays, n, m, stride);
+    for (unsigned i = 0; i < count; ++i)
+        mote::benchmarks::log_ray(
+            scene, *reinterpret_cast<const RTCRay*>(reinterpret_cast<const char*>(rays) + i * stride), true);
+    __real_rtcOccluded1M(scene, context, rays, count, stride);
 }
 #endif
 }

@@ -1,6 +1,6 @@
 // Writes down the rays that mote gives to Embree, so that bare Embree can trace the very same ones.
 //
-// The linker routes rtcIntersect1, rtcOccluded1, rtcOccluded16 and (Embree 3) rtcOccludedNM of the whole
+// The linker routes rtcIntersect1, rtcOccluded1, rtcOccluded16 and (Embree 3) rtcOccluded1M of the whole
 // program through wrappers (--wrap, see CMakeLists.txt) that log while a RayLog is open and pass the call on.
 #pragma once
 
@@ -15,13 +15,6 @@ struct LoggedRay {
     RTCScene scene;
     bool occlusion;
 };
-/// Sixteen occlusion rays as mote packed them; lanes that are not valid hold no ray.
-struct LoggedPacket {
-    RTCRay16 rays;
-    alignas(64) int valid[16];
-    RTCScene scene;
-};
-
 /// Logs from construction to close(). One at a time, on one thread.
 class RayLog {
   public:
@@ -31,8 +24,7 @@ class RayLog {
     RayLog& operator=(const RayLog&) = delete;
     void close();
 
-    std::vector<LoggedRay> rays;
-    std::vector<LoggedPacket> packets;
+    std::vector<LoggedRay> rays;  ///< in the order of the calls; packets and streams lane by lane
 };
 
 /// Embree itself, past the wrappers.
@@ -41,9 +33,7 @@ void bare_occluded(RTCScene scene, RTCRay& ray);
 /// `coherent` is Embree's hint.
 void bare_occluded(const int* valid, RTCScene scene, RTCRay16& rays, bool coherent);
 #if RTC_VERSION_MAJOR < 4
-/// A stream of `count` packets of sixteen, `stride` bytes apart.
-void bare_occluded_stream(RTCScene scene, RTCRay16* packets, unsigned count, std::size_t stride,
-                          bool coherent);
+void bare_occluded_stream(RTCScene scene, RTCRay* rays, unsigned count, bool coherent);
 #endif
 
 }  // namespace mote::benchmarks
