@@ -84,7 +84,7 @@ std::string smoke_medium(const std::string& path) {
 
 void check_layers(const std::string& xml, const std::string& reference_settings,
                   const std::string& vpl_settings, const std::vector<std::string>& layers,
-                  std::uint32_t vpl_passes = 3000, std::uint32_t path_passes = 16000) {
+                  std::uint32_t vpl_passes = 3000, std::uint32_t path_passes = 16000, int paths = 24) {
     const auto scene = scene_from(xml, 8);
     const auto vpl = render_statistics(
         *scene,
