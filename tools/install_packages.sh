@@ -12,7 +12,7 @@ packages=(
   libopenvdb-dev libnanovdb-dev                       # smoke and clouds
   libblosc-dev libboost-iostreams-dev zlib1g-dev      # what OpenVDB's CMake module asks for
   libopenexr-dev libimath-dev python3-imath           # EXR; Imath's CMake config names a Python library
-  libopenimageio-dev                                  # textures and PNG
+  libopenimageio-dev openimageio-tools                # textures and PNG; its CMake config names its tools
   libassimp-dev                                       # mesh files
   libglm-dev libeigen3-dev libtbb-dev                 # vectors, matrices, threads
   libpugixml-dev libcli11-dev libfmt-dev nlohmann-json3-dev
