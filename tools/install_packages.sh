@@ -14,7 +14,7 @@ packages=(
   libopenexr-dev libimath-dev python3-imath           # EXR; Imath's CMake config names a Python library
   libopenimageio-dev openimageio-tools                # textures and PNG; its CMake config names its tools
   libassimp-dev                                       # mesh files
-  libglm-dev libeigen3-dev libtbb-dev                 # vectors, matrices, threads
+  libglm-dev libtbb-dev                               # vectors, threads
   libpugixml-dev libcli11-dev libfmt-dev nlohmann-json3-dev
   catch2 libbenchmark-dev                             # tests and benchmarks
   glmark2-data                                        # a real bunny and horse

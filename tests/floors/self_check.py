@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Proves that check_floors.py can fail: plants offences in an empty folder and expects each to be found."""
+"""Proves that the checks of this folder can fail: plants offences in an empty folder and expects each to be found."""
 import sys
 import tempfile
 from pathlib import Path
 
+import check_references
 from check_floors import check
 
 # (file, content, must be refused)
@@ -33,9 +34,39 @@ CASES = [
     ("docs/a.md", "a/work/b, ../home/c, https://example.org/home/d, lights/media/x\n", False),
 ]
 
+# (comment, must be refused) where the references hold Veach1997, Raab2008 and Novak2014
+CITATIONS = [
+    ("// the balance heuristic (Veach 1997, Eq. 9.8)", False),
+    ("// Raab et al. 2008, Sec. 3", False),
+    ("// residual tracking (Nov\u00e1k et al. 2014)", False),
+    ("// Raab, Seibert and Keller 2008", False),
+    ("// as Raab et al.\n// 2008 have it", False),
+    ("// Nobody 1999, Eq. 1", True),
+    ("// Veach 1998", True),
+    ("// Raab et al. 2009", True),
+    ("// the standard observer of CIE 1931", False),
+]
+
+
+def check_citations():
+    """How many of CITATIONS come out wrong."""
+    failures = 0
+    for comment, refused in CITATIONS:
+        with tempfile.TemporaryDirectory() as folder:
+            root = Path(folder)
+            (root / "docs").mkdir()
+            (root / "docs/references.bib").write_text("@book{Veach1997,}\n@book{Raab2008,}\n@book{Novak2014,}\n")
+            (root / "core").mkdir()
+            (root / "core/a.h").write_text(comment + "\nint x;\n", encoding="utf-8")
+            lines, _ = check_references.missing(root)
+        if bool(lines) != refused:
+            failures += 1
+            print(f"{comment!r}: expected {'a missing entry' if refused else 'none'}, got {lines}")
+    return failures
+
 
 def main():
-    failures = 0
+    failures = check_citations()
     for name, content, refused in CASES:
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / name
@@ -46,7 +77,7 @@ def main():
             failures += 1
             print(f"{name}: {content.strip()!r}: expected {'an offence' if refused else 'none'}, "
                   f"got {offences} in {count} files")
-    print(f"{len(CASES)} cases, {failures} wrong")
+    print(f"{len(CASES) + len(CITATIONS)} cases, {failures} wrong")
     return 1 if failures else 0
 
 
