@@ -61,6 +61,11 @@ void check_mesh(const MeshData& data, const SourceLocation& where) {
         throw InputError("the mesh has not as many texture coordinates as positions", where);
 }
 
+bool has_area(const MeshData& data) {
+    return std::any_of(data.triangles.begin(), data.triangles.end(),
+                       [&](const auto& triangle) { return !degenerate(data, triangle); });
+}
+
 std::size_t drop_degenerate_triangles(MeshData& data) {
     return std::erase_if(data.triangles, [&](const auto& triangle) { return degenerate(data, triangle); });
 }

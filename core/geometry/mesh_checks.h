@@ -15,6 +15,9 @@ inline constexpr float largest_coordinate = 1e18f;
 /// coordinates do not fit the positions.
 void check_mesh(const MeshData& data, const SourceLocation& where);
 
+/// True when at least one triangle has an area (see drop_degenerate_triangles). Indices must be in range.
+bool has_area(const MeshData& data);
+
 /// Removes triangles whose corners are collinear as far as double precision can tell. Returns how many.
 std::size_t drop_degenerate_triangles(MeshData& data);
 

@@ -54,6 +54,7 @@ MeshData load_mesh_as(const std::string& format, const std::string& path, bool f
     MeshFile file = read_mesh_file(format.empty() ? format_of(path) : format, path, flip_v);
     MeshData& data = file.data;
     check_mesh(data, {path, 0});
+    if (!has_area(data)) throw InputError("the mesh has no triangle with an area", {path, 0});
     if (file.other_dropped > 0)
         notes.push_back(counted(file.other_dropped, "line or point", "lines or points", "dropped"));
     if (face_normals) {
