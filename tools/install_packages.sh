@@ -46,7 +46,7 @@ if ((${#missing[@]} == 0)); then
   exit 0
 fi
 
-echo "Installing ${#missing[@]} missing packages: ${missing[*]}"
+echo "Missing packages, to be installed now: ${missing[*]}"
 as_root=()
 if ((EUID != 0)); then
   if ! command -v sudo >/dev/null; then
