@@ -110,7 +110,7 @@ BENCHMARK_CAPTURE(gather_against_bare_occlusion, one_glossy_ball, true, no_targe
     ->Unit(benchmark::kMillisecond);
 
 /// Absolute rates of every form on the gathering's rays.
-void bare_occlusion(benchmark::State& state) {
+void forms_of_occlusion(benchmark::State& state) {
     static Gathering gathering(false);  // owns the scene that the rays refer to
     static const auto rays = gathering.log_rays();
     const auto form = OcclusionRays::forms()[std::size_t(state.range(0))];
@@ -122,7 +122,7 @@ void bare_occlusion(benchmark::State& state) {
     }
     state.counters["bare_M_per_s"] = 1e-6 * count_rays(rays) / median(seconds);
 }
-BENCHMARK(bare_occlusion)
+BENCHMARK(forms_of_occlusion)
     ->DenseRange(0, int(OcclusionRays::forms().size()) - 1)
     ->UseManualTime()
     ->Iterations(10)
