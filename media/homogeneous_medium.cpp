@@ -92,7 +92,7 @@ std::optional<float> HomogeneousMedium::sample_collision(const Ray& ray, core::P
         return std::nullopt;
     }
     ++counters.collisions;
-    return std::fmin(float(ray.t_min + t), ray.t_max);
+    return std::fmin(float(ray.t_min + t), std::fmin(ray.t_max, std::numeric_limits<float>::max()));
 }
 
 void HomogeneousMedium::connect(const Ray& ray, core::PathWeights& weights, Rng&,

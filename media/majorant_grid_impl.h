@@ -130,34 +130,42 @@ void MajorantGrid<Value>::walk(const core::Vec3d& origin, const core::Vec3d& dir
     if (!outside_is_zero_ && t_begin < enter && !visit(outside_, t_begin, enter)) return;
 
     // Amanatides & Woo 1987, with every crossing computed from the cell's integer coordinate: nothing
-    // accumulates, and each step moves one cell in a fixed direction, so the walk ends.
+    // accumulates, and each step moves one cell in a fixed direction, so the walk ends. `border[axis]` is the
+    // coordinate of the face ahead, `left[axis]` the number of cells behind it.
     const double to_cells = 1.0 / double(edge_);
-    std::array<int, 3> cell, step;
-    std::array<double, 3> next, offset, inverse;
-    for (int axis = 0; axis < 3; ++axis) {
-        const double d = direction[axis] * to_cells;
-        offset[std::size_t(axis)] = (origin[axis] - double(lower_[axis])) * to_cells;
-        const double position = offset[std::size_t(axis)] + enter * d;
-        const int c = int(std::clamp(std::floor(position), 0.0, double(resolution_[axis] - 1)));
-        cell[std::size_t(axis)] = c;
-        step[std::size_t(axis)] = d > 0.0 ? 1 : -1;
-        inverse[std::size_t(axis)] = d != 0.0 ? 1.0 / d : 0.0;
-        next[std::size_t(axis)] =
-            d != 0.0 ? (double(d > 0.0 ? c + 1 : c) - offset[std::size_t(axis)]) * inverse[std::size_t(axis)]
-                     : std::numeric_limits<double>::infinity();
+    const std::array<std::ptrdiff_t, 3> strides = {1, resolution_.x,
+                                                   std::ptrdiff_t(resolution_.x) * resolution_.y};
+    std::array<int, 3> left;
+    std::array<std::ptrdiff_t, 3> stride;
+    std::array<double, 3> next, border, step, offset, inverse;
+    std::ptrdiff_t index = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const int i = int(axis);
+        const double d = direction[i] * to_cells;
+        const bool up = d > 0.0;
+        offset[axis] = (origin[i] - double(lower_[i])) * to_cells;
+        const int cell =
+            int(std::clamp(std::floor(offset[axis] + enter * d), 0.0, double(resolution_[i] - 1)));
+        index += cell * strides[axis];
+        left[axis] = up ? resolution_[i] - 1 - cell : cell;
+        stride[axis] = up ? strides[axis] : -strides[axis];
+        border[axis] = up ? cell + 1 : cell, step[axis] = up ? 1.0 : -1.0;
+        inverse[axis] = d != 0.0 ? 1.0 / d : 0.0;
+        next[axis] = d != 0.0 ? (border[axis] - offset[axis]) * inverse[axis]
+                              : std::numeric_limits<double>::infinity();
     }
-    double t = enter;
-    for (;;) {
-        const std::size_t axis =
-            next[0] < next[1] ? (next[0] < next[2] ? 0 : 2) : (next[1] < next[2] ? 1 : 2);
-        const double t_exit = std::min(next[axis], leave);
+    for (double t = enter;;) {
+        const std::size_t xy = std::size_t(next[1] < next[0]);
+        const std::size_t axis = next[2] < next[xy] ? 2 : xy;
+        const double crossing = next[axis], t_exit = std::min(crossing, leave);
         if (t_exit > t) {
-            if (!visit(cells_[cell_index(cell[0], cell[1], cell[2])], t, t_exit)) return;
+            if (!visit(cells_[std::size_t(index)], t, t_exit)) return;
             t = t_exit;
         }
-        cell[axis] += step[axis];
-        if (next[axis] >= leave || cell[axis] < 0 || cell[axis] >= resolution_[int(axis)]) break;
-        next[axis] = (double(step[axis] > 0 ? cell[axis] + 1 : cell[axis]) - offset[axis]) * inverse[axis];
+        if (crossing >= leave || --left[axis] < 0) break;
+        index += stride[axis];
+        border[axis] += step[axis];  // small integers: exact
+        next[axis] = (border[axis] - offset[axis]) * inverse[axis];
     }
     if (!outside_is_zero_ && leave < t_end) visit(outside_, leave, t_end);
 }

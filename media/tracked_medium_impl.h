@@ -22,12 +22,12 @@ bool TrackedMedium<Grid>::track(const core::Ray& ray, core::Rng& rng, core::Trac
         if (!(rate_per_metre > 0.0)) return true;
         double s = 0.0;  // from the start of the piece, so that short steps are not lost beside a large t
         for (;;) {
-            const double ds = depth / rate_per_metre;
-            if (!(s + ds < length)) {
-                depth = std::fmax(0.0, depth - rate_per_metre * (length - s));
+            const double remaining = rate_per_metre * (length - s);
+            if (!(depth < remaining)) {
+                depth -= remaining;
                 return true;
             }
-            s += ds;
+            s += depth / rate_per_metre;
             if (++steps > step_limit) {
                 complete = false;
                 return false;
@@ -67,7 +67,7 @@ std::optional<float> TrackedMedium<Grid>::sample_collision(const core::Ray& ray,
                 weights.unidirectional *= ratio;
             }
             weights.throughput *= albedo_at(p);
-            found = std::fmin(float(t), ray.t_max);
+            found = std::fmin(float(t), std::fmin(ray.t_max, std::numeric_limits<float>::max()));
             return false;
         }
         if constexpr (chromatic) {
