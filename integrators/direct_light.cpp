@@ -11,10 +11,8 @@ constexpr float shadow_fraction = 0.9999f;
 
 template <bool Media>
 Rgb sample_light(const Scene& scene, const ScatteringVertex& vertex, const PathWeights& weights,
-                 const MediumState& state, Sampler& sampler, WalkContext& context) {
-    float u_light = sampler.next_1d();
-    const Vec2 u = sampler.next_2d();
-    const LightChoice choice = scene.choose_light(u_light, &u_light);
+                 const MediumState& state, float u_light, const Vec2& u, WalkContext& context) {
+    const LightChoice choice = scene.choose_light(u_light);
     if (!choice.emitter) return Rgb(0.0f);
     const auto light = choice.emitter->sample_direct(vertex.position, u);
     if (!light) return Rgb(0.0f);
@@ -67,9 +65,9 @@ Rgb found_light(const Scene& scene, const WalkEvent& event, const Ray& ray, cons
 }
 
 template Rgb sample_light<true>(const Scene&, const ScatteringVertex&, const PathWeights&, const MediumState&,
-                                Sampler&, WalkContext&);
+                                float, const Vec2&, WalkContext&);
 template Rgb sample_light<false>(const Scene&, const ScatteringVertex&, const PathWeights&,
-                                 const MediumState&, Sampler&, WalkContext&);
+                                 const MediumState&, float, const Vec2&, WalkContext&);
 template Rgb found_light<true>(const Scene&, const WalkEvent&, const Ray&, const PathWeights&, const Vec3*);
 template Rgb found_light<false>(const Scene&, const WalkEvent&, const Ray&, const PathWeights&, const Vec3*);
 

@@ -16,12 +16,13 @@ inline float channel_average(const core::Rgb& pdfs) {
     return pdfs.x;
 }
 
-/// Next-event estimation: the light at `vertex` from one light drawn from the scene, weighted against
-/// directions from vertex.sample(). `weights` and `state` describe the path up to the vertex.
+/// Next-event estimation: the light at `vertex` from one light drawn by `u_light` (and a point on it by `u`),
+/// weighted against directions from vertex.sample(). `weights` and `state` describe the path up to the
+/// vertex.
 template <bool Media>
 core::Rgb sample_light(const core::Scene& scene, const core::ScatteringVertex& vertex,
-                       const core::PathWeights& weights, const core::MediumState& state,
-                       core::Sampler& sampler, core::WalkContext& context);
+                       const core::PathWeights& weights, const core::MediumState& state, float u_light,
+                       const core::Vec2& u, core::WalkContext& context);
 
 /// Light emitted at the end of a walk: an area light at the surface, or the environment outside. `previous`
 /// is the vertex whose sampled direction led here, null where next-event estimation could not have found this

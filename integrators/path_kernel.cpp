@@ -70,15 +70,15 @@ TransportSum trace_path(const Scene& scene, const PathSettings& settings, Ray ra
         const bool vpl_edge = bounded && classifier.scatterings() == 1;
         if (vpl_edge) weights.throughput *= classifier.bound_weight(vertex, event.distance, settings.bound);
 
+        const Vec2 choices = sampler.next_2d();  // of the light, and of the lobe
         if (vertex.connectable()) {
             sum[classifier.layer_of_connection(vertex)] +=
-                sample_light<Media>(scene, vertex, weights, state, sampler, context);
+                sample_light<Media>(scene, vertex, weights, state, choices.x, sampler.next_2d(), context);
         }
         if (depth >= settings.rr_depth && !survives<Media>(weights, eta, depth, context.rng.next_float()))
             break;
 
-        const float u_lobe = sampler.next_1d();
-        const auto next = vertex.sample(u_lobe, sampler.next_2d(), TransportMode::radiance);
+        const auto next = vertex.sample(choices.y, sampler.next_2d(), TransportMode::radiance);
         if (!next) break;
         // No VPL stands on a delta surface: what goes on from there is not part of the bounded transport.
         if (vpl_edge && next->delta) break;

@@ -111,16 +111,17 @@ class EyeTile {
         lane.vertex = make_vertex(event, lane.ray);
         const bool surface = lane.vertex.on_surface();
         const Transport direct = surface ? Transport::direct : Transport::single_scattering;
+        const core::Vec2 choices = lane.sampler->next_2d();  // of the light, and of the lobe
         if (lane.vertex.connectable()) {
-            lane.sum[direct] +=
-                sample_light<Media>(scene_, lane.vertex, lane.weights, lane.state, *lane.sampler, walk_);
+            lane.sum[direct] += sample_light<Media>(scene_, lane.vertex, lane.weights, lane.state, choices.x,
+                                                    lane.sampler->next_2d(), walk_);
             add_receiver(lane, index);
         }
         if (lane.depth >= settings_.eye.rr_depth &&
             !survives<Media>(lane.weights, lane.eta, lane.depth, walk_.rng.next_float()))
             return false;
-        const float u_lobe = lane.sampler->next_1d();
-        const auto next = lane.vertex.sample(u_lobe, lane.sampler->next_2d(), core::TransportMode::radiance);
+        const auto next =
+            lane.vertex.sample(choices.y, lane.sampler->next_2d(), core::TransportMode::radiance);
         if (!next) return false;
         apply_scattering<Media>(lane.weights, *next);
         lane.eta *= next->eta;

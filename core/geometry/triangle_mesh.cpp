@@ -21,11 +21,8 @@ struct Corners {
     Vec3d p0, e1, e2, cross;  // cross = e1 x e2, twice the area long
     double length, inverse;   // of cross
 
-    Corners(const MeshData& data, std::uint32_t primitive) {
-        const auto& index = data.triangles[primitive];
-        p0 = Vec3d(data.positions[index[0]]);
-        e1 = Vec3d(data.positions[index[1]]) - p0;
-        e2 = Vec3d(data.positions[index[2]]) - p0;
+    explicit Corners(const std::array<Vec3, 3>& corner) {
+        p0 = Vec3d(corner[0]), e1 = Vec3d(corner[1]) - p0, e2 = Vec3d(corner[2]) - p0;
         cross = glm::cross(e1, e2);
         length = glm::length(cross);
         inverse = 1.0 / length;
@@ -54,11 +51,14 @@ TriangleMesh::TriangleMesh(MeshData data) : data_(std::move(data)) {
     // Embree reads 16 bytes for every vertex, so four bytes behind the last one must be ours.
     data_.positions.reserve(data_.positions.size() + 1);
 
+    corners_.reserve(data_.triangles.size());
+    for (const auto& [a, b, c] : data_.triangles)
+        corners_.push_back({data_.positions[a], data_.positions[b], data_.positions[c]});
     std::vector<float> areas;
     areas.reserve(data_.triangles.size());
     double sum = 0.0, largest = 0.0;
     for (std::uint32_t i = 0; i < data_.triangles.size(); ++i) {
-        const double area = 0.5 * Corners(data_, i).length;
+        const double area = 0.5 * Corners(corners_[i]).length;
         sum += area, largest = std::max(largest, area);
         for (const std::uint32_t vertex : data_.triangles[i]) bounds_.extend(data_.positions[vertex]);
     }
@@ -67,12 +67,12 @@ TriangleMesh::TriangleMesh(MeshData data) : data_(std::move(data)) {
         throw InputError("the area of the mesh is out of range");
     // Relative to the largest, so that tiny triangles do not underflow.
     for (std::uint32_t i = 0; i < data_.triangles.size(); ++i)
-        areas.push_back(float(0.5 * Corners(data_, i).length / largest));
+        areas.push_back(float(0.5 * Corners(corners_[i]).length / largest));
     area_distribution_ = Distribution1D(areas);
 }
 
 void TriangleMesh::fill_hit(std::uint32_t primitive, float u, float v, SurfaceHit& hit) const {
-    const Corners corners(data_, primitive);
+    const Corners corners(corners_[primitive]);
     hit.position = corners.point(u, v);
     hit.geometric_normal = corners.normal();
     hit.error = corners.error(hit.position, hit.geometric_normal);
@@ -104,7 +104,7 @@ ShapeSample TriangleMesh::sample_area(const Vec2& u) const {
     const auto chosen = area_distribution_.sample_discrete(u.x);
     const auto primitive = std::uint32_t(chosen.index);
     const Vec2 b = square_to_triangle({chosen.remapped, u.y});
-    const Corners corners(data_, primitive);
+    const Corners corners(corners_[primitive]);
     const Vec3 position = corners.point(b.x, b.y), normal = corners.normal();
     return {position, normal, texture_coordinates(primitive, b.x, b.y), 1.0f / area_,
             corners.error(position, normal)};

@@ -39,6 +39,8 @@ class TriangleMesh final : public Shape {
 
     MeshData data_;
     Bounds3 bounds_;
+    /// Positions by triangle: a hit then costs one cache miss instead of two that wait for each other.
+    std::vector<std::array<Vec3, 3>> corners_;
     Distribution1D area_distribution_;  ///< areas relative to the largest
     float area_ = 0.0f;
     bool closed_ = false;

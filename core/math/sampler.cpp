@@ -4,11 +4,10 @@ namespace mote::core {
 namespace {
 
 std::uint32_t reverse_bits(std::uint32_t v) {
-    v = ((v >> 1) & 0x55555555u) | ((v & 0x55555555u) << 1);
-    v = ((v >> 2) & 0x33333333u) | ((v & 0x33333333u) << 2);
+    v = __builtin_bswap32(v);
     v = ((v >> 4) & 0x0f0f0f0fu) | ((v & 0x0f0f0f0fu) << 4);
-    v = ((v >> 8) & 0x00ff00ffu) | ((v & 0x00ff00ffu) << 8);
-    return (v >> 16) | (v << 16);
+    v = ((v >> 2) & 0x33333333u) | ((v & 0x33333333u) << 2);
+    return ((v >> 1) & 0x55555555u) | ((v & 0x55555555u) << 1);
 }
 
 /// A hash in which bit i of the result depends on bits 0..i only (Laine & Karras 2011, constants of Vegdahl
@@ -22,32 +21,30 @@ std::uint32_t laine_karras_permutation(std::uint32_t v, std::uint32_t seed) {
     return v;
 }
 
-/// Owen scrambling of the bits of v from the most significant down.
-std::uint32_t nested_uniform_scramble(std::uint32_t v, std::uint32_t seed) {
-    return reverse_bits(laine_karras_permutation(reverse_bits(v), seed));
-}
-
-/// The second dimension of the Sobol sequence: its direction numbers are the rows of Pascal's triangle mod 2.
-std::uint32_t sobol_second_dimension(std::uint32_t index) {
-    std::uint32_t result = 0;
-    for (std::uint32_t v = 1u << 31; index != 0; index >>= 1, v ^= v >> 1)
-        if (index & 1u) result ^= v;
-    return result;
+/// Bit-reversed second dimension of the Sobol sequence. Its generator matrix is Pascal's triangle mod 2,
+/// where C(i, j) is odd exactly if the bits of j are a subset of those of i (Lucas): five steps of a subset
+/// sum.
+std::uint32_t pascal_matrix_times(std::uint32_t v) {
+    v ^= (v >> 1) & 0x55555555u;
+    v ^= (v >> 2) & 0x33333333u;
+    v ^= (v >> 4) & 0x0f0f0f0fu;
+    v ^= (v >> 8) & 0x00ff00ffu;
+    return v ^ (v >> 16);
 }
 
 }  // namespace
 
 Vec2 Sampler::sobol(std::uint32_t dimension) const {
-    const std::uint64_t h = hash_keys(key_, dimension, 0x736f626full);
+    const std::uint64_t h = mix_bits(key_ + 0x9e3779b97f4a7c15ull * (dimension + 1ull));
     const auto shuffle_seed = std::uint32_t(h);
     const auto scramble_seed = std::uint32_t(h >> 32);
-    // Shuffling the index keeps the pairs of dimensions independent of each other: it permutes the order of
-    // the points within every power-of-two block, which Owen scrambling of the (bit-reversed) index does
-    // exactly.
-    const std::uint32_t index = nested_uniform_scramble(pass_, shuffle_seed);
-    const std::uint32_t x = nested_uniform_scramble(reverse_bits(index), scramble_seed);
+    // Nested uniform scrambling is reverse, permute, reverse. Shuffling the index by it keeps the pairs of
+    // dimensions independent of each other: it permutes the points within every power-of-two block of passes.
+    const std::uint32_t index = reverse_bits(laine_karras_permutation(reverse_bits(pass_), shuffle_seed));
+    // Both dimensions are reversed indices, and reversing twice is nothing: one reversal remains of each.
+    const std::uint32_t x = reverse_bits(laine_karras_permutation(index, scramble_seed));
     const std::uint32_t y =
-        nested_uniform_scramble(sobol_second_dimension(index), scramble_seed ^ 0x5bd1e995u);
+        reverse_bits(laine_karras_permutation(pascal_matrix_times(index), scramble_seed ^ 0x5bd1e995u));
     return {to_unit_float(x), to_unit_float(y)};
 }
 
