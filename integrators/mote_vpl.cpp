@@ -25,7 +25,10 @@ template <bool Media>
 class VplEstimator final : public Estimator {
   public:
     VplEstimator(const Scene& scene, const RenderOptions& options, const VplSettings& settings)
-        : scene_(scene), options_(options), settings_(settings), bound_(settings.bound_for(scene.bounds())) {}
+        : scene_(scene),
+          options_(options),
+          settings_(settings),
+          bound_(settings.bound_for(scene.rays().bounds())) {}
 
     bool pass(const PassContext& context, PassImage& image) override {
         if (context.cancelled) return false;
@@ -120,30 +123,29 @@ class MoteVpl final : public Integrator {
     }
 
   private:
-    void plan_bound(Plan& plan, const Requirements& requirements) const;
+    void plan_bound(Plan& plan, const Bounds3& surfaces) const;
     VplSettings settings_;
 };
 
-void MoteVpl::plan_bound(Plan& plan, const Requirements& requirements) const {
+void MoteVpl::plan_bound(Plan& plan, const Bounds3& surfaces) const {
     if (!settings_.bounded) {
         plan.run("bound", "none", "bounded is false: right in the mean, with splotches around VPLs");
         return;
     }
-    const float bound = settings_.bound_for(requirements.bounds);
+    const float bound = settings_.bound_for(surfaces);
     const std::string choice =
         std::to_string(bound) + " /m^2, radius " + std::to_string(1.0f / std::sqrt(bound)) + " m";
     plan.run("bound", choice,
-             settings_.bound
-                 ? "asked for"
-                 : "automatic: light paths / R^2, with R = " + std::to_string(requirements.bounds.radius()) +
-                       " m the radius of the scene");
+             settings_.bound ? "asked for"
+                             : "automatic: light paths / R^2, with R = " + std::to_string(surfaces.radius()) +
+                                   " m the radius of all surfaces");
 }
 
-Plan MoteVpl::plan(const Scene&, const Requirements& r) const {
+Plan MoteVpl::plan(const Scene& scene, const Requirements& r) const {
     Plan plan;
     plan.integrator = type();
     plan.run("light paths", std::to_string(settings_.paths) + " a pass", "a fresh set every pass");
-    plan_bound(plan, r);
+    plan_bound(plan, scene.rays().bounds());
     const bool directional = r.any_glossy() || (r.media_anisotropic && r.media_scattering);
     if (directional)
         plan.run("light per VPL", "64 bytes, and the vertex where f* depends on direction",
@@ -173,9 +175,9 @@ Plan MoteVpl::plan(const Scene&, const Requirements& r) const {
 void register_mote_vpl(Registry& registry) {
     auto parameters = path_parameters();
     parameters.push_back({"paths", "integer", "256", "light paths traced in every pass"});
-    parameters.push_back(
-        {"bound", "float", "automatic",
-         "bound b [1/m^2] on the geometry term; automatic: light paths / R^2 with the scene's radius R"});
+    parameters.push_back({"bound", "float", "automatic",
+                          "bound b [1/m^2] on the geometry term; automatic: light paths / R^2 with the "
+                          "radius R of all surfaces"});
     parameters.push_back({"bounded", "boolean", "true", "false: no bound on the geometry term"});
     registry.add({Category::integrator, "mote_vpl",
                   "Virtual point lights on surfaces and in media, with a bounded geometry term.", parameters,

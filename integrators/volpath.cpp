@@ -4,7 +4,7 @@
 // the channel that drives tracking, light and scattering directions combined at every vertex. On a scene
 // without media it is `path`, compiled from the same kernel.
 //
-// `bound` renders the transport that VPLs with a bounded geometry term estimate (see path_kernel.h).
+// `vpl_bound` renders the transport that VPLs with a bounded geometry term estimate (see path_kernel.h).
 #include "integrators/path_estimator.h"
 #include "integrators/register_parts.h"
 
@@ -17,8 +17,8 @@ namespace {
 class Volpath final : public Integrator {
   public:
     explicit Volpath(const Properties& properties) : settings_(read_path_settings(properties)) {
-        const double bound = properties.get_float("bound", 0.0);
-        if (bound < 0.0) throw InputError("bound must not be negative", properties.where_of("bound"));
+        const double bound = properties.get_float("vpl_bound", 0.0);
+        if (bound < 0.0) throw InputError("vpl_bound must not be negative", properties.where_of("vpl_bound"));
         if (bound > 0.0) settings_.bound = float(bound);
     }
 
@@ -82,7 +82,7 @@ void plan_media(Plan& plan, const Requirements& r) {
 
 void register_volpath(Registry& registry) {
     auto parameters = path_parameters();
-    parameters.push_back({"bound", "float", "0",
+    parameters.push_back({"vpl_bound", "float", "0",
                           "bound b [1/m^2] on the geometry term of the edge where VPLs connect; 0: none"});
     registry.add(
         {Category::integrator, "volpath",

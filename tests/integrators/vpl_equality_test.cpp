@@ -108,8 +108,10 @@ void check_layers(const std::string& xml, const std::string& reference_settings,
 void check_bounded(const std::string& xml, bool media, double bound, int paths = 24) {
     std::vector<std::string> layers = {"direct", "indirect_bounded", "beauty"};
     if (media) layers.insert(layers.end(), {"single_scattering", "multiple_scattering_bounded"});
-    const std::string setting = fmt::format(R"(<float name="bound" value="{}"/>)", bound);
-    check_layers(xml, setting, setting, layers, 3000, 16000, paths);
+    const auto setting = [&](const char* name) {
+        return fmt::format(R"(<float name="{}" value="{}"/>)", name, bound);
+    };
+    check_layers(xml, setting("vpl_bound"), setting("bound"), layers, 3000, 16000, paths);
 }
 
 /// A sphere of 12 x 6 quads with smooth normals, as OBJ text: coarse, so that shading and geometric normals

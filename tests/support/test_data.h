@@ -1,4 +1,5 @@
-// Real files by others, for tests only: found through MOTE_TEST_DATA, by default ../shared/data beside the sources.
+// Real files by others, for tests only: found through MOTE_TEST_DATA, by default ../shared/data beside the
+// sources.
 #pragma once
 
 #include <cstdlib>
