@@ -105,9 +105,9 @@ class FakeEstimator final : public core::Estimator {
     BeforePass before_;
 };
 
-class FakeIntegrator final : public core::Integrator {
+class CountingIntegrator final : public core::Integrator {
   public:
-    explicit FakeIntegrator(BeforePass before = {}, std::string second_layer = "indirect")
+    explicit CountingIntegrator(BeforePass before = {}, std::string second_layer = "indirect")
         : before_(std::move(before)), second_layer_(std::move(second_layer)) {}
     std::string type() const override { return "fake"; }
     std::vector<core::Layer> layers(const core::Scene&) const override {

@@ -38,7 +38,7 @@ void write_text(const std::string& path, const std::string& text) {
 // Renders until `last` passes are done, then is interrupted in the middle of the next.
 RenderResult interrupted_render(const Scene& scene, RenderRequest request, std::uint32_t last) {
     std::atomic<bool> flag{false};
-    const FakeIntegrator integrator([&](std::uint32_t index) {
+    const CountingIntegrator integrator([&](std::uint32_t index) {
         if (index == last) flag = true;
     });
     request.interrupted = &flag;
@@ -50,7 +50,7 @@ RenderResult interrupted_render(const Scene& scene, RenderRequest request, std::
 TEST_CASE("Passes run in index order, as many as asked for", "[driver]") {
     const auto scene = fake_scene();
     std::vector<std::uint32_t> seen;
-    const FakeIntegrator integrator([&](std::uint32_t index) { seen.push_back(index); });
+    const CountingIntegrator integrator([&](std::uint32_t index) { seen.push_back(index); });
     const RenderResult result = render(*scene, integrator, request_for(5));
     CHECK(seen == std::vector<std::uint32_t>{0, 1, 2, 3, 4});
     CHECK(result.film.pass_count() == 5);
@@ -58,19 +58,19 @@ TEST_CASE("Passes run in index order, as many as asked for", "[driver]") {
     CHECK(result.film.mean(0)[0] == Rgb(7.0f));  // finish() was called
 
     RenderRequest by_scene;  // no rule: what the film asks for
-    CHECK(render(*scene, FakeIntegrator(), by_scene).film.pass_count() == 20);
+    CHECK(render(*scene, CountingIntegrator(), by_scene).film.pass_count() == 20);
 }
 
 TEST_CASE("Another seed gives another picture, another number of threads the same", "[driver]") {
     const auto scene = fake_scene();
     const auto one = [&] {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
-        return bits(render(*scene, FakeIntegrator(), request_for(18)));
+        return bits(render(*scene, CountingIntegrator(), request_for(18)));
     }();
-    CHECK(bits(render(*scene, FakeIntegrator(), request_for(18))) == one);
+    CHECK(bits(render(*scene, CountingIntegrator(), request_for(18))) == one);
     RenderRequest other = request_for(18);
     other.seed = 10;
-    CHECK(bits(render(*scene, FakeIntegrator(), other)) != one);
+    CHECK(bits(render(*scene, CountingIntegrator(), other)) != one);
 }
 
 TEST_CASE("The noise rule stops where the noise is below it, whatever the number of threads", "[driver]") {
@@ -78,14 +78,14 @@ TEST_CASE("The noise rule stops where the noise is below it, whatever the number
     RenderRequest request;
     // Uniform noise of half-width 0.5 and mean near 1.4: 1/sqrt(12 n) / 1.4 < 0.05 from n of about 18.
     request.stop.noise = 0.05;
-    const RenderResult result = render(*scene, FakeIntegrator(), request);
+    const RenderResult result = render(*scene, CountingIntegrator(), request);
     CHECK(result.film.relative_noise() <= 0.05);
     CHECK(result.film.pass_count() > noise_rule_from);
     RenderRequest one_less = request_for(result.film.pass_count() - 1);
     one_less.seed = 0;
-    CHECK(render(*scene, FakeIntegrator(), one_less).film.relative_noise() > 0.05);
+    CHECK(render(*scene, CountingIntegrator(), one_less).film.relative_noise() > 0.05);
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
-    CHECK(render(*scene, FakeIntegrator(), request).film.pass_count() == result.film.pass_count());
+    CHECK(render(*scene, CountingIntegrator(), request).film.pass_count() == result.film.pass_count());
 }
 
 TEST_CASE("Stop rules", "[driver]") {
@@ -116,7 +116,7 @@ TEST_CASE("A time limit ends the render", "[driver]") {
     request.progress = [](const RenderProgress&) {
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
     };
-    const RenderResult result = render(*scene, FakeIntegrator(), request);
+    const RenderResult result = render(*scene, CountingIntegrator(), request);
     CHECK(result.film.pass_count() >= 1);
     CHECK(result.film.pass_count() <= 6);
 }
@@ -126,7 +126,7 @@ TEST_CASE("Progress is told after every pass", "[driver]") {
     std::vector<RenderProgress> seen;
     RenderRequest request = request_for(12);
     request.progress = [&](const RenderProgress& p) { seen.push_back(p); };
-    render(*scene, FakeIntegrator(), request);
+    render(*scene, CountingIntegrator(), request);
     REQUIRE(seen.size() == 12);
     CHECK(seen[3].passes == 4);
     CHECK(seen[3].passes_wanted == 12u);
@@ -142,28 +142,28 @@ TEST_CASE("An interrupted render drops the running pass and keeps the rest", "[d
     CHECK(cut.interrupted);
     CHECK(cut.film.pass_count() == 19);
     CHECK(cut.film.mean(0)[0] != Rgb(7.0f));  // finish() was not called
-    CHECK(bits(cut) == bits(render(*scene, FakeIntegrator(), request_for(19))));
+    CHECK(bits(cut) == bits(render(*scene, CountingIntegrator(), request_for(19))));
     CHECK(folder.size() == 1);
 }
 
 TEST_CASE("Interrupted and resumed gives the bits of one run", "[driver][checkpoint]") {
     const TemporaryFolder folder;
     const auto scene = fake_scene();
-    const auto whole = bits(render(*scene, FakeIntegrator(), request_for(50)));
+    const auto whole = bits(render(*scene, CountingIntegrator(), request_for(50)));
     for (const std::uint32_t first : {1u, 15u, 16u, 17u, 33u}) {
         interrupted_render(*scene, request_for(50, folder.file("c")), first);
         RenderRequest again = request_for(50, folder.file("c"));
         again.resume = true;
         interrupted_render(*scene, again, first + 9);  // and once more
-        const RenderResult resumed = render(*scene, FakeIntegrator(), again);
+        const RenderResult resumed = render(*scene, CountingIntegrator(), again);
         CHECK(resumed.resumed_at == first + 9);
         CHECK(bits(resumed) == whole);
     }
     // A complete checkpoint has nothing left to do, or can be taken further.
     RenderRequest more = request_for(60, folder.file("c"));
     more.resume = true;
-    CHECK(bits(render(*scene, FakeIntegrator(), more)) ==
-          bits(render(*scene, FakeIntegrator(), request_for(60))));
+    CHECK(bits(render(*scene, CountingIntegrator(), more)) ==
+          bits(render(*scene, CountingIntegrator(), request_for(60))));
 }
 
 TEST_CASE("Checkpoints are written on the way, and a killed render continues from the last",
@@ -172,14 +172,14 @@ TEST_CASE("Checkpoints are written on the way, and a killed render continues fro
     const auto scene = fake_scene();
     RenderRequest request = request_for(40, folder.file("c"));
     request.checkpoint_every_seconds = 0.0;
-    const FakeIntegrator dying([](std::uint32_t index) {
+    const CountingIntegrator dying([](std::uint32_t index) {
         if (index == 23) throw std::runtime_error("killed");
     });
     CHECK_THROWS_AS(render(*scene, dying, request), std::runtime_error);
     request.resume = true;
-    const RenderResult resumed = render(*scene, FakeIntegrator(), request);
+    const RenderResult resumed = render(*scene, CountingIntegrator(), request);
     CHECK(resumed.resumed_at == 23);
-    CHECK(bits(resumed) == bits(render(*scene, FakeIntegrator(), request_for(40))));
+    CHECK(bits(resumed) == bits(render(*scene, CountingIntegrator(), request_for(40))));
 }
 
 TEST_CASE("Resuming without a checkpoint starts anew, with a warning", "[driver][checkpoint]") {
@@ -187,7 +187,7 @@ TEST_CASE("Resuming without a checkpoint starts anew, with a warning", "[driver]
     const auto scene = fake_scene();
     RenderRequest request = request_for(3, folder.file("c"));
     request.resume = true;
-    const RenderResult result = render(*scene, FakeIntegrator(), request);
+    const RenderResult result = render(*scene, CountingIntegrator(), request);
     CHECK(result.film.pass_count() == 3);
     CHECK(result.statistics.warnings.size() == 1);
 }
@@ -197,7 +197,7 @@ TEST_CASE("A checkpoint of another render is refused", "[driver][checkpoint]") {
     const auto scene = fake_scene();
     const RenderRequest good = [&] {
         RenderRequest request = request_for(8, folder.file("c"));
-        render(*scene, FakeIntegrator(), request);
+        render(*scene, CountingIntegrator(), request);
         request.resume = true;
         request.stop.passes = 9;
         return request;
@@ -216,20 +216,20 @@ TEST_CASE("A checkpoint of another render is refused", "[driver][checkpoint]") {
     };
     RenderRequest other = good;
     other.seed = 1;
-    CHECK(refused(other, FakeIntegrator(), *scene, "seed"));
+    CHECK(refused(other, CountingIntegrator(), *scene, "seed"));
     other = good;
     other.content_hash = "fedcba9876543210";
-    CHECK(refused(other, FakeIntegrator(), *scene, "changed"));
-    CHECK(refused(good, FakeIntegrator(), *fake_scene(21, 37), "picture"));
-    CHECK(refused(good, FakeIntegrator({}, "multiple"), *scene, "layers"));
-    CHECK(render(*scene, FakeIntegrator(), good).resumed_at == 8);
+    CHECK(refused(other, CountingIntegrator(), *scene, "changed"));
+    CHECK(refused(good, CountingIntegrator(), *fake_scene(21, 37), "picture"));
+    CHECK(refused(good, CountingIntegrator({}, "multiple"), *scene, "layers"));
+    CHECK(render(*scene, CountingIntegrator(), good).resumed_at == 8);
 }
 
 TEST_CASE("Every damage to a checkpoint is refused", "[driver][checkpoint]") {
     const TemporaryFolder folder;
     const auto scene = fake_scene(3, 2);
     RenderRequest request = request_for(5, folder.file("c"));
-    render(*scene, FakeIntegrator(), request);
+    render(*scene, CountingIntegrator(), request);
     request.resume = true;
     const std::string good = read_text(folder.file("c"));
     REQUIRE(good.size() > 500);
@@ -238,23 +238,23 @@ TEST_CASE("Every damage to a checkpoint is refused", "[driver][checkpoint]") {
         std::string bad = good;
         bad[i] = char(bad[i] ^ (1 << (i % 8)));
         write_text(folder.file("c"), bad);
-        REQUIRE_THROWS_AS(render(*scene, FakeIntegrator(), request), InputError);
+        REQUIRE_THROWS_AS(render(*scene, CountingIntegrator(), request), InputError);
         write_text(folder.file("c"), good.substr(0, i));
-        REQUIRE_THROWS_AS(render(*scene, FakeIntegrator(), request), InputError);
+        REQUIRE_THROWS_AS(render(*scene, CountingIntegrator(), request), InputError);
     }
     write_text(folder.file("c"), good + "x");
-    CHECK_THROWS_AS(render(*scene, FakeIntegrator(), request), InputError);
+    CHECK_THROWS_AS(render(*scene, CountingIntegrator(), request), InputError);
     CHECK(tried > 250);
     write_text(folder.file("c"), good);
-    CHECK(render(*scene, FakeIntegrator(), request).resumed_at == 5);
+    CHECK(render(*scene, CountingIntegrator(), request).resumed_at == 5);
 }
 
 TEST_CASE("A checkpoint that cannot be written is an error", "[driver][checkpoint]") {
     const TemporaryFolder folder;
     const auto scene = fake_scene();
     write_text(folder.file("plain"), "file");
-    CHECK_THROWS_AS(render(*scene, FakeIntegrator(), request_for(2, folder.file("plain/c"))), InputError);
-    CHECK_THROWS_AS(render(*scene, FakeIntegrator(), request_for(2, "/dev/full")), InputError);
+    CHECK_THROWS_AS(render(*scene, CountingIntegrator(), request_for(2, folder.file("plain/c"))), InputError);
+    CHECK_THROWS_AS(render(*scene, CountingIntegrator(), request_for(2, "/dev/full")), InputError);
 }
 
 TEST_CASE("Exceptions of a tile reach the caller", "[driver]") {
