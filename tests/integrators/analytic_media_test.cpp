@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "tests/media/vdb_test_files.h"
 #include "tests/support/catch.h"
 #include "tests/support/render_statistics.h"
 
@@ -44,6 +45,9 @@ TEST_CASE("albedo-1 medium under a constant environment is 1", "[analytic][furna
                 const ZTest test = mean_is(render, "beauty", 1.0);
                 INFO("optical depth " << depth << " g " << g << "\n" << test.report);
                 CHECK(test.passed);
+                // The medium is really there: part of the light has been scattered.
+                CHECK(render.whole[render.layer("single_scattering")][0].mean > 0.0);
+                if (depth > 10.0) CHECK(render.whole[render.layer("multiple_scattering")][0].mean > 0.2);
             }
 }
 
@@ -107,5 +111,41 @@ TEST_CASE("single scattering from a point light against quadrature", "[analytic]
         INFO(test.report);
         CHECK(test.passed);
         CHECK_FALSE(mean_is(render.scaled(1.02), "single_scattering", expected).passed);
+    }
+}
+
+// A grid of constant density is the homogeneous medium, layer by layer, for both integrators that see media.
+TEST_CASE("a VDB of constant density equals the homogeneous medium", "[analytic][media][vdb]") {
+    const TemporaryFolder folder;
+    const auto scene_with = [&](const std::string& medium) {
+        return scene_from(
+            R"(<scene version="3.0.0"><emitter type="point"><point name="position" x="1.5" y="3.2" z="1.5"/>
+            <rgb name="intensity" value="9"/></emitter><shape type="cube"><transform name="to_world">
+            <translate x="1.5" y="1.5" z="1.5"/></transform><bsdf type="null"/>)" +
+                medium +
+                R"(</shape><sensor type="perspective"><float name="fov" value="40"/><transform name="to_world">
+            <lookat origin="1.5, 1.5, -3" target="1.5, 1.5, 1.5" up="0, 1, 0"/></transform></sensor></scene>)",
+            8);
+    };
+    const auto constant =
+        scene_with(R"(<medium type="heterogeneous" name="interior"><volume name="sigma_t" type="vdbvolume">
+        <string name="filename" value=")" +
+                   folder.grid("constant") + R"("/><transform name="to_world"><scale value="0.1"/>
+        </transform></volume><volume name="albedo" type="constvolume"><rgb name="value" value="0.9, 0.7, 0.5"/></volume>
+        <float name="scale" value="1.2"/></medium>)");
+    const auto homogeneous_scene = scene_with(homogeneous("1.2", "0.9, 0.7, 0.5", ""));
+    const std::string integrators[] = {
+        R"(<integrator type="volpath"/>)",
+        R"(<integrator type="mote_vpl"><integer name="paths" value="32"/><float name="bound" value="4"/></integrator>)"};
+    for (const std::string& integrator : integrators) {
+        const auto a = render_statistics(*constant, *integrator_from(integrator), {4, 3000, 31});
+        const auto b = render_statistics(*homogeneous_scene, *integrator_from(integrator), {4, 3000, 32});
+        const std::string suffix = integrator.find("vpl") != std::string::npos ? "_bounded" : "";
+        for (const std::string& layer : {std::string("single_scattering"), "multiple_scattering" + suffix}) {
+            const ZTest test = same_mean(a, layer, b, layer);
+            INFO(integrator << "\n" << test.report);
+            CHECK(test.passed);
+            CHECK_FALSE(same_mean(a.scaled(1.12), layer, b, layer).passed);
+        }
     }
 }

@@ -68,6 +68,13 @@ openvdb::GridBase::Ptr step_of_a_million() {
     return grid;
 }
 
+/// Density 1 in the whole box from -4 to 35.
+openvdb::GridBase::Ptr constant() {
+    auto grid = fog();
+    grid->fill(openvdb::CoordBBox(Coord(-4), Coord(35)), 1.0f);
+    return grid;
+}
+
 openvdb::GridBase::Ptr with_background() {
     auto grid = lump<openvdb::FloatGrid>(1.0);
     auto raised = fog(0.25f);
@@ -113,6 +120,7 @@ const std::map<std::string, Maker> makers = {
     {"tiles", [] { return Grids{tiles()}; }},
     {"single", [] { return Grids{single_voxel()}; }},
     {"step", [] { return Grids{step_of_a_million()}; }},
+    {"constant", [] { return Grids{constant()}; }},
     {"background", [] { return Grids{with_background()}; }},
     {"negative_background", [] { return Grids{fog(-1.0f)}; }},
     {"empty", [] { return Grids{fog()}; }},
