@@ -138,7 +138,7 @@ void MoteVpl::plan_bound(Plan& plan, const Bounds3& surfaces) const {
     plan.run("bound", choice,
              settings_.bound ? "asked for"
                              : "automatic: light paths / R^2, with R = " + std::to_string(surfaces.radius()) +
-                                   " m the radius of all surfaces");
+                                   " m the radius of all shapes");
 }
 
 Plan MoteVpl::plan(const Scene& scene, const Requirements& r) const {
@@ -177,7 +177,7 @@ void register_mote_vpl(Registry& registry) {
     parameters.push_back({"paths", "integer", "256", "light paths traced in every pass"});
     parameters.push_back({"bound", "float", "automatic",
                           "bound b [1/m^2] on the geometry term; automatic: light paths / R^2 with the "
-                          "radius R of all surfaces"});
+                          "radius R of all shapes"});
     parameters.push_back({"bounded", "boolean", "true", "false: no bound on the geometry term"});
     registry.add({Category::integrator, "mote_vpl",
                   "Virtual point lights on surfaces and in media, with a bounded geometry term.", parameters,
