@@ -12,6 +12,7 @@
 #include "apps/command.h"
 #include "apps/interruption.h"
 #include "apps/progress_line.h"
+#include "apps/reference_metadata.h"
 #include "apps/render_report.h"
 #include "apps/subcommands.h"
 #include "core/image/film_image.h"
@@ -154,8 +155,14 @@ int render_command(const RenderArguments& arguments) {
 
     if (result.film.pass_count() > 0) {
         const Clock::time_point write_start = Clock::now();
-        RenderReport report{
-            *scene, plan, result, request.content_hash, arguments.seed, threads, arguments.command_line};
+        RenderReport report{*scene,
+                            plan,
+                            result,
+                            request.content_hash,
+                            scene_content(*scene, arguments.scene.defines),
+                            arguments.seed,
+                            threads,
+                            arguments.command_line};
         write_outputs(files, report, arguments.half || scene->film().half);
         result.statistics.seconds["write"] = seconds_since(write_start);
         if (!arguments.stats.empty()) {

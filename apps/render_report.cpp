@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "apps/reference_metadata.h"
 #include "git_hash.h"
 
 namespace mote::apps {
@@ -14,19 +15,6 @@ namespace mote::apps {
 namespace {
 
 using nlohmann::json;
-
-// OpenEXR's camera space is left-handed: x to the right, y up, z forward. Ours has x to the left. Its
-// matrices act on row vectors, so the transpose is written.
-std::string world_to_camera(const core::Camera& camera) {
-    glm::dmat4 flip(1.0);
-    flip[0][0] = -1.0;
-    const glm::dmat4 m = flip * camera.to_world().inverse().matrix;
-    std::string text;
-    for (int column = 0; column < 4; ++column)
-        for (int row = 0; row < 4; ++row)
-            text += fmt::format("{}{:.9g}", text.empty() ? "" : " ", m[column][row]);
-    return text;
-}
 
 json entries_json(const std::vector<core::PlanEntry>& entries) {
     json list = json::array();
@@ -72,15 +60,24 @@ std::size_t peak_memory_bytes() {
 std::string git_hash() { return MOTE_GIT_HASH; }
 
 std::map<std::string, std::string> picture_metadata(const RenderReport& r) {
-    return {{"software", std::string("mote ") + MOTE_VERSION},
-            {"integrator", r.plan.integrator},
-            {"seed", std::to_string(r.seed)},
-            {"passes", std::to_string(r.result.film.pass_count())},
-            {"seconds", fmt::format("{:.3f}", total_seconds(r.result.statistics))},
-            {"gitHash", git_hash()},
-            {"sceneHash", r.scene_hash},
-            {"commandLine", quoted(r.command_line)},
-            {"worldToCamera", world_to_camera(r.scene.camera())}};
+    std::map<std::string, std::string> metadata = {
+        {"software", std::string("mote ") + MOTE_VERSION},
+        {"integrator", r.plan.integrator},
+        {"seed", std::to_string(r.seed)},
+        {"passes", std::to_string(r.result.film.pass_count())},
+        {"seconds", fmt::format("{:.3f}", total_seconds(r.result.statistics))},
+        {"gitHash", git_hash()},
+        {"sceneHash", r.scene_hash},
+        {"sceneContent", r.scene_content},
+        {"commandLine", quoted(r.command_line)},
+        {"worldToCamera", world_to_camera(r.scene.camera())}};
+    const double error = relative_standard_error(r.result.film),
+                 mean_error = relative_error_of_mean(r.result.film);
+    if (std::isfinite(error)) metadata["relativeError"] = fmt::format("{:.6g}", error);
+    if (std::isfinite(mean_error)) metadata["meanError"] = fmt::format("{:.6g}", mean_error);
+    for (const core::PlanEntry& e : r.plan.missing)
+        metadata["leavesOut"] += (metadata["leavesOut"].empty() ? "" : ", ") + e.topic;
+    return metadata;
 }
 
 std::string statistics_json(const RenderReport& r) {

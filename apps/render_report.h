@@ -15,7 +15,8 @@ struct RenderReport {
     const core::Scene& scene;
     const core::Plan& plan;
     const core::RenderResult& result;
-    std::string scene_hash;
+    std::string scene_hash;     ///< of everything that determines the bits of the picture
+    std::string scene_content;  ///< of the scene alone (apps/reference_metadata.h)
     std::uint64_t seed;
     int threads;
     std::vector<std::string> command_line;

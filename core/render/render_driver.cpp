@@ -2,10 +2,10 @@
 #include "core/render/render_driver.h"
 
 #include <chrono>
-#include <limits>
 #include <stdexcept>
 
 #include "core/render/checkpoint.h"
+#include "core/render/pass_runner.h"
 #include "core/render/stop_clock.h"
 #include "core/scene/error.h"
 #include "core/scene/scene.h"
@@ -19,35 +19,18 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-SamplerKind sampler_kind(const std::string& name) {
-    if (name == "sobol") return SamplerKind::sobol;
-    if (name == "independent") return SamplerKind::independent;
-    const std::vector<std::string> known{"independent", "sobol"};
-    throw InputError("unknown sampler '" + printable(name) + "'" + suggestion(name, known));
-}
-
 // One render: what the loop keeps from pass to pass.
 class PassLoop {
   public:
-    PassLoop(const RenderRequest& request, const StopRule& stop, const PixelFilter& filter,
-             Estimator& estimator, RenderResult& result)
-        : request_(request), stop_(stop), filter_(filter), estimator_(estimator), result_(result) {
+    PassLoop(const RenderRequest& request, const StopRule& stop, PassRunner& runner, RenderResult& result)
+        : request_(request), stop_(stop), runner_(runner), result_(result) {
         state_.passes = result.film.pass_count();
     }
 
     void run() {
-        const Film& film = result_.film;
-        PassImage image(film.width(), film.height(), film.layers().size());
         refresh_noise();
         while (!must_stop(stop_, state_)) {
-            if (interrupted()) break;
-            image.clear();
-            const bool complete = estimator_.pass({film.pass_count(), filter_, cancelled_flag()}, image);
-            if (!complete) {
-                if (!interrupted()) throw std::logic_error("a pass ended early without being cancelled");
-                break;
-            }
-            result_.film.add_pass(image);
+            if (interrupted() || !runner_.run_pass(cancelled_flag())) break;
             after_pass();
         }
         state_.seconds = seconds_since(start_);
@@ -55,7 +38,7 @@ class PassLoop {
         result_.interrupted = interrupted() && !must_stop(stop_, state_);
         if (result_.interrupted || request_.checkpoint_at_end) write_checkpoint_now();
         result_.statistics.seconds["render"] = state_.seconds;
-        result_.statistics.values["noise"] = film.relative_noise();
+        result_.statistics.values["noise"] = result_.film.relative_noise();
     }
 
   private:
@@ -77,7 +60,7 @@ class PassLoop {
         if (seconds_since(checkpoint_time_) >= request_.checkpoint_every_seconds) write_checkpoint_now();
     }
     void refresh_noise() {
-        state_.noise = result_.film.relative_noise();
+        state_.noise = request_.noise ? request_.noise(result_.film) : result_.film.relative_noise();
         noise_time_ = Clock::now();
     }
     void write_checkpoint_now() {
@@ -90,8 +73,7 @@ class PassLoop {
 
     const RenderRequest& request_;
     const StopRule& stop_;
-    const PixelFilter& filter_;
-    Estimator& estimator_;
+    PassRunner& runner_;
     RenderResult& result_;
     const std::atomic<bool> never_{false};
     RenderState state_;
@@ -114,25 +96,21 @@ RenderResult render(const Scene& scene, const Integrator& integrator, const Rend
     const FilmSettings& settings = scene.film();
     StopRule stop = request.stop;
     if (!stop.passes && !stop.seconds && !stop.noise) stop.passes = std::uint32_t(settings.sample_count);
-    const auto filter = make_pixel_filter(settings.filter, settings.filter_radius, settings.filter_stddev);
-
     RenderResult result{
         Film(settings.width, settings.height, integrator.layers(scene), request.all_squares), {}, false, 0};
     if (request.resume) resume(request, result);  // before the work of prepare(): it may be refused
 
-    const Clock::time_point prepare_start = Clock::now();
-    const auto estimator = integrator.prepare(
-        scene, {request.seed, settings.width, settings.height, sampler_kind(settings.sampler)});
-    result.statistics.seconds["build"] = seconds_since(prepare_start);
+    PassRunner runner(scene, integrator, request.seed, result.film);
+    result.statistics.seconds["build"] = runner.build_seconds();
 
-    PassLoop(request, stop, *filter, *estimator, result).run();
+    PassLoop(request, stop, runner, result).run();
 
     if (!result.interrupted && result.film.pass_count() > 0) {
         const Clock::time_point finish_start = Clock::now();
-        estimator->finish(result.film);
+        runner.estimator().finish(result.film);
         result.statistics.seconds["finish"] = seconds_since(finish_start);
     }
-    estimator->add_statistics(result.statistics);
+    runner.estimator().add_statistics(result.statistics);
     result.statistics.non_finite_samples += result.film.non_finite();
     return result;
 }

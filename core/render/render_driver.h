@@ -19,7 +19,7 @@ struct StopRule {
     std::optional<std::uint32_t> passes;  ///< this many in all, those of a checkpoint included
     std::optional<double> seconds;        ///< wall time of this run's passes: ends as near to it as whole
                                           ///< passes allow, after one at least
-    std::optional<double> noise;          ///< Film::relative_noise(), looked at from 8 passes on
+    std::optional<double> noise;          ///< RenderRequest::noise, looked at from 8 passes on
 };
 
 struct RenderProgress {
@@ -38,6 +38,7 @@ struct RenderRequest {
     bool resume = false;            ///< continue from checkpoint_path; from the start where there is none
     std::string content_hash;       ///< of the scene, its files and the options that change the picture
     bool all_squares = false;
+    std::function<double(const Film&)> noise;  ///< the measure of the noise; empty: Film::relative_noise()
     std::function<void(const RenderProgress&)> progress;  ///< called after every pass; may be empty
     const std::atomic<bool>* interrupted = nullptr;       ///< set by Ctrl-C
 };

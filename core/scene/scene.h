@@ -21,6 +21,7 @@ namespace mote::core {
 
 class Integrator;
 class ProbeRays;
+struct Element;
 
 /// What the film of a scene file asks for.
 struct FilmSettings {
@@ -48,7 +49,8 @@ class Scene {
         std::vector<std::shared_ptr<Emitter>> emitters;  ///< all lights, those of shapes included
         std::vector<std::shared_ptr<Medium>> media;
         std::shared_ptr<Camera> camera;
-        std::shared_ptr<Integrator> integrator;  ///< the one the file names, or null
+        std::shared_ptr<Integrator> integrator;             ///< the one the file names, or null
+        std::shared_ptr<const Element> integrator_element;  ///< its text, or null
         FilmSettings film;
         std::string file;                      ///< path of the scene file, or "" when built in code
         std::vector<std::string> input_files;  ///< every file read, for the content hash
@@ -79,6 +81,9 @@ class Scene {
     /// Light for a particle: proportional to power.
     LightChoice choose_emitter_by_power(float u, float* remapped = nullptr) const;
 
+    /// Where a light without extent (point, spot) stands; nothing for all others.
+    static std::optional<Vec3> light_position(const Emitter& emitter);
+
     /// The media around a point: found by casting rays against the medium boundaries, see medium_state.h.
     MediumState medium_state_at(const Vec3& p, const Medium* declared) const;
     MediumState camera_medium_state() const { return camera_state_; }
@@ -101,7 +106,6 @@ class Scene {
     void build_light_tables();
     void find_boundaries();
     void find_emitter_states();
-    static std::optional<Vec3> light_position(const Emitter& emitter);
     MediumState medium_state_near(const Vec3& p, const Medium* declared, const Shape* excluded) const;
     MediumState area_light_state(const Emitter& emitter, const Shape& shape, const Vec3& p,
                                  const Vec3& normal) const;

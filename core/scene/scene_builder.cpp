@@ -52,6 +52,7 @@ Scene::Parts build_scene(const SceneDocument& document, const Registry& registry
         } else if (e.tag == "integrator") {
             if (parts.integrator) throw InputError("the scene has more than one integrator", e.where);
             parts.integrator = maker.make_as<Integrator>(e);
+            parts.integrator_element = std::make_shared<const Element>(e);
         } else {
             maker.make(e);  // checked even when nothing refers to it
         }

@@ -1,0 +1,59 @@
+// Standard errors from the variance that every film keeps.
+#include "apps/reference_metadata.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/render/render_driver.h"
+
+namespace mote::apps {
+
+namespace {
+
+using core::Rgb;
+
+double average(const Rgb& c) { return (double(c.x) + double(c.y) + double(c.z)) / 3.0; }
+
+}  // namespace
+
+double relative_standard_error(const core::Film& film) {
+    if (film.pass_count() < 2) return core::infinity;
+    const std::vector<Rgb> mean = film.beauty(), variance = film.beauty_variance_of_mean();
+    double sum = 0.0;
+    for (std::size_t p = 0; p < mean.size(); ++p)
+        for (int c = 0; c < 3; ++c) sum += double(variance[p][c]) / (double(mean[p][c]) * mean[p][c] + 0.01);
+    return std::sqrt(sum / (3.0 * double(mean.size())));
+}
+
+double relative_error_of_mean(const core::Film& film) {
+    if (film.pass_count() < 2) return core::infinity;
+    const std::vector<Rgb> mean = film.beauty(), variance = film.beauty_variance_of_mean();
+    double total = 0.0, squares = 0.0;
+    for (std::size_t p = 0; p < mean.size(); ++p) {
+        const double deviation = average(glm::sqrt(variance[p]));
+        total += average(mean[p]), squares += deviation * deviation;
+    }
+    if (total == 0.0) return squares == 0.0 ? 0.0 : core::infinity;
+    return std::sqrt(squares) / std::fabs(total);
+}
+
+std::string world_to_camera(const core::Camera& camera) {
+    // OpenEXR has x to the right, y up, z forward; ours has x to the left. The transpose is written.
+    glm::dmat4 flip(1.0);
+    flip[0][0] = -1.0;
+    const glm::dmat4 m = flip * camera.to_world().inverse().matrix;
+    std::string text;
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row)
+            text += fmt::format("{}{:.9g}", text.empty() ? "" : " ", m[column][row]);
+    return text;
+}
+
+std::string scene_content(const core::Scene& scene, std::vector<std::string> defines) {
+    std::sort(defines.begin(), defines.end());
+    return core::content_hash(scene, defines);
+}
+
+}  // namespace mote::apps

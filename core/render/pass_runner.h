@@ -1,0 +1,36 @@
+// One integrator at work on one film, a pass at a time: for the render driver, and for whoever lets several
+// integrators take turns.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+
+#include "core/image/film.h"
+#include "core/render/integrator.h"
+
+namespace mote::core {
+
+class PassRunner {
+  public:
+    /// Calls Integrator::prepare(). `film` has the size of the scene's film and the integrator's layers; it
+    /// may hold the first passes already. Scene and film must outlive the runner. Throws InputError for an
+    /// unknown filter or sampler.
+    PassRunner(const Scene& scene, const Integrator& integrator, std::uint64_t seed, Film& film);
+
+    /// Adds the film's next pass. Returns false, with the film unchanged, when it was cancelled.
+    bool run_pass(const std::atomic<bool>& cancelled);
+    /// The pass that was added last.
+    const PassImage& last_pass() const { return image_; }
+    Estimator& estimator() { return *estimator_; }
+    double build_seconds() const { return build_seconds_; }  ///< wall time of prepare()
+
+  private:
+    Film& film_;
+    std::unique_ptr<PixelFilter> filter_;
+    double build_seconds_ = 0.0;
+    std::unique_ptr<Estimator> estimator_;
+    PassImage image_;
+};
+
+}  // namespace mote::core
