@@ -8,7 +8,6 @@
 #include "core/scene/scene_builder.h"
 #include "core/scene/scene_defines.h"
 #include "core/scene/scene_values.h"
-#include "core/scene/xml_reader.h"
 
 namespace mote::core {
 namespace {
@@ -49,8 +48,8 @@ void complete_sensors(Element& scene) {
     }
 }
 
-std::unique_ptr<Scene> load(SceneDocument document, SceneDefines& defines, const Registry& registry,
-                            const LoadOptions& options, const std::string& file) {
+void prepare(SceneDocument& document, SceneDefines& defines, const Registry& registry,
+             const LoadOptions& options) {
     Element& scene = document.scene;
     upgrade_legacy(scene, document.warnings);
     replace_foreign_types(scene, registry, document.warnings);
@@ -59,16 +58,21 @@ std::unique_ptr<Scene> load(SceneDocument document, SceneDefines& defines, const
     defines.check_all_used();
     defines.apply_paths(scene, registry);
     check_elements(scene, registry, document.warnings);
-    return std::make_unique<Scene>(build_scene(document, registry, file));
 }
 
 }  // namespace
 
-std::unique_ptr<Scene> load_scene(const std::string& path, const Registry& registry,
+SceneDocument load_scene_elements(const std::string& path, const Registry& registry,
                                   const LoadOptions& options) {
     SceneDefines defines(options.defines);
     SceneDocument document = read_scene_file(path, defines);
-    return load(std::move(document), defines, registry, options, path);
+    prepare(document, defines, registry, options);
+    return document;
+}
+
+std::unique_ptr<Scene> load_scene(const std::string& path, const Registry& registry,
+                                  const LoadOptions& options) {
+    return std::make_unique<Scene>(build_scene(load_scene_elements(path, registry, options), registry, path));
 }
 
 std::unique_ptr<Scene> load_scene_from_string(const std::string& xml, const std::string& folder,
@@ -76,7 +80,8 @@ std::unique_ptr<Scene> load_scene_from_string(const std::string& xml, const std:
                                               const std::string& name) {
     SceneDefines defines(options.defines);
     SceneDocument document = read_scene_text(xml, folder, name, defines);
-    return load(std::move(document), defines, registry, options, name);
+    prepare(document, defines, registry, options);
+    return std::make_unique<Scene>(build_scene(document, registry, name));
 }
 
 }  // namespace mote::core

@@ -14,6 +14,7 @@
 #include "core/scene/error.h"
 #include "core/scene/registry.h"
 #include "core/scene/scene.h"
+#include "core/scene/xml_reader.h"
 
 namespace mote::core {
 
@@ -26,6 +27,10 @@ struct LoadOptions {
 };
 
 std::unique_ptr<Scene> load_scene(const std::string& path, const Registry& registry,
+                                  const LoadOptions& options = {});
+/// The first two steps alone, for those who write scenes: elements in today's words, every -D applied,
+/// checked against the manual pages. build_scene() makes the scene of them.
+SceneDocument load_scene_elements(const std::string& path, const Registry& registry,
                                   const LoadOptions& options = {});
 /// The same from text; relative file names are looked up in `folder`. `name` stands for the file in messages.
 std::unique_ptr<Scene> load_scene_from_string(const std::string& xml, const std::string& folder,
