@@ -62,6 +62,20 @@ void add_render(CLI::App& app, RenderArguments& a, std::function<int()>& action)
     command.callback([&a, &action] { action = [&a] { return render_command(a); }; });
 }
 
+void add_export(CLI::App& app, ExportArguments& a, std::function<int()>& action) {
+    CLI::App& command = *app.add_subcommand("export", "Write a scene and its files for another renderer");
+    add_scene_options(command, a.scene);
+    command.add_option("--to", a.target, "The renderer: mitsuba3")
+        ->required()
+        ->check(CLI::IsMember({"mitsuba3"}));
+    command.add_option("-o,--output", a.output, "The folder to write")->required();
+    command
+        .add_option("--max-grid", a.max_grid_megabytes,
+                    "Refuse dense grids of more than this many megabytes (default: 2000)")
+        ->check(CLI::Range(1, 1'000'000));
+    command.callback([&a, &action] { action = [&a] { return export_command(a); }; });
+}
+
 int parse_and_run(int argc, char** argv) {
     CLI::App app("mote: many-light rendering and participating media");
     app.name("mote");
@@ -93,6 +107,9 @@ int parse_and_run(int argc, char** argv) {
     convert_app.add_option("--layer", convert.layer, "This layer of an EXR instead of the beauty");
     convert_app.add_flag("--half", convert.half, "Write float16 instead of float32");
     convert_app.callback([&] { action = [&] { return convert_command(convert); }; });
+
+    ExportArguments export_arguments;
+    add_export(app, export_arguments, action);
 
     CLI::App& formats_app = *app.add_subcommand("formats", "Print the scene language as Markdown");
     formats_app.callback([&] { action = [] { return formats_command(); }; });

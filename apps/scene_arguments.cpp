@@ -17,7 +17,7 @@ core::Registry make_registry() {
     return registry;
 }
 
-std::unique_ptr<core::Scene> load(const SceneArguments& arguments, const core::Registry& registry) {
+core::LoadOptions load_options(const SceneArguments& arguments) {
     core::LoadOptions options;
     options.integrator = arguments.integrator;
     for (const std::string& define : arguments.defines) {
@@ -26,7 +26,11 @@ std::unique_ptr<core::Scene> load(const SceneArguments& arguments, const core::R
             throw UsageError("-D " + core::printable(define) + ": expected name=value");
         options.defines.emplace_back(define.substr(0, equals), define.substr(equals + 1));
     }
-    return core::load_scene(arguments.scene, registry, options);
+    return options;
+}
+
+std::unique_ptr<core::Scene> load(const SceneArguments& arguments, const core::Registry& registry) {
+    return core::load_scene(arguments.scene, registry, load_options(arguments));
 }
 
 const core::Integrator& require_integrator(const core::Scene& scene, const core::Registry& registry) {

@@ -12,6 +12,7 @@
 #include "core/render/integrator.h"
 #include "core/scene/registry.h"
 #include "core/scene/scene.h"
+#include "core/scene/scene_loader.h"
 
 namespace mote::apps {
 
@@ -47,7 +48,15 @@ struct ConvertArguments {
     bool half = false;
 };
 
+struct ExportArguments {
+    SceneArguments scene;
+    std::string target = "mitsuba3", output;
+    std::uint64_t max_grid_megabytes = 2000;
+};
+
 core::Registry make_registry();
+/// The definitions as names and values. Throws UsageError for a malformed one.
+core::LoadOptions load_options(const SceneArguments& arguments);
 /// Loads the scene with everything that the command line changes. Throws InputError, or UsageError for a
 /// malformed definition.
 std::unique_ptr<core::Scene> load(const SceneArguments& arguments, const core::Registry& registry);
@@ -58,6 +67,7 @@ int render_command(const RenderArguments& arguments);
 int plan_command(const SceneArguments& arguments);
 int info_command(const std::string& path);
 int convert_command(const ConvertArguments& arguments);
+int export_command(const ExportArguments& arguments);
 int formats_command();
 
 }  // namespace mote::apps

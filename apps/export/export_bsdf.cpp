@@ -1,0 +1,69 @@
+// BSDFs whose parameters the two programs read differently.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "apps/export/export_context.h"
+#include "core/materials/index_of_refraction.h"
+#include "core/scene/scene_values.h"
+
+namespace mote::apps {
+
+using core::Element;
+
+namespace {
+
+/// Names of metals as the numbers that we compute with: the tables differ in the fourth digit.
+void export_metal(Element& bsdf, const ExportContext& context) {
+    const Element* material = bsdf.child("material");
+    if (!material || material->get("value") == "none") return;
+    const auto index = core::conductor_index(material->get("value"));
+    if (!index) return;  // refused when the scene was built
+    context.note(*material, "material '" + material->get("value") + "' is written as its eta and k");
+    remove_child(bsdf, "material");
+    set_child(bsdf, make_rgb(bsdf, "eta", index->eta));
+    set_child(bsdf, make_rgb(bsdf, "k", index->k));
+}
+
+void export_index(Element& bsdf, const std::string& name) {
+    const Element* value = bsdf.child(name);
+    if (!value || value->tag != "string") return;
+    if (const auto index = core::dielectric_index(value->get("value")))
+        set_child(bsdf, bsdf.make_value("float", name, fmt::format("{}", *index)));
+}
+
+/// Mitsuba wants both alpha_u and alpha_v, and then no alpha.
+void export_roughness(Element& bsdf) {
+    if (!bsdf.child("alpha_u") && !bsdf.child("alpha_v")) return;
+    const Element* alpha = bsdf.child("alpha");
+    const std::string common = alpha ? alpha->get("value") : "0.1";
+    for (const char* name : {"alpha_u", "alpha_v"})
+        if (!bsdf.child(name)) bsdf.children.push_back(bsdf.make_value("float", name, common));
+    remove_child(bsdf, "alpha");
+}
+
+/// Phong's lobe of exponent n has about the slopes of Beckmann facets with alpha^2 = 2 / (n + 2) (Walter et
+/// al. 2007 use this relation between the two distributions of normals).
+void replace_phong(Element& bsdf, const ExportContext& context) {
+    const Element* exponent = bsdf.child("exponent");
+    const double n = exponent ? core::parse_number(exponent->get("value"), exponent->where) : 30.0;
+    const double alpha = std::fmax(std::sqrt(2.0 / (n + 2.0)), 1e-4);
+    context.note(bsdf,
+                 fmt::format("bsdf 'phong' became 'roughplastic' of alpha {:.4g}: not the same", alpha));
+    bsdf.set("type", "roughplastic");
+    remove_child(bsdf, "exponent");
+    set_child(bsdf, bsdf.make_value("float", "alpha", fmt::format("{}", alpha)));
+}
+
+}  // namespace
+
+void export_bsdf(Element& bsdf, const ExportContext& context) {
+    const std::string type = bsdf.get("type");
+    if (type == "conductor" || type == "roughconductor") export_metal(bsdf, context);
+    if (type == "roughconductor" || type == "roughdielectric") export_roughness(bsdf);
+    if (type == "phong") replace_phong(bsdf, context);
+    export_index(bsdf, "int_ior");
+    export_index(bsdf, "ext_ior");
+}
+
+}  // namespace mote::apps

@@ -1,0 +1,113 @@
+// The walk over the scene's elements.
+#include "apps/export/mitsuba_export.h"
+
+#include <algorithm>
+
+#include "apps/export/export_context.h"
+#include "core/materials/bsdf.h"
+#include "core/scene/scene_builder.h"
+#include "core/scene/scene_values.h"
+
+namespace mote::apps {
+
+using core::Element;
+
+namespace {
+
+bool is_object(const Element& e) { return core::find_category(e.tag).has_value(); }
+
+/// Moves every nested medium to the top with an id, so that others (the camera) can refer to it.
+void collect_media(Element& parent, bool top, const core::IdTable& ids, std::vector<Element>& media) {
+    for (Element& c : parent.children) {
+        if (c.tag != "medium") {
+            collect_media(c, false, ids, media);
+            continue;
+        }
+        const std::string name = c.get("name");
+        for (int i = 1; !c.find("id"); ++i)
+            if (const std::string id = "medium_" + std::to_string(i);
+                !ids.count(id) &&
+                std::none_of(media.begin(), media.end(), [&](const Element& m) { return m.get("id") == id; }))
+                c.set("id", id);
+        c.erase("name");
+        media.push_back(c);
+        if (!top) c = make_reference(parent, name, c.get("id"));
+    }
+    if (top) std::erase_if(parent.children, [](const Element& c) { return c.tag == "medium"; });
+}
+
+void resolve_aliases(Element& parent, const core::IdTable& ids) {
+    for (Element& c : parent.children) {
+        if (c.tag == "ref") c.set("id", core::resolve(c, ids).get("id"));
+        resolve_aliases(c, ids);
+    }
+}
+
+/// Ids by name instead of aliases, and all media in front.
+void normalise(Element& scene) {
+    const core::IdTable ids = core::collect_ids(scene);
+    resolve_aliases(scene, ids);
+    std::vector<Element> media;
+    collect_media(scene, true, ids, media);
+    std::erase_if(scene.children, [](const Element& c) { return c.tag == "alias"; });
+    scene.children.insert(scene.children.begin(), media.begin(), media.end());
+    scene.set("version", "3.0.0");
+}
+
+/// Colours that Mitsuba would convert in its own way, as linear RGB. It tints a <spectrum> on a light.
+void export_colours(Element& object) {
+    for (Element& c : object.children)
+        if (c.tag == "spectrum") c = make_rgb(c, c.get("name"), colour_of(c, object.tag == "emitter"));
+}
+
+/// What lies inside any object, from the leaves up; media and sensors have been seen to.
+void export_parts(Element& object, const ExportContext& context) {
+    export_colours(object);
+    for (Element& c : object.children)
+        if (is_object(c)) export_parts(c, context);
+    if (object.tag == "bsdf") export_bsdf(object, context);
+    if (object.tag == "texture" && object.child("filename")) context.copy_file(object, "textures");
+    if (object.tag == "emitter" && object.child("filename")) context.copy_file(object, "textures");
+}
+
+/// Mitsuba's `path` stops its shadow rays at the bare boundaries of media, which ours does not see.
+bool is_bare_boundary(const Element& e, const core::Shape& shape, const ExportContext& context) {
+    if (!shape.bsdf->traits().null) return false;
+    context.note(e, "the boundary of a medium was dropped: 'path' sees no media");
+    return true;
+}
+
+void export_shapes(Element& scene, const std::string& integrator, const ExportContext& context) {
+    std::size_t index = 0;
+    std::erase_if(scene.children, [&](Element& e) {
+        if (e.tag != "shape") return false;
+        const core::Shape& shape = *context.scene.shapes()[index++];
+        if (integrator == "path" && is_bare_boundary(e, shape, context)) return true;
+        export_shape(e, shape, context);
+        return false;
+    });
+}
+
+}  // namespace
+
+MitsubaExport export_to_mitsuba(core::SceneDocument document, const core::Registry& registry,
+                                const std::string& file, std::uint64_t max_grid_bytes) {
+    normalise(document.scene);
+    const core::Scene scene(core::build_scene(document, registry, file));
+    const core::IdTable ids = core::collect_ids(document.scene);
+    MitsubaExport result;
+    result.scene = document.scene;
+    const ExportContext context{document, registry, scene, ids, max_grid_bytes, result};
+    const std::string integrator = export_integrator(result.scene, context);
+    for (Element& e : result.scene.children) {
+        if (e.tag == "medium") export_medium(e, context);
+        if (e.tag == "sensor") export_sensor(e, context);
+    }
+    // Volumes have been copied into their media.
+    std::erase_if(result.scene.children, [](const Element& e) { return e.tag == "volume"; });
+    export_shapes(result.scene, integrator, context);
+    export_parts(result.scene, context);
+    return result;
+}
+
+}  // namespace mote::apps

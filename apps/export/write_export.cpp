@@ -1,0 +1,108 @@
+// The exported folder: the scene, its files, and the list of what was dropped.
+#include <cstring>
+#include <filesystem>
+#include <pugixml.hpp>
+#include <sstream>
+
+#include "apps/export/mitsuba_export.h"
+#include "core/image/image_file.h"
+
+namespace mote::apps {
+
+using core::Element;
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void add(pugi::xml_node parent, const Element& e) {
+    pugi::xml_node node = parent.append_child(e.tag.c_str());
+    for (const auto& [key, value] : e.attributes) node.append_attribute(key.c_str()) = value.c_str();
+    for (const Element& c : e.children) add(node, c);
+}
+
+std::string xml_text(const Element& scene) {
+    pugi::xml_document document;
+    add(document, scene);
+    std::ostringstream stream;
+    document.save(stream, "    ");
+    return stream.str();
+}
+
+void write_text(const fs::path& path, const std::string& text) {
+    core::write_file_atomically(path.string(), std::as_bytes(std::span(text)));
+}
+
+class Bytes {
+  public:
+    template <typename T>
+    void add(const T& value) {
+        const auto* begin = reinterpret_cast<const char*>(&value);
+        text_.append(begin, sizeof(T));
+    }
+    void add_text(const std::string& text) { text_ += text; }
+    const std::string& text() const { return text_; }
+
+  private:
+    std::string text_;
+};
+
+/// Little-endian PLY, with the names that Mitsuba knows.
+void write_ply(const fs::path& path, const core::MeshData& mesh) {
+    Bytes bytes;
+    bytes.add_text("ply\nformat binary_little_endian 1.0\nelement vertex " +
+                   std::to_string(mesh.positions.size()) +
+                   "\nproperty float x\nproperty float y\nproperty float z\n");
+    if (!mesh.normals.empty()) bytes.add_text("property float nx\nproperty float ny\nproperty float nz\n");
+    if (!mesh.uvs.empty()) bytes.add_text("property float u\nproperty float v\n");
+    bytes.add_text("element face " + std::to_string(mesh.triangles.size()) +
+                   "\nproperty list uchar int vertex_indices\nend_header\n");
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        for (int axis = 0; axis < 3; ++axis) bytes.add(mesh.positions[i][axis]);
+        for (int axis = 0; axis < 3 && !mesh.normals.empty(); ++axis) bytes.add(mesh.normals[i][axis]);
+        for (int axis = 0; axis < 2 && !mesh.uvs.empty(); ++axis) bytes.add(mesh.uvs[i][axis]);
+    }
+    for (const auto& triangle : mesh.triangles) {
+        bytes.add(std::uint8_t(3));
+        for (const std::uint32_t vertex : triangle) bytes.add(std::int32_t(vertex));
+    }
+    write_text(path, bytes.text());
+}
+
+std::string list_of(const std::vector<std::string>& notes) {
+    if (notes.empty()) return "nothing was dropped or changed\n";
+    std::string text;
+    for (const std::string& note : notes) text += note + "\n";
+    return text;
+}
+
+void make_folder(const fs::path& folder) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) throw core::InputError("cannot be made: " + error.message(), {folder.string(), 0});
+}
+
+void copy_file(const std::string& from, const fs::path& to) {
+    std::error_code error;
+    if (fs::equivalent(from, to, error)) return;
+    fs::copy_file(from, to, fs::copy_options::overwrite_existing, error);
+    if (error) throw core::InputError("cannot be copied: " + error.message(), {from, 0});
+}
+
+}  // namespace
+
+void write_export(const MitsubaExport& result, const std::string& folder) {
+    const fs::path root(folder);
+    make_folder(root);
+    const auto place = [&](const std::string& name) {
+        make_folder((root / name).parent_path());
+        return root / name;
+    };
+    for (const auto& [name, source] : result.copies) copy_file(source, place(name));
+    for (const auto& [name, grid] : result.grids) media::write_vol_file(place(name).string(), grid);
+    for (const auto& [name, mesh] : result.meshes) write_ply(place(name), mesh);
+    write_text(root / "dropped.txt", list_of(result.notes));
+    write_text(root / "scene.xml", xml_text(result.scene));
+}
+
+}  // namespace mote::apps
