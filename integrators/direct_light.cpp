@@ -11,9 +11,11 @@ constexpr float shadow_fraction = 0.9999f;
 
 template <bool Media>
 Rgb sample_light(const Scene& scene, const ScatteringVertex& vertex, const PathWeights& weights,
-                 const MediumState& state, float u_light, const Vec2& u, WalkContext& context) {
+                 const MediumState& state, float u_light, const Vec2& u, WalkContext& context,
+                 bool lit_along) {
     const LightChoice choice = scene.choose_light(u_light);
     if (!choice.emitter) return Rgb(0.0f);
+    if (lit_along && !vertex.on_surface() && choice.emitter->traits().delta_position) return Rgb(0.0f);
     const auto light = choice.emitter->sample_direct(vertex.position, u);
     if (!light) return Rgb(0.0f);
     const Rgb f_cos = vertex.eval_cos(light->wi, TransportMode::radiance);
@@ -65,9 +67,9 @@ Rgb found_light(const Scene& scene, const WalkEvent& event, const Ray& ray, cons
 }
 
 template Rgb sample_light<true>(const Scene&, const ScatteringVertex&, const PathWeights&, const MediumState&,
-                                float, const Vec2&, WalkContext&);
+                                float, const Vec2&, WalkContext&, bool);
 template Rgb sample_light<false>(const Scene&, const ScatteringVertex&, const PathWeights&,
-                                 const MediumState&, float, const Vec2&, WalkContext&);
+                                 const MediumState&, float, const Vec2&, WalkContext&, bool);
 template Rgb found_light<true>(const Scene&, const WalkEvent&, const Ray&, const PathWeights&, const Vec3*);
 template Rgb found_light<false>(const Scene&, const WalkEvent&, const Ray&, const PathWeights&, const Vec3*);
 

@@ -18,7 +18,7 @@ class Path final : public Integrator {
     std::string type() const override { return "path"; }
     std::vector<Layer> layers(const Scene&) const override { return transport_layers(false, false); }
 
-    Plan plan(const Scene&, const Requirements& requirements) const override {
+    Plan plan(const Scene& scene, const Requirements& requirements) const override {
         Plan plan;
         plan.integrator = type();
         plan.run("paths", "one per pixel and pass", "light and BSDF sampling combined at every vertex");
@@ -27,6 +27,7 @@ class Path final : public Integrator {
                       "path traces surfaces only; volpath renders media");
         else
             plan.leave_out("media", "no code for media runs", "the scene has none");
+        plan_caustics(plan, scene, requirements);
         return plan;
     }
     std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {

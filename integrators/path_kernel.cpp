@@ -13,9 +13,9 @@ namespace {
 /// Sorts light into layers, and holds the weight of the bounded edge.
 class PathClassifier {
   public:
-    /// Called at every vertex whose sampled event is not a delta one, or whose light is connected.
-    Transport layer_of_connection(const ScatteringVertex& v) const {
-        if (scatterings_ == 0) return v.on_surface() ? Transport::direct : Transport::single_scattering;
+    /// Layer of a light connected to the vertex at the end of the current edge.
+    Transport layer_of_connection(bool on_surface) const {
+        if (scatterings_ == 0) return on_surface ? Transport::direct : Transport::single_scattering;
         return surface_first_ ? Transport::indirect : Transport::multiple_scattering;
     }
     /// Layer of light found at the end of the current edge.
@@ -53,18 +53,26 @@ TransportSum trace_path(const Scene& scene, const PathSettings& settings, Ray ra
     if constexpr (Media) weights.hero = std::min(int(context.rng.next_float() * 3.0f), 2);
     PathClassifier classifier;
     const bool bounded = std::isfinite(settings.bound);
+    const bool lit_along = Media && settings.equiangular && !settings.equiangular->empty();
     Vec3 previous_position;
     bool connected = false;  // could next-event estimation have found what the current edge leads to?
     float eta = 1.0f;
 
     for (int depth = 1; settings.max_depth < 0 || depth <= settings.max_depth; ++depth) {
         Rgb emitted(0.0f);
+        const MediumState start = state;
+        const Rgb throughput = weights.throughput / channel_average<Media>(weights.unidirectional);
         const WalkEvent event = walk<Media>(scene, ray, state, weights, emitted, context);
         const Transport found = classifier.layer_of_emission();
         if constexpr (Media) sum[found] += emitted;
         sum[found] +=
             found_light<Media>(scene, event, ray, weights, connected ? &previous_position : nullptr);
-        if (event.kind == WalkEvent::Kind::escaped || depth == settings.max_depth) break;
+        if (depth == settings.max_depth) break;
+        if (lit_along)
+            sum[classifier.layer_of_connection(false)] +=
+                throughput * settings.equiangular->scattered_along(scene, ray, event.surface_distance, start,
+                                                                   sampler.next_2d(), context);
+        if (event.kind == WalkEvent::Kind::escaped) break;
 
         const ScatteringVertex vertex = make_vertex(event, ray);
         const bool vpl_edge = bounded && classifier.scatterings() == 1;
@@ -72,8 +80,9 @@ TransportSum trace_path(const Scene& scene, const PathSettings& settings, Ray ra
 
         const Vec2 choices = sampler.next_2d();  // of the light, and of the lobe
         if (vertex.connectable()) {
-            sum[classifier.layer_of_connection(vertex)] +=
-                sample_light<Media>(scene, vertex, weights, state, choices.x, sampler.next_2d(), context);
+            const Vec2 u_light = sampler.next_2d();
+            sum[classifier.layer_of_connection(vertex.on_surface())] +=
+                sample_light<Media>(scene, vertex, weights, state, choices.x, u_light, context, lit_along);
         }
         if (depth >= settings.rr_depth && !survives<Media>(weights, eta, depth, context.rng.next_float()))
             break;

@@ -10,6 +10,7 @@
 #pragma once
 
 #include "integrators/direct_light.h"
+#include "integrators/equiangular.h"
 #include "integrators/transport_layers.h"
 
 namespace mote::integrators {
@@ -18,6 +19,9 @@ struct PathSettings {
     int max_depth = -1;            ///< edges of a path: 1 emission only, 2 direct light; -1 no limit
     int rr_depth = 5;              ///< Russian roulette from this depth on
     float bound = core::infinity;  ///< b [1/m^2]; infinity: the true transport
+    /// Where there are any, these light media by equi-angular sampling instead of next-event estimation at
+    /// collisions. Not together with a bound.
+    std::shared_ptr<const EquiangularLights> equiangular;
 };
 
 /// Radiance along `ray`, by layer. `state` holds the media at its origin.

@@ -4,12 +4,17 @@
 #include "core/render/plan.h"
 #include "core/scene/registry.h"
 #include "core/scene/requirements.h"
+#include "core/scene/scene.h"
 
 namespace mote::integrators {
 
 void register_path(core::Registry& registry);
 void register_volpath(core::Registry& registry);
 void register_mote_vpl(core::Registry& registry);
+void register_mote_vsl(core::Registry& registry);
+
+/// Light that passes delta surfaces last, for integrators that can only hit lights.
+void plan_caustics(core::Plan& plan, const core::Scene& scene, const core::Requirements& requirements);
 
 /// What runs for the media of a scene, with reasons.
 void plan_media(core::Plan& plan, const core::Requirements& requirements);

@@ -20,8 +20,8 @@ struct VplSettings {
     bool bounded = true;
     std::optional<float> bound;  ///< b [1/m^2]; nothing: automatic
 
-    /// b from the size of the shapes and the number of light paths: inside r = b^(-1/2) a VPL stands for the light
-    /// of the paths around it, and N paths spread over a scene of radius R are about R / sqrt(N) apart.
+    /// b from the size of the shapes and the number of light paths: inside r = b^(-1/2) a VPL stands for the
+    /// light of the paths around it, and N paths spread over a scene of radius R are about R / sqrt(N) apart.
     float bound_for(const core::Bounds3& bounds) const {
         if (!bounded) return core::infinity;
         if (bound) return *bound;

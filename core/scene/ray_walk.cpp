@@ -13,9 +13,10 @@ std::optional<float> cross_segment(const MediumState& state, const Ray& ray, flo
     return medium->sample_collision(segment, weights, emitted, context.rng, context.tracking);
 }
 
-WalkEvent collision_at(float t, const Medium* medium) {
+WalkEvent collision_at(float t, const Medium* medium, float surface_distance) {
     WalkEvent event;
     event.kind = WalkEvent::Kind::collision, event.distance = t, event.medium = medium;
+    event.surface_distance = surface_distance;
     return event;
 }
 
@@ -27,6 +28,7 @@ WalkEvent walk(const Scene& scene, const Ray& ray, MediumState& state, PathWeigh
     ++context.rays.closest;
     const auto hit = scene.rays().closest(ray);
     if constexpr (Media) {
+        context.boundary_hits.clear();
         float t = ray.t_min;
         const float t_end = hit ? hit->t : ray.t_max;
         if (scene.rays().has_boundaries()) {
@@ -36,16 +38,20 @@ WalkEvent walk(const Scene& scene, const Ray& ray, MediumState& state, PathWeigh
             scene.rays().all_hits(boundary_ray, RayTracer::Group::boundaries, context.boundary_hits);
             for (const SurfaceHit& boundary : context.boundary_hits) {
                 if (const auto c = cross_segment(state, ray, t, boundary.t, weights, emitted, context))
-                    return collision_at(*c, state.current());
+                    return collision_at(*c, state.current(), t_end);
                 state.cross(*boundary.shape, boundary.geometric_normal, ray.direction);
                 t = boundary.t;
             }
         }
         if (const auto c = cross_segment(state, ray, t, t_end, weights, emitted, context))
-            return collision_at(*c, state.current());
+            return collision_at(*c, state.current(), t_end);
     }
     WalkEvent event;
-    if (hit) event.kind = WalkEvent::Kind::surface, event.distance = hit->t, event.hit = *hit;
+    event.surface_distance = ray.t_max;
+    if (hit) {
+        event.kind = WalkEvent::Kind::surface, event.hit = *hit;
+        event.distance = event.surface_distance = hit->t;
+    }
     return event;
 }
 

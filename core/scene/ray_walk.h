@@ -18,15 +18,16 @@ struct WalkContext {
     Rng rng;
     RayCounters rays;
     TrackingCounters tracking;
-    std::vector<SurfaceHit> boundary_hits;  ///< reused between rays
+    std::vector<SurfaceHit> boundary_hits;  ///< up to the first surface on the last ray; reused between rays
 };
 
 struct WalkEvent {
     enum class Kind : std::uint8_t { escaped, surface, collision };
     Kind kind = Kind::escaped;
-    float distance = infinity;       ///< along the ray [m]
-    SurfaceHit hit;                  ///< surface only
-    const Medium* medium = nullptr;  ///< collision only
+    float distance = infinity;          ///< along the ray [m]
+    float surface_distance = infinity;  ///< of the first surface on the ray, reached or not; else t_max
+    SurfaceHit hit;                     ///< surface only
+    const Medium* medium = nullptr;     ///< collision only
 };
 
 /// Advances along `ray` and updates `state` (media at the end), `weights` (see Medium::sample_collision) and

@@ -103,6 +103,7 @@ TEST_CASE("single scattering from a point light against quadrature", "[analytic]
         8);
     const std::string integrators[] = {
         R"(<integrator type="volpath"><integer name="max_depth" value="2"/></integrator>)",
+        R"(<integrator type="volpath"><integer name="max_depth" value="2"/><boolean name="equiangular" value="true"/></integrator>)",
         R"(<integrator type="mote_vpl"><integer name="max_depth" value="2"/><integer name="paths" value="1"/></integrator>)"};
     for (const std::string& integrator : integrators) {
         INFO(integrator);

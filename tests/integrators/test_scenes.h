@@ -1,0 +1,81 @@
+// Scenes that several tests of integrators render, as XML text.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+#include <string>
+
+namespace mote::tests {
+
+/// A box of five walls with a lamp and a block; `wall` is the BSDF of walls and block, `inside` a medium or
+/// "".
+inline std::string box(const std::string& wall, const std::string& medium) {
+    const auto rectangle = [&](const std::string& transform) {
+        return "<shape type=\"rectangle\"><transform name=\"to_world\">" + transform + "</transform>" + wall +
+               "</shape>";
+    };
+    std::string xml = "<scene version=\"3.0.0\">";
+    xml += rectangle("<translate z=\"-1\"/>");                                 // back, facing +z
+    xml += rectangle("<translate z=\"-1\"/><rotate x=\"1\" angle=\"-90\"/>");  // floor, facing +y
+    xml += rectangle("<translate z=\"-1\"/><rotate x=\"1\" angle=\"90\"/>");   // ceiling
+    xml += rectangle("<translate z=\"-1\"/><rotate y=\"1\" angle=\"90\"/>");   // left, facing +x
+    xml += rectangle("<translate z=\"-1\"/><rotate y=\"1\" angle=\"-90\"/>");  // right
+    xml +=
+        "<shape type=\"cube\"><transform name=\"to_world\"><scale value=\"0.3\"/><rotate y=\"1\" "
+        "angle=\"25\"/>"
+        "<translate x=\"0.3\" y=\"-0.7\" z=\"-0.2\"/></transform>" +
+        wall + "</shape>";
+    xml +=
+        R"(<shape type="rectangle"><transform name="to_world"><scale value="0.25"/><rotate x="1" angle="90"/>
+        <translate y="0.95"/></transform><emitter type="area"><rgb name="radiance" value="10, 8, 6"/></emitter></shape>)";
+    if (!medium.empty())
+        xml +=
+            "<shape type=\"cube\"><transform name=\"to_world\"><scale x=\"0.9\" y=\"0.85\" "
+            "z=\"0.9\"/></transform>"
+            "<bsdf type=\"null\"/>" +
+            medium + "</shape>";
+    xml += R"(<sensor type="perspective"><float name="fov" value="40"/><transform name="to_world">
+        <lookat origin="0, 0, 3.6" target="0, 0, 0" up="0, 1, 0"/></transform></sensor></scene>)";
+    return xml;
+}
+
+inline const std::string grey =
+    R"(<bsdf type="twosided"><bsdf type="diffuse"><rgb name="reflectance" value="0.6, 0.5, 0.4"/></bsdf></bsdf>)";
+inline const std::string glossy =
+    R"(<bsdf type="twosided"><bsdf type="roughconductor"><float name="alpha" value="0.35"/>
+    <rgb name="specular_reflectance" value="0.7"/></bsdf></bsdf>)";
+inline const std::string mixed =
+    R"(<bsdf type="twosided"><bsdf type="roughplastic"><float name="alpha" value="0.3"/>
+    <rgb name="diffuse_reflectance" value="0.5, 0.4, 0.3"/></bsdf></bsdf>)";
+
+inline std::string fog(const std::string& sigma_t, const std::string& phase) {
+    return fmt::format(R"(<medium type="homogeneous" name="interior"><rgb name="sigma_t" value="{}"/>
+        <rgb name="albedo" value="0.9, 0.8, 0.7"/>{}</medium>)",
+                       sigma_t, phase);
+}
+
+/// A .vol grid of smooth puffs with empty space around them, in [-1,1]^3.
+inline std::string smoke_medium(const std::string& path) {
+    const std::int32_t n = 16;
+    std::ofstream file(path, std::ios::binary);
+    const auto write = [&](auto value) { file.write(reinterpret_cast<const char*>(&value), sizeof value); };
+    file.write("VOL\3", 4);
+    for (const std::int32_t v : {1, n, n, n, 1}) write(v);
+    for (const float v : {0.f, 0.f, 0.f, 1.f, 1.f, 1.f}) write(v);
+    for (int z = 0; z < n; ++z)
+        for (int y = 0; y < n; ++y)
+            for (int x = 0; x < n; ++x) {
+                const float a =
+                    std::sin(0.7f * float(x)) * std::sin(0.5f * float(y) + 1.f) * std::cos(0.6f * float(z));
+                write(a > 0.2f ? a : 0.0f);
+            }
+    return fmt::format(R"(<medium type="heterogeneous" name="interior"><float name="scale" value="5"/>
+        <volume name="sigma_t" type="gridvolume"><string name="filename" value="{}"/>
+        <transform name="to_world"><translate x="-0.5" y="-0.5" z="-0.5"/><scale value="2"/></transform></volume>
+        <volume name="albedo" type="constvolume"><rgb name="value" value="0.9, 0.8, 0.7"/></volume></medium>)",
+                       path);
+}
+
+}  // namespace mote::tests
