@@ -1,0 +1,76 @@
+// One light path: from a light through surfaces and media, vertex by vertex.
+//
+// Engelhardt 2013, Sec. 10.1.1 (with the two slips of its step 1 put right, see docs/errata.md):
+//   alpha_1     = L_e C*(y0->y1) tau / (p_A(y0) p_w(w0) p(t0))
+//   alpha_{i+1} = alpha_i f* C* tau / (q p(w) p(t))
+// Distances are sampled by delta tracking, so tau/p(t) is 1 at a surface and sigma_s/sigma_t goes to a volume
+// vertex: alpha is the power that a particle brings to its vertex, times the albedo in a medium.
+#pragma once
+
+#include <algorithm>
+
+#include "core/math/sampler.h"
+#include "core/scene/russian_roulette.h"
+#include "core/scene/scattering_vertex.h"
+
+namespace mote::lights {
+
+struct LightPathSettings {
+    std::uint32_t paths = 1024;
+    int max_vertices = -1;  ///< vertices on a light path after the light, delta ones included; -1: no limit
+    int rr_depth = 5;       ///< Russian roulette after this many vertices
+};
+
+/// Share of the path's first power that is left; never below 1/20, so that one dark bounce does not end it.
+inline float remaining_power(const core::Rgb& alpha, const core::Rgb& alpha_start) {
+    const float start = core::max_component(alpha_start);
+    return start > 0.0f ? std::max(core::max_component(alpha) / start, 0.05f) : 0.0f;
+}
+
+/// Calls visit(vertex, alpha / paths, depth) at every vertex of one path, delta surfaces included; `depth`
+/// counts from 1 at the first. The vertex's `wo` points back along the path.
+template <bool Media, typename Visit>
+void follow_light_path(const core::Scene& scene, const LightPathSettings& settings, core::Sampler& sampler,
+                       core::WalkContext& context, const Visit& visit) {
+    float u_light = sampler.next_1d();
+    const core::LightChoice choice = scene.choose_emitter_by_power(u_light, &u_light);
+    const core::Vec2 u_position = sampler.next_2d(), u_direction = sampler.next_2d();
+    if (!choice.emitter) return;
+    const auto emission = choice.emitter->sample_emission(u_position, u_direction);
+    if (!emission) return;
+
+    // alpha_1, with the cosine at the light, over the paths (Engelhardt 2013, Sec. 10.1.1, step 3).
+    core::PathWeights weights;
+    weights.throughput = emission->weight / (choice.probability * float(settings.paths));
+    const core::Rgb start = weights.throughput;
+    core::MediumState state;
+    if constexpr (Media) {
+        weights.hero = std::min(int(context.rng.next_float() * 3.0f), 2);
+        state = scene.emitter_medium_state(*choice.emitter, *emission);
+    }
+    core::Ray ray{emission->origin, emission->direction};
+    for (int depth = 1; settings.max_vertices < 0 || depth <= settings.max_vertices; ++depth) {
+        core::Rgb emitted(0.0f);
+        const core::WalkEvent event = core::walk<Media>(scene, ray, state, weights, emitted, context);
+        if (event.kind == core::WalkEvent::Kind::escaped) return;
+        const core::ScatteringVertex vertex = make_vertex(event, ray);
+        const float channels = Media ? core::average(weights.unidirectional) : 1.0f;
+        visit(vertex, weights.throughput / channels, depth);
+
+        if (depth > settings.rr_depth) {
+            const float q = core::survival_chance(remaining_power(weights.throughput / channels, start),
+                                                  depth, core::long_light_path);
+            if (context.rng.next_float() >= q) return;
+            weights.throughput /= q;
+        }
+        const float u_lobe = sampler.next_1d();
+        const auto next = vertex.sample(u_lobe, sampler.next_2d(), core::TransportMode::power);
+        if (!next) return;
+        weights.throughput *= next->weight * adjoint_correction(vertex, vertex.wo, next->wi);
+        if (core::is_black(weights.throughput)) return;
+        if (Media && vertex.on_surface()) state = vertex.state_towards(state, next->wi);
+        ray = core::Ray{vertex.ray_origin(next->wi), next->wi};
+    }
+}
+
+}  // namespace mote::lights
