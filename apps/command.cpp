@@ -10,6 +10,7 @@
 #include <new>
 
 #include "apps/subcommands.h"
+#include "apps/trade/trade_command.h"
 #include "core/scene/error.h"
 
 namespace mote::apps {
@@ -107,6 +108,10 @@ int parse_and_run(int argc, char** argv) {
     convert_app.add_option("--layer", convert.layer, "This layer of an EXR instead of the beauty");
     convert_app.add_flag("--half", convert.half, "Write float16 instead of float32");
     convert_app.callback([&] { action = [&] { return convert_command(convert); }; });
+
+    TradeArguments trade;
+    trade.command_line = render.command_line;
+    add_trade(app, trade, action);
 
     ExportArguments export_arguments;
     add_export(app, export_arguments, action);

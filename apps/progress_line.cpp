@@ -14,14 +14,14 @@ namespace {
 constexpr std::chrono::milliseconds live_interval(100);
 constexpr std::chrono::seconds plain_interval(5);
 
+}  // namespace
+
 std::string duration_text(double seconds) {
     const auto s = std::int64_t(std::ceil(std::fmin(seconds, 1e9)));
     if (s < 60) return fmt::format("{} s", s);
     if (s < 3600) return fmt::format("{}:{:02} min", s / 60, s % 60);
     return fmt::format("{}:{:02} h", s / 3600, s / 60 % 60);
 }
-
-}  // namespace
 
 std::string progress_text(const core::RenderProgress& p) {
     std::string text = fmt::format("pass {}", p.passes);
@@ -46,16 +46,19 @@ void ProgressLine::print_header() {
 }
 
 void ProgressLine::update(const core::RenderProgress& progress) {
+    const bool last_pass = progress.passes_wanted && progress.passes >= *progress.passes_wanted;
+    update(progress_text(progress), last_pass);
+}
+
+void ProgressLine::update(const std::string& text, bool urgent) {
     if (quiet_) return;
     print_header();
     const auto now = std::chrono::steady_clock::now();
     const auto interval = terminal_ ? std::chrono::duration_cast<std::chrono::milliseconds>(live_interval)
                                     : std::chrono::duration_cast<std::chrono::milliseconds>(plain_interval);
-    const bool last_pass = progress.passes_wanted && progress.passes >= *progress.passes_wanted;
-    if (now - last_ < interval && shown_ && !last_pass) return;
+    if (now - last_ < interval && shown_ && !urgent) return;
     if (now - last_ < interval && !terminal_) return;  // a render of a second needs no line in a log
     last_ = now, shown_ = true;
-    const std::string text = progress_text(progress);
     if (terminal_) {
         std::fputs(("\r" + text + "\x1b[K").c_str(), stderr);
         std::fflush(stderr);

@@ -10,6 +10,8 @@ namespace mote::apps {
 
 /// "pass 12/64, 3.1 passes/s, 17 s left, noise 2.4 %"
 std::string progress_text(const core::RenderProgress& progress);
+/// "17 s", "4:05 min", "2:30 h"
+std::string duration_text(double seconds);
 
 class ProgressLine {
   public:
@@ -17,6 +19,8 @@ class ProgressLine {
     /// render that is refused leaves nothing but its error. Prints nothing when `quiet`.
     ProgressLine(std::string header, bool quiet);
     void update(const core::RenderProgress& progress);
+    /// The same with a text of the caller's; `urgent`: shown on a terminal however recent the last one is.
+    void update(const std::string& text, bool urgent);
     /// Ends the live line, so that other output starts on a line of its own.
     void end();
 

@@ -1,6 +1,7 @@
 // Image files: layered OpenEXR out and in, PNG previews out, any bitmap in.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <span>
 #include <string>
@@ -34,6 +35,8 @@ ImageChannels read_exr(const std::string& path);
 /// 8-bit sRGB preview: exposure in stops, then clipped. Values that are not finite are shown in magenta.
 void write_png(const std::string& path, int width, int height, std::span<const Rgb> pixels,
                float exposure = 0.0f);
+/// A PNG file of 8-bit values in memory. `srgb`: marked as sRGB; data that is no picture is not.
+std::vector<std::byte> encode_png(int width, int height, std::span<const std::uint8_t> rgb, bool srgb);
 
 /// Any bitmap that OpenImageIO reads, as linear RGB; 8-bit files are taken as sRGB unless `raw`.
 struct Bitmap {

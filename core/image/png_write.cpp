@@ -33,17 +33,30 @@ void write_png(const std::string& path, int width, int height, std::span<const R
         for (int c = 0; c < 3; ++c) bytes[3 * i + std::size_t(c)] = encode_srgb(shown[c]);
     });
 
+    std::vector<std::byte> file;
+    try {
+        file = encode_png(width, height, bytes, true);
+    } catch (const InputError& error) {
+        throw InputError(error.what(), {path, 0});
+    }
+    write_file_atomically(path, file);
+}
+
+std::vector<std::byte> encode_png(int width, int height, std::span<const std::uint8_t> rgb, bool srgb) {
+    if (width < 1 || height < 1 || rgb.size() != 3 * std::size_t(width) * std::size_t(height))
+        throw std::invalid_argument("the bytes do not fit the picture");
     // Encoded in memory: the writer of PNG files does not notice a full disk, write_file_atomically() does.
     const auto output = OIIO::ImageOutput::create("png");
-    if (!output) throw InputError("cannot be written: OpenImageIO has no PNG writer", {path, 0});
+    if (!output) throw InputError("cannot be written: OpenImageIO has no PNG writer");
     OIIO::Filesystem::IOVecOutput memory;
     OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
-    spec.attribute("oiio:ColorSpace", "sRGB");
+    if (srgb) spec.attribute("oiio:ColorSpace", "sRGB");
     spec.attribute("png:compressionLevel", 3);  // a tenth larger than the best, several times faster
     if (!output->set_ioproxy(&memory) || !output->open("preview.png", spec) ||
-        !output->write_image(OIIO::TypeDesc::UINT8, bytes.data()) || !output->close())
-        throw InputError("cannot be written: " + printable(output->geterror()), {path, 0});
-    write_file_atomically(path, std::as_bytes(std::span(memory.buffer())));
+        !output->write_image(OIIO::TypeDesc::UINT8, rgb.data()) || !output->close())
+        throw InputError("cannot be written: " + printable(output->geterror()));
+    const auto bytes = std::as_bytes(std::span(memory.buffer()));
+    return {bytes.begin(), bytes.end()};
 }
 
 }  // namespace mote::core

@@ -1,0 +1,181 @@
+// Passes under two clocks, and checkpoints of film and clocks that belong together.
+#include "apps/trade/contestant.h"
+
+#include <time.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "apps/render_report.h"
+#include "core/image/image_file.h"
+#include "core/image/metrics.h"
+#include "core/image/whole_file.h"
+#include "core/scene/error.h"
+
+namespace mote::apps::trade {
+
+namespace {
+
+using core::Rgb;
+using nlohmann::json;
+
+double read_clock(clockid_t clock) {
+    timespec t{};
+    ::clock_gettime(clock, &t);
+    return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+}
+
+/// Wall time and processor time of all threads since its construction.
+class Clocks {
+  public:
+    double wall() const { return read_clock(CLOCK_MONOTONIC) - wall_; }
+    double cpu() const { return read_clock(CLOCK_PROCESS_CPUTIME_ID) - cpu_; }
+
+  private:
+    double wall_ = read_clock(CLOCK_MONOTONIC), cpu_ = read_clock(CLOCK_PROCESS_CPUTIME_ID);
+};
+
+json to_json(const Tally& t) {
+    return {{"passes", t.passes},
+            {"build_wall", t.build_wall},
+            {"build_cpu", t.build_cpu},
+            {"wall", t.wall},
+            {"cpu", t.cpu},
+            {"mean", t.mean},
+            {"squares", t.squares}};
+}
+
+Tally tally_from(const json& j) {
+    Tally t;
+    t.passes = j.at("passes").get<std::uint32_t>();
+    t.build_wall = j.at("build_wall").get<double>(), t.build_cpu = j.at("build_cpu").get<double>();
+    t.wall = j.at("wall").get<double>(), t.cpu = j.at("cpu").get<double>();
+    t.mean = j.at("mean").get<double>(), t.squares = j.at("squares").get<double>();
+    return t;
+}
+
+/// The tally that was taken with this number of passes.
+Tally read_tally(const std::string& path, std::uint32_t passes) {
+    try {
+        const std::vector<std::byte> bytes = core::read_whole_file(path);
+        const auto* text = reinterpret_cast<const char*>(bytes.data());
+        for (const json& j : json::parse(text, text + bytes.size()))
+            if (const Tally t = tally_from(j); t.passes == passes) return t;
+    } catch (const core::InputError& error) {
+        throw core::InputError(error.what(), {path, 0});
+    } catch (const json::exception&) {
+    }
+    throw core::InputError("damaged: the trade cannot be continued, --fresh starts anew", {path, 0});
+}
+
+// The film's rule: a pixel that is not finite in some layer adds nothing.
+double mean_brightness(const core::PassImage& image, const core::Film& film) {
+    double total = 0.0;
+    for (std::size_t p = 0; p < film.pixels(); ++p) {
+        Rgb sum(0.0f);
+        bool finite = true;
+        for (std::size_t layer = 0; layer < image.layers(); ++layer) {
+            finite = finite && core::is_finite(image.layer(layer)[p]);
+            if (!film.layers()[layer].auxiliary) sum += image.layer(layer)[p];
+        }
+        if (finite) total += (double(sum.x) + double(sum.y) + double(sum.z)) / 3.0;
+    }
+    return total / double(film.pixels());
+}
+
+}  // namespace
+
+Contestant::Contestant(const core::Scene& scene, const Method& method, std::uint64_t seed,
+                       std::string checkpoint, const std::string& content_hash)
+    : method_(method),
+      seed_(seed),
+      checkpoint_(std::move(checkpoint)),
+      key_{content_hash + " " + method.type + " " + method.settings_text(), seed},
+      film_(scene.film().width, scene.film().height, method.integrator->layers(scene)) {
+    restore();
+    const Clocks clocks;
+    runner_ = std::make_unique<core::PassRunner>(scene, *method.integrator, seed, film_);
+    // What a continued trade builds again was paid for before.
+    if (tally_.passes == 0) tally_.build_wall = clocks.wall(), tally_.build_cpu = clocks.cpu();
+}
+
+bool Contestant::is_done(const Limits& limits) const {
+    if (tally_.passes == 0) return false;
+    if (limits.passes && tally_.passes >= *limits.passes) return true;
+    // One more pass would end farther from the limit than none.
+    return limits.seconds && tally_.seconds() + 0.5 * tally_.wall / tally_.passes >= *limits.seconds;
+}
+
+bool Contestant::run_pass(const std::atomic<bool>& cancelled) {
+    const Clocks clocks;
+    if (!runner_->run_pass(cancelled)) return false;
+    tally_.wall += clocks.wall(), tally_.cpu += clocks.cpu();
+    ++tally_.passes;
+    add_to_spread(runner_->last_pass());
+    return true;
+}
+
+void Contestant::add_to_spread(const core::PassImage& image) {
+    const double value = mean_brightness(image, film_), before = value - tally_.mean;
+    tally_.mean += before / tally_.passes;
+    tally_.squares += before * (value - tally_.mean);
+}
+
+core::Film Contestant::finished(double& wall, double& cpu) const {
+    core::Film picture = film_;
+    const Clocks clocks;
+    runner_->estimator().finish(picture);
+    wall = clocks.wall(), cpu = clocks.cpu();
+    return picture;
+}
+
+Record Contestant::judge(const core::Film& picture, double finish_wall, double finish_cpu,
+                         const Reference& reference) const {
+    const std::vector<Rgb> beauty = picture.beauty();
+    const core::ImageMetrics m =
+        core::compare_images(beauty, reference.pixels, film_.width(), film_.height());
+    Record r;
+    r.method = method_.name, r.integrator = method_.type, r.settings = method_.settings_text();
+    r.seed = seed_, r.passes = tally_.passes;
+    r.wall = tally_.seconds() + finish_wall, r.cpu = tally_.build_cpu + tally_.cpu + finish_cpu;
+    r.build = tally_.build_wall;
+    r.relmse = m.rel_mse, r.relmse_trimmed = m.rel_mse_trimmed, r.error = std::sqrt(m.rel_mse);
+    r.bias = m.bias;
+    const double n = tally_.passes;
+    if (n >= 2.0) r.bias_se = std::sqrt(tally_.squares / (n - 1.0) / n) / m.average_reference;
+    r.non_finite = film_.non_finite();
+    r.peak_memory_mb = double(peak_memory_bytes()) * 1e-6;
+    r.below_reference = r.error < reference.floor();
+    return r;
+}
+
+core::Statistics Contestant::statistics() const {
+    core::Statistics s;
+    s.seconds["build"] = tally_.build_wall, s.seconds["render"] = tally_.wall;
+    return s;
+}
+
+// The film is replaced after the tally, which therefore keeps the last two states: whenever the power fails,
+// one of them belongs to the film.
+void Contestant::save() {
+    if (tally_.passes == saved_.passes) return;
+    json states = json::array({to_json(tally_)});
+    if (saved_.passes > 0) states.push_back(to_json(saved_));
+    const std::string text = states.dump();
+    core::write_file_atomically(checkpoint_ + ".json", std::as_bytes(std::span(text.data(), text.size())));
+    core::write_checkpoint(checkpoint_ + ".film", key_, film_);
+    saved_ = tally_;
+}
+
+void Contestant::restore() {
+    if (!core::read_checkpoint(checkpoint_ + ".film", key_, film_)) return;
+    tally_ = saved_ = read_tally(checkpoint_ + ".json", film_.pass_count());
+}
+
+void Contestant::remove_checkpoint() const {
+    std::error_code ignored;
+    std::filesystem::remove(checkpoint_ + ".film", ignored);
+    std::filesystem::remove(checkpoint_ + ".json", ignored);
+}
+
+}  // namespace mote::apps::trade

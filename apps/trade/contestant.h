@@ -1,0 +1,67 @@
+// One method with one seed in a trade: its film, its clocks, and its checkpoint.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "apps/trade/methods_file.h"
+#include "apps/trade/record.h"
+#include "apps/trade/reference.h"
+#include "core/render/checkpoint.h"
+#include "core/render/pass_runner.h"
+
+namespace mote::apps::trade {
+
+struct Limits {
+    std::optional<double> seconds;  ///< wall time of build and passes, per method and seed
+    std::optional<std::uint32_t> passes;
+};
+
+/// Seconds of wall and processor time, and the spread of the passes' mean brightness: all that a film does
+/// not hold and that must survive an interrupt.
+struct Tally {
+    std::uint32_t passes = 0;
+    double build_wall = 0.0, build_cpu = 0.0;
+    double wall = 0.0, cpu = 0.0;      ///< passes alone
+    double mean = 0.0, squares = 0.0;  ///< of the passes' picture means (Welford 1962)
+    double seconds() const { return build_wall + wall; }
+};
+
+class Contestant {
+  public:
+    /// Continues from the checkpoint files at `checkpoint` (a path without extension) where they are there,
+    /// and calls prepare(). Throws InputError for a damaged checkpoint.
+    Contestant(const core::Scene& scene, const Method& method, std::uint64_t seed, std::string checkpoint,
+               const std::string& content_hash);
+
+    const Method& method() const { return method_; }
+    std::uint64_t seed() const { return seed_; }
+    const Tally& tally() const { return tally_; }
+    bool is_done(const Limits& limits) const;
+    /// Returns false when it was cancelled; nothing has changed then.
+    bool run_pass(const std::atomic<bool>& cancelled);
+    /// The picture as a user would get it now: a copy of the film after Estimator::finish.
+    core::Film finished(double& wall, double& cpu) const;
+    /// Holds a finished picture against the reference.
+    Record judge(const core::Film& picture, double finish_wall, double finish_cpu,
+                 const Reference& reference) const;
+    core::Statistics statistics() const;
+
+    /// Writes the checkpoint, unless nothing has changed since the last one.
+    void save();
+    void remove_checkpoint() const;
+
+  private:
+    void restore();
+    void add_to_spread(const core::PassImage& image);
+
+    const Method& method_;
+    std::uint64_t seed_;
+    std::string checkpoint_;
+    core::CheckpointKey key_;
+    core::Film film_;
+    Tally tally_, saved_;
+    std::unique_ptr<core::PassRunner> runner_;
+};
+
+}  // namespace mote::apps::trade

@@ -1,0 +1,56 @@
+// The folder that a trade writes into: what was measured with which inputs, so that it can be continued, and
+// drawn again.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "apps/trade/record.h"
+
+namespace mote::apps::trade {
+
+/// trade.json. `inputs` is compared key by key before a trade is continued; each value is short.
+struct Identity {
+    nlohmann::json inputs = nlohmann::json::object();
+    nlohmann::json facts = nlohmann::json::object();  ///< for the page: scene, reference, methods, commands
+};
+
+class Folder {
+  public:
+    /// Makes the folder. Throws InputError when that cannot be.
+    explicit Folder(std::string path);
+    std::string file(const std::string& name) const;
+    std::string checkpoint(const std::string& slug, std::uint64_t seed) const;
+    bool has(const std::string& name) const;
+
+    /// Takes up what the folder holds when its inputs are these, or starts anew. Throws InputError that names
+    /// what differs. `fresh`: removes what an earlier trade wrote here.
+    void open(const Identity& identity, bool fresh);
+    /// For drawing alone. Throws InputError when there is no trade here.
+    void open_existing();
+
+    const nlohmann::json& facts() const { return facts_; }
+    const std::vector<Record>& records() const { return records_; }
+    /// Adds a record and writes trade.csv; once this returns, the record survives a crash.
+    void add(const Record& record);
+    /// Removes the records of a method and seed after so many passes: they will be measured again.
+    void drop_after(const std::string& method, std::uint64_t seed, std::uint32_t passes);
+    bool is_complete(const std::string& method, std::uint64_t seed) const;
+    /// Records of the files *.peer.csv. Throws InputError when one names a method that is here already.
+    std::vector<Record> peer_records() const;
+
+    void write(const std::string& name, const std::string& text) const;
+    std::string read(const std::string& name) const;
+
+  private:
+    void remove_earlier();
+    void load();
+    void write_records() const;
+
+    std::string path_;
+    nlohmann::json inputs_, facts_;
+    std::vector<Record> records_;
+};
+
+}  // namespace mote::apps::trade

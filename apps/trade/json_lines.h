@@ -1,0 +1,26 @@
+// JSON with the line of every key and element, for messages that say where.
+#pragma once
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/scene/error.h"
+
+namespace mote::apps::trade {
+
+class JsonLines {
+  public:
+    /// Throws InputError with file and line for text that is not JSON, and for a key that is given twice.
+    JsonLines(const std::string& text, std::string path);
+    const nlohmann::json& root() const { return root_; }
+    /// Where the value behind a JSON pointer such as "/methods/0/name" stands (its key, or the element).
+    core::SourceLocation where(const std::string& pointer) const;
+
+  private:
+    std::string path_;
+    nlohmann::json root_;
+    std::map<std::string, int> lines_;
+};
+
+}  // namespace mote::apps::trade

@@ -1,0 +1,140 @@
+// A reference is an ordinary render that ends when its own standard error is a tenth of the smallest error to
+// be judged by it.
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+
+#include "apps/command.h"
+#include "apps/interruption.h"
+#include "apps/progress_line.h"
+#include "apps/reference_metadata.h"
+#include "apps/render_report.h"
+#include "apps/trade/reference.h"
+#include "apps/trade/trade_command.h"
+#include "core/image/film_image.h"
+#include "core/scene/error.h"
+#include "core/scene/integrator_maker.h"
+
+namespace mote::apps::trade {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+void note(const std::string& text) { std::fputs(fmt::format("mote: {}\n", text).c_str(), stderr); }
+
+void check_output(const std::string& path) {
+    if (fs::path(path).extension() != ".exr")
+        throw UsageError("the reference '" + core::printable(path) + "' does not end in .exr");
+    const fs::path folder = fs::path(path).parent_path();
+    std::error_code ignored;
+    if (!folder.empty() && !fs::is_directory(folder, ignored))
+        throw core::InputError("cannot be written: there is no folder '" + folder.string() + "'", {path, 0});
+}
+
+std::string verdict(double error, double resolve) {
+    if (!std::isfinite(error)) return "one pass says nothing about its own error";
+    return fmt::format(
+        "standard error {:.3g} %: it judges errors down to {:.3g} %{}", 100.0 * error,
+        100.0 * errors_to_judge * error,
+        errors_to_judge * error <= resolve
+            ? ""
+            : fmt::format(", not the {:.3g} % asked for; the same command renders on", 100.0 * resolve));
+}
+
+core::RenderRequest make_request(const TradeArguments& arguments, const core::Scene& scene,
+                                 const std::string& type) {
+    core::RenderRequest request;
+    request.checkpoint_path = arguments.make_reference + ".checkpoint";
+    std::vector<std::string> settings = {MOTE_VERSION, "reference", type};
+    settings.insert(settings.end(), arguments.scene.defines.begin(), arguments.scene.defines.end());
+    request.content_hash = core::content_hash(scene, settings);
+    std::error_code ignored;
+    if (arguments.fresh) fs::remove(request.checkpoint_path, ignored);
+    request.resume = fs::exists(request.checkpoint_path, ignored);
+    request.noise = relative_standard_error;
+    request.stop.noise = arguments.resolve / errors_to_judge;
+    request.stop.seconds = arguments.seconds;
+    request.stop.passes = arguments.passes;
+    return request;
+}
+
+core::RenderResult render_with_progress(const core::Scene& scene, const core::Integrator& integrator,
+                                        core::RenderRequest& request, ProgressLine& progress) {
+    request.progress = [&progress](const core::RenderProgress& p) { progress.update(p); };
+    try {
+        core::RenderResult result = core::render(scene, integrator, request);
+        progress.end();
+        return result;
+    } catch (...) {
+        progress.end();
+        throw;
+    }
+}
+
+}  // namespace
+
+int make_reference(const TradeArguments& arguments) {
+    check_output(arguments.make_reference);
+    const int threads = arguments.threads > 0 ? arguments.threads : tbb::info::default_concurrency();
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
+    const core::Registry registry = make_registry();
+    const auto scene = load({arguments.scene.scene, "", arguments.scene.defines}, registry);
+    const std::string content = scene_content(*scene, arguments.scene.defines);
+    if (!arguments.fresh &&
+        is_good_reference(arguments.make_reference, *scene, content, {arguments.resolve, false, false})) {
+        if (!arguments.quiet)
+            note(arguments.make_reference + " resolves this already (--fresh makes it anew)");
+        std::fputs((arguments.make_reference + "\n").c_str(), stdout);
+        return exit_ok;
+    }
+    std::string type = arguments.scene.integrator;
+    if (type.empty()) type = scene->has_media() ? "volpath" : "path";
+    std::vector<std::string> warnings = scene->parts().warnings;
+    const auto integrator =
+        core::make_integrator(registry, *scene, type, {}, {"--integrator " + type, 0}, warnings);
+    const core::Plan plan = integrator->plan(*scene, core::find_requirements(*scene));
+    core::RenderRequest request = make_request(arguments, *scene, type);
+    if (!arguments.quiet) {
+        for (const std::string& warning : warnings) note("warning: " + warning);
+        for (const core::PlanEntry& e : plan.missing)
+            note("warning: " + type + " leaves out " + e.topic + ": " + e.reason);
+    }
+
+    const Interruption interruption;
+    request.interrupted = &interruption.flag();
+    ProgressLine progress(fmt::format("mote: reference of {} by {} to a standard error of {:.3g} %",
+                                      scene->parts().file, type, 100.0 * *request.stop.noise),
+                          arguments.quiet);
+    const core::RenderResult result = render_with_progress(*scene, *integrator, request, progress);
+    if (result.film.pass_count() == 0) {
+        note("interrupted before the first pass was complete: there is nothing to write");
+        return 128 + interruption.signal_number();
+    }
+    const double error = relative_standard_error(result.film);
+    core::ImageChannels image = core::film_image(result.film);
+    image.metadata = picture_metadata(
+        {*scene, plan, result, request.content_hash, content, request.seed, threads, arguments.command_line});
+    core::write_exr(arguments.make_reference, image);
+    core::write_png(fs::path(arguments.make_reference).replace_extension(".png").string(), image.width,
+                    image.height, image.rgb(""));
+    if (result.statistics.non_finite_samples > 0)
+        note(fmt::format("WARNING: {} pixel samples were NaN or infinite and count as black",
+                         result.statistics.non_finite_samples));
+    if (!arguments.quiet)
+        note(fmt::format("{} passes, {}", result.film.pass_count(), verdict(error, arguments.resolve)));
+    if (result.interrupted) {
+        note("interrupted: the same command continues");
+        return 128 + interruption.signal_number();
+    }
+    std::error_code ignored;
+    if (errors_to_judge * error <= arguments.resolve) fs::remove(request.checkpoint_path, ignored);
+    std::fputs((arguments.make_reference + "\n").c_str(), stdout);
+    return exit_ok;
+}
+
+}  // namespace mote::apps::trade

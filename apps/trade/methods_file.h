@@ -1,0 +1,40 @@
+// The methods file: which integrators take part in a trade, with which settings and limits.
+#pragma once
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/render/integrator.h"
+#include "core/scene/registry.h"
+#include "core/scene/scene.h"
+
+namespace mote::apps::trade {
+
+struct Method {
+    std::string name, slug;  ///< slug: the name as a file name
+    std::string type;        ///< of the integrator
+    nlohmann::json settings = nlohmann::json::object();
+    std::shared_ptr<const core::Integrator> integrator;
+
+    /// "bounded=true paths=256"
+    std::string settings_text() const;
+    /// "-D integrator.paths=256" for `mote render`, which gives the same picture.
+    std::vector<std::string> render_options() const;
+};
+
+struct MethodsFile {
+    std::optional<double> seconds;
+    std::optional<std::uint32_t> passes;
+    std::uint32_t seeds = 1;
+    std::vector<Method> methods;
+};
+
+/// Reads the file and makes the integrators for this scene. Throws InputError with file, line and the nearest
+/// known word for whatever is unknown, repeated, missing or of the wrong kind.
+MethodsFile read_methods_file(const std::string& path, const core::Registry& registry,
+                              const core::Scene& scene, std::vector<std::string>& warnings);
+
+}  // namespace mote::apps::trade

@@ -1,0 +1,131 @@
+// CSS and JavaScript of trade.html.
+#include "apps/trade/page_text.h"
+
+namespace mote::apps::trade {
+
+const char* page_style() {
+    return R"CSS(
+body { font: 15px/1.45 Helvetica, Arial, sans-serif; color: #222; background: #fff; margin: 24px auto;
+       max-width: 1100px; padding: 0 16px; }
+h1 { font-size: 24px; } h2 { font-size: 19px; margin-top: 34px; }
+svg { max-width: 100%; height: auto; }
+.scroll { overflow-x: auto; }
+table { border-collapse: collapse; font-size: 13px; }
+th, td { border-bottom: 1px solid #ddd; padding: 5px 9px; text-align: right; white-space: nowrap; }
+th { vertical-align: bottom; background: #f5f5f5; }
+th:first-child, td:first-child, td.text, th.text { text-align: left; }
+td.wrap { white-space: normal; min-width: 130px; }
+.swatch { display: inline-block; width: 11px; height: 11px; margin-right: 6px; }
+.biased { color: #a33b00; font-weight: bold; }
+.guess { color: #777; font-style: italic; }
+pre { background: #f5f5f5; padding: 10px; overflow-x: auto; font-size: 12px; }
+dt { font-weight: bold; } dd { margin: 0 0 8px 20px; }
+#book button { font: inherit; margin: 0 4px 6px 0; padding: 3px 10px; border: 1px solid #999; background: #fff;
+               border-radius: 4px; cursor: pointer; }
+#book button.on { background: #222; color: #fff; border-color: #222; }
+#book canvas { image-rendering: pixelated; display: block; background: #000; max-width: 100%; }
+#book input { vertical-align: middle; width: 260px; }
+#caption { color: #444; margin: 6px 0; min-height: 1.4em; }
+)CSS";
+}
+
+const char* page_script() {
+    return R"JS(
+"use strict";
+const canvas = document.getElementById("view"), slider = document.getElementById("exposure");
+const caption = document.getElementById("caption"), buttons = document.getElementById("buttons");
+const view = canvas.getContext("2d");
+let current = 0, difference = false;
+
+// Upper half: mantissas; lower half: exponents.
+function decode(image, width, height) {
+    const work = document.createElement("canvas");
+    work.width = width; work.height = 2 * height;
+    const context = work.getContext("2d", { willReadFrequently: true });
+    context.drawImage(image, 0, 0);
+    const bytes = context.getImageData(0, 0, width, 2 * height).data, n = width * height;
+    const values = new Float32Array(3 * n);
+    for (let p = 0; p < n; ++p) {
+        const exponent = bytes[4 * (n + p)];
+        if (exponent === 0) continue;
+        const scale = Math.pow(2, exponent - 136);
+        for (let c = 0; c < 3; ++c) values[3 * p + c] = (bytes[4 * p + c] + 0.5) * scale;
+    }
+    return values;
+}
+
+function srgb(v) {
+    return v <= 0.0031308 ? 12.92 * v : 1.055 * Math.pow(v, 1 / 2.4) - 0.055;
+}
+
+function luminance(values, p) {
+    return 0.2126 * values[3 * p] + 0.7152 * values[3 * p + 1] + 0.0722 * values[3 * p + 2];
+}
+
+function draw() {
+    const picture = book.pictures[current], reference = book.pictures[0].values, values = picture.values;
+    if (!values || !reference) return;
+    const stops = Number(slider.value), out = view.createImageData(book.width, book.height);
+    const scale = Math.pow(2, stops), gain = Math.pow(2, stops - book.exposure);
+    for (let p = 0; p < book.width * book.height; ++p) {
+        if (difference) {
+            const r = luminance(reference, p);
+            const d = gain * (luminance(values, p) - r) / Math.sqrt(r * r + 0.01);
+            const shade = 255 * Math.sqrt(Math.min(1, Math.abs(d)));
+            out.data[4 * p] = d > 0 ? shade : 0;
+            out.data[4 * p + 1] = shade * 0.35;
+            out.data[4 * p + 2] = d > 0 ? 0 : shade;
+        } else {
+            for (let c = 0; c < 3; ++c)
+                out.data[4 * p + c] = 255 * srgb(Math.min(1, values[3 * p + c] * scale)) + 0.5;
+        }
+        out.data[4 * p + 3] = 255;
+    }
+    view.putImageData(out, 0, 0);
+    caption.textContent = picture.name + (picture.note ? ": " + picture.note : "") +
+        (difference ? ". Relative error: red too bright, blue too dark, full colour at " +
+                      (100 / gain).toPrecision(3) + " %" : "");
+    document.getElementById("stops").textContent = (stops > 0 ? "+" : "") + stops.toFixed(2) + " stops";
+    for (let i = 0; i < buttons.children.length; ++i)
+        buttons.children[i].className = i === current ? "on" : "";
+    document.getElementById("difference").className = difference ? "on" : "";
+}
+
+function flip(index) {
+    const n = book.pictures.length;
+    current = (index + n) % n;
+    draw();
+}
+
+function toggle() {
+    difference = !difference;
+    draw();
+}
+
+book.pictures.forEach((picture, i) => {
+    const button = document.createElement("button");
+    button.textContent = (i < 9 ? (i + 1) + "  " : "") + picture.name;
+    button.onclick = () => flip(i);
+    buttons.appendChild(button);
+    const image = new Image();
+    image.onload = () => { picture.values = decode(image, book.width, book.height); draw(); };
+    image.src = picture.source;
+});
+canvas.width = book.width; canvas.height = book.height;
+canvas.style.width = book.width * Math.max(1, Math.round(640 / book.width)) + "px";
+slider.value = book.exposure;
+slider.oninput = draw;
+document.getElementById("difference").onclick = toggle;
+document.addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const number = Number(event.key);
+    if (number >= 1 && number <= Math.min(9, book.pictures.length)) flip(number - 1);
+    else if (event.key === "e") toggle();
+    else if (event.target === slider) return;
+    else if (event.key === "ArrowRight") flip(current + 1);
+    else if (event.key === "ArrowLeft") flip(current - 1);
+});
+)JS";
+}
+
+}  // namespace mote::apps::trade

@@ -1,0 +1,153 @@
+// Every check of a reference; apps/reference_metadata.h says what `mote` writes into its pictures for them.
+#include "apps/trade/reference.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+
+#include "apps/reference_metadata.h"
+#include "core/image/metrics.h"
+#include "core/scene/error.h"
+
+namespace mote::apps::trade {
+
+namespace {
+
+using core::InputError;
+
+std::optional<double> number(const std::string& text) {
+    char* end = nullptr;
+    const double v = std::strtod(text.c_str(), &end);
+    return text.empty() || *end != '\0' || !(v >= 0.0) ? std::nullopt : std::optional(v);
+}
+
+class Check {
+  public:
+    Check(const std::string& path, const Reference& reference, const core::Scene& scene,
+          const ReferenceRules& rules)
+        : path_(path), reference_(reference), scene_(scene), rules_(rules) {}
+
+    void run(const std::string& content) const {
+        check_size();
+        check_pixels();
+        check_camera();
+        check_scene(content);
+        check_completeness();
+        check_noise();
+    }
+
+  private:
+    [[noreturn]] void refuse(const std::string& reason) const {
+        throw InputError("cannot be the reference: " + reason, {path_, 0});
+    }
+    void check_size() const {
+        const core::FilmSettings& film = scene_.film();
+        if (reference_.image.width != film.width || reference_.image.height != film.height)
+            refuse(fmt::format("it has {} x {} pixels, the scene's film {} x {}", reference_.image.width,
+                               reference_.image.height, film.width, film.height));
+    }
+    void check_pixels() const {
+        if (reference_.pixels.empty()) refuse("it has no channels R, G and B");
+        const auto m = core::compare_images(reference_.pixels, reference_.pixels, scene_.film().width,
+                                            scene_.film().height);
+        if (m.non_finite_either > 0)
+            refuse(fmt::format("{} of its {} pixels are NaN or infinite", m.non_finite_either, m.pixels));
+        if (!(m.average_reference > 0.0)) refuse("it is black");
+    }
+    void check_camera() const {
+        const std::string text = reference_.metadata("worldToCamera");
+        if (text.empty()) {
+            if (rules_.trust) return;
+            refuse(
+                "it does not say by which camera it was made (no worldToCamera); --trust-reference takes it "
+                "for the right one");
+        }
+        std::istringstream theirs(text), ours(world_to_camera(scene_.camera()));
+        double largest = 1.0, difference = 0.0, a = 0.0, b = 0.0;
+        int numbers = 0;
+        for (; ours >> b && theirs >> a; ++numbers) {
+            largest = std::fmax(largest, std::fabs(b));
+            difference = std::fmax(difference, std::fabs(a - b));
+        }
+        // The file holds floats.
+        if (numbers != 16 || !(difference <= 1e-5 * largest))
+            refuse(
+                "it was made with another camera: its coordinates (worldToCamera) are not those of the "
+                "scene");
+    }
+    void check_scene(const std::string& content) const {
+        const std::string theirs = reference_.metadata("sceneContent");
+        if (theirs.empty()) {
+            if (rules_.trust) return;
+            refuse(
+                "it does not say of which scene it is (no sceneContent): render it with 'mote trade "
+                "--make-reference', or take it for the right one with --trust-reference");
+        }
+        if (theirs == content || rules_.other_version) return;
+        refuse(
+            "it was made from another scene, another version of it or with other -D definitions; "
+            "--force-reference uses it all the same");
+    }
+    void check_completeness() const {
+        const std::string left_out = reference_.metadata("leavesOut");
+        if (!left_out.empty() && !rules_.trust)
+            refuse("it was rendered by " + core::printable(reference_.metadata("integrator")) +
+                   ", which leaves out: " + core::printable(left_out) +
+                   "; --trust-reference uses it all the same");
+    }
+    void check_noise() const {
+        if (!reference_.error) {
+            if (rules_.trust) return;
+            refuse(
+                "how noisy it is, is not known (no relativeError): render one with 'mote trade "
+                "--make-reference', or take it for exact with --trust-reference");
+        }
+        if (reference_.floor() <= rules_.resolve * (1.0 + 1e-6)) return;
+        refuse(fmt::format(
+            "it is too noisy: with a standard error of {:.3g} % it judges errors down to {:.3g} %, "
+            "not {:.3g} %; render it on with --make-reference, or ask for less with --resolve {:.3g}",
+            100.0 * *reference_.error, 100.0 * reference_.floor(), 100.0 * rules_.resolve,
+            reference_.floor() * 1.01));
+    }
+
+    const std::string& path_;
+    const Reference& reference_;
+    const core::Scene& scene_;
+    const ReferenceRules& rules_;
+};
+
+}  // namespace
+
+std::string Reference::metadata(const std::string& key) const {
+    const auto it = image.metadata.find(key);
+    return it == image.metadata.end() ? "" : it->second;
+}
+
+Reference load_reference(const std::string& path, const core::Scene& scene, const std::string& content,
+                         const ReferenceRules& rules) {
+    Reference reference;
+    reference.image = core::read_exr(path);
+    reference.pixels = reference.image.rgb("");
+    reference.error = number(reference.metadata("relativeError"));
+    reference.mean_error = number(reference.metadata("meanError"));
+    if (const auto seed = number(reference.metadata("seed"))) reference.seed = std::uint64_t(*seed);
+    Check(path, reference, scene, rules).run(content);
+    return reference;
+}
+
+bool is_good_reference(const std::string& path, const core::Scene& scene, const std::string& content,
+                       const ReferenceRules& rules) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) return false;
+    try {
+        load_reference(path, scene, content, rules);
+        return true;
+    } catch (const InputError&) {
+        return false;
+    }
+}
+
+}  // namespace mote::apps::trade

@@ -1,0 +1,172 @@
+// What the records say about each method, as data: summary.json, and the order of everything.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "apps/trade/draw.h"
+#include "apps/trade/plot.h"
+
+namespace mote::apps::trade {
+
+namespace {
+
+using nlohmann::json;
+
+json number(double v) { return std::isfinite(v) ? json(v) : json(nullptr); }
+
+const char* kind_text(Reach::Kind kind) {
+    switch (kind) {
+        case Reach::Kind::measured:
+            return "measured";
+        case Reach::Kind::at_most:
+            return "at_most";
+        case Reach::Kind::extrapolated:
+            return "extrapolated";
+        case Reach::Kind::never:
+            return "never";
+        case Reach::Kind::below_reference:
+            return "below_reference";
+        case Reach::Kind::unclear:
+            break;
+    }
+    return "unclear";
+}
+
+json points_json(const Curve& curve) {
+    json points = json::array();
+    for (const CurvePoint& p : curve.points)
+        points.push_back({{"passes", p.passes},
+                          {"wall_s", p.wall},
+                          {"error", p.error},
+                          {"error_lowest", p.lowest},
+                          {"error_highest", p.highest},
+                          {"below_reference", p.below_reference},
+                          {"on_front", p.on_front}});
+    return points;
+}
+
+json method_json(const Results& results, const Curve& c) {
+    json reach = json::array();
+    for (std::size_t i = 0; const Reach& r : results.reaches(c))
+        reach.push_back({{"error", errors_of_interest[i++]},
+                         {"kind", kind_text(r.kind)},
+                         {"seconds", number(r.seconds)},
+                         {"text", to_text(r, c)}});
+    return {{"name", c.method},
+            {"integrator", c.integrator},
+            {"settings", c.settings},
+            {"peer", c.peer},
+            {"seeds", c.seeds},
+            {"passes", c.passes},
+            {"wall_s", c.wall},
+            {"wall_s_range", {c.lowest_wall, c.highest_wall}},
+            {"cpu_s", number(c.cpu)},
+            {"build_s", number(c.build)},
+            {"error", number(c.error())},
+            {"relmse", number(c.relmse)},
+            {"relmse_trimmed", number(c.relmse_trimmed)},
+            {"bias", number(c.bias)},
+            {"bias_se", number(c.bias_se)},
+            {"bias_significant", bias_is_significant(c, results.mean_error)},
+            {"inefficiency", number(c.inefficiency())},
+            {"non_finite", c.non_finite},
+            {"peak_memory_mb", number(c.peak_memory_mb)},
+            {"on_front", !results.front_text(c).empty()},
+            {"time_to_reach", reach},
+            {"points", points_json(c)}};
+}
+
+}  // namespace
+
+std::string Results::title() const { return "Error against time: " + facts.value("scene", std::string("?")); }
+
+std::string Results::front_text(const Curve& curve) const {
+    double from = unknown, to = unknown;
+    for (const CurvePoint& p : curve.points) {
+        if (!p.on_front) continue;
+        if (std::isnan(from)) from = p.wall;
+        to = p.wall;
+    }
+    if (std::isnan(from)) return "";
+    return from == to ? fmt::format("at {:.3g} s", from) : fmt::format("{:.3g} s to {:.3g} s", from, to);
+}
+
+std::vector<Reach> Results::reaches(const Curve& curve) const {
+    std::vector<Reach> result;
+    for (const double e : errors_of_interest) result.push_back(time_to_reach(curve, e, floor, mean_error));
+    return result;
+}
+
+Results collect(const Folder& folder) {
+    Results results;
+    results.facts = folder.facts();
+    const auto reference = [&](const char* key) {
+        const json& r = results.facts.at("reference");
+        return r.contains(key) && r[key].is_number() ? r[key].get<double>() : 0.0;
+    };
+    results.floor = reference("floor"), results.mean_error = reference("mean_error");
+    results.curves = make_curves(folder.records(), results.floor);
+    // Colours follow the methods file, whoever came first to an end.
+    const json& methods = results.facts.at("methods");
+    const auto place = [&](const Curve& c) {
+        std::size_t i = 0;
+        while (i < methods.size() && methods[i].at("name") != c.method) ++i;
+        return i;
+    };
+    std::stable_sort(results.curves.begin(), results.curves.end(),
+                     [&](const Curve& a, const Curve& b) { return place(a) < place(b); });
+    const auto seeds = results.facts.at("seeds").size();
+    results.complete = results.curves.size() == methods.size() &&
+                       std::all_of(results.curves.begin(), results.curves.end(),
+                                   [&](const Curve& c) { return c.complete && c.seeds == seeds; });
+    for (Curve& c : make_curves(folder.peer_records(), results.floor)) {
+        c.peer = true;
+        results.curves.push_back(std::move(c));
+    }
+    mark_pareto_front(results.curves);
+    return results;
+}
+
+json summary_json(const Results& results) {
+    json methods = json::array();
+    for (const Curve& c : results.curves) methods.push_back(method_json(results, c));
+    return {{"facts", results.facts},
+            {"complete", results.complete},
+            {"definitions",
+             {{"error", "square root of relMSE; in points the mean over seeds"},
+              {"relmse", "mean over pixels and channels of d^2 / (r^2 + 0.01), d = image - reference r"},
+              {"relmse_trimmed", "relMSE without the 0.1 % of pixels where it is largest"},
+              {"bias", "mean of d / mean of r, over pixels and channels, signed; mean over seeds"},
+              {"bias_se",
+               "standard error of bias from the spread of the passes' mean brightness; with four "
+               "seeds or more at least that from the spread of the seeds"},
+              {"bias_significant", "more than three standard errors, the reference's own among them"},
+              {"wall_s", "seconds of build, passes and one finish"},
+              {"cpu_s", "the same as seconds of all processors together"},
+              {"build_s", "the part of wall_s before the first pass"},
+              {"inefficiency", "relMSE times wall seconds"},
+              {"peak_memory_mb", "of the process so far, with all methods alive"},
+              {"time_to_reach",
+               "measured: where the curve falls below for good; extrapolated: error falls like "
+               "time^-1/2 from the last points; never: the bias stays"}}},
+            {"methods", methods}};
+}
+
+void draw(const Folder& folder, int page_width) {
+    const Results results = collect(folder);
+    folder.write("trade.svg", plot_svg(results.curves, results.floor, results.title()));
+    const auto text = [](const json& j) {
+        return j.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+    };
+    const json summary = summary_json(results);
+    folder.write("summary.json", text(summary));
+    for (const json& m : results.facts.at("methods"))
+        for (const json& s : summary.at("methods"))
+            if (s.at("name") == m.at("name"))
+                folder.write(m.at("slug").get<std::string>() + ".json", text(s));
+    folder.write("trade.html", page_html(results, folder, page_width));
+}
+
+}  // namespace mote::apps::trade

@@ -1,0 +1,252 @@
+// mote trade: everything is read and checked before the first pass; then methods take turns; then it draws.
+#include "apps/trade/trade_command.h"
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+
+#include "apps/command.h"
+#include "apps/reference_metadata.h"
+#include "apps/render_report.h"
+#include "apps/trade/draw.h"
+#include "apps/trade/run.h"
+#include "core/image/checksum.h"
+#include "core/scene/error.h"
+#include "core/scene/scene_element.h"
+
+namespace mote::apps {
+
+namespace {
+
+using nlohmann::json;
+using namespace trade;
+
+void note(const std::string& text) { std::fputs(fmt::format("mote: {}\n", text).c_str(), stderr); }
+
+void check_usage(const TradeArguments& a) {
+    const auto require = [](bool given, const std::string& option) {
+        if (!given) throw UsageError("mote trade needs " + option);
+    };
+    if (a.redraw) return require(!a.output.empty(), "-o DIR");
+    require(!a.scene.scene.empty(), "a SCENE");
+    if (!a.make_reference.empty()) return;
+    require(!a.reference.empty(), "--reference REF.exr, or --make-reference REF.exr to render one");
+    require(!a.methods.empty(), "--methods FILE.json");
+    require(!a.output.empty(), "-o DIR");
+    if (!a.scene.integrator.empty())
+        throw UsageError("--integrator is for --make-reference; the methods file names the others");
+}
+
+Limits limits_of(const TradeArguments& a, const MethodsFile& file) {
+    Limits limits{file.seconds, file.passes};
+    // What the command line says replaces what the file says.
+    if (a.seconds || a.passes) limits = {a.seconds, a.passes};
+    if (!limits.seconds && !limits.passes)
+        throw core::InputError(
+            "it says neither 'time' nor 'passes', nor does the command line (--time, --passes)",
+            {a.methods, 0});
+    return limits;
+}
+
+std::string pixels_hash(const Reference& reference) {
+    const auto bytes = std::as_bytes(std::span(reference.pixels));
+    return fmt::format("{:016x}", core::checksum(bytes));
+}
+
+/// What the scene's own integrator sets, for the page.
+std::string inherited_text(const core::Scene& scene) {
+    std::string text;
+    if (const auto& element = scene.parts().integrator_element)
+        for (const core::Element& c : element->children)
+            text += (text.empty() ? "" : " ") + c.get("name") + "=" + c.get("value");
+    return text;
+}
+
+json optional_json(const auto& value) { return value ? json(*value) : json(nullptr); }
+
+json methods_json(const Plan& plan) {
+    json methods = json::array();
+    for (const Method& m : plan.methods)
+        methods.push_back({{"name", m.name},
+                           {"slug", m.slug},
+                           {"integrator", m.type},
+                           {"settings", m.settings},
+                           {"command", render_command_of(plan, m, plan.seeds.front())}});
+    return methods;
+}
+
+Identity identity_of(const TradeArguments& a, const Plan& plan) {
+    Identity identity;
+    json methods = json::array();
+    for (const Method& m : plan.methods) methods.push_back({m.name, m.type, m.settings});
+    identity.inputs = {{"mote", MOTE_VERSION},
+                       {"scene", plan.content},
+                       {"reference", pixels_hash(plan.reference)},
+                       {"methods", methods},
+                       {"time", optional_json(plan.limits.seconds)},
+                       {"passes", optional_json(plan.limits.passes)},
+                       {"seeds", plan.seeds},
+                       {"threads", plan.threads}};
+    const Reference& r = plan.reference;
+    identity.facts = {{"scene", a.scene.scene},
+                      {"width", r.image.width},
+                      {"height", r.image.height},
+                      {"threads", plan.threads},
+                      {"seeds", plan.seeds},
+                      {"time", optional_json(plan.limits.seconds)},
+                      {"passes", optional_json(plan.limits.passes)},
+                      {"inherited", inherited_text(plan.scene)},
+                      {"git_hash", git_hash()},
+                      {"command", quoted(a.command_line)},
+                      {"methods", methods_json(plan)},
+                      {"reference",
+                       {{"file", a.reference},
+                        {"error", optional_json(r.error)},
+                        {"mean_error", optional_json(r.mean_error)},
+                        {"floor", r.floor()},
+                        {"integrator", r.metadata("integrator")},
+                        {"passes", r.metadata("passes")},
+                        {"seconds", r.metadata("seconds")},
+                        {"command", r.metadata("commandLine")}}}};
+    return identity;
+}
+
+/// The beauty of the reference, so that the folder can be drawn again alone.
+void keep_reference(const Folder& folder, const Reference& reference) {
+    core::ImageChannels image;
+    image.width = reference.image.width, image.height = reference.image.height;
+    image.add_rgb("", reference.pixels);
+    for (const char* key : {"worldToCamera", "sceneContent", "relativeError", "meanError", "leavesOut",
+                            "integrator", "seed", "passes", "seconds", "software", "commandLine"})
+        if (const std::string value = reference.metadata(key); !value.empty()) image.metadata[key] = value;
+    core::write_exr(folder.file("reference.exr"), image);
+}
+
+void warn(const TradeArguments& a, const Plan& plan, std::vector<std::string> warnings) {
+    const core::Requirements requirements = core::find_requirements(plan.scene);
+    for (const Method& m : plan.methods)
+        for (const core::PlanEntry& e : m.integrator->plan(plan.scene, requirements).missing)
+            warnings.push_back(m.name + " leaves out " + e.topic + ": " + e.reason);
+    if (!plan.reference.error)
+        warnings.push_back("the reference is taken for exact: its own error is not known");
+    if (!a.quiet)
+        for (const std::string& warning : warnings) note("warning: " + warning);
+}
+
+int finish(const Folder& folder, int page_width) {
+    draw(folder, page_width);
+    for (const char* name : {"trade.csv", "trade.svg", "summary.json", "trade.html"})
+        std::fputs((folder.file(name) + "\n").c_str(), stdout);
+    return exit_ok;
+}
+
+int redraw(const TradeArguments& a) {
+    std::error_code ignored;
+    if (!std::filesystem::is_directory(a.output, ignored))
+        throw core::InputError("there is no such folder", {a.output, 0});
+    Folder folder(a.output);
+    folder.open_existing();
+    return finish(folder, a.page_width);
+}
+
+int measure(const TradeArguments& a) {
+    const int threads = a.threads > 0 ? a.threads : tbb::info::default_concurrency();
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
+    const core::Registry registry = make_registry();
+    const auto scene = load(a.scene, registry);
+    std::vector<std::string> warnings = scene->parts().warnings;
+    const MethodsFile file = read_methods_file(a.methods, registry, *scene, warnings);
+    const std::string content = scene_content(*scene, a.scene.defines);
+    const Reference reference =
+        load_reference(a.reference, *scene, content, {a.resolve, a.trust_reference, a.force_reference});
+    std::vector<std::string> render_command = {"mote", "render", a.scene.scene};
+    for (const std::string& define : a.scene.defines)
+        render_command.insert(render_command.end(), {"-D", define});
+    const Plan plan{*scene,
+                    file.methods,
+                    reference,
+                    limits_of(a, file),
+                    seeds_beside(reference.seed, a.seeds.value_or(file.seeds)),
+                    content,
+                    threads,
+                    render_command};
+    Folder folder(a.output);
+    folder.open(identity_of(a, plan), a.fresh);
+    keep_reference(folder, reference);
+    warn(a, plan, warnings);
+
+    const Interruption interruption;
+    ProgressLine progress(fmt::format("mote: trade on {}: {} methods, {} seeds, {} x {} pixels, {} threads",
+                                      a.scene.scene, plan.methods.size(), plan.seeds.size(),
+                                      scene->film().width, scene->film().height, threads),
+                          a.quiet);
+    const bool complete = [&] {
+        try {
+            return trade::run(plan, folder, interruption, progress);
+        } catch (...) {
+            progress.end();
+            throw;
+        }
+    }();
+    progress.end();
+    if (complete) return finish(folder, a.page_width);
+    note("interrupted: the same command continues");
+    return 128 + interruption.signal_number();
+}
+
+}  // namespace
+
+void add_trade(CLI::App& app, TradeArguments& a, std::function<int()>& action) {
+    CLI::App& command =
+        *app.add_subcommand("trade", "Measure error against time for several methods on a scene");
+    command.add_option("SCENE", a.scene.scene, "The scene file");
+    command.add_option("--reference", a.reference, "The picture that is taken for right")->type_name("EXR");
+    command.add_option("--methods", a.methods, "Integrators and settings (see docs/guide.md)")
+        ->type_name("JSON");
+    command.add_option("-o,--output", a.output, "The folder to write")->type_name("DIR");
+    CLI::Option* make =
+        command.add_option("--make-reference", a.make_reference, "Render a reference instead");
+    make->type_name("EXR");
+    command.add_option("--integrator", a.scene.integrator, "Of the reference (default: volpath, or path)")
+        ->type_name("TYPE");
+    command.add_option("--resolve", a.resolve, "The smallest error that must be judged (default: 0.01)")
+        ->check(CLI::PositiveNumber);
+    command.add_option("--time", a.seconds, "Seconds for every method and seed, or for the reference")
+        ->check(CLI::PositiveNumber);
+    command.add_option("--passes", a.passes, "Passes for every method and seed, or for the reference")
+        ->check(CLI::Range(std::uint32_t(1), std::uint32_t(1) << 30));
+    command.add_option("--seeds", a.seeds, "Repetitions, each with a seed of its own")
+        ->check(CLI::Range(1u, 10000u));
+    command.add_option("-D,--define", a.scene.defines, "As for render (repeatable)")
+        ->type_name("NAME=VALUE")
+        ->expected(1)
+        ->allow_extra_args(false)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    command.add_option("-t,--threads", a.threads, "Number of threads (default: one for every core)")
+        ->check(CLI::Range(0, 4096));
+    command
+        .add_option("--page-width", a.page_width, "Largest width of the pictures in the page (default: 320)")
+        ->check(CLI::Range(8, 8192));
+    command.add_flag("--fresh", a.fresh, "Start anew instead of continuing");
+    command.add_flag("--trust-reference", a.trust_reference,
+                     "Believe what the reference does not say of itself");
+    command.add_flag("--force-reference", a.force_reference,
+                     "Accept a reference of another version of the scene");
+    CLI::Option* redraw_flag = command.add_flag("--redraw", a.redraw, "Draw the records in DIR again");
+    redraw_flag->excludes(make);
+    command.add_flag("--quiet", a.quiet, "No progress, no warnings");
+    command.callback([&a, &action] { action = [&a] { return trade_command(a); }; });
+}
+
+int trade_command(const TradeArguments& arguments) {
+    check_usage(arguments);
+    if (arguments.redraw) return redraw(arguments);
+    if (!arguments.make_reference.empty()) return make_reference(arguments);
+    return measure(arguments);
+}
+
+}  // namespace mote::apps
