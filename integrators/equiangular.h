@@ -1,7 +1,7 @@
 // Equi-angular sampling: light of point and spot lights scattered along a ray.
 //
 // Distances along the ray are drawn so that directions seen from the light are spread evenly, which cancels
-// the 1/d^2 of the light (Kulla & Fajardo 2012, Eqs. 5 to 7):
+// the 1/d^2 of the light (Kulla & Fajardo 2012):
 //   p(t) = D / ((theta_b - theta_a) (D^2 + t^2)),   t = D tan(lerp(theta_a, theta_b, u))
 // with t counted from the point of the ray nearest to the light, D away from it. Collisions in thin media
 // rarely fall near the light; these always do.

@@ -8,6 +8,8 @@ void register_integrators(core::Registry& registry) {
     register_path(registry);
     register_volpath(registry);
     register_mote_vpl(registry);
+    register_mote_photon_map(registry);
+    register_mote_vsl(registry);
 }
 
 }  // namespace mote::integrators

@@ -11,6 +11,7 @@ namespace mote::integrators {
 void register_path(core::Registry& registry);
 void register_volpath(core::Registry& registry);
 void register_mote_vpl(core::Registry& registry);
+void register_mote_photon_map(core::Registry& registry);
 void register_mote_vsl(core::Registry& registry);
 
 /// Light that passes delta surfaces last, for integrators that can only hit lights.

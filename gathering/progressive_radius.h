@@ -1,0 +1,22 @@
+// How kernels shrink from pass to pass, so that the mean over passes loses both bias and noise.
+//
+// Knaus & Zwicker 2011 (after Hachisuka et al. 2008):  r_{i+1}^2 / r_i^2 = (i + alpha) / (i + 1) for kernels
+// of two dimensions, i = 1, 2, ... Passes need not know each other: the product up to pass i is a quotient of
+// Gamma functions.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+namespace mote::gathering {
+
+/// Radius of pass `pass` (from 0) over that of pass 0. `alpha` in (0, 1]: 1 does not shrink.
+inline double radius_share(std::uint32_t pass, double alpha) {
+    const double i = double(pass);
+    // product over j = 1 .. pass of (j + alpha) / (j + 1)
+    const double log_product =
+        std::lgamma(i + 1.0 + alpha) - std::lgamma(1.0 + alpha) - (std::lgamma(i + 2.0) - std::lgamma(2.0));
+    return std::exp(0.5 * log_product);
+}
+
+}  // namespace mote::gathering
