@@ -56,6 +56,7 @@ core::RenderRequest make_request(const TradeArguments& arguments, const core::Sc
     std::error_code ignored;
     if (arguments.fresh) fs::remove(request.checkpoint_path, ignored);
     request.resume = fs::exists(request.checkpoint_path, ignored);
+    request.checkpoint_every_seconds = arguments.checkpoint_every;
     request.noise = relative_standard_error;
     request.stop.noise = arguments.resolve / errors_to_judge;
     request.stop.seconds = arguments.seconds;

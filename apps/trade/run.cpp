@@ -16,7 +16,10 @@ namespace mote::apps::trade {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr std::chrono::seconds between_checkpoints(60);
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 bool is_power_of_two(std::uint32_t n) { return n > 0 && (n & (n - 1)) == 0; }
 
@@ -75,7 +78,7 @@ class SeedRun {
             if (done || is_power_of_two(turn->tally().passes)) record(*turn, done);
             show(*turn, done);
             if (done) leave(turn);
-            if (Clock::now() - saved_ >= between_checkpoints) save_all();
+            if (seconds_since(saved_) >= plan_.checkpoint_every) save_all();
         }
         return true;
     }

@@ -17,6 +17,7 @@ struct Plan {
     std::string content;  ///< scene_content()
     int threads = 1;
     std::vector<std::string> render_command;  ///< "mote render SCENE -D ...", what the command line changed
+    double checkpoint_every = 60.0;           ///< seconds
 };
 
 /// Index of the method whose turn it is: the one with the least wall time among those still `running`. All of

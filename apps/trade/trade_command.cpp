@@ -173,7 +173,8 @@ int measure(const TradeArguments& a) {
                     seeds_beside(reference.seed, a.seeds.value_or(file.seeds)),
                     content,
                     threads,
-                    render_command};
+                    render_command,
+                    a.checkpoint_every};
     Folder folder(a.output);
     folder.open(identity_of(a, plan), a.fresh);
     keep_reference(folder, reference);
@@ -231,6 +232,8 @@ void add_trade(CLI::App& app, TradeArguments& a, std::function<int()>& action) {
     command
         .add_option("--page-width", a.page_width, "Largest width of the pictures in the page (default: 320)")
         ->check(CLI::Range(8, 8192));
+    command.add_option("--checkpoint-every", a.checkpoint_every, "Seconds between checkpoints (default: 60)")
+        ->check(CLI::NonNegativeNumber);
     command.add_flag("--fresh", a.fresh, "Start anew instead of continuing");
     command.add_flag("--trust-reference", a.trust_reference,
                      "Believe what the reference does not say of itself");

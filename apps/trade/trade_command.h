@@ -19,7 +19,7 @@ struct TradeArguments {
     std::string reference, make_reference, methods, output;
     std::optional<double> seconds;
     std::optional<std::uint32_t> passes, seeds;
-    double resolve = 0.01;
+    double resolve = 0.01, checkpoint_every = 60.0;
     int threads = 0, page_width = 320;
     bool redraw = false, fresh = false, trust_reference = false, force_reference = false, quiet = false;
     std::vector<std::string> command_line;
