@@ -38,7 +38,8 @@ class Cylinder final : public AnalyticShape {
     void fill_hit(const Vec3& origin, const Vec3& direction, float t, SurfaceHit& hit) const override {
         const Vec3d p = local(Vec3d(origin) + double(t) * Vec3d(direction) - base_);
         const glm::dvec2 n = glm::normalize(glm::dvec2(p));
-        fill_quadric_hit(point(n, p.z), normal(n), texture_coordinates(n, p.z), *this, hit);
+        const Vec3d around = n.x * y_ - n.y * x_;
+        fill_quadric_hit(point(n, p.z), normal(n), around, texture_coordinates(n, p.z), *this, hit);
         hit.t = t;
     }
     Bounds3 bounds() const override {

@@ -41,7 +41,8 @@ class Disk final : public AnalyticShape {
     void fill_hit(const Vec3& origin, const Vec3& direction, float t, SurfaceHit& hit) const override {
         const Vec3d p = Vec3d(origin) + double(t) * Vec3d(direction) - center_;
         const double x = glm::dot(p, x_dual_), y = glm::dot(p, y_dual_);
-        fill_quadric_hit(center_ + x * x_axis_ + y * y_axis_, normal_, texture_coordinates(x, y), *this, hit);
+        const Vec3d from_center = x * x_axis_ + y * y_axis_;  // u is the radius
+        fill_quadric_hit(center_ + from_center, normal_, from_center, texture_coordinates(x, y), *this, hit);
         hit.t = t;
     }
     Bounds3 bounds() const override {

@@ -24,12 +24,13 @@ double similarity_scale(const Transform& to_world, const char* shape) {
     return scale;
 }
 
-void fill_quadric_hit(const Vec3d& position, const Vec3d& normal, const Vec2& uv, const Shape& shape,
-                      SurfaceHit& hit) {
+void fill_quadric_hit(const Vec3d& position, const Vec3d& normal, const Vec3d& dp_du, const Vec2& uv,
+                      const Shape& shape, SurfaceHit& hit) {
     hit.position = Vec3(position);
     hit.geometric_normal = Vec3(normal);
     hit.error = quantization_error(hit.position, hit.geometric_normal);
-    hit.shading = Frame(hit.geometric_normal);
+    hit.shading =
+        shape.tangent_matters ? Frame(hit.geometric_normal, Vec3(dp_du)) : Frame(hit.geometric_normal);
     hit.uv = uv;
     hit.shape = &shape;
     hit.primitive = 0;

@@ -34,9 +34,10 @@ LineHits intersect_round(const Vec& f, const Vec& d, double r) {
 /// anything else; `shape` names the shape in the message.
 double similarity_scale(const Transform& to_world, const char* shape);
 
-/// Rounds a point of a quadric to single precision and fills everything of a hit but t.
-void fill_quadric_hit(const Vec3d& position, const Vec3d& normal, const Vec2& uv, const Shape& shape,
-                      SurfaceHit& hit);
+/// Rounds a point of a quadric to single precision and fills everything of a hit but t. `dp_du` is the
+/// direction in which u rises, of any length.
+void fill_quadric_hit(const Vec3d& position, const Vec3d& normal, const Vec3d& dp_du, const Vec2& uv,
+                      const Shape& shape, SurfaceHit& hit);
 ShapeSample quadric_sample(const Vec3d& position, const Vec3d& normal, const Vec2& uv, double pdf_area);
 
 /// Angle of (x, y) around the origin in turns, in [0, 1), as Mitsuba maps it to u.

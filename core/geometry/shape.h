@@ -44,8 +44,10 @@ class Shape : public Object {
     std::shared_ptr<Emitter> emitter;  ///< area light, or null
     std::shared_ptr<Medium> interior, exterior;
     bool has_medium_boundary =
-        false;                ///< interior or exterior was named (vacuum counts when the other is named)
-    std::uint32_t index = 0;  ///< position in Scene::shapes
+        false;  ///< interior or exterior was named (vacuum counts when the other is named)
+    /// The BSDF is anisotropic: the shading frame's s then follows dp/du. Otherwise any frame will do.
+    bool tangent_matters = false;
+    std::uint32_t index = 0;         ///< position in Scene::shapes
     std::vector<std::string> notes;  ///< what was repaired at load, e.g. "12 degenerate triangles dropped"
 
     virtual Bounds3 bounds() const = 0;

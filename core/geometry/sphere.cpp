@@ -25,7 +25,8 @@ class Sphere final : public AnalyticShape {
     }
     void fill_hit(const Vec3& origin, const Vec3& direction, float t, SurfaceHit& hit) const override {
         const Vec3d n = glm::normalize(Vec3d(origin) + double(t) * Vec3d(direction) - center_);
-        fill_quadric_hit(center_ + radius_ * n, outside_ * n, texture_coordinates(n), *this, hit);
+        fill_quadric_hit(center_ + radius_ * n, outside_ * n, tangent_matters ? around(n) : Vec3d(0.0),
+                         texture_coordinates(n), *this, hit);
         hit.t = t;
     }
     Bounds3 bounds() const override { return outward_bounds(center_, Vec3d(radius_)); }
@@ -50,6 +51,11 @@ class Sphere final : public AnalyticShape {
         const Vec3d local = to_local_ * n;
         const double z = std::fmin(1.0, std::fmax(-1.0, local.z));
         return {turns(local.x, local.y), float(std::acos(z)) * inv_pi};
+    }
+    /// The direction in which u rises: about the sphere's own z axis.
+    Vec3d around(const Vec3d& n) const {
+        const Vec3d local = to_local_ * n;
+        return glm::transpose(to_local_) * Vec3d(-local.y, local.x, 0.0);
     }
     ShapeSample sample_at(const Vec3d& n, double pdf_area) const {
         return quadric_sample(center_ + radius_ * n, outside_ * n, texture_coordinates(n), pdf_area);

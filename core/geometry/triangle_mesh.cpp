@@ -76,7 +76,8 @@ void TriangleMesh::fill_hit(std::uint32_t primitive, float u, float v, SurfaceHi
     hit.position = corners.point(u, v);
     hit.geometric_normal = corners.normal();
     hit.error = corners.error(hit.position, hit.geometric_normal);
-    hit.shading = Frame(shading_normal(primitive, u, v, hit.geometric_normal));
+    const Vec3 n = shading_normal(primitive, u, v, hit.geometric_normal);
+    hit.shading = tangent_matters ? Frame(n, tangent(primitive)) : Frame(n);
     hit.uv = texture_coordinates(primitive, u, v);
     hit.shape = this;
     hit.primitive = primitive;
@@ -92,6 +93,16 @@ Vec3 TriangleMesh::shading_normal(std::uint32_t primitive, float u, float v, con
     if (!(length_squared > 1e-8f)) return geometric;
     const Vec3 unit = n / std::sqrt(length_squared);
     return glm::dot(unit, geometric) < 0.0f ? -unit : unit;
+}
+
+Vec3 TriangleMesh::tangent(std::uint32_t primitive) const {
+    if (data_.uvs.empty()) return Vec3(0.0f);
+    const auto& [a, b, c] = data_.triangles[primitive];
+    const Vec2 uv1 = data_.uvs[b] - data_.uvs[a], uv2 = data_.uvs[c] - data_.uvs[a];
+    const Corners corners(corners_[primitive]);
+    // Of p = p0 + b1 e1 + b2 e2 and uv = uv0 + b1 uv1 + b2 uv2; of any length, so that no division is needed.
+    const float orientation = uv1.x * uv2.y - uv1.y * uv2.x;
+    return std::copysign(1.0f, orientation) * (uv2.y * Vec3(corners.e1) - uv1.y * Vec3(corners.e2));
 }
 
 Vec2 TriangleMesh::texture_coordinates(std::uint32_t primitive, float u, float v) const {

@@ -35,6 +35,8 @@ class TriangleMesh final : public Shape {
 
   private:
     Vec3 shading_normal(std::uint32_t primitive, float u, float v, const Vec3& geometric) const;
+    /// The direction of dp/du, of any length; zero without texture coordinates.
+    Vec3 tangent(std::uint32_t primitive) const;
     Vec2 texture_coordinates(std::uint32_t primitive, float u, float v) const;
 
     MeshData data_;

@@ -23,6 +23,7 @@ struct BsdfTraits {
     bool null = false;     ///< the surface is invisible: light passes straight (a boundary between media)
     bool diffuse = false;  ///< exactly Lambertian reflection: diffuse_reflectance() says all
     bool textured = false;
+    bool anisotropic = false;  ///< looks different when turned about the normal
 };
 
 struct BsdfSample {

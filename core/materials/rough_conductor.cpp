@@ -15,7 +15,11 @@ class RoughConductor final : public Bsdf {
     RoughConductor(const ConductorParameters& p, const Microfacet& microfacet)
         : index_(p.index), microfacet_(microfacet), specular_(p.specular_reflectance) {}
 
-    BsdfTraits traits() const override { return {.smooth = true, .textured = specular_.textured()}; }
+    BsdfTraits traits() const override {
+        return {.smooth = true,
+                .textured = specular_.textured(),
+                .anisotropic = microfacet_.alpha_u() != microfacet_.alpha_v()};
+    }
 
     /// Walter 2007, Eq. 20, with G = G1(wo) G1(wi).
     Rgb eval(const BsdfPoint& p, const Vec3& wo, const Vec3& wi, TransportMode) const override {

@@ -30,7 +30,8 @@ class RoughDielectric final : public Bsdf {
     BsdfTraits traits() const override {
         return {.smooth = true,
                 .transmissive = true,
-                .textured = reflectance_.textured() || transmittance_.textured()};
+                .textured = reflectance_.textured() || transmittance_.textured(),
+                .anisotropic = microfacet_.alpha_u() != microfacet_.alpha_v()};
     }
 
     Rgb eval(const BsdfPoint& p, const Vec3& wo, const Vec3& wi, TransportMode mode) const override {

@@ -26,7 +26,8 @@ class TwoSided final : public Bsdf {
         return {.smooth = f.smooth || b.smooth,
                 .delta = f.delta || b.delta,
                 .diffuse = f.diffuse && b.diffuse,
-                .textured = f.textured || b.textured};
+                .textured = f.textured || b.textured,
+                .anisotropic = f.anisotropic || b.anisotropic};
     }
     Rgb eval(const BsdfPoint& p, const Vec3& wo, const Vec3& wi, TransportMode mode) const override {
         if (wo.z > 0.0f) return front_->eval(p, wo, wi, mode);

@@ -19,6 +19,16 @@ struct Frame {
         t = {b, sign + n.y * n.y * a, -n.y};
     }
 
+    /// The frame around the unit vector n whose s points along `tangent` as far as n allows; any frame when
+    /// it does not allow it at all.
+    Frame(const Vec3& normal, const Vec3& tangent) : Frame(normal) {
+        const Vec3 across = tangent - n * glm::dot(n, tangent);
+        const float length_squared = glm::dot(across, across);
+        if (!(length_squared > 1e-8f * glm::dot(tangent, tangent))) return;
+        s = across / std::sqrt(length_squared);
+        t = glm::cross(n, s);
+    }
+
     Vec3 to_local(const Vec3& v) const { return {glm::dot(v, s), glm::dot(v, t), glm::dot(v, n)}; }
     Vec3 to_world(const Vec3& v) const { return s * v.x + t * v.y + n * v.z; }
 };

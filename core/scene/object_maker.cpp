@@ -129,6 +129,7 @@ void ObjectMaker::attach_to_shape(const Element& element, Shape& shape) {
     }
     shape.has_medium_boundary = shape.interior || shape.exterior;
     if (!shape.bsdf) shape.bsdf = default_bsdf(element, shape);
+    shape.tangent_matters = shape.bsdf->traits().anisotropic;
     if (shape.emitter && shape.bsdf->traits().null)
         throw InputError("an area light needs a surface: its BSDF cannot be null", element.where);
     for (const std::string& note : shape.notes)
