@@ -44,6 +44,15 @@ std::vector<Curve> make_curves(std::span<const Record> records, double floor);
 /// floor take no part.
 void mark_pareto_front(std::vector<Curve>& curves);
 
+/// What is known of the reference.
+struct Judge {
+    double floor = 0.0;       ///< errors below are not judged
+    double mean_error = 0.0;  ///< standard error of its mean brightness, relative
+    /// A relative bias of b means an error of at least this times |b|: mean(r) / sqrt(mean(r^2) + 0.01), by
+    /// the inequality of Cauchy and Schwarz.
+    double error_per_bias = 0.0;
+};
+
 /// Bias of more than three standard errors, those of the reference's mean included.
 bool bias_is_significant(const Curve& curve, double reference_mean_error);
 
@@ -52,7 +61,7 @@ struct Reach {
         measured,         ///< seconds at which the curve falls below the error for good
         at_most,          ///< below from its first point on
         extrapolated,     ///< error ~ time^-1/2 from the last points
-        never,            ///< the bias stays
+        never,            ///< the bias stays, and is larger or has flattened the curve
         unclear,          ///< not reached, and too few points, or they do not fall like time^-1/2
         below_reference,  ///< the reference cannot tell
     };
@@ -62,7 +71,7 @@ struct Reach {
 };
 
 /// When `curve` reaches `error`.
-Reach time_to_reach(const Curve& curve, double error, double floor, double reference_mean_error);
+Reach time_to_reach(const Curve& curve, double error, const Judge& judge);
 /// "3.2 s", "~41 s (extrapolated)", "never (bias -4.2 %)", ...
 std::string to_text(const Reach& reach, const Curve& curve);
 

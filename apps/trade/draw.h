@@ -16,9 +16,8 @@ inline constexpr double errors_of_interest[] = {0.05, 0.02, 0.01};
 struct Results {
     nlohmann::json facts;
     std::vector<Curve> curves;  ///< in the order of the methods file, then peers; the front is marked
-    double floor = 0.0;         ///< errors below are not judged
-    double mean_error = 0.0;    ///< of the reference, relative
-    bool complete = false;      ///< every method ended with every seed
+    Judge judge;
+    bool complete = false;  ///< every method ended with every seed
 
     std::string title() const;
     /// "8.3 s to 60 s", or "" where the curve has no point on the front.

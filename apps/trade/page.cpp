@@ -30,7 +30,7 @@ std::string bias_cell(const Results& results, const Curve& c) {
     const std::string text =
         fmt::format("{:+.2f} &plusmn; {} %", 100.0 * c.bias,
                     std::isfinite(c.bias_se) ? fmt::format("{:.2f}", 100.0 * c.bias_se) : std::string("?"));
-    return bias_is_significant(c, results.mean_error) ? cell(text, "biased") : cell(text);
+    return bias_is_significant(c, results.judge.mean_error) ? cell(text, "biased") : cell(text);
 }
 
 std::string error_cell(const Curve& c) {
@@ -182,12 +182,12 @@ std::string introduction(const Results& results) {
         escaped(f.value("scene", std::string())), f.value("width", 0), f.value("height", 0),
         f.value("threads", 0), f.value("threads", 0) == 1 ? "" : "s", f.at("seeds").size(),
         f.at("seeds").size() == 1 ? "" : "s");
-    if (results.floor > 0.0)
+    if (results.judge.floor > 0.0)
         text += fmt::format(
             "<p>The reference ({}) has a standard error of {:.2g} % and judges errors down to {:.2g} "
             "%.</p>\n",
             escaped(f.at("reference").value("integrator", std::string("unknown origin"))),
-            10.0 * results.floor, 100.0 * results.floor);
+            10.0 * results.judge.floor, 100.0 * results.judge.floor);
     else
         text += "<p><b>How exact the reference is, is not known.</b></p>\n";
     if (const std::string inherited = f.value("inherited", std::string()); !inherited.empty())
@@ -200,7 +200,7 @@ std::string introduction(const Results& results) {
 }  // namespace
 
 std::string page_html(const Results& results, const Folder& folder, int page_width) {
-    std::string plot = plot_svg(results.curves, results.floor, results.title());
+    std::string plot = plot_svg(results.curves, results.judge.floor, results.title());
     return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>" +
            escaped(results.title()) + "</title>\n<style>" + page_style() + "</style>\n</head>\n<body>\n<h1>" +
            escaped(results.title()) + "</h1>\n" + introduction(results) + plot + "<h2>Table</h2>\n" +

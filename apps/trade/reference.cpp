@@ -126,6 +126,14 @@ std::string Reference::metadata(const std::string& key) const {
     return it == image.metadata.end() ? "" : it->second;
 }
 
+double Reference::error_per_bias() const {
+    double sum = 0.0, squares = 0.0;
+    const double n = 3.0 * double(pixels.size());
+    for (const core::Rgb& p : pixels)
+        for (int c = 0; c < 3; ++c) sum += double(p[c]) / n, squares += double(p[c]) * p[c] / n;
+    return sum / std::sqrt(squares + 0.01);
+}
+
 Reference load_reference(const std::string& path, const core::Scene& scene, const std::string& content,
                          const ReferenceRules& rules) {
     Reference reference;

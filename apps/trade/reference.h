@@ -22,6 +22,7 @@ struct Reference {
 
     std::string metadata(const std::string& key) const;  ///< "" where there is none
     double floor() const { return error ? errors_to_judge * *error : 0.0; }
+    double error_per_bias() const;  ///< see Judge in curves.h
 };
 
 struct ReferenceRules {

@@ -69,7 +69,7 @@ json method_json(const Results& results, const Curve& c) {
             {"relmse_trimmed", number(c.relmse_trimmed)},
             {"bias", number(c.bias)},
             {"bias_se", number(c.bias_se)},
-            {"bias_significant", bias_is_significant(c, results.mean_error)},
+            {"bias_significant", bias_is_significant(c, results.judge.mean_error)},
             {"inefficiency", number(c.inefficiency())},
             {"non_finite", c.non_finite},
             {"peak_memory_mb", number(c.peak_memory_mb)},
@@ -80,7 +80,10 @@ json method_json(const Results& results, const Curve& c) {
 
 }  // namespace
 
-std::string Results::title() const { return "Error against time: " + facts.value("scene", std::string("?")); }
+std::string Results::title() const {
+    const std::filesystem::path scene = facts.value("scene", std::string("?"));
+    return "Error against time: " + scene.filename().string();
+}
 
 std::string Results::front_text(const Curve& curve) const {
     double from = unknown, to = unknown;
@@ -95,7 +98,7 @@ std::string Results::front_text(const Curve& curve) const {
 
 std::vector<Reach> Results::reaches(const Curve& curve) const {
     std::vector<Reach> result;
-    for (const double e : errors_of_interest) result.push_back(time_to_reach(curve, e, floor, mean_error));
+    for (const double e : errors_of_interest) result.push_back(time_to_reach(curve, e, judge));
     return result;
 }
 
@@ -106,8 +109,8 @@ Results collect(const Folder& folder) {
         const json& r = results.facts.at("reference");
         return r.contains(key) && r[key].is_number() ? r[key].get<double>() : 0.0;
     };
-    results.floor = reference("floor"), results.mean_error = reference("mean_error");
-    results.curves = make_curves(folder.records(), results.floor);
+    results.judge = {reference("floor"), reference("mean_error"), reference("error_per_bias")};
+    results.curves = make_curves(folder.records(), results.judge.floor);
     // Colours follow the methods file, whoever came first to an end.
     const json& methods = results.facts.at("methods");
     const auto place = [&](const Curve& c) {
@@ -121,7 +124,7 @@ Results collect(const Folder& folder) {
     results.complete = results.curves.size() == methods.size() &&
                        std::all_of(results.curves.begin(), results.curves.end(),
                                    [&](const Curve& c) { return c.complete && c.seeds == seeds; });
-    for (Curve& c : make_curves(folder.peer_records(), results.floor)) {
+    for (Curve& c : make_curves(folder.peer_records(), results.judge.floor)) {
         c.peer = true;
         results.curves.push_back(std::move(c));
     }
@@ -156,7 +159,7 @@ json summary_json(const Results& results) {
 
 void draw(const Folder& folder, int page_width) {
     const Results results = collect(folder);
-    folder.write("trade.svg", plot_svg(results.curves, results.floor, results.title()));
+    folder.write("trade.svg", plot_svg(results.curves, results.judge.floor, results.title()));
     const auto text = [](const json& j) {
         return j.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
     };

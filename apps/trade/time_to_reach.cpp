@@ -41,11 +41,8 @@ double last_slope(const std::vector<CurvePoint>& points, double build) {
     return xx > 0.0 ? xy / xx : 0.0;
 }
 
-Reach beyond(const Curve& curve, const std::vector<CurvePoint>& points, double error,
-             double reference_mean_error) {
+Reach beyond(const Curve& curve, const std::vector<CurvePoint>& points, double error, bool biased) {
     using Kind = Reach::Kind;
-    const bool biased = bias_is_significant(curve, reference_mean_error);
-    if (biased && std::fabs(curve.bias) >= error) return {Kind::never, unknown, unknown};
     if (points.size() < fewest_points) return {Kind::unclear, unknown, unknown};
     const double slope = last_slope(points, curve.build);
     if (slope > flattest_slope) return {biased ? Kind::never : Kind::unclear, unknown, slope};
@@ -60,9 +57,12 @@ std::string seconds_text(double seconds) {
 
 }  // namespace
 
-Reach time_to_reach(const Curve& curve, double error, double floor, double reference_mean_error) {
+Reach time_to_reach(const Curve& curve, double error, const Judge& judge) {
     using Kind = Reach::Kind;
-    if (error < floor * (1.0 - 1e-9)) return {Kind::below_reference, unknown, unknown};
+    const bool biased = bias_is_significant(curve, judge.mean_error);
+    if (biased && std::fabs(curve.bias) * judge.error_per_bias >= error)
+        return {Kind::never, unknown, unknown};
+    if (error < judge.floor * (1.0 - 1e-9)) return {Kind::below_reference, unknown, unknown};
     const std::vector<CurvePoint> points = judged_points(curve);
     // The first point from which on all are at the error or below.
     std::size_t first = points.size();
@@ -72,7 +72,7 @@ Reach time_to_reach(const Curve& curve, double error, double floor, double refer
         for (const CurvePoint& p : curve.points)
             if (p.below_reference && (points.empty() || p.wall > points.back().wall))
                 return {Kind::at_most, p.wall, unknown};
-        return beyond(curve, points, error, reference_mean_error);
+        return beyond(curve, points, error, biased);
     }
     if (first == 0) return {Kind::at_most, points.front().wall, unknown};
     return {Kind::measured, crossing(points[first - 1], points[first], error), unknown};

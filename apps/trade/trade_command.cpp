@@ -108,6 +108,7 @@ Identity identity_of(const TradeArguments& a, const Plan& plan) {
                         {"error", optional_json(r.error)},
                         {"mean_error", optional_json(r.mean_error)},
                         {"floor", r.floor()},
+                        {"error_per_bias", r.error_per_bias()},
                         {"integrator", r.metadata("integrator")},
                         {"passes", r.metadata("passes")},
                         {"seconds", r.metadata("seconds")},
