@@ -22,15 +22,16 @@ Rgb sample_light(const Scene& scene, const ScatteringVertex& vertex, const PathW
     if (is_black(f_cos)) return Rgb(0.0f);
 
     Ray shadow{vertex.ray_origin(light->wi), light->wi};
-    shadow.t_max = light->distance * shadow_fraction;
+    shadow.t_max = light->distance * (light->inside ? 1.0f : shadow_fraction);
     ++context.rays.occlusion;
     if (scene.rays().occluded(shadow)) return Rgb(0.0f);
 
     PathWeights connection = weights;
     if constexpr (Media) {
         connection.light = weights.unidirectional;
-        scene.connect(shadow, vertex.state_towards(state, light->wi), connection, context.rng,
-                      context.tracking);
+        const Medium* there = scene.connect(shadow, vertex.state_towards(state, light->wi), connection,
+                                            context.rng, context.tracking);
+        if (light->inside && there != light->inside) return Rgb(0.0f);
     } else {
         connection.unidirectional = connection.light = Rgb(1.0f);
     }
@@ -38,7 +39,8 @@ Rgb sample_light(const Scene& scene, const ScatteringVertex& vertex, const PathW
     // alone.
     const float pdf_light = choice.probability * (light->delta ? 1.0f : light->pdf_solid_angle);
     const float pdf_scatter =
-        light->delta ? 0.0f : vertex.pdf_solid_angle(light->wi, TransportMode::radiance);
+        light->delta ? 0.0f
+                     : vertex.pdf_solid_angle(light->wi, TransportMode::radiance) * light->line_density;
     const Rgb radiance = light->weight * (light->delta ? 1.0f : light->pdf_solid_angle);
     const Rgb pdfs = connection.light * pdf_light + connection.unidirectional * pdf_scatter;
     const float pdf = channel_average<Media>(pdfs);

@@ -32,10 +32,13 @@ template <bool Media>
 core::Rgb found_light(const core::Scene& scene, const core::WalkEvent& event, const core::Ray& ray,
                       const core::PathWeights& weights, const core::Vec3* previous);
 
-/// Multiplies `weights` by a sampled scattering and prepares its rescaled pdfs for the next event.
+/// Multiplies `weights` by a scattering sampled at `position` and prepares its rescaled pdfs for the next
+/// event.
 template <bool Media>
-inline void apply_scattering(core::PathWeights& weights, const core::ScatterSample& s) {
+inline void apply_scattering(core::PathWeights& weights, const core::ScatterSample& s,
+                             const core::Vec3& position) {
     weights.throughput *= s.weight;
+    weights.vertex = position;
     const core::Rgb base = Media ? weights.unidirectional : core::Rgb(1.0f);
     weights.light = s.delta || !(s.pdf_solid_angle > 0.0f) ? core::Rgb(0.0f) : base / s.pdf_solid_angle;
 }

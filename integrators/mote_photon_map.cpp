@@ -169,9 +169,7 @@ Plan MotePhotonMap::plan(const Scene&, const Requirements& r) const {
     plan.run("kernels", fmt::format("radii shrink with alpha = {:.3g}", settings_.alpha),
              settings_.alpha < 1.0 ? "bias and noise of the mean both go to zero with the number of passes"
                                    : "alpha is 1: they do not shrink, and the bias stays");
-    if (r.media_emissive)
-        plan.miss("emission of media", "as a source of photons",
-                  "it is seen directly and lights receivers once; what scatters more often is left out");
+    plan_medium_lights(plan, r);
     return plan;
 }
 

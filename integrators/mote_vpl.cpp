@@ -163,10 +163,7 @@ Plan MoteVpl::plan(const Scene& scene, const Requirements& r) const {
     if (r.any_delta())
         plan.miss("caustics", "light that reaches a receiver through a delta surface",
                   "a VPL cannot be connected through mirrors and glass; volpath renders it");
-    if (r.media_emissive)
-        plan.miss("emission of media", "as a source of VPLs",
-                  "it is seen directly and lights receivers once; "
-                  "what scatters more often is left out");
+    plan_medium_lights(plan, r);
     return plan;
 }
 

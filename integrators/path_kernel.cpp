@@ -92,7 +92,7 @@ TransportSum trace_path(const Scene& scene, const PathSettings& settings, Ray ra
         // No VPL stands on a delta surface: what goes on from there is not part of the bounded transport.
         if (vpl_edge && next->delta) break;
         classifier.scatter(vertex, *next);
-        apply_scattering<Media>(weights, *next);
+        apply_scattering<Media>(weights, *next, vertex.position);
         if (is_black(weights.throughput)) break;
         if (Media && vertex.on_surface()) state = vertex.state_towards(state, next->wi);
         eta *= next->eta;

@@ -68,7 +68,7 @@ class PhotonEyePath {
                 break;
             const auto next = vertex.sample(choices.y, sampler.next_2d(), core::TransportMode::radiance);
             if (!next) break;
-            apply_scattering<Media>(weights, *next);
+            apply_scattering<Media>(weights, *next, vertex.position);
             eta *= next->eta;
             if (Media && vertex.on_surface()) state = vertex.state_towards(state, next->wi);
             ray = core::Ray{vertex.ray_origin(next->wi), next->wi};

@@ -17,6 +17,9 @@ void register_mote_vsl(core::Registry& registry);
 /// Light that passes delta surfaces last, for integrators that can only hit lights.
 void plan_caustics(core::Plan& plan, const core::Scene& scene, const core::Requirements& requirements);
 
+/// How the emission of media is drawn from.
+void plan_medium_lights(core::Plan& plan, const core::Requirements& requirements);
+
 /// What runs for the media of a scene, with reasons.
 void plan_media(core::Plan& plan, const core::Requirements& requirements);
 

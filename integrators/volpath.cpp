@@ -5,6 +5,8 @@
 // without media it is `path`, compiled from the same kernel.
 //
 // `vpl_bound` renders the transport that VPLs with a bounded geometry term estimate (see path_kernel.h).
+#include <fmt/format.h>
+
 #include "integrators/path_estimator.h"
 #include "integrators/register_parts.h"
 
@@ -64,6 +66,7 @@ Plan Volpath::plan(const Scene& scene, const Requirements& requirements) const {
     plan.integrator = type();
     plan.run("paths", "one per pixel and pass", "light and scattering directions combined at every vertex");
     plan_media(plan, requirements);
+    plan_medium_lights(plan, requirements);
     if (bounded())
         plan.run("bound", std::to_string(settings_.bound) + " /m^2",
                  "asked for: second edges are weighted by min(G*, b)/G*, the transport of bounded VPLs");
@@ -84,6 +87,14 @@ void plan_caustics(Plan& plan, const Scene& scene, const Requirements& r) {
     plan.run("caustics", "by chance only",
              "paths that reach a light through delta surfaces count when they hit it: expect noise, and use "
              "mote_photon_map or a bidirectional method where they matter");
+}
+
+void plan_medium_lights(Plan& plan, const Requirements& r) {
+    if (r.lights_media > 0)
+        plan.run(
+            "emission of media", fmt::format("{} as lights", r.lights_media),
+            "points of heterogeneous ones are drawn for receivers, weighed against walks that meet them; "
+            "particles start in all of them");
 }
 
 void plan_media(Plan& plan, const Requirements& r) {

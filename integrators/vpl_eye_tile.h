@@ -123,7 +123,7 @@ class EyeTile {
         const auto next =
             lane.vertex.sample(choices.y, lane.sampler->next_2d(), core::TransportMode::radiance);
         if (!next) return false;
-        apply_scattering<Media>(lane.weights, *next);
+        apply_scattering<Media>(lane.weights, *next, lane.vertex.position);
         lane.eta *= next->eta;
         if (Media && surface) lane.state = lane.vertex.state_towards(lane.state, next->wi);
         lane.ray = core::Ray{lane.vertex.ray_origin(next->wi), next->wi};

@@ -47,6 +47,7 @@ void follow_light_path(const core::Scene& scene, const LightPathSettings& settin
     if constexpr (Media) {
         weights.hero = std::min(int(context.rng.next_float() * 3.0f), 2);
         state = scene.emitter_medium_state(*choice.emitter, *emission);
+        if (emission->inside && state.current() != emission->inside) return;
     }
     core::Ray ray{emission->origin, emission->direction};
     for (int depth = 1; settings.max_vertices < 0 || depth <= settings.max_vertices; ++depth) {

@@ -20,6 +20,12 @@ Rgb HeterogeneousMedium::albedo_at(const core::Vec3& p) const {
     return constant_albedo_ ? *constant_albedo_ : parts_.albedo->eval(p);
 }
 
+std::shared_ptr<core::Emitter> HeterogeneousMedium::make_emitter(const core::Bounds3& box) {
+    if (!emissive_ || box.empty()) return nullptr;
+    emitter_ = std::make_shared<MediumEmitter>(*this, box, true);
+    return emitter_;
+}
+
 namespace {
 
 std::shared_ptr<HeterogeneousMedium> make_heterogeneous(const core::Properties& p) {

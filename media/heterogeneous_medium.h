@@ -7,6 +7,7 @@
 
 #include "core/scene/medium.h"
 #include "media/emission.h"
+#include "media/medium_emitter.h"
 
 namespace mote::core {
 class Registry;
@@ -32,6 +33,7 @@ class HeterogeneousMedium : public core::Medium {
     static constexpr std::uint64_t step_limit = std::uint64_t(1) << 26;
 
     const core::PhaseFunction& phase() const override { return *parts_.phase; }
+    std::shared_ptr<core::Emitter> make_emitter(const core::Bounds3& box) override;
 
     /// Optical depth per channel by the midpoint rule: deterministic, biased by the step. The segment,
     /// clipped to the grid where the medium ends there, is cut into equal steps of at most `step` metres. The
@@ -46,6 +48,7 @@ class HeterogeneousMedium : public core::Medium {
     MediumParts parts_;
     std::optional<core::Rgb> constant_albedo_;
     bool emissive_;
+    std::shared_ptr<MediumEmitter> emitter_;  ///< null until make_emitter()
 };
 
 void register_heterogeneous_medium(core::Registry& registry);

@@ -8,6 +8,7 @@
 
 #include "core/scene/properties.h"
 #include "core/scene/registry.h"
+#include "media/medium_emitter.h"
 #include "media/medium_parameters.h"
 #include "media/tracking_random.h"
 
@@ -52,6 +53,11 @@ HomogeneousMedium::HomogeneousMedium(const Rgb& sigma_t, const Rgb& sigma_s, con
 
 core::Bounds3 HomogeneousMedium::bounds() const {
     return {core::Vec3(-core::infinity), core::Vec3(core::infinity)};
+}
+
+std::shared_ptr<core::Emitter> HomogeneousMedium::make_emitter(const core::Bounds3& box) {
+    if (core::is_black(emission_) || box.empty()) return nullptr;
+    return std::make_shared<MediumEmitter>(*this, box, false);
 }
 
 core::MediumTraits HomogeneousMedium::traits() const {

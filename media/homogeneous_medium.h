@@ -24,6 +24,9 @@ class HomogeneousMedium final : public core::Medium {
     float majorant() const override { return core::max_component(sigma_t_); }
     /// All of space: the shapes that the medium fills limit it.
     core::Bounds3 bounds() const override;
+    /// A source of particles alone: emission along a ray is integrated analytically, which no light sample
+    /// betters.
+    std::shared_ptr<core::Emitter> make_emitter(const core::Bounds3& box) override;
     std::optional<float> sample_collision(const core::Ray& ray, core::PathWeights& weights,
                                           core::Rgb& emitted, core::Rng& rng,
                                           core::TrackingCounters& counters) const override;

@@ -56,8 +56,14 @@ std::optional<float> TrackedMedium<Grid>::sample_collision(const core::Ray& ray,
         if (emissive_) {
             // every tentative collision is a sample of density majorant * exp(...) of the source sigma_a L_e
             const core::Rgb absorbed = core::Rgb(density / majorant) * (core::Rgb(1.0f) - albedo_at(p));
-            emitted +=
-                weights.throughput * absorbed * parts_.emission.at(p) / core::average(weights.unidirectional);
+            const core::Rgb emission = absorbed * parts_.emission.at(p);
+            if (!core::is_black(emission)) {
+                core::Rgb pdfs = weights.unidirectional;
+                if (emitter_ && !core::is_black(weights.light))
+                    pdfs += weights.light *
+                            emitter_->light_over_walk(weights.vertex, p, parts_.scale * core::Rgb(density));
+                emitted += weights.throughput * emission / core::average(pdfs);
+            }
         }
         const double real = detail::channel(density, hero);
         if (sample_event(real / majorant, rng)) {

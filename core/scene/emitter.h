@@ -13,7 +13,7 @@ class Medium;
 class Shape;
 struct SurfaceHit;
 
-enum class EmitterKind : std::uint8_t { point, spot, directional, area, environment };
+enum class EmitterKind : std::uint8_t { point, spot, directional, area, environment, medium };
 
 struct EmitterTraits {
     EmitterKind kind = EmitterKind::point;
@@ -21,6 +21,7 @@ struct EmitterTraits {
     bool delta_direction = false;  ///< parallel light: cannot be hit
     bool infinite = false;         ///< surrounds the scene
     bool textured = false;
+    bool direct = true;  ///< false: receivers never choose it; found by their scattering directions alone
     bool can_be_hit() const { return !delta_position && !delta_direction; }
 };
 
@@ -30,9 +31,15 @@ struct DirectSample {
     float distance;  ///< to the point on the light; infinity for lights at infinity
     Rgb weight;      ///< L_e (with the light's fall-off) / pdf, without visibility, transmittance and the
                      ///< receiver's cosine
-    float pdf_solid_angle;  ///< at the reference point; 0 for delta lights (then weight is the full value)
+    float pdf_solid_angle;  ///< at the reference point; 0 for delta lights (then weight is the full value);
+                            ///< for a point in a medium per solid angle and length [1/(sr m)]
     bool delta = false;
     Vec3 normal{0, 0, 0};  ///< of the light's surface; zero where there is none
+    /// Density along the ray with which a walk in direction wi finds this point: of emission in a medium,
+    /// where it makes a direction's density one per solid angle and length [1/m]; else 1.
+    float line_density = 1.0f;
+    const Medium* inside =
+        nullptr;  ///< the point counts only where this medium is the one at it; null: always
 };
 
 /// The start of a light particle.
@@ -42,9 +49,10 @@ struct EmissionSample {
     Vec3 normal;     ///< of the light's surface at the origin; zero where there is none
     Rgb weight;      ///< L_e * |cos| / (pdf_area * pdf_solid_angle): the power carried by the particle [W]
     float pdf_area;  ///< of the origin; 1 for a delta position. Lights at infinity: over the disk they start
-                     ///< from
+                     ///< from. Media: per volume [1/m^3]
     float pdf_solid_angle;  ///< of the direction; 1 for a delta direction
     const Shape* shape = nullptr;
+    const Medium* inside = nullptr;  ///< the particle counts only where this medium is the one at its origin
 };
 
 class Emitter : public Object {
@@ -71,6 +79,9 @@ class Emitter : public Object {
 
     /// Emitted power [W]; a good estimate is enough: it only steers how often the light is chosen.
     virtual Rgb power() const = 0;
+
+    /// The chance that Scene::choose_light() chooses this light, told once.
+    virtual void set_direct_probability(float /*probability*/) {}
 
     /// Area lights belong to a shape.
     virtual void set_shape(const Shape* /*shape*/) {}

@@ -33,8 +33,9 @@ struct TrackingCounters {
 struct PathWeights {
     Rgb throughput{1.0f};
     Rgb unidirectional{1.0f};  ///< pdf_c / pdf_hero of the path as sampled, per channel c
-    Rgb light{1.0f};           ///< the same with the last vertex found by light sampling
-    int hero = 0;              ///< the channel that drives distance sampling: 0, 1 or 2
+    Rgb light{0.0f};    ///< the same with the last vertex found by light sampling; black where it cannot be
+    int hero = 0;       ///< the channel that drives distance sampling: 0, 1 or 2
+    Vec3 vertex{0.0f};  ///< where the path scattered last, and light sampling would start from
 };
 
 struct MediumCoefficients {
@@ -54,6 +55,8 @@ struct MediumTraits {
                               ///< 16x12x10"
 };
 
+class Emitter;
+
 class Medium : public Object {
   public:
     virtual MediumTraits traits() const = 0;
@@ -67,7 +70,9 @@ class Medium : public Object {
     /// Delta tracking along the ray from t_min to t_max. Returns the distance of a real collision, with
     /// `weights` updated by everything up to and including the scattering coefficient there (so that
     /// throughput holds the single-scattering albedo), or nothing when the ray leaves at t_max. Emission met
-    /// on the way is added to `emitted`, divided by average(unidirectional). Exact for homogeneous media.
+    /// on the way is added to `emitted`, divided by average(unidirectional), or by the average of both
+    /// techniques where light sampling at weights.vertex could have found it too. Exact for homogeneous
+    /// media.
     virtual std::optional<float> sample_collision(const Ray& ray, PathWeights& weights, Rgb& emitted,
                                                   Rng& rng, TrackingCounters& counters) const = 0;
 
@@ -80,6 +85,10 @@ class Medium : public Object {
 
     /// Unbiased estimate of the transmittance per channel, for connections without another technique (VPLs).
     virtual Rgb transmittance(const Ray& ray, Rng& rng, TrackingCounters& counters) const = 0;
+
+    /// Its emission within `box` as a light, to be drawn from; null where there is none. From then on
+    /// sample_collision() weighs the emission it meets against that light.
+    virtual std::shared_ptr<Emitter> make_emitter(const Bounds3& /*box*/) { return nullptr; }
 };
 
 }  // namespace mote::core

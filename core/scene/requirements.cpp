@@ -44,24 +44,11 @@ void count_lights(const Scene& scene, Requirements& r) {
             ++r.lights_infinite;
         else if (traits.kind == EmitterKind::area)
             ++r.lights_area;
+        else if (traits.kind == EmitterKind::medium)
+            ++r.lights_media;
         else
             ++r.lights_point;
     }
-}
-
-/// Where a medium can be met: inside the shapes that hold it, or anywhere when something names it as outside.
-Bounds3 extent_of(const Medium* medium, const Scene& scene) {
-    Bounds3 box;
-    for (const auto& shape : scene.shapes()) {
-        if (shape->interior.get() == medium) box.extend(shape->closed() ? shape->bounds() : scene.bounds());
-        if (shape->exterior.get() == medium) box.extend(scene.bounds());
-    }
-    if (scene.camera().medium.get() == medium) box.extend(scene.bounds());
-    for (const auto& emitter : scene.emitters())
-        if (emitter->medium == medium) box.extend(scene.bounds());
-    const Bounds3 own = medium->bounds();
-    box.lower = glm::max(box.lower, own.lower), box.upper = glm::min(box.upper, own.upper);
-    return box;
 }
 
 void count_media(const Scene& scene, Requirements& r) {
@@ -74,7 +61,7 @@ void count_media(const Scene& scene, Requirements& r) {
         r.media_chromatic = r.media_chromatic || traits.chromatic;
         r.media_scattering = r.media_scattering || traits.scattering;
         r.media_descriptions.push_back(traits.description);
-        const Bounds3 box = extent_of(medium.get(), scene);
+        const Bounds3 box = scene.medium_extent(*medium);
         if (!box.empty()) r.media_bounds.extend(box);
     }
     r.camera_in_medium = scene.camera_medium_state().current() != nullptr;

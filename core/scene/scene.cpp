@@ -34,6 +34,7 @@ Scene::Scene(Parts parts) : parts_(std::move(parts)) {
     }
     rays_ = std::make_unique<RayTracer>(parts_.shapes);
     find_bounds();
+    add_medium_lights();
     build_light_tables();
     find_boundaries();
     camera_state_ = medium_state_at(parts_.camera->position(), parts_.camera->medium.get());
@@ -87,6 +88,36 @@ void Scene::find_bounds() {
         emitter->set_scene_bounds(bounds_.center(), radius > 0.0f ? radius : 1.0f);
 }
 
+Bounds3 Scene::medium_extent(const Medium& medium) const {
+    Bounds3 box;
+    const auto named_by = [&](const Medium* m) {
+        if (m == &medium) box.extend(bounds_);
+    };
+    for (const auto& shape : parts_.shapes) {
+        if (shape->interior.get() == &medium) box.extend(shape->closed() ? shape->bounds() : bounds_);
+        named_by(shape->exterior.get());
+    }
+    named_by(parts_.camera->medium.get());
+    for (const auto& emitter : parts_.emitters) named_by(emitter->medium);
+    const Bounds3 own = medium.bounds();
+    box.lower = glm::max(box.lower, own.lower), box.upper = glm::min(box.upper, own.upper);
+    return box;
+}
+
+/// The emission of media joins the lights.
+void Scene::add_medium_lights() {
+    for (const auto& medium : parts_.media) {
+        if (!medium->traits().emissive) continue;
+        auto light = medium->make_emitter(medium_extent(*medium));
+        if (!light) continue;
+        const bool outside =
+            parts_.camera->medium == medium || std::any_of(parts_.shapes.begin(), parts_.shapes.end(),
+                                                           [&](auto& s) { return s->exterior == medium; });
+        if (outside) light->medium = medium.get();
+        parts_.emitters.push_back(std::move(light));
+    }
+}
+
 void Scene::build_light_tables() {
     std::vector<float> power;
     double total = 0.0;
@@ -100,12 +131,16 @@ void Scene::build_light_tables() {
     }
     if (lit == 0) std::fill(power.begin(), power.end(), 1.0f);  // all black: any choice is right
     std::vector<float> relative, mixed;
-    for (const float p : power) {
+    for (std::size_t i = 0; i < power.size(); ++i) {
+        const float p = power[i];
         relative.push_back(lit == 0 ? p : float(double(p) / total));
         const float equal = p > 0.0f ? 1.0f / float(std::max<std::size_t>(lit, 1)) : 0.0f;
-        mixed.push_back(lit == 0 ? 1.0f : 0.5f * relative.back() + 0.5f * equal);
+        const bool direct = parts_.emitters[i]->traits().direct;
+        mixed.push_back(!direct ? 0.0f : lit == 0 ? 1.0f : 0.5f * relative.back() + 0.5f * equal);
     }
     direct_lights_ = Distribution1D(mixed);
+    for (const auto& emitter : parts_.emitters)
+        emitter->set_direct_probability(light_probability(emitter.get()));
     particle_lights_ = Distribution1D(relative);
 }
 

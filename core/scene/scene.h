@@ -69,6 +69,10 @@ class Scene {
     const Parts& parts() const { return parts_; }
     const RayTracer& rays() const { return *rays_; }
 
+    /// Where a medium can be met: inside the shapes that hold it, or anywhere when something names it as
+    /// outside.
+    Bounds3 medium_extent(const Medium& medium) const;
+
     /// Everything with a surface, the camera, and the lights that have a position.
     Bounds3 bounds() const { return bounds_; }
     const Emitter* environment() const {
@@ -94,15 +98,17 @@ class Scene {
     /// bias; opaque surfaces are not looked at. `state` holds the media at `from`.
     Rgb transmittance(const Vec3& from, const Vec3& to, const MediumState& state, Rng& rng,
                       TrackingCounters& counters) const;
-    /// The same as a connection to a light, for multiple importance sampling (see Medium::connect).
-    void connect(const Ray& ray, const MediumState& state, PathWeights& weights, Rng& rng,
-                 TrackingCounters& counters) const;
+    /// The same as a connection to a light, for multiple importance sampling (see Medium::connect). Returns
+    /// the medium at ray.t_max, or null where that is vacuum or nothing came through.
+    const Medium* connect(const Ray& ray, const MediumState& state, PathWeights& weights, Rng& rng,
+                          TrackingCounters& counters) const;
     bool has_media() const { return !parts_.media.empty(); }
 
   private:
     void check() const;
     void collect_media();
     void find_bounds();
+    void add_medium_lights();
     void build_light_tables();
     void find_boundaries();
     void find_emitter_states();
@@ -111,7 +117,7 @@ class Scene {
                                  const Vec3& normal) const;
     const Medium* outside_medium(const MediumState& inside, ProbeRays& probes, const Shape* excluded) const;
     template <typename Segment>
-    void for_each_segment(const Ray& ray, MediumState state, const Segment& segment) const;
+    const Medium* for_each_segment(const Ray& ray, MediumState state, const Segment& segment) const;
 
     Parts parts_;
     std::unique_ptr<RayTracer> rays_;

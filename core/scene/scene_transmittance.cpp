@@ -5,26 +5,26 @@
 namespace mote::core {
 
 /// Calls segment(medium, ray) for every part of the ray that lies in a medium, until it returns false.
+/// Returns the medium at the end, null when it was not reached.
 template <typename Segment>
-void Scene::for_each_segment(const Ray& ray, MediumState state, const Segment& segment) const {
+const Medium* Scene::for_each_segment(const Ray& ray, MediumState state, const Segment& segment) const {
     const auto pass = [&](float t0, float t1) {
         const Medium* medium = state.current();
         if (!medium || !(t0 < t1)) return true;
         return bool(segment(*medium, Ray{ray.origin, ray.direction, t0, t1}));
     };
     if (!rays_->has_boundaries()) {
-        pass(ray.t_min, ray.t_max);
-        return;
+        return pass(ray.t_min, ray.t_max) ? state.current() : nullptr;
     }
     std::vector<SurfaceHit> hits;  // takes memory only when a boundary is met
     rays_->all_hits(ray, RayTracer::Group::boundaries, hits);
     float t = ray.t_min;
     for (const SurfaceHit& hit : hits) {
-        if (!pass(t, hit.t)) return;
+        if (!pass(t, hit.t)) return nullptr;
         state.cross(*hit.shape, hit.geometric_normal, ray.direction);
         t = hit.t;
     }
-    pass(t, ray.t_max);
+    return pass(t, ray.t_max) ? state.current() : nullptr;
 }
 
 Rgb Scene::transmittance(const Vec3& from, const Vec3& to, const MediumState& state, Rng& rng,
@@ -41,10 +41,10 @@ Rgb Scene::transmittance(const Vec3& from, const Vec3& to, const MediumState& st
     return result;
 }
 
-void Scene::connect(const Ray& ray, const MediumState& state, PathWeights& weights, Rng& rng,
-                    TrackingCounters& counters) const {
-    if (!has_media()) return;
-    for_each_segment(ray, state, [&](const Medium& m, const Ray& r) {
+const Medium* Scene::connect(const Ray& ray, const MediumState& state, PathWeights& weights, Rng& rng,
+                             TrackingCounters& counters) const {
+    if (!has_media()) return nullptr;
+    return for_each_segment(ray, state, [&](const Medium& m, const Ray& r) {
         m.connect(r, weights, rng, counters);
         return !is_black(weights.throughput);
     });

@@ -142,6 +142,7 @@ TEST_CASE("heterogeneous distances follow their density", "[media][heterogeneous
     std::vector<double> distances, biased;
     for (int i = 0; i < 100000; ++i) {
         PathWeights w;
+        w.light = Rgb(1.0f);  // as after a scattering of density 1
         Rgb emitted(0.0f);
         if (const auto t = m->sample_collision(oblique, w, emitted, rng, counters)) {
             distances.push_back(*t);
@@ -202,6 +203,7 @@ TEST_CASE("extreme grids: zero, one voxel, steps of a million to one", "[media][
     const Ray endless{Vec3(-3, 0.5f, 0.5f), Vec3(1, 0, 0), 0.0f, core::infinity};
     CHECK(empty->transmittance(endless, rng, counters) == Rgb(1.0f));
     PathWeights w;
+    w.light = Rgb(1.0f);  // as after a scattering of density 1
     Rgb emitted(0.0f);
     CHECK_FALSE(empty->sample_collision(endless, w, emitted, rng, counters));
     CHECK(w.throughput == Rgb(1.0f));

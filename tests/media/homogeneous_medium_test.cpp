@@ -43,6 +43,7 @@ TEST_CASE("vacuum of infinite length transmits everything", "[media][homogeneous
     CHECK(m.transmittance(ray, rng, counters) == Rgb(1, 1, 0));
     for (int hero = 0; hero < 3; ++hero) {
         PathWeights w;
+        w.light = Rgb(1.0f);  // as after a scattering of density 1
         w.hero = hero;
         Rgb emitted(0.0f);
         const auto t = m.sample_collision(ray, w, emitted, rng, counters);
@@ -63,6 +64,7 @@ TEST_CASE("homogeneous distances follow the truncated exponential", "[media][hom
         std::vector<double> distances;
         for (int i = 0; i < 100000; ++i) {
             PathWeights w;
+            w.light = Rgb(1.0f);  // as after a scattering of density 1
             Rgb emitted(0.0f);
             if (const auto t = m.sample_collision(segment(float(length)), w, emitted, rng, counters))
                 distances.push_back(*t * stretch);
@@ -82,6 +84,7 @@ TEST_CASE("collisions in a very thin medium are as rare as they must be", "[medi
     const int n = 20'000'000;
     for (int i = 0; i < n; ++i) {
         PathWeights w;
+        w.light = Rgb(1.0f);  // as after a scattering of density 1
         Rgb emitted(0.0f);
         m.sample_collision(segment(1.0f), w, emitted, rng, counters);
     }
@@ -122,6 +125,7 @@ TEST_CASE("an emitting slab has its closed form", "[media][homogeneous][emission
     core::Rng rng(4);
     core::TrackingCounters counters;
     PathWeights w;
+    w.light = Rgb(1.0f);  // as after a scattering of density 1
     Rgb emitted(0.0f);
     m.sample_collision(segment(0.5f), w, emitted, rng, counters);
     for (int c = 0; c < 3; ++c)

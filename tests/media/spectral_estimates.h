@@ -24,6 +24,7 @@ inline SpectralEstimates spectral_estimates(const core::Medium& medium, const co
     core::Rng rng(seed);
     for (int i = 0; i < count; ++i) {
         core::PathWeights path, connected;
+        path.light = connected.light = core::Rgb(1.0f);  // as after a scattering of density 1
         path.hero = connected.hero = int(rng.next_u32() % 3);
         core::Rgb emitted(0.0f);
         const bool escaped = !medium.sample_collision(ray, path, emitted, rng, e.counters);

@@ -98,6 +98,7 @@ TEST_CASE("optical depth does not depend on how a grid is placed", "[media][vdb]
         tests::Mean passed, estimate;
         for (int i = 0; i < 5000; ++i) {
             core::PathWeights w;
+            w.light = core::Rgb(1.0f);  // as after a scattering of density 1
             Rgb emitted(0.0f);
             passed.add(!m->sample_collision(between(from, to), w, emitted, rng, counters));
             estimate.add(m->transmittance(between(from, to), rng, counters).x);
@@ -158,6 +159,7 @@ TEST_CASE("an empty grid is vacuum", "[media][vdb]") {
     const Ray ray{Vec3(0), Vec3(1, 0, 0), 0.0f, core::infinity};
     CHECK(m->transmittance(ray, rng, counters) == Rgb(1.0f));
     core::PathWeights w;
+    w.light = core::Rgb(1.0f);  // as after a scattering of density 1
     Rgb emitted(0.0f);
     CHECK_FALSE(m->sample_collision(ray, w, emitted, rng, counters));
     CHECK(w.throughput == Rgb(1.0f));

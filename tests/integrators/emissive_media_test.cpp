@@ -1,0 +1,92 @@
+// Emission of media. A homogeneous medium is met by walks alone, a heterogeneous one of the same coefficients
+// by walks and by points drawn from it: both must light the same picture. Particles that start in them carry
+// the same light.
+#include <fmt/format.h>
+
+#include "tests/integrators/test_scenes.h"
+#include "tests/support/catch.h"
+#include "tests/support/render_statistics.h"
+
+using namespace mote::tests;
+
+namespace {
+
+/// The box without its lamp: a small glowing cube above the floor is the only light. With `fog` around it or
+/// not.
+std::string glow(bool heterogeneous, bool fog) {
+    const std::string medium =
+        heterogeneous
+            ? R"(<medium type="heterogeneous" name="interior"><volume name="sigma_t" type="constvolume">
+            <rgb name="value" value="1, 2, 4"/></volume><rgb name="albedo" value="0.3, 0.5, 0.7"/>
+            <rgb name="Le" value="30, 40, 50"/></medium>)"
+            : R"(<medium type="homogeneous" name="interior"><rgb name="sigma_t" value="1, 2, 4"/>
+            <rgb name="albedo" value="0.3, 0.5, 0.7"/><rgb name="Le" value="30, 40, 50"/></medium>)";
+    std::string xml = box(grey, fog ? mote::tests::fog("0.5, 0.4, 0.3", "") : "");
+    const auto lamp = xml.find("<emitter type=\"area\">");
+    xml.erase(lamp, xml.find("</emitter>", lamp) + 10 - lamp);
+    const std::string cube = R"(<shape type="cube"><transform name="to_world"><scale value="0.2"/>
+        <rotate y="1" angle="30"/><translate x="-0.35" y="-0.5" z="0.2"/></transform><bsdf type="null"/>)" +
+                             medium + "</shape>";
+    return xml.insert(xml.find("<sensor"), cube);
+}
+
+RenderStatistics render(const std::string& xml, const std::string& integrator, std::uint32_t passes,
+                        std::uint64_t seed) {
+    const auto scene = scene_from(xml, 8);
+    return render_statistics(*scene, *integrator_from(integrator), {8, passes, seed});
+}
+
+void check(const RenderStatistics& a, const RenderStatistics& b, const std::vector<std::string>& layers,
+           double planted) {
+    for (const std::string& layer : layers) {
+        const ZTest test = same_mean(a, layer, b, layer);
+        INFO(test.report);
+        CHECK(test.passed);
+        CHECK_FALSE(same_mean(a.scaled(planted), layer, b, layer).passed);
+    }
+}
+
+const std::string volpath = R"(<integrator type="volpath"/>)";
+
+}  // namespace
+
+TEST_CASE("points drawn from a glowing medium change the noise, not the mean", "[emissive][equality]") {
+    for (const bool fog : {false, true}) {
+        const auto drawn = render(glow(true, fog), volpath, 8000, 1);
+        const auto walked = render(glow(false, fog), volpath, 20000, 2);
+        INFO("fog " << fog);
+        check(drawn, walked, {"emission", "direct", "indirect", "beauty"}, 1.06);
+        if (fog) check(drawn, walked, {"single_scattering", "multiple_scattering"}, 1.12);
+        const std::size_t direct = drawn.layer("direct");
+        const double quieter = (walked.whole[direct][1].variance_of_mean * walked.passes) /
+                               (drawn.whole[direct][1].variance_of_mean * drawn.passes);
+        CHECK(quieter > 3.0);
+    }
+}
+
+TEST_CASE("VPLs of a glowing medium carry what the bounded path tracer finds", "[emissive][equality]") {
+    const auto reference =
+        render(glow(true, true),
+               R"(<integrator type="volpath"><float name="vpl_bound" value="3"/></integrator>)", 12000, 4);
+    for (const bool heterogeneous : {true, false}) {
+        const auto vpl = render(glow(heterogeneous, true),
+                                R"(<integrator type="mote_vpl"><integer name="paths" value="24"/>
+            <float name="bound" value="3"/></integrator>)",
+                                2500, 3);
+        INFO("heterogeneous " << heterogeneous);
+        check(vpl, reference, {"indirect_bounded", "multiple_scattering_bounded"}, 1.12);
+    }
+}
+
+TEST_CASE("Photons of a glowing medium carry its light", "[emissive][equality]") {
+    const auto photons = render(glow(true, true), R"(<integrator type="mote_photon_map">
+        <integer name="photon_paths" value="10000"/><integer name="neighbours" value="6"/></integrator>)",
+                                40, 5);
+    const auto reference = render(glow(true, true), volpath, 5000, 6);
+    for (const char* layer : {"indirect", "multiple_scattering"}) {
+        const double p = photons.whole[photons.layer(layer)][1].mean,
+                     r = reference.whole[reference.layer(layer)][1].mean;
+        INFO(layer << " " << p << " against " << r);
+        CHECK(std::fabs(p / r - 1.0) < 0.06);  // kernels darken edges by a few per cent
+    }
+}
