@@ -71,7 +71,7 @@ void add_ends(Curve& curve, const Seeds& seeds) {
         curve.lowest_wall = std::min(curve.lowest_wall, r->wall);
         curve.highest_wall = std::max(curve.highest_wall, r->wall);
         curve.non_finite += r->non_finite;
-        curve.peak_memory_mb = std::max(curve.peak_memory_mb, r->peak_memory_mb);
+        curve.peak_memory_mb = std::fmax(curve.peak_memory_mb, r->peak_memory_mb);
         curve.complete = curve.complete && r->final;
         squares += r->bias_se * r->bias_se, spread += (r->bias - curve.bias) * (r->bias - curve.bias);
     }

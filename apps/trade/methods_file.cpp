@@ -39,18 +39,6 @@ std::string value_text(const json& value) {
 // A number as people write it, for names and commands.
 std::string short_text(const json& value) { return value.is_number() ? value.dump() : value_text(value); }
 
-std::string slug_of(const std::string& name) {
-    std::string slug;
-    for (const char c : name) {
-        const char lower = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
-        const bool plain = (lower >= 'a' && lower <= 'z') || (lower >= '0' && lower <= '9') || lower == '_';
-        if (plain) slug += lower;
-        if (!plain && !slug.empty() && slug.back() != '-') slug += '-';
-    }
-    while (!slug.empty() && slug.back() == '-') slug.pop_back();
-    return slug;
-}
-
 class Reader {
   public:
     Reader(const JsonLines& file, const core::Registry& registry, const core::Scene& scene,
@@ -162,6 +150,18 @@ class Reader {
 };
 
 }  // namespace
+
+std::string slug_of(const std::string& name) {
+    std::string slug;
+    for (const char c : name) {
+        const char lower = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
+        const bool plain = (lower >= 'a' && lower <= 'z') || (lower >= '0' && lower <= '9') || lower == '_';
+        if (plain) slug += lower;
+        if (!plain && !slug.empty() && slug.back() != '-') slug += '-';
+    }
+    while (!slug.empty() && slug.back() == '-') slug.pop_back();
+    return slug;
+}
 
 std::string Method::settings_text() const {
     std::string text;

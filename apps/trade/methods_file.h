@@ -32,6 +32,9 @@ struct MethodsFile {
     std::vector<Method> methods;
 };
 
+/// A name as a file name: lower-case letters, digits and dashes; may be empty.
+std::string slug_of(const std::string& name);
+
 /// Reads the file and makes the integrators for this scene. Throws InputError with file, line and the nearest
 /// known word for whatever is unknown, repeated, missing or of the wrong kind.
 MethodsFile read_methods_file(const std::string& path, const core::Registry& registry,

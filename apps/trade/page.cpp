@@ -6,6 +6,7 @@
 
 #include "apps/render_report.h"
 #include "apps/trade/draw.h"
+#include "apps/trade/methods_file.h"
 #include "apps/trade/packed_picture.h"
 #include "apps/trade/page_text.h"
 #include "apps/trade/plot.h"
@@ -26,7 +27,10 @@ std::string number_text(double v, const char* unit = "") {
     return std::isfinite(v) ? fmt::format("{:.3g}{}", v, unit) : "unknown";
 }
 
+std::string seconds_cell(double v) { return cell(v < 0.01 ? "&lt; 0.01" : number_text(v)); }
+
 std::string bias_cell(const Results& results, const Curve& c) {
+    if (!std::isfinite(c.bias)) return cell("unknown");
     const std::string text =
         fmt::format("{:+.2f} &plusmn; {} %", 100.0 * c.bias,
                     std::isfinite(c.bias_se) ? fmt::format("{:.2f}", 100.0 * c.bias_se) : std::string("?"));
@@ -46,8 +50,8 @@ std::string row(const Results& results, std::size_t index) {
     std::string html = fmt::format("<tr><td><span class=\"swatch\" style=\"background:{}\"></span>{}</td>",
                                    curve_colour(index), escaped(c.method));
     html += cell(escaped(c.integrator + (c.settings.empty() ? "" : ": " + c.settings)), "text wrap");
-    html += cell(number_text(c.passes)) + cell(number_text(c.wall)) + cell(number_text(c.cpu)) +
-            cell(number_text(c.build)) + error_cell(c) + bias_cell(results, c);
+    html += cell(number_text(c.passes)) + seconds_cell(c.wall) + seconds_cell(c.cpu) + seconds_cell(c.build) +
+            error_cell(c) + bias_cell(results, c);
     for (const Reach& r : results.reaches(c))
         html += cell(escaped(to_text(r, c)), r.kind == Reach::Kind::measured ? "wrap" : "wrap guess");
     const std::string front = results.front_text(c);
@@ -113,15 +117,18 @@ class Book {
     json json_ = {{"pictures", json::array()}};
 };
 
+std::string slug_of_method(const Results& results, const Curve& curve) {
+    for (const json& m : results.facts.at("methods"))
+        if (m.at("name") == curve.method) return m.at("slug").get<std::string>();
+    return slug_of(curve.method);  // a peer, whose picture may lie beside its records
+}
+
 std::string flip_book(const Results& results, const Folder& folder, int page_width) {
     Book book(folder, page_width);
     book.add("reference", "reference.exr", "");
-    for (const json& m : results.facts.at("methods"))
-        for (const Curve& c : results.curves)
-            if (c.method == m.at("name"))
-                book.add(
-                    c.method, m.at("slug").get<std::string>() + ".exr",
-                    fmt::format("{} passes, {:.3g} s, error {:.3g} %", c.passes, c.wall, 100.0 * c.error()));
+    for (const Curve& c : results.curves)
+        book.add(c.method, slug_of_method(results, c) + ".exr",
+                 fmt::format("{} passes, {:.3g} s, error {:.3g} %", c.passes, c.wall, 100.0 * c.error()));
     if (book.data().at("pictures").empty()) return "";
     return "<h2>Flip book</h2>\n<p>Keys 1 to 9 or the arrow keys flip; <b>e</b> shows the error. Pictures of "
            "the "

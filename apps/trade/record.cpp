@@ -162,6 +162,7 @@ std::vector<Record> records_from_csv(const std::string& text, const std::string&
             throw InputError(fmt::format("{} fields, but {} columns", row->fields.size(), order.size()),
                              {path, row->line});
         Record r;
+        r.cpu = r.build = r.peak_memory_mb = unknown;  // other programs need not know
         for (std::size_t i = 0; i < order.size(); ++i) {
             try {
                 order[i].read(r, row->fields[i]);
@@ -169,6 +170,7 @@ std::vector<Record> records_from_csv(const std::string& text, const std::string&
                 throw InputError(std::string(order[i].name) + ": " + error.what(), {path, row->line});
             }
         }
+        if (std::isnan(r.relmse)) r.relmse = r.error * r.error;
         if (!(r.wall > 0.0) || !std::isfinite(r.wall))
             throw InputError("wall_s must be above 0", {path, row->line});
         records.push_back(std::move(r));

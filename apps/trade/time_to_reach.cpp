@@ -44,15 +44,17 @@ double last_slope(const std::vector<CurvePoint>& points, double build) {
 Reach beyond(const Curve& curve, const std::vector<CurvePoint>& points, double error, bool biased) {
     using Kind = Reach::Kind;
     if (points.size() < fewest_points) return {Kind::unclear, unknown, unknown};
-    const double slope = last_slope(points, curve.build);
+    const double build = std::isnan(curve.build) ? 0.0 : curve.build;
+    const double slope = last_slope(points, build);
     if (slope > flattest_slope) return {biased ? Kind::never : Kind::unclear, unknown, slope};
     const CurvePoint& last = points.back();
     const double factor = std::pow(error / last.error, 1.0 / slope_of_noise);
-    return {Kind::extrapolated, curve.build + (last.wall - curve.build) * factor, slope};
+    return {Kind::extrapolated, build + (last.wall - build) * factor, slope};
 }
 
 std::string seconds_text(double seconds) {
-    return seconds < 1e5 ? fmt::format("{:.3g} s", seconds) : fmt::format("{:.2g} s", seconds);
+    if (seconds >= 36000.0) return fmt::format("{:.3g} h", seconds / 3600.0);
+    return seconds >= 100.0 ? fmt::format("{:.0f} s", seconds) : fmt::format("{:.3g} s", seconds);
 }
 
 }  // namespace

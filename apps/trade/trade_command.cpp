@@ -195,7 +195,11 @@ int measure(const TradeArguments& a) {
         }
     }();
     progress.end();
-    if (complete) return finish(folder, a.page_width);
+    if (complete) {
+        std::error_code ignored;
+        std::filesystem::remove(folder.file("checkpoints"), ignored);  // unless something is in it
+        return finish(folder, a.page_width);
+    }
     note("interrupted: the same command continues");
     return 128 + interruption.signal_number();
 }

@@ -245,9 +245,13 @@ TEST_CASE("Drawing again takes in another renderer's records", "[trade][command]
     const std::string head = "method,seed,passes,wall_s,error\n";
     write_file(folder.file("out/other.peer.csv"),
                head + "other renderer,1,1,0.5,0.3\nother renderer,1,2,1,0.2\n");
+    fs::copy_file(folder.file("ref.exr"), folder.file("out/other-renderer.exr"));
     const RunResult r = run_mote(folder, {"trade", "--redraw", "-o", "out"});
     INFO(r.err);
     CHECK(r.exit_code == 0);
+    const std::string html = read_file(folder.file("out/trade.html"));
+    CHECK(html.find("\"other renderer\"") != std::string::npos);  // its picture is in the flip book
+    CHECK(html.find(">nan") == std::string::npos);
     CHECK(read_file(folder.file("out/trade.svg")).find("other renderer") != std::string::npos);
     CHECK(method(folder.summary("out"), "other renderer").at("peer") == true);
     write_file(folder.file("out/other.peer.csv"), head + "path,1,1,0.5,0.3\n");
@@ -420,7 +424,7 @@ TEST_CASE("An interrupted trade continues to the errors of one that was not", "[
 
         REQUIRE(run_mote(folder, arguments(name)).exit_code == 0);
         check_same_errors(folder.records(name), whole);
-        CHECK(fs::is_empty(folder.file(std::string(name) + "/checkpoints")));
+        CHECK_FALSE(folder.has(std::string(name) + "/checkpoints"));
         CHECK(mote::core::read_exr(folder.file(std::string(name) + "/vpl.exr")).channels ==
               mote::core::read_exr(folder.file("whole/vpl.exr")).channels);
         // The seconds of the first run are kept: times never fall behind what they were.
