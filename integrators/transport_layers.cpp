@@ -3,7 +3,10 @@
 namespace mote::integrators {
 
 std::vector<core::Layer> transport_layers(bool media, bool bounded) {
-    const std::string suffix = bounded ? "_bounded" : "";
+    return suffixed_transport_layers(media, bounded ? "_bounded" : "");
+}
+
+std::vector<core::Layer> suffixed_transport_layers(bool media, const std::string& suffix) {
     std::vector<core::Layer> layers = {
         {"emission", "light sources seen directly or through mirrors and glass"},
         {"direct", "light scattered once, on a surface"},

@@ -28,6 +28,8 @@ struct TransportSum {
 /// The layers in the order of Transport; the two of media are left out where there are none. `bounded`
 /// renames the layers that a bound on the geometry term darkens.
 std::vector<core::Layer> transport_layers(bool media, bool bounded);
+/// The same with any suffix on the names of those layers, for methods that change them in another way.
+std::vector<core::Layer> suffixed_transport_layers(bool media, const std::string& suffix);
 
 /// Adds `sum` to pixel (x, y) of the first layers of the image.
 void store(const TransportSum& sum, core::PassImage& image, int x, int y, bool media);
