@@ -113,11 +113,10 @@ std::vector<Curve> make_curves(std::span<const Record> records, double floor) {
 void mark_pareto_front(std::vector<Curve>& curves) {
     std::vector<CurvePoint*> all;
     for (Curve& curve : curves)
-        for (CurvePoint& p : curve.points)
-            if (!p.below_reference) all.push_back(&p);
+        for (CurvePoint& p : curve.points) all.push_back(&p);
     for (CurvePoint* p : all)
-        p->on_front =
-            std::none_of(all.begin(), all.end(), [&](const CurvePoint* o) { return beats(*o, *p); });
+        p->on_front = !p->below_reference && std::none_of(all.begin(), all.end(),
+                                                          [&](const CurvePoint* o) { return beats(*o, *p); });
 }
 
 bool bias_is_significant(const Curve& curve, double reference_mean_error) {

@@ -41,7 +41,7 @@ struct Curve {
 std::vector<Curve> make_curves(std::span<const Record> records, double floor);
 
 /// Marks the points that no point of any curve beats in both time and error. Points below the reference's
-/// floor take no part.
+/// floor beat others, but are not marked: which of them is the best, the reference cannot tell.
 void mark_pareto_front(std::vector<Curve>& curves);
 
 /// What is known of the reference.

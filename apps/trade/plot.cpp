@@ -8,6 +8,8 @@
 #include <cmath>
 #include <vector>
 
+#include "core/math/vec.h"
+
 namespace mote::apps::trade {
 
 namespace {
@@ -157,18 +159,21 @@ class Plot {
     // Errors between two points of the front are those of the earlier one until the later one is there.
     void front() {
         std::vector<const CurvePoint*> points;
-        bool goes_on = true;  // below the reference's floor nobody knows the front
+        double end = core::infinity;  // below the reference's floor nobody knows the front
         for (const Curve& c : curves_)
             for (const CurvePoint& p : c.points) {
                 if (p.on_front) points.push_back(&p);
-                goes_on = goes_on && !p.below_reference;
+                if (p.below_reference) end = std::min(end, p.wall);
             }
         std::sort(points.begin(), points.end(), [](auto* a, auto* b) { return a->wall < b->wall; });
         if (points.empty()) return;
         std::string path = "M" + point_text(x_.at(points[0]->wall), y_.at(points[0]->error));
         for (std::size_t i = 1; i < points.size(); ++i)
             path += fmt::format("H{:.1f}V{:.1f}", x_.at(points[i]->wall), y_.at(points[i]->error));
-        if (goes_on) path += fmt::format("H{}", right);
+        if (end < core::infinity)
+            path += fmt::format("H{:.1f}V{:.1f}", x_.at(end), y_.at(floor_));
+        else
+            path += fmt::format("H{}", right);
         put("<path d=\"{}\" fill=\"none\" stroke=\"#b0b0b0\" stroke-width=\"6\" stroke-opacity=\"0.75\" "
             "stroke-linejoin=\"round\"/>\n",
             path);

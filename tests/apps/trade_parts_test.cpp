@@ -93,6 +93,10 @@ TEST_CASE("The Pareto front holds what no point beats", "[trade]") {
     CHECK(curves[1].points[0].on_front);
     CHECK_FALSE(curves[1].points[1].on_front);  // beaten by a after 2 s
     CHECK_FALSE(curves[1].points[2].on_front);  // below what the reference can judge
+    curves = make_curves(records, 0.05);
+    mark_pareto_front(curves);
+    CHECK_FALSE(curves[0].points[0].on_front);  // c was below the floor before
+    CHECK_FALSE(curves[2].points[0].on_front);  // but how far, nobody knows
     curves = make_curves(records, 0.0);
     mark_pareto_front(curves);
     CHECK_FALSE(curves[0].points[0].on_front);  // c was there before, and better
