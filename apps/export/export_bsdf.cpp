@@ -32,16 +32,6 @@ void export_index(Element& bsdf, const std::string& name) {
         set_child(bsdf, bsdf.make_value("float", name, fmt::format("{}", *index)));
 }
 
-/// Mitsuba wants both alpha_u and alpha_v, and then no alpha.
-void export_roughness(Element& bsdf) {
-    if (!bsdf.child("alpha_u") && !bsdf.child("alpha_v")) return;
-    const Element* alpha = bsdf.child("alpha");
-    const std::string common = alpha ? alpha->get("value") : "0.1";
-    for (const char* name : {"alpha_u", "alpha_v"})
-        if (!bsdf.child(name)) bsdf.children.push_back(bsdf.make_value("float", name, common));
-    remove_child(bsdf, "alpha");
-}
-
 /// Phong's lobe of exponent n has about the slopes of Beckmann facets with alpha^2 = 2 / (n + 2) (Walter et
 /// al. 2007 use this relation between the two distributions of normals).
 void replace_phong(Element& bsdf, const ExportContext& context) {
@@ -60,7 +50,6 @@ void replace_phong(Element& bsdf, const ExportContext& context) {
 void export_bsdf(Element& bsdf, const ExportContext& context) {
     const std::string type = bsdf.get("type");
     if (type == "conductor" || type == "roughconductor") export_metal(bsdf, context);
-    if (type == "roughconductor" || type == "roughdielectric") export_roughness(bsdf);
     if (type == "phong") replace_phong(bsdf, context);
     export_index(bsdf, "int_ior");
     export_index(bsdf, "ext_ior");
