@@ -111,8 +111,12 @@ def judge(name, path, passes, options, folder):
 
 def main():
     options = arguments()
-    if options.install:
-        install()
+    try:
+        if options.install:
+            install()
+    except subprocess.CalledProcessError as error:
+        print(f"mitsuba.py: the installation failed: {error}", file=sys.stderr)
+        return 2
     if not become_a_python_with_mitsuba():
         print("Mitsuba 3 is not installed: the witness is skipped (--install gets it)")
         return 0
