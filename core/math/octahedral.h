@@ -1,5 +1,5 @@
-// Unit vectors in 32 bits: a point of the octahedron |x| + |y| + |z| = 1 unfolded to a square, 16 bits a
-// coordinate (Engelhardt 2013, Ch. 7). The error is below 1e-4 rad.
+// Directions on the octahedron |x| + |y| + |z| = 1 (Engelhardt 2013, Ch. 7): the sphere unfolded to a square,
+// a hemisphere to a square of its own, and unit vectors in 32 bits, whose error is below 1e-4 rad.
 #pragma once
 
 #include <algorithm>
@@ -24,6 +24,18 @@ inline Vec3 octahedral_unproject(const Vec2& p) {
         v.y = std::copysign(1.0f - std::fabs(p.x), p.y);
     }
     return glm::normalize(v);
+}
+
+/// The upper half of the octahedron, turned by 45 degrees so that it fills [-1, 1]^2 (Eq. 7.3 without its
+/// shift). Directions with z < 0 are mirrored at the horizon.
+inline Vec2 hemi_octahedral_project(const Vec3& v) {
+    const float scale = 1.0f / (std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z));
+    return scale * Vec2(v.x - v.y, v.x + v.y);
+}
+
+inline Vec3 hemi_octahedral_unproject(const Vec2& q) {
+    const Vec2 p = 0.5f * Vec2(q.x + q.y, q.y - q.x);
+    return glm::normalize(Vec3(p, std::fmax(1.0f - std::fabs(p.x) - std::fabs(p.y), 0.0f)));
 }
 
 /// `v` need not have unit length, but must not be zero.
