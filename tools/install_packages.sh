@@ -17,6 +17,7 @@ packages=(
   libglm-dev libtbb-dev                               # vectors, threads
   libpugixml-dev libcli11-dev libfmt-dev nlohmann-json3-dev
   catch2 libbenchmark-dev                             # tests and benchmarks
+  python3-numpy python3-matplotlib                    # the figures of experiments/figures
   glmark2-data                                        # a real bunny and horse
 )
 
