@@ -72,8 +72,8 @@ def check(e, circle, tilts):
     over_under = lambda x: f"{x.under:.3f}x under, {x.over:.3f}x over"
     claims.check(f"cube map: {two}", f"{over_under(e['cube'])}, {100 * e['cube'].beyond:.1f} % of the sphere beyond",
                  max(e["cube"].under, e["cube"].over) <= 2,
-                 "the eight corners are oversampled 3^1.5 * pi/6 = 2.72 times; no great circle through face centres and "
-                 "edge middles, as in Fig. 5.3, meets one")
+                 "the eight corners are oversampled 3^1.5 * pi/6 = 2.72 times; no great circle through the middles of "
+                 "faces and edges, as in Fig. 5.3, meets one")
     claims.check(f"cube map, along a great circle through four face centres: {two}", over_under(circle),
                  max(circle.under, circle.over) <= 2)
     paraboloid = e["paraboloid"]
@@ -102,8 +102,8 @@ def check(e, circle, tilts):
                  octahedral.contrast < perspective.contrast and octahedral.deviation < perspective.deviation)
     best = min(tilts, key=lambda t: t[1])
     claims.check("octahedral: no elevation of the cameras is better balanced than planar",
-                 f"the best of {len(tilts)} has {best[0]:.1f} degrees, straight at the octahedron's faces, which is the "
-                 f"planar map itself: {best[1]:.2f} and {octahedral.contrast:.2f}",
+                 f"the best of {len(tilts)} has {best[0]:.1f} degrees, straight at the octahedron's faces: that is the "
+                 f"planar map itself, {best[1]:.2f} and {octahedral.contrast:.2f}",
                  octahedral.contrast <= best[1] + 1e-6)
     return claims.exit_code()
 
@@ -140,8 +140,8 @@ def great_circles():
 
 def draw(program, sizes, texels, pixels, path):
     figure = plt.figure(figsize=(12.5, 8.6))
-    grid = figure.add_gridspec(3, 12, height_ratios=[1, 1, 1.6], hspace=0.16, wspace=0.35, left=0.05, right=0.93, top=0.93,
-                               bottom=0.06)
+    grid = figure.add_gridspec(3, 12, height_ratios=[1, 1, 1.6], hspace=0.16, wspace=0.35, left=0.05, right=0.93,
+                               top=0.93, bottom=0.06)
     norm = matplotlib.colors.LogNorm(0.25, 4)
     for column, (kind, label) in enumerate(MAPS.items()):
         seen, on = hemisphere(program, kind, sizes[kind], pixels)
@@ -165,8 +165,8 @@ def draw(program, sizes, texels, pixels, path):
         for kind, label in MAPS.items():
             axes.plot(angle, program.texels(kind, sizes[kind], circles[circle])[quantity], label=label, linewidth=1.2)
         axes.axhspan(0.5, 2, color="0.92", zorder=0)
-        axes.set(yscale="log", ylim=(0.22, 9), xlim=(0, 180), xticks=[0, 45, 90, 135, 180], yticks=[0.25, 0.5, 1, 2, 4, 8],
-                 xlabel="angle from +z, degrees")
+        axes.set(yscale="log", ylim=(0.22, 9), xlim=(0, 180), xlabel="angle from +z, degrees",
+                 xticks=[0, 45, 90, 135, 180], yticks=[0.25, 0.5, 1, 2, 4, 8])
         axes.set_yticklabels(["1/4", "1/2", "1", "2", "4", "8"])
         axes.minorticks_off()
         if column:
@@ -203,8 +203,10 @@ def main():
     sizes = {kind: round(edge * EDGES.get(kind, 1.0)) for kind in MAPS}
     texels = {kind: program.texels(kind, size) for kind, size in sizes.items()}
     extremes = {kind: Extremes(t) for kind, t in texels.items()}
-    tilts = [(np.degrees(np.arctan(up / 2 ** 0.5)), Extremes(program.texels("octahedral_perspective", edge, up=up)).contrast)
-             for up in (0.5, 0.7, 0.9, 1.0, 1.1, 1.4, 2.0)]
+    tilts = []
+    for up in (0.5, 0.7, 0.9, 1.0, 1.1, 1.4, 2.0):
+        tilted = Extremes(program.texels("octahedral_perspective", edge, up=up))
+        tilts.append((np.degrees(np.arctan(up / 2 ** 0.5)), tilted.contrast))
     options.output.mkdir(parents=True, exist_ok=True)
     write_csv(options.output / f"{NAME}.csv", sizes, texels, extremes)
     draw(program, sizes, texels, 100 if options.quick else 240, options.output / f"{NAME}.png")
