@@ -165,9 +165,8 @@ class MoteVsl final : public Integrator {
     Plan plan(const Scene& scene, const Requirements& requirements) const override;
     std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
         if (scene.has_media())
-            throw InputError("mote_vsl renders surfaces only, and the scene has " +
-                             std::to_string(scene.media().size()) +
-                             " media; volpath and mote_vpl render them");
+            throw InputError(
+                "mote_vsl renders surfaces only, and the scene has media; volpath and mote_vpl render them");
         return std::make_unique<VslEstimator>(scene, options, settings_);
     }
 
@@ -197,7 +196,7 @@ Plan MoteVsl::plan(const Scene&, const Requirements& r) const {
         plan.miss("caustics", "light that reaches a receiver through a delta surface",
                   "a VPL cannot be connected through mirrors and glass; volpath renders it");
     if (r.any_media())
-        plan.miss("the whole picture", "refused: the scene has " + std::to_string(r.media) + " media",
+        plan.miss("the whole picture", "refused: the scene has media",
                   "spherical lights are for surfaces; volpath and mote_vpl render media");
     else
         plan.leave_out("media", "no code for media runs", "the scene has none");
