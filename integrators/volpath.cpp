@@ -102,19 +102,13 @@ void plan_media(Plan& plan, const Requirements& r) {
         plan.leave_out("media", "no code for media runs", "the scene has none");
         return;
     }
-    for (const std::string& description : r.media_descriptions)
-        plan.run("medium", description, "in the scene");
-    if (r.media_homogeneous > 0)
-        plan.run("transmittance", "analytic",
-                 std::to_string(r.media_homogeneous) + " of " + std::to_string(r.media) +
-                     " media are homogeneous");
-    if (r.media_heterogeneous > 0) {
-        plan.run("transmittance", "ratio tracking against the grid's majorants, cell by cell",
-                 std::to_string(r.media_heterogeneous) + " of " + std::to_string(r.media) +
-                     " media are heterogeneous");
+    for (std::size_t i = 0; i < r.media_descriptions.size(); ++i) {
+        plan.run("medium", r.media_descriptions[i], "in the scene");
+        plan.run("transmittance", r.media_estimators[i], r.media_estimator_reasons[i]);
+    }
+    if (r.media_heterogeneous > 0)
         plan.run("distances", "delta tracking against the grid's majorants",
                  "unbiased in heterogeneous media");
-    }
     if (r.media_heterogeneous == 0)
         plan.leave_out("tracking", "no null collisions",
                        "every medium is homogeneous: distances are analytic");

@@ -37,6 +37,7 @@ std::shared_ptr<HeterogeneousMedium> make_heterogeneous(const core::Properties& 
     parts.albedo = volume_of(p, "albedo", Rgb(0.75f));
     parts.phase = phase_of(p);
     parts.emission = emission_of(p);
+    parts.tracking = tracking_settings_of(p);
     const float largest_albedo = core::max_component(parts.albedo->upper_bound());
     if (largest_albedo > 1.0f)
         throw core::InputError("'albedo' reaches " + std::to_string(largest_albedo) + ", above 1",
@@ -65,7 +66,14 @@ void register_heterogeneous_medium(core::Registry& registry) {
           {"temperature", "volume", "", "Black-body emission instead of Le: temperature, see the next two."},
           {"temperature_scale", "float", "1",
            "Kelvin = (temperature - temperature_offset) * temperature_scale."},
-          {"temperature_offset", "float", "0", "See temperature_scale."}},
+          {"temperature_offset", "float", "0", "See temperature_scale."},
+          {"transmittance", "string", "automatic",
+           "Estimator of shadow rays: ray_marching, delta_tracking, ratio_tracking, residual_ratio_tracking, "
+           "or the "
+           "better of the last two for the grid."},
+          {"majorants", "string", "local", "Bounds that tracking runs against: local (by cells) or global."},
+          {"marching_tolerance", "float", "0.001",
+           "Relative error of the optical depth that ray_marching aims at."}},
          R"(<medium type="heterogeneous"><volume name="sigma_t" type="constvolume"><rgb name="value" value="1 2 3"/></volume><rgb name="albedo" value="0.9"/></medium>)"},
         make_heterogeneous);
 }

@@ -8,6 +8,7 @@
 #include "core/scene/medium.h"
 #include "media/emission.h"
 #include "media/medium_emitter.h"
+#include "media/tracking_settings.h"
 
 namespace mote::core {
 class Registry;
@@ -23,6 +24,7 @@ struct MediumParts {
     std::shared_ptr<const Volume> albedo;  ///< single-scattering albedo, 0 to 1
     std::shared_ptr<core::PhaseFunction> phase;
     Emission emission;
+    TrackingSettings tracking;
     float plant_majorant_factor = 1.0f;  ///< for tests that need a wrong majorant; 1 in every other use
 };
 
@@ -34,6 +36,17 @@ class HeterogeneousMedium : public core::Medium {
 
     const core::PhaseFunction& phase() const override { return *parts_.phase; }
     std::shared_ptr<core::Emitter> make_emitter(const core::Bounds3& box) override;
+
+    /// What Medium::transmittance() uses: settings.transmittance, or what `automatic` chose for this grid.
+    TransmittanceEstimator estimator() const { return estimator_; }
+    /// The transmittance by a chosen estimator (`automatic` is estimator()); all but ray marching are
+    /// unbiased.
+    virtual core::Rgb transmittance_by(TransmittanceEstimator estimator, const core::Ray& ray, core::Rng& rng,
+                                       core::TrackingCounters& counters) const = 0;
+    core::Rgb transmittance(const core::Ray& ray, core::Rng& rng,
+                            core::TrackingCounters& counters) const override {
+        return transmittance_by(estimator_, ray, rng, counters);
+    }
 
     /// Optical depth per channel by the midpoint rule: deterministic, biased by the step. The segment,
     /// clipped to the grid where the medium ends there, is cut into equal steps of at most `step` metres. The
@@ -48,6 +61,7 @@ class HeterogeneousMedium : public core::Medium {
     MediumParts parts_;
     std::optional<core::Rgb> constant_albedo_;
     bool emissive_;
+    TransmittanceEstimator estimator_ = TransmittanceEstimator::ratio_tracking;
     std::shared_ptr<MediumEmitter> emitter_;  ///< null until make_emitter()
 };
 

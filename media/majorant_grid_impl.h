@@ -103,6 +103,26 @@ auto MajorantGrid<Value>::total() const -> Range {
 }
 
 template <typename Value>
+void MajorantGrid<Value>::merge_cells() {
+    if (cells_.empty()) return;
+    Range all = cells_.front();
+    for (const Range& r : cells_)
+        all.lower = glm::min(all.lower, r.lower), all.upper = glm::max(all.upper, r.upper);
+    const Voxel extent = glm::max(upper_ - lower_, Voxel(1));
+    edge_ = std::max({extent.x, extent.y, extent.z});
+    resolution_ = glm::ivec3(1);
+    cells_.assign(1, all);
+}
+
+template <typename Value>
+double MajorantGrid<Value>::certain_share() const {
+    double lower = detail::largest(outside_.lower), upper = detail::largest(outside_.upper);
+    if (!cells_.empty()) lower = upper = 0.0;
+    for (const Range& r : cells_) lower += detail::largest(r.lower), upper += detail::largest(r.upper);
+    return upper > 0.0 ? lower / upper : 1.0;
+}
+
+template <typename Value>
 bool MajorantGrid<Value>::clip(const core::Vec3d& origin, const core::Vec3d& direction, double& t_begin,
                                double& t_end) const {
     for (int axis = 0; axis < 3; ++axis) {

@@ -37,6 +37,10 @@ inline core::Rgb exp_minus_rgb(const core::Vec3d& v) {
 /// medium much thinner than its majorant. Survivors carry the threshold itself: no weight ever grows.
 inline constexpr double roulette_threshold = 1e-3;
 
+/// Share of the majorants' sum that lower bounds make certain, from which residual tracking costs less than
+/// it saves (docs/media.md).
+inline constexpr double residual_pays_from = 0.05;
+
 /// Returns false when the walk dies.
 template <typename Wide>
 bool russian_roulette(Wide& weight, core::Rng& rng) {
@@ -63,7 +67,13 @@ class TrackedMedium final : public HeterogeneousMedium {
 
     TrackedMedium(Grid grid, MediumParts parts)
         : HeterogeneousMedium(std::move(parts)), grid_(std::move(grid)) {
+        if (parts_.tracking.majorants == Majorants::global) grid_.majorants.merge_cells();
         grid_.majorants.scale_upper(parts_.plant_majorant_factor);
+        estimator_ = parts_.tracking.transmittance;
+        if (estimator_ == TransmittanceEstimator::automatic)
+            estimator_ = grid_.majorants.certain_share() > detail::residual_pays_from
+                             ? TransmittanceEstimator::residual_ratio_tracking
+                             : TransmittanceEstimator::ratio_tracking;
         majorant_ = float(detail::largest(grid_.majorants.total().upper) * double(parts_.scale));
     }
 
@@ -77,8 +87,8 @@ class TrackedMedium final : public HeterogeneousMedium {
                                           core::TrackingCounters& counters) const override;
     void connect(const core::Ray& ray, core::PathWeights& weights, core::Rng& rng,
                  core::TrackingCounters& counters) const override;
-    core::Rgb transmittance(const core::Ray& ray, core::Rng& rng,
-                            core::TrackingCounters& counters) const override;
+    core::Rgb transmittance_by(TransmittanceEstimator estimator, const core::Ray& ray, core::Rng& rng,
+                               core::TrackingCounters& counters) const override;
     core::Vec3d optical_depth_by_marching(const core::Ray& ray, float step,
                                           core::TrackingCounters& counters) const override;
 
@@ -90,6 +100,12 @@ class TrackedMedium final : public HeterogeneousMedium {
     template <typename RateOf, typename AtPiece, typename AtCollision>
     bool track(const core::Ray& ray, core::Rng& rng, core::TrackingCounters& counters, RateOf&& rate_of,
                AtPiece&& at_piece, AtCollision&& at_collision) const;
+
+    core::Rgb by_marching(const core::Ray& ray, core::TrackingCounters& counters) const;
+    core::Rgb by_delta_tracking(const core::Ray& ray, core::Rng& rng, core::TrackingCounters& counters) const;
+    core::Rgb by_ratio_tracking(const core::Ray& ray, core::Rng& rng, core::TrackingCounters& counters) const;
+    core::Rgb by_residual_tracking(const core::Ray& ray, core::Rng& rng,
+                                   core::TrackingCounters& counters) const;
 
     core::Vec3d index_origin(const core::Ray& ray) const {
         return grid_.world_to_index.point(core::Vec3d(ray.origin));

@@ -110,8 +110,102 @@ void TrackedMedium<Grid>::connect(const core::Ray& ray, core::PathWeights& weigh
 }
 
 template <typename Grid>
-core::Rgb TrackedMedium<Grid>::transmittance(const core::Ray& ray, core::Rng& rng,
-                                             core::TrackingCounters& counters) const {
+core::Rgb TrackedMedium<Grid>::transmittance_by(TransmittanceEstimator estimator, const core::Ray& ray,
+                                                core::Rng& rng, core::TrackingCounters& counters) const {
+    switch (estimator) {
+        case TransmittanceEstimator::ray_marching:
+            return by_marching(ray, counters);
+        case TransmittanceEstimator::delta_tracking:
+            return by_delta_tracking(ray, rng, counters);
+        case TransmittanceEstimator::ratio_tracking:
+            return by_ratio_tracking(ray, rng, counters);
+        case TransmittanceEstimator::residual_ratio_tracking:
+            return by_residual_tracking(ray, rng, counters);
+        case TransmittanceEstimator::automatic:
+            break;
+    }
+    return transmittance_by(estimator_, ray, rng, counters);
+}
+
+template <typename Grid>
+core::Rgb TrackedMedium<Grid>::by_delta_tracking(const core::Ray& ray, core::Rng& rng,
+                                                 core::TrackingCounters& counters) const {
+    // One random number decides for all channels: each passes with its own chance.
+    Wide passes(1.0);
+    const auto at_collision = [&](const Range&, double majorant, double, const Wide& density) {
+        const double u = uniform_double(rng) * majorant;
+        if constexpr (chromatic) {
+            for (int c = 0; c < 3; ++c)
+                if (u <= density[c]) passes[c] = 0.0;
+        } else {
+            if (u <= density) passes = 0.0;
+        }
+        return detail::largest(passes) > 0.0;
+    };
+    const bool complete = track(
+        ray, rng, counters, [](const Range& r) { return detail::largest(r.upper); },
+        [](const Range&, double) {}, at_collision);
+    return core::Rgb(complete ? passes : Wide(0.0));
+}
+
+template <typename Grid>
+core::Rgb TrackedMedium<Grid>::by_ratio_tracking(const core::Ray& ray, core::Rng& rng,
+                                                 core::TrackingCounters& counters) const {
+    Wide estimate(1.0);
+    const auto at_collision = [&](const Range&, double majorant, double, const Wide& density) {
+        estimate *= Wide(1.0) - glm::min(density, Wide(majorant)) / majorant;
+        return detail::russian_roulette(estimate, rng);
+    };
+    const bool complete = track(
+        ray, rng, counters, [](const Range& r) { return detail::largest(r.upper); },
+        [](const Range&, double) {}, at_collision);
+    return core::Rgb(complete ? estimate : Wide(0.0));
+}
+
+template <typename Grid>
+core::Rgb TrackedMedium<Grid>::by_marching(const core::Ray& ray, core::TrackingCounters& counters) const {
+    // Midpoints of equal parts, one a voxel to begin with, then three times as many (the old ones among them)
+    // until the optical depth of the piece moves by less than the tolerance.
+    constexpr std::uint64_t most_points = 6561;
+    if (parts_.scale == 0.0f) return core::Rgb(1.0f);
+    const core::Vec3d origin = index_origin(ray), direction = index_direction(ray);
+    const double voxels_per_metre = glm::length(direction);
+    auto cursor = grid_.cursor();
+    Wide depth(0.0);
+    const auto visit = [&](const Range& range, double t0, double t1) {
+        const double length = t1 - t0;
+        const Wide lower = detail::widen(range.lower), upper = detail::widen(range.upper);
+        if (detail::largest(upper - lower) == 0.0) {
+            if (detail::largest(upper) > 0.0) depth += upper * length;
+            return std::isfinite(detail::largest(depth));
+        }
+        std::uint64_t n = std::uint64_t(std::clamp(std::ceil(length * voxels_per_metre), 1.0, 2187.0));
+        const auto at = [&](double place) {
+            ++counters.lookups;
+            return detail::widen(cursor.lookup(origin + (t0 + place * length) * direction));
+        };
+        Wide sum(0.0);
+        for (std::uint64_t i = 0; i < n; ++i) sum += at((double(i) + 0.5) / double(n));
+        for (;;) {
+            const Wide coarse = sum / double(n);
+            for (std::uint64_t i = 0; i < n; ++i)
+                sum += at((double(i) + 1.0 / 6.0) / double(n)) + at((double(i) + 5.0 / 6.0) / double(n));
+            n *= 3;
+            const Wide fine = sum / double(n);
+            const double moved = std::fmax(detail::largest(fine - coarse), detail::largest(coarse - fine));
+            if (moved <= parts_.tracking.marching_tolerance * detail::largest(fine) || n >= most_points)
+                break;
+        }
+        depth += sum * (length / double(n));
+        return true;
+    };
+    grid_.majorants.walk(origin, direction, double(ray.t_min), double(ray.t_max), visit);
+    return detail::exp_minus_rgb(depth * double(parts_.scale));
+}
+
+template <typename Grid>
+core::Rgb TrackedMedium<Grid>::by_residual_tracking(const core::Ray& ray, core::Rng& rng,
+                                                    core::TrackingCounters& counters) const {
     // Residual ratio tracking (Novák et al. 2014): a cell's lower bound is integrated analytically, the rest
     // is tracked. Where a cell is constant, nothing random is left.
     Wide sure_depth(0.0), estimate(1.0);
@@ -191,11 +285,26 @@ core::MediumTraits TrackedMedium<Grid>::traits() const {
     t.scattering = majorant_ > 0.0f && !core::is_black(parts_.albedo->upper_bound());
     t.empty = majorant_ == 0.0f;
     t.description = grid_.description;
-    if (t.empty)
+    if (t.empty) {
         t.description += ", empty";
-    else if (grid_.majorants.has_cells())
+        return t;
+    }
+    if (grid_.majorants.has_cells())
         t.description += fmt::format(", majorants {}x{}x{}", grid_.majorants.resolution().x,
                                      grid_.majorants.resolution().y, grid_.majorants.resolution().z);
+    t.estimator = name_of(estimator_);
+    t.estimator_reason = parts_.tracking.transmittance == TransmittanceEstimator::automatic
+                             ? fmt::format("lower bounds make {:.0f} % of the majorants certain",
+                                           100.0 * grid_.majorants.certain_share())
+                             : std::string("asked for");
+    const core::Vec3d origin = grid_.world_to_index.point(core::Vec3d(0.0));
+    double most_voxels = 0.0;  // a metre holds, along any axis
+    for (int axis = 0; axis < 3; ++axis) {
+        core::Vec3d along(0.0);
+        along[axis] = 1.0;
+        most_voxels = std::fmax(most_voxels, glm::length(grid_.world_to_index.point(along) - origin));
+    }
+    t.voxel_size = float(1.0 / most_voxels);
     return t;
 }
 

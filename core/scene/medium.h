@@ -47,10 +47,12 @@ struct MediumCoefficients {
 struct MediumTraits {
     bool homogeneous = false;
     bool emissive = false;
-    bool isotropic = true;    ///< phase function
-    bool chromatic = false;   ///< extinction differs between channels
-    bool scattering = true;   ///< false: sigma_s is zero everywhere
-    bool empty = false;       ///< vacuum: no extinction anywhere
+    bool isotropic = true;        ///< phase function
+    bool chromatic = false;       ///< extinction differs between channels
+    bool scattering = true;       ///< false: sigma_s is zero everywhere
+    bool empty = false;           ///< vacuum: no extinction anywhere
+    float voxel_size = infinity;  ///< coefficients vary over lengths of this size [m]; infinity: nowhere
+    std::string estimator = "analytic", estimator_reason = "homogeneous";  ///< of transmittance()
     std::string description;  ///< for plans: "homogeneous", "vdbvolume 'density' 128x96x80, 3.1 MB, majorants
                               ///< 16x12x10"
 };

@@ -61,6 +61,8 @@ void count_media(const Scene& scene, Requirements& r) {
         r.media_chromatic = r.media_chromatic || traits.chromatic;
         r.media_scattering = r.media_scattering || traits.scattering;
         r.media_descriptions.push_back(traits.description);
+        r.media_estimators.push_back(traits.estimator);
+        r.media_estimator_reasons.push_back(traits.estimator_reason);
         const Bounds3 box = scene.medium_extent(*medium);
         if (!box.empty()) r.media_bounds.extend(box);
     }

@@ -22,6 +22,8 @@ struct Requirements {
     bool camera_in_medium = false;
     Bounds3 bounds, media_bounds;
     std::vector<std::string> media_descriptions;
+    std::vector<std::string> media_estimators,
+        media_estimator_reasons;  ///< of the transmittance, one a medium
 
     bool any_glossy() const { return bsdfs_glossy > 0; }
     bool any_delta() const { return bsdfs_delta > 0; }

@@ -1,0 +1,38 @@
+// Which estimator a heterogeneous medium uses, where there is a choice. docs/media.md says what each one
+// costs.
+#pragma once
+
+#include <string>
+
+namespace mote::core {
+class Properties;
+}
+
+namespace mote::media {
+
+/// Estimators of the transmittance along a ray.
+enum class TransmittanceEstimator {
+    automatic,               ///< ratio tracking, residual where a good part of the extinction is certain
+    ray_marching,            ///< deterministic, biased by a stated tolerance
+    delta_tracking,          ///< 0 or 1: does a particle pass?
+    ratio_tracking,          ///< product of chances to pass (Novák et al. 2014)
+    residual_ratio_tracking  ///< a cell's lower bound analytically, the rest by ratio tracking
+};
+
+/// Upper bounds that tracking runs against.
+enum class Majorants { local, global };  ///< cell by cell, or one for the whole grid
+
+struct TrackingSettings {
+    TransmittanceEstimator transmittance = TransmittanceEstimator::automatic;
+    Majorants majorants = Majorants::local;
+    double marching_tolerance =
+        1e-3;  ///< of ray marching: relative error of the optical depth that it aims at
+};
+
+const std::string& name_of(TransmittanceEstimator estimator);
+
+/// From the parameters `transmittance`, `majorants` and `marching_tolerance`. Throws InputError with the
+/// nearest known word.
+TrackingSettings tracking_settings_of(const core::Properties& properties);
+
+}  // namespace mote::media

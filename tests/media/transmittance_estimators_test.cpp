@@ -1,0 +1,204 @@
+// Every estimator of the transmittance, through real grids: its mean against quadrature, its variance, its
+// lookups.
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <iostream>
+
+#include "core/math/warp.h"
+#include "media/vdb_volume.h"
+#include "tests/media/test_media.h"
+#include "tests/media/vdb_test_files.h"
+#include "tests/support/catch.h"
+#include "tests/support/test_data.h"
+
+using namespace mote;
+using core::Ray, core::Rgb, core::Vec3, core::Vec3d;
+using media::TransmittanceEstimator;
+
+namespace {
+
+constexpr std::array estimators = {
+    TransmittanceEstimator::ray_marching, TransmittanceEstimator::delta_tracking,
+    TransmittanceEstimator::ratio_tracking, TransmittanceEstimator::residual_ratio_tracking};
+
+std::shared_ptr<media::HeterogeneousMedium> medium_with(const std::shared_ptr<const media::VdbGrid>& grid,
+                                                        float scale, media::Majorants majorants) {
+    auto parts = tests::medium_parts(Rgb(0.8f), scale);
+    parts.tracking.majorants = majorants;
+    return media::VdbVolume(grid, {}).make_medium(std::move(parts));
+}
+
+/// Rays from a sphere around the medium, through points of the middle half of its box, out on the other side.
+std::vector<Ray> rays_through(const core::Bounds3& box, int count) {
+    core::Rng rng(11);
+    std::vector<Ray> rays;
+    for (int i = 0; i < count; ++i) {
+        const Vec3 from =
+            box.center() + box.radius() * core::square_to_sphere({rng.next_float(), rng.next_float()});
+        const Vec3 u(rng.next_float(), rng.next_float(), rng.next_float());
+        const Vec3 through = box.center() + 0.5f * (u - 0.5f) * box.diagonal();
+        rays.push_back({from, glm::normalize(through - from), 0.0f, 2.0f * glm::distance(through, from)});
+    }
+    return rays;
+}
+
+struct Cost {
+    double variance = 0.0, lookups = 0.0;  ///< mean over rays, of one estimate
+};
+
+/// Means of `trials` estimates a ray against quadrature, 5 standard errors at most; ray marching to its
+/// tolerance.
+Cost check_estimator(const media::HeterogeneousMedium& m, TransmittanceEstimator estimator,
+                     const std::vector<Ray>& rays, const std::vector<double>& tau, int trials) {
+    core::Rng rng(5);
+    core::TrackingCounters counters;
+    Cost cost;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const double expected = std::exp(-tau[i]);
+        tests::Mean mean;
+        const int n = estimator == TransmittanceEstimator::ray_marching ? 1 : trials;
+        for (int k = 0; k < n; ++k) mean.add(m.transmittance_by(estimator, rays[i], rng, counters).x);
+        INFO(media::name_of(estimator) << ": ray " << i << ", " << mean.value() << " against " << expected);
+        if (n == 1) {
+            CHECK(std::fabs(mean.value() / expected - 1.0) < 2e-3 * tau[i] + 1e-5);
+        } else {
+            // Where no trial met anything the spread says nothing; a share of 1 / trials may have been
+            // missed.
+            CHECK((mean.sigmas_from(expected, 1e-5) < 5.0 ||
+                   (mean.standard_error() == 0.0 && std::fabs(mean.value() - expected) < 10.0 / trials)));
+        }
+        cost.variance += mean.standard_error() * mean.standard_error() * n / double(rays.size());
+    }
+    cost.lookups =
+        double(counters.lookups) /
+        (double(rays.size()) * (estimator == TransmittanceEstimator::ray_marching ? 1.0 : double(trials)));
+    return cost;
+}
+
+struct GridCosts {
+    std::array<Cost, estimators.size()> local, global;
+};
+
+GridCosts costs_of(const std::string& path, const std::string& grid_name, double optical_depth) {
+    const auto grid = media::load_vdb_grid(path, grid_name);
+    const auto probe = medium_with(grid, 1.0f, media::Majorants::local);
+    const auto rays = rays_through(probe->bounds(), 24);
+    core::TrackingCounters counters;
+    std::vector<double> tau;
+    double largest = 0.0;
+    for (const Ray& ray : rays) {
+        tau.push_back(probe->optical_depth_by_marching(ray, ray.t_max / 20000.0f, counters).x);
+        largest = std::max(largest, tau.back());
+    }
+    const auto scale = float(optical_depth / largest);
+    for (double& t : tau) t *= double(scale);
+    GridCosts costs;
+    for (const auto majorants : {media::Majorants::local, media::Majorants::global}) {
+        const auto medium = medium_with(grid, scale, majorants);
+        auto& row = majorants == media::Majorants::local ? costs.local : costs.global;
+        for (std::size_t e = 0; e < estimators.size(); ++e)
+            row[e] = check_estimator(*medium, estimators[e], rays, tau, 4000);
+    }
+    std::cout << fmt::format("{} up to optical depth {}: variance and lookups of one estimate\n",
+                             grid->name(), optical_depth);
+    for (std::size_t e = 0; e < estimators.size(); ++e)
+        std::cout << fmt::format("  {:24} local {:8.5f} {:8.2f}   global {:8.5f} {:8.2f}\n",
+                                 media::name_of(estimators[e]), costs.local[e].variance,
+                                 costs.local[e].lookups, costs.global[e].variance, costs.global[e].lookups);
+    return costs;
+}
+
+}  // namespace
+
+TEST_CASE("every estimator of the transmittance agrees with quadrature on a real smoke",
+          "[media][estimators]") {
+    const auto path = tests::test_data("vdb/openusd/smoke_000002.vdb");
+    if (!path) return;
+    const GridCosts costs = costs_of(*path, "density", 4.0);
+    // The grid is cut close around the smoke and filled with it; even so cells of their own save lookups.
+    for (std::size_t e = 1; e < estimators.size(); ++e)
+        CHECK(costs.global[e].lookups > 1.5 * costs.local[e].lookups);
+    // Ratio tracking is never noisier than delta tracking, and residual tracking never noisier than that.
+    CHECK(costs.local[2].variance < costs.local[1].variance);
+    CHECK(costs.local[3].variance < 1.02 * costs.local[2].variance);
+}
+
+TEST_CASE("estimators agree on grids of tiles and of one smooth lump", "[media][estimators]") {
+    const tests::TemporaryFolder folder;
+    for (const char* kind : {"tiles", "lump"}) {
+        INFO(kind);
+        const GridCosts costs = costs_of(folder.grid(kind), "density", 3.0);
+        CHECK(costs.local[3].variance < 1.02 * costs.local[2].variance);
+    }
+}
+
+TEST_CASE("local majorants save most lookups in sparse smoke", "[media][estimators]") {
+    // Three thick puffs in a grid of 64^3 voxels.
+    const auto puffs = tests::vol_grid(glm::ivec3(64), 1, [](int x, int y, int z) {
+        float density = 0.0f;
+        for (const Vec3& c : {Vec3(14, 20, 30), Vec3(40, 45, 25), Vec3(50, 12, 50)}) {
+            const Vec3 d = Vec3(float(x), float(y), float(z)) - c;
+            density += 40.0f * std::max(0.0f, 1.0f - glm::dot(d, d) / 60.0f);
+        }
+        return Rgb(density);
+    });
+    const auto lookups = [&](media::Majorants majorants, TransmittanceEstimator estimator) {
+        auto parts = tests::medium_parts(Rgb(0.8f));
+        parts.tracking.majorants = majorants;
+        const auto medium = tests::medium_of(puffs, parts);
+        core::Rng rng(5);
+        core::TrackingCounters counters;
+        for (const Ray& ray : rays_through(medium->bounds(), 2000))
+            medium->transmittance_by(estimator, ray, rng, counters);
+        return double(counters.lookups);
+    };
+    for (const auto estimator : {estimators[1], estimators[2], estimators[3]}) {
+        const double factor =
+            lookups(media::Majorants::global, estimator) / lookups(media::Majorants::local, estimator);
+        INFO(media::name_of(estimator) << ": " << factor << " times as many against one bound");
+        CHECK(factor > 3.0);
+    }
+}
+
+TEST_CASE("a wrong estimator of the transmittance is caught", "[media][estimators][planted]") {
+    const tests::TemporaryFolder folder;
+    const auto grid = media::load_vdb_grid(folder.grid("lump"));
+    auto parts = tests::medium_parts(Rgb(0.8f), 0.5f);
+    const auto right = media::VdbVolume(grid, {}).make_medium(parts);
+    parts.plant_majorant_factor = 0.3f;  // interpolated densities exceed their bound
+    const auto wrong = media::VdbVolume(grid, {}).make_medium(parts);
+    const auto rays = rays_through(right->bounds(), 8);
+    for (const auto estimator : {estimators[1], estimators[2], estimators[3]}) {
+        double worst_right = 0.0, worst_wrong = 0.0;
+        for (const Ray& ray : rays) {
+            core::TrackingCounters counters;
+            const double expected =
+                std::exp(-right->optical_depth_by_marching(ray, ray.t_max / 20000.0f, counters).x);
+            core::Rng rng(3);
+            tests::Mean a, b;
+            for (int i = 0; i < 20000; ++i) {
+                a.add(right->transmittance_by(estimator, ray, rng, counters).x);
+                b.add(wrong->transmittance_by(estimator, ray, rng, counters).x);
+            }
+            if (a.standard_error() == 0.0) continue;
+            worst_right = std::max(worst_right, a.sigmas_from(expected, 1e-5));
+            worst_wrong = std::max(worst_wrong, b.sigmas_from(expected, 1e-5));
+        }
+        INFO(media::name_of(estimator));
+        CHECK(worst_right < 5.0);
+        CHECK(worst_wrong > 5.0);
+    }
+}
+
+TEST_CASE("the automatic estimator is residual tracking where bounds make much certain",
+          "[media][estimators]") {
+    const tests::TemporaryFolder folder;
+    const auto tiles = medium_with(media::load_vdb_grid(folder.grid("tiles")), 1.0f, media::Majorants::local);
+    CHECK(tiles->estimator() == TransmittanceEstimator::residual_ratio_tracking);
+    const auto single =
+        medium_with(media::load_vdb_grid(folder.grid("single")), 1.0f, media::Majorants::local);
+    CHECK(single->estimator() == TransmittanceEstimator::ratio_tracking);
+    CHECK(single->traits().estimator == "ratio_tracking");
+}
