@@ -63,6 +63,16 @@ void add_render(CLI::App& app, RenderArguments& a, std::function<int()>& action)
     command.callback([&a, &action] { action = [&a] { return render_command(a); }; });
 }
 
+void add_compare(CLI::App& app, CompareArguments& a, std::function<int()>& action) {
+    CLI::App& command = *app.add_subcommand("compare", "Measure the error of a picture against a reference");
+    command.add_option("IMAGE", a.image, "The picture")->required();
+    command.add_option("REFERENCE", a.reference, "The picture that is taken for right")->required();
+    command.add_option("--layer", a.layer, "Compare this layer of two EXR files instead of the beauty");
+    command.add_option("--map", a.map, "Write a picture of the relative error to this PNG file");
+    command.add_flag("--json", a.json, "Print JSON");
+    command.callback([&a, &action] { action = [&a] { return compare_command(a); }; });
+}
+
 void add_export(CLI::App& app, ExportArguments& a, std::function<int()>& action) {
     CLI::App& command = *app.add_subcommand("export", "Write a scene and its files for another renderer");
     add_scene_options(command, a.scene);
@@ -112,6 +122,9 @@ int parse_and_run(int argc, char** argv) {
     TradeArguments trade;
     trade.command_line = render.command_line;
     add_trade(app, trade, action);
+
+    CompareArguments compare;
+    add_compare(app, compare, action);
 
     ExportArguments export_arguments;
     add_export(app, export_arguments, action);

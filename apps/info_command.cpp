@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "apps/command.h"
+#include "apps/picture_file.h"
 #include "apps/subcommands.h"
 #include "core/geometry/triangle_mesh.h"
 #include "core/image/exr_preflight.h"
@@ -33,13 +34,6 @@ std::string triple(const V& v) {
 }
 std::string triple(const glm::ivec3& v) { return fmt::format("({}, {}, {})", v.x, v.y, v.z); }
 std::string box(const core::Bounds3& b) { return triple(b.lower) + " to " + triple(b.upper); }
-
-std::string extension_of(const std::string& path) {
-    std::string extension = std::filesystem::path(path).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
-    return extension;
-}
 
 // Smallest, largest and mean value, and how many are not finite.
 std::string range_text(std::span<const float> values) {

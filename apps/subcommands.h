@@ -48,6 +48,12 @@ struct ConvertArguments {
     bool half = false;
 };
 
+struct CompareArguments {
+    std::string image, reference, layer;
+    std::string map;  ///< "": none
+    bool json = false;
+};
+
 struct ExportArguments {
     SceneArguments scene;
     std::string target = "mitsuba3", output;
@@ -67,6 +73,7 @@ int render_command(const RenderArguments& arguments);
 int plan_command(const SceneArguments& arguments);
 int info_command(const std::string& path);
 int convert_command(const ConvertArguments& arguments);
+int compare_command(const CompareArguments& arguments);
 int export_command(const ExportArguments& arguments);
 int formats_command();
 

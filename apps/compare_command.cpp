@@ -1,0 +1,147 @@
+// mote compare: a picture against its reference, every number with its definition.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "apps/command.h"
+#include "apps/picture_file.h"
+#include "apps/subcommands.h"
+#include "core/image/error_map.h"
+#include "core/image/metrics.h"
+#include "core/scene/error.h"
+
+namespace mote::apps {
+
+namespace {
+
+using core::ImageMetrics, core::InputError, core::MetricDefinition;
+using nlohmann::json;
+
+const char* const non_finite_definition =
+    "pixels with a NaN or an infinity in a channel; none is left out, values that depend on one are NaN";
+const char* const mean_definition = "per channel R, G, B, and over all of them";
+
+/// Numbers of a matrix, or nothing when the text is anything else.
+std::vector<double> numbers(const std::string& text) {
+    std::istringstream stream(text);
+    std::vector<double> values;
+    for (double v; stream >> v;) values.push_back(v);
+    return stream.eof() ? values : std::vector<double>{};
+}
+
+bool same_camera(const std::string& a, const std::string& b) {
+    const std::vector<double> x = numbers(a), y = numbers(b);
+    if (x.size() != y.size() || x.empty()) return a == b;
+    for (std::size_t i = 0; i < x.size(); ++i)
+        if (!(std::fabs(x[i] - y[i]) <= 1e-5 * (1.0 + std::fabs(y[i])))) return false;
+    return true;
+}
+
+/// What the metadata says against the comparison. The hash covers the settings too, so it can tell something
+/// about the scene only where the integrator is the same.
+std::vector<std::string> doubts(const PictureFile& image, const PictureFile& reference) {
+    const auto differ = [&](const char* name, auto same) {
+        const auto a = image.metadata.find(name), r = reference.metadata.find(name);
+        return a != image.metadata.end() && r != reference.metadata.end() && !same(a->second, r->second);
+    };
+    const auto equal = [](const std::string& a, const std::string& b) { return a == b; };
+    std::vector<std::string> list;
+    if (differ("worldToCamera", same_camera)) list.push_back("the pictures come from different cameras");
+    if (differ("sceneHash", equal) && image.metadata.contains("integrator") && !differ("integrator", equal))
+        list.push_back("the pictures come from different scenes or settings (sceneHash)");
+    return list;
+}
+
+void check_sizes(const core::Bitmap& a, const core::Bitmap& r, const CompareArguments& arguments) {
+    if (a.width == r.width && a.height == r.height) return;
+    throw InputError(fmt::format("has {} x {} pixels, the reference {} has {} x {}", a.width, a.height,
+                                 core::printable(arguments.reference), r.width, r.height),
+                     {arguments.image, 0});
+}
+
+json number_or_null(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+
+json mean_json(const std::array<double, 3>& rgb, double average) {
+    return {{"rgb", {number_or_null(rgb[0]), number_or_null(rgb[1]), number_or_null(rgb[2])}},
+            {"average", number_or_null(average)},
+            {"definition", mean_definition}};
+}
+
+void print_json(const CompareArguments& arguments, const core::Bitmap& size, const ImageMetrics& m,
+                const std::vector<std::string>& warnings) {
+    nlohmann::ordered_json j;
+    j["mote"] = MOTE_VERSION;
+    j["image"] = arguments.image;
+    j["reference"] = arguments.reference;
+    if (!arguments.layer.empty()) j["layer"] = arguments.layer;
+    j["width"] = size.width;
+    j["height"] = size.height;
+    j["non_finite"] = {{"share", m.non_finite_share()},
+                       {"image", m.non_finite_image},
+                       {"reference", m.non_finite_reference},
+                       {"either", m.non_finite_either},
+                       {"definition", non_finite_definition}};
+    j["mean_image"] = mean_json(m.mean_image, m.average_image);
+    j["mean_reference"] = mean_json(m.mean_reference, m.average_reference);
+    for (const MetricDefinition& d : core::metric_definitions())
+        j["metrics"][d.name] = {{"value", number_or_null(m.*d.value)}, {"definition", d.definition}};
+    if (!arguments.map.empty())
+        j["map"] = {{"file", arguments.map},
+                    {"lowest", core::ErrorScale().lowest},
+                    {"highest", core::ErrorScale().highest},
+                    {"definition", core::error_map_definition}};
+    j["warnings"] = warnings;
+    std::fputs((j.dump(2, ' ', false, json::error_handler_t::replace) + "\n").c_str(), stdout);
+}
+
+std::string mean_text(const std::array<double, 3>& rgb, double average) {
+    return fmt::format("{:.6g} {:.6g} {:.6g}, average {:.6g}", rgb[0], rgb[1], rgb[2], average);
+}
+
+void print_text(const CompareArguments& arguments, const core::Bitmap& size, const ImageMetrics& m) {
+    std::string text = fmt::format("image      {}\nreference  {}\n", core::printable(arguments.image, 400),
+                                   core::printable(arguments.reference, 400));
+    if (!arguments.layer.empty()) text += fmt::format("layer      {}\n", core::printable(arguments.layer));
+    text += fmt::format("pixels     {} x {}\n\n", size.width, size.height);
+    text += fmt::format("non-finite {:.3g} % of the pixels ({} in the image, {} in the reference): {}\n",
+                        100.0 * m.non_finite_share(), m.non_finite_image, m.non_finite_reference,
+                        non_finite_definition);
+    text += fmt::format("mean       {} in the image,\n           {} in the reference: {}\n",
+                        mean_text(m.mean_image, m.average_image),
+                        mean_text(m.mean_reference, m.average_reference), mean_definition);
+    text += "\nd is image - reference, r the reference.\n";
+    for (const MetricDefinition& d : core::metric_definitions())
+        text += fmt::format("  {:<20} {:<12.6g} {}\n", d.name, m.*d.value, d.definition);
+    if (!arguments.map.empty())
+        text +=
+            fmt::format("\nmap        {}: from {:g} to {:g}, {}\n", core::printable(arguments.map, 400),
+                        core::ErrorScale().lowest, core::ErrorScale().highest, core::error_map_definition);
+    std::fputs(text.c_str(), stdout);
+}
+
+}  // namespace
+
+int compare_command(const CompareArguments& arguments) {
+    if (!arguments.map.empty() && extension_of(arguments.map) != ".png")
+        throw UsageError("the map '" + core::printable(arguments.map) + "' does not end in .png");
+    const PictureFile image = read_picture(arguments.image, arguments.layer),
+                      reference = read_picture(arguments.reference, arguments.layer);
+    const core::Bitmap &a = image.bitmap, &r = reference.bitmap;
+    check_sizes(a, r, arguments);
+    const std::vector<std::string> warnings = doubts(image, reference);
+    for (const std::string& warning : warnings)
+        std::fputs(("mote: warning: " + warning + "\n").c_str(), stderr);
+    const ImageMetrics metrics = core::compare_images(a.pixels, r.pixels, a.width, a.height);
+    if (!arguments.map.empty())
+        core::write_png(arguments.map, a.width, a.height, core::error_map(a.pixels, r.pixels));
+    if (arguments.json)
+        print_json(arguments, a, metrics, warnings);
+    else
+        print_text(arguments, a, metrics);
+    return exit_ok;
+}
+
+}  // namespace mote::apps
