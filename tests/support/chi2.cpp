@@ -5,21 +5,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
-#include <numeric>
 #include <vector>
+
+#include "tests/support/failure_files.h"
 
 namespace mote::tests {
 namespace {
 
 using core::Vec3;
 constexpr double two_pi = 6.28318530717958647692;
-
-struct Cell {
-    double expected = 0.0;  ///< number of samples
-    double observed = 0.0;
-};
 
 /// h = 1 - cos(theta), phi; solid angle is dh dphi.
 Vec3 direction(const core::Frame& frame, double h, double phi) {
@@ -102,57 +97,18 @@ void integrate_density(const DirectionDensity& density, const Chi2Options& o, st
                                              (column + 1) * two_pi / o.phi_cells);
 }
 
-/// Sorts by expectation, pools from the rarest until five are expected, and sums (o - e)^2 / e.
-void sum_statistic(std::vector<Cell> cells, Chi2Result& result) {
-    std::erase_if(cells, [](const Cell& c) { return c.expected <= 0.0; });
-    std::sort(cells.begin(), cells.end(),
-              [](const Cell& a, const Cell& b) { return a.expected < b.expected; });
-    Cell pool;
-    int terms = 0;
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-        pool.expected += cells[i].expected, pool.observed += cells[i].observed;
-        if (pool.expected < 5.0 && i + 1 < cells.size()) continue;
-        if (pool.expected > 0.0)
-            result.statistic +=
-                (pool.observed - pool.expected) * (pool.observed - pool.expected) / pool.expected;
-        ++terms, pool = Cell();
-    }
-    result.degrees = terms - 1;
-}
-
-void write_table(const std::vector<Cell>& cells, const Chi2Options& o, Chi2Result& result) {
-    const auto path = std::filesystem::temp_directory_path() / ("mote_chi2_" + o.name + ".csv");
-    std::ofstream file(path);
-    file << "row,column,expected,observed\n";
-    for (std::size_t i = 0; i + 1 < cells.size(); ++i)
-        file << fmt::format("{},{},{},{}\n", int(i) / o.phi_cells, int(i) % o.phi_cells, cells[i].expected,
-                            cells[i].observed);
-    file << fmt::format("outside,,{},{}\n", cells.back().expected, cells.back().observed);
-    result.message += "; table in " + path.string();
+std::string write_table(const std::vector<Cell>& cells, const Chi2Options& o) {
+    return write_failure(o.name, [&](const std::filesystem::path& folder) {
+        std::ofstream file(folder / "cells.csv");
+        file << "row,column,expected,observed\n";
+        for (std::size_t i = 0; i + 1 < cells.size(); ++i)
+            file << fmt::format("{},{},{},{}\n", int(i) / o.phi_cells, int(i) % o.phi_cells,
+                                cells[i].expected, cells[i].observed);
+        file << fmt::format("outside,,{},{}\n", cells.back().expected, cells.back().observed);
+    });
 }
 
 }  // namespace
-
-double chi2_survival(double statistic, int degrees) {
-    // Regularised incomplete gamma function Q(a, x) (Abramowitz & Stegun 1964, 6.5.29 and 6.5.31).
-    const double a = 0.5 * degrees, x = 0.5 * statistic;
-    if (!(x > 0.0) || degrees < 1) return 1.0;
-    const double front = std::exp(a * std::log(x) - x - std::lgamma(a));
-    if (x < a + 1.0) {
-        double term = 1.0 / a, sum = term;
-        for (int n = 1; n < 100000 && term > sum * 1e-16; ++n) term *= x / (a + n), sum += term;
-        return 1.0 - front * sum;
-    }
-    double b = x + 1.0 - a, c = 1e300, d = 1.0 / b, fraction = d;  // Lentz's continued fraction
-    for (int i = 1; i < 100000; ++i) {
-        const double an = -i * (i - a);
-        b += 2.0;
-        d = 1.0 / (an * d + b), c = b + an / c;
-        fraction *= d * c;
-        if (std::fabs(d * c - 1.0) < 1e-15) break;
-    }
-    return front * fraction;
-}
 
 Chi2Result chi2_test(const DirectionSampler& sampler, const DirectionDensity& density, const Chi2Options& o) {
     std::vector<Cell> cells = count_samples(sampler, o);
@@ -162,16 +118,14 @@ Chi2Result chi2_test(const DirectionSampler& sampler, const DirectionDensity& de
     for (const Cell& c : cells) result.integral += c.expected / n;
     cells.back().expected = n * std::max(0.0, 1.0 - result.integral);
 
-    const auto impossible = std::count_if(
-        cells.begin(), cells.end() - 1, [](const Cell& c) { return c.expected == 0.0 && c.observed > 0.0; });
+    const std::size_t impossible = impossible_cells({cells.begin(), cells.end() - 1}, 0.0);
     // The quadrature is exact to far better than the spread of a count over all cells.
     const bool too_much = !(result.integral <= 1.0 + std::max(1e-4, 0.5 / std::sqrt(n)));
     // Samples that the density says cannot be lost: the density is normalised, and some are missing.
     const bool lost = cells.back().expected < 1e-4 * n && cells.back().observed > 5.0 + 2e-4 * n;
 
-    sum_statistic(cells, result);
-    result.p_value = chi2_survival(result.statistic, result.degrees);
-    const double level = 1.0 - std::pow(1.0 - o.significance, 1.0 / o.tests);
+    pearson(cells, result);
+    const double level = sidak_level(o.significance, std::size_t(o.tests));
     result.passed = impossible == 0 && !too_much && !lost && result.degrees >= 1 && result.p_value >= level;
     result.message = fmt::format(
         "{}: chi2 = {:.1f} with {} degrees of freedom, p = {:.3g} (level {:.3g}); integral {:.6f}; {} "
@@ -179,7 +133,7 @@ Chi2Result chi2_test(const DirectionSampler& sampler, const DirectionDensity& de
         "lost; {} cells of zero density were hit",
         o.name, result.statistic, result.degrees, result.p_value, level, result.integral,
         cells.back().observed, impossible);
-    if (!result.passed && o.write_table) write_table(cells, o, result);
+    if (!result.passed && o.write_table) result.message += write_table(cells, o);
     return result;
 }
 

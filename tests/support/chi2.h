@@ -14,6 +14,7 @@
 
 #include "core/math/frame.h"
 #include "core/math/random.h"
+#include "tests/support/pearson.h"
 
 namespace mote::tests {
 
@@ -23,7 +24,7 @@ using DirectionSampler = std::function<std::optional<core::Vec3>(core::Rng&)>;
 using DirectionDensity = std::function<double(const core::Vec3&)>;
 
 struct Chi2Options {
-    std::string name = "unnamed";  ///< of the table written on failure
+    std::string name = "unnamed";  ///< of the folder written on failure
     int cos_cells = 16, phi_cells = 32;
     std::size_t samples = 160000;
     std::uint64_t seed = 1;
@@ -33,21 +34,11 @@ struct Chi2Options {
     /// lobes need a small one.
     core::Frame frame;
     double cap = 2.0;
-    int subdivisions = 1;  ///< least number of times a cell is halved each way for its integral
-    bool write_table = true;
-};
-
-struct Chi2Result {
-    bool passed = false;
-    double statistic = 0.0, p_value = 0.0, integral = 0.0;  ///< integral of the density over the cap
-    int degrees = 0;
-    std::string message;  ///< one line for a test's report
+    int subdivisions = 1;     ///< least number of times a cell is halved each way for its integral
+    bool write_table = true;  ///< on failure; planted errors write none
 };
 
 Chi2Result chi2_test(const DirectionSampler& sampler, const DirectionDensity& density,
                      const Chi2Options& options);
-
-/// Probability that a chi-square variable with `degrees` degrees of freedom is at least `statistic`.
-double chi2_survival(double statistic, int degrees);
 
 }  // namespace mote::tests

@@ -62,6 +62,7 @@ RenderStatistics RenderStatistics::scaled(double factor) const {
         for (Estimate& e : layer) scale(e);
     for (auto& layer : result.whole)
         for (Estimate& e : layer) scale(e);
+    result.planted = true;
     return result;
 }
 
@@ -157,64 +158,6 @@ RenderStatistics render_statistics(const Scene& scene, const Integrator& integra
         blocks.add(layers.size(), beauty);
     }
     blocks.finish(result);
-    return result;
-}
-
-namespace {
-
-/// Upper quantile of the standard normal distribution, by bisection of erfc.
-double normal_quantile(double upper_tail) {
-    double low = 0.0, high = 40.0;
-    for (int i = 0; i < 200; ++i) {
-        const double mid = 0.5 * (low + high);
-        (0.5 * std::erfc(mid / std::sqrt(2.0)) > upper_tail ? low : high) = mid;
-    }
-    return 0.5 * (low + high);
-}
-
-double z_of(const Estimate& a, const Estimate& b) {
-    const double floor = 1e-10 * (a.mean * a.mean + b.mean * b.mean) + 1e-30;
-    return std::fabs(a.mean - b.mean) / std::sqrt(a.variance_of_mean + b.variance_of_mean + floor);
-}
-
-}  // namespace
-
-ZTest same_mean(const RenderStatistics& A, const std::string& a, const RenderStatistics& B,
-                const std::string& b) {
-    const auto la = A.layer(a), lb = B.layer(b);
-    const std::size_t tests = A.blocks[la].size() + 3;
-    const double level = 1.0 - std::pow(1.0 - 0.01, 1.0 / double(tests));
-    ZTest result{A.non_finite == 0 && B.non_finite == 0, 0.0, normal_quantile(0.5 * level), ""};
-    result.report = fmt::format("layers '{}' and '{}', {} and {} passes, non-finite {} and {}\n", a, b,
-                                A.passes, B.passes, A.non_finite, B.non_finite);
-    const auto check = [&](const std::string& what, const Estimate& x, const Estimate& y) {
-        const double z = z_of(x, y);
-        result.worst_z = std::max(result.worst_z, z);
-        if (z > result.critical_z || what[0] == 'p')
-            result.report +=
-                fmt::format("  {}: {:.6g} +- {:.2g} against {:.6g} +- {:.2g}, z = {:.2f}\n", what, x.mean,
-                            std::sqrt(x.variance_of_mean), y.mean, std::sqrt(y.variance_of_mean), z);
-    };
-    for (std::size_t c = 0; c < 3; ++c)
-        check(fmt::format("picture channel {}", c), A.whole[la][c], B.whole[lb][c]);
-    for (std::size_t i = 0; i < A.blocks[la].size(); ++i)
-        check(fmt::format("block {} channel {}", i / 3, i % 3), A.blocks[la][i], B.blocks[lb][i]);
-    result.passed = result.passed && result.worst_z <= result.critical_z;
-    result.report += fmt::format("  worst z {:.2f}, critical {:.2f}\n", result.worst_z, result.critical_z);
-    return result;
-}
-
-ZTest mean_is(const RenderStatistics& A, const std::string& a, double value) {
-    const auto la = A.layer(a);
-    const double level = 1.0 - std::pow(1.0 - 0.01, 1.0 / 3.0);
-    ZTest result{A.non_finite == 0, 0.0, normal_quantile(0.5 * level), ""};
-    for (const Estimate& e : A.whole[la]) {
-        const double z = z_of(e, {value, 0.0});
-        result.worst_z = std::max(result.worst_z, z);
-        result.report += fmt::format("layer '{}': {:.6g} +- {:.2g} against {:.6g}, z = {:.2f}\n", a, e.mean,
-                                     std::sqrt(e.variance_of_mean), value, z);
-    }
-    result.passed = result.passed && result.worst_z <= result.critical_z;
     return result;
 }
 

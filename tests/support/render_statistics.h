@@ -38,8 +38,10 @@ struct RenderStatistics {
     std::vector<std::vector<Estimate>> blocks;   ///< [layer][(block_y * blocks_x + block_x) * 3 + channel]
     std::vector<std::array<Estimate, 3>> whole;  ///< [layer][channel]: the mean of all pixels
 
+    bool planted = false;  ///< holds an error on purpose: see OnFailure
+
     std::size_t layer(const std::string& name) const;  ///< throws std::out_of_range
-    RenderStatistics scaled(double factor) const;      ///< a planted error
+    RenderStatistics scaled(double factor) const;      ///< a planted error, and marked as one
 };
 
 /// The picture's size is that of the scene's film.
@@ -58,11 +60,19 @@ struct ZTest {
     std::string report;          ///< written out on failure
 };
 
+/// What a comparison that fails leaves behind. One with a planted error is expected to fail: it never writes.
+enum class OnFailure {
+    write,  ///< everything, into a folder named in the report (see failure_files.h): a.exr, b.exr with the
+            ///< means and z.exr with the signed z-scores, blocks as pixels; and blocks.csv, report.txt
+    nothing
+};
+
 /// Do layers `a` of A and `b` of B have the same expectation? Two-sided z-tests of every block and channel
-/// and of the picture's mean, at a level of 1 % for all of them together (Sidak). `variance_floor` keeps
-/// blocks without noise from failing by rounding: it is relative to the squared mean, (1e-5)^2.
+/// and of the picture's mean, at a level of 1 % for all of them together (Šidák's correction). A relative
+/// error of 1e-5 passes even where there is no noise: rounding. Throws std::invalid_argument where the two
+/// are not cut into the same blocks.
 ZTest same_mean(const RenderStatistics& A, const std::string& a, const RenderStatistics& B,
-                const std::string& b);
+                const std::string& b, OnFailure on_failure = OnFailure::write);
 
 /// The same against an exact value for the picture's mean.
 ZTest mean_is(const RenderStatistics& A, const std::string& a, double value);
