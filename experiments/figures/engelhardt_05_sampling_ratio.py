@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """How evenly directional maps sample the sphere: Engelhardt 2013, Figs. 5.1 to 5.4 and 7.7.
 
 The program mote_directional_maps prints density and spacing of the texels of every map; this draws them, writes the
