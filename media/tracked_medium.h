@@ -93,13 +93,18 @@ class TrackedMedium final : public HeterogeneousMedium {
                                           core::TrackingCounters& counters) const override;
 
   private:
-    /// Walks the Poisson process with rate `rate_of(range)` along the ray: `at_piece(range, length)` for
-    /// every piece, `at_collision(range, rate, t, density) -> bool` (false stops) for every tentative
-    /// collision. Rates and densities are in the grid's own unit; the scale is applied to lengths. False on
-    /// the step limit.
+    /// Walks the Poisson process with rate `rate_of(range)` along the ray: `at_collision(range, rate, t,
+    /// density) -> bool` (false stops) for every tentative collision, `at_piece(range, length)` for every
+    /// piece that was passed. Rates and densities are in the grid's own unit; the scale is applied to
+    /// lengths. At the step limit the walk ends: the t up to which it came.
     template <typename RateOf, typename AtPiece, typename AtCollision>
-    bool track(const core::Ray& ray, core::Rng& rng, core::TrackingCounters& counters, RateOf&& rate_of,
-               AtPiece&& at_piece, AtCollision&& at_collision) const;
+    std::optional<double> track(const core::Ray& ray, core::Rng& rng, core::TrackingCounters& counters,
+                                RateOf&& rate_of, AtPiece&& at_piece, AtCollision&& at_collision) const;
+
+    /// The transmittance from where a walk was given up to the end, by marching; 1 where none was. An
+    /// estimate stopped there and multiplied by it keeps its mean, but for marching's tolerance.
+    core::Rgb rest_by_marching(const core::Ray& ray, const std::optional<double>& from,
+                               core::TrackingCounters& counters) const;
 
     core::Rgb by_marching(const core::Ray& ray, core::TrackingCounters& counters) const;
     core::Rgb by_delta_tracking(const core::Ray& ray, core::Rng& rng, core::TrackingCounters& counters) const;

@@ -7,41 +7,47 @@ namespace mote::media {
 
 template <typename Grid>
 template <typename RateOf, typename AtPiece, typename AtCollision>
-bool TrackedMedium<Grid>::track(const core::Ray& ray, core::Rng& rng, core::TrackingCounters& counters,
-                                RateOf&& rate_of, AtPiece&& at_piece, AtCollision&& at_collision) const {
+std::optional<double> TrackedMedium<Grid>::track(const core::Ray& ray, core::Rng& rng,
+                                                 core::TrackingCounters& counters, RateOf&& rate_of,
+                                                 AtPiece&& at_piece, AtCollision&& at_collision) const {
     const core::Vec3d origin = index_origin(ray), direction = index_direction(ray);
     const double scale = parts_.scale;
     auto cursor = grid_.cursor();
     double depth =
         sample_optical_depth(rng);  // majorant optical depth left until the next tentative collision
     std::uint64_t steps = 0;
-    bool complete = true;
+    std::optional<double> given_up;
     const auto visit = [&](const Range& range, double t0, double t1) {
         const double length = t1 - t0, rate = rate_of(range), rate_per_metre = rate * scale;
-        at_piece(range, length);
-        if (!(rate_per_metre > 0.0)) return true;
+        if (!(rate_per_metre > 0.0)) {
+            at_piece(range, length);
+            return true;
+        }
         double s = 0.0;  // from the start of the piece, so that short steps are not lost beside a large t
         for (;;) {
             const double remaining = rate_per_metre * (length - s);
             if (!(depth < remaining)) {
                 depth -= remaining;
+                at_piece(range, length);
                 return true;
             }
             s += depth / rate_per_metre;
-            if (++steps > step_limit) {
-                complete = false;
-                return false;
-            }
+            ++steps;
             const double t = t0 + s;
             const Wide density = detail::widen(cursor.lookup(origin + t * direction));
             if (!at_collision(range, rate, t, density)) return false;
+            if (steps == parts_.step_limit) {  // here, before what follows is known: the mean stays right
+                at_piece(range, s);
+                given_up = t;
+                return false;
+            }
             depth = sample_optical_depth(rng);
         }
     };
     grid_.majorants.walk(origin, direction, double(ray.t_min), double(ray.t_max), visit);
     counters.lookups += steps, counters.collisions += steps;
-    if (!complete) ++counters.fallbacks;
-    return complete;
+    if (given_up) ++counters.fallbacks;
+    return given_up;
 }
 
 template <typename Grid>
@@ -84,10 +90,10 @@ std::optional<float> TrackedMedium<Grid>::sample_collision(const core::Ray& ray,
         weights.light *= float(majorant / (majorant - real));
         return true;
     };
-    const bool complete = track(
+    const auto given_up = track(
         ray, rng, counters, [](const Range& r) { return detail::largest(r.upper); },
         [](const Range&, double) {}, at_collision);
-    if (!complete) weights.throughput = core::Rgb(0.0f);
+    if (given_up) weights.throughput = core::Rgb(0.0f);
     return found;
 }
 
@@ -102,11 +108,12 @@ void TrackedMedium<Grid>::connect(const core::Ray& ray, core::PathWeights& weigh
         passed *= factor, estimate *= factor;
         return detail::russian_roulette(estimate, rng);
     };
-    const bool complete = track(
+    const auto given_up = track(
         ray, rng, counters, [](const Range& r) { return detail::largest(r.upper); },
         [](const Range&, double) {}, at_collision);
-    weights.throughput *= core::Rgb(complete ? estimate : Wide(0.0));
-    weights.unidirectional *= core::Rgb(passed);
+    const core::Rgb rest = rest_by_marching(ray, given_up, counters);
+    weights.throughput *= core::Rgb(estimate) * rest;
+    weights.unidirectional *= core::Rgb(passed) * rest;
 }
 
 template <typename Grid>
@@ -142,10 +149,10 @@ core::Rgb TrackedMedium<Grid>::by_delta_tracking(const core::Ray& ray, core::Rng
         }
         return detail::largest(passes) > 0.0;
     };
-    const bool complete = track(
+    const auto given_up = track(
         ray, rng, counters, [](const Range& r) { return detail::largest(r.upper); },
         [](const Range&, double) {}, at_collision);
-    return core::Rgb(complete ? passes : Wide(0.0));
+    return core::Rgb(passes) * rest_by_marching(ray, given_up, counters);
 }
 
 template <typename Grid>
@@ -156,10 +163,19 @@ core::Rgb TrackedMedium<Grid>::by_ratio_tracking(const core::Ray& ray, core::Rng
         estimate *= Wide(1.0) - glm::min(density, Wide(majorant)) / majorant;
         return detail::russian_roulette(estimate, rng);
     };
-    const bool complete = track(
+    const auto given_up = track(
         ray, rng, counters, [](const Range& r) { return detail::largest(r.upper); },
         [](const Range&, double) {}, at_collision);
-    return core::Rgb(complete ? estimate : Wide(0.0));
+    return core::Rgb(estimate) * rest_by_marching(ray, given_up, counters);
+}
+
+template <typename Grid>
+core::Rgb TrackedMedium<Grid>::rest_by_marching(const core::Ray& ray, const std::optional<double>& from,
+                                                core::TrackingCounters& counters) const {
+    if (!from) return core::Rgb(1.0f);
+    core::Ray rest = ray;
+    rest.t_min = float(*from);
+    return by_marching(rest, counters);
 }
 
 template <typename Grid>
@@ -173,7 +189,7 @@ core::Rgb TrackedMedium<Grid>::by_marching(const core::Ray& ray, core::TrackingC
     auto cursor = grid_.cursor();
     Wide depth(0.0);
     const auto visit = [&](const Range& range, double t0, double t1) {
-        const double length = t1 - t0;
+        const double length = std::min(t1 - t0, 1e30);  // vacuum of infinite length is 0, not NaN
         const Wide lower = detail::widen(range.lower), upper = detail::widen(range.upper);
         if (detail::largest(upper - lower) == 0.0) {
             if (detail::largest(upper) > 0.0) depth += upper * length;
@@ -223,9 +239,10 @@ core::Rgb TrackedMedium<Grid>::by_residual_tracking(const core::Ray& ray, core::
         estimate *= Wide(1.0) - residual / rate;
         return detail::russian_roulette(estimate, rng);
     };
-    const bool complete = track(ray, rng, counters, rate_of, at_piece, at_collision);
-    if (!complete || detail::largest(estimate) == 0.0) return core::Rgb(0.0f);
-    return core::Rgb(estimate) * detail::exp_minus_rgb(sure_depth);
+    const auto given_up = track(ray, rng, counters, rate_of, at_piece, at_collision);
+    if (detail::largest(estimate) == 0.0) return core::Rgb(0.0f);
+    return core::Rgb(estimate) * detail::exp_minus_rgb(sure_depth) *
+           rest_by_marching(ray, given_up, counters);
 }
 
 template <typename Grid>

@@ -1,0 +1,307 @@
+// Grids at the extremes: every estimator of the transmittance, against local and global majorants, from
+// vacuum to lead, over density steps of a million to one, under any placing, along boundaries, and beyond the
+// step limit. docs/media.md has the table of what was tried and where it is tested.
+#include <array>
+#include <cmath>
+#include <ctime>
+#include <iostream>
+
+#include "media/vdb_volume.h"
+#include "tests/media/test_media.h"
+#include "tests/media/vdb_test_files.h"
+#include "tests/support/catch.h"
+
+using namespace mote;
+using core::PathWeights, core::Ray, core::Rgb, core::Transform, core::Vec3, core::Vec3d;
+using media::Majorants, media::TransmittanceEstimator;
+
+namespace {
+
+constexpr std::array estimators = {
+    TransmittanceEstimator::ray_marching, TransmittanceEstimator::delta_tracking,
+    TransmittanceEstimator::ratio_tracking, TransmittanceEstimator::residual_ratio_tracking,
+    TransmittanceEstimator::automatic};
+constexpr std::array both_majorants = {Majorants::local, Majorants::global};
+
+/// Oblique through the unit cube, from within it to within it.
+const Ray oblique{Vec3(0.05f, 0.1f, 0.15f), glm::normalize(Vec3(0.8f, 0.7f, 0.6f)), 0.0f, 1.05f};
+
+media::MediumParts parts_with(float scale, Majorants majorants) {
+    auto parts = tests::medium_parts(Rgb(0.9f), scale);
+    parts.tracking.majorants = majorants;
+    return parts;
+}
+
+/// Is the mean of `trials` estimates within 5 standard errors of exp(-tau)? An estimate between 0 and 1 has a
+/// variance of at most T (1 - T); what is rarer than one in `trials` shows up a few times at most (the
+/// constant). Ray marching: to its tolerance of 1e-3 of the optical depth.
+bool agrees(const media::HeterogeneousMedium& m, TransmittanceEstimator estimator, const Ray& ray, double tau,
+            int trials, core::TrackingCounters& counters) {
+    const double expected = std::exp(-tau);
+    core::Rng rng(3);
+    if (estimator == TransmittanceEstimator::ray_marching) {
+        const double t = m.transmittance_by(estimator, ray, rng, counters).x;
+        return expected > 1.2e-38 ? std::fabs(std::log(t) + tau) <= 1e-3 * tau + 1e-6 : t <= 1.2e-38;
+    }
+    tests::Mean mean;
+    bool in_range = true;
+    for (int i = 0; i < trials; ++i) {
+        const float t = m.transmittance_by(estimator, ray, rng, counters).x;
+        in_range &= t >= 0.0f && t <= 1.0f;
+        mean.add(t);
+    }
+    const double spread = std::sqrt(expected * -std::expm1(-tau) / trials);
+    return in_range && std::fabs(mean.value() - expected) < 5.0 * spread + 10.0 / trials + 1e-7;
+}
+
+int trials_for(double tau) { return tau < 0.5 ? 50000 : tau < 50.0 ? 20000 : 200; }
+
+/// Wavy, nowhere zero: 0.2 to 1.8.
+media::VolFile waves() {
+    return tests::vol_grid(glm::ivec3(16), 1, [](int x, int y, int z) {
+        return Rgb(1.0f + 0.8f * std::sin(0.9f * float(x)) * std::cos(0.7f * float(y) + 0.5f * float(z)));
+    });
+}
+
+media::VolFile constant_file() {
+    return tests::vol_grid(glm::ivec3(9), 1, [](int, int, int) { return Rgb(1.0f); });
+}
+
+double depth_of(const media::VolFile& file, const Ray& ray) {
+    const auto m = tests::medium_of(file, tests::medium_parts(Rgb(0.9f)));
+    return tests::quadrature_depth(*m, ray, ray.t_max, 40000).x;
+}
+
+/// Thin on the left, `ratio` times as dense on the right.
+media::VolFile step_of(float thin, float dense) {
+    return tests::vol_grid(glm::ivec3(16, 4, 4), 1,
+                           [=](int x, int, int) { return Rgb(x < 8 ? thin : dense); });
+}
+const Ray through_thin{Vec3(0.01f, 0.5f, 0.5f), Vec3(1, 0, 0), 0.0f, 0.4f};
+
+}  // namespace
+
+TEST_CASE("every estimator from optical depth 1e-6 to 1e6", "[media][extremes]") {
+    for (const media::VolFile& file : {constant_file(), waves(), tests::random_grid(glm::ivec3(12), 1, 5)}) {
+        const double unit = depth_of(file, oblique);
+        for (const Majorants majorants : both_majorants)
+            for (double tau = 1e-6; tau < 2e6; tau *= 10.0) {
+                const auto m = tests::medium_of(file, parts_with(float(tau / unit), majorants));
+                for (const auto estimator : estimators) {
+                    INFO(media::name_of(estimator) << ", optical depth " << tau << ", majorants "
+                                                   << (majorants == Majorants::local ? "local" : "global"));
+                    core::TrackingCounters counters;
+                    CHECK(agrees(*m, estimator, oblique, tau, trials_for(tau), counters));
+                    CHECK(counters.fallbacks == 0);
+                }
+            }
+    }
+}
+
+TEST_CASE("what is deterministic is exact from optical depth 1e-6 to 1e6", "[media][extremes]") {
+    core::Rng rng(1);
+    core::TrackingCounters counters;
+    for (const Majorants majorants : both_majorants)
+        for (double tau = 1e-6; tau < 2e6; tau *= 10.0) {
+            const auto scale = float(tau / double(oblique.t_max));
+            const auto grid = tests::medium_of(constant_file(), parts_with(scale, majorants));
+            const auto unbounded = media::ConstantVolume(Rgb(1.0f)).make_medium(parts_with(scale, majorants));
+            for (const auto& m : {grid, unbounded})
+                for (const auto estimator :
+                     {TransmittanceEstimator::ray_marching, TransmittanceEstimator::residual_ratio_tracking,
+                      TransmittanceEstimator::automatic}) {
+                    const double exact = std::exp(-double(scale) * double(oblique.t_max));
+                    const double t = m->transmittance_by(estimator, oblique, rng, counters).x;
+                    INFO(media::name_of(estimator) << ", optical depth " << tau << ": " << t);
+                    CHECK((exact > 1.2e-38 ? std::fabs(t - exact) < 1e-5 * exact : t <= 1.2e-38));
+                }
+        }
+    CHECK(counters.lookups == 0);
+}
+
+TEST_CASE("an optical depth that is wrong by seven per cent is caught", "[media][extremes][planted]") {
+    const media::VolFile file = waves();
+    const auto m = tests::medium_of(file, parts_with(float(1.0 / depth_of(file, oblique)), Majorants::local));
+    core::TrackingCounters counters;
+    for (const auto estimator : estimators) {
+        INFO(media::name_of(estimator));
+        CHECK_FALSE(agrees(*m, estimator, oblique, 1.07, trials_for(1.0), counters));
+        CHECK_FALSE(agrees(*m, estimator, oblique, 0.93, trials_for(1.0), counters));
+    }
+}
+
+TEST_CASE("a checkerboard of 0 and 10,000", "[media][extremes]") {
+    const auto board = tests::vol_grid(
+        glm::ivec3(16), 1, [](int x, int y, int z) { return Rgb((x + y + z) % 2 ? 1e4f : 0.0f); });
+    // Along a row of voxel centres the density is a triangle wave between 0 and 1e4.
+    const float half = 0.5f / 16.0f;
+    const Ray row{Vec3(half, half, half), Vec3(1, 0, 0), 0.0f, 14.0f / 16.0f};
+    for (const Majorants majorants : both_majorants)
+        for (const double tau : {1e-3, 1.0, 1e4}) {
+            for (const Ray& ray : {row, oblique}) {
+                const double unit = &ray == &row ? 5e3 * double(row.t_max) : depth_of(board, ray);
+                const auto m = tests::medium_of(board, parts_with(float(tau / unit), majorants));
+                for (const auto estimator : estimators) {
+                    core::TrackingCounters counters;
+                    INFO(media::name_of(estimator) << ", optical depth " << tau);
+                    CHECK(agrees(*m, estimator, ray, tau, trials_for(tau), counters));
+                    CHECK(counters.fallbacks == 0);
+                }
+            }
+        }
+}
+
+TEST_CASE("past a density a million times larger", "[media][extremes]") {
+    const media::VolFile file = step_of(1.0f, 1e6f);
+    const double tau = double(through_thin.t_max);
+    for (const Majorants majorants : both_majorants) {
+        const auto m = tests::medium_of(file, parts_with(1.0f, majorants));
+        for (const auto estimator : estimators) {
+            const int trials = majorants == Majorants::local ? 20000 : 5;
+            core::TrackingCounters counters;
+            INFO(media::name_of(estimator) << (majorants == Majorants::local ? ", local" : ", global"));
+            CHECK(agrees(*m, estimator, through_thin, tau, trials, counters));
+            CHECK(counters.fallbacks == 0);
+            if (estimator == TransmittanceEstimator::ray_marching) continue;
+            if (majorants == Majorants::local) CHECK(counters.lookups < 5u * std::uint64_t(trials));
+            // A tentative collision in 400,000 is real: the product of chances to pass is all but certain.
+            if (majorants == Majorants::global && estimator != TransmittanceEstimator::delta_tracking) {
+                core::Rng rng(2);
+                CHECK(std::log(m->transmittance_by(estimator, through_thin, rng, counters).x) ==
+                      Approx(-tau).epsilon(0.01));
+            }
+        }
+    }
+}
+
+TEST_CASE("a hopeless majorant ends within a second, and is counted", "[media][extremes][step_limit]") {
+    // Nothing on the left, under a majorant of optical depth 4e8: no event would ever end the walk.
+    const auto m = tests::medium_of(step_of(0.0f, 1e6f), parts_with(1e3f, Majorants::global));
+    core::Rng rng(1);
+    core::TrackingCounters counters;
+    const std::clock_t start = std::clock();
+    CHECK(m->transmittance_by(TransmittanceEstimator::ratio_tracking, through_thin, rng, counters) ==
+          Rgb(1.0f));
+    const double seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
+    std::cout << "a walk of " << counters.lookups << " lookups took " << seconds << " s\n";
+    CHECK(seconds < 10.0);  // below one; more under sanitizers
+    CHECK(counters.fallbacks == 1);
+}
+
+TEST_CASE("beyond the step limit estimates keep their mean", "[media][extremes][step_limit]") {
+    const media::VolFile file = tests::random_grid(glm::ivec3(12), 1, 5);
+    const double unit = depth_of(file, oblique);
+    for (const double tau : {0.5, 2.0})
+        for (const std::uint64_t limit : {1u, 3u}) {
+            auto parts = parts_with(float(tau / unit), Majorants::global);
+            parts.step_limit = limit;
+            const auto m = tests::medium_of(file, parts);
+            for (const auto estimator : estimators) {
+                if (estimator == TransmittanceEstimator::ray_marching) continue;
+                core::TrackingCounters counters;
+                INFO(media::name_of(estimator) << ", depth " << tau << ", at most " << limit << " steps");
+                CHECK(agrees(*m, estimator, oblique, tau, 4000, counters));
+                CHECK_FALSE(agrees(*m, estimator, oblique, 1.2 * tau, 4000, counters));
+                CHECK(counters.fallbacks > 400);
+            }
+            // Connections and passed paths: the same; a path that was given up is lost, not passed on.
+            const auto e = tests::spectral_estimates(*m, oblique, 4000, 4);
+            CHECK(e.connection[0].sigmas_from(std::exp(-tau), 1e-3) < 5.0);
+            CHECK(e.transmittance[0].sigmas_from(std::exp(-tau), 1e-3) < 5.0);
+            CHECK(e.escape[0].value() < std::exp(-tau));
+        }
+}
+
+TEST_CASE("a channel without extinction passes an infinite length", "[media][extremes]") {
+    for (const Majorants majorants : both_majorants) {
+        auto parts = parts_with(1.0f, majorants);
+        parts.step_limit = 1000;
+        const auto m = media::ConstantVolume(Rgb(0.0f, 1.0f, 2.0f)).make_medium(parts);
+        const Ray endless{Vec3(0.0f), Vec3(0, 0, 1), 0.0f, core::infinity};
+        for (const auto estimator : estimators) {
+            core::Rng rng(1);
+            core::TrackingCounters counters;
+            INFO(media::name_of(estimator));
+            CHECK(m->transmittance_by(estimator, endless, rng, counters) == Rgb(1.0f, 0.0f, 0.0f));
+        }
+    }
+}
+
+TEST_CASE("every estimator under rotation, shear, anisotropic voxels of 1e-4 to 1e4", "[media][extremes]") {
+    const media::VolFile file = waves();
+    glm::dmat4 shear(1.0);
+    shear[1][0] = 0.6, shear[2][1] = -0.3;
+    const glm::dmat4 turned = glm::rotate(glm::dmat4(1.0), 0.7, glm::normalize(Vec3d(1, 2, 3))) * shear *
+                              glm::scale(glm::dmat4(1.0), Vec3d(1.0, 0.1, 4.0));
+    const double tau = 1.5, unit = depth_of(file, oblique) / double(oblique.t_max);
+    for (const double voxel : {1e-4, 1.0, 1e4}) {
+        const Transform place(glm::scale(glm::dmat4(1.0), Vec3d(16.0 * voxel)) * turned);
+        const Vec3 from(place.point(Vec3d(oblique.origin)));
+        const Vec3 to(place.point(Vec3d(oblique.at(oblique.t_max))));
+        const Ray ray{from, glm::normalize(to - from), 0.0f, glm::distance(from, to)};
+        const auto scale = float(tau / unit / double(ray.t_max));
+        for (const Majorants majorants : both_majorants) {
+            const auto m = tests::medium_of(file, parts_with(scale, majorants), place);
+            for (const auto estimator : estimators) {
+                core::TrackingCounters counters;
+                INFO(media::name_of(estimator) << ", voxels of " << voxel);
+                CHECK(agrees(*m, estimator, ray, tau, 40000, counters));
+            }
+        }
+    }
+}
+
+TEST_CASE("rays that start on, end on, or graze the boundary of a grid", "[media][extremes]") {
+    const tests::TemporaryFolder folder;
+    const auto grid = media::load_vdb_grid(folder.grid("tiles"));  // 0.75 from voxel -4 to 35, vacuum beyond
+    for (const Majorants majorants : both_majorants) {
+        const auto m = media::VdbVolume(grid).make_medium(parts_with(0.1f, majorants));
+        const float a = -5.0f, b = 36.0f, middle = 15.0f;  // where the interpolation reaches zero
+        const float diagonal = 1.0f / std::sqrt(2.0f);
+        struct Case {
+            const char* name;
+            Ray ray;
+            double depth;
+        };
+        const std::array<Case, 11> cases = {{
+            {"starts on a face", {Vec3(a, middle, middle), Vec3(1, 0, 0), 0.0f, 100.0f}, 3.0},
+            {"ends on a face", {Vec3(-20, middle, middle), Vec3(1, 0, 0), 0.0f, 56.0f}, 3.0},
+            {"face to face", {Vec3(middle, a, middle), Vec3(0, 1, 0), 0.0f, b - a}, 3.0},
+            {"leaves from a face", {Vec3(a, middle, middle), Vec3(-1, 0, 0), 0.0f, 100.0f}, 0.0},
+            {"arrives at a face", {Vec3(-20, middle, middle), Vec3(1, 0, 0), 0.0f, 15.0f}, 0.0},
+            {"lies in a face", {Vec3(-20, a, middle), Vec3(1, 0, 0), 0.0f, 100.0f}, 0.0},
+            {"lies in the far face", {Vec3(-20, middle, b), Vec3(1, 0, 0), 0.0f, 100.0f}, 0.0},
+            {"runs along an edge", {Vec3(a, a, -50), Vec3(0, 0, 1), 0.0f, core::infinity}, 0.0},
+            {"touches an edge", {Vec3(-15, 5, middle), Vec3(diagonal, -diagonal, 0), 0.0f, 100.0f}, 0.0},
+            {"without length", {Vec3(middle), Vec3(1, 0, 0), 2.0f, 2.0f}, 0.0},
+            {"along a cell's face", {Vec3(3, -20, 7), Vec3(0, 1, 0), 0.0f, core::infinity}, 3.0},
+        }};
+        for (const Case& c : cases)
+            for (const auto estimator : estimators) {
+                core::TrackingCounters counters;
+                INFO(c.name << ", " << media::name_of(estimator));
+                CHECK(agrees(*m, estimator, c.ray, c.depth, 20000, counters));
+            }
+    }
+}
+
+TEST_CASE("albedo 0 absorbs, albedo 1 does not", "[media][extremes]") {
+    for (const float albedo : {0.0f, 1.0f})
+        for (const Majorants majorants : both_majorants) {
+            auto parts = parts_with(1e3f, majorants);
+            parts.albedo = std::make_shared<media::ConstantVolume>(Rgb(albedo));
+            const auto m = tests::medium_of(waves(), parts);
+            CHECK(m->traits().scattering == (albedo > 0.0f));
+            core::Rng rng(1);
+            core::TrackingCounters counters;
+            for (int i = 0; i < 1000; ++i) {
+                PathWeights w;
+                w.light = Rgb(1.0f);  // as after a scattering of density 1
+                Rgb emitted(0.0f);
+                REQUIRE(m->sample_collision(oblique, w, emitted, rng, counters).has_value());
+                REQUIRE(w.throughput == Rgb(albedo));
+                REQUIRE(core::is_finite(w.unidirectional));
+                REQUIRE(core::is_finite(w.light));
+            }
+        }
+}
