@@ -88,13 +88,21 @@ std::vector<Cell> count_samples(const DirectionSampler& sampler, const Chi2Optio
 }
 
 void integrate_density(const DirectionDensity& density, const Chi2Options& o, std::vector<Cell>& cells) {
-    const CellIntegral integral(density, o);
+    Chi2Options careful = o;
+    careful.subdivisions = std::max(6, o.subdivisions);
+    const CellIntegral integral(density, o), careful_integral(density, careful);
     for (int row = 0; row < o.cos_cells; ++row)
-        for (int column = 0; column < o.phi_cells; ++column)
-            cells[std::size_t(row * o.phi_cells + column)].expected =
-                double(o.samples) * integral(row * o.cap / o.cos_cells, (row + 1) * o.cap / o.cos_cells,
+        for (int column = 0; column < o.phi_cells; ++column) {
+            const auto over = [&](const CellIntegral& f) {
+                return double(o.samples) * f(row * o.cap / o.cos_cells, (row + 1) * o.cap / o.cos_cells,
                                              column * two_pi / o.phi_cells,
                                              (column + 1) * two_pi / o.phi_cells);
+            };
+            Cell& cell = cells[std::size_t(row * o.phi_cells + column)];
+            cell.expected = over(integral);
+            // Before samples are called impossible: the corner of a sharp border may lie between the points.
+            if (cell.expected == 0.0 && cell.observed > 0.0) cell.expected = over(careful_integral);
+        }
 }
 
 std::string write_table(const std::vector<Cell>& cells, const Chi2Options& o) {
