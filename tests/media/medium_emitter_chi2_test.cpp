@@ -1,0 +1,142 @@
+// The emission of a medium as a light draws what it claims: directions to it, points of it, and directions of
+// its particles, by chi-square tests against its density of points p_V. It is no type of the scene language,
+// so no registered type stands for it.
+#include "media/medium_emitter.h"
+#include "tests/media/test_media.h"
+#include "tests/support/catch.h"
+#include "tests/support/chi2.h"
+#include "tests/support/chi2_distance.h"
+
+using namespace mote;
+using namespace mote::tests;
+using core::Rgb, core::Vec3;
+
+namespace {
+
+/// Glowing everywhere in the unit cube, brighter in some places than in others.
+struct Glow {
+    std::shared_ptr<media::HeterogeneousMedium> medium;
+    std::unique_ptr<media::MediumEmitter> light;
+
+    Glow() {
+        media::MediumParts parts = medium_parts(Rgb(0.2f));
+        parts.emission.radiance = std::make_shared<media::ConstantVolume>(Rgb(1.0f));
+        medium = medium_of(
+            vol_grid({5, 5, 5}, 1,
+                     [](int x, int y, int z) { return Rgb(0.2f + (x * y == 6 ? 8.0f : 0.0f) + 0.3f * z); }),
+            parts);
+        light = std::make_unique<media::MediumEmitter>(*medium, core::Bounds3{Vec3(0.0f), Vec3(1.0f)}, true);
+        light->set_direct_probability(1.0f);
+    }
+    /// p_V(y) d^2 [1/(sr m)]: light_over_walk() where the extinction is one.
+    double pdf_along(const Vec3& from, const Vec3& y) const {
+        return double(light->light_over_walk(from, y, Rgb(1.0f)));
+    }
+};
+
+const Vec3 receiver(0.4f, -0.3f, -1.2f);
+
+/// Density of directions: the integral of p_V d^2 along the ray. The cube lies within 3 m.
+double direction_density(const Glow& glow, const Vec3& w) {
+    constexpr int steps = 80;
+    const float near = 1.0f, far = 3.0f, h = (far - near) / steps;
+    double sum = 0.0;
+    for (int i = 0; i < steps; ++i)
+        sum += glow.pdf_along(receiver, receiver + (near + (float(i) + 0.5f) * h) * w);
+    return sum * double(h);
+}
+
+Chi2Options direction_options(const std::string& name) {
+    Chi2Options o;
+    o.name = "medium_emitter_" + name;
+    o.samples = 60000, o.cos_cells = 8, o.phi_cells = 16, o.tests = 5;
+    return o;
+}
+Chi2Options towards_the_cube(const std::string& name) {
+    Chi2Options o = direction_options(name);
+    o.frame = core::Frame(glm::normalize(Vec3(0.52f, 0.47f, 0.5f) - receiver));
+    o.cap = 0.2;
+    return o;
+}
+
+/// Density of the coordinate `axis` of points: p_V averaged over slabs, two for each of its 32 cells.
+DistanceCdf marginal(const Glow& glow, int axis) {
+    constexpr int n = 64;
+    std::vector<double> slabs(n, 0.0);
+    for (int i = 0; i < n * n * n; ++i) {
+        const Vec3 p = (Vec3(float(i % n), float(i / n % n), float(i / (n * n))) + 0.5f) / float(n);
+        const Vec3 away(0.0f, 0.0f, -1.0f);
+        const double d2 = double(glm::dot(p - away, p - away));
+        slabs[std::size_t(p[axis] * n)] += glow.pdf_along(away, p) / d2 / (n * n);
+    }
+    return cdf_of_density([=](double t) { return slabs[std::size_t(t * n)]; }, 0.0, 1.0, n);
+}
+
+DistanceSampler coordinate(const Glow& glow, int axis) {
+    return [&glow, axis](core::Rng& rng) -> std::optional<double> {
+        const core::Vec2 u = rng.next_vec2();
+        const auto s = glow.light->sample_emission(u, rng.next_vec2());
+        // The box is padded by a millionth.
+        return s ? std::optional<double>(std::clamp(double(s->origin[axis]), 0.0, 1.0)) : std::nullopt;
+    };
+}
+
+}  // namespace
+
+TEST_CASE("connections to a glowing medium follow its density of points", "[media][emission][chi2]") {
+    const Glow glow;
+    const auto drawn = [&](core::Rng& rng) -> std::optional<Vec3> {
+        const auto s = glow.light->sample_direct(receiver, rng.next_vec2());
+        return s ? std::optional<Vec3>(s->wi) : std::nullopt;
+    };
+    const auto density = [&](const Vec3& w) { return direction_density(glow, w); };
+    Chi2Options o = towards_the_cube("direct");
+    const Chi2Result result = chi2_test(drawn, density, o);
+    INFO(result.message);
+    CHECK(result.passed);
+    core::Rng rng(3);
+    for (int i = 0; i < 1000; ++i) {
+        const auto s = glow.light->sample_direct(receiver, rng.next_vec2());
+        REQUIRE(s);
+        REQUIRE(s->pdf_solid_angle ==
+                Approx(glow.pdf_along(receiver, receiver + s->distance * s->wi)).epsilon(1e-4));
+    }
+    // Planted: the density three per cent off, and the squared distance forgotten.
+    o.write_table = false;
+    CHECK_FALSE(chi2_test(
+                    drawn, [&](const Vec3& w) { return 0.97 * density(w); }, o)
+                    .passed);
+    const auto flat = [&](const Vec3& w) {
+        double sum = 0.0;
+        for (int i = 0; i < 80; ++i) {
+            const float t = 1.0f + (float(i) + 0.5f) / 40.0f;
+            sum += glow.pdf_along(receiver, receiver + t * w) / double(t * t) / 40.0;
+        }
+        return sum;
+    };
+    CHECK_FALSE(chi2_test(drawn, flat, o).passed);
+}
+
+TEST_CASE("particles of a glowing medium start by its density of points, in all directions",
+          "[media][emission][chi2]") {
+    const Glow glow;
+    for (int axis = 0; axis < 3; ++axis) {
+        DistanceOptions o;
+        o.name = "medium_emitter_axis_" + std::to_string(axis), o.bins = 32, o.tests = 5;
+        const Chi2Result result = chi2_distance_test(coordinate(glow, axis), marginal(glow, axis), o);
+        INFO(result.message);
+        CHECK(result.passed);
+        // Planted: the density of another axis.
+        o.write_table = false;
+        if (axis == 2) CHECK_FALSE(chi2_distance_test(coordinate(glow, 2), marginal(glow, 0), o).passed);
+    }
+    const auto direction = [&](core::Rng& rng) -> std::optional<Vec3> {
+        const core::Vec2 u = rng.next_vec2();
+        const auto s = glow.light->sample_emission(u, rng.next_vec2());
+        return s ? std::optional<Vec3>(s->direction) : std::nullopt;
+    };
+    const Chi2Result result = chi2_test(
+        direction, [](const Vec3&) { return double(core::inv_four_pi); }, direction_options("directions"));
+    INFO(result.message);
+    CHECK(result.passed);
+}
