@@ -9,7 +9,7 @@
 #include "lights/octahedral_map.h"
 #include "lights/texel_solid_angle.h"
 #include "tests/support/catch.h"
-#include "tests/support/chi2.h"
+#include "tests/support/pearson.h"
 
 using namespace mote::core;
 using namespace mote::lights;
