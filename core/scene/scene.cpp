@@ -37,7 +37,11 @@ Scene::Scene(Parts parts) : parts_(std::move(parts)) {
     add_medium_lights();
     build_light_tables();
     find_boundaries();
-    camera_state_ = medium_state_at(parts_.camera->position(), parts_.camera->medium.get());
+    // Where the picture's middle begins to be seen: a boundary nearer than that, or at the camera itself, is
+    // never crossed.
+    const Ray middle = parts_.camera->sample_ray(
+        0.5f * Vec2(float(parts_.film.width), float(parts_.film.height)), Vec2(0.5f));
+    camera_state_ = medium_state_at(middle.at(middle.t_min), parts_.camera->medium.get());
     find_emitter_states();
 }
 
