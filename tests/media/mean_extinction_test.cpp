@@ -2,6 +2,7 @@
 #include "media/mean_extinction.h"
 
 #include <cmath>
+#include <iostream>
 
 #include "core/math/warp.h"
 #include "media/homogeneous_medium.h"
@@ -48,7 +49,10 @@ TEST_CASE("the mean extinction is that of the ball, at every radius", "[media][m
         double worst = 0.0, squares = 0.0;
         int count = 0;
         core::Rng rng(2);
-        for (const float radius : {0.05f, 0.4f, 1.0f, 2.5f, 6.0f, 100.0f})
+        for (const float radius : {0.05f, 0.4f, 1.0f, 2.5f, 6.0f, 12.0f, 100.0f}) {
+            // A ball about as large as the box, partly outside: cells stand for it badly.
+            const bool half_of_the_box = radius == 12.0f;
+            double here = 0.0;
             for (int i = 0; i < 12; ++i) {
                 const Vec3 p = 4.0f + 16.0f * Vec3(rng.next_float(), rng.next_float(), rng.next_float());
                 const Rgb mean = means.mean(p, radius), expected = mean_by_points(*medium, box, p, radius);
@@ -56,10 +60,15 @@ TEST_CASE("the mean extinction is that of the ball, at every radius", "[media][m
                     const double error = mean[c] / expected[c] - 1.0;
                     INFO("radius " << radius << " channel " << c << ": " << mean[c] << " against "
                                    << expected[c]);
-                    CHECK(std::fabs(error) < 0.25);
+                    CHECK(std::fabs(error) < (half_of_the_box ? 0.6 : 0.25));
+                    here += error * error / 36.0;
+                    if (half_of_the_box) continue;
                     worst = std::max(worst, std::fabs(error)), squares += error * error, ++count;
                 }
             }
+            std::cout << "mean extinction, " << channels << " channels, radius of " << radius
+                      << " voxels: rms error " << 100.0 * std::sqrt(here) << " %\n";
+        }
         INFO("worst " << worst << ", rms " << std::sqrt(squares / count));
         CHECK(std::sqrt(squares / count) < 0.06);  // cubes of cells stand for a ball
     }
