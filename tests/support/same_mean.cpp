@@ -64,7 +64,7 @@ void write_comparison(const std::filesystem::path& folder, const LayerBlocks& A,
     write_blocks(folder / "a.exr", A.render, [&](std::size_t i) { return a[i].mean; });
     write_blocks(folder / "b.exr", A.render, [&](std::size_t i) { return b[i].mean; });
     write_blocks(folder / "z.exr", A.render, [&](std::size_t i) { return z_of(a[i], b[i]); });
-    std::ofstream(folder / "report.txt") << report;
+    std::ofstream(folder / "report.txt") << report << "\n";
     std::ofstream table(folder / "blocks.csv");
     table << "block_x,block_y,channel,mean_a,error_a,mean_b,error_b,z\n";
     for (std::size_t i = 0; i < a.size(); ++i)
@@ -96,7 +96,9 @@ ZTest same_mean(const RenderStatistics& A, const std::string& a, const RenderSta
     for (std::size_t c = 0; c < 3; ++c)
         check(fmt::format("picture channel {}", c), A.whole[la][c], B.whole[lb][c]);
     for (std::size_t i = 0; i < A.blocks[la].size(); ++i)
-        check(fmt::format("block {} channel {}", i / 3, i % 3), A.blocks[la][i], B.blocks[lb][i]);
+        check(fmt::format("block ({}, {}) channel {}", i / 3 % std::size_t(A.blocks_x),
+                          i / 3 / std::size_t(A.blocks_x), i % 3),
+              A.blocks[la][i], B.blocks[lb][i]);
     result.passed = result.passed && result.worst_z <= result.critical_z;
     result.report += fmt::format("  worst z {:.2f}, critical {:.2f}", result.worst_z, result.critical_z);
     if (!result.passed && on_failure == OnFailure::write && !A.planted && !B.planted)

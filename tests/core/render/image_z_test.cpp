@@ -112,6 +112,7 @@ TEST_CASE("a comparison that fails writes everything", "[statistics]") {
     const std::string report = same_mean(a, "beauty", wrong, "beauty").report;
     INFO(report);
     REQUIRE(folder.size() == 1);
+    CHECK(report.find("block (2, 1) channel 1: ") != std::string::npos);
     const auto start = report.find("written to ");
     REQUIRE(start != std::string::npos);
     const std::filesystem::path where = report.substr(start + 11);
