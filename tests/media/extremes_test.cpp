@@ -163,6 +163,9 @@ TEST_CASE("past a density a million times larger", "[media][extremes]") {
             CHECK(agrees(*m, estimator, through_thin, tau, trials, counters));
             CHECK(counters.fallbacks == 0);
             if (estimator == TransmittanceEstimator::ray_marching) continue;
+            std::cout << media::name_of(estimator) << " beside a step of a million to one, "
+                      << (majorants == Majorants::local ? "local" : "global")
+                      << " majorants: " << double(counters.lookups) / trials << " lookups\n";
             if (majorants == Majorants::local) CHECK(counters.lookups < 5u * std::uint64_t(trials));
             // A tentative collision in 400,000 is real: the product of chances to pass is all but certain.
             if (majorants == Majorants::global && estimator != TransmittanceEstimator::delta_tracking) {

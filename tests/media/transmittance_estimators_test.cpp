@@ -140,6 +140,29 @@ TEST_CASE("estimators agree on grids of tiles and of one smooth lump", "[media][
     }
 }
 
+TEST_CASE("ray marching keeps its tolerance", "[media][estimators]") {
+    const tests::TemporaryFolder folder;
+    const auto grid = media::load_vdb_grid(folder.grid("lump"));
+    const auto probe = medium_with(grid, 1.0f, media::Majorants::local);
+    const auto rays = rays_through(probe->bounds(), 24);
+    for (const double tolerance : {1e-1, 1e-2, 1e-3, 1e-4, 1e-5}) {
+        auto parts = tests::medium_parts(Rgb(0.8f), 0.02f);  // thin: the optical depth is read off well
+        parts.tracking.marching_tolerance = tolerance;
+        const auto medium = media::VdbVolume(grid, {}).make_medium(parts);
+        core::Rng rng(1);
+        core::TrackingCounters marching, counters;
+        double worst = 0.0;
+        for (const Ray& ray : rays) {
+            const double exact = medium->optical_depth_by_marching(ray, ray.t_max / 200000.0f, counters).x;
+            const double t = medium->transmittance_by(estimators[0], ray, rng, marching).x;
+            if (exact > 0.05) worst = std::max(worst, std::fabs(-std::log(t) / exact - 1.0));
+        }
+        std::cout << fmt::format("marching to {:g}: {:.2g} off at most, {:.0f} lookups\n", tolerance, worst,
+                                 double(marching.lookups) / double(rays.size()));
+        CHECK(worst < 3.0 * tolerance);  // it aims at the tolerance, by how much the last refinement moved
+    }
+}
+
 TEST_CASE("local majorants save most lookups in sparse smoke", "[media][estimators]") {
     // Three thick puffs in a grid of 64^3 voxels.
     const auto puffs = tests::vol_grid(glm::ivec3(64), 1, [](int x, int y, int z) {
