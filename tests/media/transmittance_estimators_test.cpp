@@ -104,8 +104,8 @@ GridCosts costs_of(const std::string& path, const std::string& grid_name, double
         for (std::size_t e = 0; e < estimators.size(); ++e)
             row[e] = check_estimator(*medium, estimators[e], rays, tau, 4000);
     }
-    std::cout << fmt::format("{} up to optical depth {}: variance, lookups and ns of one estimate\n",
-                             grid->name(), optical_depth);
+    std::cout << fmt::format("{} up to optical depth {}, {}: variance, lookups and ns of one estimate\n",
+                             grid->name(), optical_depth, probe->traits().estimator_reason);
     for (std::size_t e = 0; e < estimators.size(); ++e) {
         const auto row = [](const Cost& c) {
             return fmt::format("{:8.5f} {:8.2f} {:8.0f}", c.variance, c.lookups, c.nanoseconds);
