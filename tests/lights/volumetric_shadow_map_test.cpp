@@ -1,0 +1,193 @@
+// Volumetric shadow maps against closed forms and quadrature: every view, both storages, surfaces, limits.
+#include "lights/volumetric_shadow_map.h"
+
+#include <cmath>
+
+#include "core/math/random.h"
+#include "core/math/warp.h"
+#include "core/scene/error.h"
+#include "tests/integrators/test_scenes.h"
+#include "tests/support/catch.h"
+#include "tests/support/render_statistics.h"
+#include "tests/support/temporary_folder.h"
+
+using namespace mote;
+using namespace mote::core;
+using lights::ShadowMapSettings, lights::ShadowMapView, lights::VolumetricShadowMap;
+
+namespace {
+
+std::vector<ShadowMapView> all_views(int size) {
+    const Vec3 axis = glm::normalize(Vec3(0.2f, -0.3f, -1.0f));
+    return {ShadowMapView::of_point(Vec3(0.1f, 0.2f, 3.0f), size),
+            ShadowMapView::of_surface(Vec3(0.1f, 0.2f, 3.0f), axis, size),
+            ShadowMapView::of_spot(Vec3(0.1f, 0.2f, 3.0f), axis, 0.9f, size),
+            ShadowMapView::of_parallel(axis, Vec3(0.0f), 4.0f, size)};
+}
+
+/// A ball of fog around the origin, radius 2, over a floor at z = -3.
+std::unique_ptr<Scene> ball(const std::string& sigma_t) {
+    return tests::scene_from(R"(<scene version="3.0.0">
+        <shape type="sphere"><float name="radius" value="2"/><bsdf type="null"/>
+          <medium type="homogeneous" name="interior"><rgb name="sigma_t" value=")" +
+                             sigma_t + R"("/></medium></shape>
+        <shape type="rectangle"><transform name="to_world"><scale value="20"/><translate z="-3"/></transform></shape>
+        <emitter type="point"><point name="position" x="0" y="0" z="3"/></emitter><sensor type="perspective"/></scene>)");
+}
+
+/// Length of the way from a to b inside the ball.
+double inside_ball(const Vec3d& a, const Vec3d& b) {
+    const Vec3d d = glm::normalize(b - a);
+    const double half = -glm::dot(a, d), discriminant = half * half - glm::dot(a, a) + 4.0;
+    if (discriminant <= 0.0) return 0.0;
+    const double t0 = std::max(half - std::sqrt(discriminant), 0.0);
+    const double t1 = std::min(half + std::sqrt(discriminant), glm::length(b - a));
+    return std::max(0.0, t1 - t0);
+}
+
+/// RMS of the relative error of a map over random points of a box, against residual-free estimates by
+/// `exact`.
+template <typename Exact>
+double rms_error(const VolumetricShadowMap& map, const Bounds3& box, const Exact& exact, int points = 4000) {
+    Rng rng(3);
+    double sum = 0.0;
+    for (int i = 0; i < points; ++i) {
+        const Vec3 p =
+            box.lower + Vec3(rng.next_float(), rng.next_float(), rng.next_float()) * box.diagonal();
+        const double e = exact(p);
+        sum += std::pow(double(map.transmittance(p).y) / e - 1.0, 2.0);
+    }
+    return std::sqrt(sum / points);
+}
+
+}  // namespace
+
+TEST_CASE("a point on a texel's ray is seen by that texel at its distance", "[shadow_map]") {
+    for (const ShadowMapView& view : all_views(9))
+        for (int texel = 0; texel < view.texels(); ++texel) {
+            const Ray ray = view.ray(texel);
+            REQUIRE(glm::length(ray.direction) == Approx(1.0f));
+            const auto place = view.place(ray.at(2.5f));
+            REQUIRE(place);
+            CHECK(place->distance == Approx(2.5f));
+            float weight = 0.0f;
+            for (std::size_t i = 0; i < 4; ++i)
+                if (place->footprint.texel[i] == texel) weight += place->footprint.weight[i];
+            CHECK(weight > 0.999f);
+        }
+}
+
+TEST_CASE("shadow maps of homogeneous fog are the closed form, per channel", "[shadow_map]") {
+    const auto scene = ball("0.1, 0.5, 2");
+    for (const auto storage : {ShadowMapSettings::Storage::intervals, ShadowMapSettings::Storage::nodes})
+        for (const ShadowMapView& view : all_views(64)) {
+            VolumetricShadowMap map;
+            ShadowMapSettings settings;
+            settings.storage = storage;
+            const bool nodes = storage == ShadowMapSettings::Storage::nodes;
+            map.build(*scene, view, MediumState(), settings);
+            Rng rng(1);
+            for (int i = 0; i < 500; ++i) {
+                const Vec3 p = 2.0f * Vec3(rng.next_float(), rng.next_float(), rng.next_float()) - 1.0f;
+                const Vec3 from =
+                    view.kind == ShadowMapView::Kind::parallel ? p - 6.0f * view.frame.n : view.origin;
+                const double length = inside_ball(Vec3d(from), Vec3d(p));
+                const Rgb t = map.transmittance(p);
+                INFO("kind " << int(view.kind) << " storage " << int(storage));
+                CHECK(t.x == Approx(std::exp(-0.1 * length)).epsilon(0.01));
+                CHECK(t.y == Approx(std::exp(-0.5 * length)).epsilon(0.02).margin(nodes ? 0.02 : 0.0));
+                CHECK(t.z == Approx(std::exp(-2.0 * length)).epsilon(0.06).margin(nodes ? 0.02 : 0.0));
+            }
+            // Before the fog nothing is lost, behind the floor nothing arrives.
+            CHECK(map.transmittance(Vec3(0.1f, 0.15f, 2.6f) + 0.0f) == Rgb(1.0f));
+            CHECK(map.transmittance(Vec3(0.3f, 0.1f, -4.5f)) == Rgb(0.0f));
+            CHECK(map.transmittance(Vec3(0.3f, 0.1f, -2.99f)).x > 0.0f);
+        }
+}
+
+TEST_CASE("shadow maps of smoke approach quadrature with size and intervals", "[shadow_map]") {
+    const tests::TemporaryFolder folder;
+    const auto scene =
+        tests::scene_from(tests::box(tests::grey, tests::smoke_medium(folder.file("smoke.vol"))), 8);
+    const ShadowMapView small = ShadowMapView::of_point(Vec3(0.05f, 0.9f, 0.1f), 32);
+    ShadowMapView large = small;
+    large.size = 128;
+    const Bounds3 smoke{Vec3(-0.9f, -0.85f, -0.9f), Vec3(0.9f, 0.85f, 0.9f)};
+    const auto exact = [&](const Vec3& p) {
+        const Medium& m = *scene->media().front();
+        Vec3d depth(0.0);
+        const int steps = 1000;
+        for (int i = 0; i < steps; ++i) {
+            const Vec3 q = small.origin + (float(i) + 0.5f) / float(steps) * (p - small.origin);
+            if (smoke.contains(q)) depth += Vec3d(m.coefficients(q).sigma_t);
+        }
+        return std::exp(-depth.y * double(glm::distance(p, small.origin)) / steps);
+    };
+    const Bounds3 inside{Vec3(-0.8f, -0.3f, -0.8f), Vec3(0.8f, 0.8f, 0.8f)};  // above the block
+    const auto error = [&](const ShadowMapView& view, int intervals, ShadowMapSettings::Storage storage) {
+        ShadowMapSettings settings;
+        settings.intervals = intervals, settings.storage = storage;
+        VolumetricShadowMap map;
+        map.build(*scene, view, scene->medium_state_at(view.origin, nullptr), settings);
+        return rms_error(map, inside, exact, 300);
+    };
+    using Storage = ShadowMapSettings::Storage;
+    const double coarse = error(small, 8, Storage::intervals), fine = error(large, 128, Storage::intervals);
+    const double nodes = error(large, 128, Storage::nodes);
+    INFO("32^2 x 8: " << coarse << ", 128^2 x 128: " << fine << ", 12 nodes of them: " << nodes);
+    CHECK(coarse > 0.01);
+    CHECK(fine < 0.006);
+    CHECK(nodes < 0.03);
+    CHECK(fine < 0.25 * coarse);
+}
+
+TEST_CASE("transmittance never rises along a ray, and is exactly one at the light", "[shadow_map]") {
+    const tests::TemporaryFolder folder;
+    const auto scene =
+        tests::scene_from(tests::box(tests::grey, tests::smoke_medium(folder.file("smoke.vol"))), 8);
+    for (const auto storage : {ShadowMapSettings::Storage::intervals, ShadowMapSettings::Storage::nodes}) {
+        ShadowMapSettings settings;
+        settings.storage = storage, settings.nodes = 5;
+        VolumetricShadowMap map;
+        const ShadowMapView view = ShadowMapView::of_point(Vec3(0.0f, 0.1f, 0.2f), 48);  // inside the smoke
+        map.build(*scene, view, scene->medium_state_at(view.origin, nullptr), settings);
+        Rng rng(2);
+        for (int i = 0; i < 300; ++i) {
+            const Vec3 d = square_to_sphere({rng.next_float(), rng.next_float()});
+            CHECK(map.transmittance(view.origin + 1e-6f * d).y == Approx(1.0f).epsilon(1e-4));
+            float before = 1.0f;
+            for (float t = 0.01f; t < 3.0f; t *= 1.1f) {
+                const float now = map.transmittance(view.origin + t * d).y;
+                REQUIRE(now <= before * 1.0001f);
+                REQUIRE(now >= 0.0f);
+                before = now;
+            }
+        }
+    }
+}
+
+TEST_CASE("a map larger than its limit is refused with the size that would fit", "[shadow_map]") {
+    const auto scene = ball("1");
+    ShadowMapSettings settings;
+    settings.max_bytes = 1 << 20;
+    VolumetricShadowMap map;
+    CHECK_THROWS_WITH(map.build(*scene, ShadowMapView::of_point(Vec3(0, 0, 3), 256), MediumState(), settings),
+                      Catch::Contains("256 x 256") && Catch::Contains("62 x 62 would fit"));
+    map.build(*scene, ShadowMapView::of_point(Vec3(0, 0, 3), 62), MediumState(), settings);
+    CHECK(map.memory_bytes() <= settings.max_bytes);
+    // Memory is taken once: a smaller map fits into that of a larger one.
+    const std::size_t before = map.memory_bytes();
+    map.build(*scene, ShadowMapView::of_surface(Vec3(0, 0, 3), Vec3(0, 0, -1), 32), MediumState(), settings);
+    CHECK(map.memory_bytes() == before);
+    settings.intervals = 0;
+    CHECK_THROWS_AS(map.build(*scene, ShadowMapView::of_point(Vec3(0), 8), MediumState(), settings),
+                    InputError);
+}
+
+TEST_CASE("a scene without media gives a plain shadow map", "[shadow_map]") {
+    const auto scene = tests::scene_from(tests::box(tests::grey, ""), 8);
+    VolumetricShadowMap map;
+    map.build(*scene, ShadowMapView::of_point(Vec3(0.0f, 0.8f, 0.0f), 128), MediumState(), {});
+    CHECK(map.transmittance(Vec3(-0.7f, -0.9f, 0.0f)) == Rgb(1.0f));
+    CHECK(map.transmittance(Vec3(0.33f, -0.95f, -0.2f)) == Rgb(0.0f));  // below the block
+}
