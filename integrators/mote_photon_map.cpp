@@ -66,7 +66,8 @@ class PhotonMapEstimator final : public Estimator {
 
     void add_statistics(Statistics& statistics) const override {
         counters_.report(statistics, Media);
-        statistics.values["photons"] += double(photons_);
+        statistics.values["photons_on_surfaces"] += double(on_surfaces_);
+        statistics.values["photons_in_media"] += double(in_media_);
         statistics.values["photons_before_thinning"] += double(met_);
         statistics.values["light_paths"] += double(paths_);
         statistics.values["photon_bytes_peak"] = double(bytes_);
@@ -80,7 +81,8 @@ class PhotonMapEstimator final : public Estimator {
         gathering::PhotonSet set =
             gathering::trace_photons(scene_, settings_.photons(), options_.seed, pass, options_.sampler);
         counters_.add(set.rays, set.tracking);
-        paths_ += settings_.paths, met_ += set.met, photons_ += set.surface.size() + set.volume.size();
+        paths_ += settings_.paths, met_ += set.met;
+        on_surfaces_ += set.surface.size(), in_media_ += set.volume.size();
         radius_share_ = gathering::radius_share(pass, settings_.alpha);
         PhotonMaps maps;
         maps.estimate = {settings_.neighbours, float(radius_share_)};
@@ -98,7 +100,7 @@ class PhotonMapEstimator final : public Estimator {
     RenderOptions options_;
     PhotonMapSettings settings_;
     SharedCounters counters_;
-    std::uint64_t photons_ = 0, met_ = 0, paths_ = 0;
+    std::uint64_t on_surfaces_ = 0, in_media_ = 0, met_ = 0, paths_ = 0;
     std::size_t bytes_ = 0;
     double radius_share_ = 1.0;
 };

@@ -84,7 +84,8 @@ int make_reference(const TradeArguments& arguments) {
     const int threads = arguments.threads > 0 ? arguments.threads : tbb::info::default_concurrency();
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
     const core::Registry registry = make_registry();
-    const auto scene = load({arguments.scene.scene, "", arguments.scene.defines}, registry);
+    // Settings such as -D integrator.equiangular=true are those of the reference's own integrator.
+    const auto scene = load(arguments.scene, registry);
     const std::string content = scene_content(*scene, arguments.scene.defines);
     if (!arguments.fresh &&
         is_good_reference(arguments.make_reference, *scene, content, {arguments.resolve, false, false})) {
