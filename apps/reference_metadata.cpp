@@ -52,8 +52,6 @@ std::string world_to_camera(const core::Camera& camera) {
 }
 
 std::string scene_content(const core::Scene& scene, std::vector<std::string> defines) {
-    // How a picture is rendered does not change what it is a picture of.
-    std::erase_if(defines, [](const std::string& define) { return define.starts_with("integrator."); });
     std::sort(defines.begin(), defines.end());
     return core::content_hash(scene, defines);
 }

@@ -46,12 +46,32 @@ std::string verdict(double error, double resolve) {
             : fmt::format(", not the {:.3g} % asked for; the same command renders on", 100.0 * resolve));
 }
 
+/// --setting NAME=VALUE as it would stand in a scene file: the manual page knows its element.
+std::vector<core::IntegratorSetting> settings_of(const TradeArguments& arguments,
+                                                 const core::Registry& registry, const std::string& type) {
+    std::vector<core::IntegratorSetting> settings;
+    const core::Manual* manual = registry.find(core::Category::integrator, type);
+    for (const std::string& setting : arguments.settings) {
+        const auto equals = setting.find('=');
+        if (equals == std::string::npos || equals == 0)
+            throw UsageError("--setting " + core::printable(setting) + ": expected name=value");
+        const std::string name = setting.substr(0, equals);
+        std::string tag = "string";  // of a name that is unknown, and refused as such
+        if (manual)
+            for (const core::Parameter& p : manual->parameters)
+                if (p.name == name) tag = p.type;
+        settings.push_back({name, tag, setting.substr(equals + 1), {"--setting " + setting, 0}});
+    }
+    return settings;
+}
+
 core::RenderRequest make_request(const TradeArguments& arguments, const core::Scene& scene,
                                  const std::string& type) {
     core::RenderRequest request;
     request.checkpoint_path = arguments.make_reference + ".checkpoint";
     std::vector<std::string> settings = {MOTE_VERSION, "reference", type};
     settings.insert(settings.end(), arguments.scene.defines.begin(), arguments.scene.defines.end());
+    settings.insert(settings.end(), arguments.settings.begin(), arguments.settings.end());
     request.content_hash = core::content_hash(scene, settings);
     std::error_code ignored;
     if (arguments.fresh) fs::remove(request.checkpoint_path, ignored);
@@ -84,8 +104,7 @@ int make_reference(const TradeArguments& arguments) {
     const int threads = arguments.threads > 0 ? arguments.threads : tbb::info::default_concurrency();
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
     const core::Registry registry = make_registry();
-    // Settings such as -D integrator.equiangular=true are those of the reference's own integrator.
-    const auto scene = load(arguments.scene, registry);
+    const auto scene = load({arguments.scene.scene, "", arguments.scene.defines}, registry);
     const std::string content = scene_content(*scene, arguments.scene.defines);
     if (!arguments.fresh &&
         is_good_reference(arguments.make_reference, *scene, content, {arguments.resolve, false, false})) {
@@ -98,7 +117,8 @@ int make_reference(const TradeArguments& arguments) {
     if (type.empty()) type = scene->has_media() ? "volpath" : "path";
     std::vector<std::string> warnings = scene->parts().warnings;
     const auto integrator =
-        core::make_integrator(registry, *scene, type, {}, {"--integrator " + type, 0}, warnings);
+        core::make_integrator(registry, *scene, type, settings_of(arguments, registry, type),
+                              {"--integrator " + type, 0}, warnings);
     const core::Plan plan = integrator->plan(*scene, core::find_requirements(*scene));
     core::RenderRequest request = make_request(arguments, *scene, type);
     if (!arguments.quiet) {

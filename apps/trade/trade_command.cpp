@@ -219,6 +219,11 @@ void add_trade(CLI::App& app, TradeArguments& a, std::function<int()>& action) {
     make->type_name("EXR");
     command.add_option("--integrator", a.scene.integrator, "Of the reference (default: volpath, or path)")
         ->type_name("TYPE");
+    command.add_option("--setting", a.settings, "A value of the reference's integrator (repeatable)")
+        ->type_name("NAME=VALUE")
+        ->expected(1)
+        ->allow_extra_args(false)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     command.add_option("--resolve", a.resolve, "The smallest error that must be judged (default: 0.01)")
         ->check(CLI::PositiveNumber);
     command.add_option("--time", a.seconds, "Seconds for every method and seed, or for the reference")

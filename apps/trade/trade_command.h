@@ -17,6 +17,7 @@ namespace mote::apps {
 struct TradeArguments {
     SceneArguments scene;  ///< integrator: of the reference that is made
     std::string reference, make_reference, methods, output;
+    std::vector<std::string> settings;  ///< "name=value" of the integrator of the reference that is made
     std::optional<double> seconds;
     std::optional<std::uint32_t> passes, seeds;
     double resolve = 0.01, checkpoint_every = 60.0;
