@@ -72,7 +72,7 @@ struct Reach {
 
 /// When `curve` reaches `error`.
 Reach time_to_reach(const Curve& curve, double error, const Judge& judge);
-/// "3.2 s", "~41 s (extrapolated)", "never (bias -4.2 %)", ...
+/// "3.2 s", "~41 s (extrapolated)", "not with a bias of -4.2 %", ...
 std::string to_text(const Reach& reach, const Curve& curve);
 
 }  // namespace mote::apps::trade

@@ -89,7 +89,7 @@ std::string to_text(const Reach& reach, const Curve& curve) {
         case Reach::Kind::extrapolated:
             return "~" + seconds_text(reach.seconds) + " (extrapolated)";
         case Reach::Kind::never:
-            return fmt::format("never (bias {:+.2g} %)", 100.0 * curve.bias);
+            return fmt::format("not with a bias of {:+.2g} %", 100.0 * curve.bias);
         case Reach::Kind::below_reference:
             return "the reference cannot tell";
         case Reach::Kind::unclear:

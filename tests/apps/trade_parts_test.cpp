@@ -136,7 +136,7 @@ TEST_CASE("A biased method never gets there, and says so with its bias", "[trade
     const Curve curve = curve_of(flat);
     const Reach r = time_to_reach(curve, 0.01, {0.001, 0.0, 1.0});
     CHECK(r.kind == Kind::never);
-    CHECK(to_text(r, curve) == "never (bias -8 %)");
+    CHECK(to_text(r, curve) == "not with a bias of -8 %");
     // It still falls, but towards its bias; a larger error it does reach.
     for (Record& f : falling) f.bias = 0.03, f.bias_se = 0.001;
     CHECK(time_to_reach(curve_of(falling), 0.02, {0.001, 0.0, 1.0}).kind == Kind::never);
