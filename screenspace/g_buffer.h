@@ -1,0 +1,52 @@
+// What the camera sees at pixel centres: plain buffers, one value a pixel, row by row from the top.
+//
+// Screen-space methods read these buffers and nothing else of the scene. Whoever has other sources than
+// primary rays fills them himself: every buffer has width * height entries.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/math/vec.h"
+
+namespace mote::core {
+class Camera;
+class Scene;
+class Shape;
+}  // namespace mote::core
+
+namespace mote::screenspace {
+
+struct GBuffer {
+    int width = 0, height = 0;
+
+    std::vector<float> distance;       ///< along the ray to the surface [m]; infinity where it misses
+    std::vector<core::Vec3> position;  ///< [m]; zero where the ray misses, as all of the following
+    std::vector<core::Vec3> geometric_normal, shading_normal;  ///< unit, turned to the viewer
+    std::vector<core::Vec3> view;        ///< unit, along the ray, away from the viewer; set for misses too
+    std::vector<core::Rgb> reflectance;  ///< albedo of the BSDF seen from the viewer, [0, 1]
+    std::vector<float> solid_angle;  ///< of the pixel [sr]; set for misses too; 0 for parallel projections
+    std::vector<std::uint8_t> hit;   ///< 1 where there is a surface
+    std::vector<std::uint8_t> emissive;     ///< 1 where that surface is a light
+    std::vector<const core::Shape*> shape;  ///< with its BSDF; null where there is none or it is not known
+    std::vector<core::Vec2> uv;             ///< texture coordinates of the surface
+
+    GBuffer() = default;
+    /// All misses. Throws std::invalid_argument unless both sizes are positive.
+    GBuffer(int width, int height);
+
+    std::size_t index(int x, int y) const { return std::size_t(y) * std::size_t(width) + std::size_t(x); }
+    std::size_t pixel_count() const { return std::size_t(width) * std::size_t(height); }
+    /// Area of the surface behind the pixel, exact for a planar patch: solid angle * distance^2 / cosine
+    /// [m^2]. Zero where the ray misses; the cosine is kept above 1e-4.
+    float surface_area(std::size_t pixel) const;
+};
+
+/// One primary ray through the centre of every pixel, and through the centre of the lens. Boundaries between
+/// media are not seen. Film positions are those of the camera: the picture must have the size of its film.
+GBuffer make_g_buffer(const core::Scene& scene, int width, int height);
+
+/// Solid angle that pixel (x, y) covers as seen from a camera [sr].
+float pixel_solid_angle(const core::Camera& camera, int x, int y);
+
+}  // namespace mote::screenspace
