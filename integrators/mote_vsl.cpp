@@ -8,11 +8,11 @@
 #include <limits>
 
 #include "compensation/spherical_lights.h"
-#include "integrators/direct_light.h"
 #include "integrators/eye_ray.h"
 #include "integrators/path_estimator.h"
 #include "integrators/register_parts.h"
 #include "integrators/russian_roulette.h"
+#include "lights/direct_light.h"
 #include "lights/particle_tracer.h"
 
 namespace mote::integrators {
@@ -91,14 +91,14 @@ class VslEstimator final : public Estimator {
         for (int depth = 1;; ++depth) {
             Rgb emitted(0.0f);
             const WalkEvent event = walk<false>(scene_, ray, state, weights, emitted, walk_context);
-            sum[Transport::emission] += found_light<false>(scene_, event, ray, weights, nullptr);
+            sum[Transport::emission] += lights::found_light<false>(scene_, event, ray, weights, nullptr);
             if (event.kind == WalkEvent::Kind::escaped || depth == max_depth) return sum;
 
             const ScatteringVertex vertex = make_vertex(event, ray);
             const Vec2 choices = eye.sampler.next_2d();  // of the light, and of the lobe
             if (vertex.connectable()) {
-                sum[Transport::direct] += sample_light<false>(scene_, vertex, weights, state, choices.x,
-                                                              eye.sampler.next_2d(), walk_context);
+                sum[Transport::direct] += lights::sample_light<false>(
+                    scene_, vertex, weights, state, choices.x, eye.sampler.next_2d(), walk_context);
                 sum[Transport::indirect] += weights.throughput * gather(vertex, depth, spheres, walk_context);
             }
             if (depth >= settings_.eye.rr_depth &&
@@ -106,13 +106,13 @@ class VslEstimator final : public Estimator {
                 return sum;
             const auto next = vertex.sample(choices.y, eye.sampler.next_2d(), TransportMode::radiance);
             if (!next) return sum;
-            apply_scattering<false>(weights, *next, vertex.position);
+            lights::apply_scattering<false>(weights, *next, vertex.position);
             eta *= next->eta;
             ray = Ray{vertex.ray_origin(next->wi), next->wi};
             if (next->delta) continue;
             // The other technique for direct light: what the sampled direction happens to hit.
             const WalkEvent end = walk<false>(scene_, ray, state, weights, emitted, walk_context);
-            sum[Transport::direct] += found_light<false>(scene_, end, ray, weights, &vertex.position);
+            sum[Transport::direct] += lights::found_light<false>(scene_, end, ray, weights, &vertex.position);
             return sum;
         }
     }

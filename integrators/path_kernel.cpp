@@ -61,12 +61,12 @@ TransportSum trace_path(const Scene& scene, const PathSettings& settings, Ray ra
     for (int depth = 1; settings.max_depth < 0 || depth <= settings.max_depth; ++depth) {
         Rgb emitted(0.0f);
         const MediumState start = state;
-        const Rgb throughput = weights.throughput / channel_average<Media>(weights.unidirectional);
+        const Rgb throughput = weights.throughput / lights::channel_average<Media>(weights.unidirectional);
         const WalkEvent event = walk<Media>(scene, ray, state, weights, emitted, context);
         const Transport found = classifier.layer_of_emission();
         if constexpr (Media) sum[found] += emitted;
         sum[found] +=
-            found_light<Media>(scene, event, ray, weights, connected ? &previous_position : nullptr);
+            lights::found_light<Media>(scene, event, ray, weights, connected ? &previous_position : nullptr);
         if (depth == settings.max_depth) break;
         if (lit_along)
             sum[classifier.layer_of_connection(false)] +=
@@ -81,8 +81,8 @@ TransportSum trace_path(const Scene& scene, const PathSettings& settings, Ray ra
         const Vec2 choices = sampler.next_2d();  // of the light, and of the lobe
         if (vertex.connectable()) {
             const Vec2 u_light = sampler.next_2d();
-            sum[classifier.layer_of_connection(vertex.on_surface())] +=
-                sample_light<Media>(scene, vertex, weights, state, choices.x, u_light, context, lit_along);
+            sum[classifier.layer_of_connection(vertex.on_surface())] += lights::sample_light<Media>(
+                scene, vertex, weights, state, choices.x, u_light, context, lit_along);
         }
         if (depth >= settings.rr_depth && !survives<Media>(weights, eta, depth, context.rng.next_float()))
             break;
@@ -92,7 +92,7 @@ TransportSum trace_path(const Scene& scene, const PathSettings& settings, Ray ra
         // No VPL stands on a delta surface: what goes on from there is not part of the bounded transport.
         if (vpl_edge && next->delta) break;
         classifier.scatter(vertex, *next);
-        apply_scattering<Media>(weights, *next, vertex.position);
+        lights::apply_scattering<Media>(weights, *next, vertex.position);
         if (is_black(weights.throughput)) break;
         if (Media && vertex.on_surface()) state = vertex.state_towards(state, next->wi);
         eta *= next->eta;

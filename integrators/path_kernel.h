@@ -9,7 +9,7 @@
 // tested against.
 #pragma once
 
-#include "integrators/direct_light.h"
+#include "lights/direct_light.h"
 #include "integrators/equiangular.h"
 #include "integrators/transport_layers.h"
 

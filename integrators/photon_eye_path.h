@@ -9,9 +9,9 @@
 #include <limits>
 
 #include "gathering/volume_photon_map.h"
-#include "integrators/direct_light.h"
 #include "integrators/path_kernel.h"
 #include "integrators/russian_roulette.h"
+#include "lights/direct_light.h"
 
 namespace mote::integrators {
 
@@ -44,11 +44,13 @@ class PhotonEyePath {
         float eta = 1.0f;
         for (int depth = 1; settings_.max_depth < 0 || depth <= settings_.max_depth; ++depth) {
             const core::MediumState start = state;
-            const core::Rgb throughput = weights.throughput / channel_average<Media>(weights.unidirectional);
+            const core::Rgb throughput =
+                weights.throughput / lights::channel_average<Media>(weights.unidirectional);
             core::Rgb emitted(0.0f);
             const core::WalkEvent event = core::walk<Media>(scene_, ray, state, weights, emitted, context_);
             if constexpr (Media) add_beam(sum, throughput, ray, event, start, depth);
-            sum[Transport::emission] += emitted + found_light<Media>(scene_, event, ray, weights, nullptr);
+            sum[Transport::emission] +=
+                emitted + lights::found_light<Media>(scene_, event, ray, weights, nullptr);
             if (event.kind == core::WalkEvent::Kind::escaped || depth == settings_.max_depth) break;
 
             const core::ScatteringVertex vertex = make_vertex(event, ray);
@@ -59,7 +61,7 @@ class PhotonEyePath {
                 const core::Vec2 u = sampler.next_2d();
                 if (sampled)
                     sum[direct] +=
-                        sample_light<Media>(scene_, vertex, weights, state, choices.x, u, context_);
+                        lights::sample_light<Media>(scene_, vertex, weights, state, choices.x, u, context_);
                 if (vertex.on_surface()) add_density(sum, weights, vertex, depth);
             }
             if (!sampled) break;
@@ -68,7 +70,7 @@ class PhotonEyePath {
                 break;
             const auto next = vertex.sample(choices.y, sampler.next_2d(), core::TransportMode::radiance);
             if (!next) break;
-            apply_scattering<Media>(weights, *next, vertex.position);
+            lights::apply_scattering<Media>(weights, *next, vertex.position);
             eta *= next->eta;
             if (Media && vertex.on_surface()) state = vertex.state_towards(state, next->wi);
             ray = core::Ray{vertex.ray_origin(next->wi), next->wi};
@@ -95,7 +97,8 @@ class PhotonEyePath {
 
     void add_density(TransportSum& sum, const core::PathWeights& weights,
                      const core::ScatteringVertex& vertex, int depth) {
-        const core::Rgb throughput = weights.throughput / channel_average<Media>(weights.unidirectional);
+        const core::Rgb throughput =
+            weights.throughput / lights::channel_average<Media>(weights.unidirectional);
         sum[Transport::indirect] +=
             throughput *
             maps_.surface.radiance(vertex, maps_.estimate, photon_depth(depth), scratch_.neighbours);
@@ -106,7 +109,7 @@ class PhotonEyePath {
                           const core::ScatteringVertex& vertex) {
         core::Rgb emitted(0.0f);
         const core::WalkEvent event = core::walk<Media>(scene_, ray, state, weights, emitted, context_);
-        return emitted + found_light<Media>(scene_, event, ray, weights, &vertex.position);
+        return emitted + lights::found_light<Media>(scene_, event, ray, weights, &vertex.position);
     }
 
     const core::Scene& scene_;

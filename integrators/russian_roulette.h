@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/scene/russian_roulette.h"
-#include "integrators/direct_light.h"
+#include "lights/direct_light.h"
 
 namespace mote::integrators {
 
@@ -12,7 +12,7 @@ namespace mote::integrators {
 template <bool Media>
 bool survives(core::PathWeights& weights, float eta, int depth, float u) {
     const float remaining = core::max_component(weights.throughput) * core::sqr(eta) /
-                            channel_average<Media>(weights.unidirectional);
+                            lights::channel_average<Media>(weights.unidirectional);
     const float q = core::survival_chance(remaining, depth, core::long_eye_path);
     if (!(u < q)) return false;
     weights.throughput /= q;

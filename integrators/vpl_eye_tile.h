@@ -5,10 +5,10 @@
 #include <limits>
 #include <optional>
 
-#include "integrators/direct_light.h"
 #include "integrators/eye_ray.h"
 #include "integrators/path_kernel.h"
 #include "integrators/russian_roulette.h"
+#include "lights/direct_light.h"
 #include "lights/particle_tracer.h"
 #include "lights/vpl_gather.h"
 
@@ -105,7 +105,7 @@ class EyeTile {
         const core::WalkEvent event =
             core::walk<Media>(scene_, lane.ray, lane.state, lane.weights, emitted, walk_);
         lane.sum[Transport::emission] +=
-            emitted + found_light<Media>(scene_, event, lane.ray, lane.weights, nullptr);
+            emitted + lights::found_light<Media>(scene_, event, lane.ray, lane.weights, nullptr);
         if (event.kind == core::WalkEvent::Kind::escaped || lane.depth == max_depth) return false;
 
         lane.vertex = make_vertex(event, lane.ray);
@@ -113,8 +113,8 @@ class EyeTile {
         const Transport direct = surface ? Transport::direct : Transport::single_scattering;
         const core::Vec2 choices = lane.sampler->next_2d();  // of the light, and of the lobe
         if (lane.vertex.connectable()) {
-            lane.sum[direct] += sample_light<Media>(scene_, lane.vertex, lane.weights, lane.state, choices.x,
-                                                    lane.sampler->next_2d(), walk_);
+            lane.sum[direct] += lights::sample_light<Media>(scene_, lane.vertex, lane.weights, lane.state,
+                                                            choices.x, lane.sampler->next_2d(), walk_);
             add_receiver(lane, index);
         }
         if (lane.depth >= settings_.eye.rr_depth &&
@@ -123,7 +123,7 @@ class EyeTile {
         const auto next =
             lane.vertex.sample(choices.y, lane.sampler->next_2d(), core::TransportMode::radiance);
         if (!next) return false;
-        apply_scattering<Media>(lane.weights, *next, lane.vertex.position);
+        lights::apply_scattering<Media>(lane.weights, *next, lane.vertex.position);
         lane.eta *= next->eta;
         if (Media && surface) lane.state = lane.vertex.state_towards(lane.state, next->wi);
         lane.ray = core::Ray{lane.vertex.ray_origin(next->wi), next->wi};
@@ -138,7 +138,7 @@ class EyeTile {
             max_depth < 0 ? std::numeric_limits<std::int32_t>::max() : max_depth - lane.depth - 1;
         lane.receiver_layer = lane.vertex.on_surface() ? Transport::indirect : Transport::multiple_scattering;
         const core::Rgb throughput =
-            lane.weights.throughput / channel_average<Media>(lane.weights.unidirectional);
+            lane.weights.throughput / lights::channel_average<Media>(lane.weights.unidirectional);
         receivers_.set(index, lane.vertex, throughput, lane.state, core::Rng(walk_.rng.next_u32()),
                        vpl_depth);
     }
@@ -149,7 +149,8 @@ class EyeTile {
         core::MediumState state = lane.state;
         const core::WalkEvent event =
             core::walk<Media>(scene_, lane.ray, state, lane.weights, emitted, walk_);
-        return emitted + found_light<Media>(scene_, event, lane.ray, lane.weights, &lane.vertex.position);
+        return emitted +
+               lights::found_light<Media>(scene_, event, lane.ray, lane.weights, &lane.vertex.position);
     }
 
     const core::Scene& scene_;

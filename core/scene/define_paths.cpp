@@ -1,6 +1,8 @@
 // -D with a path: "integrator.paths=4096", "sensor.film.width=64", "left_wall.reflectance=0.2".
 //
-// Each word but the last chooses an element by id, else by tag, else by type; the last is a parameter.
+// Each word but the last chooses an element by id, else by tag, else by type; the last is a parameter. Where
+// that parameter is a nested object, the value is its type: "integrator.compensation=approximate", and then
+// "integrator.compensation.depth=2".
 #include <sstream>
 
 #include "core/scene/element_checks.h"
@@ -73,6 +75,18 @@ std::string tag_for(const std::string& type, const std::string& value) {
     return "";
 }
 
+/// The nested object `parameter` becomes one of type `type`; what it held for another type goes.
+void set_nested(Element& element, const Parameter& parameter, const std::string& type,
+                const SourceLocation& where) {
+    std::erase_if(element.children, [&](const Element& c) {
+        return c.tag == parameter.type && (!c.find("name") || c.get("name") == parameter.name);
+    });
+    Element fresh;
+    fresh.tag = parameter.type, fresh.where = where, fresh.folder = element.folder;
+    fresh.set("type", type);
+    element.children.push_back(fresh);
+}
+
 void set_parameter(Element& element, const std::string& name, const std::string& value,
                    const Registry& registry, const SourceLocation& where) {
     if (name == "type") {
@@ -83,6 +97,7 @@ void set_parameter(Element& element, const std::string& name, const std::string&
     const Manual& manual = require_manual(element, registry);
     const Parameter& parameter = require_parameter(manual, name, where);
     const std::string tag = tag_for(parameter.type, value);
+    if (tag.empty() && find_category(parameter.type)) return set_nested(element, parameter, value, where);
     if (tag.empty())
         throw InputError("'" + name + "' is a " + parameter.type + " and cannot be set on the command line",
                          where);
@@ -96,14 +111,17 @@ void set_parameter(Element& element, const std::string& name, const std::string&
 
 }  // namespace
 
+void set_by_path(Element& root, const std::string& path, const std::string& value, const Registry& registry,
+                 const SourceLocation& where) {
+    const std::vector<std::string> words = split_path(path);
+    Element* element = &root;
+    for (std::size_t i = 0; i + 1 < words.size(); ++i) element = &find_one(*element, words[i], where);
+    set_parameter(*element, words.back(), value, registry, where);
+}
+
 void SceneDefines::apply_paths(Element& scene, const Registry& registry) const {
-    for (const auto& [path, value] : paths_) {
-        const SourceLocation where{"-D " + path + "=" + value, 0};
-        const std::vector<std::string> words = split_path(path);
-        Element* element = &scene;
-        for (std::size_t i = 0; i + 1 < words.size(); ++i) element = &find_one(*element, words[i], where);
-        set_parameter(*element, words.back(), value, registry, where);
-    }
+    for (const auto& [path, value] : paths_)
+        set_by_path(scene, path, value, registry, {"-D " + path + "=" + value, 0});
 }
 
 }  // namespace mote::core

@@ -12,7 +12,7 @@ namespace {
 
 std::vector<std::string> known_tags() {
     std::vector<std::string> tags = value_tags();
-    for (int c = 0; c <= int(Category::integrator); ++c) tags.push_back(category_name(Category(c)));
+    for (int c = 0; c < category_count; ++c) tags.push_back(category_name(Category(c)));
     for (const char* tag : {"ref", "alias", "default", "include", "path"}) tags.emplace_back(tag);
     return tags;
 }
@@ -196,6 +196,13 @@ const std::vector<Category>& common_children(Category category) {
     if (category == Category::film) return film;
     if (category == Category::emitter) return emitter;
     return none;
+}
+
+bool has_place_for(const Manual& manual, const Element& child) {
+    const std::string name = child.get("name");
+    return std::any_of(manual.parameters.begin(), manual.parameters.end(), [&](const Parameter& p) {
+        return p.name == name || (name.empty() && p.type == child.tag);
+    });
 }
 
 std::string parameter_for_child(const Manual& manual, Category child, const std::string& name) {

@@ -34,6 +34,8 @@ void check_references(const Element& scene, const IdTable& ids, const Registry& 
 /// Objects that every type of a category takes besides those of its manual page (a shape: bsdf, emitter,
 /// medium).
 const std::vector<Category>& common_children(Category category);
+/// Whether a type with this manual page has a place for `child`, a value or a nested object.
+bool has_place_for(const Manual& manual, const Element& child);
 /// The name under which a nested object of category `child` reaches the factory: its own, or, when it has
 /// none or another, that of the only parameter of its category.
 std::string parameter_for_child(const Manual& manual, Category child, const std::string& name);

@@ -6,6 +6,7 @@
 #include "core/render/integrator.h"
 #include "core/scene/object_maker.h"
 #include "core/scene/scene.h"
+#include "core/scene/scene_defines.h"
 
 namespace mote::core {
 
@@ -16,10 +17,16 @@ std::vector<Element> inherited_values(const Scene& scene, const Manual& manual) 
     std::vector<Element> values;
     if (!scene.parts().integrator_element) return values;
     for (const Element& child : scene.parts().integrator_element->children)
-        if (std::any_of(manual.parameters.begin(), manual.parameters.end(),
-                        [&](const Parameter& p) { return p.name == child.get("name"); }))
-            values.push_back(child);
+        if (has_place_for(manual, child)) values.push_back(child);
     return values;
+}
+
+/// "compensation" or "compensation.depth": a nested object, or a value of one.
+bool is_path_of_object(const std::string& name, const Manual& manual) {
+    if (name.find('.') != std::string::npos) return true;
+    return std::any_of(manual.parameters.begin(), manual.parameters.end(), [&](const Parameter& p) {
+        return p.name == name && (p.type == "compensation" || p.type == "visibility");
+    });
 }
 
 }  // namespace
@@ -31,8 +38,13 @@ std::shared_ptr<Integrator> make_integrator(const Registry& registry, const Scen
     Element element;
     element.tag = "integrator", element.where = where;
     element.set("type", type);
-    element.children = inherited_values(scene, require_manual(element, registry));
+    const Manual& manual = require_manual(element, registry);
+    element.children = inherited_values(scene, manual);
     for (const IntegratorSetting& setting : settings) {
+        if (is_path_of_object(setting.name, manual)) {
+            set_by_path(element, setting.name, setting.text, registry, setting.where);
+            continue;
+        }
         std::erase_if(element.children, [&](const Element& c) { return c.get("name") == setting.name; });
         element.children.push_back(element.make_value(setting.tag, setting.name, setting.text));
         element.children.back().where = setting.where;

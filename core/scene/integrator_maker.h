@@ -13,7 +13,8 @@ namespace mote::core {
 class Integrator;
 class Scene;
 
-/// A value as it would stand in a scene file: <tag name="name" value="text"/>.
+/// A value as it would stand in a scene file: <tag name="name" value="text"/>. The name of a nested object
+/// sets its type, and "compensation.depth" a value of it, as with -D.
 struct IntegratorSetting {
     std::string name, tag, text;
     SourceLocation where;

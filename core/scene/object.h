@@ -25,7 +25,10 @@ enum class Category {
     medium,
     phase,
     volume,
-    integrator
+    integrator,
+    compensation,
+    visibility
 };
+inline constexpr int category_count = int(Category::visibility) + 1;
 
 }  // namespace mote::core

@@ -9,10 +9,10 @@
 namespace mote::core {
 namespace {
 
-const std::array<std::string, 12>& category_names() {
-    static const std::array<std::string, 12> names = {"bsdf",   "texture", "shape",   "emitter",
-                                                      "sensor", "film",    "rfilter", "sampler",
-                                                      "medium", "phase",   "volume",  "integrator"};
+const std::array<std::string, category_count>& category_names() {
+    static const std::array<std::string, category_count> names = {
+        "bsdf",    "texture", "shape", "emitter", "sensor",     "film",         "rfilter",
+        "sampler", "medium",  "phase", "volume",  "integrator", "compensation", "visibility"};
     return names;
 }
 

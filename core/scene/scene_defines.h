@@ -37,4 +37,8 @@ class SceneDefines {
     std::vector<std::pair<std::string, std::string>> paths_;
 };
 
+/// Sets one value below `root`, as -D does with the same path. Throws as apply_paths.
+void set_by_path(Element& root, const std::string& path, const std::string& value, const Registry& registry,
+                 const SourceLocation& where);
+
 }  // namespace mote::core

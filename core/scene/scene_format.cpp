@@ -124,6 +124,10 @@ std::string heading(Category category) {
             return "Volumes";
         case Category::integrator:
             return "Integrators";
+        case Category::compensation:
+            return "Compensation of the bound";
+        case Category::visibility:
+            return "Visibility";
     }
     return "";
 }
@@ -150,7 +154,7 @@ std::string page(const Manual& manual) {
 
 std::string scene_format_markdown(const Registry& registry) {
     std::string text = introduction;
-    for (int c = 0; c <= int(Category::integrator); ++c) {
+    for (int c = 0; c < category_count; ++c) {
         const auto category = Category(c);
         const std::vector<std::string> types = registry.types(category);
         if (types.empty()) continue;

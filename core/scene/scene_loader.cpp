@@ -25,10 +25,7 @@ void replace_integrator(Element& scene, const std::string& type, const Registry&
     element->set("type", type);
     if (!registry.find(Category::integrator, type)) element->where = {"--integrator " + printable(type), 0};
     const Manual& manual = require_manual(*element, registry);
-    std::erase_if(element->children, [&](const Element& c) {
-        return std::none_of(manual.parameters.begin(), manual.parameters.end(),
-                            [&](const Parameter& p) { return p.name == c.get("name"); });
-    });
+    std::erase_if(element->children, [&](const Element& c) { return !has_place_for(manual, c); });
 }
 
 /// Sensors without film or sampler get the default ones, so that -D film.width always has an aim.

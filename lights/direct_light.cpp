@@ -1,6 +1,6 @@
-#include "integrators/direct_light.h"
+#include "lights/direct_light.h"
 
-namespace mote::integrators {
+namespace mote::lights {
 
 using namespace core;
 
@@ -75,4 +75,4 @@ template Rgb sample_light<false>(const Scene&, const ScatteringVertex&, const Pa
 template Rgb found_light<true>(const Scene&, const WalkEvent&, const Ray&, const PathWeights&, const Vec3*);
 template Rgb found_light<false>(const Scene&, const WalkEvent&, const Ray&, const PathWeights&, const Vec3*);
 
-}  // namespace mote::integrators
+}  // namespace mote::lights

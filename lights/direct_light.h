@@ -7,7 +7,7 @@
 #include "core/math/sampler.h"
 #include "core/scene/scattering_vertex.h"
 
-namespace mote::integrators {
+namespace mote::lights {
 
 /// Average over channels of the rescaled pdfs; exactly 1 without media, where no channel differs.
 template <bool Media>
@@ -43,4 +43,4 @@ inline void apply_scattering(core::PathWeights& weights, const core::ScatterSamp
     weights.light = s.delta || !(s.pdf_solid_angle > 0.0f) ? core::Rgb(0.0f) : base / s.pdf_solid_angle;
 }
 
-}  // namespace mote::integrators
+}  // namespace mote::lights
