@@ -13,6 +13,7 @@
 #include <atomic>
 
 #include "integrators/path_estimator.h"
+#include "integrators/plan_compensation.h"
 #include "integrators/register_parts.h"
 #include "integrators/vpl_eye_tile.h"
 
@@ -28,7 +29,10 @@ class VplEstimator final : public Estimator {
         : scene_(scene),
           options_(options),
           settings_(settings),
-          bound_(settings.bound_for(scene.rays().bounds())) {}
+          bound_(settings.bound_for(scene.rays().bounds())) {
+        if (settings_.compensation.enabled && std::isfinite(bound_))
+            transport_.emplace(scene, bound_, settings_.compensation);
+    }
 
     bool pass(const PassContext& context, PassImage& image) override {
         if (context.cancelled) return false;
@@ -48,6 +52,10 @@ class VplEstimator final : public Estimator {
         statistics.values["light_paths"] += double(paths_);
         statistics.values["vpl_bytes_peak"] = double(bytes_);
         if (std::isfinite(bound_)) statistics.values["bound"] = bound_;
+        if (!transport_) return;
+        statistics.values["compensation_vertices"] += double(cost_.vertices);
+        statistics.values["compensation_thread_seconds"] += cost_.seconds;
+        statistics.values["compensation_bytes"] = double(transport_->memory_bytes());
     }
 
   private:
@@ -57,7 +65,8 @@ class VplEstimator final : public Estimator {
                      int x1, int y1) {
         WalkContext walk;
         const auto scratch = std::make_unique<lights::GatherScratch>();
-        const auto tile = std::make_unique<EyeTile<Media>>(scene_, settings_, bound_, vpls, *scratch, walk);
+        const auto tile = std::make_unique<EyeTile<Media>>(
+            scene_, settings_, bound_, vpls, transport_ ? &*transport_ : nullptr, *scratch, walk);
         constexpr int side = EyeTile<Media>::side;
         for (int y = y0; y < y1; y += side)
             for (int x = x0; x < x1; x += side) {
@@ -65,30 +74,53 @@ class VplEstimator final : public Estimator {
                 render_lanes(context, image, *tile, x, y, x1, y1);
             }
         counters_.add(walk.rays, walk.tracking);
+        const std::lock_guard lock(cost_mutex_);
+        cost_.vertices += tile->compensation_cost().vertices;
+        cost_.seconds += tile->compensation_cost().seconds;
     }
 
     void render_lanes(const PassContext& context, PassImage& image, EyeTile<Media>& tile, int x0, int y0,
                       int x1, int y1) const {
         constexpr int side = EyeTile<Media>::side;
-        for (int lane = 0; lane < side * side; ++lane) {
-            const int x = x0 + lane % side, y = y0 + lane / side;
-            if (x < x1 && y < y1)
-                tile.start(lane, make_eye_ray(scene_, options_, context, x, y), scene_.camera_medium_state());
+        std::array<VplPixel, side * side> sums;
+        const auto samples = std::uint32_t(settings_.eye_samples);
+        for (std::uint32_t sample = 0; sample < samples; ++sample) {
+            const PassContext eye{context.index * samples + sample, context.filter, context.cancelled};
+            for (int lane = 0; lane < side * side; ++lane) {
+                const int x = x0 + lane % side, y = y0 + lane / side;
+                if (x < x1 && y < y1)
+                    tile.start(lane, make_eye_ray(scene_, options_, eye, x, y), scene_.camera_medium_state());
+                else
+                    tile.stop(lane);
+            }
+            if (settings_.vpls_shared_out())
+                tile.run({sample, samples}, float(samples));
             else
-                tile.stop(lane);
+                tile.run({}, 1.0f);
+            for (int lane = 0; lane < side * side; ++lane)
+                sums[std::size_t(lane)].add(tile.sum(lane), 1.0f / float(samples));
         }
-        tile.run();
         for (int lane = 0; lane < side * side; ++lane) {
             const int x = x0 + lane % side, y = y0 + lane / side;
-            if (x < x1 && y < y1) store(tile.sum(lane), image, x, y, Media);
+            if (x < x1 && y < y1) store_pixel(sums[std::size_t(lane)], image, x, y);
         }
+    }
+
+    void store_pixel(const VplPixel& pixel, PassImage& image, int x, int y) const {
+        store(pixel.transport, image, x, y, Media);
+        if (!settings_.compensation.enabled) return;
+        const std::size_t first = transport_layers(Media, true).size();
+        for (std::size_t i = 0; i < (Media ? 2u : 1u); ++i) image.at(first + i, x, y) = pixel.compensation[i];
     }
 
     const Scene& scene_;
     RenderOptions options_;
     VplSettings settings_;
     float bound_;
+    std::optional<compensation::ResidualTransport> transport_;  ///< nothing: no compensation
     SharedCounters counters_;
+    std::mutex cost_mutex_;
+    CompensationCost cost_;
     std::uint64_t vpls_ = 0, paths_ = 0;
     std::size_t bytes_ = 0;
 };
@@ -110,11 +142,19 @@ class MoteVpl final : public Integrator {
             settings_.bound = float(bound);
             if (!settings_.bounded) properties.warn("bound has no effect: bounded is false");
         }
+        read_compensation(properties);
     }
 
     std::string type() const override { return "mote_vpl"; }
     std::vector<Layer> layers(const Scene& scene) const override {
-        return transport_layers(scene.has_media(), settings_.bounded);
+        auto layers = transport_layers(scene.has_media(), settings_.bounded);
+        if (!settings_.compensation.enabled) return layers;
+        layers.push_back(
+            {"compensation_surface", "what the bound took from light first scattered by a surface"});
+        if (scene.has_media())
+            layers.push_back(
+                {"compensation_volume", "what the bound took from light first scattered in a medium"});
+        return layers;
     }
     Plan plan(const Scene& scene, const Requirements& requirements) const override;
     std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
@@ -123,9 +163,23 @@ class MoteVpl final : public Integrator {
     }
 
   private:
+    void read_compensation(const Properties& properties);
     void plan_bound(Plan& plan, const Bounds3& surfaces) const;
     VplSettings settings_;
 };
+
+void MoteVpl::read_compensation(const Properties& properties) {
+    if (const auto nested = properties.child_of<compensation::Compensation>(Category::compensation))
+        settings_.compensation = nested->settings();
+    if (settings_.compensation.enabled && !settings_.bounded)
+        throw InputError("compensation brings back what a bound takes: it needs bounded=true",
+                         properties.where_of("bounded"));
+    const bool one_to_one = settings_.compensation.enabled && settings_.vpls_shared_out();
+    const auto samples = properties.get_int("eye_samples", one_to_one ? 4 : 1);
+    if (samples < 1 || samples > 4096)
+        throw InputError("eye_samples must lie between 1 and 4096", properties.where_of("eye_samples"));
+    settings_.eye_samples = int(samples);
+}
 
 void MoteVpl::plan_bound(Plan& plan, const Bounds3& surfaces) const {
     if (!settings_.bounded) {
@@ -157,9 +211,14 @@ Plan MoteVpl::plan(const Scene& scene, const Requirements& r) const {
     plan_media(plan, r);
     if (r.any_media())
         plan.run("eye rays", "one distance by tracking per pixel and pass", "Engelhardt 2013, Eq. 10.9");
-    if (settings_.bounded)
+    if (settings_.bounded && !settings_.compensation.enabled)
         plan.miss("short distances", "light between points closer than the bound's radius is darkened",
-                  "the bound removes it; compensation is not part of this integrator's settings");
+                  "the bound removes it; <compensation> brings it back");
+    if (settings_.compensation.enabled)
+        plan_compensation(plan, scene, r, settings_.compensation, settings_.bound_for(scene.rays().bounds()));
+    if (settings_.eye_samples > 1)
+        plan.run("eye paths", std::to_string(settings_.eye_samples) + " a pixel and pass",
+                 settings_.vpls_shared_out() ? "VPLs are shared out among them" : "each meets all VPLs");
     if (r.any_delta())
         plan.miss("caustics", "light that reaches a receiver through a delta surface",
                   "a VPL cannot be connected through mirrors and glass; volpath renders it");
@@ -176,6 +235,11 @@ void register_mote_vpl(Registry& registry) {
                           "bound b [1/m^2] on the geometry term; automatic: light paths / R^2 with the "
                           "radius R of all shapes"});
     parameters.push_back({"bounded", "boolean", "true", "false: no bound on the geometry term"});
+    parameters.push_back({"compensation", "compensation", "none", "what the bound takes, brought back"});
+    parameters.push_back(
+        {"eye_samples", "integer", "4 for 1-to-1 compensation, else 1",
+         "eye paths a pixel and pass; VPLs are shared out among them, except with compensation "
+         "that joins every receiver to all"});
     registry.add({Category::integrator, "mote_vpl",
                   "Virtual point lights on surfaces and in media, with a bounded geometry term.", parameters,
                   R"(<integrator type="mote_vpl"><integer name="paths" value="512"/></integrator>)"},

@@ -1,10 +1,12 @@
 #include "integrators/register_integrators.h"
 
+#include "compensation/compensation_settings.h"
 #include "integrators/register_parts.h"
 
 namespace mote::integrators {
 
 void register_integrators(core::Registry& registry) {
+    compensation::register_compensation(registry);
     register_path(registry);
     register_volpath(registry);
     register_mote_vpl(registry);

@@ -8,6 +8,7 @@
 #include "integrators/eye_ray.h"
 #include "integrators/path_kernel.h"
 #include "integrators/russian_roulette.h"
+#include "integrators/tile_compensation.h"
 #include "lights/direct_light.h"
 #include "lights/particle_tracer.h"
 #include "lights/vpl_gather.h"
@@ -19,6 +20,13 @@ struct VplSettings {
     std::uint32_t paths = 256;
     bool bounded = true;
     std::optional<float> bound;  ///< b [1/m^2]; nothing: automatic
+    compensation::CompensationSettings compensation;
+    int eye_samples = 1;  ///< eye paths a pixel and pass
+
+    /// VPLs are shared out among the eye paths of a pixel, instead of all of them meeting every one.
+    bool vpls_shared_out() const {
+        return !compensation.enabled || compensation.strategy == compensation::Strategy::one_to_one;
+    }
 
     /// b from the size of the shapes and the number of light paths: inside r = b^(-1/2) a VPL stands for the
     /// light of the paths around it, and N paths spread over a scene of radius R are about R / sqrt(N) apart.
@@ -36,6 +44,18 @@ struct VplSettings {
     }
 };
 
+/// One estimate of a pixel.
+struct VplPixel {
+    TransportSum transport;
+    std::array<core::Rgb, 2> compensation{};  ///< of receivers on surfaces; in media
+
+    void add(const VplPixel& other, float weight) {
+        for (std::size_t i = 0; i < transport.light.size(); ++i)
+            transport.light[i] += weight * other.transport.light[i];
+        for (std::size_t i = 0; i < 2; ++i) compensation[i] += weight * other.compensation[i];
+    }
+};
+
 /// Advances the lanes from one connectable vertex to the next, until no eye path goes on.
 template <bool Media>
 class EyeTile {
@@ -44,8 +64,15 @@ class EyeTile {
     static_assert(side * side == lights::ReceiverTile::width);
 
     EyeTile(const core::Scene& scene, const VplSettings& settings, float bound, const lights::VplSet& vpls,
-            lights::GatherScratch& scratch, core::WalkContext& walk)
-        : scene_(scene), settings_(settings), bound_(bound), vpls_(vpls), scratch_(scratch), walk_(walk) {}
+            const compensation::ResidualTransport* transport, lights::GatherScratch& scratch,
+            core::WalkContext& walk)
+        : scene_(scene),
+          settings_(settings),
+          bound_(bound),
+          vpls_(vpls),
+          scratch_(scratch),
+          walk_(walk),
+          compensation_(scene, settings.compensation, transport, vpls, scratch, walk) {}
 
     void start(int lane, const EyeRay& eye, const core::MediumState& state) {
         Lane& l = lanes_[std::size_t(lane)];
@@ -54,9 +81,11 @@ class EyeTile {
         if constexpr (Media) l.weights.hero = std::min(int(l.rng.next_float() * 3.0f), 2);
     }
     void stop(int lane) { lanes_[std::size_t(lane)] = Lane{}; }
-    const TransportSum& sum(int lane) const { return lanes_[std::size_t(lane)].sum; }
+    const VplPixel& sum(int lane) const { return lanes_[std::size_t(lane)].sum; }
+    CompensationCost compensation_cost() const { return compensation_.cost(); }
 
-    void run() {
+    /// Follows the eye paths and gathers the VPLs of `range`, whose light counts `vpl_scale` times.
+    void run(const lights::VplRange& range, float vpl_scale) {
         for (bool any = true; any;) {
             receivers_.clear();
             any = false;
@@ -65,11 +94,14 @@ class EyeTile {
                 if (lane.alive) lane.alive = advance(lane, i);
                 any |= lane.alive;
             }
-            const auto light =
-                lights::gather(scene_, vpls_, bound_, receivers_, scratch_, walk_.rays, walk_.tracking);
+            const auto light = lights::gather(scene_, vpls_, range, bound_, receivers_, scratch_, walk_.rays,
+                                              walk_.tracking);
+            const auto compensated = compensation_.run(range, vpl_scale);
             for (int i = 0; i < lights::ReceiverTile::width; ++i) {
                 Lane& lane = lanes_[std::size_t(i)];
-                lane.sum[lane.receiver_layer] += light[std::size_t(i)];
+                lane.sum.transport[lane.receiver_layer] += vpl_scale * light[std::size_t(i)];
+                lane.sum.compensation[lane.receiver_layer == Transport::indirect ? 0 : 1] +=
+                    compensated[std::size_t(i)];
             }
         }
     }
@@ -82,7 +114,7 @@ class EyeTile {
         core::MediumState state;
         core::PathWeights weights;
         core::ScatteringVertex vertex;  ///< of the current receiver
-        TransportSum sum;
+        VplPixel sum;
         Transport receiver_layer = Transport::indirect;
         int depth = 0;
         float eta = 1.0f;
@@ -104,7 +136,7 @@ class EyeTile {
         core::Rgb emitted(0.0f);
         const core::WalkEvent event =
             core::walk<Media>(scene_, lane.ray, lane.state, lane.weights, emitted, walk_);
-        lane.sum[Transport::emission] +=
+        lane.sum.transport[Transport::emission] +=
             emitted + lights::found_light<Media>(scene_, event, lane.ray, lane.weights, nullptr);
         if (event.kind == core::WalkEvent::Kind::escaped || lane.depth == max_depth) return false;
 
@@ -113,8 +145,8 @@ class EyeTile {
         const Transport direct = surface ? Transport::direct : Transport::single_scattering;
         const core::Vec2 choices = lane.sampler->next_2d();  // of the light, and of the lobe
         if (lane.vertex.connectable()) {
-            lane.sum[direct] += lights::sample_light<Media>(scene_, lane.vertex, lane.weights, lane.state,
-                                                            choices.x, lane.sampler->next_2d(), walk_);
+            lane.sum.transport[direct] += lights::sample_light<Media>(
+                scene_, lane.vertex, lane.weights, lane.state, choices.x, lane.sampler->next_2d(), walk_);
             add_receiver(lane, index);
         }
         if (lane.depth >= settings_.eye.rr_depth &&
@@ -128,7 +160,7 @@ class EyeTile {
         if (Media && surface) lane.state = lane.vertex.state_towards(lane.state, next->wi);
         lane.ray = core::Ray{lane.vertex.ray_origin(next->wi), next->wi};
         if (next->delta) return true;
-        lane.sum[direct] += light_along(lane);
+        lane.sum.transport[direct] += light_along(lane);
         return false;
     }
 
@@ -141,6 +173,7 @@ class EyeTile {
             lane.weights.throughput / lights::channel_average<Media>(lane.weights.unidirectional);
         receivers_.set(index, lane.vertex, throughput, lane.state, core::Rng(walk_.rng.next_u32()),
                        vpl_depth);
+        compensation_.add(index, lane.vertex, throughput, lane.state, vpl_depth);
     }
 
     /// The other technique for direct light: what the sampled direction happens to hit.
@@ -159,6 +192,7 @@ class EyeTile {
     const lights::VplSet& vpls_;
     lights::GatherScratch& scratch_;
     core::WalkContext& walk_;
+    TileCompensation<Media> compensation_;
     std::array<Lane, lights::ReceiverTile::width> lanes_;
     lights::ReceiverTile receivers_;
 };

@@ -1,5 +1,7 @@
 #include "lights/vpl_gather.h"
 
+#include <algorithm>
+
 #include "core/math/vectorize.h"
 
 namespace mote::lights {
@@ -188,13 +190,15 @@ void ReceiverTile::set(int lane, const ScatteringVertex& vertex, const Rgb& thro
     any_active = true;
 }
 
-std::array<Rgb, ReceiverTile::width> gather(const Scene& scene, const VplSet& vpls, float bound,
-                                            ReceiverTile& tile, GatherScratch& scratch, RayCounters& rays,
-                                            TrackingCounters& tracking) {
+std::array<Rgb, ReceiverTile::width> gather(const Scene& scene, const VplSet& vpls, const VplRange& range,
+                                            float bound, ReceiverTile& tile, GatherScratch& scratch,
+                                            RayCounters& rays, TrackingCounters& tracking) {
     std::array<Rgb, width> sum{};
     if (!tile.any_active) return sum;
     std::size_t count = 0;
-    for (const VirtualPointLight& vpl : vpls.lights) {
+    const std::size_t end = std::min(range.end, vpls.lights.size());
+    for (std::size_t j = range.first; j < end; j += range.stride) {
+        const VirtualPointLight& vpl = vpls.lights[j];
         ShadowPacket& packet = scratch.packets[count];
         GatherScratch::Contribution& contribution = scratch.contributions[count];
         contribution.vpl = &vpl;

@@ -54,10 +54,18 @@ class GatherScratch {
     GatherScratch();
 };
 
-/// Light of all VPLs at the receivers of a tile, per lane. `bound` is b [1/m^2], infinity for unbounded.
-/// Counts shadow rays and tracking.
-std::array<core::Rgb, ReceiverTile::width> gather(const core::Scene& scene, const VplSet& vpls, float bound,
-                                                  ReceiverTile& tile, GatherScratch& scratch,
-                                                  core::RayCounters& rays, core::TrackingCounters& tracking);
+/// Which VPLs of a set: every `stride`-th from `first` on, before `end`.
+struct VplRange {
+    std::size_t first = 0, stride = 1, end = std::size_t(-1);
+
+    static VplRange one(std::size_t index) { return {index, 1, index + 1}; }
+};
+
+/// Light of the VPLs in `range` at the receivers of a tile, per lane. `bound` is b [1/m^2], infinity for
+/// unbounded. Counts shadow rays and tracking.
+std::array<core::Rgb, ReceiverTile::width> gather(const core::Scene& scene, const VplSet& vpls,
+                                                  const VplRange& range, float bound, ReceiverTile& tile,
+                                                  GatherScratch& scratch, core::RayCounters& rays,
+                                                  core::TrackingCounters& tracking);
 
 }  // namespace mote::lights

@@ -25,7 +25,7 @@ class Gathering {
     std::size_t tiles() const { return tiles_.size(); }
     std::size_t vpls() const { return vpls_.lights.size(); }
     void gather(std::size_t tile) {
-        const auto light = lights::gather(*scene_, vpls_, bound_, tiles_[tile], *scratch_, rays_, tracking_);
+        const auto light = lights::gather(*scene_, vpls_, {}, bound_, tiles_[tile], *scratch_, rays_, tracking_);
         benchmark::DoNotOptimize(light);
     }
     double gather_all() {

@@ -1,0 +1,65 @@
+// What bias compensation does, and which of its simplifications are on. Every one is a switch of its own, so
+// that each can be measured alone (Engelhardt 2013, Sec. 10.2).
+#pragma once
+
+#include <string>
+
+#include "core/scene/object.h"
+
+namespace mote::core {
+class Registry;
+}
+
+namespace mote::compensation {
+
+/// Which vertices a receiver makes, and which VPLs they are joined to (Sec. 10.2.3).
+enum class Strategy : std::uint8_t {
+    one_to_n,   ///< one vertex, joined to all N VPLs (Raab et al. 2008)
+    n_to_one,   ///< N vertices, each joined to one VPL
+    one_to_one  ///< the same, and every VPL has a receiver of its own along the eye ray
+};
+
+/// Where the vertex lies along its ray.
+enum class Placement : std::uint8_t {
+    free_path,  ///< by free path sampling: it may fall outside of the bounding region, and is lost then
+    in_region   ///< always inside, as if the medium were homogeneous there (Sec. 10.2.2)
+};
+
+/// Transmittance between the receiver and the vertex.
+enum class LocalTransmittance : std::uint8_t {
+    exact,
+    mean  ///< from the mean extinction of the bounding region
+};
+
+struct CompensationSettings {
+    bool enabled = false;
+    bool surfaces = true, media = true;  ///< of receivers on surfaces; in media
+    Strategy strategy = Strategy::one_to_n;
+    Placement placement = Placement::free_path;
+    LocalTransmittance transmittance = LocalTransmittance::exact;
+    /// Rays from receivers in media look for surfaces and for boundaries between media. From surfaces they
+    /// always do, since they would find nothing to reflect light else.
+    bool local_visibility = true;
+    int depth = -1;  ///< steps of the recursion; -1: no limit
+
+    bool exact() const {
+        return enabled && surfaces && media && depth < 0 && local_visibility &&
+               transmittance == LocalTransmittance::exact;
+    }
+    std::string strategy_name() const;
+};
+
+/// A nested <compensation> of a scene file.
+class Compensation : public core::Object {
+  public:
+    explicit Compensation(const CompensationSettings& settings) : settings_(settings) {}
+    const CompensationSettings& settings() const { return settings_; }
+
+  private:
+    CompensationSettings settings_;
+};
+
+/// none, exact, approximate.
+void register_compensation(core::Registry& registry);
+
+}  // namespace mote::compensation

@@ -1,0 +1,49 @@
+#include "compensation/light_compensation.h"
+
+#include "lights/direct_light.h"
+
+namespace mote::compensation {
+
+using namespace core;
+
+namespace {
+
+/// Direct light at a vertex by light sampling and by the directions in which it scatters.
+template <bool Media>
+Rgb direct_light(const Scene& scene, const ResidualPath& path, WalkContext& context) {
+    const float u_light = context.rng.next_float();
+    const Vec2 u = context.rng.next_vec2();
+    Rgb sum = lights::sample_light<Media>(scene, path.vertex, path.weights, path.state, u_light, u, context);
+    const float u_lobe = context.rng.next_float();
+    const auto next = path.vertex.sample(u_lobe, context.rng.next_vec2(), TransportMode::radiance);
+    if (!next) return sum;
+    PathWeights weights = path.weights;
+    lights::apply_scattering<Media>(weights, *next, path.vertex.position);
+    MediumState state = path.state;
+    if (Media && path.vertex.on_surface()) state = path.vertex.state_towards(state, next->wi);
+    const Ray ray{path.vertex.ray_origin(next->wi), next->wi};
+    Rgb emitted(0.0f);
+    const WalkEvent event = walk<Media>(scene, ray, state, weights, emitted, context);
+    const Vec3* previous = next->delta ? nullptr : &path.vertex.position;
+    return sum + emitted + lights::found_light<Media>(scene, event, ray, weights, previous);
+}
+
+}  // namespace
+
+template <bool Media>
+Rgb compensation_from_lights(const Scene& scene, const ResidualTransport& transport, ResidualPath path,
+                             int steps, WalkContext& context, std::uint64_t& vertices) {
+    Rgb sum(0.0f);
+    for (int i = 0; (steps < 0 || i < steps) && transport.step<Media>(path, context); ++i) {
+        sum += direct_light<Media>(scene, path, context);
+        ++vertices;
+    }
+    return sum;
+}
+
+template Rgb compensation_from_lights<true>(const Scene&, const ResidualTransport&, ResidualPath, int,
+                                            WalkContext&, std::uint64_t&);
+template Rgb compensation_from_lights<false>(const Scene&, const ResidualTransport&, ResidualPath, int,
+                                             WalkContext&, std::uint64_t&);
+
+}  // namespace mote::compensation

@@ -1,0 +1,209 @@
+#include "compensation/residual_transport.h"
+
+#include <algorithm>
+
+#include "compensation/bounded_geometry.h"
+#include "compensation/region_distance.h"
+
+namespace mote::compensation {
+
+using namespace core;
+
+namespace {
+
+/// Distances are never drawn from less than a tenth of an optical depth over the region: the mean may be
+/// nearly zero where there is extinction on one side, and every point must have a chance.
+constexpr float least_optical_depth = 0.1f;
+
+/// The media at the end of `ray`, which starts in `state`.
+MediumState state_at_end(const Scene& scene, const Ray& ray, MediumState state, WalkContext& context) {
+    if (!scene.rays().has_boundaries()) return state;
+    ++context.rays.boundary;
+    scene.rays().all_hits(ray, RayTracer::Group::boundaries, context.boundary_hits);
+    for (const SurfaceHit& boundary : context.boundary_hits)
+        state.cross(*boundary.shape, boundary.geometric_normal, ray.direction);
+    return state;
+}
+
+Rgb exponential(const Rgb& optical_depth) {
+    return {std::exp(-optical_depth.x), std::exp(-optical_depth.y), std::exp(-optical_depth.z)};
+}
+
+/// A distance along a ray in a homogeneous medium, up to a surface if one is within reach.
+struct Placement1D {
+    float distance = 0.0f;
+    float density = 0.0f;  ///< p(t) [1/m]; at the surface the probability to reach it
+    bool at_surface = false, lost = false;
+};
+
+/// One channel of `extinction` drives the distance; the density is the average over all of them.
+Placement1D place(const Rgb& extinction, float surface, float radius, bool keep_inside, Rng& rng) {
+    const float s = extinction[std::min(int(rng.next_float() * 3.0f), 2)], u = rng.next_float();
+    const bool reach_surface = surface < radius;
+    Placement1D p;
+    if (reach_surface || !keep_inside) {
+        const float end = reach_surface ? surface : radius;
+        p.distance = s > 0.0f ? -std::log1p(-u) / s : infinity;
+        if (p.distance < end) {
+            p.density = average(extinction * exponential(extinction * p.distance));
+        } else {
+            p.at_surface = reach_surface, p.lost = !reach_surface;
+            p.distance = end, p.density = average(exponential(extinction * end));
+        }
+        return p;
+    }
+    p.distance = RegionDistance(s, radius).sample(u);
+    for (int c = 0; c < 3; ++c)
+        p.density += RegionDistance(extinction[c], radius).pdf_distance(p.distance) / 3.0f;
+    return p;
+}
+
+ScatteringVertex vertex_in_medium(const Ray& ray, float t, const Medium& medium) {
+    ScatteringVertex v;
+    v.position = ray.at(t), v.wo = -ray.direction, v.phase = &medium.phase();
+    return v;
+}
+
+ScatteringVertex vertex_on_surface(const Ray& ray, const SurfaceHit& hit) {
+    WalkEvent event;
+    event.kind = WalkEvent::Kind::surface, event.hit = hit, event.distance = hit.t;
+    return make_vertex(event, ray);
+}
+
+bool within(const Bounds3& box, const Vec3& p, float distance) {
+    const Vec3 nearest = glm::clamp(p, box.lower, box.upper);
+    return !box.empty() && glm::dot(nearest - p, nearest - p) <= distance * distance;
+}
+
+}  // namespace
+
+ResidualTransport::ResidualTransport(const Scene& scene, float bound, const CompensationSettings& settings)
+    : scene_(scene), settings_(settings), bound_(bound), radius_(bounding_radius(bound)) {
+    if (by_free_path()) return;
+    for (const auto& medium : scene.media()) {
+        const Bounds3 extent = scene.medium_extent(*medium);
+        media_.push_back({medium.get(), extent, media::MeanExtinction(*medium, extent)});
+    }
+}
+
+std::size_t ResidualTransport::memory_bytes() const {
+    std::size_t bytes = 0;
+    for (const LocalMedium& m : media_) bytes += m.mean.memory_bytes();
+    return bytes;
+}
+
+ResidualPath ResidualTransport::start(const ScatteringVertex& receiver, const MediumState& state,
+                                      const Rgb& throughput, Rng& rng) const {
+    ResidualPath path{receiver, state, {}};
+    path.weights.throughput = throughput;
+    path.weights.hero = std::min(int(rng.next_float() * 3.0f), 2);
+    return path;
+}
+
+bool ResidualTransport::by_free_path() const {
+    return settings_.placement == Placement::free_path && settings_.local_visibility &&
+           settings_.transmittance == LocalTransmittance::exact;
+}
+
+std::optional<Rgb> ResidualTransport::mean_extinction(const Vec3& p) const {
+    std::optional<Rgb> sum;
+    for (const LocalMedium& m : media_)
+        if (within(m.extent, p, radius_)) sum = sum.value_or(Rgb(0.0f)) + m.mean.mean(p, radius_);
+    return sum;
+}
+
+bool ResidualTransport::may_hold(const Medium& medium, const Vec3& p) const {
+    const auto m = std::find_if(media_.begin(), media_.end(), [&](auto& l) { return l.medium == &medium; });
+    return m->extent.contains(p) && medium.bounds().contains(p);
+}
+
+bool ResidualTransport::place_on_surface(ResidualPath& path, const Ray& ray, WalkContext& context) const {
+    Rgb emitted(0.0f);
+    const WalkEvent event = walk<false>(scene_, ray, path.state, path.weights, emitted, context);
+    if (event.kind == WalkEvent::Kind::escaped) return false;
+    path.vertex = make_vertex(event, ray);
+    return true;
+}
+
+bool ResidualTransport::place_by_free_path(ResidualPath& path, const Ray& ray, WalkContext& context) const {
+    Rgb emitted(0.0f);  // the emission on the way is not what VPLs stand for
+    const WalkEvent event = walk<true>(scene_, ray, path.state, path.weights, emitted, context);
+    if (event.kind == WalkEvent::Kind::escaped) return false;
+    path.vertex = make_vertex(event, ray);
+    return true;
+}
+
+bool ResidualTransport::place_in_mean_medium(ResidualPath& path, const Ray& ray, WalkContext& context) const {
+    const bool look = settings_.local_visibility || path.vertex.on_surface();
+    std::optional<SurfaceHit> hit;
+    if (look) {
+        ++context.rays.closest;
+        hit = scene_.rays().closest(ray);
+    }
+    const auto found = mean_extinction(ray.origin);
+    if (!found && !hit) return false;
+    const Rgb mean = found.value_or(Rgb(0.0f));
+    const Rgb drawn_from = found ? glm::max(mean, Rgb(least_optical_depth / radius_)) : mean;
+    const Placement1D p = place(drawn_from, hit ? hit->t : infinity, radius_,
+                                settings_.placement == Placement::in_region, context.rng);
+    if (p.lost || !(p.density > 0.0f)) return false;
+
+    const Ray part{ray.origin, ray.direction, 0.0f, p.distance};
+    const MediumState start = path.state;
+    if (look) path.state = state_at_end(scene_, part, start, context);
+    if (p.at_surface) {
+        path.vertex = vertex_on_surface(ray, *hit);
+    } else {
+        const Medium* medium = path.state.current();
+        const Vec3 z = ray.at(p.distance);
+        if (!medium || !may_hold(*medium, z)) return false;
+        path.weights.throughput *= medium->coefficients(z).sigma_s;
+        path.vertex = vertex_in_medium(ray, p.distance, *medium);
+    }
+    const Rgb transmittance =
+        settings_.transmittance == LocalTransmittance::mean
+            ? exponential(mean * p.distance)
+            : scene_.transmittance(ray.origin, ray.at(p.distance), start, context.rng, context.tracking);
+    path.weights.throughput *= transmittance / p.density;
+    return true;
+}
+
+template <bool Media>
+bool ResidualTransport::step(ResidualPath& path, WalkContext& context) const {
+    const float before = max_component(path.throughput());
+    const float u_lobe = context.rng.next_float();
+    const auto next = path.vertex.sample(u_lobe, context.rng.next_vec2(), TransportMode::radiance);
+    if (!next || next->delta) return false;  // light through mirrors and glass is no VPL's
+    path.weights.throughput *= next->weight;
+    if (Media && path.vertex.on_surface()) path.state = path.vertex.state_towards(path.state, next->wi);
+    const float cosine = path.vertex.shading_cosine(next->wi);
+    const Ray ray{path.vertex.ray_origin(next->wi), next->wi, 0.0f, radius_};
+
+    bool placed;
+    if constexpr (!Media)
+        placed = place_on_surface(path, ray, context);
+    else if (by_free_path())
+        placed = place_by_free_path(path, ray, context);
+    else
+        placed = place_in_mean_medium(path, ray, context);
+    if (!placed || !path.vertex.connectable()) return false;
+
+    const float distance = glm::distance(ray.origin, path.vertex.position);
+    // C* with the shading normal at the receiver and the geometric one at the other end, as VPLs are
+    // gathered.
+    path.weights.throughput *=
+        residual_share(cosine * path.vertex.geometric_cosine(path.vertex.wo), distance, bound_);
+    const float remaining = max_component(path.throughput());
+    if (!(remaining > 0.0f)) return false;
+    if (remaining < before) {
+        const float q = remaining / before;
+        if (!(context.rng.next_float() < q)) return false;
+        path.weights.throughput /= q;
+    }
+    return true;
+}
+
+template bool ResidualTransport::step<true>(ResidualPath&, WalkContext&) const;
+template bool ResidualTransport::step<false>(ResidualPath&, WalkContext&) const;
+
+}  // namespace mote::compensation

@@ -1,0 +1,37 @@
+// Compensation from the virtual point lights, for the sixteen receivers of a tile.
+//
+// The strategies of Engelhardt 2013, Sec. 10.2.3: a vertex joined to all VPLs, or one vertex for each VPL.
+// (The loop that Sec. 10.7 marks N-to-1 is the former; see docs/errata.md.) A 1-to-1 strategy is the latter
+// where every VPL has its own receiver; which VPLs a receiver meets is in the range.
+#pragma once
+
+#include <array>
+
+#include "compensation/residual_transport.h"
+#include "lights/vpl_gather.h"
+
+namespace mote::compensation {
+
+/// A receiver of the tile that is to be compensated.
+struct CompensatedReceiver {
+    ResidualPath path;
+    core::Rng rng;
+    std::int32_t max_vpl_depth = 0;  ///< of VPLs at the receiver itself; 0: an idle lane
+};
+using CompensatedTile = std::array<CompensatedReceiver, lights::ReceiverTile::width>;
+
+/// Memory that one task reuses, and what it counted.
+struct VplCompensationScratch {
+    lights::ReceiverTile tile;
+    std::array<ResidualPath, lights::ReceiverTile::width> paths;
+    std::uint64_t vertices = 0;
+};
+
+/// Compensation from the VPLs of `range` per lane, over `steps` steps at most (-1: no limit).
+template <bool Media>
+std::array<core::Rgb, lights::ReceiverTile::width> compensation_from_vpls(
+    const core::Scene& scene, const ResidualTransport& transport, Strategy strategy, int steps,
+    const lights::VplSet& vpls, const lights::VplRange& range, CompensatedTile& receivers,
+    VplCompensationScratch& scratch, lights::GatherScratch& gather_scratch, core::WalkContext& context);
+
+}  // namespace mote::compensation

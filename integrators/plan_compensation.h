@@ -1,0 +1,15 @@
+// What bias compensation will do in a scene, and what it leaves out there, for the plan of mote_vpl.
+#pragma once
+
+#include "compensation/compensation_settings.h"
+#include "core/render/plan.h"
+#include "core/scene/requirements.h"
+#include "core/scene/scene.h"
+
+namespace mote::integrators {
+
+/// `bound` is b [1/m^2].
+void plan_compensation(core::Plan& plan, const core::Scene& scene, const core::Requirements& requirements,
+                       const compensation::CompensationSettings& settings, float bound);
+
+}  // namespace mote::integrators
