@@ -1,4 +1,4 @@
-// Where the rays of a shadow map start, and which texels see a point: one map of rays for every kind of
+// Where the rays of a shadow map start, and where on the map a point lies: one map of rays for every kind of
 // light.
 //
 //   octahedral     point lights and virtual point lights in media: all directions (Engelhardt 2013, Ch. 7)
@@ -6,8 +6,6 @@
 //   perspective    spot lights: a square around the cone
 //   parallel       directional lights: parallel rays from a square before the scene
 #pragma once
-
-#include <optional>
 
 #include "core/math/frame.h"
 #include "core/math/ray.h"
@@ -38,16 +36,11 @@ struct ShadowMapView {
     /// The ray through a texel's centre; `t` is the distance from the light, or from the plane of a parallel
     /// one.
     core::Ray ray(int texel) const;
-
-    struct Place {
-        BilinearFootprint footprint;
-        float distance;  ///< along the rays [m]
-    };
-    /// The texels around a point; nothing where the map does not reach.
-    std::optional<Place> place(const core::Vec3& p) const;
-
-    /// Angle between neighbouring rays, about [rad]; 0 for parallel ones.
-    float texel_angle() const;
+    /// The texel that column i of row j, both in [-1, size], continues the map with: round the edges of the
+    /// octahedron, else the nearest.
+    int neighbour(int i, int j) const;
+    /// Between neighbouring rays at a distance from the light, about [m].
+    float spacing(float distance) const;
 };
 
 }  // namespace mote::lights

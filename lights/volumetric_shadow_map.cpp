@@ -1,81 +1,109 @@
+// Lookups; shadow_map_builder.cpp fills the texels.
 #include "lights/volumetric_shadow_map.h"
 
 #include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
-#include <algorithm>
-#include <cmath>
+#include <cstring>
 
 #include "core/scene/error.h"
-#include "media/heterogeneous_medium.h"
+#include "lights/shadow_map_builder.h"
+#include "lights/shadow_map_cells.h"
 
 namespace mote::lights {
 
 using namespace core;
+using detail::max_of, detail::min_of;
 
 namespace {
 
-/// What marching needs to know of a medium, asked once: traits are made for people and take long.
-struct MarchedMedium {
-    const Medium* medium;
-    const media::HeterogeneousMedium* grid;  ///< null: homogeneous
-    float voxel;
-
-    explicit MarchedMedium(const Medium& m)
-        : medium(&m),
-          grid(dynamic_cast<const media::HeterogeneousMedium*>(&m)),
-          voxel(m.traits().voxel_size) {}
-
-    /// Optical depth per channel of a part of a ray inside it; `step` in voxels.
-    Vec3d optical_depth(const Ray& part, float step, TrackingCounters& counters) const {
-        const float length = part.t_max - part.t_min;
-        if (grid)
-            return grid->optical_depth_by_marching(part, std::isfinite(voxel) ? voxel * step : length,
-                                                   counters);
-        return Vec3d(medium->coefficients(part.origin).sigma_t) * double(length);
-    }
-};
-
-/// One medium along a part of the ray.
-struct Segment {
-    const MarchedMedium* medium;
-    float begin, end;
-};
-
-/// A node of a piecewise-linear function.
-struct Node {
-    float distance;
-    Rgb value;
-};
-
-/// Twice the area between the function and what is left of it when `b` goes: what its integral would lose.
-float loss(const Node& a, const Node& b, const Node& c) {
-    const float share = (b.distance - a.distance) / std::max(c.distance - a.distance, 1e-30f);
-    const Rgb difference = glm::abs(b.value - (a.value + share * (c.value - a.value)));
-    return max_component(difference) * (c.distance - a.distance);
+/// exp(-x) for x in [0, 32] without a branch; exactly 1 at 0. Relative error below 4e-6.
+inline float exp_of_minus(float x) {
+    const float y = x * -1.442695041f;
+    const auto whole = std::int32_t(y - 0.5f);  // rounded: y is never positive
+    const float f = (y - float(whole)) * 0.6931471806f;
+    const float power =
+        1.0f + f * (1.0f + f * (0.5f + f * (1.0f / 6.0f +
+                                            f * (1.0f / 24.0f + f * (1.0f / 120.0f + f * (1.0f / 720.0f))))));
+    return power * std::bit_cast<float>((whole + 127) << 23);
 }
 
-/// Drops nodes, the least important first, until `count` are left. The first and the last always stay.
-void simplify(std::vector<Node>& nodes, std::size_t count) {
-    while (nodes.size() > std::max<std::size_t>(count, 2)) {
-        std::size_t least = 1;
-        float least_loss = infinity;
-        for (std::size_t i = 1; i + 1 < nodes.size(); ++i)
-            if (const float l = loss(nodes[i - 1], nodes[i], nodes[i + 1]); l < least_loss)
-                least = i, least_loss = l;
-        nodes.erase(nodes.begin() + std::ptrdiff_t(least));
+/// One of the four texels around each of N points.
+template <int N>
+struct alignas(64) Corner {
+    const std::byte* record[N];
+    float enter[N], inverse_step[N], plane_x[N], plane_y[N], plane_z[N], limit[N];
+    float weight[N];
+    std::int32_t k[N];  ///< interval
+    float f[N];         ///< place within it
+    std::int32_t low[N], high[N];
+
+    void load(const std::byte* first, std::size_t record_bytes, const std::int32_t* place) {
+        for (int i = 0; i < N; ++i) {
+            record[i] = first + std::size_t(place[i]) * record_bytes;
+            VolumetricShadowMap::Header h;
+            std::memcpy(&h, record[i], sizeof h);
+            enter[i] = h.enter, inverse_step[i] = h.inverse_step;
+            plane_x[i] = h.plane_x, plane_y[i] = h.plane_y, plane_z[i] = h.plane_z, limit[i] = h.limit;
+        }
     }
-}
+
+    /// Bilinear weight, 0 behind the surface.
+    void weigh(const ShadowMapCells<N>& cells, bool right, bool upper) {
+        MOTE_INDEPENDENT_LANES
+        for (int i = 0; i < N; ++i) {
+            const float across = right ? cells.s[i] : 1.0f - cells.s[i];
+            const float along = upper ? cells.t[i] : 1.0f - cells.t[i];
+            const float height = plane_x[i] * cells.x[i] + plane_y[i] * cells.y[i] + plane_z[i] * cells.z[i];
+            weight[i] = height <= limit[i] ? cells.inside[i] * across * along : 0.0f;
+        }
+    }
+
+    void find_interval(const float* distance, int intervals) {
+        const auto end = float(intervals);
+        MOTE_INDEPENDENT_LANES
+        for (int i = 0; i < N; ++i) {
+            const float at = max_of(min_of((distance[i] - enter[i]) * inverse_step[i], end), 0.0f);
+            const std::int32_t down = std::int32_t(at);
+            k[i] = down < intervals ? down : intervals - 1;
+            f[i] = at - float(k[i]);
+        }
+    }
+
+    void find_node(const float* distance, int nodes) {
+        for (int i = 0; i < N; ++i) {
+            const std::byte* distances = record[i] + sizeof(VolumetricShadowMap::Header);
+            const auto at = [&](int node) {
+                float d;
+                std::memcpy(&d, distances + std::size_t(node) * sizeof d, sizeof d);
+                return d;
+            };
+            int before = 0;
+            for (int node = 1; node < nodes - 1; ++node) before += at(node) <= distance[i];
+            const float from = at(before), length = at(before + 1) - from;
+            k[i] = before;
+            f[i] = length > 0.0f ? max_of(min_of((distance[i] - from) / length, 1.0f), 0.0f) : 1.0f;
+        }
+    }
+
+    /// The values before and after, of the channel whose values start `offset` bytes into the record.
+    void load_values(std::size_t offset) {
+        for (int i = 0; i < N; ++i) {
+            std::uint16_t pair[2];
+            std::memcpy(pair, record[i] + offset + 2 * std::size_t(k[i]), sizeof pair);
+            low[i] = pair[0], high[i] = pair[1];
+        }
+    }
+};
 
 }  // namespace
 
 std::size_t ShadowMapSettings::bytes(int size, bool chromatic) const {
-    const std::size_t channels = chromatic ? 3 : 1, texel = 3 * sizeof(float);
-    const std::size_t values =
-        storage == Storage::intervals ? std::size_t(intervals) + 1 : std::size_t(nodes);
-    const std::size_t distances = storage == Storage::nodes ? values : 0;
-    return std::size_t(size) * std::size_t(size) * (texel + sizeof(float) * (values * channels + distances));
+    const std::size_t distances = storage == Storage::nodes ? values() * sizeof(float) : 0;
+    const std::size_t record = sizeof(VolumetricShadowMap::Header) + distances +
+                               values() * (chromatic ? 3 : 1) * sizeof(std::uint16_t);
+    return std::size_t(size + 2) * std::size_t(size + 2) * ((record + 31) / 32 * 32);
 }
 
 void ShadowMapSettings::check(int size, bool chromatic) const {
@@ -83,189 +111,99 @@ void ShadowMapSettings::check(int size, bool chromatic) const {
         throw InputError(
             "a volumetric shadow map needs at least one texel, one interval, two nodes and a step above 0");
     if (bytes(size, chromatic) <= max_bytes) return;
-    const auto fits = int(std::sqrt(double(max_bytes) / double(bytes(1, chromatic))));
-    throw InputError(
-        fmt::format("a volumetric shadow map of {0} x {0} texels takes {1:.1f} MB, above the limit of "
-                    "{2:.1f} MB; {3} x {3} would fit",
-                    size, double(bytes(size, chromatic)) * 1e-6, double(max_bytes) * 1e-6, fits));
+    const double texel = double(bytes(1, chromatic)) / 9.0;
+    const int fits = int(std::sqrt(double(max_bytes) / texel)) - 2;
+    throw InputError(fmt::format(
+        "a volumetric shadow map of {0} x {0} texels takes {1:.2f} MB, above the limit of {2:.2f} MB; {3}",
+        size, double(bytes(size, chromatic)) * 1e-6, double(max_bytes) * 1e-6,
+        fits > 0 ? fmt::format("{0} x {0} would fit", fits) : "not even one texel would fit"));
 }
 
-/// Fills texels; one a thread.
-class VolumetricShadowMap::Builder {
-  public:
-    Builder(const Scene& scene, VolumetricShadowMap& map, const MediumState& at_light)
-        : scene_(scene), map_(map), at_light_(at_light) {
-        for (const auto& medium : scene.media()) media_.emplace_back(*medium);
-    }
-
-    void fill(int index) {
-        const Ray ray = map_.view_.ray(index);
-        Texel& texel = map_.texels_[std::size_t(index)];
-        ++rays.closest;
-        const auto hit = scene_.rays().closest(ray);
-        texel.surface = hit ? hit->t : infinity;
-        find_segments(ray, texel.surface);
-        const float begin = segments_.empty() ? 0.0f : segments_.front().begin;
-        const float end = segments_.empty() ? 0.0f : segments_.back().end;
-        const int intervals = map_.settings_.intervals;
-        texel.enter = begin, texel.step = (end - begin) / float(intervals);
-        sample(ray, texel);
-        if (map_.settings_.storage == ShadowMapSettings::Storage::intervals)
-            for (int k = 0; k <= intervals; ++k)
-                put(std::size_t(index) * std::size_t(intervals + 1) + std::size_t(k), k);
-        else
-            put_nodes(std::size_t(index));
-    }
-
-    RayCounters rays;
-
-  private:
-    const MarchedMedium& marched(const Medium* medium) const {
-        return *std::find_if(media_.begin(), media_.end(), [&](auto& m) { return m.medium == medium; });
-    }
-
-    /// The media along the ray up to `end`, clipped to where they are.
-    void find_segments(const Ray& ray, float end) {
-        segments_.clear();
-        MediumState state = at_light_;
-        // Beyond the scene's bounds no receiver can be.
-        const Bounds3 bounds = scene_.bounds();
-        const float far = glm::distance(ray.origin, bounds.center()) + bounds.radius();
-        end = std::min(end, far);
-        float t = ray.t_min;
-        const auto pass = [&](float to) {
-            const Medium* medium = state.current();
-            if (medium && t < to) {
-                const auto part = intersect(medium->bounds(), Ray{ray.origin, ray.direction, t, to});
-                if (part) segments_.push_back({&marched(medium), part->t0, part->t1});
-            }
-            t = std::max(t, to);
-        };
-        if (scene_.rays().has_boundaries()) {
-            ++rays.boundary;
-            scene_.rays().all_hits(Ray{ray.origin, ray.direction, ray.t_min, end},
-                                   RayTracer::Group::boundaries, boundaries_);
-            for (const SurfaceHit& boundary : boundaries_) {
-                pass(boundary.t);
-                state.cross(*boundary.shape, boundary.geometric_normal, ray.direction);
-            }
-        }
-        pass(end);
-    }
-
-    /// Transmittance at the ends of all intervals.
-    void sample(const Ray& ray, const Texel& texel) {
-        const int intervals = map_.settings_.intervals;
-        values_.assign(std::size_t(intervals) + 1, Rgb(1.0f));
-        if (!(texel.step > 0.0f)) return;
-        Vec3d depth(0.0);
-        std::size_t s = 0;
-        for (int k = 1; k <= intervals; ++k) {
-            const float from = texel.enter + float(k - 1) * texel.step,
-                        to = texel.enter + float(k) * texel.step;
-            while (s < segments_.size() && segments_[s].end <= from) ++s;
-            for (std::size_t i = s; i < segments_.size() && segments_[i].begin < to; ++i) {
-                const Ray part{ray.origin, ray.direction, std::max(from, segments_[i].begin),
-                               std::min(to, segments_[i].end)};
-                if (part.t_min < part.t_max)
-                    depth += segments_[i].medium->optical_depth(part, map_.settings_.step, counters_);
-            }
-            for (int c = 0; c < 3; ++c) values_[std::size_t(k)][c] = float(std::exp(-depth[c]));
-        }
-    }
-
-    void put(std::size_t place, int k) {
-        for (int c = 0; c < map_.channels_; ++c)
-            map_.values_[place * std::size_t(map_.channels_) + std::size_t(c)] = values_[std::size_t(k)][c];
-    }
-
-    void put_nodes(std::size_t index) {
-        const Texel& texel = map_.texels_[index];
-        nodes_.clear();
-        for (std::size_t k = 0; k < values_.size(); ++k)
-            nodes_.push_back({texel.enter + float(k) * texel.step, values_[k]});
-        const auto count = std::size_t(map_.settings_.nodes);
-        simplify(nodes_, count);
-        while (nodes_.size() < count) nodes_.push_back(nodes_.back());
-        for (std::size_t i = 0; i < count; ++i) {
-            const std::size_t place = index * count + i;
-            map_.distances_[place] = nodes_[i].distance;
-            for (int c = 0; c < map_.channels_; ++c)
-                map_.values_[place * std::size_t(map_.channels_) + std::size_t(c)] = nodes_[i].value[c];
-        }
-    }
-
-    const Scene& scene_;
-    VolumetricShadowMap& map_;
-    const MediumState& at_light_;
-    std::vector<MarchedMedium> media_;
-    TrackingCounters counters_;
-    std::vector<SurfaceHit> boundaries_;
-    std::vector<Segment> segments_;
-    std::vector<Rgb> values_;
-    std::vector<Node> nodes_;
-};
+bool needs_chromatic_maps(const Scene& scene) {
+    const auto media = scene.media();
+    return std::any_of(media.begin(), media.end(), [](const auto& m) { return m->traits().chromatic; });
+}
 
 void VolumetricShadowMap::build(const Scene& scene, const ShadowMapView& view, const MediumState& at_light,
                                 const ShadowMapSettings& settings) {
-    const auto media = scene.media();
-    const bool chromatic =
-        std::any_of(media.begin(), media.end(), [](const auto& m) { return m->traits().chromatic; });
+    const bool chromatic = needs_chromatic_maps(scene);
     settings.check(view.size, chromatic);
     view_ = view, settings_ = settings, channels_ = chromatic ? 3 : 1;
-    slack_ = view.texel_angle();
-    const auto texels = std::size_t(view.texels());
-    const bool nodes = settings.storage == ShadowMapSettings::Storage::nodes;
-    const std::size_t per_texel = nodes ? std::size_t(settings.nodes) : std::size_t(settings.intervals) + 1;
-    texels_.resize(texels);
-    values_.resize(texels * per_texel * std::size_t(channels_));
-    distances_.resize(nodes ? texels * per_texel : 0);
-    tbb::enumerable_thread_specific<Builder> builders([&] { return Builder(scene, *this, at_light); });
-    tbb::parallel_for(0, view.size, [&](int row) {
-        Builder& builder = builders.local();
-        for (int column = 0; column < view.size; ++column) builder.fill(row * view.size + column);
+    const std::size_t row = std::size_t(view.size) + 2, bytes = settings.bytes(view.size, chromatic);
+    blocks_ = bytes / (row * row * sizeof(Block));
+    records_.resize(row * row * blocks_);
+    tbb::enumerable_thread_specific<ShadowMapBuilder> builders(
+        [&] { return ShadowMapBuilder(scene, *this, at_light); });
+    tbb::parallel_for(0, view.size, [&](int j) {
+        ShadowMapBuilder& builder = builders.local();
+        for (int i = 0; i < view.size; ++i)
+            builder.fill(j * view.size + i, record(std::size_t(j + 1) * row + std::size_t(i + 1)));
     });
+    copy_border();
     rays_ = {};
-    for (const Builder& builder : builders) rays_.add(builder.rays);
+    for (const ShadowMapBuilder& builder : builders) rays_.add(builder.rays());
 }
 
-Rgb VolumetricShadowMap::at_intervals(std::size_t texel, float distance) const {
-    const Texel& t = texels_[texel];
-    const std::size_t first = texel * std::size_t(settings_.intervals + 1);
-    const float x = t.step > 0.0f ? (distance - t.enter) / t.step : 0.0f;
-    if (!(x > 0.0f)) return Rgb(1.0f);
-    if (x >= float(settings_.intervals)) return value(first + std::size_t(settings_.intervals));
-    const auto k = std::size_t(x);
-    const float f = x - float(k);
-    return (1.0f - f) * value(first + k) + f * value(first + k + 1);
+void VolumetricShadowMap::copy_border() {
+    const int size = view_.size, row = size + 2;
+    const auto copy = [&](int i, int j) {
+        const int from = view_.neighbour(i, j);
+        const int inner = (from / size + 1) * row + from % size + 1;
+        std::memcpy(record(std::size_t((j + 1) * row + i + 1)), record(std::size_t(inner)),
+                    blocks_ * sizeof(Block));
+    };
+    for (int i = -1; i <= size; ++i) copy(i, -1), copy(i, size);
+    for (int j = 0; j < size; ++j) copy(-1, j), copy(size, j);
 }
 
-Rgb VolumetricShadowMap::at_nodes(std::size_t texel, float distance) const {
-    const auto count = std::size_t(settings_.nodes);
-    const float* first = distances_.data() + texel * count;
-    const auto after = std::size_t(std::upper_bound(first, first + count, distance) - first);
-    if (after == 0) return Rgb(1.0f);
-    if (after == count) return value(texel * count + count - 1);
-    const float f = (distance - first[after - 1]) / (first[after] - first[after - 1]);
-    return (1.0f - f) * value(texel * count + after - 1) + f * value(texel * count + after);
+template <int N>
+void VolumetricShadowMap::look_up(const float* x, const float* y, const float* z, float* r, float* g,
+                                  float* b) const {
+    ShadowMapCells<N> cells;
+    find_cells<N>(view_, x, y, z, cells);
+    const std::size_t bytes = blocks_ * sizeof(Block), row = std::size_t(view_.size + 2) * bytes;
+    const bool nodes = settings_.storage == ShadowMapSettings::Storage::nodes;
+    const std::size_t values = settings_.values();
+    const std::size_t first = sizeof(Header) + (nodes ? values * sizeof(float) : 0);
+    alignas(64) float weight[N] = {}, depth[3][N] = {};
+    Corner<N> corner;
+    for (int c = 0; c < 4; ++c) {
+        const bool right = c & 1, upper = c & 2;
+        corner.load(records_.data()->bytes + (right ? bytes : 0) + (upper ? row : 0), bytes, cells.corner);
+        corner.weigh(cells, right, upper);
+        if (nodes)
+            corner.find_node(cells.distance, settings_.nodes);
+        else
+            corner.find_interval(cells.distance, settings_.intervals);
+        for (std::size_t channel = 0; channel < channels_; ++channel) {
+            corner.load_values(first + 2 * channel * values);
+            MOTE_INDEPENDENT_LANES
+            for (int i = 0; i < N; ++i)
+                depth[channel][i] += corner.weight[i] * (float(corner.low[i]) +
+                                                         corner.f[i] * float(corner.high[i] - corner.low[i]));
+        }
+        for (int i = 0; i < N; ++i) weight[i] += corner.weight[i];
+    }
+    float* const out[3] = {r, g, b};
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+        const float* sum = depth[channel < channels_ ? channel : 0];
+        float* light = out[channel];
+        MOTE_INDEPENDENT_LANES
+        for (int i = 0; i < N; ++i) {
+            const float mean = depth_unit * (sum[i] / max_of(weight[i], 1e-20f));
+            light[i] = mean < 31.0f ? min_of(weight[i], 1.0f) * exp_of_minus(mean) : 0.0f;
+        }
+    }
+}
+
+void VolumetricShadowMap::look_up(ShadowLookup& points) const {
+    look_up<ShadowLookup::width>(points.x, points.y, points.z, points.r, points.g, points.b);
 }
 
 Rgb VolumetricShadowMap::transmittance(const Vec3& p) const {
-    const auto place = view_.place(p);
-    if (!place) return Rgb(0.0f);
-    const bool nodes = settings_.storage == ShadowMapSettings::Storage::nodes;
-    Rgb sum(0.0f);
-    for (std::size_t i = 0; i < 4; ++i) {
-        const auto texel = std::size_t(place->footprint.texel[i]);
-        if (place->distance > texels_[texel].surface * (1.0f + slack_)) continue;
-        sum += place->footprint.weight[i] *
-               (nodes ? at_nodes(texel, place->distance) : at_intervals(texel, place->distance));
-    }
-    return sum;
-}
-
-std::size_t VolumetricShadowMap::memory_bytes() const {
-    return texels_.capacity() * sizeof(Texel) + (values_.capacity() + distances_.capacity()) * sizeof(float);
+    Rgb result;
+    look_up<1>(&p.x, &p.y, &p.z, &result.x, &result.y, &result.z);
+    return result;
 }
 
 }  // namespace mote::lights

@@ -1,15 +1,19 @@
 // Volumetric shadow maps: the transmittance from a light to everything, per direction as a function of
 // distance (Salvi et al. 2010, as used in Engelhardt 2013, Sec. 10.3).
 //
-// Every texel holds the transmittance along its ray between the points where the ray enters the media and
-// where it leaves them or meets a surface. Two forms: values at fixed intervals, found at once; and nodes of
-// a piecewise-linear function, of which those were dropped whose loss changed its integral least. Values come
-// from ray marching, so a map is deterministic and biased: by its step, by its intervals, and by what lies
-// between its rays. They never rise with distance, are exactly 1 at the light, and 0 behind the first
-// surface.
+// A texel holds the optical depth along its ray between the points where the ray enters the media and where
+// it leaves them, or a little behind the first surface, in 16 bits a value and one piece of memory with all
+// else that a lookup needs. Two forms: values at fixed intervals, found at once; and nodes of a
+// piecewise-linear function, of which those were dropped whose loss changed the integral of the transmittance
+// least. Optical depth is interpolated, not transmittance: between four rays that is a fifth more accurate
+// (docs/media.md). A surface is kept as the plane through the point that the ray met, so that walls seen at
+// grazing angles do not shadow themselves.
+//
+// Maps are deterministic and biased: by the march's step, by the intervals, and most of all by what lies
+// between their rays. Transmittance is exactly 1 at the light, never rises along a ray, and is 0 behind the
+// first surface and below e^-31.
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "core/render/statistics.h"
@@ -21,7 +25,7 @@ namespace mote::lights {
 struct ShadowMapSettings {
     enum class Storage : std::uint8_t { intervals, nodes };
     Storage storage = Storage::intervals;
-    int intervals = 64;  ///< between entry and exit; nodes are chosen from as many
+    int intervals = 35;  ///< between entry and exit (35 fill 96 bytes); nodes are chosen from as many
     int nodes = 12;      ///< kept in each texel
     float step = 1.0f;   ///< of ray marching, in voxels of the medium
     std::size_t max_bytes = std::size_t(1) << 30;
@@ -30,6 +34,20 @@ struct ShadowMapSettings {
     std::size_t bytes(int size, bool chromatic) const;
     /// Throws InputError when a map would exceed max_bytes, with the largest size that would not.
     void check(int size, bool chromatic) const;
+
+    std::size_t values() const {
+        return storage == Storage::intervals ? std::size_t(intervals) + 1 : std::size_t(nodes);
+    }
+};
+
+/// Whether maps of this scene need three channels.
+bool needs_chromatic_maps(const core::Scene& scene);
+
+/// Sixteen points, and the transmittance per channel from the light to each.
+struct alignas(64) ShadowLookup {
+    static constexpr int width = 16;
+    float x[width], y[width], z[width];
+    float r[width], g[width], b[width];
 };
 
 class VolumetricShadowMap {
@@ -40,34 +58,41 @@ class VolumetricShadowMap {
     void build(const core::Scene& scene, const ShadowMapView& view, const core::MediumState& at_light,
                const ShadowMapSettings& settings);
 
-    /// From the light to p per channel, interpolated between the four texels around it; 0 where the map does
+    /// From the light to the points, interpolated between the four texels around each; 0 where the map does
     /// not reach. Points within about a texel behind a surface count as on it.
+    void look_up(ShadowLookup& points) const;
     core::Rgb transmittance(const core::Vec3& p) const;
 
     const ShadowMapView& view() const { return view_; }
-    std::size_t memory_bytes() const;
+    std::size_t memory_bytes() const { return records_.capacity() * sizeof(Block); }
     const core::RayCounters& rays() const { return rays_; }  ///< of the last build
 
-  private:
-    struct Texel {
-        float enter, step;  ///< values are at enter + k * step
-        float surface;      ///< distance of the first surface, or infinity
+    /// What a texel's piece of memory begins with. After it follow, at intervals, the values of all channels
+    /// one after the other; as nodes, their distances first.
+    struct Header {
+        float enter, inverse_step;  ///< values are at enter + k / inverse_step
+        /// Points with plane . p <= limit, in the frame of the view, lie before the surface.
+        float plane_x, plane_y, plane_z, limit;
     };
-    class Builder;
-    core::Rgb at_intervals(std::size_t texel, float distance) const;
-    core::Rgb at_nodes(std::size_t texel, float distance) const;
-    core::Rgb value(std::size_t index) const {
-        const float* v = values_.data() + index * std::size_t(channels_);
-        return channels_ == 1 ? core::Rgb(v[0]) : core::Rgb(v[0], v[1], v[2]);
-    }
+    /// Optical depth of one step of the stored numbers. All 16 bits reach 32, where nothing is left.
+    static constexpr float depth_unit = 1.0f / 2048.0f;
+
+  private:
+    friend class ShadowMapBuilder;
+    struct alignas(32) Block {
+        std::byte bytes[32];
+    };
+    std::byte* record(std::size_t place) { return records_[place * blocks_].bytes; }
+    const std::byte* record(std::size_t place) const { return records_[place * blocks_].bytes; }
+    template <int N>
+    void look_up(const float* x, const float* y, const float* z, float* r, float* g, float* b) const;
+    void copy_border();
 
     ShadowMapView view_;
     ShadowMapSettings settings_;
-    int channels_ = 1;
-    float slack_ = 0.0f;  ///< of the surface's distance, relative
-    std::vector<Texel> texels_;
-    std::vector<float> values_;     ///< intervals + 1, or nodes, a texel
-    std::vector<float> distances_;  ///< of nodes
+    std::size_t channels_ = 1;
+    std::size_t blocks_ = 0;  ///< of one texel
+    std::vector<Block> records_;
     core::RayCounters rays_;
 };
 
