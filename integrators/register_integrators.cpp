@@ -12,6 +12,8 @@ void register_integrators(core::Registry& registry) {
     register_mote_vpl(registry);
     register_mote_photon_map(registry);
     register_mote_vsl(registry);
+    register_mote_single_scattering(registry);
+    register_mote_epipolar(registry);
 }
 
 }  // namespace mote::integrators

@@ -13,6 +13,8 @@ void register_volpath(core::Registry& registry);
 void register_mote_vpl(core::Registry& registry);
 void register_mote_photon_map(core::Registry& registry);
 void register_mote_vsl(core::Registry& registry);
+void register_mote_single_scattering(core::Registry& registry);
+void register_mote_epipolar(core::Registry& registry);
 
 /// Light that passes delta surfaces last, for integrators that can only hit lights.
 void plan_caustics(core::Plan& plan, const core::Scene& scene, const core::Requirements& requirements);

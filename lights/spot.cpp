@@ -6,6 +6,7 @@
 #include "core/scene/medium.h"
 #include "core/scene/registry.h"
 #include "lights/emitters.h"
+#include "lights/light_cone.h"
 #include "lights/light_values.h"
 #include "lights/point_connection.h"
 
@@ -16,7 +17,7 @@ using namespace core;
 
 constexpr double degrees = 3.14159265358979323846 / 180.0;
 
-class SpotLight final : public Emitter {
+class SpotLight final : public Emitter, public ConeLight {
   public:
     SpotLight(const SpotSettings& settings, const glm::mat3& rotation, std::shared_ptr<Medium> around)
         : position_(settings.to_world.point(Vec3d(0.0))),
@@ -56,6 +57,7 @@ class SpotLight final : public Emitter {
         return sample;
     }
     Rgb power() const override { return power_; }
+    LightCone cone() const override { return {position_, world_from_local_ * Vec3(0, 0, 1), cutoff_}; }
 
   private:
     /// Radiant intensity [W/sr] towards the unit vector d of the light's own frame.

@@ -1,0 +1,49 @@
+// Passes of `mote_single_scattering` and `mote_epipolar`: light scattered at most once.
+//
+// Eye paths run at full rate (single_scattering_eye.h). Light of point-like lights scattered along the first
+// rays is marched for every pixel, on a regular grid, or on epipolar lines; the last two interpolate, and
+// march the pixels that nothing around them continues. Every pass moves lines, samples, grid, march steps,
+// and the point on the lens that its rays pass, all of them together, by numbers of its own.
+#pragma once
+
+#include "core/render/integrator.h"
+#include "core/scene/properties.h"
+#include "core/scene/registry.h"
+#include "integrators/single_scattering_eye.h"
+#include "screenspace/epipolar_sampling.h"
+
+namespace mote::integrators {
+
+enum class ScatteringSampling : std::uint8_t { full, sub_sampled, epipolar };
+
+struct ScatteringSettings {
+    EyeSettings eye;
+    screenspace::MarchSettings march;
+    ScatteringSampling sampling = ScatteringSampling::full;
+    double spacing = 4.0;  ///< of sub-sampling [pixels]
+    int lines = 1024;      ///< epipolar lines of a light
+    screenspace::LineSampling line;
+};
+
+std::unique_ptr<core::Estimator> make_single_scattering_estimator(const core::Scene& scene,
+                                                                  const core::RenderOptions& options,
+                                                                  const ScatteringSettings& settings);
+
+/// The settings that both integrators share, checked. Throws InputError.
+ScatteringSettings read_scattering_settings(const core::Properties& properties);
+/// Their rows in a manual page.
+std::vector<core::Parameter> scattering_parameters();
+/// An integer or a number of a scene file within bounds. Throws InputError.
+int checked_integer(const core::Properties& properties, const std::string& name, int value, int lower,
+                    int upper);
+
+/// emission, direct, and single_scattering where there are media.
+std::vector<core::Layer> single_scattering_layers(bool media);
+
+/// What both integrators do alike, and what they leave to others.
+void plan_single_scattering(core::Plan& plan, const core::Scene& scene,
+                            const core::Requirements& requirements, const ScatteringSettings& settings);
+/// Lights that are marched: those with a position, not black.
+std::vector<const core::Emitter*> positional_lights(const core::Scene& scene);
+
+}  // namespace mote::integrators

@@ -1,0 +1,105 @@
+#include "screenspace/epipolar_picture.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mote::screenspace {
+
+using namespace core;
+
+EpipolarPicture::EpipolarPicture(EpipolarLines lines, const LineSampling& settings,
+                                 const InScatteringSource& source, const Loop& loop)
+    : lines_(std::move(lines)), depth_tolerance_(settings.depth_tolerance) {
+    const int count = int(lines_.lines().size());
+    std::vector<std::optional<SampledLine>> sampled(lines_.lines().size());
+    loop(count, [&](int i) {
+        const auto task = source.start();
+        sampled[std::size_t(i)].emplace(lines_.lines()[std::size_t(i)], settings, *task);
+    });
+    double sum = 0.0;
+    std::size_t samples = 0;
+    for (const auto& line : sampled) {
+        if (!line) return;  // the loop was cancelled
+        for (const LineSample& s : line->samples()) sum += double(max_component(s.light.radiance)), ++samples;
+    }
+    const float mean = samples > 0 ? float(sum / double(samples)) : 0.0f;
+    sampled_.reserve(sampled.size());
+    for (auto& line : sampled) sampled_.push_back(std::move(*line));
+    loop(count, [&](int i) {
+        const auto task = source.start();
+        sampled_[std::size_t(i)].finish(settings, mean, *task);
+    });
+}
+
+/// The line's light at a position along it, where the end of the ray there continues `end`.
+std::optional<Rgb> EpipolarPicture::texel_light(const SampledLine& line, double texel, const RayEnd& end,
+                                                InScatteringTask& task) const {
+    const auto& texels = line.texels();
+    const double last = double(texels.size() - 1);
+    if (texel < 0.0 || texel > last) return std::nullopt;
+    const auto usable = [&](std::size_t i) {
+        return texels[i].known && continues(end, texels[i].distance, texels[i].surface, depth_tolerance_,
+                                            [&] { return task.ray(line.film(double(i))); });
+    };
+    const auto i = std::size_t(texel), j = std::min(i + 1, texels.size() - 1);
+    const auto f = float(texel - double(i));
+    const bool left = usable(i), right = usable(j);
+    if (left && right) return (1.0f - f) * texels[i].radiance + f * texels[j].radiance;
+    if (left) return texels[i].radiance;
+    if (right) return texels[j].radiance;
+    return std::nullopt;
+}
+
+EpipolarPicture::Tap EpipolarPicture::tap(std::size_t line, const Vec2d& film, double spacing,
+                                          const RayEnd& end, InScatteringTask& task) const {
+    const SampledLine& sampled = sampled_[line];
+    const double share = sampled.line().project(film);
+    const double texel = share * double(sampled.texels().size() - 1);
+    Tap result;
+    result.distance = glm::length(film - sampled.line().at(share));
+    if (const auto light = texel_light(sampled, texel, end, task)) {
+        result.radiance = *light, result.weight = 1.0f;
+        return result;
+    }
+    for (const double k : {-1.0, 1.0, -2.0, 2.0})
+        if (const auto light = texel_light(sampled, texel + k * spacing, end, task)) {
+            const auto weight = float(std::exp(-0.5 * k * k));
+            result.radiance += weight * *light, result.weight += weight;
+        }
+    if (result.weight > 0.0f) result.radiance /= result.weight;
+    result.weight = std::min(result.weight, 1.0f);
+    return result;
+}
+
+std::optional<Rgb> EpipolarPicture::light_at(const Vec2d& film, const RayEnd& end,
+                                             InScatteringTask& task) const {
+    if (end.dark()) return Rgb(0.0f);
+    if (sampled_.empty()) return std::nullopt;
+    const auto [before, after] = lines_.around(film);
+    const auto foot = [&](std::size_t i) { return sampled_[i].line().at(sampled_[i].line().project(film)); };
+    const double spacing = std::max(1.0, glm::length(foot(after) - foot(before)));
+    Tap left = tap(before, film, spacing, end, task), right = tap(after, film, spacing, end, task);
+    const auto outwards = [&](std::size_t from, int step, Tap& side) {
+        const auto i = lines_.next(from, step);
+        if (side.weight > 0.0f || !i) return;
+        const Tap outer = tap(*i, film, spacing, end, task);
+        if (outer.weight > 0.0f) side = outer;
+    };
+    outwards(before, -1, left), outwards(after, 1, right);
+    const double total = left.distance + right.distance;
+    const double share = total > 0.0 ? right.distance / total : 0.5;
+    const double a = double(left.weight) * share, b = double(right.weight) * (1.0 - share);
+    if (!(a + b > 0.1)) return std::nullopt;
+    return Rgb((a * Vec3d(left.radiance) + b * Vec3d(right.radiance)) / (a + b));
+}
+
+PictureCounts EpipolarPicture::counts() const {
+    PictureCounts counts;
+    for (const SampledLine& line : sampled_) {
+        ++counts.lines, counts.texels += line.texels().size(), counts.marched += line.marched();
+        counts.bytes += line.memory_bytes() + sizeof(SampledLine);
+    }
+    return counts;
+}
+
+}  // namespace mote::screenspace

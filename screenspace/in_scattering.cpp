@@ -1,0 +1,187 @@
+#include "screenspace/in_scattering.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "media/heterogeneous_medium.h"
+
+namespace mote::screenspace {
+
+using namespace core;
+
+namespace {
+
+/// Distance of the light from the ray, and of the point nearest to it from the origin. A light on the ray is
+/// kept off it by what single precision resolves.
+struct Around {
+    double nearest, distance;
+    Around(const Ray& ray, const Vec3& light) {
+        const Vec3d to_light = Vec3d(light) - Vec3d(ray.origin), direction(ray.direction);
+        nearest = glm::dot(to_light, direction);
+        distance =
+            std::max(glm::length(to_light - nearest * direction), 1e-4 * glm::length(to_light) + 1e-30);
+    }
+    double angle(double t) const { return std::atan2(t - nearest, distance); }
+};
+
+/// Where a medium can be: the closed shapes it fills, or everywhere when something names it as outside.
+Bounds3 extent(const Scene& scene, const Medium& medium) {
+    Bounds3 box;
+    bool everywhere = scene.camera().medium.get() == &medium;
+    for (const auto& light : scene.emitters()) everywhere |= light->medium == &medium;
+    for (const auto& shape : scene.shapes()) {
+        everywhere |=
+            shape->exterior.get() == &medium || (shape->interior.get() == &medium && !shape->closed());
+        if (shape->interior.get() == &medium) box.extend(shape->bounds());
+    }
+    const Bounds3 own = medium.bounds();
+    if (everywhere) return own;
+    box.lower = glm::max(box.lower, own.lower), box.upper = glm::min(box.upper, own.upper);
+    return box;
+}
+
+}  // namespace
+
+void find_segments(const Scene& scene, const Ray& ray, const MediumState& state,
+                   std::vector<MediumSegment>& segments, WalkContext& walk) {
+    segments.clear();
+    const auto add = [&](float t0, float t1, const MediumState& s) {
+        if (!(t0 < t1)) return;
+        if (!segments.empty() && segments.back().medium == s.current() && segments.back().t1 == t0)
+            segments.back().t1 = t1, segments.back().state = s;
+        else
+            segments.push_back({s.current(), t0, t1, s});
+    };
+    float t = ray.t_min;
+    MediumState here = state;
+    if (scene.rays().has_boundaries()) {
+        ++walk.rays.boundary;
+        scene.rays().all_hits(ray, RayTracer::Group::boundaries, walk.boundary_hits);
+        for (const SurfaceHit& hit : walk.boundary_hits) {
+            add(t, hit.t, here);
+            here.cross(*hit.shape, hit.geometric_normal, ray.direction);
+            t = hit.t;
+        }
+    }
+    add(t, ray.t_max, here);
+}
+
+Rgb marched_transmittance(const Medium& medium, const Ray& ray, float voxels, WalkContext& walk) {
+    if (const auto* grid = dynamic_cast<const media::HeterogeneousMedium*>(&medium)) {
+        const float size = medium.traits().voxel_size;
+        const Vec3d depth = grid->optical_depth_by_marching(ray, voxels * size, walk.tracking);
+        return {float(std::exp(-depth.x)), float(std::exp(-depth.y)), float(std::exp(-depth.z))};
+    }
+    return medium.transmittance(ray, walk.rng, walk.tracking);
+}
+
+Rgb marched_transmittance(const Ray& ray, const std::vector<MediumSegment>& segments, float voxels,
+                          WalkContext& walk) {
+    Rgb product(1.0f);
+    for (const MediumSegment& s : segments)
+        if (s.medium)
+            product *=
+                marched_transmittance(*s.medium, {ray.origin, ray.direction, s.t0, s.t1}, voxels, walk);
+    return product;
+}
+
+InScattering::InScattering(const Scene& scene, const Emitter& light, const MarchSettings& settings)
+    : scene_(scene), light_(light), settings_(settings) {
+    const auto position = Scene::light_position(light);
+    if (!position) throw std::invalid_argument("in-scattering along rays: the light has no position");
+    if (settings.steps < 1) throw std::invalid_argument("in-scattering along rays: at least one step");
+    position_ = *position;
+    if (const auto* spot = dynamic_cast<const lights::ConeLight*>(&light)) cone_ = spot->cone();
+    for (const auto& medium : scene.media())
+        if (medium->traits().scattering && !medium->traits().empty) media_.extend(extent(scene, *medium));
+}
+
+std::optional<Interval> InScattering::lit_part(const Ray& ray) const {
+    if (media_.empty()) return std::nullopt;
+    const auto box = intersect(media_, ray);
+    if (!box || !cone_) return box;
+    const auto cone = lights::inside_cone(*cone_, ray, double(box->t0), double(box->t1));
+    if (!cone || !(float(cone->first) < float(cone->second))) return std::nullopt;
+    return Interval{float(cone->first), float(cone->second)};
+}
+
+void InScattering::place_steps(const Ray& ray, double t0, double t1, std::vector<float>& distances) const {
+    const Around around(ray, position_);
+    const double a0 = around.angle(t0), a1 = around.angle(t1);
+    distances.clear();
+    for (int i = 0; i < settings_.steps; ++i) {
+        const double share = (i + double(settings_.offset)) / settings_.steps;
+        const double t = settings_.rule == MarchRule::uniform
+                             ? t0 + share * (t1 - t0)
+                             : around.nearest + around.distance * std::tan(a0 + share * (a1 - a0));
+        distances.push_back(float(std::clamp(t, t0, t1)));
+    }
+}
+
+/// The length that the step at t stands for: one over its density.
+double InScattering::step_length(const Ray& ray, double t0, double t1, float t) const {
+    if (settings_.rule == MarchRule::uniform) return (t1 - t0) / settings_.steps;
+    const Around around(ray, position_);
+    const double s = double(t) - around.nearest;
+    return (around.angle(t1) - around.angle(t0)) * (around.distance + s * s / around.distance) /
+           settings_.steps;
+}
+
+/// sigma_s f_p T V I / d^2 at one point [1/m times radiance].
+Rgb InScattering::scattered_at(const Ray& ray, float t, const MediumSegment& at,
+                               MarchScratch& scratch) const {
+    const Vec3 x = ray.at(t);
+    const auto light = light_.sample_direct(x, Vec2(0.5f));
+    if (!light) return Rgb(0.0f);
+    ++scratch.walk.tracking.lookups;
+    const Rgb sigma_s = at.medium->coefficients(x).sigma_s;
+    if (is_black(sigma_s)) return Rgb(0.0f);
+    const Ray shadow{x, light->wi, 0.0f, light->distance};
+    ++scratch.walk.rays.occlusion;
+    if (scene_.rays().occluded(shadow)) return Rgb(0.0f);
+    find_segments(scene_, shadow, at.state, scratch.shadow, scratch.walk);
+    const Rgb to_light = marched_transmittance(shadow, scratch.shadow, settings_.voxels, scratch.walk);
+    return sigma_s * at.medium->phase().eval(-ray.direction, light->wi) * to_light * light->weight;
+}
+
+MarchedRay InScattering::march(const Ray& ray, const MediumState& state, MarchScratch& scratch) const {
+    MarchedRay result;
+    ++scratch.rays;
+    find_segments(scene_, ray, state, scratch.eye, scratch.walk);
+    const auto lit = lit_part(ray);
+    double t0 = 0.0, t1 = 0.0;  // of the media within the lit part
+    if (lit)
+        for (const MediumSegment& s : scratch.eye) {
+            const double from = std::max(s.t0, lit->t0), to = std::min(s.t1, lit->t1);
+            if (!s.medium || !(from < to)) continue;
+            if (!(t0 < t1)) t0 = from;
+            t1 = to;
+        }
+    scratch.distances.clear();
+    if (t0 < t1 && (std::isfinite(t1) || settings_.rule == MarchRule::equiangular))
+        place_steps(ray, t0, t1, scratch.distances);
+
+    std::size_t next = 0;
+    for (const MediumSegment& s : scratch.eye) {
+        float t = s.t0;
+        const auto advance = [&](float to) {
+            if (s.medium && t < to)
+                result.transmittance *= marched_transmittance(*s.medium, {ray.origin, ray.direction, t, to},
+                                                              settings_.voxels, scratch.walk);
+            t = std::max(t, to);
+        };
+        for (; next < scratch.distances.size() && scratch.distances[next] <= s.t1; ++next) {
+            const float at = scratch.distances[next];
+            advance(at);
+            if (!s.medium) continue;
+            ++scratch.steps;
+            const Rgb scattered = scattered_at(ray, at, s, scratch);
+            if (!is_black(scattered))
+                result.radiance += result.transmittance * scattered * float(step_length(ray, t0, t1, at));
+        }
+        advance(s.t1);
+    }
+    return result;
+}
+
+}  // namespace mote::screenspace

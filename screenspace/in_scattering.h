@@ -1,0 +1,84 @@
+// Light of one point-like light that is scattered once into an eye ray: ray marching.
+//
+//   L = int T(eye, x) sigma_s(x) f_p(x) T(x, light) V(x, light) I / |x - light|^2 dt
+// over the part of the ray inside the light's cone and the media. Steps of equal length (Engelhardt 2013,
+// chapter 9), or equal angles as seen from the light, which cancel 1/d^2 (Kulla & Fajardo 2012). One offset
+// moves all steps together: pictures of one pass are smooth, and over offsets evenly spread in [0, 1) the
+// mean is exact for either rule. Transmittances are deterministic: in closed form, or by marching through
+// grids.
+#pragma once
+
+#include <vector>
+
+#include "core/scene/medium_state.h"
+#include "core/scene/ray_walk.h"
+#include "core/scene/scene.h"
+#include "lights/light_cone.h"
+#include "screenspace/in_scattering_source.h"
+
+namespace mote::screenspace {
+
+enum class MarchRule : std::uint8_t { equiangular, uniform };
+
+struct MarchSettings {
+    int steps = 64;  ///< a ray
+    MarchRule rule = MarchRule::equiangular;
+    float offset = 0.5f;  ///< of all steps, in [0, 1)
+    float voxels = 1.0f;  ///< step of optical depths through grids, in voxels
+};
+
+/// The part of a ray in one medium, and the media there.
+struct MediumSegment {
+    const core::Medium* medium;  ///< null: vacuum
+    float t0, t1;
+    core::MediumState state;
+};
+
+/// Generator, counters and memory of one thread.
+struct MarchScratch {
+    core::WalkContext walk;
+    std::vector<MediumSegment> eye, shadow;
+    std::vector<float> distances;  ///< of the steps, ascending [m]
+    std::uint64_t rays = 0, steps = 0;
+};
+
+/// Cuts ray.t_min to ray.t_max at the boundaries between media; `state` holds those at t_min. Neighbours of
+/// the same medium are one segment.
+void find_segments(const core::Scene& scene, const core::Ray& ray, const core::MediumState& state,
+                   std::vector<MediumSegment>& segments, core::WalkContext& walk);
+
+/// Transmittance through one medium: deterministic, but for media that offer neither a closed form nor
+/// marching.
+core::Rgb marched_transmittance(const core::Medium& medium, const core::Ray& ray, float voxels,
+                                core::WalkContext& walk);
+/// Through all segments.
+core::Rgb marched_transmittance(const core::Ray& ray, const std::vector<MediumSegment>& segments,
+                                float voxels, core::WalkContext& walk);
+
+class InScattering {
+  public:
+    /// The light must have a position (Scene::light_position). Keeps references to both.
+    InScattering(const core::Scene& scene, const core::Emitter& light, const MarchSettings& settings);
+
+    const core::Vec3& light_position() const { return position_; }
+    /// The part of the ray that the light can reach and where there are media: box and cone, no visibility.
+    std::optional<core::Interval> lit_part(const core::Ray& ray) const;
+    /// The light that reaches ray.t_min from points up to ray.t_max, where the first surface is. `state`
+    /// holds the media at ray.t_min.
+    MarchedRay march(const core::Ray& ray, const core::MediumState& state, MarchScratch& scratch) const;
+
+  private:
+    void place_steps(const core::Ray& ray, double t0, double t1, std::vector<float>& distances) const;
+    double step_length(const core::Ray& ray, double t0, double t1, float t) const;
+    core::Rgb scattered_at(const core::Ray& ray, float t, const MediumSegment& at,
+                           MarchScratch& scratch) const;
+
+    const core::Scene& scene_;
+    const core::Emitter& light_;
+    MarchSettings settings_;
+    core::Vec3 position_;
+    std::optional<lights::LightCone> cone_;
+    core::Bounds3 media_;  ///< where anything scatters
+};
+
+}  // namespace mote::screenspace

@@ -1,0 +1,60 @@
+// What sampling methods in screen space ask of the light that is scattered into eye rays.
+//
+// Film positions are in pixels. The methods (epipolar_picture.h, in_scattering_grid.h) know nothing of
+// scenes: tests give them functions, in_scattering.h gives them rays.
+#pragma once
+
+#include <memory>
+
+#include "core/math/ray.h"
+
+namespace mote::screenspace {
+
+using Vec2d = glm::dvec2;
+
+/// The end of the lit part of an eye ray.
+struct RayEnd {
+    float distance =
+        0.0f;  ///< along the ray [m]: to the surface, or to where the ray leaves the light's cone and the
+               ///< media before it gets there; 0 where no light can be scattered into the ray
+    bool surface = false;                     ///< the surface is what ends it
+    core::Vec3 position{0.0f}, normal{0.0f};  ///< of that surface; normal: geometric, unit, either side
+    bool dark() const { return !(distance > 0.0f); }
+};
+
+/// One ray marched to its end.
+struct MarchedRay {
+    core::Rgb radiance{0.0f};
+    core::Rgb transmittance{1.0f};  ///< of the media, up to the end
+};
+
+/// Work of one thread.
+class InScatteringTask {
+  public:
+    virtual ~InScatteringTask() = default;
+    virtual core::Ray ray(const Vec2d& film) = 0;
+    virtual RayEnd end_of(const Vec2d& film) = 0;
+    virtual MarchedRay march(const Vec2d& film, const RayEnd& end) = 0;  ///< what all the trouble is to avoid
+};
+
+class InScatteringSource {
+  public:
+    virtual ~InScatteringSource() = default;
+    virtual std::unique_ptr<InScatteringTask> start() const = 0;
+};
+
+/// Do two rays end at one surface, or both beyond all light, so that light may be interpolated between them?
+/// The second ends at `distance`; `ray()` returns it where it is needed. Surfaces continue where distances
+/// differ by less than the share `tolerance`, or where the second end lies in the first's tangent plane as
+/// closely as that: floors seen at a flat angle.
+template <typename RayOf>
+bool continues(const RayEnd& end, float distance, bool surface, float tolerance, const RayOf& ray) {
+    if (end.dark() || !(distance > 0.0f)) return false;
+    if (!end.surface && !surface) return true;
+    const float nearer = std::fmin(end.distance, distance);
+    if (std::fabs(distance - end.distance) <= tolerance * nearer) return true;
+    if (!end.surface || !surface) return false;
+    return std::fabs(glm::dot(end.normal, ray().at(distance) - end.position)) <= tolerance * nearer;
+}
+
+}  // namespace mote::screenspace
