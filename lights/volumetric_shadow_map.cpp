@@ -9,7 +9,6 @@
 
 #include "core/scene/error.h"
 #include "lights/shadow_map_builder.h"
-#include "lights/shadow_map_cells.h"
 
 namespace mote::lights {
 
@@ -41,11 +40,20 @@ struct alignas(64) Corner {
 
     void load(const std::byte* first, std::size_t record_bytes, const std::int32_t* place) {
         for (int i = 0; i < N; ++i) {
-            record[i] = first + std::size_t(place[i]) * record_bytes;
-            VolumetricShadowMap::Header h;
-            std::memcpy(&h, record[i], sizeof h);
-            enter[i] = h.enter, inverse_step[i] = h.inverse_step;
-            plane_x[i] = h.plane_x, plane_y[i] = h.plane_y, plane_z[i] = h.plane_z, limit[i] = h.limit;
+            const std::byte* const from = first + std::size_t(place[i]) * record_bytes;
+            const auto number = [from](std::size_t offset) {
+                float value;
+                std::memcpy(&value, from + offset, sizeof value);
+                return value;
+            };
+            using Header = VolumetricShadowMap::Header;
+            record[i] = from;
+            enter[i] = number(offsetof(Header, enter));
+            inverse_step[i] = number(offsetof(Header, inverse_step));
+            plane_x[i] = number(offsetof(Header, plane_x));
+            plane_y[i] = number(offsetof(Header, plane_y));
+            plane_z[i] = number(offsetof(Header, plane_z));
+            limit[i] = number(offsetof(Header, limit));
         }
     }
 
@@ -96,6 +104,18 @@ struct alignas(64) Corner {
         }
     }
 };
+
+/// From sums of weights, and of weights times the numbers stored, to transmittances.
+template <int N>
+void light_left(const float* sum, const float* weight, float* light) {
+    MOTE_INDEPENDENT_LANES
+    for (int i = 0; i < N; ++i) {
+        const float visible = min_of(weight[i], 1.0f), mean = sum[i] / max_of(weight[i], 1e-20f);
+        const float depth = min_of(VolumetricShadowMap::depth_unit * mean, 32.0f);
+        const float any = depth < 31.0f ? 1.0f : 0.0f;  // a factor: a choice would be a branch
+        light[i] = any * visible * exp_of_minus(depth);
+    }
+}
 
 }  // namespace
 
@@ -157,10 +177,7 @@ void VolumetricShadowMap::copy_border() {
 }
 
 template <int N>
-void VolumetricShadowMap::look_up(const float* x, const float* y, const float* z, float* r, float* g,
-                                  float* b) const {
-    ShadowMapCells<N> cells;
-    find_cells<N>(view_, x, y, z, cells);
+void VolumetricShadowMap::look_up(const ShadowMapCells<N>& cells, float* r, float* g, float* b) const {
     const std::size_t bytes = blocks_ * sizeof(Block), row = std::size_t(view_.size + 2) * bytes;
     const bool nodes = settings_.storage == ShadowMapSettings::Storage::nodes;
     const std::size_t values = settings_.values();
@@ -185,24 +202,43 @@ void VolumetricShadowMap::look_up(const float* x, const float* y, const float* z
         for (int i = 0; i < N; ++i) weight[i] += corner.weight[i];
     }
     float* const out[3] = {r, g, b};
-    for (std::size_t channel = 0; channel < 3; ++channel) {
-        const float* sum = depth[channel < channels_ ? channel : 0];
-        float* light = out[channel];
-        MOTE_INDEPENDENT_LANES
-        for (int i = 0; i < N; ++i) {
-            const float mean = depth_unit * (sum[i] / max_of(weight[i], 1e-20f));
-            light[i] = mean < 31.0f ? min_of(weight[i], 1.0f) * exp_of_minus(mean) : 0.0f;
+    for (std::size_t channel = 0; channel < channels_; ++channel)
+        light_left<N>(depth[channel], weight, out[channel]);
+    if (channels_ == 1)
+        for (int i = 0; i < N; ++i) g[i] = b[i] = r[i];
+}
+
+void VolumetricShadowMap::prefetch(const ShadowMapCells<ShadowLookup::width>& cells) const {
+    const std::size_t bytes = blocks_ * sizeof(Block), row = std::size_t(view_.size + 2) * bytes;
+    constexpr std::size_t cache_line = 64;
+    for (const std::int32_t corner : cells.corner) {
+        const std::byte* texel = record(std::size_t(corner));
+        for (std::size_t at = 0; at < 2 * bytes; at += cache_line) {
+            __builtin_prefetch(texel + at);
+            __builtin_prefetch(texel + row + at);
         }
     }
 }
 
-void VolumetricShadowMap::look_up(ShadowLookup& points) const {
-    look_up<ShadowLookup::width>(points.x, points.y, points.z, points.r, points.g, points.b);
+void VolumetricShadowMap::look_up(std::span<ShadowLookup> packets) const {
+    constexpr int width = ShadowLookup::width;
+    ShadowMapCells<width> cells[2];
+    const auto locate = [&](std::size_t p) {
+        find_cells<width>(view_, packets[p].x, packets[p].y, packets[p].z, cells[p % 2]);
+        prefetch(cells[p % 2]);
+    };
+    if (!packets.empty()) locate(0);
+    for (std::size_t p = 0; p < packets.size(); ++p) {
+        if (p + 1 < packets.size()) locate(p + 1);  // its texels are on their way meanwhile
+        look_up<width>(cells[p % 2], packets[p].r, packets[p].g, packets[p].b);
+    }
 }
 
 Rgb VolumetricShadowMap::transmittance(const Vec3& p) const {
+    ShadowMapCells<1> cell;
+    find_cells<1>(view_, &p.x, &p.y, &p.z, cell);
     Rgb result;
-    look_up<1>(&p.x, &p.y, &p.z, &result.x, &result.y, &result.z);
+    look_up<1>(cell, &result.x, &result.y, &result.z);
     return result;
 }
 

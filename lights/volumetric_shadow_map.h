@@ -14,11 +14,12 @@
 // first surface and below e^-31.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "core/render/statistics.h"
 #include "core/scene/scene.h"
-#include "lights/shadow_map_view.h"
+#include "lights/shadow_map_cells.h"
 
 namespace mote::lights {
 
@@ -59,8 +60,9 @@ class VolumetricShadowMap {
                const ShadowMapSettings& settings);
 
     /// From the light to the points, interpolated between the four texels around each; 0 where the map does
-    /// not reach. Points within about a texel behind a surface count as on it.
-    void look_up(ShadowLookup& points) const;
+    /// not reach. Points within about a texel behind a surface count as on it. Many packets in one call hide
+    /// the time that memory takes.
+    void look_up(std::span<ShadowLookup> packets) const;
     core::Rgb transmittance(const core::Vec3& p) const;
 
     const ShadowMapView& view() const { return view_; }
@@ -85,7 +87,8 @@ class VolumetricShadowMap {
     std::byte* record(std::size_t place) { return records_[place * blocks_].bytes; }
     const std::byte* record(std::size_t place) const { return records_[place * blocks_].bytes; }
     template <int N>
-    void look_up(const float* x, const float* y, const float* z, float* r, float* g, float* b) const;
+    void look_up(const ShadowMapCells<N>& cells, float* r, float* g, float* b) const;
+    void prefetch(const ShadowMapCells<ShadowLookup::width>& cells) const;
     void copy_border();
 
     ShadowMapView view_;
