@@ -94,9 +94,11 @@ std::size_t ResidualTransport::memory_bytes() const {
 
 ResidualPath ResidualTransport::start(const ScatteringVertex& receiver, const MediumState& state,
                                       const Rgb& throughput, Rng& rng) const {
-    ResidualPath path{receiver, state, {}};
+    ResidualPath path;
+    path.vertex = receiver, path.state = state;
     path.weights.throughput = throughput;
     path.weights.hero = std::min(int(rng.next_float() * 3.0f), 2);
+    find_mean_extinction(path);
     return path;
 }
 
@@ -105,11 +107,14 @@ bool ResidualTransport::by_free_path() const {
            settings_.transmittance == LocalTransmittance::exact;
 }
 
-std::optional<Rgb> ResidualTransport::mean_extinction(const Vec3& p) const {
-    std::optional<Rgb> sum;
+/// Of all media within the bounding radius; nothing where there is none.
+void ResidualTransport::find_mean_extinction(ResidualPath& path) const {
+    const Vec3 p = path.vertex.position;
+    path.mean_extinction.reset();
     for (const LocalMedium& m : media_)
-        if (within(m.extent, p, radius_)) sum = sum.value_or(Rgb(0.0f)) + m.mean.mean(p, radius_);
-    return sum;
+        if (within(m.extent, p, radius_))
+            path.mean_extinction = path.mean_extinction.value_or(Rgb(0.0f)) + m.mean.mean(p, radius_);
+    path.mean_known = true;
 }
 
 bool ResidualTransport::may_hold(const Medium& medium, const Vec3& p) const {
@@ -140,10 +145,10 @@ bool ResidualTransport::place_in_mean_medium(ResidualPath& path, const Ray& ray,
         ++context.rays.closest;
         hit = scene_.rays().closest(ray);
     }
-    const auto found = mean_extinction(ray.origin);
-    if (!found && !hit) return false;
-    const Rgb mean = found.value_or(Rgb(0.0f));
-    const Rgb drawn_from = found ? glm::max(mean, Rgb(least_optical_depth / radius_)) : mean;
+    if (!path.mean_known) find_mean_extinction(path);
+    if (!path.mean_extinction && !hit) return false;
+    const Rgb mean = path.mean_extinction.value_or(Rgb(0.0f));
+    const Rgb drawn_from = path.mean_extinction ? glm::max(mean, Rgb(least_optical_depth / radius_)) : mean;
     const Placement1D p = place(drawn_from, hit ? hit->t : infinity, radius_,
                                 settings_.placement == Placement::in_region, context.rng);
     if (p.lost || !(p.density > 0.0f)) return false;
@@ -186,6 +191,7 @@ bool ResidualTransport::step(ResidualPath& path, WalkContext& context) const {
         placed = place_by_free_path(path, ray, context);
     else
         placed = place_in_mean_medium(path, ray, context);
+    path.mean_known = false;
     if (!placed || !path.vertex.connectable()) return false;
 
     const float distance = glm::distance(ray.origin, path.vertex.position);

@@ -22,6 +22,10 @@ struct ResidualPath {
     core::ScatteringVertex vertex;  ///< the receiver y; after a step the vertex z, whose wo points back to y
     core::MediumState state;        ///< media at the vertex, on the side of wo
     core::PathWeights weights;
+    /// Mean extinction around the vertex [1/m], where steps ask for it and a medium is near; found once,
+    /// since many steps may start from one receiver.
+    std::optional<core::Rgb> mean_extinction;
+    bool mean_known = false;
 
     /// The weight of light that reaches or leaves the vertex: f is not in it.
     core::Rgb throughput() const { return weights.throughput / core::average(weights.unidirectional); }
@@ -50,10 +54,9 @@ class ResidualTransport {
     /// The end of a ray of at most the bounding radius, found in one of two ways.
     bool place_by_free_path(ResidualPath& path, const core::Ray& ray, core::WalkContext& context) const;
     bool place_in_mean_medium(ResidualPath& path, const core::Ray& ray, core::WalkContext& context) const;
+    void find_mean_extinction(ResidualPath& path) const;
     bool place_on_surface(ResidualPath& path, const core::Ray& ray, core::WalkContext& context) const;
     bool by_free_path() const;
-    /// Of all media within the bounding radius; nothing where there is none.
-    std::optional<core::Rgb> mean_extinction(const core::Vec3& p) const;
     bool may_hold(const core::Medium& medium, const core::Vec3& p) const;
 
     const core::Scene& scene_;

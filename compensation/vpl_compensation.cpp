@@ -33,16 +33,17 @@ bool step_lanes(const ResidualTransport& transport, int step, CompensatedTile& r
     return scratch.tile.any_active;
 }
 
-/// The walk of all lanes from their receivers, with the light of `range` at each vertex.
+using Lanes = std::array<bool, width>;
+
+/// The walk of some lanes from their receivers, with the light of `range` at each vertex.
 template <bool Media>
-void walk_lanes(const Scene& scene, const ResidualTransport& transport, int steps, const VplSet& vpls,
-                const VplRange& range, CompensatedTile& receivers, VplCompensationScratch& scratch,
-                GatherScratch& gather_scratch, WalkContext& context, std::array<Rgb, width>& sum) {
-    std::array<bool, width> alive;
-    for (std::size_t i = 0; i < width; ++i) {
-        alive[i] = receivers[i].max_vpl_depth > 1;
+void walk_lanes(const Lanes& lanes, const Scene& scene, const ResidualTransport& transport, int steps,
+                const VplSet& vpls, const VplRange& range, CompensatedTile& receivers,
+                VplCompensationScratch& scratch, GatherScratch& gather_scratch, WalkContext& context,
+                std::array<Rgb, width>& sum) {
+    Lanes alive = lanes;
+    for (std::size_t i = 0; i < width; ++i)
         if (alive[i]) scratch.paths[i] = receivers[i].path;
-    }
     for (int step = 1; steps < 0 || step <= steps; ++step) {
         if (!step_lanes<Media>(transport, step, receivers, alive, scratch, context)) return;
         const auto light = lights::gather(scene, vpls, range, transport.bound(), scratch.tile, gather_scratch,
@@ -60,14 +61,20 @@ std::array<Rgb, width> compensation_from_vpls(const Scene& scene, const Residual
                                               VplCompensationScratch& scratch, GatherScratch& gather_scratch,
                                               WalkContext& context) {
     std::array<Rgb, width> sum{};
-    if (strategy == Strategy::one_to_n) {
-        walk_lanes<Media>(scene, transport, steps, vpls, range, receivers, scratch, gather_scratch, context,
-                          sum);
-        return sum;
+    Lanes to_all{}, to_one{};
+    bool any_to_one = false;
+    for (std::size_t i = 0; i < width; ++i) {
+        const CompensatedReceiver& r = receivers[i];
+        const bool all = strategy == Strategy::one_to_n || r.path.vertex.on_surface();
+        to_all[i] = all && r.max_vpl_depth > 1, to_one[i] = !all && r.max_vpl_depth > 1;
+        any_to_one |= to_one[i];
     }
+    walk_lanes<Media>(to_all, scene, transport, steps, vpls, range, receivers, scratch, gather_scratch,
+                      context, sum);
+    if (!any_to_one) return sum;
     for (std::size_t j = range.first; j < std::min(range.end, vpls.lights.size()); j += range.stride)
-        walk_lanes<Media>(scene, transport, steps, vpls, VplRange::one(j), receivers, scratch, gather_scratch,
-                          context, sum);
+        walk_lanes<Media>(to_one, scene, transport, steps, vpls, VplRange::one(j), receivers, scratch,
+                          gather_scratch, context, sum);
     return sum;
 }
 

@@ -1,6 +1,8 @@
 // Compensation from the virtual point lights, for the sixteen receivers of a tile.
 //
-// The strategies of Engelhardt 2013, Sec. 10.2.3: a vertex joined to all VPLs, or one vertex for each VPL.
+// Receivers in media follow the strategies of Sec. 10.2.3 of Engelhardt 2013; on surfaces one vertex is
+// joined to all VPLs (Kollig and Keller 2006), as in that thesis.
+// The strategies: a vertex joined to all VPLs, or one vertex for each VPL.
 // (The loop that Sec. 10.7 marks N-to-1 is the former; see docs/errata.md.) A 1-to-1 strategy is the latter
 // where every VPL has its own receiver; which VPLs a receiver meets is in the range.
 #pragma once

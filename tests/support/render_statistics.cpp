@@ -126,6 +126,16 @@ class BlockAccumulator {
     std::vector<std::array<Accumulator, 3>> whole_;
 };
 
+std::vector<Vec3d> sum_of(const PassImage& image, const RenderStatistics& names,
+                          const std::vector<std::string>& terms) {
+    std::vector<Vec3d> sum(image.layer(0).size(), Vec3d(0.0));
+    for (const std::string& term : terms) {
+        const auto layer = image.layer(names.layer(term));
+        for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += Vec3d(layer[i]);
+    }
+    return sum;
+}
+
 }  // namespace
 
 RenderStatistics render_statistics(const Scene& scene, const Integrator& integrator, const RenderSpec& spec) {
@@ -134,13 +144,14 @@ RenderStatistics render_statistics(const Scene& scene, const Integrator& integra
     RenderStatistics result;
     result.passes = spec.passes;
     for (const Layer& layer : layers) result.layers.push_back(layer.name);
+    for (const auto& [name, terms] : spec.sums) result.layers.push_back(name);
     result.layers.push_back("beauty");
 
     const auto estimator = integrator.prepare(scene, {spec.seed, width, height, SamplerKind::independent});
     const auto filter = make_pixel_filter("box", 0.5f, 0.5f);
     const std::atomic<bool> cancelled{false};
     PassImage image(width, height, layers.size());
-    BlockAccumulator blocks({width, height, spec.block}, layers.size() + 1);
+    BlockAccumulator blocks({width, height, spec.block}, result.layers.size());
     for (std::uint32_t pass = 0; pass < spec.passes; ++pass) {
         image.clear();
         estimator->pass({pass, *filter, cancelled}, image);
@@ -155,7 +166,9 @@ RenderStatistics render_statistics(const Scene& scene, const Integrator& integra
                 for (std::size_t i = 0; i < pixels.size(); ++i) beauty[i] += pixels[i];
             blocks.add(l, pixels);
         }
-        blocks.add(layers.size(), beauty);
+        for (std::size_t s = 0; s < spec.sums.size(); ++s)
+            blocks.add(layers.size() + s, sum_of(image, result, spec.sums[s].second));
+        blocks.add(layers.size() + spec.sums.size(), beauty);
     }
     blocks.finish(result);
     return result;

@@ -49,6 +49,8 @@ struct RenderSpec {
     int block = 4;  ///< pixels
     std::uint32_t passes = 256;
     std::uint64_t seed = 1;
+    /// Further layers, each the sum of some of the integrator's: name and terms.
+    std::vector<std::pair<std::string, std::vector<std::string>>> sums = {};
 };
 
 RenderStatistics render_statistics(const core::Scene& scene, const core::Integrator& integrator,
