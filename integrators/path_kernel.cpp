@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "compensation/bounded_geometry.h"
 #include "integrators/russian_roulette.h"
 
 namespace mote::integrators {
@@ -33,8 +34,7 @@ class PathClassifier {
     }
     /// min(G*, b)/G* of the edge that starts at the first connectable vertex and ends at `v`.
     float bound_weight(const ScatteringVertex& v, float distance, float bound) const {
-        const float g = start_cosine_ * v.geometric_cosine(v.wo) / std::max(sqr(distance), 1e-30f);
-        return g > bound ? bound / g : 1.0f;
+        return compensation::bounded_share(start_cosine_ * v.geometric_cosine(v.wo), distance, bound);
     }
 
   private:
