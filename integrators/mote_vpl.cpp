@@ -16,6 +16,7 @@
 #include "integrators/plan_compensation.h"
 #include "integrators/register_parts.h"
 #include "integrators/vpl_eye_tile.h"
+#include "integrators/vpl_shadow_maps.h"
 
 namespace mote::integrators {
 
@@ -32,6 +33,7 @@ class VplEstimator final : public Estimator {
           bound_(settings.bound_for(scene.rays().bounds())) {
         if (settings_.compensation.enabled && std::isfinite(bound_))
             transport_.emplace(scene, bound_, settings_.compensation);
+        if (settings_.visibility.used_in(scene)) maps_.emplace(scene, settings_.visibility);
     }
 
     bool pass(const PassContext& context, PassImage& image) override {
@@ -41,9 +43,15 @@ class VplEstimator final : public Estimator {
         counters_.add(vpls.rays, vpls.tracking);
         vpls_ += vpls.lights.size(), paths_ += vpls.paths;
         bytes_ = std::max(bytes_, vpls.memory_bytes());
-        return for_each_tile(
-            options_.width, options_.height, tile_size, context.cancelled,
-            [&](int x0, int y0, int x1, int y1) { render_tile(context, image, vpls, x0, y0, x1, y1); });
+        const int columns = (options_.width + tile_size - 1) / tile_size;
+        const int rows = (options_.height + tile_size - 1) / tile_size;
+        std::vector<lights::ReceiverStore> stores(maps_ ? std::size_t(columns) * std::size_t(rows) : 0);
+        const auto tile = [&](int x0, int y0, int x1, int y1) {
+            const std::size_t index = std::size_t(y0 / tile_size * columns + x0 / tile_size);
+            render_tile(context, image, vpls, maps_ ? &stores[index] : nullptr, x0, y0, x1, y1);
+        };
+        if (!for_each_tile(options_.width, options_.height, tile_size, context.cancelled, tile)) return false;
+        return !maps_ || maps_->add_light(vpls, bound_, stores, context.cancelled, image);
     }
 
     void add_statistics(Statistics& statistics) const override {
@@ -52,6 +60,7 @@ class VplEstimator final : public Estimator {
         statistics.values["light_paths"] += double(paths_);
         statistics.values["vpl_bytes_peak"] = double(bytes_);
         if (std::isfinite(bound_)) statistics.values["bound"] = bound_;
+        if (maps_) maps_->add_statistics(statistics);
         if (!transport_) return;
         statistics.values["compensation_vertices"] += double(cost_.vertices);
         statistics.values["compensation_thread_seconds"] += cost_.seconds;
@@ -61,12 +70,13 @@ class VplEstimator final : public Estimator {
   private:
     static constexpr int tile_size = 16;
 
-    void render_tile(const PassContext& context, PassImage& image, const lights::VplSet& vpls, int x0, int y0,
-                     int x1, int y1) {
+    void render_tile(const PassContext& context, PassImage& image, const lights::VplSet& vpls,
+                     lights::ReceiverStore* store, int x0, int y0, int x1, int y1) {
         WalkContext walk;
         const auto scratch = std::make_unique<lights::GatherScratch>();
         const auto tile = std::make_unique<EyeTile<Media>>(
-            scene_, settings_, bound_, vpls, transport_ ? &*transport_ : nullptr, *scratch, walk);
+            scene_, settings_, bound_, vpls, transport_ ? &*transport_ : nullptr, *scratch, walk,
+            EyeShadowMaps{maps_ ? maps_->of_lights() : nullptr, store});
         constexpr int side = EyeTile<Media>::side;
         for (int y = y0; y < y1; y += side)
             for (int x = x0; x < x1; x += side) {
@@ -84,6 +94,7 @@ class VplEstimator final : public Estimator {
         constexpr int side = EyeTile<Media>::side;
         std::array<VplPixel, side * side> sums;
         const auto samples = std::uint32_t(settings_.eye_samples);
+        tile.place(x0, y0, 1.0f / float(samples));
         for (std::uint32_t sample = 0; sample < samples; ++sample) {
             const PassContext eye{context.index * samples + sample, context.filter, context.cancelled};
             for (int lane = 0; lane < side * side; ++lane) {
@@ -118,6 +129,7 @@ class VplEstimator final : public Estimator {
     VplSettings settings_;
     float bound_;
     std::optional<compensation::ResidualTransport> transport_;  ///< nothing: no compensation
+    std::optional<VplShadowMaps> maps_;                         ///< nothing: visibility is traced
     SharedCounters counters_;
     std::mutex cost_mutex_;
     CompensationCost cost_;
@@ -143,6 +155,8 @@ class MoteVpl final : public Integrator {
             if (!settings_.bounded) properties.warn("bound has no effect: bounded is false");
         }
         read_compensation(properties);
+        if (const auto nested = properties.child_of<Visibility>(Category::visibility))
+            settings_.visibility = nested->settings();
     }
 
     std::string type() const override { return "mote_vpl"; }
@@ -207,7 +221,8 @@ Plan MoteVpl::plan(const Scene& scene, const Requirements& r) const {
     else
         plan.run("light per VPL", "64 bytes, one colour",
                  "every surface is diffuse and every medium isotropic");
-    plan.run("visibility", "shadow rays, sixteen at a time", "exact");
+    const double pixels = double(scene.film().width) * double(scene.film().height);
+    plan_visibility(plan, scene, settings_.visibility, pixels * settings_.eye_samples);
     plan_media(plan, r);
     if (r.any_media())
         plan.run("eye rays", "one distance by tracking per pixel and pass", "Engelhardt 2013, Eq. 10.9");
@@ -236,6 +251,8 @@ void register_mote_vpl(Registry& registry) {
                           "radius R of all shapes"});
     parameters.push_back({"bounded", "boolean", "true", "false: no bound on the geometry term"});
     parameters.push_back({"compensation", "compensation", "none", "what the bound takes, brought back"});
+    parameters.push_back(
+        {"visibility", "visibility", "traced", "what stands between VPLs and receivers: traced, shadow_map"});
     parameters.push_back(
         {"eye_samples", "integer", "4 for 1-to-1 compensation, else 1",
          "eye paths a pixel and pass; VPLs are shared out among them, except with compensation "

@@ -2,11 +2,13 @@
 
 #include "compensation/compensation_settings.h"
 #include "integrators/register_parts.h"
+#include "integrators/vpl_visibility.h"
 
 namespace mote::integrators {
 
 void register_integrators(core::Registry& registry) {
     compensation::register_compensation(registry);
+    register_visibility(registry);
     register_path(registry);
     register_volpath(registry);
     register_mote_vpl(registry);

@@ -9,8 +9,10 @@
 #include "integrators/path_kernel.h"
 #include "integrators/russian_roulette.h"
 #include "integrators/tile_compensation.h"
+#include "integrators/vpl_visibility.h"
 #include "lights/direct_light.h"
 #include "lights/particle_tracer.h"
+#include "lights/shadow_map_gather.h"
 #include "lights/vpl_gather.h"
 
 namespace mote::integrators {
@@ -22,6 +24,7 @@ struct VplSettings {
     std::optional<float> bound;  ///< b [1/m^2]; nothing: automatic
     compensation::CompensationSettings compensation;
     int eye_samples = 1;  ///< eye paths a pixel and pass
+    VisibilitySettings visibility;
 
     /// VPLs are shared out among the eye paths of a pixel, instead of all of them meeting every one.
     bool vpls_shared_out() const {
@@ -56,6 +59,14 @@ struct VplPixel {
     }
 };
 
+/// Where shadow maps stand in for shadow rays; all null where they do not.
+struct EyeShadowMaps {
+    const lights::LightShadowMaps* lights = nullptr;
+    lights::ReceiverStore* receivers = nullptr;  ///< takes the receivers instead of their gathering VPLs here
+    int column = 0, row = 0;                     ///< pixel of the first lane
+    float scale = 1.0f;                          ///< of the light at receivers
+};
+
 /// Advances the lanes from one connectable vertex to the next, until no eye path goes on.
 template <bool Media>
 class EyeTile {
@@ -65,13 +76,14 @@ class EyeTile {
 
     EyeTile(const core::Scene& scene, const VplSettings& settings, float bound, const lights::VplSet& vpls,
             const compensation::ResidualTransport* transport, lights::GatherScratch& scratch,
-            core::WalkContext& walk)
+            core::WalkContext& walk, const EyeShadowMaps& maps = {})
         : scene_(scene),
           settings_(settings),
           bound_(bound),
           vpls_(vpls),
           scratch_(scratch),
           walk_(walk),
+          maps_(maps),
           compensation_(scene, settings.compensation, transport, vpls, scratch, walk) {}
 
     void start(int lane, const EyeRay& eye, const core::MediumState& state) {
@@ -84,6 +96,11 @@ class EyeTile {
     const VplPixel& sum(int lane) const { return lanes_[std::size_t(lane)].sum; }
     CompensationCost compensation_cost() const { return compensation_.cost(); }
 
+    /// Of the lanes to come: where they lie in the picture, and how much receivers that are stored count.
+    void place(int column, int row, float scale) {
+        maps_.column = column, maps_.row = row, maps_.scale = scale;
+    }
+
     /// Follows the eye paths and gathers the VPLs of `range`, whose light counts `vpl_scale` times.
     void run(const lights::VplRange& range, float vpl_scale) {
         for (bool any = true; any;) {
@@ -94,8 +111,12 @@ class EyeTile {
                 if (lane.alive) lane.alive = advance(lane, i);
                 any |= lane.alive;
             }
-            const auto light = lights::gather(scene_, vpls_, range, bound_, receivers_, scratch_, walk_.rays,
-                                              walk_.tracking);
+            std::array<core::Rgb, lights::ReceiverTile::width> light{};
+            if (maps_.receivers)
+                maps_.receivers->add(receivers_, maps_.column, maps_.row, range, vpl_scale * maps_.scale);
+            else
+                light = lights::gather(scene_, vpls_, range, bound_, receivers_, scratch_, walk_.rays,
+                                       walk_.tracking);
             const auto compensated = compensation_.run(range, vpl_scale);
             for (int i = 0; i < lights::ReceiverTile::width; ++i) {
                 Lane& lane = lanes_[std::size_t(i)];
@@ -145,8 +166,9 @@ class EyeTile {
         const Transport direct = surface ? Transport::direct : Transport::single_scattering;
         const core::Vec2 choices = lane.sampler->next_2d();  // of the light, and of the lobe
         if (lane.vertex.connectable()) {
-            lane.sum.transport[direct] += lights::sample_light<Media>(
-                scene_, lane.vertex, lane.weights, lane.state, choices.x, lane.sampler->next_2d(), walk_);
+            lane.sum.transport[direct] +=
+                lights::sample_light<Media>(scene_, lane.vertex, lane.weights, lane.state, choices.x,
+                                            lane.sampler->next_2d(), walk_, false, maps_.lights);
             add_receiver(lane, index);
         }
         if (lane.depth >= settings_.eye.rr_depth &&
@@ -192,6 +214,7 @@ class EyeTile {
     const lights::VplSet& vpls_;
     lights::GatherScratch& scratch_;
     core::WalkContext& walk_;
+    EyeShadowMaps maps_;
     TileCompensation<Media> compensation_;
     std::array<Lane, lights::ReceiverTile::width> lanes_;
     lights::ReceiverTile receivers_;

@@ -7,12 +7,31 @@ using namespace core;
 namespace {
 /// Shadow rays stop this much short of the light, whose own surface they would hit otherwise.
 constexpr float shadow_fraction = 0.9999f;
+
+/// By a shadow ray and the transmittance along it. Returns whether the light is seen.
+template <bool Media>
+bool connect(const Scene& scene, const ScatteringVertex& vertex, const DirectSample& light,
+             const MediumState& state, PathWeights& connection, WalkContext& context) {
+    Ray shadow{vertex.ray_origin(light.wi), light.wi};
+    shadow.t_max = light.distance * (light.inside ? 1.0f : shadow_fraction);
+    ++context.rays.occlusion;
+    if (scene.rays().occluded(shadow)) return false;
+    if constexpr (Media) {
+        connection.light = connection.unidirectional;
+        const Medium* there = scene.connect(shadow, vertex.state_towards(state, light.wi), connection,
+                                            context.rng, context.tracking);
+        return !light.inside || there == light.inside;
+    } else {
+        connection.unidirectional = connection.light = Rgb(1.0f);
+        return true;
+    }
+}
 }  // namespace
 
 template <bool Media>
 Rgb sample_light(const Scene& scene, const ScatteringVertex& vertex, const PathWeights& weights,
-                 const MediumState& state, float u_light, const Vec2& u, WalkContext& context,
-                 bool lit_along) {
+                 const MediumState& state, float u_light, const Vec2& u, WalkContext& context, bool lit_along,
+                 const LightShadowMaps* maps) {
     const LightChoice choice = scene.choose_light(u_light);
     if (!choice.emitter) return Rgb(0.0f);
     if (lit_along && !vertex.on_surface() && choice.emitter->traits().delta_position) return Rgb(0.0f);
@@ -21,19 +40,14 @@ Rgb sample_light(const Scene& scene, const ScatteringVertex& vertex, const PathW
     const Rgb f_cos = vertex.eval_cos(light->wi, TransportMode::radiance);
     if (is_black(f_cos)) return Rgb(0.0f);
 
-    Ray shadow{vertex.ray_origin(light->wi), light->wi};
-    shadow.t_max = light->distance * (light->inside ? 1.0f : shadow_fraction);
-    ++context.rays.occlusion;
-    if (scene.rays().occluded(shadow)) return Rgb(0.0f);
-
     PathWeights connection = weights;
-    if constexpr (Media) {
+    const VolumetricShadowMap* map =
+        Media && maps && !vertex.on_surface() && light->delta ? maps->of(*choice.emitter) : nullptr;
+    if (map) {
         connection.light = weights.unidirectional;
-        const Medium* there = scene.connect(shadow, vertex.state_towards(state, light->wi), connection,
-                                            context.rng, context.tracking);
-        if (light->inside && there != light->inside) return Rgb(0.0f);
-    } else {
-        connection.unidirectional = connection.light = Rgb(1.0f);
+        connection.throughput *= map->transmittance(vertex.position);
+    } else if (!connect<Media>(scene, vertex, *light, state, connection, context)) {
+        return Rgb(0.0f);
     }
     // f = throughput f* C* T L_e over the mean pdf of both techniques. A delta light is found by this one
     // alone.
@@ -69,9 +83,10 @@ Rgb found_light(const Scene& scene, const WalkEvent& event, const Ray& ray, cons
 }
 
 template Rgb sample_light<true>(const Scene&, const ScatteringVertex&, const PathWeights&, const MediumState&,
-                                float, const Vec2&, WalkContext&, bool);
+                                float, const Vec2&, WalkContext&, bool, const LightShadowMaps*);
 template Rgb sample_light<false>(const Scene&, const ScatteringVertex&, const PathWeights&,
-                                 const MediumState&, float, const Vec2&, WalkContext&, bool);
+                                 const MediumState&, float, const Vec2&, WalkContext&, bool,
+                                 const LightShadowMaps*);
 template Rgb found_light<true>(const Scene&, const WalkEvent&, const Ray&, const PathWeights&, const Vec3*);
 template Rgb found_light<false>(const Scene&, const WalkEvent&, const Ray&, const PathWeights&, const Vec3*);
 

@@ -6,6 +6,7 @@
 
 #include "core/math/sampler.h"
 #include "core/scene/scattering_vertex.h"
+#include "lights/light_shadow_maps.h"
 
 namespace mote::lights {
 
@@ -19,11 +20,13 @@ inline float channel_average(const core::Rgb& pdfs) {
 /// Next-event estimation: the light at `vertex` from one light drawn by `u_light` (and a point on it by `u`),
 /// weighted against directions from vertex.sample(). `weights` and `state` describe the path up to the
 /// vertex. `lit_along`: point and spot lights do not count at a vertex in a medium, because they were sampled
-/// along the ray that led there (equiangular.h).
+/// along the ray that led there (equiangular.h). `maps`: at vertices in media, visibility and transmittance
+/// come from the map of the light where it has one.
 template <bool Media>
 core::Rgb sample_light(const core::Scene& scene, const core::ScatteringVertex& vertex,
                        const core::PathWeights& weights, const core::MediumState& state, float u_light,
-                       const core::Vec2& u, core::WalkContext& context, bool lit_along = false);
+                       const core::Vec2& u, core::WalkContext& context, bool lit_along = false,
+                       const LightShadowMaps* maps = nullptr);
 
 /// Light emitted at the end of a walk: an area light at the surface, or the environment outside. `previous`
 /// is the vertex whose sampled direction led here, null where next-event estimation could not have found this

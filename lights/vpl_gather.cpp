@@ -22,7 +22,7 @@ inline float max_of(float a, float b) { return a > b ? a : b; }
 
 /// Everything for receivers of constant f* and a plain VPL: branch-free over the sixteen lanes.
 /// Returns whether any lane receives light.
-bool connect_plain(const ReceiverTile& tile, const VirtualPointLight& vpl, float bound, ShadowPacket& packet,
+bool connect_plain(const ReceiverLanes& tile, const VirtualPointLight& vpl, float bound, ShadowPacket& packet,
                    GatherScratch::Contribution& out) {
     const float vpl_in_medium = vpl.on_surface() ? 0.0f : 1.0f;
     const float px = vpl.position.x, py = vpl.position.y, pz = vpl.position.z;
@@ -62,7 +62,7 @@ bool connect_plain(const ReceiverTile& tile, const VirtualPointLight& vpl, float
 }
 
 /// One lane of the general case: f* of the receiver, of the VPL, or of both depends on direction.
-void connect_lane(const ReceiverTile& tile, int i, const VplSet& vpls, const VirtualPointLight& vpl,
+void connect_lane(const ReceiverLanes& tile, int i, const VplSet& vpls, const VirtualPointLight& vpl,
                   float bound, ShadowPacket& packet, GatherScratch::Contribution& out) {
     packet.t_max[i] = -1.0f;
     if (std::int32_t(vpl.depth) > tile.max_vpl_depth[i]) return;
@@ -104,7 +104,7 @@ void connect_lane(const ReceiverTile& tile, int i, const VplSet& vpls, const Vir
     packet.t_min[i] = 0.0f, packet.t_max[i] = shadow_t_max;
 }
 
-bool connect_general(const ReceiverTile& tile, const VplSet& vpls, const VirtualPointLight& vpl, float bound,
+bool connect_general(const ReceiverLanes& tile, const VplSet& vpls, const VirtualPointLight& vpl, float bound,
                      ShadowPacket& packet, GatherScratch::Contribution& out) {
     bool any = false;
     for (int i = 0; i < width; ++i) {
@@ -190,6 +190,13 @@ void ReceiverTile::set(int lane, const ScatteringVertex& vertex, const Rgb& thro
     any_active = true;
 }
 
+bool connect(const ReceiverLanes& receivers, const VplSet& vpls, const VirtualPointLight& vpl, float bound,
+             ShadowPacket& packet, GatherScratch::Contribution& out) {
+    if (vpl.detail == VirtualPointLight::no_detail && !receivers.any_directional)
+        return connect_plain(receivers, vpl, bound, packet, out);
+    return connect_general(receivers, vpls, vpl, bound, packet, out);
+}
+
 std::array<Rgb, ReceiverTile::width> gather(const Scene& scene, const VplSet& vpls, const VplRange& range,
                                             float bound, ReceiverTile& tile, GatherScratch& scratch,
                                             RayCounters& rays, TrackingCounters& tracking) {
@@ -202,10 +209,7 @@ std::array<Rgb, ReceiverTile::width> gather(const Scene& scene, const VplSet& vp
         ShadowPacket& packet = scratch.packets[count];
         GatherScratch::Contribution& contribution = scratch.contributions[count];
         contribution.vpl = &vpl;
-        const bool plain = vpl.detail == VirtualPointLight::no_detail && !tile.any_directional;
-        const bool any = plain ? connect_plain(tile, vpl, bound, packet, contribution)
-                               : connect_general(tile, vpls, vpl, bound, packet, contribution);
-        if (any && ++count == GatherScratch::batch) {
+        if (connect(tile, vpls, vpl, bound, packet, contribution) && ++count == GatherScratch::batch) {
             resolve_batch(scene, GatherScratch::batch, tile, scratch, sum, rays, tracking);
             count = 0;
         }

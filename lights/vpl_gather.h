@@ -15,7 +15,8 @@
 
 namespace mote::lights {
 
-struct alignas(64) ReceiverTile {
+/// Where sixteen receivers stand and what they make of light: all that a connection needs but its visibility.
+struct alignas(64) ReceiverLanes {
     static constexpr int width = core::ShadowPacket::width;
 
     // Position moved off the surface towards the viewer: the start of shadow rays.
@@ -29,10 +30,13 @@ struct alignas(64) ReceiverTile {
     std::int32_t max_vpl_depth[width] = {};  ///< VPLs deeper than this are left out; 0 for an idle lane
 
     const core::ScatteringVertex* directional[width] = {};  ///< set where f* depends on direction
-    core::MediumState state[width];                         ///< media at the receiver
-    core::Rng rng[width];                                   ///< for transmittance estimates
     bool any_directional = false;
     bool any_active = false;
+};
+
+struct alignas(64) ReceiverTile : ReceiverLanes {
+    core::MediumState state[width];  ///< media at the receiver
+    core::Rng rng[width];            ///< for transmittance estimates
 
     /// Fills a lane. `throughput` is the weight of the eye path; `vertex` must outlive the tile when f*
     /// depends on direction.
@@ -60,6 +64,12 @@ struct VplRange {
 
     static VplRange one(std::size_t index) { return {index, 1, index + 1}; }
 };
+
+/// What one VPL would send to the receivers if nothing stood between them, into `out`, and the shadow rays
+/// into `packet`, which has been cleared once. Returns whether any lane receives light; else nothing of
+/// `packet` counts.
+bool connect(const ReceiverLanes& receivers, const VplSet& vpls, const VirtualPointLight& vpl, float bound,
+             core::ShadowPacket& packet, GatherScratch::Contribution& out);
 
 /// Light of the VPLs in `range` at the receivers of a tile, per lane. `bound` is b [1/m^2], infinity for
 /// unbounded. Counts shadow rays and tracking.
