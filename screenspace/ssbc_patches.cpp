@@ -1,0 +1,99 @@
+#include "screenspace/ssbc_patches.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "core/math/frame.h"
+#include "screenspace/ssbc_upsampling.h"
+
+namespace mote::screenspace {
+
+using namespace core;
+
+namespace {
+
+/// A pixel and its neighbours in the picture.
+class Neighbourhood {
+  public:
+    Neighbourhood(const SsbcSurfaces& surfaces, float sine, int x, int y)
+        : s_(surfaces), sine_(sine), x_(x), y_(y), here_(index(x, y)) {}
+
+    PixelPatch patch() const {
+        const auto [along_x, along_y] = steps();
+        const float left = reach(-1, 0, -along_x), right = reach(1, 0, along_x);
+        const float up = reach(0, -1, -along_y), down = reach(0, 1, along_y);
+        PixelPatch p;
+        p.a = 0.5f * (left + right) * along_x, p.b = 0.5f * (up + down) * along_y;
+        p.centre = s_.position[here_] + 0.5f * (right - left) * along_x + 0.5f * (down - up) * along_y;
+        p.normal = s_.normal[here_], p.area = s_.area[here_] * (left + right) * (up + down);
+        return p;
+    }
+
+  private:
+    std::size_t index(int x, int y) const { return std::size_t(y) * std::size_t(s_.width) + std::size_t(x); }
+    bool takes_part(int dx, int dy) const {
+        const int x = x_ + dx, y = y_ + dy;
+        return x >= 0 && y >= 0 && x < s_.width && y < s_.height && s_.area[index(x, y)] > 0.0f;
+    }
+    bool continues(int dx, int dy) const {
+        return takes_part(dx, dy) && same_surface(s_, here_, index(x_ + dx, y_ + dy), sine_) > 0.0f;
+    }
+
+    /// How far the point of the surface moves with one pixel [m], from a neighbour on the same surface.
+    std::optional<Vec3> step(int dx, int dy) const {
+        const Vec3 &p = s_.position[here_], &n = s_.normal[here_];
+        Vec3 d(0.0f);
+        if (continues(dx, dy))
+            d = s_.position[index(x_ + dx, y_ + dy)] - p;
+        else if (continues(-dx, -dy))
+            d = p - s_.position[index(x_ - dx, y_ - dy)];
+        d -= n * glm::dot(n, d);
+        return is_black(d) ? std::nullopt : std::optional<Vec3>(d);
+    }
+    /// Both steps; what has no neighbour to tell makes the patch a rectangle of the right area.
+    std::pair<Vec3, Vec3> steps() const {
+        const Vec3& n = s_.normal[here_];
+        const float area = s_.area[here_];
+        const auto x = step(1, 0), y = step(0, 1);
+        if (x && y) return {*x, *y};
+        if (x) return {*x, glm::cross(n, *x) * (area / glm::dot(*x, *x))};
+        if (y) return {glm::cross(*y, n) * (area / glm::dot(*y, *y)), *y};
+        const Frame frame(n);
+        return {frame.s * std::sqrt(area), frame.t * std::sqrt(area)};
+    }
+    /// How much of `towards`, the step to a neighbour, belongs to the patch: all of it up to a concave edge.
+    float reach(int dx, int dy, const Vec3& towards) const {
+        if (!takes_part(dx, dy) || continues(dx, dy)) return 0.5f;
+        const std::size_t there = index(x_ + dx, y_ + dy);
+        const Vec3 d = s_.position[there] - s_.position[here_];
+        const float over_there = -glm::dot(s_.normal[there], d), over_here = glm::dot(s_.normal[here_], d);
+        const float approach = -glm::dot(s_.normal[there], towards);
+        const float rounding = -1e-3f * glm::length(d);  // a centre may lie on the edge itself
+        if (over_there < rounding || over_here < rounding) return 0.5f;
+        if (over_there > approach || !(approach > -rounding)) return 0.5f;
+        return std::max(over_there / approach, 0.05f);
+    }
+
+    const SsbcSurfaces& s_;
+    const float sine_;
+    const int x_, y_;
+    const std::size_t here_;
+};
+
+}  // namespace
+
+std::vector<PixelPatch> pixel_patches(const SsbcSurfaces& surfaces, float angle) {
+    std::vector<PixelPatch> patches(surfaces.pixel_count());
+    const float sine = std::sin(angle);
+    tbb::parallel_for(0, surfaces.height, [&](int y) {
+        for (int x = 0; x < surfaces.width; ++x) {
+            const std::size_t i = std::size_t(y) * std::size_t(surfaces.width) + std::size_t(x);
+            if (surfaces.area[i] > 0.0f) patches[i] = Neighbourhood(surfaces, sine, x, y).patch();
+        }
+    });
+    return patches;
+}
+
+}  // namespace mote::screenspace
