@@ -20,6 +20,7 @@ class MoteEpipolar final : public Integrator {
         settings_.lines = checked_integer(p, "lines", 1024, 1, 1 << 20);
         settings_.line.initial = checked_integer(p, "samples", 16, 2, 1 << 20);
         settings_.line.cap = checked_integer(p, "max_samples", 1024, 2, 1 << 20);
+        settings_.line.texels = p.get_float_in("texels", 1.0, 1e-3, 64.0);
         settings_.line.tolerance = float(p.get_float_in("tolerance", 0.05, 0.0, 1e6));
     }
 
@@ -74,6 +75,8 @@ void register_mote_epipolar(Registry& registry) {
         {"lines", "integer", "1024", "epipolar lines of every light, around the whole picture"});
     parameters.push_back({"samples", "integer", "16", "marched rays spread evenly along a line"});
     parameters.push_back({"max_samples", "integer", "1024", "marched rays of one line, at most"});
+    parameters.push_back(
+        {"texels", "float", "1", "places for samples, and for edges to be found, a pixel of a line"});
     parameters.push_back(
         {"tolerance", "float", "0.05",
          "lines are refined where light or transmittance varies by more; 0: at edges in depth alone"});

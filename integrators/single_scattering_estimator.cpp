@@ -97,7 +97,7 @@ void SingleScatteringEstimator<Media>::render_eye(const PassContext& context, co
     if constexpr (Media) {
         const FirstSurface first =
             path.first ? FirstSurface{path.first->t, path.first->geometric_normal} : FirstSurface{};
-        if (settings_.sampling != ScatteringSampling::full) points_[std::size_t(pixel)] = {film, first};
+        if (!points_.empty()) points_[std::size_t(pixel)] = {film, first};
         for (const InScattering& light : lights) {
             if (settings_.sampling != ScatteringSampling::full) break;
             Ray lit = ray;

@@ -108,7 +108,11 @@ double EpipolarLines::exit(const Vec2d& p) const {
 }
 
 EpipolarLine EpipolarLines::line_through(const Vec2d& end) const {
-    if (inside_) return {Vec2d(light_.x, light_.y) / light_.w, end};
+    if (inside_) {
+        // A ray at the light itself meets infinite light.
+        const Vec2d light = Vec2d(light_.x, light_.y) / light_.w;
+        return {light + (end - light) * std::min(0.1, 0.5 / std::max(glm::length(end - light), 1.0)), end};
+    }
     const Vec2d v = -away_from_light(end);
     const Exit in = leave(frame_, end, v);
     return {glm::clamp(end + in.t * v, frame_.lower, frame_.upper), end};

@@ -4,8 +4,8 @@
 // scattered into them varies slowly along the line (Engelhardt 2013, Sec. 9.2.1). The light may be in front
 // of the camera, behind it, or beside it, where its projection lies at infinity and the lines are parallel:
 // homogeneous coordinates make one case of the three. A line ends where it leaves the picture, away from the
-// light, and begins at the light or where it enters the picture; border points that the lines enter by have
-// no line of their own.
+// light, and begins half a pixel off the light or where it enters the picture; border points that the lines
+// enter by have no line of their own.
 #pragma once
 
 #include <array>

@@ -16,13 +16,17 @@ EpipolarPicture::EpipolarPicture(EpipolarLines lines, const LineSampling& settin
         const auto task = source.start();
         sampled[std::size_t(i)].emplace(lines_.lines()[std::size_t(i)], settings, *task);
     });
-    double sum = 0.0;
-    std::size_t samples = 0;
+    double sum = 0.0, weights = 0.0;
     for (const auto& line : sampled) {
         if (!line) return;  // the loop was cancelled
-        for (const LineSample& s : line->samples()) sum += double(max_component(s.light.radiance)), ++samples;
+        for (const LineSample& s : line->samples()) {
+            // Lines are close to each other near the light: a sample stands for an area that grows with the
+            // distance.
+            const double weight = lines_.light_inside() ? double(s.texel) : 1.0;
+            sum += weight * double(s.weight * max_component(s.light.radiance)), weights += weight;
+        }
     }
-    const float mean = samples > 0 ? float(sum / double(samples)) : 0.0f;
+    const float mean = weights > 0.0 ? float(sum / weights) : 0.0f;
     sampled_.reserve(sampled.size());
     for (auto& line : sampled) sampled_.push_back(std::move(*line));
     loop(count, [&](int i) {
@@ -44,9 +48,9 @@ std::optional<Rgb> EpipolarPicture::texel_light(const SampledLine& line, double 
     const auto i = std::size_t(texel), j = std::min(i + 1, texels.size() - 1);
     const auto f = float(texel - double(i));
     const bool left = usable(i), right = usable(j);
-    if (left && right) return (1.0f - f) * texels[i].radiance + f * texels[j].radiance;
-    if (left) return texels[i].radiance;
-    if (right) return texels[j].radiance;
+    if (left && right) return (1.0f - f) * texels[i].light + f * texels[j].light;
+    if (left) return texels[i].light;
+    if (right) return texels[j].light;
     return std::nullopt;
 }
 
@@ -58,15 +62,17 @@ EpipolarPicture::Tap EpipolarPicture::tap(std::size_t line, const Vec2d& film, d
     Tap result;
     result.distance = glm::length(film - sampled.line().at(share));
     if (const auto light = texel_light(sampled, texel, end, task)) {
-        result.radiance = *light, result.weight = 1.0f;
+        result.light = *light, result.weight = 1.0f;
         return result;
     }
+    const double step =
+        spacing * double(sampled.texels().size() - 1) / std::max(1e-9, sampled.line().length());
     for (const double k : {-1.0, 1.0, -2.0, 2.0})
-        if (const auto light = texel_light(sampled, texel + k * spacing, end, task)) {
+        if (const auto light = texel_light(sampled, texel + k * step, end, task)) {
             const auto weight = float(std::exp(-0.5 * k * k));
-            result.radiance += weight * *light, result.weight += weight;
+            result.light += weight * *light, result.weight += weight;
         }
-    if (result.weight > 0.0f) result.radiance /= result.weight;
+    if (result.weight > 0.0f) result.light /= result.weight;
     result.weight = std::min(result.weight, 1.0f);
     return result;
 }
@@ -90,7 +96,7 @@ std::optional<Rgb> EpipolarPicture::light_at(const Vec2d& film, const RayEnd& en
     const double share = total > 0.0 ? right.distance / total : 0.5;
     const double a = double(left.weight) * share, b = double(right.weight) * (1.0 - share);
     if (!(a + b > 0.1)) return std::nullopt;
-    return Rgb((a * Vec3d(left.radiance) + b * Vec3d(right.radiance)) / (a + b));
+    return end.weight * Rgb((a * Vec3d(left.light) + b * Vec3d(right.light)) / (a + b));
 }
 
 PictureCounts EpipolarPicture::counts() const {

@@ -5,8 +5,8 @@
 // next line outwards (Engelhardt 2013, Sec. 9.2.3). Where both sides fail nothing is returned, and the caller
 // marches the pixel's ray.
 //
-// Memory: 24 bytes a texel, a texel a pixel along every line; while lines are sampled, 28 bytes a marched ray
-// more.
+// Memory: 24 bytes a texel, by default a texel a pixel along every line; while lines are sampled, 32 bytes a
+// marched ray more.
 #pragma once
 
 #include <functional>
@@ -37,7 +37,7 @@ class EpipolarPicture {
 
   private:
     struct Tap {
-        core::Rgb radiance{0.0f};
+        core::Rgb light{0.0f};  ///< over RayEnd::weight
         float weight = 0.0f;    ///< 1 where the line continues the pixel's surface
         double distance = 0.0;  ///< of the line from the pixel [pixels]
     };

@@ -11,30 +11,40 @@ namespace {
 
 float brightness(const Rgb& c) { return max_component(glm::abs(c)); }
 
-/// Is `middle` not what lies half-way between a and b, by the tolerance?
-bool surprises(const MarchedRay& a, const MarchedRay& b, const MarchedRay& middle, float tolerance,
-               float mean) {
-    const float scale = std::max(mean, 0.5f * (brightness(a.radiance) + brightness(b.radiance)));
-    return brightness(middle.radiance - 0.5f * (a.radiance + b.radiance)) > tolerance * scale ||
-           brightness(middle.transmittance - 0.5f * (a.transmittance + b.transmittance)) > tolerance;
+/// Does the light or the transmittance of two rays differ by more than the tolerance? Light counts relative
+/// to that of either and to `mean`, whichever is more.
+bool differ(const LineSample& a, const LineSample& b, float tolerance, float mean) {
+    const float weight = 0.5f * (a.weight + b.weight);
+    const float local =
+        0.5f * (a.weight * brightness(a.light.radiance) + b.weight * brightness(b.light.radiance));
+    return weight * brightness(a.light.radiance - b.light.radiance) > tolerance * std::max(mean, local) ||
+           brightness(a.light.transmittance - b.light.transmittance) > tolerance;
 }
-bool differs(const MarchedRay& a, const MarchedRay& b, float tolerance, float mean) {
-    const float scale = std::max(mean, 0.5f * (brightness(a.radiance) + brightness(b.radiance)));
-    return brightness(a.radiance - b.radiance) > tolerance * scale ||
-           brightness(a.transmittance - b.transmittance) > tolerance;
+
+/// What interpolation would say of the ray of `middle`.
+LineSample half_way(const LineSample& a, const LineSample& b, const LineSample& middle) {
+    return {middle.texel,
+            middle.weight,
+            {0.5f * (a.light.radiance + b.light.radiance),
+             0.5f * (a.light.transmittance + b.light.transmittance)}};
 }
 
 }  // namespace
 
 SampledLine::SampledLine(const EpipolarLine& line, const LineSampling& settings, InScatteringTask& task)
-    : line_(line), texels_(std::size_t(std::ceil(line.length())) + 1) {
+    : line_(line), texels_(std::size_t(std::ceil(settings.texels * line.length())) + 1) {
     find_runs(settings.depth_tolerance, task);
     place(settings);
-    for (LineSample& s : samples_) {
-        const Vec2d p = film(s.texel);
-        s.light = task.march(p, task.end_of(p));
-        ++marched_;
-    }
+    for (LineSample& s : samples_) s = march(s.texel, task);
+}
+
+LineSample SampledLine::march(std::int32_t texel, InScatteringTask& task) {
+    const Vec2d p = film(texel);
+    const RayEnd end = task.end_of(p);
+    LineSample sample{texel, end.weight, task.march(p, end)};
+    sample.light.radiance /= end.weight;
+    ++marched_;
+    return sample;
 }
 
 Vec2d SampledLine::film(double texel) const {
@@ -77,7 +87,7 @@ void SampledLine::place(const LineSampling& settings) {
         const bool ends = i == end || texels_[std::size_t(i + 1)].run != t.run;
         if (!(starts || ends || spread)) continue;
         if (samples_.size() >= std::size_t(std::max(1, settings.cap))) return;
-        samples_.push_back({std::int32_t(i), {}});
+        samples_.push_back({std::int32_t(i), 0.0f, {}});
     }
 }
 
@@ -89,14 +99,11 @@ void SampledLine::refine(const LineSampling& settings, float mean, std::size_t f
         const auto [a, b] = open.back();
         open.pop_back();
         if (b.texel - a.texel < 2 || marched_ >= std::size_t(settings.cap)) continue;
-        if (!differs(a.light, b.light, settings.tolerance, mean)) continue;
-        LineSample middle{(a.texel + b.texel) / 2, {}};
-        const Vec2d p = film(middle.texel);
-        middle.light = task.march(p, task.end_of(p));
-        ++marched_;
+        if (!differ(a, b, settings.tolerance, mean)) continue;
+        const LineSample middle = march((a.texel + b.texel) / 2, task);
         added.push_back(middle);
-        const bool goes_on = surprises(a.light, b.light, middle.light, 0.5f * settings.tolerance, mean);
-        if (goes_on) open.push_back({middle, b}), open.push_back({a, middle});
+        if (differ(middle, half_way(a, b, middle), 0.5f * settings.tolerance, mean))
+            open.push_back({middle, b}), open.push_back({a, middle});
     }
 }
 
@@ -119,12 +126,12 @@ void SampledLine::interpolate() {
     const auto at = [&](std::int32_t i) -> LineTexel& { return texels_[std::size_t(i)]; };
     for (std::size_t i = 0; i < samples_.size(); ++i) {
         const LineSample& a = samples_[i];
-        at(a.texel).radiance = a.light.radiance, at(a.texel).known = true;
+        at(a.texel).light = a.light.radiance, at(a.texel).known = true;
         if (i + 1 == samples_.size() || at(samples_[i + 1].texel).run != at(a.texel).run) continue;
         const LineSample& b = samples_[i + 1];
         for (std::int32_t k = a.texel + 1; k < b.texel; ++k) {
             const float f = float(k - a.texel) / float(b.texel - a.texel);
-            at(k).radiance = (1.0f - f) * a.light.radiance + f * b.light.radiance, at(k).known = true;
+            at(k).light = (1.0f - f) * a.light.radiance + f * b.light.radiance, at(k).known = true;
         }
     }
 }

@@ -1,10 +1,10 @@
 // One epipolar line: where rays are marched, and what lies between them.
 //
-// Texels stand a pixel apart. They fall into runs, within which the ends of the eye rays continue each other;
-// a sample is marched at both ends of every run, that is before and after every discontinuity, and at a few
-// texels evenly spread over the lit part of the line (Engelhardt 2013, Secs. 9.2.1, 9.2.2). Further than the
-// paper: between two samples whose light or transmittance differs, the middle is marched too, until it agrees
-// with what interpolation would give. All other texels are interpolated linearly.
+// Texels stand a pixel apart or less. They fall into runs, within which the ends of the eye rays continue
+// each other; a sample is marched at both ends of every run, that is before and after every discontinuity,
+// and at a few texels evenly spread over the lit part of the line (Engelhardt 2013, Secs. 9.2.1, 9.2.2).
+// Further than the paper: between two samples whose light or transmittance differs, the middle is marched
+// too, until it agrees with what interpolation would give. All other texels are interpolated linearly.
 #pragma once
 
 #include <vector>
@@ -20,20 +20,22 @@ struct LineSampling {
     float tolerance =
         0.05f;  ///< of interpolation, as a share of the light there and in the mean; 0: no refinement
     float depth_tolerance = 0.02f;  ///< discontinuities of distance, see continues()
+    double texels = 1.0;            ///< a pixel along the line: where samples can be, and edges are found
     double shift = 0.0;             ///< of the spread samples, in [0, 1) of their distance
 };
 
 /// 24 bytes.
 struct LineTexel {
-    core::Rgb radiance{0.0f};
+    core::Rgb light{0.0f};                ///< radiance over RayEnd::weight
     float distance = 0.0f;                ///< RayEnd::distance
     std::int32_t run = -1;                ///< texels of one run continue each other; -1 where nothing is lit
-    bool surface = false, known = false;  ///< known: radiance is set; false beyond the cap
+    bool surface = false, known = false;  ///< known: light is set; false beyond the cap
 };
 
 struct LineSample {
     std::int32_t texel;
-    MarchedRay light;
+    float weight;      ///< RayEnd::weight
+    MarchedRay light;  ///< its radiance over that weight
 };
 
 class SampledLine {
@@ -52,6 +54,7 @@ class SampledLine {
     std::size_t memory_bytes() const;
 
   private:
+    LineSample march(std::int32_t texel, InScatteringTask& task);
     void find_runs(float tolerance, InScatteringTask& task);
     void place(const LineSampling& settings);
     void refine(const LineSampling& settings, float mean, std::size_t from, std::size_t to,

@@ -18,8 +18,8 @@ struct Around {
     Around(const Ray& ray, const Vec3& light) {
         const Vec3d to_light = Vec3d(light) - Vec3d(ray.origin), direction(ray.direction);
         nearest = glm::dot(to_light, direction);
-        distance =
-            std::max(glm::length(to_light - nearest * direction), 1e-4 * glm::length(to_light) + 1e-30);
+        const double scale = std::max(glm::length(to_light), double(ray.t_min));
+        distance = std::max(glm::length(to_light - nearest * direction), 1e-5 * scale + 1e-30);
     }
     double angle(double t) const { return std::atan2(t - nearest, distance); }
 };
@@ -116,6 +116,11 @@ void InScattering::place_steps(const Ray& ray, double t0, double t1, std::vector
                              : around.nearest + around.distance * std::tan(a0 + share * (a1 - a0));
         distances.push_back(float(std::clamp(t, t0, t1)));
     }
+}
+
+double InScattering::unshadowed(const Ray& ray, double t0, double t1) const {
+    const Around around(ray, position_);
+    return (around.angle(t1) - around.angle(t0)) / around.distance;
 }
 
 /// The length that the step at t stands for: one over its density.

@@ -63,6 +63,8 @@ class InScattering {
     const core::Vec3& light_position() const { return position_; }
     /// The part of the ray that the light can reach and where there are media: box and cone, no visibility.
     std::optional<core::Interval> lit_part(const core::Ray& ray) const;
+    /// The integral of 1/d^2 over a part of the ray, where d is the distance from the light [1/m].
+    double unshadowed(const core::Ray& ray, double t0, double t1) const;
     /// The light that reaches ray.t_min from points up to ray.t_max, where the first surface is. `state`
     /// holds the media at ray.t_min.
     MarchedRay march(const core::Ray& ray, const core::MediumState& state, MarchScratch& scratch) const;

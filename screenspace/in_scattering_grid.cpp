@@ -22,9 +22,9 @@ InScatteringGrid::InScatteringGrid(const FilmRectangle& frame, double spacing, c
             Sample& s = samples_[std::size_t(row) * std::size_t(columns_) + std::size_t(column)];
             // The outermost samples may lie outside: their rays are those of the border.
             const Vec2d film = glm::clamp(origin_ + spacing_ * Vec2d(column, row), frame.lower, frame.upper);
-            s.ray = task->ray(film), s.end = task->end_of(film), s.radiance = Rgb(0.0f);
+            s.ray = task->ray(film), s.end = task->end_of(film), s.light = Rgb(0.0f);
             if (s.end.dark()) continue;
-            s.radiance = task->march(film, s.end).radiance;
+            s.light = task->march(film, s.end).radiance / s.end.weight;
             ++marched[std::size_t(row)];
         }
     });
@@ -43,10 +43,10 @@ std::optional<Rgb> InScatteringGrid::weighted(const Vec2d& cell, const RayEnd& e
             if (!(w > 0.0) ||
                 !continues(end, s.end.distance, s.end.surface, depth_tolerance_, [&] { return s.ray; }))
                 continue;
-            sum += w * Vec3d(s.radiance), weight += w;
+            sum += w * Vec3d(s.light), weight += w;
         }
     if (!(weight > 1e-3)) return std::nullopt;
-    return Rgb(sum / weight);
+    return end.weight * Rgb(sum / weight);
 }
 
 std::optional<Rgb> InScatteringGrid::light_at(const Vec2d& film, const RayEnd& end) const {

@@ -33,7 +33,7 @@ class InScatteringGrid {
     struct Sample {
         core::Ray ray;
         RayEnd end;
-        core::Rgb radiance;
+        core::Rgb light;  ///< radiance over end.weight
     };
     std::optional<core::Rgb> weighted(const Vec2d& cell, const RayEnd& end, int reach) const;
 

@@ -14,6 +14,8 @@ RayEnd lit_end(const InScattering& light, const Ray& ray, const FirstSurface& su
     RayEnd end;
     end.distance = lit->t1;
     end.surface = surface.distance <= lit->t1;
+    end.weight = float(light.unshadowed(ray, double(lit->t0), double(lit->t1)));
+    if (!(end.weight > 0.0f)) return {};  // too short for single precision
     if (end.surface) end.position = ray.at(surface.distance), end.normal = surface.normal;
     return end;
 }

@@ -17,7 +17,10 @@ struct RayEnd {
     float distance =
         0.0f;  ///< along the ray [m]: to the surface, or to where the ray leaves the light's cone and the
                ///< media before it gets there; 0 where no light can be scattered into the ray
-    bool surface = false;                     ///< the surface is what ends it
+    bool surface = false;  ///< the surface is what ends it
+    /// What the light would be if nothing but 1/d^2 counted: the integral over the lit part [1/m]. Methods
+    /// interpolate light over weight, which neither the light's closeness nor the length of the ray changes.
+    float weight = 1.0f;
     core::Vec3 position{0.0f}, normal{0.0f};  ///< of that surface; normal: geometric, unit, either side
     bool dark() const { return !(distance > 0.0f); }
 };
@@ -45,16 +48,19 @@ class InScatteringSource {
 
 /// Do two rays end at one surface, or both beyond all light, so that light may be interpolated between them?
 /// The second ends at `distance`; `ray()` returns it where it is needed. Surfaces continue where distances
-/// differ by less than the share `tolerance`, or where the second end lies in the first's tangent plane as
-/// closely as that: floors seen at a flat angle.
+/// differ by less than the share `tolerance`, or where the second ray meets the first end's tangent plane as
+/// closely to its own end as that: floors seen at a flat angle.
 template <typename RayOf>
 bool continues(const RayEnd& end, float distance, bool surface, float tolerance, const RayOf& ray) {
     if (end.dark() || !(distance > 0.0f)) return false;
     if (!end.surface && !surface) return true;
-    const float nearer = std::fmin(end.distance, distance);
-    if (std::fabs(distance - end.distance) <= tolerance * nearer) return true;
+    const float allowed = tolerance * std::fmin(end.distance, distance);
+    if (std::fabs(distance - end.distance) <= allowed) return true;
     if (!end.surface || !surface) return false;
-    return std::fabs(glm::dot(end.normal, ray().at(distance) - end.position)) <= tolerance * nearer;
+    const core::Ray other = ray();
+    const float on_plane =
+        glm::dot(end.normal, end.position - other.origin) / glm::dot(end.normal, other.direction);
+    return std::fabs(on_plane - distance) <= allowed;
 }
 
 }  // namespace mote::screenspace

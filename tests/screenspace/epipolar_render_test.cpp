@@ -1,0 +1,260 @@
+// `mote_epipolar` and `mote_single_scattering` against each other and against volpath.
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "core/render/render_driver.h"
+#include "core/scene/scene_loader.h"
+#include "tests/integrators/test_scenes.h"
+#include "tests/support/catch.h"
+#include "tests/support/render_statistics.h"
+
+using namespace mote;
+using namespace mote::core;
+using namespace mote::tests;
+
+namespace {
+
+const std::string lamps = R"(
+    <emitter type="point"><point name="position" x="0.6" y="0.4" z="1.5"/><rgb name="intensity" value="3, 3.5, 4"/></emitter>
+    <emitter type="spot"><transform name="to_world"><lookat origin="-0.6, 0.7, 1.7" target="0, -0.4, 0" up="0, 0, 1"/>
+        </transform><rgb name="intensity" value="40, 30, 20"/></emitter>)";
+
+std::string with(std::string xml, const std::string& more) { return xml.insert(xml.find("<sensor"), more); }
+std::string without_area_light(std::string xml) {
+    const auto lamp = xml.find("<emitter type=\"area\">");
+    return xml.erase(lamp, xml.find("</emitter>", lamp) + 10 - lamp);
+}
+const std::string thin_fog =
+    fog("0.5, 0.4, 0.3", R"(<phase type="hg"><float name="g" value="0.5"/></phase>)");
+
+std::unique_ptr<Scene> sized(std::string xml, int width, int height) {
+    const std::string film = fmt::format(R"(<film type="hdrfilm"><integer name="width" value="{}"/>
+        <integer name="height" value="{}"/><rfilter type="box"/></film></sensor>)",
+                                         width, height);
+    return load_scene_from_string(xml.replace(xml.find("</sensor>"), 9, film), ".", registry());
+}
+
+struct Picture {
+    std::vector<Vec3d> pixels;  ///< of one layer, the mean over passes
+    Statistics statistics;
+    double mean() const {
+        double sum = 0.0;
+        for (const Vec3d& p : pixels) sum += (p.x + p.y + p.z) / 3.0;
+        return sum / double(pixels.size());
+    }
+};
+
+Picture render(const Scene& scene, const std::string& integrator, std::uint32_t passes = 1,
+               std::size_t layer = 2) {
+    const int w = scene.film().width, h = scene.film().height;
+    const auto made = integrator_from(integrator);
+    const auto estimator = made->prepare(scene, {.seed = 11, .width = w, .height = h});
+    const auto filter = make_pixel_filter("box", 0.5f, 0.5f);
+    const std::atomic<bool> never{false};
+    Picture picture{std::vector<Vec3d>(std::size_t(w * h), Vec3d(0.0)), {}};
+    for (std::uint32_t i = 0; i < passes; ++i) {
+        PassImage image(w, h, made->layers(scene).size());
+        REQUIRE(estimator->pass({i, *filter, never}, image));
+        for (std::size_t k = 0; k < image.layers(); ++k)
+            for (const Rgb& value : image.layer(k)) REQUIRE(is_finite(value));
+        for (std::size_t p = 0; p < picture.pixels.size(); ++p)
+            picture.pixels[p] += Vec3d(image.layer(layer)[p]) / double(passes);
+    }
+    estimator->add_statistics(picture.statistics);
+    return picture;
+}
+
+/// Root mean square of the relative difference, where b's mean keeps dark pixels from counting too much.
+double relative_error(const Picture& a, const Picture& b) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+        const Vec3d d = (a.pixels[i] - b.pixels[i]) / (b.pixels[i] + b.mean());
+        sum += glm::dot(d, d);
+    }
+    return std::sqrt(sum / double(3 * a.pixels.size()));
+}
+
+std::string epipolar(int lines, int samples, const std::string& more = "") {
+    return fmt::format(R"(<integrator type="mote_epipolar"><integer name="lines" value="{}"/>
+        <integer name="samples" value="{}"/>{}</integrator>)",
+                       lines, samples, more);
+}
+const std::string few_steps =
+    R"(<integrator type="mote_single_scattering"><integer name="steps" value="4"/></integrator>)";
+const std::string full = R"(<integrator type="mote_single_scattering"/>)";
+std::string sub_sampled(double spacing) {
+    return fmt::format(
+        R"(<integrator type="mote_single_scattering"><string name="sampling" value="sub_sampled"/>
+        <float name="spacing" value="{}"/></integrator>)",
+        spacing);
+}
+
+/// A fence beside the block, that cuts the light from the right into shafts.
+const std::string bars = [] {
+    std::string xml;
+    for (int i = 0; i < 9; ++i)
+        xml += fmt::format(R"(<shape type="cube"><transform name="to_world"><scale x="0.02" y="0.035" z="1"/>
+            <translate x="1.9" y="{}" z="0"/></transform><bsdf type="diffuse"/></shape>)",
+                           0.1 + 0.1 * i);
+    return xml;
+}();
+
+/// A block before a wall in fog, and a point light at `light`; the camera stands at (0, 0, 4) and looks along
+/// -z.
+std::string block_in_fog(const Vec3d& light, const std::string& more = "") {
+    return fmt::format(R"(<scene version="3.0.0">
+        <shape type="rectangle"><transform name="to_world"><scale value="6"/><translate z="-3"/></transform>
+            <bsdf type="diffuse"/></shape>
+        <shape type="cube"><transform name="to_world"><scale x="0.3" y="0.7" z="0.2"/><translate x="0.4" y="0.2"/>
+            </transform><bsdf type="diffuse"/></shape>
+        <shape type="cube"><transform name="to_world"><scale x="0.15" y="0.15" z="0.15"/><translate x="-0.6" y="-0.5"
+            z="1"/></transform><bsdf type="diffuse"/></shape>{}
+        <emitter type="point"><point name="position" x="{}" y="{}" z="{}"/></emitter>
+        <sensor type="perspective"><float name="fov" value="50"/><transform name="to_world">
+            <lookat origin="0, 0, 4" target="0, 0, 0" up="0, 1, 0"/></transform>
+            <medium type="homogeneous"><float name="sigma_t" value="0.1"/></medium></sensor></scene>)",
+                       more, light.x, light.y, light.z);
+}
+
+void check_against_volpath(const std::string& xml, const std::string& integrator, std::uint32_t passes,
+                           std::vector<std::string> layers) {
+    const auto scene = scene_from(xml, 8);
+    const auto ours = render_statistics(*scene, *integrator_from(integrator), {8, passes, 5});
+    const auto reference = render_statistics(
+        *scene, *integrator_from(R"(<integrator type="volpath"><integer name="max_depth" value="4"/>
+            <boolean name="equiangular" value="true"/></integrator>)"),
+        {8, 4 * passes, 6});
+    for (const std::string& layer : layers) {
+        const ZTest test = same_mean(ours, layer, reference, layer);
+        INFO(test.report);
+        CHECK(test.passed);
+        CHECK_FALSE(same_mean(ours.scaled(1.1), layer, reference, layer, OnFailure::nothing).passed);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("Marching at full rate has volpath's mean", "[epipolar]") {
+    check_against_volpath(with(without_area_light(box(grey, thin_fog)), lamps), few_steps, 300,
+                          {"direct", "single_scattering"});
+}
+
+TEST_CASE("Lights without a position and mirrors join in at full rate", "[epipolar]") {
+    const std::string mirror =
+        R"(<shape type="rectangle"><transform name="to_world"><scale x="0.5" y="0.8" z="1"/>
+        <rotate y="1" angle="15"/><translate x="-0.3" z="-0.8"/></transform><bsdf type="conductor"/></shape>)";
+    check_against_volpath(with(box(grey, thin_fog), lamps + mirror), few_steps, 300,
+                          {"direct", "single_scattering"});
+}
+
+TEST_CASE("Grids are marched as closely as volpath tracks them", "[epipolar]") {
+    const auto path = std::filesystem::temp_directory_path() / "mote_epipolar.vol";
+    check_against_volpath(with(box(grey, smoke_medium(path.string())), lamps), few_steps, 300,
+                          {"direct", "single_scattering"});
+    std::filesystem::remove(path);
+}
+
+TEST_CASE("Epipolar pictures converge to full rate", "[epipolar]") {
+    for (const Vec3d& light : {Vec3d(0.1, 0.6, 0.5), Vec3d(2.5, 0.5, 0.0)}) {
+        const auto scene = sized(block_in_fog(light, bars), 24, 18);
+        const std::string steps = R"(<integer name="steps" value="128"/>)";
+        const Picture reference =
+            render(*scene, R"(<integrator type="mote_single_scattering">)" + steps + "</integrator>");
+        const auto error_at = [&](int rate) {
+            const std::string texels = fmt::format(R"(<float name="texels" value="{}"/>)", 0.5 * rate);
+            return relative_error(render(*scene, epipolar(40 * rate, 8 * rate * rate, steps + texels)),
+                                  reference);
+        };
+        const double coarse = error_at(1), middle = error_at(3), fine = error_at(9);
+        INFO("light " << light.x << ": " << coarse << ", " << middle << ", " << fine);
+        CHECK(middle < 0.6 * coarse);
+        CHECK(fine < 0.6 * middle);
+        CHECK(fine < 1e-2);
+    }
+}
+
+TEST_CASE("Epipolar lines beat a grid of as many rays where there are shafts", "[epipolar]") {
+    const auto scene = sized(block_in_fog({2.5, 0.5, 0.0}, bars), 120, 80);
+    const Picture reference = render(*scene, full), lines = render(*scene, epipolar(160, 6));
+    const Picture grid = render(*scene, sub_sampled(2.0));
+    const double share =
+        lines.statistics.values.at("marched_rays") / reference.statistics.values.at("marched_rays");
+    const double grid_share =
+        grid.statistics.values.at("marched_rays") / reference.statistics.values.at("marched_rays");
+    const double one = relative_error(lines, reference), rival = relative_error(grid, reference);
+    INFO("lines: " << share << " of the rays, error " << one << "; grid: " << grid_share << ", " << rival);
+    CHECK(share < 0.3);
+    CHECK(share < grid_share);
+    CHECK(one < rival);
+    const double many = relative_error(render(*scene, epipolar(160, 6), 8), render(*scene, full, 8));
+    CHECK(many < 0.7 * one);  // passes are independent
+}
+
+TEST_CASE("Sweeping the light past the frame and behind the camera makes no jump in error", "[epipolar]") {
+    // From the picture's middle over its border, beside the camera, and to behind it: 60 positions.
+    std::vector<double> errors;
+    for (int i = 0; i < 60; ++i) {
+        const double angle = (0.02 + 0.95 * i / 59.0) * double(pi);  // from the view, at the camera
+        const auto scene =
+            sized(block_in_fog(Vec3d(2.5 * std::sin(angle), 0.3, 4.0 - 2.5 * std::cos(angle))), 32, 24);
+        errors.push_back(relative_error(render(*scene, epipolar(96, 12)), render(*scene, full)));
+        INFO("position " << i << ", error " << errors.back());
+        CHECK(errors.back() < 0.08);
+    }
+    for (std::size_t i = 1; i + 1 < errors.size(); ++i) {  // no spike above its neighbours
+        INFO("position " << i << ": " << errors[i - 1] << ", " << errors[i] << ", " << errors[i + 1]);
+        CHECK(errors[i] < 2.0 * std::max(errors[i - 1], errors[i + 1]) + 0.005);
+    }
+}
+
+TEST_CASE("A light at the camera, on a pixel and on the border", "[epipolar]") {
+    const double half = std::tan(25.0 * double(pi) / 180.0);
+    for (const Vec3d& light : {Vec3d(0, 0, 4), Vec3d(1e-7, 0, 4), Vec3d(0.001, 0, 4), Vec3d(0, 0, 3),
+                               Vec3d(2 * half, 0, 2), Vec3d(2 * half, 1.5 * half, 2), Vec3d(1.0, 0, 4)}) {
+        const auto scene = sized(block_in_fog(light), 48, 36);
+        const Picture reference = render(*scene, full);
+        const double error = relative_error(render(*scene, epipolar(120, 16)), reference);
+        INFO("light at " << light.x << ", " << light.y << ", " << light.z << ": " << error);
+        CHECK(error < 0.1);
+    }
+}
+
+TEST_CASE("Pictures of one pixel and of one row", "[epipolar]") {
+    for (const auto& [w, h] : std::vector<std::pair<int, int>>{{1, 1}, {2, 1}, {3, 300}, {8192, 1}}) {
+        INFO(w << " x " << h);
+        const auto scene = sized(block_in_fog({0.3, 0.1, 0.5}), w, h);
+        const Picture reference = render(*scene, full);
+        CHECK(relative_error(render(*scene, epipolar(256, 8)), reference) < 0.1);
+        CHECK(relative_error(render(*scene, sub_sampled(2.0)), reference) < 1.0);
+    }
+}
+
+TEST_CASE("Black lights, closed eyes and vacuum", "[epipolar]") {
+    const std::string lid =
+        R"(<shape type="sphere"><point name="center" x="0" y="0" z="4"/><float name="radius"
+        value="0.2"/><bsdf type="diffuse"/></shape>)";
+    CHECK(render(*sized(block_in_fog({0.3, 0.1, 0.5}, lid), 16, 16), epipolar(32, 4)).mean() == 0.0);
+    std::string black = block_in_fog({0.3, 0.1, 0.5});
+    black.insert(black.find("</emitter>"), R"(<rgb name="intensity" value="0"/>)");
+    CHECK(render(*sized(black, 16, 16), epipolar(32, 4)).mean() == 0.0);
+
+    const auto vacuum = scene_from(box(grey, ""), 8);
+    const auto ours = render_statistics(*vacuum, *integrator_from(epipolar(32, 4)), {8, 200, 1});
+    const auto path =
+        render_statistics(*vacuum, *integrator_from(R"(<integrator type="path"/>)"), {8, 400, 2});
+    CHECK(ours.layers.size() == 3);  // emission, direct, beauty
+    for (const char* layer : {"emission", "direct"}) CHECK(same_mean(ours, layer, path, layer).passed);
+}
+
+TEST_CASE("The plan says when nothing epipolar is needed", "[epipolar]") {
+    const auto plan_of = [](const std::string& xml) {
+        const auto scene = scene_from(xml, 8);
+        return integrator_from(epipolar(32, 4))->plan(*scene, find_requirements(*scene)).to_text();
+    };
+    using Catch::Matchers::Contains;
+    CHECK_THAT(plan_of(box(grey, "")), Contains("the scene has no medium"));
+    CHECK_THAT(plan_of(box(grey, thin_fog)), Contains("no light has a position"));
+    CHECK_THAT(plan_of(with(box(grey, thin_fog), lamps)),
+               Contains("32 for each of 2 lights") && Contains("other lights"));
+}
