@@ -231,6 +231,8 @@ Plan MoteVpl::plan(const Scene& scene, const Requirements& r) const {
                   "the bound removes it; <compensation> brings it back");
     if (settings_.compensation.enabled)
         plan_compensation(plan, scene, r, settings_.compensation, settings_.bound_for(scene.rays().bounds()));
+    if (settings_.bounded)
+        plan_expected_loss(plan, scene, settings_.compensation, settings_.bound_for(scene.rays().bounds()));
     if (settings_.eye_samples > 1)
         plan.run("eye paths", std::to_string(settings_.eye_samples) + " a pixel and pass",
                  settings_.vpls_shared_out() ? "VPLs are shared out among them" : "each meets all VPLs");

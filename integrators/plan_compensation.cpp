@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include "compensation/bounded_geometry.h"
+#include "compensation/expected_loss.h"
+#include "core/math/random.h"
 
 namespace mote::integrators {
 
@@ -44,7 +46,51 @@ bool surface_within_reach(const Scene& scene, float radius) {
     return false;
 }
 
+/// Extinction and scattering [1/m] where light scatters: averages weighted with the extinction itself.
+struct TypicalMedium {
+    double sigma_t = 0.0, sigma_s = 0.0;
+};
+
+TypicalMedium typical_medium(const Scene& scene) {
+    double sum = 0.0, squares = 0.0, scattering = 0.0;
+    Rng rng(1);
+    for (const auto& medium : scene.media()) {
+        const Bounds3 all = scene.medium_extent(*medium), own = medium->bounds();
+        const Bounds3 box{glm::max(all.lower, own.lower), glm::min(all.upper, own.upper)};
+        if (box.empty() || !std::isfinite(box.radius())) continue;
+        for (int i = 0; i < 4096; ++i) {
+            const Vec3 u(rng.next_float(), rng.next_float(), rng.next_float());
+            const MediumCoefficients c = medium->coefficients(box.lower + u * box.diagonal());
+            const double t = double(average(c.sigma_t)), s = double(average(c.sigma_s));
+            sum += t, squares += t * t, scattering += t * s;
+        }
+    }
+    return sum > 0.0 ? TypicalMedium{squares / sum, scattering / sum} : TypicalMedium{};
+}
+
 }  // namespace
+
+void plan_expected_loss(Plan& plan, const Scene& scene, const CompensationSettings& s, float bound) {
+    if (!scene.has_media() || !std::isfinite(bound)) return;
+    const TypicalMedium medium = typical_medium(scene);
+    const double beta = compensation::residual_fraction(medium.sigma_t, medium.sigma_s, double(bound));
+    const int steps = s.enabled && s.media ? s.depth : 0;
+    const double loss = compensation::expected_loss(beta, steps);
+    plan.run("expected loss",
+             fmt::format("{:.2g} % of the light that scatters more than once in media", 100.0 * loss),
+             fmt::format("beta = {:.2g} at sigma_t = {:.3g} /m; k steps leave out beta^(k+1)", beta,
+                         medium.sigma_t));
+    constexpr double target = 0.02;
+    if (loss <= target) return;
+    const double radius = double(scene.rays().bounds().radius());
+    const auto suggestion = [&](int k) {
+        const double b = compensation::bound_for_loss(medium.sigma_t, medium.sigma_s, k, target);
+        return fmt::format("{} step(s), bound {:.3g}, {:.0f} light paths", k, b,
+                           std::ceil(b * radius * radius));
+    };
+    plan.run("for a loss of 2 %", suggestion(std::max(steps, 1)),
+             "or " + suggestion(std::max(steps, 1) + 1) + "; paths as the automatic bound wants them");
+}
 
 void plan_compensation(Plan& plan, const Scene& scene, const Requirements& r, const CompensationSettings& s,
                        float bound) {

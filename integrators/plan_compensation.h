@@ -12,4 +12,9 @@ namespace mote::integrators {
 void plan_compensation(core::Plan& plan, const core::Scene& scene, const core::Requirements& requirements,
                        const compensation::CompensationSettings& settings, float bound);
 
+/// What bounded VPLs, with this compensation or without, are expected to leave out in the media, and how many
+/// light paths and which bound would leave out less (compensation/expected_loss.h).
+void plan_expected_loss(core::Plan& plan, const core::Scene& scene,
+                        const compensation::CompensationSettings& settings, float bound);
+
 }  // namespace mote::integrators

@@ -2,6 +2,7 @@
 // follow their density from vacuum to lead.
 #include "compensation/bounded_geometry.h"
 
+#include "compensation/expected_loss.h"
 #include "compensation/region_distance.h"
 #include "core/math/random.h"
 #include "tests/support/catch.h"
@@ -51,6 +52,31 @@ TEST_CASE("limits of the bound", "[compensation][bound]") {
     // The region's edge: inside something is taken, outside nothing.
     CHECK(residual_share(1.0f, 0.499f, 4.0f) > 0.0f);
     CHECK(residual_share(1.0f, 0.501f, 4.0f) == 0.0f);
+}
+
+TEST_CASE("the expected loss is the integral that it stands for", "[compensation][loss]") {
+    for (const double sigma_t : {1e-6, 1e-3, 0.1, 0.499, 0.501, 3.0, 100.0})
+        for (const double bound : {0.25, 1.0, 1e4}) {
+            const double radius = 1.0 / std::sqrt(bound), sigma_s = 0.9 * sigma_t;
+            double sum = 0.0;
+            constexpr int n = 200000;
+            for (int i = 0; i < n; ++i) {
+                const double t = (i + 0.5) * radius / n;
+                sum += sigma_s * std::exp(-sigma_t * t) * (1.0 - bound * t * t) * radius / n;
+            }
+            CHECK(residual_fraction(sigma_t, sigma_s, bound) == Approx(sum).epsilon(1e-6));
+        }
+    CHECK(residual_fraction(0.0, 0.0, 1.0) == 0.0);
+    CHECK(residual_fraction(1.0, 0.9, core::infinity) == 0.0);
+    CHECK(residual_fraction(1.0, 0.9, 0.0) == 0.9);
+    CHECK(expected_loss(0.5, 0) == 0.5);
+    CHECK(expected_loss(0.5, 2) == 0.125);
+    CHECK(expected_loss(0.5, -1) == 0.0);
+    for (const int steps : {0, 1, 3}) {
+        const double b = bound_for_loss(2.0, 1.8, steps, 0.02);
+        CHECK(expected_loss(residual_fraction(2.0, 1.8, b), steps) == Approx(0.02).epsilon(1e-3));
+    }
+    CHECK(bound_for_loss(2.0, 0.01, 0, 0.02) == 0.0);
 }
 
 TEST_CASE("distances in the region follow their density", "[compensation][distances]") {
