@@ -20,8 +20,8 @@ ShadowMapBuilder::ShadowMapBuilder(const Scene& scene, const VolumetricShadowMap
                                    const MediumState& at_light)
     : scene_(scene), map_(map), at_light_(at_light) {
     for (const auto& m : scene.media())
-        media_.push_back(
-            {m.get(), dynamic_cast<const media::HeterogeneousMedium*>(m.get()), m->traits().voxel_size});
+        media_.push_back({m.get(), dynamic_cast<const media::HeterogeneousMedium*>(m.get()),
+                          m->traits().voxel_size, m->bounds()});
 }
 
 void ShadowMapBuilder::fill(int texel, std::byte* record) {
@@ -73,9 +73,9 @@ void ShadowMapBuilder::find_segments(const Ray& ray, float end) {
     const auto pass = [&](float to) {
         const Medium* medium = state.current();
         if (medium && t < to) {
-            const auto part = intersect(medium->bounds(), Ray{ray.origin, ray.direction, t, to});
             const auto marched =
                 std::find_if(media_.begin(), media_.end(), [&](auto& m) { return m.medium == medium; });
+            const auto part = intersect(marched->bounds, Ray{ray.origin, ray.direction, t, to});
             if (part) segments_.push_back({&*marched, part->t0, part->t1});
         }
         t = std::max(t, to);
@@ -92,30 +92,49 @@ void ShadowMapBuilder::find_segments(const Ray& ray, float end) {
     pass(end);
 }
 
+float ShadowMapBuilder::step_of(const MarchedMedium& medium, float length) const {
+    return std::isfinite(medium.voxel) ? medium.voxel * map_.settings_.step : length;
+}
+
 Vec3d ShadowMapBuilder::depth_of(const Segment& segment, const Ray& part) {
     const float length = part.t_max - part.t_min;
     const MarchedMedium& m = *segment.medium;
     if (!m.grid) return Vec3d(m.medium->coefficients(part.origin).sigma_t) * double(length);
-    const float step = std::isfinite(m.voxel) ? m.voxel * map_.settings_.step : length;
-    return m.grid->optical_depth_by_marching(part, step, counters_);
+    return m.grid->optical_depth_by_marching(part, step_of(m, length), counters_);
 }
 
 /// Optical depth at the ends of all intervals.
 void ShadowMapBuilder::march(const Ray& ray, const VolumetricShadowMap::Header& header, float step) {
-    const int intervals = map_.settings_.intervals;
-    nodes_.assign(std::size_t(intervals) + 1, Node{header.enter, Rgb(0.0f)});
-    if (header.inverse_step == 0.0f) return;
+    const auto intervals = std::size_t(map_.settings_.intervals);
+    depths_.assign(intervals, Vec3d(0.0));
+    if (header.inverse_step > 0.0f) {
+        if (segments_.size() == 1 && segments_.front().medium->grid) {
+            const Segment& only = segments_.front();
+            only.medium->grid->optical_depths_by_marching(
+                Ray{ray.origin, ray.direction, only.begin, only.end},
+                step_of(*only.medium, only.end - only.begin), depths_, counters_);
+        } else {
+            march_segments(ray, header.enter, step);
+        }
+    }
+    nodes_.assign(1, Node{header.enter, Rgb(0.0f)});
+    for (std::size_t k = 0; k < intervals; ++k)
+        nodes_.push_back({header.enter + float(k + 1) * step, Rgb(depths_[k])});
+}
+
+/// Several media, or homogeneous ones: interval by interval.
+void ShadowMapBuilder::march_segments(const Ray& ray, float enter, float step) {
     Vec3d depth(0.0);
     std::size_t s = 0;
-    for (int k = 1; k <= intervals; ++k) {
-        const float from = header.enter + float(k - 1) * step, to = header.enter + float(k) * step;
+    for (std::size_t k = 0; k < depths_.size(); ++k) {
+        const float from = enter + float(k) * step, to = enter + float(k + 1) * step;
         while (s < segments_.size() && segments_[s].end <= from) ++s;
         for (std::size_t i = s; i < segments_.size() && segments_[i].begin < to; ++i) {
             const Ray part{ray.origin, ray.direction, std::max(from, segments_[i].begin),
                            std::min(to, segments_[i].end)};
             if (part.t_min < part.t_max) depth += depth_of(segments_[i], part);
         }
-        nodes_[std::size_t(k)] = {to, Rgb(depth)};
+        depths_[k] = depth;
     }
 }
 

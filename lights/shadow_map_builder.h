@@ -21,6 +21,7 @@ class ShadowMapBuilder {
         const core::Medium* medium;
         const media::HeterogeneousMedium* grid;  ///< null: homogeneous
         float voxel;
+        core::Bounds3 bounds;
     };
     /// One medium along a part of the ray.
     struct Segment {
@@ -35,6 +36,8 @@ class ShadowMapBuilder {
     float find_surface(const core::Ray& ray, VolumetricShadowMap::Header& header);
     void find_segments(const core::Ray& ray, float end);
     void march(const core::Ray& ray, const VolumetricShadowMap::Header& header, float step);
+    void march_segments(const core::Ray& ray, float enter, float step);
+    float step_of(const MarchedMedium& medium, float length) const;
     core::Vec3d depth_of(const Segment& segment, const core::Ray& part);
     void keep_nodes(std::size_t count);
     void write(std::byte* record) const;
@@ -48,6 +51,7 @@ class ShadowMapBuilder {
     core::TrackingCounters counters_;
     std::vector<core::SurfaceHit> boundaries_;
     std::vector<Segment> segments_;
+    std::vector<core::Vec3d> depths_;
     std::vector<Node> nodes_;  ///< at the ends of all intervals, or what is left of them
 };
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "core/scene/medium.h"
 #include "media/emission.h"
@@ -54,6 +55,10 @@ class HeterogeneousMedium : public core::Medium {
     /// segment must be finite unless the medium is bounded.
     virtual core::Vec3d optical_depth_by_marching(const core::Ray& ray, float step,
                                                   core::TrackingCounters& counters) const = 0;
+    /// The same from ray.t_min to the end of each of depths.size() equal parts of a finite segment, in one go
+    /// that passes over empty cells.
+    virtual void optical_depths_by_marching(const core::Ray& ray, float step, std::span<core::Vec3d> depths,
+                                            core::TrackingCounters& counters) const = 0;
 
   protected:
     explicit HeterogeneousMedium(MediumParts parts);

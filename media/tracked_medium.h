@@ -91,6 +91,8 @@ class TrackedMedium final : public HeterogeneousMedium {
                                core::TrackingCounters& counters) const override;
     core::Vec3d optical_depth_by_marching(const core::Ray& ray, float step,
                                           core::TrackingCounters& counters) const override;
+    void optical_depths_by_marching(const core::Ray& ray, float step, std::span<core::Vec3d> depths,
+                                    core::TrackingCounters& counters) const override;
 
   private:
     /// Walks the Poisson process with rate `rate_of(range)` along the ray: `at_collision(range, rate, t,

@@ -264,6 +264,33 @@ core::Vec3d TrackedMedium<Grid>::optical_depth_by_marching(const core::Ray& ray,
 }
 
 template <typename Grid>
+void TrackedMedium<Grid>::optical_depths_by_marching(const core::Ray& ray, float step,
+                                                     std::span<core::Vec3d> depths,
+                                                     core::TrackingCounters& counters) const {
+    std::fill(depths.begin(), depths.end(), core::Vec3d(0.0));
+    const double t0 = ray.t_min, part = (double(ray.t_max) - t0) / double(depths.size());
+    if (!(part > 0.0)) return;
+    const auto points = std::uint64_t(std::max(std::ceil(part / double(step)), 1.0));  // of each part
+    const double h = part / double(points);
+    const core::Vec3d origin = index_origin(ray), direction = index_direction(ray);
+    auto cursor = grid_.cursor();
+    std::uint64_t i = 0, looked_up = 0;  // the next point, at t0 + (i + 1/2) h
+    const std::uint64_t end = points * depths.size();
+    grid_.majorants.walk(
+        origin, direction, t0, double(ray.t_max), [&](const Range& range, double begin, double t1) {
+            if (detail::largest(range.upper) == 0.0) return true;
+            const double first = std::ceil((begin - t0) / h - 0.5);
+            if (first > double(i)) i = std::uint64_t(first);
+            for (double t; i < end && (t = t0 + (double(i) + 0.5) * h) < t1; ++i, ++looked_up)
+                depths[i / points] += core::Vec3d(detail::widen(cursor.lookup(origin + t * direction)));
+            return true;
+        });
+    counters.lookups += looked_up;
+    core::Vec3d sum(0.0);
+    for (core::Vec3d& depth : depths) depth = sum += depth * (h * double(parts_.scale));
+}
+
+template <typename Grid>
 core::MediumCoefficients TrackedMedium<Grid>::coefficients(const core::Vec3& p) const {
     const Value density = grid_.cursor().lookup(grid_.world_to_index.point(core::Vec3d(p)));
     core::MediumCoefficients c;
