@@ -1,0 +1,143 @@
+"""What the scripts that render share: pictures of the `mote` command, their statistics, and the options.
+
+Every render is a file in OUTPUT/NAME/, with its statistics beside it; --redraw takes those of the last run as they are.
+Errors come from independent seeds: `mean_and_error` is their mean and its standard error. Variants that are rendered with
+the same seeds share their virtual point lights, so the differences of pairs are far less noisy than the renders are.
+"""
+import argparse
+import csv
+import json
+import resource
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+from exr import read_exr
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+# What stands for the layer multiple_scattering of volpath: light that scatters in a medium last, and elsewhere before.
+BOUNDED, RECOVERED = "multiple_scattering_bounded", "compensation_volume"
+
+
+class Picture:
+    """Layers by name, and the statistics of the render; `cpu` is the seconds of all its threads."""
+
+    def __init__(self, path):
+        self.layers = read_exr(path)
+        self.statistics = json.loads(path.with_suffix(".json").read_text())
+        self.cpu = float(path.with_suffix(".cpu").read_text())
+
+    def __getitem__(self, layer):
+        return self.layers[layer]
+
+    def multiple(self):
+        """Light that was scattered in a medium last, and elsewhere before."""
+        return sum(self.layers.get(name, 0.0) for name in ("multiple_scattering", BOUNDED, RECOVERED))
+
+    def value(self, name):
+        return self.statistics["values"][name]
+
+    @property
+    def passes(self):
+        return self.statistics["passes"]
+
+    @property
+    def vpls(self):
+        return self.statistics["vpls"] / self.passes
+
+
+class Mote:
+    def __init__(self, options, name):
+        self.program = options.bin / "mote"
+        self.folder = options.output / name
+        self.redraw = options.redraw
+        if not self.program.is_file():
+            raise FileNotFoundError(f"no {self.program}: build it first (tools/build_release.sh mote)")
+        self.folder.mkdir(parents=True, exist_ok=True)
+
+    def render(self, scene, name, settings, passes=None, seconds=None, seed=1):
+        """`scene` is a name in scenes/ or a path; `settings` go to -D, but for `integrator`, which is a type."""
+        path = self.folder / f"{name}_{seed}.exr"
+        if not (self.redraw and path.is_file()):
+            scene = scene if isinstance(scene, Path) else ROOT / "scenes" / f"{scene}.xml"
+            command = [self.program, "render", scene, "-o", path, "--seed", str(seed), "--quiet",
+                       "--stats", path.with_suffix(".json")]
+            command += ["--passes", str(passes)] if seconds is None else ["--time", str(seconds)]
+            for key, value in settings.items():
+                command += ["--integrator", value] if key == "integrator" else ["-D", f"{key}={word(value)}"]
+            before = children_cpu()
+            subprocess.run(command, check=True)
+            path.with_suffix(".cpu").write_text(f"{children_cpu() - before:.3f}\n")
+        return Picture(path)
+
+
+def word(value):
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def children_cpu():
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def compensation(kind, **settings):
+    """Settings of mote_vpl with a compensation of this type."""
+    return {"integrator.compensation": kind, **{f"integrator.compensation.{k}": v for k, v in settings.items()}}
+
+
+def approximate(depth, **settings):
+    return compensation("approximate", depth=depth, **settings)
+
+
+def luminance(image):
+    return image @ np.array([0.2126, 0.7152, 0.0722])
+
+
+def mean_and_error(values):
+    """Of independent values along the first axis: their mean, and its standard error."""
+    values = np.asarray(values, dtype=float)
+    return values.mean(axis=0), values.std(axis=0, ddof=1) / len(values) ** 0.5
+
+
+def show(axes, image, exposure, title=None):
+    axes.imshow(np.clip(image * exposure, 0, 1) ** (1 / 2.2), interpolation="nearest")
+    axes.axis("off")
+    if title:
+        axes.set_title(title, fontsize=9)
+
+
+def show_difference(axes, difference, scale, title=None):
+    """As in the papers: green where it is too dark, red where it is too bright."""
+    d = luminance(difference) * scale
+    show(axes, np.stack([np.maximum(d, 0), np.maximum(-d, 0), 0 * d], axis=2), 1, title)
+
+
+def write_csv(path, header, rows):
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file)
+        table.writerow(header)
+        for row in rows:
+            table.writerow([f"{x:.5g}" if isinstance(x, float) else x for x in row])
+
+
+def main(script, documentation, figure):
+    """Runs `figure(mote, quick, output)`, which returns an exit code; `output` lacks its suffix."""
+    parser = argparse.ArgumentParser(description=documentation.split("\n")[0])
+    parser.add_argument("--quick", action="store_true", help="less than a minute, at low resolution")
+    parser.add_argument("--redraw", action="store_true", help="take the pictures of the last run where they are")
+    parser.add_argument("--output", type=Path, default=ROOT / "out" / "figures")
+    parser.add_argument("--bin", type=Path, default=ROOT / "build" / "release" / "bin", help="folder of mote")
+    options = parser.parse_args()
+    name = Path(script).stem
+    try:
+        mote = Mote(options, name + ("_quick" if options.quick else ""))
+        subprocess.run([ROOT / "scenes" / "generate", options.bin], stdout=subprocess.DEVNULL, check=True)
+    except FileNotFoundError as error:
+        print(error, file=sys.stderr)
+        return 2
+    begin = time.monotonic()
+    code = figure(mote, options.quick, options.output / name)
+    print(f"{time.monotonic() - begin:.0f} s")
+    return code
