@@ -20,18 +20,18 @@
 namespace mote::screenspace {
 
 struct SsbcSettings {
-    float bound;    ///< b [1/m^2] that the picture was rendered with
+    float bound = 0.0f;  ///< b [1/m^2] that the picture was rendered with; 0: with no indirect light at all
     int steps = 2;  ///< how often T_r is applied, at least once
 
     bool hierarchical = true;  ///< false: sum over all pixels, for reference; quadratic in their number
-    RefinementRules refinement;
+    RefinementRules refinement{};
     float discontinuity_angle = 0.44f;  ///< [rad] see SurfacePyramid
     /// Pixels whose normal is farther than this from the view send less, quadratically down to nothing at a
     /// right angle: they are long strips, which one sample stands badly for. pi/2: none do.
     float grazing_angle = 80.0f * core::pi / 180.0f;  ///< [rad]
 
     bool half_resolution = false;  ///< gather at one pixel of four, see ssbc_upsampling.h
-    UpsamplingRules upsampling;
+    UpsamplingRules upsampling{};
     float blur = 0.0f;  ///< standard deviation of an edge-preserving blur of the result [pixels]; 0: none
 
     /// Throws std::invalid_argument naming what is out of range.

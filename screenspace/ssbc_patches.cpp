@@ -22,8 +22,8 @@ class Neighbourhood {
 
     PixelPatch patch() const {
         const auto [along_x, along_y] = steps();
-        const float left = reach(-1, 0, -along_x), right = reach(1, 0, along_x);
-        const float up = reach(0, -1, -along_y), down = reach(0, 1, along_y);
+        const float left = reach(-1, 0, -along_x, along_y), right = reach(1, 0, along_x, along_y);
+        const float up = reach(0, -1, -along_y, along_x), down = reach(0, 1, along_y, along_x);
         PixelPatch p;
         p.a = 0.5f * (left + right) * along_x, p.b = 0.5f * (up + down) * along_y;
         p.centre = s_.position[here_] + 0.5f * (right - left) * along_x + 0.5f * (down - up) * along_y;
@@ -64,7 +64,8 @@ class Neighbourhood {
         return {frame.s * std::sqrt(area), frame.t * std::sqrt(area)};
     }
     /// How much of `towards`, the step to a neighbour, belongs to the patch: all of it up to a concave edge.
-    float reach(int dx, int dy, const Vec3& towards) const {
+    /// An edge is cut off along one step alone, the one that crosses it more steeply.
+    float reach(int dx, int dy, const Vec3& towards, const Vec3& other_step) const {
         if (!takes_part(dx, dy) || continues(dx, dy)) return 0.5f;
         const std::size_t there = index(x_ + dx, y_ + dy);
         const Vec3 d = s_.position[there] - s_.position[here_];
@@ -72,8 +73,10 @@ class Neighbourhood {
         const float approach = -glm::dot(s_.normal[there], towards);
         const float rounding = -1e-3f * glm::length(d);  // a centre may lie on the edge itself
         if (over_there < rounding || over_here < rounding) return 0.5f;
-        if (over_there > approach || !(approach > -rounding)) return 0.5f;
-        return std::max(over_there / approach, 0.05f);
+        if (over_there > 1.25f * approach || !(approach > -rounding)) return 0.5f;  // perspective bends steps
+        const float across = std::abs(glm::dot(s_.normal[there], other_step));
+        if (approach < across || (approach == across && dx != 0)) return 0.5f;
+        return std::clamp(over_there / approach, 0.05f, 1.0f);
     }
 
     const SsbcSurfaces& s_;
