@@ -26,7 +26,7 @@ class MoteEpipolar final : public Integrator {
 
     std::string type() const override { return "mote_epipolar"; }
     std::vector<Layer> layers(const Scene& scene) const override {
-        return single_scattering_layers(scene.has_media());
+        return single_scattering_layers(scene.has_media(), settings_);
     }
     Plan plan(const Scene& scene, const Requirements& r) const override;
     std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {

@@ -23,7 +23,7 @@ class MoteSingleScattering final : public Integrator {
 
     std::string type() const override { return "mote_single_scattering"; }
     std::vector<Layer> layers(const Scene& scene) const override {
-        return single_scattering_layers(scene.has_media());
+        return single_scattering_layers(scene.has_media(), settings_);
     }
     Plan plan(const Scene& scene, const Requirements& r) const override {
         Plan plan;

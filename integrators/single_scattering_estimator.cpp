@@ -1,5 +1,7 @@
 #include "integrators/single_scattering_estimator.h"
 
+#include <algorithm>
+
 #include "integrators/counters.h"
 #include "screenspace/epipolar_picture.h"
 #include "screenspace/in_scattering_grid.h"
@@ -61,6 +63,7 @@ class SingleScatteringEstimator final : public Estimator {
                     MarchScratch& scratch);
     bool scatter(const PassContext& context, const PassNumbers& numbers, const InScattering& light,
                  PassImage& image);
+    void show(const std::vector<Vec2d>& places, PassImage& image) const;
     template <typename LightAt>
     bool upsample(const PassContext& context, const PassNumbers& numbers, const InScattering& light,
                   const InScatteringRays& source, PassImage& image, const LightAt& light_at);
@@ -105,10 +108,19 @@ void SingleScatteringEstimator<Media>::render_eye(const PassContext& context, co
             if (end.dark()) continue;
             lit.t_max = end.distance;
             path.sum[Transport::single_scattering] += light.march(lit, state, scratch).radiance;
+            if (settings_.show_samples) image.at(3, x, y) += Rgb(1.0f);
         }
         image.at(2, x, y) = path.sum[Transport::single_scattering];
     }
     image.at(0, x, y) = path.sum[Transport::emission], image.at(1, x, y) = path.sum[Transport::direct];
+}
+
+/// Counts marched rays. What lies outside the film belongs to its border.
+template <bool Media>
+void SingleScatteringEstimator<Media>::show(const std::vector<Vec2d>& places, PassImage& image) const {
+    for (const Vec2d& p : places)
+        image.at(3, std::clamp(int(std::floor(p.x)), 0, options_.width - 1),
+                 std::clamp(int(std::floor(p.y)), 0, options_.height - 1)) += Rgb(1.0f);
 }
 
 /// Adds light_at(film, end, task) to every pixel; where it returns nothing, the pixel's ray is marched.
@@ -129,7 +141,10 @@ bool SingleScatteringEstimator<Media>::upsample(const PassContext& context, cons
                     if (end.dark()) continue;
                     ++candidates;
                     auto scattered = light_at(Vec2d(point.film), end, *task);
-                    if (!scattered) scattered = task->march(Vec2d(point.film), end).radiance, ++filled;
+                    if (!scattered) {
+                        scattered = task->march(Vec2d(point.film), end).radiance, ++filled;
+                        if (settings_.show_samples) image.at(3, x, y) += Rgb(1.0f);
+                    }
                     image.at(2, x, y) += *scattered;
                 }
             const std::lock_guard lock(mutex_);
@@ -161,6 +176,7 @@ bool SingleScatteringEstimator<Media>::scatter(const PassContext& context, const
                         [&](const Vec2d& film, const RayEnd& end, InScatteringTask& task) {
                             return picture.light_at(film, end, task);
                         });
+        if (settings_.show_samples) show(picture.marched_at(), image);
         const PictureCounts counts = picture.counts();
         counts_.lines += counts.lines, counts_.texels += counts.texels, bytes = counts.bytes;
     } else {
@@ -174,6 +190,7 @@ bool SingleScatteringEstimator<Media>::scatter(const PassContext& context, const
                         [&](const Vec2d& film, const RayEnd& end, InScatteringTask&) {
                             return grid.light_at(film, end);
                         });
+        if (settings_.show_samples) show(grid.marched_at(), image);
         bytes = grid.memory_bytes();
     }
     counts_.bytes = std::max(counts_.bytes, bytes + points_.capacity() * sizeof(EyePoint));

@@ -23,6 +23,7 @@ struct ScatteringSettings {
     double spacing = 4.0;  ///< of sub-sampling [pixels]
     int lines = 1024;      ///< epipolar lines of a light
     screenspace::LineSampling line;
+    bool show_samples = false;  ///< a layer that counts the marched rays of every pixel
 };
 
 std::unique_ptr<core::Estimator> make_single_scattering_estimator(const core::Scene& scene,
@@ -37,8 +38,8 @@ std::vector<core::Parameter> scattering_parameters();
 int checked_integer(const core::Properties& properties, const std::string& name, int value, int lower,
                     int upper);
 
-/// emission, direct, and single_scattering where there are media.
-std::vector<core::Layer> single_scattering_layers(bool media);
+/// emission, direct, and where there are media single_scattering, and the marched rays when asked for.
+std::vector<core::Layer> single_scattering_layers(bool media, const ScatteringSettings& settings);
 
 /// What both integrators do alike, and what they leave to others.
 void plan_single_scattering(core::Plan& plan, const core::Scene& scene,

@@ -24,23 +24,27 @@ ScatteringSettings read_scattering_settings(const Properties& p) {
     s.march.voxels = float(p.get_float_in("voxels", 1.0, 1e-3, 1e6));
     s.line.depth_tolerance = float(p.get_float_in("depth_tolerance", 0.02, 0.0, 1e6));
     s.eye.max_depth = checked_integer(p, "max_depth", 32, 1, 1 << 20);
+    s.show_samples = p.get_bool("show_samples", false);
     return s;
 }
 
 std::vector<Parameter> scattering_parameters() {
-    return {{"steps", "integer", "64", "steps of every marched ray"},
-            {"march", "string", "equiangular",
-             "equiangular: equal angles as seen from the light; uniform: equal lengths"},
-            {"voxels", "float", "1", "step of optical depths through grids, in voxels"},
-            {"depth_tolerance", "float", "0.02",
-             "share by which distances to one surface may differ between neighbouring rays"},
-            {"max_depth", "integer", "32", "longest eye path through mirrors and glass, in rays"}};
+    return {
+        {"steps", "integer", "64", "steps of every marched ray"},
+        {"march", "string", "equiangular",
+         "equiangular: equal angles as seen from the light; uniform: equal lengths"},
+        {"voxels", "float", "1", "step of optical depths through grids, in voxels"},
+        {"depth_tolerance", "float", "0.02",
+         "share by which distances to one surface may differ between neighbouring rays"},
+        {"show_samples", "boolean", "false", "adds a layer MarchedRays: rays marched in every pixel, a pass"},
+        {"max_depth", "integer", "32", "longest eye path through mirrors and glass, in rays"}};
 }
 
-std::vector<Layer> single_scattering_layers(bool media) {
+std::vector<Layer> single_scattering_layers(bool media, const ScatteringSettings& settings) {
     std::vector<Layer> layers = {{"emission", "light sources seen directly or through mirrors and glass"},
                                  {"direct", "light scattered once, on a surface"}};
     if (media) layers.push_back({"single_scattering", "light scattered once, in a medium"});
+    if (media && settings.show_samples) layers.push_back({"MarchedRays", "rays marched in the pixel", true});
     return layers;
 }
 

@@ -108,4 +108,12 @@ PictureCounts EpipolarPicture::counts() const {
     return counts;
 }
 
+std::vector<Vec2d> EpipolarPicture::marched_at() const {
+    std::vector<Vec2d> places;
+    for (const SampledLine& line : sampled_)
+        for (std::size_t i = 0; i < line.texels().size(); ++i)
+            if (line.texels()[i].marched) places.push_back(line.film(double(i)));
+    return places;
+}
+
 }  // namespace mote::screenspace

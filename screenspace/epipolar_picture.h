@@ -34,6 +34,8 @@ class EpipolarPicture {
     const EpipolarLines& lines() const { return lines_; }
     std::span<const SampledLine> sampled() const { return sampled_; }
     PictureCounts counts() const;
+    /// Where rays were marched.
+    std::vector<Vec2d> marched_at() const;
 
   private:
     struct Tap {

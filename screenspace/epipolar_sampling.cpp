@@ -43,7 +43,7 @@ LineSample SampledLine::march(std::int32_t texel, InScatteringTask& task) {
     const RayEnd end = task.end_of(p);
     LineSample sample{texel, end.weight, task.march(p, end)};
     sample.light.radiance /= end.weight;
-    ++marched_;
+    ++marched_, texels_[std::size_t(texel)].marched = true;
     return sample;
 }
 

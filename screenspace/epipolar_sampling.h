@@ -26,10 +26,10 @@ struct LineSampling {
 
 /// 24 bytes.
 struct LineTexel {
-    core::Rgb light{0.0f};                ///< radiance over RayEnd::weight
-    float distance = 0.0f;                ///< RayEnd::distance
-    std::int32_t run = -1;                ///< texels of one run continue each other; -1 where nothing is lit
-    bool surface = false, known = false;  ///< known: light is set; false beyond the cap
+    core::Rgb light{0.0f};  ///< radiance over RayEnd::weight
+    float distance = 0.0f;  ///< RayEnd::distance
+    std::int32_t run = -1;  ///< texels of one run continue each other; -1 where nothing is lit
+    bool surface = false, known = false, marched = false;  ///< known: light is set; false beyond the cap
 };
 
 struct LineSample {

@@ -10,7 +10,10 @@ using namespace core;
 
 InScatteringGrid::InScatteringGrid(const FilmRectangle& frame, double spacing, const Vec2d& shift,
                                    float depth_tolerance, const InScatteringSource& source, const Loop& loop)
-    : origin_(frame.lower + (shift - 1.0) * spacing), spacing_(spacing), depth_tolerance_(depth_tolerance) {
+    : frame_(frame),
+      origin_(frame.lower + (shift - 1.0) * spacing),
+      spacing_(spacing),
+      depth_tolerance_(depth_tolerance) {
     if (!(spacing > 0.0)) throw std::invalid_argument("in-scattering grid: the spacing must be positive");
     columns_ = int(std::floor((frame.upper.x - origin_.x) / spacing)) + 2;
     rows_ = int(std::floor((frame.upper.y - origin_.y) / spacing)) + 2;
@@ -21,10 +24,10 @@ InScatteringGrid::InScatteringGrid(const FilmRectangle& frame, double spacing, c
         for (int column = 0; column < columns_; ++column) {
             Sample& s = samples_[std::size_t(row) * std::size_t(columns_) + std::size_t(column)];
             // The outermost samples may lie outside: their rays are those of the border.
-            const Vec2d film = glm::clamp(origin_ + spacing_ * Vec2d(column, row), frame.lower, frame.upper);
-            s.ray = task->ray(film), s.end = task->end_of(film), s.light = Rgb(0.0f);
+            const Vec2d at = film(column, row);
+            s.ray = task->ray(at), s.end = task->end_of(at), s.light = Rgb(0.0f);
             if (s.end.dark()) continue;
-            s.light = task->march(film, s.end).radiance / s.end.weight;
+            s.light = task->march(at, s.end).radiance / s.end.weight;
             ++marched[std::size_t(row)];
         }
     });
@@ -54,6 +57,15 @@ std::optional<Rgb> InScatteringGrid::light_at(const Vec2d& film, const RayEnd& e
     const Vec2d cell = (film - origin_) / spacing_;
     if (const auto light = weighted(cell, end, 1)) return light;
     return weighted(cell, end, 2);
+}
+
+std::vector<Vec2d> InScatteringGrid::marched_at() const {
+    std::vector<Vec2d> places;
+    for (int row = 0; row < rows_; ++row)
+        for (int column = 0; column < columns_; ++column)
+            if (!samples_[std::size_t(row) * std::size_t(columns_) + std::size_t(column)].end.dark())
+                places.push_back(film(column, row));
+    return places;
 }
 
 }  // namespace mote::screenspace

@@ -27,6 +27,8 @@ class InScatteringGrid {
     std::optional<core::Rgb> light_at(const Vec2d& film, const RayEnd& end) const;
 
     std::uint64_t marched() const { return marched_; }
+    /// Where rays were marched.
+    std::vector<Vec2d> marched_at() const;
     std::size_t memory_bytes() const { return samples_.capacity() * sizeof(Sample); }
 
   private:
@@ -35,8 +37,12 @@ class InScatteringGrid {
         RayEnd end;
         core::Rgb light;  ///< radiance over end.weight
     };
+    Vec2d film(int column, int row) const {
+        return glm::clamp(origin_ + spacing_ * Vec2d(column, row), frame_.lower, frame_.upper);
+    }
     std::optional<core::Rgb> weighted(const Vec2d& cell, const RayEnd& end, int reach) const;
 
+    FilmRectangle frame_;
     Vec2d origin_;
     double spacing_;
     float depth_tolerance_;
