@@ -10,11 +10,15 @@ namespace {
 
 const std::string scenes = MOTE_SOURCE_DIR "/scenes/";
 
+void run_tool(const std::string& tool, const std::string& options, const std::string& output) {
+    const std::string command =
+        "\"" MOTE_BINARY_DIR "/" + tool + "\" " + options + " -o \"" + output + "\" >/dev/null 2>&1";
+    REQUIRE(std::system(command.c_str()) == 0);
+}
+
 /// Small grids of smoke and cloud, made by the project's own simulation.
 void make_grid(const TemporaryFolder& folder, const std::string& name, const std::string& options) {
-    const std::string command = std::string("\"" MOTE_BINARY_DIR "/mote_smoke\" ") + options + " -o \"" +
-                                folder.file(name) + "\" >/dev/null 2>&1";
-    REQUIRE(std::system(command.c_str()) == 0);
+    run_tool("mote_smoke", options, folder.file(name));
 }
 
 std::string plan_of(const TemporaryFolder& folder, const std::string& scene, const std::string& integrator,
@@ -103,5 +107,31 @@ TEST_CASE("Every scene renders without a sample that is not finite", "[scenes][r
             CHECK(statistics["lookups"]["collisions"] > 0);
             CHECK(statistics["lookups"]["step_limit_fallbacks"] == 0);
         }
+    }
+}
+
+TEST_CASE("The scenes with generated meshes render without a warning or a sample that is not finite",
+          "[scenes][render]") {
+    const TemporaryFolder folder;
+    make_grid(folder, "clouds.vdb", "--size 24 12 24 --cell 40 --cloud");
+    run_tool("mote_geometry", "sky", folder.path());
+    for (const auto& [scene, mesh, more] :
+         {std::tuple{"atrium", "atrium", std::vector<std::string>{}},
+          {"statue", "rotunda", {"-D", "g=-0.6"}},
+          {"city",
+           "city",
+           {"-D", "clouds=" + folder.file("clouds.vdb"), "-D", "sky=" + folder.file("sky.exr")}}}) {
+        run_tool("mote_geometry", std::string(mesh) + " --detail 0.06", folder.path());
+        std::vector<std::string> options = {"-D", "meshes=" + folder.path()};
+        options.insert(options.end(), more.begin(), more.end());
+        for (const char* integrator : {"volpath", "mote_vpl"}) {
+            const auto statistics = tiny_render(folder, scene + std::string(".xml"), integrator, options);
+            INFO(scene << " " << integrator << " " << statistics.dump());
+            CHECK(statistics["non_finite_samples"] == 0);
+            CHECK(statistics["lookups"]["step_limit_fallbacks"] == 0);
+        }
+        // A mesh that had to be repaired would be a note of the plan.
+        CHECK(plan_of(folder, scene + std::string(".xml"), "volpath", options).find("dropped") ==
+              std::string::npos);
     }
 }

@@ -35,7 +35,7 @@ void add_perimeter(Parts& parts, const Vec3& middle, Rng& rng) {
             };
             const Vec3 p = turned(corners[0]), q = turned(corners[1]);
             const Vec3 lower = glm::min(p, q), upper = glm::max(p, q) + Vec3(0.0f, height, 0.0f);
-            const Style style{walls[int(5.0f * rng.next_float())], 3.3f,  4.0f + 0.7f * rng.next_float(),
+            const Style style{walls[int(5.0f * rng.next_float())], 3.3f,  4.05f + 0.75f * rng.next_float(),
                               0.38f + 0.1f * rng.next_float(),     0.55f, 0.2f};
             add_walls(parts, style, lower, upper);
             if (rng.next_float() < 0.7f) {
@@ -98,7 +98,7 @@ Trees make_trees(Rng& rng) {
     Trees trees;
     for (Parts& tree : trees) {
         tree["bark"].lathe({}, {{0.22f, -0.1f}, {0.15f, 1.2f}, {0.1f, 3.4f}, {0.0f, 3.5f}}, 6);
-        tree["leaves"].add(make_bush(1.9f, 5.0f, 50, rng), {{0.0f, 1.9f, 0.0f}});
+        tree["leaves"].add(make_bush(1.9f, 5.0f, 44, rng), {{0.0f, 1.9f, 0.0f}});
     }
     return trees;
 }

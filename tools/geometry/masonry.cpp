@@ -57,7 +57,7 @@ Soup make_column(const Column& c, float detail) {
     soup.lathe({}, collar, around);
     // The bell: leaves curl out of it in two rows.
     const float rim = c.height - 0.17f * c.abacus;
-    soup.lathe({}, segments(8, detail, 3), segments(24, detail, 8), [&](float t, float angle) {
+    soup.lathe({}, segments(8, detail, 3), segments(22, detail, 8), [&](float t, float angle) {
         const float flare = t * t * (3.0f - 2.0f * t);
         const float curl = 0.09f * r * std::fabs(std::cos(4.0f * angle + (t < 0.5f ? 0.0f : 0.5f * pi))) *
                            std::sin(2.0f * pi * std::fmod(t, 0.5f));
@@ -146,7 +146,7 @@ Soup make_baluster(float height, float detail) {
     Soup soup;
     soup.box({-0.07f, 0.0f, -0.07f}, {0.07f, 0.05f, 0.07f});
     soup.box({-0.07f, height - 0.05f, -0.07f}, {0.07f, height, 0.07f});
-    soup.lathe({}, segments(9, detail, 3), segments(8, detail, 3), [&](float t, float) {
+    soup.lathe({}, segments(8, detail, 3), segments(7, detail, 3), [&](float t, float) {
         const float belly = std::exp(-core::sqr((t - 0.3f) / 0.17f)),
                     rings = std::exp(-core::sqr((t - 0.8f) / 0.05f));
         return Vec2(0.024f + 0.042f * belly + 0.022f * rings, lerp(0.05f, height - 0.05f, t));

@@ -8,7 +8,7 @@ float pot_soil() { return 0.68f; }
 
 Soup make_pot(float detail) {
     Soup soup;
-    const int curve = segments(12, detail, 4), around = segments(28, detail, 6);
+    const int curve = segments(12, detail, 4), around = segments(24, detail, 6);
     std::vector<Vec2> profile{{0.0f, 0.0f}, {0.24f, 0.0f}, {0.26f, 0.05f}, {0.22f, 0.08f}};
     for (int i = 0; i <= curve; ++i) {
         const float t = float(i) / float(curve);
