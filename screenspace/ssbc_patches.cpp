@@ -3,7 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <optional>
+#include <utility>
 
 #include "core/math/frame.h"
 #include "screenspace/ssbc_upsampling.h"
@@ -41,25 +41,27 @@ class Neighbourhood {
         return takes_part(dx, dy) && same_surface(s_, here_, index(x_ + dx, y_ + dy), sine_) > 0.0f;
     }
 
-    /// How far the point of the surface moves with one pixel [m], from a neighbour on the same surface.
-    std::optional<Vec3> step(int dx, int dy) const {
+    /// How far the point of the surface moves with one pixel [m], from neighbours on the same surface; zero
+    /// where there are none. The nearer of two: where the surface runs to the horizon the other is anywhere.
+    Vec3 step(int dx, int dy) const {
         const Vec3 &p = s_.position[here_], &n = s_.normal[here_];
-        Vec3 d(0.0f);
-        if (continues(dx, dy))
-            d = s_.position[index(x_ + dx, y_ + dy)] - p;
-        else if (continues(-dx, -dy))
-            d = p - s_.position[index(x_ - dx, y_ - dy)];
-        d -= n * glm::dot(n, d);
-        return is_black(d) ? std::nullopt : std::optional<Vec3>(d);
+        Vec3 forward(0.0f), back(0.0f);
+        if (continues(dx, dy)) forward = s_.position[index(x_ + dx, y_ + dy)] - p;
+        if (continues(-dx, -dy)) back = p - s_.position[index(x_ - dx, y_ - dy)];
+        forward -= n * glm::dot(n, forward), back -= n * glm::dot(n, back);
+        const float f = glm::dot(forward, forward), b = glm::dot(back, back);
+        return b == 0.0f || (f > 0.0f && f < b) ? forward : back;
     }
-    /// Both steps; what has no neighbour to tell makes the patch a rectangle of the right area.
+    /// Both steps; what has no neighbour to tell makes the patch a rectangle of the right area, but no strip
+    /// that is longer than those at a slant of 80 degrees.
     std::pair<Vec3, Vec3> steps() const {
         const Vec3& n = s_.normal[here_];
         const float area = s_.area[here_];
-        const auto x = step(1, 0), y = step(0, 1);
-        if (x && y) return {*x, *y};
-        if (x) return {*x, glm::cross(n, *x) * (area / glm::dot(*x, *x))};
-        if (y) return {glm::cross(*y, n) * (area / glm::dot(*y, *y)), *y};
+        const Vec3 x = step(1, 0), y = step(0, 1);
+        const float xx = glm::dot(x, x), yy = glm::dot(y, y);
+        if (xx > 0.0f && yy > 0.0f) return {x, y};
+        if (xx > 0.0f) return {x, glm::cross(n, x) * std::min(area / xx, 6.0f)};
+        if (yy > 0.0f) return {glm::cross(y, n) * std::min(area / yy, 6.0f), y};
         const Frame frame(n);
         return {frame.s * std::sqrt(area), frame.t * std::sqrt(area)};
     }

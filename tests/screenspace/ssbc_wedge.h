@@ -1,7 +1,9 @@
-// Two half planes that meet at a right angle, lit evenly: exact compensation by quadrature, without the library.
+// Two half planes that meet at a right angle, lit evenly: exact compensation by quadrature, without the
+// library.
 //
-// Along the edge nothing changes, so light is a function of the distance x to the edge, the same on both planes.
-// With s = x^2 + z^2 the residual over a line parallel to the edge, at distance z on the other plane, is
+// Along the edge nothing changes, so light is a function of the distance x to the edge, the same on both
+// planes. With s = x^2 + z^2 the residual over a line parallel to the edge, at distance z on the other plane,
+// is
 //   K(x, z) = int max(x z / (s + y^2)^2 - b, 0) dy
 //           = x z (Y / (s (s + Y^2)) + atan(Y / sqrt(s)) / s^(3/2)) - 2 b Y,      Y^2 = sqrt(x z / b) - s
 // and 0 where Y^2 < 0. One step is (T_r L)(x) = rho / pi int K(x, z) L(z) dz.
@@ -34,6 +36,12 @@ class WedgeLight {
         return result;
     }
 
+    WedgeLight operator+(const WedgeLight& other) const {
+        WedgeLight sum = *this;
+        for (std::size_t i = 0; i < values_.size(); ++i) sum.values_[i] += other.values_[i];
+        return sum;
+    }
+
   private:
     static constexpr int points = 200;
 
@@ -50,7 +58,7 @@ class WedgeLight {
         double sum = 0.0;
         for (int i = 0; i < n; ++i) {
             const double phi = (i + 0.5) * step, z = x * std::tan(phi), c = std::cos(phi);
-            if (const double k = kernel(x, z, b); k > 0.0) sum += k * (*this)(z) * x / (c * c);
+            if (const double k = kernel(x, z, b); k > 0.0) sum += k * (*this)(z)*x / (c * c);
         }
         return sum * step;
     }
