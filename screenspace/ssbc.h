@@ -21,7 +21,7 @@ namespace mote::screenspace {
 
 struct SsbcSettings {
     float bound = 0.0f;  ///< b [1/m^2] that the picture was rendered with; 0: with no indirect light at all
-    int steps = 2;  ///< how often T_r is applied, at least once
+    int steps = 2;       ///< how often T_r is applied, at least once
 
     bool hierarchical = true;  ///< false: sum over all pixels, for reference; quadratic in their number
     RefinementRules refinement{};
