@@ -23,120 +23,6 @@ namespace mote::integrators {
 using namespace core;
 namespace {
 
-template <bool Media>
-class VplEstimator final : public Estimator {
-  public:
-    VplEstimator(const Scene& scene, const RenderOptions& options, const VplSettings& settings)
-        : scene_(scene),
-          options_(options),
-          settings_(settings),
-          bound_(settings.bound_for(scene.rays().bounds())) {
-        if (settings_.compensation.enabled && std::isfinite(bound_))
-            transport_.emplace(scene, bound_, settings_.compensation);
-        if (settings_.visibility.used_in(scene)) maps_.emplace(scene, settings_.visibility);
-    }
-
-    bool pass(const PassContext& context, PassImage& image) override {
-        if (context.cancelled) return false;
-        const lights::VplSet vpls = lights::trace_light_paths(scene_, settings_.light_paths(), options_.seed,
-                                                              context.index, options_.sampler);
-        counters_.add(vpls.rays, vpls.tracking);
-        vpls_ += vpls.lights.size(), paths_ += vpls.paths;
-        bytes_ = std::max(bytes_, vpls.memory_bytes());
-        const int columns = (options_.width + tile_size - 1) / tile_size;
-        const int rows = (options_.height + tile_size - 1) / tile_size;
-        std::vector<lights::ReceiverStore> stores(maps_ ? std::size_t(columns) * std::size_t(rows) : 0);
-        const auto tile = [&](int x0, int y0, int x1, int y1) {
-            const std::size_t index = std::size_t(y0 / tile_size * columns + x0 / tile_size);
-            render_tile(context, image, vpls, maps_ ? &stores[index] : nullptr, x0, y0, x1, y1);
-        };
-        if (!for_each_tile(options_.width, options_.height, tile_size, context.cancelled, tile)) return false;
-        return !maps_ || maps_->add_light(vpls, bound_, stores, context.cancelled, image);
-    }
-
-    void add_statistics(Statistics& statistics) const override {
-        counters_.report(statistics, Media);
-        statistics.values["vpls"] += double(vpls_);
-        statistics.values["light_paths"] += double(paths_);
-        statistics.values["vpl_bytes_peak"] = double(bytes_);
-        if (std::isfinite(bound_)) statistics.values["bound"] = bound_;
-        if (maps_) maps_->add_statistics(statistics);
-        if (!transport_) return;
-        statistics.values["compensation_vertices"] += double(cost_.vertices);
-        statistics.values["compensation_thread_seconds"] += cost_.seconds;
-        statistics.values["compensation_bytes"] = double(transport_->memory_bytes());
-    }
-
-  private:
-    static constexpr int tile_size = 16;
-
-    void render_tile(const PassContext& context, PassImage& image, const lights::VplSet& vpls,
-                     lights::ReceiverStore* store, int x0, int y0, int x1, int y1) {
-        WalkContext walk;
-        const auto scratch = std::make_unique<lights::GatherScratch>();
-        const auto tile = std::make_unique<EyeTile<Media>>(
-            scene_, settings_, bound_, vpls, transport_ ? &*transport_ : nullptr, *scratch, walk,
-            EyeShadowMaps{maps_ ? maps_->of_lights() : nullptr, store});
-        constexpr int side = EyeTile<Media>::side;
-        for (int y = y0; y < y1; y += side)
-            for (int x = x0; x < x1; x += side) {
-                if (context.cancelled) return;  // a tile of many VPLs takes long
-                render_lanes(context, image, *tile, x, y, x1, y1);
-            }
-        counters_.add(walk.rays, walk.tracking);
-        const std::lock_guard lock(cost_mutex_);
-        cost_.vertices += tile->compensation_cost().vertices;
-        cost_.seconds += tile->compensation_cost().seconds;
-    }
-
-    void render_lanes(const PassContext& context, PassImage& image, EyeTile<Media>& tile, int x0, int y0,
-                      int x1, int y1) const {
-        constexpr int side = EyeTile<Media>::side;
-        std::array<VplPixel, side * side> sums;
-        const auto samples = std::uint32_t(settings_.eye_samples);
-        tile.place(x0, y0, 1.0f / float(samples));
-        for (std::uint32_t sample = 0; sample < samples; ++sample) {
-            const PassContext eye{context.index * samples + sample, context.filter, context.cancelled};
-            for (int lane = 0; lane < side * side; ++lane) {
-                const int x = x0 + lane % side, y = y0 + lane / side;
-                if (x < x1 && y < y1)
-                    tile.start(lane, make_eye_ray(scene_, options_, eye, x, y), scene_.camera_medium_state());
-                else
-                    tile.stop(lane);
-            }
-            if (settings_.vpls_shared_out())
-                tile.run({sample, samples}, float(samples));
-            else
-                tile.run({}, 1.0f);
-            for (int lane = 0; lane < side * side; ++lane)
-                sums[std::size_t(lane)].add(tile.sum(lane), 1.0f / float(samples));
-        }
-        for (int lane = 0; lane < side * side; ++lane) {
-            const int x = x0 + lane % side, y = y0 + lane / side;
-            if (x < x1 && y < y1) store_pixel(sums[std::size_t(lane)], image, x, y);
-        }
-    }
-
-    void store_pixel(const VplPixel& pixel, PassImage& image, int x, int y) const {
-        store(pixel.transport, image, x, y, Media);
-        if (!settings_.compensation.enabled) return;
-        const std::size_t first = transport_layers(Media, true).size();
-        for (std::size_t i = 0; i < (Media ? 2u : 1u); ++i) image.at(first + i, x, y) = pixel.compensation[i];
-    }
-
-    const Scene& scene_;
-    RenderOptions options_;
-    VplSettings settings_;
-    float bound_;
-    std::optional<compensation::ResidualTransport> transport_;  ///< nothing: no compensation
-    std::optional<VplShadowMaps> maps_;                         ///< nothing: visibility is traced
-    SharedCounters counters_;
-    std::mutex cost_mutex_;
-    CompensationCost cost_;
-    std::uint64_t vpls_ = 0, paths_ = 0;
-    std::size_t bytes_ = 0;
-};
-
 class MoteVpl final : public Integrator {
   public:
     explicit MoteVpl(const Properties& properties) {
@@ -162,7 +48,7 @@ class MoteVpl final : public Integrator {
     std::string type() const override { return "mote_vpl"; }
     std::vector<Layer> layers(const Scene& scene) const override {
         auto layers = transport_layers(scene.has_media(), settings_.bounded);
-        if (!settings_.compensation.enabled) return layers;
+        if (!settings_.compensates()) return layers;
         layers.push_back(
             {"compensation_surface", "what the bound took from light first scattered by a surface"});
         if (scene.has_media())
@@ -172,8 +58,7 @@ class MoteVpl final : public Integrator {
     }
     Plan plan(const Scene& scene, const Requirements& requirements) const override;
     std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
-        if (scene.has_media()) return std::make_unique<VplEstimator<true>>(scene, options, settings_);
-        return std::make_unique<VplEstimator<false>>(scene, options, settings_);
+        return make_vpl_estimator(scene, options, settings_);
     }
 
   private:
@@ -183,9 +68,12 @@ class MoteVpl final : public Integrator {
 };
 
 void MoteVpl::read_compensation(const Properties& properties) {
-    if (const auto nested = properties.child_of<compensation::Compensation>(Category::compensation))
-        settings_.compensation = nested->settings();
-    if (settings_.compensation.enabled && !settings_.bounded)
+    const auto nested = properties.child_of<Object>(Category::compensation);
+    if (const auto inside = std::dynamic_pointer_cast<compensation::Compensation>(nested))
+        settings_.compensation = inside->settings();
+    if (const auto after = std::dynamic_pointer_cast<ScreenSpaceCompensation>(nested))
+        settings_.screen_space = after->settings(), settings_.compensation = after->media();
+    if (settings_.compensates() && !settings_.bounded)
         throw InputError("compensation brings back what a bound takes: it needs bounded=true",
                          properties.where_of("bounded"));
     const bool one_to_one = settings_.compensation.enabled && settings_.vpls_shared_out();
@@ -226,9 +114,10 @@ Plan MoteVpl::plan(const Scene& scene, const Requirements& r) const {
     plan_media(plan, r);
     if (r.any_media())
         plan.run("eye rays", "one distance by tracking per pixel and pass", "Engelhardt 2013, Eq. 10.9");
-    if (settings_.bounded && !settings_.compensation.enabled)
+    if (settings_.bounded && !settings_.compensates())
         plan.miss("short distances", "light between points closer than the bound's radius is darkened",
                   "the bound removes it; <compensation> brings it back");
+    if (settings_.screen_space) plan_screen_space(plan, r, *settings_.screen_space);
     if (settings_.compensation.enabled)
         plan_compensation(plan, scene, r, settings_.compensation, settings_.bound_for(scene.rays().bounds()));
     if (settings_.bounded)
