@@ -152,10 +152,10 @@ void add_streets(Parts& parts, const Trees& trees, const Vec3& middle, Rng& rng)
     }
 }
 
-void add_block(Parts& parts, const Trees& trees, const Vec3& middle, Rng& rng) {
+/// `far`: from the middle of the towers, in blocks of a town of eleven.
+void add_block(Parts& parts, const Trees& trees, const Vec3& middle, float far, Rng& rng) {
     add_streets(parts, trees, middle, rng);
-    const float far = glm::length(Vec2(middle.x + 60.0f, middle.z - 30.0f)) / pitch,
-                chance = rng.next_float();
+    const float chance = rng.next_float();
     const float height = lerp(175.0f, 50.0f, std::min(1.0f, far / 3.6f)) * (0.75f + 0.4f * rng.next_float());
     if (far > 0.8f && chance < 0.08f) return add_park(parts, trees, middle, rng);
     if (chance > 0.95f - 0.32f * std::exp(-0.4f * far))
@@ -179,7 +179,14 @@ Parts make_city(float detail, std::uint64_t seed) {
             const Vec3 middle(pitch * (float(i) - 0.5f * float(blocks - 1)), 0.0f,
                               pitch * (float(k) - 0.5f * float(blocks - 1)));
             Rng rng(core::hash_keys(seed, i - blocks / 2, k - blocks / 2));
-            add_block(parts, trees, middle, rng);
+            if (i == blocks - 1 - blocks / 4 && k == blocks - 1 - blocks / 5) {  // every town has a park
+                add_streets(parts, trees, middle, rng);
+                add_park(parts, trees, middle, rng);
+                continue;
+            }
+            const float shrunk = 11.0f / float(blocks);
+            const Vec2 from_towers = shrunk * Vec2(middle.x, middle.z) / pitch + Vec2(1.0f, -0.5f);
+            add_block(parts, trees, middle, glm::length(from_towers), rng);
         }
     const float half = 0.5f * pitch * float(blocks) + 60.0f;
     parts["asphalt"].box({-half, -1.0f, -half}, {half, 0.0f, half});
