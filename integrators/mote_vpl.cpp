@@ -10,13 +10,10 @@
 // around VPLs together with the light that travels short distances; unbounded, the mean is right but its
 // variance is infinite. Paths that cross a delta surface between the VPL and the receiver cannot be connected
 // and are missing.
-#include <atomic>
-
 #include "integrators/path_estimator.h"
 #include "integrators/plan_compensation.h"
 #include "integrators/register_parts.h"
-#include "integrators/vpl_eye_tile.h"
-#include "integrators/vpl_shadow_maps.h"
+#include "integrators/vpl_estimator.h"
 
 namespace mote::integrators {
 

@@ -2,12 +2,14 @@
 
 #include "compensation/compensation_settings.h"
 #include "integrators/register_parts.h"
+#include "integrators/screen_space_compensation.h"
 #include "integrators/vpl_visibility.h"
 
 namespace mote::integrators {
 
 void register_integrators(core::Registry& registry) {
     compensation::register_compensation(registry);
+    register_screen_space_compensation(registry);
     register_visibility(registry);
     register_path(registry);
     register_volpath(registry);
