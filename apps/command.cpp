@@ -9,6 +9,7 @@
 #include <functional>
 #include <new>
 
+#include "apps/ssbc_command.h"
 #include "apps/subcommands.h"
 #include "apps/trade/trade_command.h"
 #include "core/scene/error.h"
@@ -125,6 +126,9 @@ int parse_and_run(int argc, char** argv) {
 
     CompareArguments compare;
     add_compare(app, compare, action);
+
+    SsbcArguments ssbc;
+    add_ssbc(app, ssbc, action);
 
     ExportArguments export_arguments;
     add_export(app, export_arguments, action);

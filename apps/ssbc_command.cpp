@@ -1,0 +1,155 @@
+// mote ssbc: screen-space bias compensation of a finished picture.
+#include "apps/ssbc_command.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+
+#include "apps/command.h"
+#include "core/image/image_file.h"
+#include "core/scene/error.h"
+#include "core/scene/scene.h"
+#include "screenspace/g_buffer.h"
+
+namespace mote::apps {
+
+namespace {
+
+using core::ImageChannels, core::InputError, core::Rgb;
+using screenspace::SsbcPicture, screenspace::SsbcResult;
+
+const char* const added_layer = "compensation_surface";
+
+float bound_of(const ImageChannels& image, const SsbcArguments& a) {
+    if (a.bound > 0.0f) return a.bound;
+    if (const auto entry = image.metadata.find("bound"); entry != image.metadata.end()) {
+        const float bound = std::strtof(entry->second.c_str(), nullptr);
+        if (bound > 0.0f && std::isfinite(bound)) return bound;
+    }
+    throw InputError("the picture does not say with which bound it was rendered: give --bound", {a.input, 0});
+}
+
+SsbcPicture read(const ImageChannels& image, const SsbcArguments& a) {
+    if (image.find(std::string(added_layer) + ".R"))
+        throw InputError(std::string("the picture holds a layer '") + added_layer + "' already",
+                         {a.input, 0});
+    try {
+        if (a.scene.scene.empty()) return read_ssbc_picture(image, a.channels);
+        SsbcPicture picture = read_light(image, a.channels);
+        const core::Registry registry = make_registry();
+        const auto scene = load(a.scene, registry);
+        if (scene->film().width != image.width || scene->film().height != image.height)
+            throw InputError(fmt::format("the scene's film has {} x {} pixels, the picture {} x {}",
+                                         scene->film().width, scene->film().height, image.width,
+                                         image.height));
+        picture.surfaces = ssbc_surfaces(screenspace::make_g_buffer(*scene, image.width, image.height));
+        return picture;
+    } catch (const InputError& error) {
+        if (!error.where().file.empty()) throw;
+        throw InputError(error.what(), {a.input, 0});
+    }
+}
+
+/// Adds the compensation to the beauty, and as a layer.
+void add_to(ImageChannels& image, const std::vector<Rgb>& compensation) {
+    for (int c = 0; c < 3; ++c)
+        for (std::size_t k = 0; k < image.names.size(); ++k)
+            if (image.names[k] == std::string(1, "RGB"[c]))
+                for (std::size_t i = 0; i < compensation.size(); ++i)
+                    image.channels[k][i] += compensation[i][c];
+    image.add_rgb(added_layer, compensation);
+}
+
+Rgb mean(std::span<const Rgb> pixels) {
+    core::Vec3d sum(0.0);
+    for (const Rgb& p : pixels) sum += core::Vec3d(p);
+    return Rgb(sum / double(pixels.size()));
+}
+
+void report(const SsbcPicture& picture, const SsbcResult& result, float bound, double seconds) {
+    const auto& counts = result.counts;
+    const auto triple = [](const Rgb& c) { return fmt::format("{:.5g} {:.5g} {:.5g}", c.x, c.y, c.z); };
+    const double receivers = std::max(1.0, double(counts.receivers));
+    std::string text =
+        fmt::format("light      {}, mean {}\n", picture.light_from, triple(mean(picture.light)));
+    text += fmt::format("added      mean {}\n", triple(mean(result.compensation)));
+    text += fmt::format("bound      {:.6g} /m^2, radius {:.6g} m\n", bound, 1.0f / std::sqrt(bound));
+    text += fmt::format("gathered   {} times, {:.1f} samples each, {:.3f} s\n", counts.receivers,
+                        double(counts.samples) / receivers, seconds);
+    std::fputs(text.c_str(), stdout);
+    if (result.non_finite > 0)
+        std::fprintf(stderr, "mote: warning: the light of %llu pixels is not finite; they send none\n",
+                     static_cast<unsigned long long>(result.non_finite));
+    if (counts.receivers == 0)
+        std::fputs("mote: warning: no pixel shows a surface with diffuse reflectance\n", stderr);
+}
+
+int ssbc_command(const SsbcArguments& a) {
+    ImageChannels image = core::read_exr(a.input);
+    const float bound = bound_of(image, a);
+    const SsbcPicture picture = read(image, a);
+    screenspace::SsbcSettings settings = a.settings;
+    settings.bound = bound, settings.hierarchical = !a.flat;
+    const auto begin = std::chrono::steady_clock::now();
+    const SsbcResult result = compensate(picture.surfaces, picture.light, settings);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    add_to(image, result.compensation);
+    image.metadata["ssbc"] = fmt::format("bound {:.9g}, steps {}", bound, settings.steps);
+    core::write_exr(a.output, image, a.half);
+    report(picture, result, bound, seconds);
+    return exit_ok;
+}
+
+}  // namespace
+
+void add_ssbc(CLI::App& app, SsbcArguments& a, std::function<int()>& action) {
+    CLI::App& command = *app.add_subcommand(
+        "ssbc", "Add what a bound on the geometry term took from a picture, found in the picture itself");
+    auto& s = a.settings;
+    command.add_option("IN", a.input, "An EXR with positions, normals, reflectance and worldToCamera")
+        ->required();
+    command.add_option("-o,--output", a.output, "The EXR file to write")->required();
+    command.add_option("--bound", a.bound, "The bound in 1/m^2 (default: as the picture says)")
+        ->check(CLI::PositiveNumber);
+    command.add_option("--steps", s.steps, "How often light is carried on (default: 2)")
+        ->check(CLI::Range(1, 100));
+    command.add_option("--scene", a.scene.scene,
+                       "Take surfaces and camera from this scene, not from channels");
+    command.add_option("-D,--define", a.scene.defines, "Set a $parameter of that scene (repeatable)")
+        ->type_name("NAME=VALUE")
+        ->expected(1)
+        ->allow_extra_args(false)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    command
+        .add_option("--light", a.channels.light,
+                    "A layer of reflected light (repeatable; default: see the guide)")
+        ->expected(1)
+        ->allow_extra_args(false)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    command.add_option("--position", a.channels.position, "The layer of positions (default: P)");
+    command.add_option("--normal", a.channels.normal, "The layer of normals (default: N)");
+    command.add_option("--albedo", a.channels.reflectance,
+                       "The layer of diffuse reflectance (default: Albedo)");
+    command.add_option("--levels", s.refinement.levels, "Levels of the pyramid that are summed (default: 6)")
+        ->check(CLI::Range(1, 32));
+    command
+        .add_option("--angle", s.refinement.projected_angle,
+                    "Refine what appears larger, in sr (default: 0.08)")
+        ->check(CLI::NonNegativeNumber);
+    command
+        .add_option("--discontinuity-angle", s.refinement.discontinuity_projected_angle,
+                    "The same where surfaces meet (default: 0.04)")
+        ->check(CLI::NonNegativeNumber);
+    command.add_flag("--flat", a.flat, "Sum over all pixels: exact, and slow");
+    command.add_flag("--half-resolution", s.half_resolution, "Gather at one pixel of four");
+    command
+        .add_option("--blur", s.blur,
+                    "Standard deviation of an edge-preserving blur, in pixels (default: none)")
+        ->check(CLI::Range(0.0, 100.0));
+    command.add_flag("--half", a.half, "Write float16 instead of float32");
+    command.callback([&a, &action] { action = [&a] { return ssbc_command(a); }; });
+}
+
+}  // namespace mote::apps
