@@ -121,7 +121,7 @@ TEST_CASE("The scenes with generated meshes render without a warning or a sample
           {"city",
            "city",
            {"-D", "clouds=" + folder.file("clouds.vdb"), "-D", "sky=" + folder.file("sky.exr")}}}) {
-        run_tool("mote_geometry", std::string(mesh) + " --detail 0.2", folder.path());
+        run_tool("mote_geometry", std::string(mesh) + " --detail 0.1", folder.path());
         std::vector<std::string> options = {"-D", "meshes=" + folder.path()};
         options.insert(options.end(), more.begin(), more.end());
         for (const char* integrator : {"volpath", "mote_vpl"}) {

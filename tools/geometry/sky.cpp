@@ -16,9 +16,9 @@ Rgb sky_radiance(const Sky& sky, const Vec3& d) {
     const float towards = std::fmax(glm::dot(d, sun), 0.0f);
     const Rgb zenith(0.10f, 0.22f, 0.56f), horizon(0.92f, 0.76f, 0.62f), ground(0.24f, 0.23f, 0.22f);
     const Rgb warm =
-        Rgb(1.5f, 0.95f, 0.5f) * std::pow(towards, 6.0f) + Rgb(9.0f, 6.5f, 4.0f) * std::pow(towards, 120.0f);
+        Rgb(1.0f, 0.66f, 0.36f) * std::pow(towards, 6.0f) + Rgb(9.0f, 6.5f, 4.0f) * std::pow(towards, 120.0f);
     if (d.y < 0.0f) return glm::mix(horizon, ground, std::fmin(1.0f, -3.0f * d.y));
-    const float rise = std::pow(d.y, 0.5f);
+    const float rise = std::pow(d.y, 0.36f);
     return glm::mix(horizon, zenith, rise) + warm * (1.0f - 0.6f * rise);
 }
 
