@@ -88,7 +88,7 @@ TEST_CASE("shadow maps leave the light of VPLs as it is: smoke, glossy walls", "
 
 TEST_CASE("maps of the lights leave single scattering as it is", "[vpl][shadow_map]") {
     const std::string lights[] = {
-        R"(<emitter type="point"><point name="position" x="0.4" y="0.5" z="0.6"/></emitter>)",
+        R"(<emitter type="point"><point name="position" x="0.4" y="0.5" z="1.6"/></emitter>)",
         R"(<emitter type="spot"><rgb name="intensity" value="6"/><float name="cutoff_angle" value="35"/>
             <transform name="to_world"><lookat origin="0.2, 1, 3.5" target="0, -0.5, 0" up="0, 1, 0"/></transform></emitter>)",
         R"(<emitter type="directional"><vector name="direction" x="-0.3" y="-0.5" z="-1"/></emitter>)"};
