@@ -134,7 +134,7 @@ def main(script, documentation, figure):
     try:
         mote = Mote(options, name + ("_quick" if options.quick else ""))
         subprocess.run([ROOT / "scenes" / "generate", options.bin], stdout=subprocess.DEVNULL, check=True)
-    except FileNotFoundError as error:
+    except (FileNotFoundError, subprocess.CalledProcessError) as error:
         print(error, file=sys.stderr)
         return 2
     begin = time.monotonic()
