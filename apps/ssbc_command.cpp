@@ -96,6 +96,8 @@ int ssbc_command(const SsbcArguments& a) {
     const SsbcResult result = compensate(picture.surfaces, picture.light, settings);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     add_to(image, result.compensation);
+    for (const char* written_anyway : {"pixelAspectRatio", "screenWindowWidth"})
+        image.metadata.erase(written_anyway);
     image.metadata["ssbc"] = fmt::format("bound {:.9g}, steps {}", bound, settings.steps);
     core::write_exr(a.output, image, a.half);
     report(picture, result, bound, seconds);
