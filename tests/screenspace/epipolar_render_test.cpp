@@ -208,6 +208,27 @@ TEST_CASE("Sweeping the light past the frame and behind the camera makes no jump
     }
 }
 
+TEST_CASE("A spot light with a texture sends shafts of its pattern", "[epipolar]") {
+    std::string xml = block_in_fog({0.0, 0.0, 0.0});
+    const auto begin = xml.find("<emitter"), end = xml.find("</emitter>") + 10;
+    xml.replace(begin, end - begin, R"(<emitter type="spot"><float name="cutoff_angle" value="25"/>
+        <float name="beam_width" value="25"/><rgb name="intensity" value="5"/>
+        <transform name="to_world"><lookat origin="2.5, 0.5, -1" target="0, 0, 0.5" up="0, 1, 0"/></transform>
+        <texture name="texture" type="checkerboard"><rgb name="color0" value="0"/><rgb name="color1" value="1, 0.5, 0.2"/>
+        <transform name="to_uv"><scale x="4" y="4" z="1"/></transform></texture></emitter>)");
+    const auto scene = sized(xml, 96, 64);
+    const Picture reference = render(*scene, full);
+    CHECK(reference.mean() > 0.0);
+    const Picture lines = render(*scene, epipolar(160, 8)), dark = render(*scene, epipolar(3, 8));
+    const double error = relative_error(lines, reference);
+    INFO(error << ", with three lines " << relative_error(dark, reference));
+    CHECK(error < 0.1);
+    CHECK(relative_error(dark, reference) > 2.0 * error);
+    CHECK(lines.statistics.values.at("marched_rays") < 0.4 * reference.statistics.values.at("marched_rays"));
+    // Outside the cone nothing is marched, in either.
+    CHECK(reference.statistics.values.at("marched_rays") < 0.9 * 96 * 64);
+}
+
 TEST_CASE("A light at the camera, on a pixel and on the border", "[epipolar]") {
     const double half = std::tan(25.0 * double(pi) / 180.0);
     for (const Vec3d& light : {Vec3d(0, 0, 4), Vec3d(1e-7, 0, 4), Vec3d(0.001, 0, 4), Vec3d(0, 0, 3),
