@@ -14,7 +14,7 @@ using Storage = lights::ShadowMapSettings::Storage;
 namespace {
 
 /// Building a texel takes as long as tracing so many receivers (docs/media.md).
-constexpr double receivers_per_texel = 4.0;
+constexpr double receivers_per_texel = 5.0;
 
 int int_in(const Properties& p, const std::string& name, int default_value, int lower, int upper) {
     const auto value = p.get_int(name, default_value);
@@ -85,13 +85,14 @@ void plan_visibility(Plan& plan, const Scene& scene, const VisibilitySettings& s
     }
     const bool chromatic = lights::needs_chromatic_maps(scene), nodes = s.map.storage == Storage::nodes;
     const double texels = double(s.size) * double(s.size), even = receivers_per_texel * texels;
+    const std::size_t bytes = s.map.bytes(s.size, chromatic);
     plan.run("visibility",
              fmt::format("shadow maps of {}^2 texels, {} {} each, biased", s.size,
                          nodes ? s.map.nodes : s.map.intervals, nodes ? "nodes" : "intervals"),
              "asked for; traced is exact");
     plan.run("memory of shadow maps",
-             fmt::format("{} of {}, whatever the number of VPLs", s.maps,
-                         megabytes(s.map.bytes(s.size, chromatic))),
+             fmt::format("{} of {}, whatever the number of VPLs{}", s.maps, megabytes(bytes),
+                         bytes > s.map.max_bytes ? "; refused: above max_megabytes" : ""),
              fmt::format("receivers take about {} more",
                          megabytes(std::size_t(receivers / 16.0 * sizeof(lights::ReceiverStore::Tile)))));
     plan.run("cost of shadow maps",
@@ -102,8 +103,8 @@ void plan_visibility(Plan& plan, const Scene& scene, const VisibilitySettings& s
                                "or at {}^2",
                                even, int(std::sqrt(receivers / receivers_per_texel))));
     plan_lights(plan, scene, s, chromatic);
-    plan.miss("visibility", "detail finer than the texels of shadow maps",
-              "they interpolate: shadows are blurred, and the mean is biased");
+    plan.miss("detail of shadows", "finer than the texels of shadow maps",
+              "maps interpolate: shadows are blurred, and the mean is biased");
 }
 
 void register_visibility(Registry& registry) {
