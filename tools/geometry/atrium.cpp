@@ -163,7 +163,8 @@ void add_hangings(Parts& parts, float detail, Rng& rng) {
     // Sails over the court: the sun comes in between them.
     for (int i = 0; i < 4; ++i) {
         const float x = -10.4f + 6.6f * float(i);
-        add_sail(parts["cloth_sail"], {x - 1.35f, 10.9f, -5.75f}, {x + 1.35f, 10.9f, 5.75f}, 1.5f, rng, detail);
+        add_sail(parts["cloth_sail"], {x - 1.35f, 10.9f, -5.75f}, {x + 1.35f, 10.9f, 5.75f}, 1.5f, rng,
+                 detail);
     }
 }
 

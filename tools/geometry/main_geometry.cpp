@@ -14,8 +14,10 @@
 #include "tools/geometry/atrium.h"
 #include "tools/geometry/city.h"
 #include "tools/geometry/mesh.h"
+#include "tools/geometry/perforated.h"
 #include "tools/geometry/rotunda.h"
 #include "tools/geometry/sky.h"
+#include "tools/geometry/window.h"
 
 namespace {
 
@@ -31,7 +33,8 @@ struct Options {
 
 using Maker = Parts (*)(float detail, std::uint64_t seed);
 const std::map<std::string, Maker> makers = {
-    {"atrium", make_atrium}, {"city", make_city}, {"rotunda", make_rotunda}};
+    {"atrium", make_atrium},   {"city", make_city},      {"rotunda", make_rotunda}, {"screen", make_screen},
+    {"lantern", make_lantern}, {"tree", make_lone_tree}, {"window", make_window}};
 
 void run(const Options& o) {
     if (!std::filesystem::is_directory(o.folder))
