@@ -73,6 +73,9 @@ std::map<std::string, std::string> picture_metadata(const RenderReport& r) {
         {"worldToCamera", world_to_camera(r.scene.camera())}};
     const double error = relative_standard_error(r.result.film),
                  mean_error = relative_error_of_mean(r.result.film);
+    const auto& values = r.result.statistics.values;
+    if (const auto bound = values.find("bound"); bound != values.end())
+        metadata["bound"] = fmt::format("{:.9g}", bound->second);  // mote ssbc asks for it
     if (std::isfinite(error)) metadata["relativeError"] = fmt::format("{:.6g}", error);
     if (std::isfinite(mean_error)) metadata["meanError"] = fmt::format("{:.6g}", mean_error);
     for (const core::PlanEntry& e : r.plan.missing)
