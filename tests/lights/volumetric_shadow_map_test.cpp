@@ -7,6 +7,7 @@
 #include "core/math/warp.h"
 #include "core/scene/error.h"
 #include "lights/shadow_map_cells.h"
+#include "media/heterogeneous_medium.h"
 #include "tests/integrators/test_scenes.h"
 #include "tests/support/catch.h"
 #include "tests/support/render_statistics.h"
@@ -197,4 +198,59 @@ TEST_CASE("a scene without media gives a plain shadow map", "[shadow_map]") {
     map.build(*scene, ShadowMapView::of_point(Vec3(0.0f, 0.8f, 0.0f), 128), MediumState(), {});
     CHECK(map.transmittance(Vec3(-0.7f, -0.9f, 0.0f)) == Rgb(1.0f));
     CHECK(map.transmittance(Vec3(0.33f, -0.95f, -0.2f)) == Rgb(0.0f));  // below the block
+}
+
+TEST_CASE("walls seen at grazing angles do not shadow themselves, and do not leak", "[shadow_map]") {
+    const auto scene = tests::scene_from(tests::box(tests::grey, ""), 8);
+    const Vec3 light(-0.3f, -0.97f, 0.1f);  // close above the floor: its walls and the floor are all grazed
+    VolumetricShadowMap map;
+    map.build(*scene, ShadowMapView::of_surface(light, Vec3(0, 1, 0), 64), MediumState(), {});
+    Rng rng(7);
+    double lit = 0.0, missing = 0.0, leaked = 0.0, through = 0.0;
+    for (int i = 0; i < 20000; ++i) {
+        const Vec3 eye(1.6f * rng.next_float() - 0.8f, 1.8f * rng.next_float() - 0.9f, 0.8f);
+        const auto hit =
+            scene->rays().closest(Ray{eye, square_to_sphere({rng.next_float(), rng.next_float()})});
+        if (!hit) continue;  // the box is open to the front
+        const Vec3 p = offset_origin(*hit, eye - hit->position), d = p - light;
+        const float cosine = -glm::dot(hit->geometric_normal, d) / glm::length(d);
+        const float weight = std::fabs(cosine) * std::max(d.y, 0.0f) / glm::length(d);
+        const bool seen = !scene->rays().occluded(Ray{p, -d, 0.0f, 0.9999f});
+        const double share = double(map.transmittance(p).x);
+        (seen ? lit : leaked) += double(weight) * (seen ? 1.0 : share);
+        if (!seen) continue;
+        missing += double(weight) * (1.0 - share);
+        // A hand's breadth behind the same wall there is no light.
+        through += double(weight) * double(map.transmittance(p + 0.3f * glm::normalize(d)).x);
+    }
+    INFO("missing " << missing / lit << ", leaked " << leaked / lit << ", through " << through / lit);
+    CHECK(missing < 0.01 * lit);
+    CHECK(leaked < 0.02 * lit);
+    CHECK(through < 0.1 * lit);
+}
+
+TEST_CASE("one march for all intervals is the sum of marches", "[shadow_map]") {
+    const tests::TemporaryFolder folder;
+    const auto scene =
+        tests::scene_from(tests::box(tests::grey, tests::smoke_medium(folder.file("smoke.vol"))), 8);
+    const auto& smoke = dynamic_cast<const media::HeterogeneousMedium&>(*scene->media().front());
+    Rng rng(8);
+    TrackingCounters one, many;
+    std::vector<Vec3d> depths(13);
+    double largest = 0.0;
+    for (int i = 0; i < 300; ++i) {
+        const Vec3 d = square_to_sphere({rng.next_float(), rng.next_float()});
+        const Ray ray{Vec3(0.1f, -0.2f, 0.3f) - 0.7f * d, d, 0.05f, 1.35f};
+        smoke.optical_depths_by_marching(ray, 0.02f, depths, one);
+        Vec3d sum(0.0);
+        for (int k = 0; k < 13; ++k) {
+            const float from = 0.05f + 0.1f * float(k);
+            sum += smoke.optical_depth_by_marching(Ray{ray.origin, d, from, from + 0.1f}, 0.02f, many);
+            REQUIRE(depths[std::size_t(k)].x == Approx(sum.x).epsilon(0.01).margin(0.005));
+            if (k > 0) REQUIRE(depths[std::size_t(k)].x >= depths[std::size_t(k) - 1].x);
+        }
+        largest = std::max(largest, sum.x);
+    }
+    CHECK(largest > 1.0);
+    CHECK(one.lookups > 0);
 }
