@@ -114,10 +114,16 @@ TEST_CASE("The scenes with generated meshes render without a warning or a sample
           "[scenes][render]") {
     const TemporaryFolder folder;
     make_grid(folder, "clouds.vdb", "--size 24 12 24 --cell 40 --cloud");
+    make_grid(folder, "smoke.vdb", "--size 24 24 24 --steps 24");
     run_tool("mote_geometry", "sky", folder.path());
     for (const auto& [scene, mesh, more] :
          {std::tuple{"atrium", "atrium", std::vector<std::string>{}},
           {"statue", "rotunda", {"-D", "g=-0.6"}},
+          {"screen", "screen", {}},
+          {"window", "window", {}},
+          {"tree", "tree", {}},
+          {"lights", "lantern", {}},
+          {"mist", "rotunda", {"-D", "smoke=" + folder.file("smoke.vdb")}},
           {"city",
            "city",
            {"-D", "clouds=" + folder.file("clouds.vdb"), "-D", "sky=" + folder.file("sky.exr")}}}) {

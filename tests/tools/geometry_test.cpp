@@ -13,9 +13,11 @@
 #include "tools/geometry/city.h"
 #include "tools/geometry/masonry.h"
 #include "tools/geometry/mesh.h"
+#include "tools/geometry/perforated.h"
 #include "tools/geometry/plants.h"
 #include "tools/geometry/rotunda.h"
 #include "tools/geometry/sky.h"
+#include "tools/geometry/window.h"
 
 using namespace mote;
 using namespace mote::tools;
@@ -122,9 +124,12 @@ TEST_CASE("Welding closes seams, keeps creases and drops slivers", "[tools][geom
 
 TEST_CASE("Every part of the generated scenes reads back without a repair", "[tools][geometry]") {
     const tests::TemporaryFolder folder;
-    for (const auto& [name, parts] : {std::pair{"atrium", make_atrium(0.3f, 1)},
-                                      {"city", make_city(0.06f, 1)},
-                                      {"rotunda", make_rotunda(0.3f, 1)}})
+    const std::map<std::string, Parts> scenes = {
+        {"atrium", make_atrium(0.3f, 1)},   {"city", make_city(0.06f, 1)},
+        {"rotunda", make_rotunda(0.3f, 1)}, {"screen", make_screen(0.1f, 1)},
+        {"lantern", make_lantern(0.1f, 1)}, {"tree", make_lone_tree(0.05f, 1)},
+        {"window", make_window(0.3f, 1)}};
+    for (const auto& [name, parts] : scenes)
         for (const auto& [part, soup] : parts) {
             INFO(name << " " << part);
             const IndexedMesh mesh = weld(soup);
@@ -145,6 +150,9 @@ TEST_CASE("Every part of the generated scenes reads back without a repair", "[to
 TEST_CASE("The scenes have about as many triangles as the paper's", "[tools][geometry]") {
     CHECK(double(welded_count(make_atrium(1.0f, 1))) == Approx(262000.0).epsilon(0.02));
     CHECK(double(welded_count(make_city(1.0f, 1))) == Approx(823000.0).epsilon(0.02));
+    CHECK(welded_count(make_screen(1.0f, 1)) > 250000);
+    CHECK(welded_count(make_lantern(1.0f, 1)) > 250000);
+    CHECK(welded_count(make_lone_tree(1.0f, 1)) > 250000);
 }
 
 TEST_CASE("The same seed gives the same bytes", "[tools][geometry]") {
@@ -173,6 +181,27 @@ TEST_CASE("Light enters the atrium through its opening only", "[tools][geometry]
     shapes.push_back(std::make_shared<core::TriangleMesh>(
         core::MeshData{mesh.positions, mesh.normals, {}, mesh.triangles}));
     CHECK(escaping_rays(shapes) == 0);
+}
+
+TEST_CASE("A perforated sheet is closed but for its border, with a hole in every cell", "[tools][geometry]") {
+    Soup sheet;
+    add_perforated(sheet, 6, 4, 3,
+                   [](float u, float v, float depth) { return Vec3(6 * u, 4 * v, -0.1f * depth); });
+    CHECK(sheet.size() == 6 * 4 * 48 * 3);
+    const IndexedMesh mesh = weld(sheet);
+    const core::MeshData data{mesh.positions, mesh.normals, {}, mesh.triangles};
+    const std::vector<std::shared_ptr<core::Shape>> shapes = {std::make_shared<core::TriangleMesh>(data)};
+    const core::RayTracer tracer(shapes);
+    const auto hit = [&](float x, float y) {
+        core::Ray ray;
+        ray.origin = {x, y, 1}, ray.direction = {0, 0, -1};
+        return tracer.occluded(ray);
+    };
+    for (int j = 0; j < 4; ++j)
+        for (int i = 0; i < 6; ++i) {
+            CHECK_FALSE(hit(float(i) + 0.5f, float(j) + 0.5f));
+            CHECK(hit(float(i) + 0.06f, float(j) + 0.07f));
+        }
 }
 
 TEST_CASE("The sky is brightest around the sun and lies as the light reads it", "[tools][geometry]") {
