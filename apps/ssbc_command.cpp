@@ -126,7 +126,7 @@ void add_ssbc(CLI::App& app, SsbcArguments& a, std::function<int()>& action) {
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     command
         .add_option("--light", a.channels.light,
-                    "A layer of reflected light (repeatable; default: see the guide)")
+                    "A layer of reflected light (repeatable; default: see docs/ssbc.md)")
         ->expected(1)
         ->allow_extra_args(false)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

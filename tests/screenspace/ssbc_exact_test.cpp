@@ -176,6 +176,16 @@ TEST_CASE("The test of the wedge finds planted errors", "[ssbc][exact][planted]"
     CHECK_FALSE(bias(wrong, wedge_bound) < 0.01);
 }
 
+TEST_CASE("The error after N steps is more than the next term", "[ssbc][exact]") {
+    // docs/errata.md, Sec. 11.1.2: beside the edge every term is near 0.45 times the one before.
+    WedgeLight next(wedge_view, 1.0), left_out(wedge_view, 0.0);
+    for (int n = 1; n <= 2; ++n) next = next.step(wedge_bound, wedge_reflectance);  // after N = 1
+    for (WedgeLight term = next; term(1e-3) > 1e-6; term = term.step(wedge_bound, wedge_reflectance))
+        left_out = left_out + term;
+    CHECK(left_out(1e-3) > 1.5 * next(1e-3));
+    CHECK(left_out(1e-3) < next(1e-3) / (1.0 - 0.45));
+}
+
 TEST_CASE("Between parallel planes every step multiplies by the same factor", "[ssbc][exact]") {
     // A plane at distance h reflects, with s = d^2 from h^2 to S = h / sqrt(b) where the residual ends,
     //   rho / pi int max(h^2 / s^2 - b, 0) pi ds = rho (1 - h sqrt(b))^2.
