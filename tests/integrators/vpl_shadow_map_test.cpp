@@ -86,6 +86,14 @@ TEST_CASE("shadow maps leave the light of VPLs as it is: smoke, glossy walls", "
     check_bias(*scene_from(box(mixed, smoke_medium(folder.file("smoke.vol"))), 8), 0.015);
 }
 
+TEST_CASE("lights on a pane that lets light through shine to both sides", "[vpl][shadow_map]") {
+    std::string xml = box(grey, fog("0.8, 1.0, 1.3", ""));
+    xml.insert(xml.find("<sensor"), R"(<shape type="rectangle"><transform name="to_world"><scale value="0.6"/>
+        <rotate x="1" angle="80"/><translate y="0.4"/></transform>
+        <bsdf type="roughdielectric"><float name="alpha" value="0.4"/></bsdf></shape>)");
+    check_bias(*scene_from(xml, 8), 0.02);
+}
+
 TEST_CASE("maps of the lights leave single scattering as it is", "[vpl][shadow_map]") {
     const std::string lights[] = {
         R"(<emitter type="point"><point name="position" x="0.4" y="0.5" z="1.6"/></emitter>)",
