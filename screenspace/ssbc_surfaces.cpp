@@ -38,6 +38,35 @@ Rgb diffuse_part(const GBuffer& buffer, std::size_t i) {
     return glm::min(even_part(*bsdf, BsdfPoint{buffer.uv[i]}, wo), buffer.reflectance[i]);
 }
 
+/// The longest way along rows or columns between two hits, per pixel and across the view [m].
+Vec3 pixel_step(const GBuffer& buffer, bool along_rows) {
+    const int lines = along_rows ? buffer.height : buffer.width,
+              length = along_rows ? buffer.width : buffer.height;
+    const auto at = [&](int line, int i) {
+        return along_rows ? buffer.index(i, line) : buffer.index(line, i);
+    };
+    Vec3 step(0.0f);
+    int longest = 0;
+    for (int line = 0; line < lines; ++line) {
+        int first = 0, last = length - 1;
+        while (first < length && !buffer.hit[at(line, first)]) ++first;
+        while (last > first && !buffer.hit[at(line, last)]) --last;
+        if (last - first <= longest) continue;
+        longest = last - first;
+        const Vec3 d = buffer.position[at(line, last)] - buffer.position[at(line, first)],
+                   view = buffer.view[0];
+        step = (d - view * glm::dot(view, d)) / float(longest);
+    }
+    return step;
+}
+
+/// Of the beam of a pixel, for parallel projections, where solid angles are zero [m^2].
+float beam_area(const GBuffer& buffer) {
+    const bool parallel = std::all_of(buffer.solid_angle.begin(), buffer.solid_angle.end(),
+                                      [](float angle) { return angle == 0.0f; });
+    return parallel ? glm::length(glm::cross(pixel_step(buffer, true), pixel_step(buffer, false))) : 0.0f;
+}
+
 }  // namespace
 
 SsbcSurfaces::SsbcSurfaces(int w, int h) : width(w), height(h) {
@@ -69,11 +98,13 @@ void SsbcSurfaces::check() const {
 
 SsbcSurfaces ssbc_surfaces(const GBuffer& buffer) {
     SsbcSurfaces surfaces(buffer.width, buffer.height);
+    const float beam = beam_area(buffer);
     tbb::parallel_for(std::size_t(0), buffer.pixel_count(), [&](std::size_t i) {
         if (!buffer.hit[i]) return;
         const Rgb reflectance = glm::clamp(diffuse_part(buffer, i), Rgb(0.0f), Rgb(1.0f));
-        surfaces.set(i, buffer.position[i], buffer.geometric_normal[i], -buffer.view[i],
-                     buffer.surface_area(i), reflectance);
+        const float facing = std::abs(glm::dot(buffer.geometric_normal[i], buffer.view[i]));
+        const float area = beam > 0.0f ? beam / std::max(facing, 1e-4f) : buffer.surface_area(i);
+        surfaces.set(i, buffer.position[i], buffer.geometric_normal[i], -buffer.view[i], area, reflectance);
     });
     return surfaces;
 }

@@ -158,8 +158,7 @@ TEST_CASE("Sky, lamps, mirrors and glass take no part; plastic does with its bas
         <sensor type="orthographic"><transform name="to_world"><scale x="6" y="6"/>
           <lookat origin="0, 0, 5" target="0, 0, 0" up="0, 1, 0"/></transform></sensor></scene>)",
                                   12);
-    GBuffer g = make_g_buffer(*scene, 12, 12);
-    for (float& w : g.solid_angle) w = 0.01f;  // parallel projections have none
+    const GBuffer g = make_g_buffer(*scene, 12, 12);
     const SsbcSurfaces s = ssbc_surfaces(g);
     int seen[5] = {};
     for (std::size_t i = 0; i < s.pixel_count(); ++i) {
@@ -171,7 +170,9 @@ TEST_CASE("Sky, lamps, mirrors and glass take no part; plastic does with its bas
         ++seen[which];
         if (which < 3) CHECK(s.area[i] == 0.0f);
         if (which == 3) CHECK((s.reflectance[i].x > 0.2f && s.reflectance[i].x < 0.5f));
-        if (which == 4) CHECK(s.reflectance[i].y == Approx(0.4f));
+        if (which != 4) continue;
+        CHECK(s.reflectance[i].y == Approx(0.4f));
+        CHECK(s.area[i] == Approx(1.0f).epsilon(1e-3));  // parallel projection: 12 m by 12 pixels
     }
     for (const int n : seen) CHECK(n > 0);
 }
