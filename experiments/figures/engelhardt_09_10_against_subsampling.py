@@ -98,7 +98,7 @@ def figure(mote, quick, output):
         pictures = all_pictures[name] = render(mote, name, scene, settings, size, sampling)
         error = {k: relative_mse(p, pictures["full"]) for k, p in pictures.items()}
         rays = {k: p.value("marched_rays") for k, p in pictures.items()}
-        seconds = {k: p.statistics["seconds"]["render"] for k, p in pictures.items()}
+        seconds = {k: p.cpu for k, p in pictures.items()}
         share, speed = rays["lines"] / rays["full"], seconds["full"] / seconds["lines"]
         print(f"{name}, {size[0]} x {size[1]}: {100 * share:.1f} % of the rays, {speed:.1f} times as fast as every pixel, "
               f"relative error {error['lines'] ** 0.5:.4f}")
@@ -123,7 +123,7 @@ def figure(mote, quick, output):
                          f"{crisp['lines']:.3f}, grids {crisp['grid']:.3f} and {crisp['grid x 4']:.3f}",
                          crisp["lines"] > crisp["grid"])
     write_csv(output.with_suffix(".csv"),
-              ["scene", "sampling", "marched_rays", "share", "relative_mse", "relative_gradient", "seconds"], rows)
+              ["scene", "sampling", "marched_rays", "share", "relative_mse", "relative_gradient", "processor_seconds"], rows)
     draw(all_pictures, output)
     return claims.exit_code()
 

@@ -44,7 +44,8 @@ def render(mote, quick):
     def epipolar(lines, samples, n=steps, **settings):
         name = "_".join(map(str, ("lines", lines, samples, n, *settings.values())))
         return mote.render(SCENE, name, {**common, "integrator": "mote_epipolar", "integrator.steps": n,
-                                         "integrator.lines": round(lines * scale), "integrator.samples": samples, "integrator.tolerance": 0,
+                                         "integrator.lines": round(lines * scale), "integrator.samples": samples,
+                                         "integrator.tolerance": 0,
                                          **settings}, passes=1)
     table = {(n, k): epipolar(n, k) for n in LINES for k in (SAMPLES if not quick else SAMPLES[1::2])}
     # The paper marches in steps of equal length, 150 of them, which were too few.
