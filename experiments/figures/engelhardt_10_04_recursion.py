@@ -1,9 +1,10 @@
 #!/usr/bin/python3
 """A scan line with virtual point lights, by steps of bias compensation: Engelhardt 2013, Figs. 10.1 and 10.4.
 
-A line through the smoke room: light unbounded, bounded, with one to three steps of compensation, and with all of them (the
-paper's reference). All variants share their VPLs, several independent sets of them. Exit code 0: all is as documented;
-1: it is not; 2: wrong usage, or mote is missing. A full run takes about 2 minutes on two cores, --quick 25 s.
+A line through the smoke room: light unbounded, bounded, with one to three steps of compensation, and with all of them
+(the paper's reference). All variants share their VPLs, several independent sets of them. Exit code 0: all is as
+documented; 1: it is not; 2: wrong usage, or mote is missing. A full run takes 2.5 minutes of one core, --quick half a
+minute.
 
     experiments/figures/engelhardt_10_04_recursion.py [--quick] [--redraw] [--output FOLDER] [--bin FOLDER]
 """

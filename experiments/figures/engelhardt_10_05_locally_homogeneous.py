@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """The medium taken for homogeneous inside the bounding region: Engelhardt 2013, Fig. 10.5.
 
-The smoke room with two steps of compensation, with the exact transmittance inside the bounding region and with that of the
-mean extinction; all else is the same, down to the VPLs. The difference, times 16, and its mean over several sets of VPLs.
-Exit code 0: all is as documented; 1: it is not; 2: wrong usage, or mote is missing. A full run takes about a minute on two
-cores, --quick 15 s.
+The smoke room with two steps of compensation, with the exact transmittance inside the bounding region and with that of
+the mean extinction; all else is the same, down to the VPLs. The difference, times 16, and its mean over several sets of
+VPLs. Exit code 0: all is as documented; 1: it is not; 2: wrong usage, or mote is missing. A full run takes 2 minutes of
+one core, --quick 15 s.
 
     experiments/figures/engelhardt_10_05_locally_homogeneous.py [--quick] [--redraw] [--output FOLDER] [--bin FOLDER]
 """

@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 """Strategies of bias compensation at equal time: Engelhardt 2013, Figs. 10.6 and 10.7.
 
-Light that the smoke scatters more than once, by the four strategies of Sec. 10.2.3, each with as many passes as fit the same
-processor time. Where every vertex of an eye path meets all VPLs, a pass takes one eye path a pixel; the 1-to-1 strategies
-share the VPLs out among 64. The error is the root mean square of the difference to `volpath` over the pixels. Exit code 0:
-all is as documented; 1: it is not; 2: wrong usage, or mote is missing. A full run takes about 2 minutes on two cores,
---quick 40 s.
+Light that the smoke scatters more than once, by the four strategies of Sec. 10.2.3, each with as many passes as fit the
+same processor time. Where every vertex of an eye path meets all VPLs, a pass takes one eye path a pixel; the 1-to-1
+strategies share the VPLs out among 64. The error is the root mean square of the difference to `volpath` over the
+pixels. Exit code 0: all is as documented; 1: it is not; 2: wrong usage, or mote is missing. A full run takes 2.5
+minutes of one core, --quick 45 s.
 
     experiments/figures/engelhardt_10_07_strategies.py [--quick] [--redraw] [--output FOLDER] [--bin FOLDER]
 """

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """A room full of smoke with 6800 virtual point lights: Engelhardt 2013, Fig. 10.10.
 
-sigma_s : sigma_a = 0.9 : 0.001 as in the paper. Bounded; with one step of approximate compensation, every simplification on;
-and with exact compensation, which is the reference there too. The VPLs come in three independent sets that all variants
-share. Exit code 0: all is as documented; 1: it is not; 2: wrong usage, or mote is missing. A full run takes about 2 minutes
-on two cores, --quick 20 s.
+sigma_s : sigma_a = 0.9 : 0.001 as in the paper. Bounded; with one step of approximate compensation, every
+simplification on; and with exact compensation, which is the reference there too. The VPLs come in three independent
+sets that all variants share. Exit code 0: all is as documented; 1: it is not; 2: wrong usage, or mote is missing. A
+full run takes 2.5 minutes of one core, --quick 15 s.
 
     experiments/figures/engelhardt_10_10_room.py [--quick] [--redraw] [--output FOLDER] [--bin FOLDER]
 """

@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 """Approximate bias compensation against the beam radiance estimate at equal time: Engelhardt 2013, Fig. 10.11.
 
-What the smoke of the room scatters more than once, along the ray through the middle of every pixel: by 1536 light paths with
-two steps of approximate compensation, and by the photon map with 117 photons in an estimate as in the paper and as many
-photons as the same processor time allows, in one pass and in eight. All are judged by `volpath`. Exit code 0: all is as documented; 1: it is
-not; 2: wrong usage, or mote is missing. A full run takes about 2 minutes on two cores, --quick 40 s.
+What the smoke of the room scatters more than once, along the ray through the middle of every pixel: by 1536 light paths
+with two steps of approximate compensation, and by the photon map with 117 photons in an estimate as in the paper and as
+many photons as the same processor time allows, in one pass and in eight. All are judged by `volpath`. Exit code 0: all
+is as documented; 1: it is not; 2: wrong usage, or mote is missing. A full run takes 3 minutes of one core, --quick 40
+s.
 
     experiments/figures/engelhardt_10_11_photon_beams.py [--quick] [--redraw] [--output FOLDER] [--bin FOLDER]
 """

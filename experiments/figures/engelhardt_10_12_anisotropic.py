@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """Bias compensation in anisotropic media: Engelhardt 2013, Fig. 10.12.
 
-The statue in a homogeneous medium with the paper's sigma_s = 0.075 and sigma_a = 0.001, scattering backward, evenly and forward,
-with 4320 virtual point lights in three independent sets and two steps of approximate compensation; exact compensation with
-the same VPLs is what it is judged by. Exit code 0: all is as documented; 1: it is not; 2: wrong usage, or mote is missing. A
-full run takes about 3 minutes on two cores, --quick 40 s.
+The statue in a homogeneous medium with the paper's sigma_s = 0.075 and sigma_a = 0.001, scattering backward, evenly and
+forward, with 4320 virtual point lights in three independent sets and two steps of approximate compensation; exact
+compensation with the same VPLs is what it is judged by. Exit code 0: all is as documented; 1: it is not; 2: wrong
+usage, or mote is missing. A full run takes 1.5 minutes of one core, --quick 20 s.
 
     experiments/figures/engelhardt_10_12_anisotropic.py [--quick] [--redraw] [--output FOLDER] [--bin FOLDER]
 """

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """Large scenes, and where the time goes for each virtual point light: Engelhardt 2013, Figs. 10.13 and 10.14.
 
-The atrium (as many triangles as Crytek Sponza, homogeneous haze) and the city (823 thousand triangles in the paper, clouds,
-an environment map), with two steps of approximate compensation. Passes without VPLs, with bounded ones, and with
-compensation tell what each part takes. Exit code 0: all is as documented; 1: it is not; 2: wrong usage, or mote is
-missing. A full run takes about 3 minutes on two cores, --quick 40 s.
+The atrium (as many triangles as Crytek Sponza, homogeneous haze) and the city (823 thousand triangles in the paper,
+clouds, an environment map), with two steps of approximate compensation. Passes without VPLs, with bounded ones, and
+with compensation tell what each part takes. Exit code 0: all is as documented; 1: it is not; 2: wrong usage, or mote is
+missing. A full run takes 40 s of one core, --quick 15 s.
 
     experiments/figures/engelhardt_10_13_complex.py [--quick] [--redraw] [--output FOLDER] [--bin FOLDER]
 """
