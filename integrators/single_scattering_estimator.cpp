@@ -26,7 +26,7 @@ struct PassNumbers {
     }
 };
 
-/// What interpolation needs to know of a pixel's first ray: 28 bytes.
+/// What interpolation needs to know of a pixel's first ray: 24 bytes.
 struct EyePoint {
     Vec2 film;
     FirstSurface surface;
