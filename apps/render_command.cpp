@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "apps/auxiliary_channels.h"
 #include "apps/command.h"
 #include "apps/interruption.h"
 #include "apps/progress_line.h"
@@ -73,10 +74,11 @@ std::string hash_of(const core::Scene& scene, const core::Integrator& integrator
     return core::content_hash(scene, settings);
 }
 
-void write_outputs(const OutputFiles& files, const RenderReport& report, bool half) {
+void write_outputs(const OutputFiles& files, const RenderReport& report, const RenderArguments& arguments) {
     core::ImageChannels image = core::film_image(report.result.film);
     image.metadata = picture_metadata(report);
-    core::write_exr(files.picture, image, half);
+    if (arguments.auxiliary) add_auxiliary_channels(image, report.scene);
+    core::write_exr(files.picture, image, arguments.half || report.scene.film().half);
     core::write_png(files.preview, image.width, image.height, image.rgb(""));
 }
 
@@ -163,7 +165,7 @@ int render_command(const RenderArguments& arguments) {
                             arguments.seed,
                             threads,
                             arguments.command_line};
-        write_outputs(files, report, arguments.half || scene->film().half);
+        write_outputs(files, report, arguments);
         result.statistics.seconds["write"] = seconds_since(write_start);
         if (!arguments.stats.empty()) {
             const std::string json = statistics_json(report);

@@ -36,7 +36,7 @@ struct RenderArguments {
     std::optional<double> seconds, noise;
     std::uint64_t seed = 0;
     int threads = 0;  ///< 0: one for every core
-    bool resume = false, quiet = false, verbose = false, half = false;
+    bool resume = false, quiet = false, verbose = false, half = false, auxiliary = false;
     double checkpoint_every = 60.0;
     std::string stats;
     std::vector<std::string> command_line;

@@ -115,9 +115,12 @@ SsbcPicture read_light(const ImageChannels& image, const SsbcChannels& channels)
 }
 
 SsbcPicture read_ssbc_picture(const ImageChannels& image, const SsbcChannels& channels) {
+    const std::string reflectance_name = !channels.reflectance.empty()   ? channels.reflectance
+                                         : image.find("DiffuseAlbedo.R") ? "DiffuseAlbedo"
+                                                                         : "Albedo";
     const std::vector<Vec3> position = layer(image, channels.position),
                             normal = layer(image, channels.normal),
-                            reflectance = layer(image, channels.reflectance);
+                            reflectance = layer(image, reflectance_name);
     std::string missing, first;
     const auto need = [&](const std::vector<Vec3>& values, const std::string& name, const char* what) {
         if (!values.empty()) return;
@@ -125,7 +128,7 @@ SsbcPicture read_ssbc_picture(const ImageChannels& image, const SsbcChannels& ch
         missing += (missing.empty() ? "" : ", ") + ("'" + printable(name) + "' (" + what + ")");
     };
     need(position, channels.position, "position"), need(normal, channels.normal, "normal");
-    need(reflectance, channels.reflectance, "diffuse reflectance");
+    need(reflectance, reflectance_name, "diffuse reflectance");
     if (!missing.empty())
         throw InputError("the picture lacks " + missing + suggestion(first, layer_names(image)));
     check_reflectance(image, reflectance);

@@ -11,7 +11,8 @@ namespace mote::screenspace {
 
 /// How the layers of the picture are called; each stands for its three channels, .X .Y .Z or .R .G .B.
 struct SsbcChannels {
-    std::string position = "P", normal = "N", reflectance = "Albedo";
+    std::string position = "P", normal = "N";
+    std::string reflectance;  ///< empty: `DiffuseAlbedo` where the picture has it, otherwise `Albedo`
     /// Layers that add up to the light that surfaces reflect. Empty: `direct` and `indirect...` where the
     /// picture has them, otherwise the picture less its layer `emission`.
     std::vector<std::string> light;

@@ -90,6 +90,16 @@ TEST_CASE("ssbc takes surfaces from the scene that a picture shows", "[command][
     INFO(run.out << run.err);
     REQUIRE(run.exit_code == 0);
     CHECK(total(read_exr(folder.file("out.exr")).rgb("compensation_surface")) > 0.0);
+    // The same from channels, which the render can write too.
+    const std::vector<Rgb> from_scene = read_exr(folder.file("out.exr")).rgb("compensation_surface");
+    const RunResult render =
+        run_mote(folder, {"render", "scene.xml", "-o", "aux.exr", "--passes", "2", "--quiet", "--auxiliary"});
+    REQUIRE(render.exit_code == 0);
+    const RunResult channels = run_mote(folder, {"ssbc", "aux.exr", "-o", "out.exr"});
+    INFO(channels.out << channels.err);
+    REQUIRE(channels.exit_code == 0);
+    const std::vector<Rgb> from_channels = read_exr(folder.file("out.exr")).rgb("compensation_surface");
+    CHECK(total(from_channels) == Approx(total(from_scene)).epsilon(1e-3));
     write_file(
         folder.file("small.xml"),
         R"(<scene version="3.0.0"><shape type="sphere"/><emitter type="constant"/><sensor type="perspective">
