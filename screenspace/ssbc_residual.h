@@ -24,7 +24,7 @@ using Lanes = std::array<float, packet_size>;
 /// A point that light is gathered at.
 struct SsbcReceiver {
     core::Vec3 position, normal;
-    float size;  ///< root of the area of its patch [m]
+    float size;  ///< root of the area of its patch [m]; no other patch comes nearer than a tenth of it
 };
 
 /// Receivers side by side, so that the compiler makes vector instructions of loops over them.
