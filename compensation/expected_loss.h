@@ -3,9 +3,11 @@
 // Where the light in a medium is about the same at y and at z, one application of the residual transport
 // (Engelhardt 2013, Eq. 10.11) to it is a factor,
 //   beta = integral over t from 0 to r of  sigma_s e^(-sigma_t t) (1 - b t^2) dt,   r = b^(-1/2),
-// because directions integrate to one for every phase function. Bounded VPLs leave out beta of the light that
-// scatters more than once, and what k steps leave out is beta^(k+1). This is no bound but an estimate; the
-// study experiments/studies/vpls_and_media.py measures how well it holds.
+// because directions integrate to one for every phase function. Without a bound the same integral runs over
+// the whole medium, on average along its mean chord D:  beta_all = albedo (1 - e^(-sigma_t D)).  Of the light
+// that reaches a point of the medium from the medium, bounded VPLs leave out beta / beta_all, and what k
+// steps leave out is beta^(k+1) / beta_all. Walls that send light to the point make the share smaller. This
+// is no bound but an estimate; the study experiments/studies/vpls_and_media.py measures how well it holds.
 #pragma once
 
 #include <cmath>
@@ -28,10 +30,20 @@ inline double residual_fraction(double sigma_t, double sigma_s, double bound) {
     return albedo * sum;
 }
 
-/// What is still missing after `steps` steps (-1: no limit).
-inline double expected_loss(double beta, int steps) { return steps < 0 ? 0.0 : std::pow(beta, steps + 1); }
+/// A homogeneous medium [1/m], and how far light goes in it: its mean chord [m], 4 V / S for a convex body.
+struct ExpectedMedium {
+    double sigma_t = 0.0, sigma_s = 0.0, chord = 0.0;
+
+    double beta(double bound) const { return residual_fraction(sigma_t, sigma_s, bound); }
+    double beta_all() const {
+        return sigma_t > 0.0 ? -std::expm1(-sigma_t * chord) * sigma_s / sigma_t : 0.0;
+    }
+};
+
+/// The share that is still missing after `steps` steps (-1: no limit), 0 to 1.
+double expected_loss(const ExpectedMedium& medium, double bound, int steps);
 
 /// The bound [1/m^2] with which `steps` steps leave out `loss` of the light; 0 where any bound will do.
-double bound_for_loss(double sigma_t, double sigma_s, int steps, double loss);
+double bound_for_loss(const ExpectedMedium& medium, int steps, double loss);
 
 }  // namespace mote::compensation

@@ -46,18 +46,18 @@ bool surface_within_reach(const Scene& scene, float radius) {
     return false;
 }
 
-/// Extinction and scattering [1/m] where light scatters: averages weighted with the extinction itself.
-struct TypicalMedium {
-    double sigma_t = 0.0, sigma_s = 0.0;
-};
-
-TypicalMedium typical_medium(const Scene& scene) {
-    double sum = 0.0, squares = 0.0, scattering = 0.0;
+/// Extinction and scattering where light scatters: averages weighted with the extinction itself. The chord is
+/// that of the largest medium's box.
+compensation::ExpectedMedium typical_medium(const Scene& scene) {
+    double sum = 0.0, squares = 0.0, scattering = 0.0, chord = 0.0;
     Rng rng(1);
     for (const auto& medium : scene.media()) {
         const Bounds3 all = scene.medium_extent(*medium), own = medium->bounds();
         const Bounds3 box{glm::max(all.lower, own.lower), glm::min(all.upper, own.upper)};
         if (box.empty() || !std::isfinite(box.radius())) continue;
+        const Vec3d e(box.diagonal());
+        const double surface = 2.0 * (e.x * e.y + e.y * e.z + e.z * e.x);
+        if (surface > 0.0) chord = std::max(chord, 4.0 * e.x * e.y * e.z / surface);
         for (int i = 0; i < 4096; ++i) {
             const Vec3 u(rng.next_float(), rng.next_float(), rng.next_float());
             const MediumCoefficients c = medium->coefficients(box.lower + u * box.diagonal());
@@ -65,26 +65,26 @@ TypicalMedium typical_medium(const Scene& scene) {
             sum += t, squares += t * t, scattering += t * s;
         }
     }
-    return sum > 0.0 ? TypicalMedium{squares / sum, scattering / sum} : TypicalMedium{};
+    if (!(sum > 0.0)) return {};
+    return {squares / sum, scattering / sum, chord};
 }
 
 }  // namespace
 
 void plan_expected_loss(Plan& plan, const Scene& scene, const CompensationSettings& s, float bound) {
     if (!scene.has_media() || !std::isfinite(bound)) return;
-    const TypicalMedium medium = typical_medium(scene);
-    const double beta = compensation::residual_fraction(medium.sigma_t, medium.sigma_s, double(bound));
+    const compensation::ExpectedMedium medium = typical_medium(scene);
     const int steps = s.enabled && s.media ? s.depth : 0;
-    const double loss = compensation::expected_loss(beta, steps);
-    plan.run("expected loss",
-             fmt::format("{:.2g} % of the light that scatters more than once in media", 100.0 * loss),
-             fmt::format("beta = {:.2g} at sigma_t = {:.3g} /m; k steps leave out beta^(k+1)", beta,
-                         medium.sigma_t));
+    const double loss = compensation::expected_loss(medium, double(bound), steps);
+    plan.run("expected loss", fmt::format("{:.2g} % of the light between points of the media", 100.0 * loss),
+             fmt::format("beta^(k+1) / beta_all after k steps; beta = {:.2g}, beta_all = {:.2g} at sigma_t = "
+                         "{:.3g} /m",
+                         medium.beta(double(bound)), medium.beta_all(), medium.sigma_t));
     constexpr double target = 0.02;
     if (loss <= target) return;
     const double radius = double(scene.rays().bounds().radius());
     const auto suggestion = [&](int k) {
-        const double b = compensation::bound_for_loss(medium.sigma_t, medium.sigma_s, k, target);
+        const double b = compensation::bound_for_loss(medium, k, target);
         return fmt::format("{} step(s), bound {:.3g}, {:.0f} light paths", k, b,
                            std::ceil(b * radius * radius));
     };

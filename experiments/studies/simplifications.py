@@ -32,8 +32,8 @@ VARIANTS = {
     "the defaults, 1 step": approximate(1), "the defaults, 2 steps": approximate(2),
 }
 SCENES = {
-    "thin fog": (FOG, {"sigma_t": 0.5, "albedo": 0.9, "paths": 32, "size": 12}, 60),
-    "thick fog": (FOG, {"sigma_t": 3, "albedo": 0.9, "paths": 32, "size": 12}, 60),
+    "thin fog": (FOG, {"sigma_t": 0.5, "albedo": 0.9, "paths": 32, "wall": 0.5, "size": 12}, 60),
+    "thick fog": (FOG, {"sigma_t": 3, "albedo": 0.9, "paths": 32, "wall": 0.5, "size": 12}, 60),
     "smoke room": ("smoke_room", {"resx": 24, "resy": 15, "paths": 48, "bound": 4}, 40),
 }
 

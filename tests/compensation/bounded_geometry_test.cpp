@@ -69,14 +69,19 @@ TEST_CASE("the expected loss is the integral that it stands for", "[compensation
     CHECK(residual_fraction(0.0, 0.0, 1.0) == 0.0);
     CHECK(residual_fraction(1.0, 0.9, core::infinity) == 0.0);
     CHECK(residual_fraction(1.0, 0.9, 0.0) == 0.9);
-    CHECK(expected_loss(0.5, 0) == 0.5);
-    CHECK(expected_loss(0.5, 2) == 0.125);
-    CHECK(expected_loss(0.5, -1) == 0.0);
+    const ExpectedMedium lead{2.0, 1.8, 1e6};  // light never leaves it: beta_all is the albedo
+    CHECK(lead.beta_all() == Approx(0.9));
+    CHECK(expected_loss(lead, 4.0, 0) == Approx(lead.beta(4.0) / 0.9));
+    CHECK(expected_loss(lead, 4.0, 2) == Approx(std::pow(lead.beta(4.0), 3) / 0.9));
+    CHECK(expected_loss(lead, 4.0, -1) == 0.0);
+    CHECK(expected_loss({}, 4.0, 0) == 0.0);
+    // A region larger than the medium holds all that there is, and no more.
+    CHECK(expected_loss({0.01, 0.01, 0.1}, 1e-4, 0) == 1.0);
     for (const int steps : {0, 1, 3}) {
-        const double b = bound_for_loss(2.0, 1.8, steps, 0.02);
-        CHECK(expected_loss(residual_fraction(2.0, 1.8, b), steps) == Approx(0.02).epsilon(1e-3));
+        const double b = bound_for_loss(lead, steps, 0.02);
+        CHECK(expected_loss(lead, b, steps) == Approx(0.02).epsilon(1e-3));
     }
-    CHECK(bound_for_loss(2.0, 0.01, 0, 0.02) == 0.0);
+    CHECK(bound_for_loss({2.0, 0.01, 1e6}, 1, 0.02) == 0.0);
 }
 
 TEST_CASE("distances in the region follow their density", "[compensation][distances]") {
