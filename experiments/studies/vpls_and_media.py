@@ -88,7 +88,7 @@ def draw(rows, path):
             left.errorbar(100 * predicted(rows, method), -100 * column(rows, method, 6), 100 * column(rows, method, 7), fmt="o",
                           ms=4, lw=0.8, color=colour, label=method)
         right.plot(column(rows, method, 0), 100 * column(rows, method, 8), "o", ms=4, color=colour, label=method)
-    left.plot([0, 50], [0, 50], "k-", lw=0.6)
+    left.plot([0, 60], [0, 60], "k-", lw=0.6)
     left.set_xlabel("expected: beta^(k+1) / beta_all [%]")
     left.set_ylabel("light lost [%]")
     right.set_xlabel("optical depth of the room")
