@@ -195,10 +195,11 @@ TEST_CASE("compensation that cannot be is refused by name", "[compensation][inpu
     CHECK_THAT(refused(R"(<boolean name="bounded" value="false"/><compensation type="exact"/>)"),
                Contains("bounded"));
     CHECK_THAT(refused(R"(<integer name="eye_samples" value="0"/>)"), Contains("eye_samples"));
-    for (const char* bound : {"0", "-3", "1e60"})
+    for (const char* bound : {"0", "-3"})
         CHECK_THAT(
             refused(fmt::format(R"(<float name="bound" value="{}"/><compensation type="exact"/>)", bound)),
             Contains("bound"));
+    CHECK_THAT(refused(R"(<float name="bound" value="1e60"/>)"), Contains("'1e60' is not a finite number"));
     CHECK(refused(R"(<compensation type="none"/>)") == "accepted");
     CHECK(refused(exact) == "accepted");
 }
