@@ -20,8 +20,7 @@ ShadowMapBuilder::ShadowMapBuilder(const Scene& scene, const VolumetricShadowMap
                                    const MediumState& at_light)
     : scene_(scene), map_(map), at_light_(at_light) {
     for (const auto& m : scene.media())
-        media_.push_back({m.get(), dynamic_cast<const media::HeterogeneousMedium*>(m.get()),
-                          m->traits().voxel_size, m->bounds()});
+        media_.push_back({m.get(), dynamic_cast<const media::HeterogeneousMedium*>(m.get()), m->bounds()});
 }
 
 void ShadowMapBuilder::fill(int texel, std::byte* record) {
@@ -93,7 +92,8 @@ void ShadowMapBuilder::find_segments(const Ray& ray, float end) {
 }
 
 float ShadowMapBuilder::step_of(const MarchedMedium& medium, float length) const {
-    return std::isfinite(medium.voxel) ? medium.voxel * map_.settings_.step : length;
+    const float voxel = medium.grid->voxel_size();
+    return std::isfinite(voxel) ? voxel * map_.settings_.step : length;
 }
 
 Vec3d ShadowMapBuilder::depth_of(const Segment& segment, const Ray& part) {

@@ -16,11 +16,10 @@ class ShadowMapBuilder {
     const core::RayCounters& rays() const { return rays_; }
 
   private:
-    /// What marching needs to know of a medium, asked once: traits are made for people and take long.
+    /// What marching needs to know of a medium, asked once.
     struct MarchedMedium {
         const core::Medium* medium;
         const media::HeterogeneousMedium* grid;  ///< null: homogeneous
-        float voxel;
         core::Bounds3 bounds;
     };
     /// One medium along a part of the ray.

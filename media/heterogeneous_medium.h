@@ -50,6 +50,9 @@ class HeterogeneousMedium : public core::Medium {
         return transmittance_by(estimator_, ray, rng, counters);
     }
 
+    /// As in traits(), for loops: coefficients vary over lengths of this size [m]; infinity: nowhere.
+    float voxel_size() const { return voxel_size_; }
+
     /// Optical depth per channel by the midpoint rule: deterministic, biased by the step. The segment,
     /// clipped to the grid where the medium ends there, is cut into equal steps of at most `step` metres. The
     /// segment must be finite unless the medium is bounded.
@@ -68,6 +71,7 @@ class HeterogeneousMedium : public core::Medium {
     std::optional<core::Rgb> constant_albedo_;
     bool emissive_;
     TransmittanceEstimator estimator_ = TransmittanceEstimator::ratio_tracking;
+    float voxel_size_ = core::infinity;
     std::shared_ptr<MediumEmitter> emitter_;  ///< null until make_emitter()
 };
 

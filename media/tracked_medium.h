@@ -69,12 +69,14 @@ class TrackedMedium final : public HeterogeneousMedium {
         : HeterogeneousMedium(std::move(parts)), grid_(std::move(grid)) {
         if (parts_.tracking.majorants == Majorants::global) grid_.majorants.merge_cells();
         grid_.majorants.scale_upper(parts_.plant_majorant_factor);
+        certain_share_ = grid_.majorants.certain_share();
         estimator_ = parts_.tracking.transmittance;
         if (estimator_ == TransmittanceEstimator::automatic)
-            estimator_ = grid_.majorants.certain_share() > detail::residual_pays_from
+            estimator_ = certain_share_ > detail::residual_pays_from
                              ? TransmittanceEstimator::residual_ratio_tracking
                              : TransmittanceEstimator::ratio_tracking;
         majorant_ = float(detail::largest(grid_.majorants.total().upper) * double(parts_.scale));
+        if (majorant_ != 0.0f) voxel_size_ = find_voxel_size();
     }
 
     core::MediumTraits traits() const override;
@@ -121,8 +123,11 @@ class TrackedMedium final : public HeterogeneousMedium {
         return grid_.world_to_index.vector(core::Vec3d(ray.direction));
     }
 
+    float find_voxel_size() const;
+
     Grid grid_;
     float majorant_ = 0.0f;
+    double certain_share_ = 0.0;  ///< of the majorants: a sum over all cells, taken once
 };
 
 }  // namespace mote::media

@@ -337,10 +337,16 @@ core::MediumTraits TrackedMedium<Grid>::traits() const {
         t.description += fmt::format(", majorants {}x{}x{}", grid_.majorants.resolution().x,
                                      grid_.majorants.resolution().y, grid_.majorants.resolution().z);
     t.estimator = name_of(estimator_);
-    t.estimator_reason = parts_.tracking.transmittance == TransmittanceEstimator::automatic
-                             ? fmt::format("lower bounds make {:.0f} % of the majorants certain",
-                                           100.0 * grid_.majorants.certain_share())
-                             : std::string("asked for");
+    t.estimator_reason =
+        parts_.tracking.transmittance == TransmittanceEstimator::automatic
+            ? fmt::format("lower bounds make {:.0f} % of the majorants certain", 100.0 * certain_share_)
+            : std::string("asked for");
+    t.voxel_size = voxel_size_;
+    return t;
+}
+
+template <typename Grid>
+float TrackedMedium<Grid>::find_voxel_size() const {
     const core::Vec3d origin = grid_.world_to_index.point(core::Vec3d(0.0));
     double most_voxels = 0.0;  // a metre holds, along any axis
     for (int axis = 0; axis < 3; ++axis) {
@@ -348,8 +354,7 @@ core::MediumTraits TrackedMedium<Grid>::traits() const {
         along[axis] = 1.0;
         most_voxels = std::fmax(most_voxels, glm::length(grid_.world_to_index.point(along) - origin));
     }
-    t.voxel_size = float(1.0 / most_voxels);
-    return t;
+    return float(1.0 / most_voxels);
 }
 
 }  // namespace mote::media

@@ -68,8 +68,7 @@ void find_segments(const Scene& scene, const Ray& ray, const MediumState& state,
 
 Rgb marched_transmittance(const Medium& medium, const Ray& ray, float voxels, WalkContext& walk) {
     if (const auto* grid = dynamic_cast<const media::HeterogeneousMedium*>(&medium)) {
-        const float size = medium.traits().voxel_size;
-        const Vec3d depth = grid->optical_depth_by_marching(ray, voxels * size, walk.tracking);
+        const Vec3d depth = grid->optical_depth_by_marching(ray, voxels * grid->voxel_size(), walk.tracking);
         return {float(std::exp(-depth.x)), float(std::exp(-depth.y)), float(std::exp(-depth.z))};
     }
     return medium.transmittance(ray, walk.rng, walk.tracking);
