@@ -22,10 +22,8 @@ Rgb direct_light(const Scene& scene, const ResidualPath& path, WalkContext& cont
     MediumState state = path.state;
     if (Media && path.vertex.on_surface()) state = path.vertex.state_towards(state, next->wi);
     const Ray ray{path.vertex.ray_origin(next->wi), next->wi};
-    Rgb emitted(0.0f);
-    const WalkEvent event = walk<Media>(scene, ray, state, weights, emitted, context);
     const Vec3* previous = next->delta ? nullptr : &path.vertex.position;
-    return sum + emitted + lights::found_light<Media>(scene, event, ray, weights, previous);
+    return sum + lights::light_along<Media>(scene, ray, state, weights, previous, context);
 }
 
 }  // namespace

@@ -58,18 +58,6 @@ Placement1D place(const Rgb& extinction, float surface, float radius, bool keep_
     return p;
 }
 
-ScatteringVertex vertex_in_medium(const Ray& ray, float t, const Medium& medium) {
-    ScatteringVertex v;
-    v.position = ray.at(t), v.wo = -ray.direction, v.phase = &medium.phase();
-    return v;
-}
-
-ScatteringVertex vertex_on_surface(const Ray& ray, const SurfaceHit& hit) {
-    WalkEvent event;
-    event.kind = WalkEvent::Kind::surface, event.hit = hit, event.distance = hit.t;
-    return make_vertex(event, ray);
-}
-
 bool within(const Bounds3& box, const Vec3& p, float distance) {
     const Vec3 nearest = glm::clamp(p, box.lower, box.upper);
     return !box.empty() && glm::dot(nearest - p, nearest - p) <= distance * distance;
@@ -122,17 +110,10 @@ bool ResidualTransport::may_hold(const Medium& medium, const Vec3& p) const {
     return m->extent.contains(p) && medium.bounds().contains(p);
 }
 
-bool ResidualTransport::place_on_surface(ResidualPath& path, const Ray& ray, WalkContext& context) const {
-    Rgb emitted(0.0f);
-    const WalkEvent event = walk<false>(scene_, ray, path.state, path.weights, emitted, context);
-    if (event.kind == WalkEvent::Kind::escaped) return false;
-    path.vertex = make_vertex(event, ray);
-    return true;
-}
-
+template <bool Media>
 bool ResidualTransport::place_by_free_path(ResidualPath& path, const Ray& ray, WalkContext& context) const {
     Rgb emitted(0.0f);  // the emission on the way is not what VPLs stand for
-    const WalkEvent event = walk<true>(scene_, ray, path.state, path.weights, emitted, context);
+    const WalkEvent event = walk<Media>(scene_, ray, path.state, path.weights, emitted, context);
     if (event.kind == WalkEvent::Kind::escaped) return false;
     path.vertex = make_vertex(event, ray);
     return true;
@@ -156,19 +137,20 @@ bool ResidualTransport::place_in_mean_medium(ResidualPath& path, const Ray& ray,
     const Ray part{ray.origin, ray.direction, 0.0f, p.distance};
     const MediumState start = path.state;
     if (look) path.state = state_at_end(scene_, part, start, context);
+    const Vec3 z = ray.at(p.distance);
+    WalkEvent event;
+    event.distance = p.distance;
     if (p.at_surface) {
-        path.vertex = vertex_on_surface(ray, *hit);
+        event.kind = WalkEvent::Kind::surface, event.hit = *hit;
     } else {
-        const Medium* medium = path.state.current();
-        const Vec3 z = ray.at(p.distance);
-        if (!medium || !may_hold(*medium, z)) return false;
-        path.weights.throughput *= medium->coefficients(z).sigma_s;
-        path.vertex = vertex_in_medium(ray, p.distance, *medium);
+        event.kind = WalkEvent::Kind::collision, event.medium = path.state.current();
+        if (!event.medium || !may_hold(*event.medium, z)) return false;
+        path.weights.throughput *= event.medium->coefficients(z).sigma_s;
     }
-    const Rgb transmittance =
-        settings_.transmittance == LocalTransmittance::mean
-            ? exponential(mean * p.distance)
-            : scene_.transmittance(ray.origin, ray.at(p.distance), start, context.rng, context.tracking);
+    path.vertex = make_vertex(event, ray);
+    const Rgb transmittance = settings_.transmittance == LocalTransmittance::mean
+                                  ? exponential(mean * p.distance)
+                                  : scene_.transmittance(ray.origin, z, start, context.rng, context.tracking);
     path.weights.throughput *= transmittance / p.density;
     return true;
 }
@@ -185,10 +167,8 @@ bool ResidualTransport::step(ResidualPath& path, WalkContext& context) const {
     const Ray ray{path.vertex.ray_origin(next->wi), next->wi, 0.0f, radius_};
 
     bool placed;
-    if constexpr (!Media)
-        placed = place_on_surface(path, ray, context);
-    else if (by_free_path())
-        placed = place_by_free_path(path, ray, context);
+    if (!Media || by_free_path())
+        placed = place_by_free_path<Media>(path, ray, context);
     else
         placed = place_in_mean_medium(path, ray, context);
     path.mean_known = false;

@@ -52,10 +52,10 @@ class ResidualTransport {
 
   private:
     /// The end of a ray of at most the bounding radius, found in one of two ways.
+    template <bool Media>
     bool place_by_free_path(ResidualPath& path, const core::Ray& ray, core::WalkContext& context) const;
     bool place_in_mean_medium(ResidualPath& path, const core::Ray& ray, core::WalkContext& context) const;
     void find_mean_extinction(ResidualPath& path) const;
-    bool place_on_surface(ResidualPath& path, const core::Ray& ray, core::WalkContext& context) const;
     bool by_free_path() const;
     bool may_hold(const core::Medium& medium, const core::Vec3& p) const;
 

@@ -75,7 +75,8 @@ class PhotonEyePath {
             if (Media && vertex.on_surface()) state = vertex.state_towards(state, next->wi);
             ray = core::Ray{vertex.ray_origin(next->wi), next->wi};
             if (next->delta) continue;
-            sum[direct] += light_along(ray, state, weights, vertex);
+            sum[direct] +=
+                lights::light_along<Media>(scene_, ray, state, weights, &vertex.position, context_);
             break;
         }
         return sum;
@@ -102,14 +103,6 @@ class PhotonEyePath {
         sum[Transport::indirect] +=
             throughput *
             maps_.surface.radiance(vertex, maps_.estimate, photon_depth(depth), scratch_.neighbours);
-    }
-
-    /// The other technique for direct light: what the sampled direction happens to hit.
-    core::Rgb light_along(const core::Ray& ray, core::MediumState state, core::PathWeights& weights,
-                          const core::ScatteringVertex& vertex) {
-        core::Rgb emitted(0.0f);
-        const core::WalkEvent event = core::walk<Media>(scene_, ray, state, weights, emitted, context_);
-        return emitted + lights::found_light<Media>(scene_, event, ray, weights, &vertex.position);
     }
 
     const core::Scene& scene_;

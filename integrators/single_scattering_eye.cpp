@@ -9,6 +9,7 @@ using namespace screenspace;
 using lights::apply_scattering;
 using lights::channel_average;
 using lights::found_light;
+using lights::light_along;
 using lights::sample_light;
 
 namespace {
@@ -19,11 +20,9 @@ Rgb scattered_to_light(const Scene& scene, const ScatteringVertex& vertex, const
                        PathWeights weights, const MediumState& state, WalkContext& context) {
     apply_scattering<Media>(weights, s, vertex.position);
     if (is_black(weights.throughput)) return Rgb(0.0f);
-    MediumState there = Media && vertex.on_surface() ? vertex.state_towards(state, s.wi) : state;
+    const MediumState there = Media && vertex.on_surface() ? vertex.state_towards(state, s.wi) : state;
     const Ray ray{vertex.ray_origin(s.wi), s.wi};
-    Rgb emitted(0.0f);
-    const WalkEvent event = walk<Media>(scene, ray, there, weights, emitted, context);
-    return emitted + found_light<Media>(scene, event, ray, weights, &vertex.position);
+    return light_along<Media>(scene, ray, there, weights, &vertex.position, context);
 }
 
 /// Lights without a position, scattered once along the ray, and emission of media: by one sampled distance.

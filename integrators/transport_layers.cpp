@@ -20,8 +20,7 @@ std::vector<core::Layer> suffixed_transport_layers(bool media, const std::string
 }
 
 void store(const TransportSum& sum, core::PassImage& image, int x, int y, bool media) {
-    const std::size_t count = media ? transport_count : 3;
-    for (std::size_t i = 0; i < count; ++i) image.at(i, x, y) = sum.light[i];
+    for (std::size_t i = 0; i < transport_layer_count(media); ++i) image.at(i, x, y) = sum.light[i];
 }
 
 }  // namespace mote::integrators

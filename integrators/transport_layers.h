@@ -19,6 +19,9 @@ namespace mote::integrators {
 enum class Transport : std::uint8_t { emission, direct, indirect, single_scattering, multiple_scattering };
 inline constexpr std::size_t transport_count = 5;
 
+/// How many of them a scene has: those of media come last.
+constexpr std::size_t transport_layer_count(bool media) { return media ? transport_count : 3; }
+
 /// One estimate of a pixel, by layer.
 struct TransportSum {
     std::array<core::Rgb, transport_count> light{};

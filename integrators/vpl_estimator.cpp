@@ -32,7 +32,7 @@ class VplEstimator final : public Estimator {
         ssbc.bound = bound_;
         constexpr std::size_t reflected[] = {std::size_t(Transport::direct),
                                              std::size_t(Transport::indirect)};
-        ssbc_cost_ = add_screen_space_compensation(scene_, ssbc, reflected, first_compensation_layer(), film);
+        ssbc_cost_ = add_screen_space_compensation(scene_, ssbc, reflected, first_compensation_layer, film);
     }
 
     bool pass(const PassContext& context, PassImage& image) override {
@@ -75,6 +75,7 @@ class VplEstimator final : public Estimator {
 
   private:
     static constexpr int tile_size = 16;
+    static constexpr std::size_t first_compensation_layer = transport_layer_count(Media);
 
     void render_tile(const PassContext& context, PassImage& image, const lights::VplSet& vpls,
                      lights::ReceiverStore* store, int x0, int y0, int x1, int y1) {
@@ -127,9 +128,8 @@ class VplEstimator final : public Estimator {
         store(pixel.transport, image, x, y, Media);
         if (!settings_.compensates()) return;
         for (std::size_t i = 0; i < (Media ? 2u : 1u); ++i)
-            image.at(first_compensation_layer() + i, x, y) = pixel.compensation[i];
+            image.at(first_compensation_layer + i, x, y) = pixel.compensation[i];
     }
-    static std::size_t first_compensation_layer() { return transport_layers(Media, true).size(); }
 
     const Scene& scene_;
     RenderOptions options_;

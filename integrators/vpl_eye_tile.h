@@ -152,7 +152,8 @@ class EyeTile {
         if (Media && surface) lane.state = lane.vertex.state_towards(lane.state, next->wi);
         lane.ray = core::Ray{lane.vertex.ray_origin(next->wi), next->wi};
         if (next->delta) return true;
-        lane.sum.transport[direct] += light_along(lane);
+        lane.sum.transport[direct] += lights::light_along<Media>(scene_, lane.ray, lane.state, lane.weights,
+                                                                 &lane.vertex.position, walk_);
         return false;
     }
 
@@ -166,16 +167,6 @@ class EyeTile {
         receivers_.set(index, lane.vertex, throughput, lane.state, core::Rng(walk_.rng.next_u32()),
                        vpl_depth);
         compensation_.add(index, lane.vertex, throughput, lane.state, vpl_depth);
-    }
-
-    /// The other technique for direct light: what the sampled direction happens to hit.
-    core::Rgb light_along(Lane& lane) {
-        core::Rgb emitted(0.0f);
-        core::MediumState state = lane.state;
-        const core::WalkEvent event =
-            core::walk<Media>(scene_, lane.ray, state, lane.weights, emitted, walk_);
-        return emitted +
-               lights::found_light<Media>(scene_, event, lane.ray, lane.weights, &lane.vertex.position);
     }
 
     const core::Scene& scene_;

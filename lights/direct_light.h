@@ -35,6 +35,17 @@ template <bool Media>
 core::Rgb found_light(const core::Scene& scene, const core::WalkEvent& event, const core::Ray& ray,
                       const core::PathWeights& weights, const core::Vec3* previous);
 
+/// The other technique for direct light: what lies along `ray`, the direction that a vertex scattered to, and
+/// the emission on the way. `weights` come from apply_scattering(), `state` holds the media at the ray's
+/// origin; `previous` as for found_light().
+template <bool Media>
+core::Rgb light_along(const core::Scene& scene, const core::Ray& ray, core::MediumState state,
+                      core::PathWeights weights, const core::Vec3* previous, core::WalkContext& context) {
+    core::Rgb emitted(0.0f);
+    const core::WalkEvent event = core::walk<Media>(scene, ray, state, weights, emitted, context);
+    return emitted + found_light<Media>(scene, event, ray, weights, previous);
+}
+
 /// Multiplies `weights` by a scattering sampled at `position` and prepares its rescaled pdfs for the next
 /// event.
 template <bool Media>
