@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "media/heterogeneous_medium.h"
+#include "screenspace/eye_media.h"
 
 namespace mote::screenspace {
 
@@ -148,10 +149,14 @@ Rgb InScattering::scattered_at(const Ray& ray, float t, const MediumSegment& at,
     return sigma_s * at.medium->phase().eval(-ray.direction, light->wi) * to_light * light->weight;
 }
 
-MarchedRay InScattering::march(const Ray& ray, const MediumState& state, MarchScratch& scratch) const {
+MarchedRay InScattering::march(const Ray& ray, const MediumState& state, MarchScratch& scratch,
+                               const EyeMedia* shared) const {
     MarchedRay result;
     ++scratch.rays;
-    find_segments(scene_, ray, state, scratch.eye, scratch.walk);
+    if (shared)
+        shared->segments_up_to(ray.t_max, scratch.eye);
+    else
+        find_segments(scene_, ray, state, scratch.eye, scratch.walk);
     const auto lit = lit_part(ray);
     double t0 = 0.0, t1 = 0.0;  // of the media within the lit part
     if (lit)
@@ -169,7 +174,9 @@ MarchedRay InScattering::march(const Ray& ray, const MediumState& state, MarchSc
     for (const MediumSegment& s : scratch.eye) {
         float t = s.t0;
         const auto advance = [&](float to) {
-            if (s.medium && t < to)
+            if (shared)
+                result.transmittance = shared->transmittance(to, scratch.walk);
+            else if (s.medium && t < to)
                 result.transmittance *= marched_transmittance(*s.medium, {ray.origin, ray.direction, t, to},
                                                               settings_.voxels, scratch.walk);
             t = std::max(t, to);

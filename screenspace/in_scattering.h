@@ -55,6 +55,8 @@ core::Rgb marched_transmittance(const core::Medium& medium, const core::Ray& ray
 core::Rgb marched_transmittance(const core::Ray& ray, const std::vector<MediumSegment>& segments,
                                 float voxels, core::WalkContext& walk);
 
+class EyeMedia;
+
 class InScattering {
   public:
     /// The light must have a position (Scene::light_position). Keeps references to both.
@@ -66,8 +68,10 @@ class InScattering {
     /// The integral of 1/d^2 over a part of the ray, where d is the distance from the light [1/m].
     double unshadowed(const core::Ray& ray, double t0, double t1) const;
     /// The light that reaches ray.t_min from points up to ray.t_max, where the first surface is. `state`
-    /// holds the media at ray.t_min.
-    MarchedRay march(const core::Ray& ray, const core::MediumState& state, MarchScratch& scratch) const;
+    /// holds the media at ray.t_min. `shared`: what another light has found along this ray, at least up to
+    /// its end.
+    MarchedRay march(const core::Ray& ray, const core::MediumState& state, MarchScratch& scratch,
+                     const EyeMedia* shared = nullptr) const;
 
   private:
     void place_steps(const core::Ray& ray, double t0, double t1, std::vector<float>& distances) const;
