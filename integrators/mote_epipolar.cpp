@@ -17,11 +17,12 @@ class MoteEpipolar final : public Integrator {
   public:
     explicit MoteEpipolar(const Properties& p) : settings_(read_scattering_settings(p)) {
         settings_.sampling = ScatteringSampling::epipolar;
-        settings_.lines = checked_integer(p, "lines", 1024, 1, 1 << 20);
-        settings_.line.initial = checked_integer(p, "samples", 16, 2, 1 << 20);
-        settings_.line.cap = checked_integer(p, "max_samples", 1024, 2, 1 << 20);
+        settings_.lines = int(p.get_int_in("lines", 1024, 1, 1 << 20));
+        settings_.line.initial = int(p.get_int_in("samples", 16, 2, 1 << 20));
+        settings_.line.cap = int(p.get_int_in("max_samples", 1024, 2, 1 << 20));
         settings_.line.texels = p.get_float_in("texels", 1.0, 1e-3, 64.0);
         settings_.line.tolerance = float(p.get_float_in("tolerance", 0.05, 0.0, 1e6));
+        settings_.crossings = p.get_bool("crossings", false);
     }
 
     std::string type() const override { return "mote_epipolar"; }
@@ -55,6 +56,11 @@ Plan MoteEpipolar::plan(const Scene& scene, const Requirements& r) const {
              fmt::format("{} evenly spread, two at every discontinuity, {} at most", settings_.line.initial,
                          settings_.line.cap),
              "pixels that no line continues are marched themselves");
+    if (settings_.crossings && lights > 1)
+        plan.run("crossings", "samples where lines of two lights cross share their eye ray",
+                 "Engelhardt 2013, Sec. 9.5; shadow rays are not shared");
+    else if (settings_.crossings)
+        plan.leave_out("crossings", "nothing to share", "one light alone has lines");
     if (settings_.line.tolerance > 0.0f)
         plan.run("refinement",
                  fmt::format("where light or transmittance varies by more than {}", settings_.line.tolerance),
@@ -80,6 +86,8 @@ void register_mote_epipolar(Registry& registry) {
     parameters.push_back(
         {"tolerance", "float", "0.05",
          "lines are refined where light or transmittance varies by more; 0: at edges in depth alone"});
+    parameters.push_back({"crossings", "boolean", "false",
+                          "samples move to where lines of two lights cross, and share their eye ray"});
     registry.add(
         {Category::integrator, "mote_epipolar",
          "Light scattered at most once; in media from rays marched along epipolar lines.", parameters,

@@ -109,10 +109,10 @@ class MotePhotonMap final : public Integrator {
   public:
     explicit MotePhotonMap(const Properties& p) {
         settings_.eye = read_path_settings(p);
-        settings_.paths = std::uint32_t(integer_in(p, "photon_paths", 100000, 1, std::int64_t(1) << 26));
-        settings_.neighbours = std::size_t(integer_in(p, "neighbours", 50, 2, 1 << 16));
+        settings_.paths = std::uint32_t(p.get_int_in("photon_paths", 100000, 1, std::int64_t(1) << 26));
+        settings_.neighbours = std::size_t(p.get_int_in("neighbours", 50, 2, 1 << 16));
         settings_.max_photons =
-            std::size_t(integer_in(p, "max_photons", std::int64_t(1) << 23, 1, std::int64_t(1) << 31));
+            std::size_t(p.get_int_in("max_photons", std::int64_t(1) << 23, 1, std::int64_t(1) << 31));
         settings_.alpha = p.get_float("alpha", 2.0 / 3.0);
         if (!(settings_.alpha > 0.0 && settings_.alpha <= 1.0))
             throw InputError("alpha must lie above 0 and not above 1 (1: kernels do not shrink)",
@@ -137,14 +137,6 @@ class MotePhotonMap final : public Integrator {
     }
 
   private:
-    static std::int64_t integer_in(const Properties& p, const char* name, std::int64_t value,
-                                   std::int64_t least, std::int64_t most) {
-        const std::int64_t given = p.get_int(name, value);
-        if (given < least || given > most)
-            throw InputError(fmt::format("{} must lie between {} and {}", name, least, most),
-                             p.where_of(name));
-        return given;
-    }
     PhotonMapSettings settings_;
 };
 

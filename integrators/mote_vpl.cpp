@@ -51,6 +51,8 @@ class MoteVpl final : public Integrator {
         if (scene.has_media())
             layers.push_back(
                 {"compensation_volume", "what the bound took from light first scattered in a medium"});
+        if (settings_.screen_space)
+            for (Layer& layer : settings_.screen_space->film_layers()) layers.push_back(std::move(layer));
         return layers;
     }
     Plan plan(const Scene& scene, const Requirements& requirements) const override;
@@ -74,10 +76,7 @@ void MoteVpl::read_compensation(const Properties& properties) {
         throw InputError("compensation brings back what a bound takes: it needs bounded=true",
                          properties.where_of("bounded"));
     const bool one_to_one = settings_.compensation.enabled && settings_.vpls_shared_out();
-    const auto samples = properties.get_int("eye_samples", one_to_one ? 4 : 1);
-    if (samples < 1 || samples > 4096)
-        throw InputError("eye_samples must lie between 1 and 4096", properties.where_of("eye_samples"));
-    settings_.eye_samples = int(samples);
+    settings_.eye_samples = int(properties.get_int_in("eye_samples", one_to_one ? 4 : 1, 1, 4096));
 }
 
 void MoteVpl::plan_bound(Plan& plan, const Bounds3& surfaces) const {

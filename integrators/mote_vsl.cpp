@@ -134,24 +134,14 @@ class VslEstimator final : public Estimator {
     double radius_sum_ = 0.0;
 };
 
-std::int64_t int_in(const Properties& p, const std::string& name, std::int64_t value, std::int64_t lower,
-                    std::int64_t upper) {
-    const std::int64_t result = p.get_int(name, value);
-    if (result < lower || result > upper)
-        throw InputError(
-            name + " must lie between " + std::to_string(lower) + " and " + std::to_string(upper),
-            p.where_of(name));
-    return result;
-}
-
 class MoteVsl final : public Integrator {
   public:
     explicit MoteVsl(const Properties& properties) {
         settings_.eye = read_path_settings(properties);
-        settings_.paths = std::uint32_t(int_in(properties, "paths", 256, 0, std::int64_t(1) << 26));
+        settings_.paths = std::uint32_t(properties.get_int_in("paths", 256, 0, std::int64_t(1) << 26));
         auto& gather = settings_.gather;
-        gather.neighbours = std::uint32_t(int_in(properties, "neighbours", 10, 1, 1000));
-        gather.samples = int(int_in(properties, "samples", 4, 1, 4096));
+        gather.neighbours = std::uint32_t(properties.get_int_in("neighbours", 10, 1, 1000));
+        gather.samples = int(properties.get_int_in("samples", 4, 1, 4096));
         gather.radius_scale = float(properties.get_float_in("radius_scale", 1.0, 0.0, 1e6));
         gather.visibility = properties.get_choice("visibility", "sample", {"sample", "light"}) == "light"
                                 ? compensation::SphereVisibility::per_light

@@ -9,9 +9,9 @@
 // tested against.
 #pragma once
 
-#include "lights/direct_light.h"
 #include "integrators/equiangular.h"
 #include "integrators/transport_layers.h"
+#include "lights/direct_light.h"
 
 namespace mote::integrators {
 

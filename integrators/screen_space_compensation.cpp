@@ -5,6 +5,7 @@
 #include "core/scene/properties.h"
 #include "core/scene/registry.h"
 #include "screenspace/g_buffer.h"
+#include "screenspace/ssbc_visibility.h"
 
 namespace mote::integrators {
 
@@ -18,13 +19,13 @@ std::shared_ptr<Object> make(const Properties& p) {
         throw InputError("screen-space compensation knows surfaces alone, not '" + printable(receivers) +
                              "'; for media nest <compensation name=\"media\" type=\"approximate\"/>",
                          p.where_of("receivers"));
-    screenspace::SsbcSettings settings;
-    const auto steps = p.get_int("steps", 2);
-    if (steps < 1 || steps > 100) throw InputError("steps must lie between 1 and 100", p.where_of("steps"));
-    settings.steps = int(steps);
-    settings.hierarchical = p.get_bool("hierarchical", true);
-    settings.half_resolution = p.get_bool("half_resolution", false);
-    settings.blur = float(p.get_float_in("blur", 0.0, 0.0, 100.0));
+    ScreenSpaceSettings settings;
+    settings.ssbc.steps = int(p.get_int_in("steps", 2, 1, 100));
+    settings.ssbc.hierarchical = p.get_bool("hierarchical", true);
+    settings.ssbc.half_resolution = p.get_bool("half_resolution", false);
+    settings.ssbc.blur = float(p.get_float_in("blur", 0.0, 0.0, 100.0));
+    settings.layers = int(p.get_int_in("layers", 1, 1, 16));
+    settings.visibility = p.get_bool("visibility", false);
     compensation::CompensationSettings media;
     if (const auto nested = p.child<compensation::Compensation>("media")) media = nested->settings();
     media.surfaces = false;
@@ -33,28 +34,46 @@ std::shared_ptr<Object> make(const Properties& p) {
 
 }  // namespace
 
-ScreenSpaceCost add_screen_space_compensation(const Scene& scene, const screenspace::SsbcSettings& settings,
-                                              std::span<const std::size_t> reflected, std::size_t target,
-                                              Film& film) {
+std::vector<Layer> ScreenSpaceSettings::film_layers() const {
+    std::vector<Layer> result;
+    for (std::size_t side = 0; side < screenspace::hidden_side_count(layers); ++side)
+        result.push_back({"hidden_light_" + screenspace::hidden_side_name(side),
+                          "light that hidden surfaces reflect: before the layer of this number, or behind it",
+                          true});
+    return result;
+}
+
+ScreenSpaceCost add_screen_space_compensation(const Scene& scene, const ScreenSpaceSettings& settings,
+                                              float bound, const ScreenSpaceLayers& layers, Film& film) {
     const auto begin = std::chrono::steady_clock::now();
-    const auto surfaces =
-        screenspace::ssbc_surfaces(screenspace::make_g_buffer(scene, film.width(), film.height()));
+    const auto buffers = screenspace::make_g_buffers(scene, film.width(), film.height(), settings.layers);
     std::vector<Rgb> light(film.pixels(), Rgb(0.0f));
-    for (const std::size_t layer : reflected) {
+    for (const std::size_t layer : layers.reflected) {
         const std::vector<Rgb> part = film.mean(layer);
         for (std::size_t i = 0; i < light.size(); ++i) light[i] += part[i];
     }
-    const screenspace::SsbcResult result = screenspace::compensate(surfaces, light, settings);
-    film.set_mean(target, result.compensation);
+    std::vector<screenspace::HiddenSide> hidden;
+    for (auto& side : screenspace::hidden_sides(buffers))
+        hidden.push_back({std::move(side), film.mean(layers.hidden + hidden.size())});
+    screenspace::SsbcSettings ssbc = settings.ssbc;
+    const screenspace::TracedVisibility traced(scene);
+    ssbc.bound = bound, ssbc.visibility = settings.visibility ? &traced : nullptr;
+    const screenspace::SsbcResult result =
+        screenspace::compensate(screenspace::ssbc_surfaces(buffers[0]), light, hidden, ssbc);
+    film.set_mean(layers.target, result.compensation);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
     return {result.counts.samples, seconds.count()};
 }
 
-void plan_screen_space(Plan& plan, const Requirements& r, const screenspace::SsbcSettings& settings) {
-    plan.run("compensation", "screen space, " + std::to_string(settings.steps) + " step(s), on surfaces",
+void plan_screen_space(Plan& plan, const Requirements& r, const ScreenSpaceSettings& settings) {
+    plan.run("compensation", "screen space, " + std::to_string(settings.ssbc.steps) + " step(s), on surfaces",
              "after the last pass, from the picture itself");
+    if (settings.layers > 1)
+        plan.run("hidden surfaces", "the first " + std::to_string(settings.layers) + " along every ray",
+                 "both sides; every pass gathers their light as well");
     plan.miss("compensation", "of surfaces by what the camera does not see",
-              "hidden surfaces and those outside of the picture are not in it");
+              settings.layers > 1 ? "surfaces outside of the picture, and behind those layers"
+                                  : "hidden surfaces and those outside of the picture are not in it");
     if (r.any_glossy() || r.any_delta())
         plan.miss("compensation", "of mirrors, glass and the glossy part of surfaces",
                   "surfaces count with what they reflect evenly");
@@ -72,6 +91,10 @@ void register_screen_space_compensation(Registry& registry) {
           {"hierarchical", "boolean", "true", "false: sum over all pixels, quadratic in their number"},
           {"half_resolution", "boolean", "false", "gather at one pixel of four, then upsample"},
           {"blur", "float", "0", "standard deviation of an edge-preserving blur of the result [pixels]"},
+          {"layers", "integer", "1",
+           "surfaces along every ray that send light; from 2 on also hidden ones, gathered in every pass"},
+          {"visibility", "boolean", "false",
+           "shadow rays to what is summed, to measure what is lost without"},
           {"receivers", "string", "surfaces", "nothing else: media are not in the picture's G-buffer"},
           {"media", "compensation", "none", "compensation of light first scattered in media"}},
          R"(<compensation type="screen_space"><integer name="steps" value="3"/></compensation>)"},

@@ -23,6 +23,7 @@ struct ScatteringSettings {
     double spacing = 4.0;  ///< of sub-sampling [pixels]
     int lines = 1024;      ///< epipolar lines of a light
     screenspace::LineSampling line;
+    bool crossings = false;     ///< samples move to where lines of two lights cross
     bool show_samples = false;  ///< a layer that counts the marched rays of every pixel
 };
 
@@ -34,9 +35,6 @@ std::unique_ptr<core::Estimator> make_single_scattering_estimator(const core::Sc
 ScatteringSettings read_scattering_settings(const core::Properties& properties);
 /// Their rows in a manual page.
 std::vector<core::Parameter> scattering_parameters();
-/// An integer or a number of a scene file within bounds. Throws InputError.
-int checked_integer(const core::Properties& properties, const std::string& name, int value, int lower,
-                    int upper);
 
 /// emission, direct, and where there are media single_scattering, and the marched rays when asked for.
 std::vector<core::Layer> single_scattering_layers(bool media, const ScatteringSettings& settings);

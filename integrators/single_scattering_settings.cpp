@@ -8,22 +8,15 @@ namespace mote::integrators {
 
 using namespace core;
 
-int checked_integer(const Properties& p, const std::string& name, int value, int lower, int upper) {
-    const auto n = p.get_int(name, value);
-    if (n < lower || n > upper)
-        throw InputError(fmt::format("{} must lie between {} and {}", name, lower, upper), p.where_of(name));
-    return int(n);
-}
-
 ScatteringSettings read_scattering_settings(const Properties& p) {
     ScatteringSettings s;
-    s.march.steps = checked_integer(p, "steps", 64, 1, 1 << 20);
+    s.march.steps = int(p.get_int_in("steps", 64, 1, 1 << 20));
     s.march.rule = p.get_choice("march", "equiangular", {"equiangular", "uniform"}) == "uniform"
                        ? screenspace::MarchRule::uniform
                        : screenspace::MarchRule::equiangular;
     s.march.voxels = float(p.get_float_in("voxels", 1.0, 1e-3, 1e6));
     s.line.depth_tolerance = float(p.get_float_in("depth_tolerance", 0.02, 0.0, 1e6));
-    s.eye.max_depth = checked_integer(p, "max_depth", 32, 1, 1 << 20);
+    s.eye.max_depth = int(p.get_int_in("max_depth", 32, 1, 1 << 20));
     s.show_samples = p.get_bool("show_samples", false);
     return s;
 }

@@ -16,24 +16,17 @@ namespace {
 /// Building a texel takes as long as tracing so many receivers (docs/media.md).
 constexpr double receivers_per_texel = 5.0;
 
-int int_in(const Properties& p, const std::string& name, int default_value, int lower, int upper) {
-    const auto value = p.get_int(name, default_value);
-    if (value < lower || value > upper)
-        throw InputError(fmt::format("{} must lie between {} and {}", name, lower, upper), p.where_of(name));
-    return int(value);
-}
-
 std::shared_ptr<Object> make_shadow_map(const Properties& p) {
     VisibilitySettings s;
     s.shadow_maps = true;
-    s.size = int_in(p, "size", s.size, 4, 8192);
-    s.light_size = int_in(p, "light_size", s.light_size, 0, 8192);
-    s.maps = int_in(p, "maps", s.maps, 1, 1024);
+    s.size = int(p.get_int_in("size", s.size, 4, 8192));
+    s.light_size = int(p.get_int_in("light_size", s.light_size, 0, 8192));
+    s.maps = int(p.get_int_in("maps", s.maps, 1, 1024));
     s.map.storage = p.get_choice("storage", "intervals", {"intervals", "nodes"}) == "nodes"
                         ? Storage::nodes
                         : Storage::intervals;
-    s.map.intervals = int_in(p, "intervals", s.map.intervals, 1, 4096);
-    s.map.nodes = int_in(p, "nodes", s.map.nodes, 2, 4096);
+    s.map.intervals = int(p.get_int_in("intervals", s.map.intervals, 1, 4096));
+    s.map.nodes = int(p.get_int_in("nodes", s.map.nodes, 2, 4096));
     s.map.step = float(p.get_float_in("step", 1.0, 1e-3, 1e3));
     s.map.max_bytes = std::size_t(1e6 * p.get_float_in("max_megabytes", 64.0, 1e-6, 1e6));
     s.where = p.has("size") ? p.where_of("size") : p.where;

@@ -150,6 +150,16 @@ double Properties::get_float_in(const std::string& name, double default_value, d
     return value;
 }
 
+std::int64_t Properties::get_int_in(const std::string& name, std::int64_t default_value, std::int64_t lower,
+                                    std::int64_t upper) const {
+    const std::int64_t value = get_int(name, default_value);
+    if (value < lower || value > upper)
+        throw InputError(
+            name + " must lie between " + std::to_string(lower) + " and " + std::to_string(upper),
+            where_of(name));
+    return value;
+}
+
 Rgb Properties::get_rgb_in(const std::string& name, const Rgb& default_value, float lower,
                            float upper) const {
     const Rgb value = get_rgb(name, default_value);

@@ -64,6 +64,9 @@ class Properties {
                            const std::vector<std::string>& choices) const;
     /// Like get_float, and throws InputError when the value lies outside [lower, upper].
     double get_float_in(const std::string& name, double default_value, double lower, double upper) const;
+    /// Like get_int, and throws InputError when the value lies outside [lower, upper].
+    std::int64_t get_int_in(const std::string& name, std::int64_t default_value, std::int64_t lower,
+                            std::int64_t upper) const;
     /// Like get_rgb, and throws InputError when a channel lies outside [lower, upper].
     Rgb get_rgb_in(const std::string& name, const Rgb& default_value, float lower, float upper) const;
 
