@@ -1,18 +1,21 @@
 // What the camera sees at pixel centres: plain buffers, one value a pixel, row by row from the top.
 //
 // Screen-space methods read these buffers and nothing else of the scene. Whoever has other sources than
-// primary rays fills them himself: every buffer has width * height entries.
+// primary rays fills them himself: every buffer has width * height entries. Several layers hold what lies
+// behind: layer k the k-th surface along the ray of each pixel (depth peeling).
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
+#include "core/math/ray.h"
 #include "core/math/vec.h"
 
 namespace mote::core {
 class Camera;
 class Scene;
 class Shape;
+struct SurfaceHit;
 }  // namespace mote::core
 
 namespace mote::screenspace {
@@ -25,6 +28,7 @@ struct GBuffer {
     std::vector<core::Vec3> geometric_normal, shading_normal;  ///< unit, turned to the viewer
     std::vector<core::Vec3> view;        ///< unit, along the ray, away from the viewer; set for misses too
     std::vector<core::Rgb> reflectance;  ///< albedo of the BSDF seen from the viewer, [0, 1]
+    std::vector<core::Rgb> reflectance_behind;  ///< the same of its other side, seen along the ray
     std::vector<float> solid_angle;  ///< of the pixel [sr]; set for misses too; 0 for parallel projections
     std::vector<std::uint8_t> hit;   ///< 1 where there is a surface
     std::vector<std::uint8_t> emissive;     ///< 1 where that surface is a light
@@ -45,6 +49,18 @@ struct GBuffer {
 /// One primary ray through the centre of every pixel, and through the centre of the lens. Boundaries between
 /// media are not seen. Film positions are those of the camera: the picture must have the size of its film.
 GBuffer make_g_buffer(const core::Scene& scene, int width, int height);
+
+/// The first `count` surfaces along the ray, or as many as there are, into `hits`; distances from its origin.
+/// Each search goes on from the surface found before as rays of paths do (offset_origin): it meets no surface
+/// twice, and loses none that lies farther behind it than rounding moves both.
+void peel(const core::Scene& scene, const core::Ray& ray, int count, std::vector<core::SurfaceHit>& hits);
+
+/// Layer after layer, the first of which is make_g_buffer(). Light passes none of the surfaces here: behind a
+/// mirror or glass lies what stands there. Throws std::invalid_argument unless `layers` is positive.
+std::vector<GBuffer> make_g_buffers(const core::Scene& scene, int width, int height, int layers);
+
+/// The other side of the same surfaces, as a viewer behind them would see it who looks back along the rays.
+GBuffer seen_from_behind(GBuffer buffer);
 
 /// Solid angle that pixel (x, y) covers as seen from a camera [sr].
 float pixel_solid_angle(const core::Camera& camera, int x, int y);

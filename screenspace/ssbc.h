@@ -7,12 +7,15 @@
 //   R = R_0 + T_r R = sum_n T_r^n R_0        Engelhardt 2013, Eq. 11.3
 //
 // N steps add the terms up to T_r^N and lack T_r^(N+1) R. No visibility is tested and no VPL is asked. What
-// the camera does not see is missing: surfaces behind others, and beyond the borders of the picture.
+// the camera does not see is missing: surfaces behind others, and beyond the borders of the picture. The
+// former can be given as hidden sides (ssbc_layers.h). They send light from the first step on and receive it
+// as well, for the steps after.
 #pragma once
 
 #include <span>
 #include <vector>
 
+#include "screenspace/ssbc_layers.h"
 #include "screenspace/ssbc_sum.h"
 #include "screenspace/ssbc_surfaces.h"
 #include "screenspace/ssbc_upsampling.h"
@@ -32,6 +35,9 @@ struct SsbcSettings {
 
     bool half_resolution = false;  ///< gather at one pixel of four, see ssbc_upsampling.h
     UpsamplingRules upsampling{};
+    /// Shadow rays between receivers and what they sum: no longer in screen space, to measure what is lost
+    /// without. Null: light passes everything. Must outlive the call.
+    const ResidualVisibility* visibility = nullptr;
     float blur = 0.0f;  ///< standard deviation of an edge-preserving blur of the result [pixels]; 0: none
 
     /// Throws std::invalid_argument naming what is out of range.
@@ -50,5 +56,14 @@ struct SsbcResult {
 /// range.
 SsbcResult compensate(const SsbcSurfaces& surfaces, std::span<const core::Rgb> reflected,
                       const SsbcSettings& settings);
+/// The same with surfaces that the picture does not show. What is returned is of those that it shows.
+SsbcResult compensate(const SsbcSurfaces& surfaces, std::span<const core::Rgb> reflected,
+                      std::span<const HiddenSide> hidden, const SsbcSettings& settings);
+
+/// Per side and pixel: 1 where light that is sent from there can come to be seen after the steps. Only what
+/// they reflect need be known.
+std::vector<std::vector<std::uint8_t>> sides_that_matter(const SsbcSurfaces& surfaces,
+                                                         std::span<const SsbcSurfaces> hidden,
+                                                         const SsbcSettings& settings);
 
 }  // namespace mote::screenspace

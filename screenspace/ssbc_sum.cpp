@@ -71,6 +71,7 @@ class PatchSum {
     }
     void add(const SurfaceNode& node, const Rgb& radiance, SumCounts& counts) {
         residual_of(packet_, node, sum_.bound, lanes_);
+        if (sum_.visibility) sum_.visibility->shadow(packet_, node, lanes_);
         sums.add(lanes_, node.area * radiance, node.area);
         ++counts.samples;
     }

@@ -33,11 +33,20 @@ struct SumCounts {
     void operator+=(const SumCounts& other);
 };
 
+/// What stands between receivers and a node: for measurements, since screen space knows nothing of it.
+class ResidualVisibility {
+  public:
+    virtual ~ResidualVisibility() = default;
+    /// Sets those terms of `residual` to zero whose receivers do not see the middle of the node.
+    virtual void shadow(const ReceiverPacket& receivers, const SurfaceNode& node, Lanes& residual) const = 0;
+};
+
 /// Sums for one picture and bound b [1/m^2]; b must not be negative.
 struct ResidualSum {
     const SurfacePyramid& surfaces;
     const LightPyramid& light;
     float bound;
+    const ResidualVisibility* visibility = nullptr;  ///< null: left out
 
     /// E at the receivers, from every pixel of the picture; of the rules, those for pixels apply.
     SumCounts flat(const RefinementRules& rules, std::span<const SsbcReceiver> receivers,
