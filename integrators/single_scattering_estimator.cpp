@@ -6,6 +6,7 @@
 #include "screenspace/epipolar_picture.h"
 #include "screenspace/in_scattering_grid.h"
 #include "screenspace/in_scattering_rays.h"
+#include "screenspace/shared_eye_rays.h"
 
 namespace mote::integrators {
 
@@ -33,7 +34,7 @@ struct EyePoint {
 };
 
 struct ScatteringCounts {
-    std::uint64_t rays = 0, steps = 0, filled = 0, lines = 0, texels = 0, candidates = 0;
+    std::uint64_t rays = 0, steps = 0, filled = 0, lines = 0, texels = 0, candidates = 0, shared = 0;
     std::size_t bytes = 0;
 };
 
@@ -61,8 +62,18 @@ class SingleScatteringEstimator final : public Estimator {
     void render_eye(const PassContext& context, const PassNumbers& numbers,
                     std::span<const InScattering> lights, PassImage& image, int x, int y,
                     MarchScratch& scratch);
+    using Lines = std::unique_ptr<EpipolarPicture>;
+    Lines find_lines(const PassNumbers& numbers, const InScattering& light, const InScatteringRays& source,
+                     const EpipolarPicture::Loop& loop) const;
+    std::vector<Lines> share_rays(const PassContext& context, const PassNumbers& numbers,
+                                  std::span<const InScattering> lights);
     bool scatter(const PassContext& context, const PassNumbers& numbers, const InScattering& light,
-                 PassImage& image);
+                 Lines lines, PassImage& image);
+    static EpipolarPicture::Loop loop_of(const PassContext& context) {
+        return [&context](int count, const std::function<void(int)>& body) {
+            for_each_tile(count, 1, 1, context.cancelled, [&](int i, int, int, int) { body(i); });
+        };
+    }
     void show(const std::vector<Vec2d>& places, PassImage& image) const;
     template <typename LightAt>
     bool upsample(const PassContext& context, const PassNumbers& numbers, const InScattering& light,
@@ -152,36 +163,68 @@ bool SingleScatteringEstimator<Media>::upsample(const PassContext& context, cons
         });
 }
 
+/// The light's lines, searched for edges; null for a light at the eye.
 template <bool Media>
-bool SingleScatteringEstimator<Media>::scatter(const PassContext& context, const PassNumbers& numbers,
-                                               const InScattering& light, PassImage& image) {
-    const InScatteringRays source(scene_, light, numbers.lens);
-    const auto loop = [&](int count, const std::function<void(int)>& body) {
-        for_each_tile(count, 1, 1, context.cancelled, [&](int i, int, int, int) { body(i); });
-    };
+auto SingleScatteringEstimator<Media>::find_lines(const PassNumbers& numbers, const InScattering& light,
+                                                  const InScatteringRays& source,
+                                                  const EpipolarPicture::Loop& loop) const -> Lines {
     // Closer to the eye than this, single precision leaves no direction to tell lines apart.
     const double nearest = 1e-5 * std::max(1e-30, double(scene_.bounds().radius()));
     const FilmPoint at = FilmProjection(scene_.camera(), options_.width, options_.height, numbers.lens)
                              .project(Vec3d(light.light_position()), nearest);
-    const bool at_eye = at.x == 0.0 && at.y == 0.0 && at.w == 0.0;
+    if (at.x == 0.0 && at.y == 0.0 && at.w == 0.0) return nullptr;
+    LineSampling sampling = settings_.line;
+    sampling.shift = double(numbers.lines.y);
+    return std::make_unique<EpipolarPicture>(
+        EpipolarLines(at, frame(), settings_.lines, double(numbers.lines.x)), sampling, source, loop);
+}
+
+/// The lines of all lights, with what was marched for two of them at once.
+template <bool Media>
+auto SingleScatteringEstimator<Media>::share_rays(const PassContext& context, const PassNumbers& numbers,
+                                                  std::span<const InScattering> lights)
+    -> std::vector<Lines> {
+    std::vector<Lines> all;
+    std::vector<EpipolarPicture*> pictures;
+    std::vector<const InScattering*> with_lines;
+    for (const InScattering& light : lights) {
+        const InScatteringRays source(scene_, light, numbers.lens);
+        all.push_back(find_lines(numbers, light, source, loop_of(context)));
+        counters_.add(source.rays(), source.tracking());
+        if (all.back()) pictures.push_back(all.back().get()), with_lines.push_back(&light);
+    }
+    const SharedEyeRays rays(scene_, with_lines, settings_.march.voxels, numbers.lens);
+    const std::size_t shared = march_crossings(pictures, rays, loop_of(context));
+    std::size_t bytes = shared * crossing_bytes + points_.capacity() * sizeof(EyePoint);
+    for (const EpipolarPicture* picture : pictures) bytes += picture->counts().bytes;
+    counts_.shared += shared, counts_.bytes = std::max(counts_.bytes, bytes);
+    counts_.rays += rays.done().rays, counts_.steps += rays.done().steps;
+    counters_.add(rays.done().walk.rays, rays.done().walk.tracking);
+    return all;
+}
+
+template <bool Media>
+bool SingleScatteringEstimator<Media>::scatter(const PassContext& context, const PassNumbers& numbers,
+                                               const InScattering& light, Lines lines, PassImage& image) {
+    const InScatteringRays source(scene_, light, numbers.lens);
+    const auto loop = loop_of(context);
+    const bool epipolar = settings_.sampling == ScatteringSampling::epipolar;
+    if (epipolar && !lines) lines = find_lines(numbers, light, source, loop);
     bool done;
     std::size_t bytes;
-    if (settings_.sampling == ScatteringSampling::epipolar && !at_eye) {
-        LineSampling sampling = settings_.line;
-        sampling.shift = double(numbers.lines.y);
-        const EpipolarPicture picture(EpipolarLines(at, frame(), settings_.lines, double(numbers.lines.x)),
-                                      sampling, source, loop);
+    if (lines) {
+        lines->march(source, loop);
         if (context.cancelled) return false;
         done = upsample(context, numbers, light, source, image,
                         [&](const Vec2d& film, const RayEnd& end, InScatteringTask& task) {
-                            return picture.light_at(film, end, task);
+                            return lines->light_at(film, end, task);
                         });
-        if (settings_.show_samples) show(picture.marched_at(), image);
-        const PictureCounts counts = picture.counts();
+        if (settings_.show_samples) show(lines->marched_at(), image);
+        const PictureCounts counts = lines->counts();
         counts_.lines += counts.lines, counts_.texels += counts.texels, bytes = counts.bytes;
     } else {
         double spacing = settings_.spacing;
-        if (settings_.sampling == ScatteringSampling::epipolar)  // as many rays as the lines would have
+        if (epipolar)  // as many rays as the lines would have
             spacing = std::max(1.0, std::sqrt(double(options_.width) * double(options_.height) /
                                               (double(settings_.lines) * settings_.line.initial)));
         const InScatteringGrid grid(frame(), spacing, Vec2d(numbers.grid), settings_.line.depth_tolerance,
@@ -223,8 +266,10 @@ bool SingleScatteringEstimator<Media>::pass(const PassContext& context, PassImag
                                     });
     if (!eyes) return false;
     if (full) return true;
-    for (const InScattering& light : lights)
-        if (!scatter(context, numbers, light, image)) return false;
+    std::vector<Lines> lines(lights.size());
+    if (settings_.crossings && lights.size() > 1) lines = share_rays(context, numbers, lights);
+    for (std::size_t i = 0; i < lights.size(); ++i)
+        if (!scatter(context, numbers, lights[i], std::move(lines[i]), image)) return false;
     return true;
 }
 
@@ -241,6 +286,7 @@ void SingleScatteringEstimator<Media>::add_statistics(Statistics& statistics) co
     if (settings_.sampling != ScatteringSampling::epipolar) return;
     statistics.values["epipolar_lines"] += double(counts_.lines);
     statistics.values["epipolar_texels"] += double(counts_.texels);
+    if (settings_.crossings) statistics.values["shared_rays"] += double(counts_.shared);
 }
 
 }  // namespace

@@ -9,29 +9,36 @@ using namespace core;
 
 EpipolarPicture::EpipolarPicture(EpipolarLines lines, const LineSampling& settings,
                                  const InScatteringSource& source, const Loop& loop)
-    : lines_(std::move(lines)), depth_tolerance_(settings.depth_tolerance) {
-    const int count = int(lines_.lines().size());
-    std::vector<std::optional<SampledLine>> sampled(lines_.lines().size());
-    loop(count, [&](int i) {
+    : lines_(std::move(lines)), settings_(settings) {
+    std::vector<std::optional<SampledLine>> found(lines_.lines().size());
+    loop(int(found.size()), [&](int i) {
         const auto task = source.start();
-        sampled[std::size_t(i)].emplace(lines_.lines()[std::size_t(i)], settings, *task);
+        found[std::size_t(i)].emplace(lines_.lines()[std::size_t(i)], settings_, *task);
+    });
+    sampled_.reserve(found.size());
+    for (auto& line : found) {
+        if (line) sampled_.push_back(std::move(*line));
+    }
+    if (sampled_.size() < found.size()) sampled_.clear();  // the loop was cancelled
+}
+
+void EpipolarPicture::march(const InScatteringSource& source, const Loop& loop) {
+    loop(int(sampled_.size()), [&](int i) {
+        const auto task = source.start();
+        sampled_[std::size_t(i)].march(settings_, *task);
     });
     double sum = 0.0, weights = 0.0;
-    for (const auto& line : sampled) {
-        if (!line) return;  // the loop was cancelled
-        for (const LineSample& s : line->samples()) {
+    for (const SampledLine& line : sampled_)
+        for (const LineSample& s : line.samples()) {
             // Lines are close to each other near the light: a sample stands for an area that grows with the
             // distance.
             const double weight = lines_.light_inside() ? double(s.texel) : 1.0;
             sum += weight * double(s.weight * max_component(s.light.radiance)), weights += weight;
         }
-    }
     const float mean = weights > 0.0 ? float(sum / weights) : 0.0f;
-    sampled_.reserve(sampled.size());
-    for (auto& line : sampled) sampled_.push_back(std::move(*line));
-    loop(count, [&](int i) {
+    loop(int(sampled_.size()), [&](int i) {
         const auto task = source.start();
-        sampled_[std::size_t(i)].finish(settings, mean, *task);
+        sampled_[std::size_t(i)].finish(settings_, mean, *task);
     });
 }
 
@@ -42,8 +49,9 @@ std::optional<Rgb> EpipolarPicture::texel_light(const SampledLine& line, double 
     const double last = double(texels.size() - 1);
     if (texel < 0.0 || texel > last) return std::nullopt;
     const auto usable = [&](std::size_t i) {
-        return texels[i].known && continues(end, texels[i].distance, texels[i].surface, depth_tolerance_,
-                                            [&] { return task.ray(line.film(double(i))); });
+        return texels[i].known &&
+               continues(end, texels[i].distance, texels[i].surface, settings_.depth_tolerance,
+                         [&] { return task.ray(line.film(double(i))); });
     };
     const auto i = std::size_t(texel), j = std::min(i + 1, texels.size() - 1);
     const auto f = float(texel - double(i));

@@ -25,14 +25,19 @@ class EpipolarPicture {
     /// Runs body(i) for i in [0, count), in parallel or not; every body is independent of the others.
     using Loop = std::function<void(int count, const std::function<void(int)>& body)>;
 
+    /// Finds what is lit along all lines, and its edges.
     EpipolarPicture(EpipolarLines lines, const LineSampling& settings, const InScatteringSource& source,
                     const Loop& loop);
+    /// Marches, refines and interpolates.
+    void march(const InScatteringSource& source, const Loop& loop);
 
     /// The light scattered into the ray through `film`, whose end is `end`.
     std::optional<core::Rgb> light_at(const Vec2d& film, const RayEnd& end, InScatteringTask& task) const;
 
     const EpipolarLines& lines() const { return lines_; }
     std::span<const SampledLine> sampled() const { return sampled_; }
+    SampledLine& line(std::size_t i) { return sampled_[i]; }
+    const LineSampling& settings() const { return settings_; }
     PictureCounts counts() const;
     /// Where rays were marched.
     std::vector<Vec2d> marched_at() const;
@@ -49,7 +54,7 @@ class EpipolarPicture {
             InScatteringTask& task) const;
 
     EpipolarLines lines_;
-    float depth_tolerance_;
+    LineSampling settings_;
     std::vector<SampledLine> sampled_;
 };
 

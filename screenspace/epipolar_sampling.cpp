@@ -34,17 +34,40 @@ LineSample half_way(const LineSample& a, const LineSample& b, const LineSample& 
 SampledLine::SampledLine(const EpipolarLine& line, const LineSampling& settings, InScatteringTask& task)
     : line_(line), texels_(std::size_t(std::ceil(settings.texels * line.length())) + 1) {
     find_runs(settings.depth_tolerance, task);
-    place(settings);
-    for (LineSample& s : samples_) s = march(s.texel, task);
+    find_spread(settings);
 }
 
-LineSample SampledLine::march(std::int32_t texel, InScatteringTask& task) {
-    const Vec2d p = film(texel);
+bool SampledLine::lit(double texel) const {
+    if (!(texel >= 0.0 && texel <= double(texels_.size() - 1))) return false;
+    const auto run = texels_[std::size_t(std::floor(texel))].run;
+    return run >= 0 && run == texels_[std::size_t(std::ceil(texel))].run;
+}
+
+void SampledLine::add(double texel, const RayEnd& end, const MarchedRay& light) {
+    LineSample sample{float(texel), end.weight, light};
+    sample.light.radiance /= end.weight;
+    samples_.push_back(sample);
+    ++marched_, at(sample.texel).marched = true;
+}
+
+void SampledLine::march(const LineSampling& settings, InScatteringTask& task) {
+    const std::size_t added = samples_.size();
+    place(settings);
+    for (std::size_t i = added; i < samples_.size(); ++i) samples_[i] = march_texel(samples_[i].texel, task);
+    sort_samples();
+}
+
+LineSample SampledLine::march_texel(float texel, InScatteringTask& task) {
+    const Vec2d p = film(double(texel));
     const RayEnd end = task.end_of(p);
     LineSample sample{texel, end.weight, task.march(p, end)};
     sample.light.radiance /= end.weight;
-    ++marched_, texels_[std::size_t(texel)].marched = true;
+    ++marched_, at(texel).marched = true;
     return sample;
+}
+
+void SampledLine::sort_samples() {
+    std::sort(samples_.begin(), samples_.end(), [](auto& a, auto& b) { return a.texel < b.texel; });
 }
 
 Vec2d SampledLine::film(double texel) const {
@@ -69,25 +92,34 @@ void SampledLine::find_runs(float tolerance, InScatteringTask& task) {
     }
 }
 
-void SampledLine::place(const LineSampling& settings) {
+void SampledLine::find_spread(const LineSampling& settings) {
     const auto lit = [](const LineTexel& t) { return t.run >= 0; };
     const auto first = std::find_if(texels_.begin(), texels_.end(), lit) - texels_.begin();
     const auto last = std::find_if(texels_.rbegin(), texels_.rend(), lit) - texels_.rbegin();
     const auto n = std::ptrdiff_t(texels_.size());
     if (first == n) return;
-    const auto end = n - 1 - last;
-    const double spacing = std::max(1.0, double(end - first) / std::max(1, settings.initial - 1));
-    double next = double(first) + settings.shift * spacing;
-    for (auto i = first; i <= end; ++i) {
-        const LineTexel& t = texels_[std::size_t(i)];
-        const bool spread = double(i) >= next;
-        if (spread) next += spacing;
-        if (t.run < 0) continue;
-        const bool starts = i == first || texels_[std::size_t(i - 1)].run != t.run;
-        const bool ends = i == end || texels_[std::size_t(i + 1)].run != t.run;
+    const double length = double(n - 1 - last - first);
+    spread_.spacing = std::max(1.0, length / std::max(1, settings.initial - 1));
+    spread_.first = double(first) + settings.shift * spread_.spacing;
+    spread_.count = int(std::floor(length / spread_.spacing - settings.shift)) + 1;
+}
+
+void SampledLine::place(const LineSampling& settings) {
+    std::vector<bool> wanted(std::size_t(spread_.count), true);
+    for (const LineSample& s : samples_) wanted[std::size_t(spread_.nearest(double(s.texel)))] = false;
+    const auto n = std::ptrdiff_t(texels_.size());
+    int next = 0;
+    for (std::ptrdiff_t i = 0; i < n; ++i) {
+        bool spread = false;
+        for (; next < spread_.count && spread_.place(next) <= double(i); ++next)
+            spread |= wanted[std::size_t(next)];
+        const auto run = texels_[std::size_t(i)].run;
+        if (run < 0) continue;
+        const bool starts = i == 0 || texels_[std::size_t(i - 1)].run != run;
+        const bool ends = i + 1 == n || texels_[std::size_t(i + 1)].run != run;
         if (!(starts || ends || spread)) continue;
         if (samples_.size() >= std::size_t(std::max(1, settings.cap))) return;
-        samples_.push_back({std::int32_t(i), 0.0f, {}});
+        samples_.push_back({float(i), 0.0f, {}});
     }
 }
 
@@ -98,9 +130,9 @@ void SampledLine::refine(const LineSampling& settings, float mean, std::size_t f
     while (!open.empty()) {
         const auto [a, b] = open.back();
         open.pop_back();
-        if (b.texel - a.texel < 2 || marched_ >= std::size_t(settings.cap)) continue;
+        if (b.texel - a.texel < 2.0f || marched_ >= std::size_t(settings.cap)) continue;
         if (!differ(a, b, settings.tolerance, mean)) continue;
-        const LineSample middle = march((a.texel + b.texel) / 2, task);
+        const LineSample middle = march_texel(std::floor(0.5f * (a.texel + b.texel)), task);
         added.push_back(middle);
         if (differ(middle, half_way(a, b, middle), 0.5f * settings.tolerance, mean))
             open.push_back({middle, b}), open.push_back({a, middle});
@@ -111,11 +143,10 @@ void SampledLine::finish(const LineSampling& settings, float mean, InScatteringT
     if (settings.tolerance > 0.0f) {
         std::vector<LineSample> added;
         for (std::size_t i = 0; i + 1 < samples_.size(); ++i)
-            if (texels_[std::size_t(samples_[i].texel)].run ==
-                texels_[std::size_t(samples_[i + 1].texel)].run)
+            if (at(samples_[i].texel).run == at(samples_[i + 1].texel).run)
                 refine(settings, mean, i, i + 1, task, added);
         samples_.insert(samples_.end(), added.begin(), added.end());
-        std::sort(samples_.begin(), samples_.end(), [](auto& a, auto& b) { return a.texel < b.texel; });
+        sort_samples();
     }
     interpolate();
     samples_.clear();
@@ -123,14 +154,14 @@ void SampledLine::finish(const LineSampling& settings, float mean, InScatteringT
 }
 
 void SampledLine::interpolate() {
-    const auto at = [&](std::int32_t i) -> LineTexel& { return texels_[std::size_t(i)]; };
     for (std::size_t i = 0; i < samples_.size(); ++i) {
         const LineSample& a = samples_[i];
-        at(a.texel).light = a.light.radiance, at(a.texel).known = true;
-        if (i + 1 == samples_.size() || at(samples_[i + 1].texel).run != at(a.texel).run) continue;
+        LineTexel& own = at(a.texel);
+        if (!own.known || a.texel == std::floor(a.texel)) own.light = a.light.radiance, own.known = true;
+        if (i + 1 == samples_.size() || at(samples_[i + 1].texel).run != own.run) continue;
         const LineSample& b = samples_[i + 1];
-        for (std::int32_t k = a.texel + 1; k < b.texel; ++k) {
-            const float f = float(k - a.texel) / float(b.texel - a.texel);
+        for (float k = std::ceil(a.texel); k < b.texel; ++k) {
+            const float f = (k - a.texel) / (b.texel - a.texel);
             at(k).light = (1.0f - f) * a.light.radiance + f * b.light.radiance, at(k).known = true;
         }
     }

@@ -7,6 +7,7 @@
 // too, until it agrees with what interpolation would give. All other texels are interpolated linearly.
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "screenspace/epipolar_lines.h"
@@ -33,15 +34,31 @@ struct LineTexel {
 };
 
 struct LineSample {
-    std::int32_t texel;
+    float texel;       ///< whole, but where a line of another light crosses (epipolar_crossings.h)
     float weight;      ///< RayEnd::weight
     MarchedRay light;  ///< its radiance over that weight
 };
 
 class SampledLine {
   public:
-    /// Places and marches the samples that do not depend on light: run ends and the spread ones.
+    /// Finds the runs, and where spread samples are wanted.
     SampledLine(const EpipolarLine& line, const LineSampling& settings, InScatteringTask& task);
+
+    /// `count` places at first + i * spacing, in texels; not all of them need be lit.
+    struct Spread {
+        double first = 0.0, spacing = 1.0;
+        int count = 0;
+        double place(int i) const { return first + i * spacing; }
+        int nearest(double texel) const { return int(std::lround((texel - first) / spacing)); }
+    };
+    const Spread& spread() const { return spread_; }
+    /// Is this place between texels of one run, or on one?
+    bool lit(double texel) const;
+    /// A ray that was marched at such a place; it stands for the spread sample nearest to it.
+    void add(double texel, const RayEnd& end, const MarchedRay& light);
+    /// Places and marches the samples that do not depend on light: run ends, and the spread ones that were
+    /// not added.
+    void march(const LineSampling& settings, InScatteringTask& task);
     /// Refines where light or transmittance varies, and interpolates. `mean`: of the light over all lines'
     /// samples.
     void finish(const LineSampling& settings, float mean, InScatteringTask& task);
@@ -54,14 +71,19 @@ class SampledLine {
     std::size_t memory_bytes() const;
 
   private:
-    LineSample march(std::int32_t texel, InScatteringTask& task);
+    LineSample march_texel(float texel, InScatteringTask& task);
     void find_runs(float tolerance, InScatteringTask& task);
+    void find_spread(const LineSampling& settings);
+    void sort_samples();
     void place(const LineSampling& settings);
     void refine(const LineSampling& settings, float mean, std::size_t from, std::size_t to,
                 InScatteringTask& task, std::vector<LineSample>& added);
     void interpolate();
 
+    LineTexel& at(float texel) { return texels_[std::size_t(std::lround(texel))]; }
+
     EpipolarLine line_;
+    Spread spread_;
     std::vector<LineTexel> texels_;
     std::vector<LineSample> samples_;  ///< by texel, ascending; thrown away by finish()
     std::size_t marched_ = 0;

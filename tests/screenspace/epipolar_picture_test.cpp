@@ -82,8 +82,14 @@ Error error_of(const Shafts& source, std::uint64_t marched, const LightAt& light
     return error;
 }
 
+EpipolarPicture sampled(const Shafts& source, EpipolarLines lines, const LineSampling& sampling) {
+    EpipolarPicture picture(std::move(lines), sampling, source, in_turn);
+    picture.march(source, in_turn);
+    return picture;
+}
+
 Error epipolar(const Shafts& source, int lines, LineSampling sampling) {
-    const EpipolarPicture picture(EpipolarLines(light, frame, lines, 0.4), sampling, source, in_turn);
+    const EpipolarPicture picture = sampled(source, EpipolarLines(light, frame, lines, 0.4), sampling);
     return error_of(source, picture.counts().marched, [&](auto& film, auto& end, InScatteringTask& task) {
         return picture.light_at(film, end, task);
     });
@@ -133,8 +139,8 @@ TEST_CASE("Things that fall between lines are left to the caller", "[epipolar]")
 
 TEST_CASE("The cap holds, and what lies beyond it is left to the caller", "[epipolar]") {
     const Shafts source;
-    const EpipolarPicture picture(EpipolarLines(light, frame, 100, 0.0), {.initial = 30, .cap = 5}, source,
-                                  in_turn);
+    const EpipolarPicture picture =
+        sampled(source, EpipolarLines(light, frame, 100, 0.0), {.initial = 30, .cap = 5});
     for (const SampledLine& line : picture.sampled()) CHECK(line.marched() <= 5);
     const Error e = epipolar(source, 100, {.initial = 30, .cap = 5});
     CHECK(e.filled > 100);
@@ -144,8 +150,8 @@ TEST_CASE("The cap holds, and what lies beyond it is left to the caller", "[epip
 TEST_CASE("Refinement keeps its tolerance along a line", "[epipolar]") {
     const Shafts source;
     const auto worst_on_lines = [&](float tolerance) {
-        const EpipolarPicture picture(EpipolarLines(light, frame, 50, 0.0),
-                                      {.initial = 12, .tolerance = tolerance}, source, in_turn);
+        const EpipolarPicture picture =
+            sampled(source, EpipolarLines(light, frame, 50, 0.0), {.initial = 12, .tolerance = tolerance});
         double worst = 0.0;
         for (const SampledLine& line : picture.sampled())
             for (std::size_t i = 0; i < line.texels().size(); ++i) {
@@ -162,7 +168,7 @@ TEST_CASE("Refinement keeps its tolerance along a line", "[epipolar]") {
 TEST_CASE("Texels take the memory that is stated", "[epipolar]") {
     STATIC_REQUIRE(sizeof(LineTexel) == 24);
     const Shafts source;
-    const EpipolarPicture picture(EpipolarLines(light, frame, 200, 0.0), {}, source, in_turn);
+    const EpipolarPicture picture = sampled(source, EpipolarLines(light, frame, 200, 0.0), {});
     const PictureCounts counts = picture.counts();
     CHECK(counts.bytes <= 24 * counts.texels + 160 * counts.lines);
 }
