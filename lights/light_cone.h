@@ -11,6 +11,8 @@ namespace mote::lights {
 struct LightCone {
     core::Vec3 apex, axis;  ///< axis: unit, away from the light
     double angle;           ///< [radians]
+    double beam = 0.0;      ///< half angle within which the intensity is constant; from there to `angle` it
+                            ///< varies smoothly; 0: nothing is known [radians]
 };
 
 /// A light that knows its cone. Emitters that are none shine everywhere.

@@ -57,7 +57,10 @@ class SpotLight final : public Emitter, public ConeLight {
         return sample;
     }
     Rgb power() const override { return power_; }
-    LightCone cone() const override { return {position_, world_from_local_ * Vec3(0, 0, 1), cutoff_}; }
+    LightCone cone() const override {
+        return {position_, world_from_local_ * Vec3(0, 0, 1), double(cutoff_),
+                texture_ ? 0.0 : double(beam_)};
+    }
 
   private:
     /// Radiant intensity [W/sr] towards the unit vector d of the light's own frame.

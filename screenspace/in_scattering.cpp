@@ -12,19 +12,6 @@ using namespace core;
 
 namespace {
 
-/// Distance of the light from the ray, and of the point nearest to it from the origin. A light on the ray is
-/// kept off it by what single precision resolves.
-struct Around {
-    double nearest, distance;
-    Around(const Ray& ray, const Vec3& light) {
-        const Vec3d to_light = Vec3d(light) - Vec3d(ray.origin), direction(ray.direction);
-        nearest = glm::dot(to_light, direction);
-        const double scale = std::max(glm::length(to_light), double(ray.t_min));
-        distance = std::max(glm::length(to_light - nearest * direction), 1e-5 * scale + 1e-30);
-    }
-    double angle(double t) const { return std::atan2(t - nearest, distance); }
-};
-
 /// Where a medium can be: the closed shapes it fills, or everywhere when something names it as outside.
 Bounds3 extent(const Scene& scene, const Medium& medium) {
     Bounds3 box;
@@ -85,8 +72,9 @@ Rgb marched_transmittance(const Ray& ray, const std::vector<MediumSegment>& segm
     return product;
 }
 
-InScattering::InScattering(const Scene& scene, const Emitter& light, const MarchSettings& settings)
-    : scene_(scene), light_(light), settings_(settings) {
+InScattering::InScattering(const Scene& scene, const Emitter& light, const MarchSettings& settings,
+                           const MarchAids& aids)
+    : scene_(scene), light_(light), settings_(settings), aids_(aids) {
     const auto position = Scene::light_position(light);
     if (!position) throw std::invalid_argument("in-scattering along rays: the light has no position");
     if (settings.steps < 1) throw std::invalid_argument("in-scattering along rays: at least one step");
@@ -94,6 +82,10 @@ InScattering::InScattering(const Scene& scene, const Emitter& light, const March
     if (const auto* spot = dynamic_cast<const lights::ConeLight*>(&light)) cone_ = spot->cone();
     for (const auto& medium : scene.media())
         if (medium->traits().scattering && !medium->traits().empty) media_.extend(extent(scene, *medium));
+    if (!aids.clear) return;
+    if (const auto steady = SteadyLight::of(light)) steady_light_.emplace(*steady);
+    for (const auto& medium : scene.media())
+        if (const auto steady = SteadyMedium::of(*medium)) steady_media_.push_back(*steady);
 }
 
 std::optional<Interval> InScattering::lit_part(const Ray& ray) const {
@@ -105,48 +97,82 @@ std::optional<Interval> InScattering::lit_part(const Ray& ray) const {
     return Interval{float(cone->first), float(cone->second)};
 }
 
+/// Where the march has come to after a share of its steps.
+double InScattering::share_of_steps(const PassingRay& passing, double t0, double t1, double share) const {
+    if (share <= 0.0) return t0;
+    if (share >= 1.0) return t1;
+    if (settings_.rule == MarchRule::uniform) return t0 + share * (t1 - t0);
+    const double a0 = passing.angle(t0), a1 = passing.angle(t1);
+    return std::clamp(passing.at_angle(a0 + share * (a1 - a0)), t0, t1);
+}
+
 void InScattering::place_steps(const Ray& ray, double t0, double t1, std::vector<float>& distances) const {
-    const Around around(ray, position_);
-    const double a0 = around.angle(t0), a1 = around.angle(t1);
+    const PassingRay passing(ray, position_);
     distances.clear();
-    for (int i = 0; i < settings_.steps; ++i) {
-        const double share = (i + double(settings_.offset)) / settings_.steps;
-        const double t = settings_.rule == MarchRule::uniform
-                             ? t0 + share * (t1 - t0)
-                             : around.nearest + around.distance * std::tan(a0 + share * (a1 - a0));
-        distances.push_back(float(std::clamp(t, t0, t1)));
-    }
+    for (int i = 0; i < settings_.steps; ++i)
+        distances.push_back(
+            float(share_of_steps(passing, t0, t1, (i + double(settings_.offset)) / settings_.steps)));
 }
 
 double InScattering::unshadowed(const Ray& ray, double t0, double t1) const {
-    const Around around(ray, position_);
-    return (around.angle(t1) - around.angle(t0)) / around.distance;
+    const PassingRay passing(ray, position_);
+    return (passing.angle(t1) - passing.angle(t0)) / passing.distance;
 }
 
 /// The length that the step at t stands for: one over its density.
 double InScattering::step_length(const Ray& ray, double t0, double t1, float t) const {
     if (settings_.rule == MarchRule::uniform) return (t1 - t0) / settings_.steps;
-    const Around around(ray, position_);
-    const double s = double(t) - around.nearest;
-    return (around.angle(t1) - around.angle(t0)) * (around.distance + s * s / around.distance) /
+    const PassingRay passing(ray, position_);
+    const double s = double(t) - passing.nearest;
+    return (passing.angle(t1) - passing.angle(t0)) * (passing.distance + s * s / passing.distance) /
            settings_.steps;
 }
 
 /// sigma_s f_p T V I / d^2 at one point [1/m times radiance].
-Rgb InScattering::scattered_at(const Ray& ray, float t, const MediumSegment& at,
-                               MarchScratch& scratch) const {
+Rgb InScattering::scattered_at(const Ray& ray, float t, const MediumSegment& at, MarchScratch& scratch,
+                               const Rgb* from_map) const {
     const Vec3 x = ray.at(t);
     const auto light = light_.sample_direct(x, Vec2(0.5f));
     if (!light) return Rgb(0.0f);
     ++scratch.walk.tracking.lookups;
     const Rgb sigma_s = at.medium->coefficients(x).sigma_s;
     if (is_black(sigma_s)) return Rgb(0.0f);
-    const Ray shadow{x, light->wi, 0.0f, light->distance};
-    ++scratch.walk.rays.occlusion;
-    if (scene_.rays().occluded(shadow)) return Rgb(0.0f);
-    find_segments(scene_, shadow, at.state, scratch.shadow, scratch.walk);
-    const Rgb to_light = marched_transmittance(shadow, scratch.shadow, settings_.voxels, scratch.walk);
+    Rgb to_light;
+    if (from_map) {
+        to_light = *from_map;
+    } else {
+        const Ray shadow{x, light->wi, 0.0f, light->distance};
+        ++scratch.walk.rays.occlusion;
+        if (scene_.rays().occluded(shadow)) return Rgb(0.0f);
+        find_segments(scene_, shadow, at.state, scratch.shadow, scratch.walk);
+        to_light = marched_transmittance(shadow, scratch.shadow, settings_.voxels, scratch.walk);
+    }
     return sigma_s * at.medium->phase().eval(-ray.direction, light->wi) * to_light * light->weight;
+}
+
+/// Of the media up to `to`; scratch.eye holds the segments.
+Rgb InScattering::eye_transmittance(const Ray& ray, float to, MarchScratch& scratch,
+                                    const EyeMedia* shared) const {
+    if (shared) return shared->transmittance(to, scratch.walk);
+    Rgb product(1.0f);
+    for (const MediumSegment& s : scratch.eye)
+        if (s.medium && s.t0 < to)
+            product *= marched_transmittance(*s.medium, {ray.origin, ray.direction, s.t0, std::min(s.t1, to)},
+                                             settings_.voxels, scratch.walk);
+    return product;
+}
+
+/// From the light to every step, by its map.
+void InScattering::look_up_steps(const Ray& ray, MarchScratch& scratch) const {
+    constexpr std::size_t width = lights::ShadowLookup::width;
+    const std::size_t steps = scratch.distances.size();
+    scratch.lookups.resize((steps + width - 1) / width);
+    for (std::size_t i = 0; i < scratch.lookups.size() * width; ++i) {
+        const Vec3 x = ray.at(scratch.distances[std::min(i, steps - 1)]);
+        lights::ShadowLookup& p = scratch.lookups[i / width];
+        p.x[i % width] = x.x, p.y[i % width] = x.y, p.z[i % width] = x.z;
+    }
+    aids_.map->look_up(scratch.lookups);
 }
 
 MarchedRay InScattering::march(const Ray& ray, const MediumState& state, MarchScratch& scratch,
@@ -159,16 +185,31 @@ MarchedRay InScattering::march(const Ray& ray, const MediumState& state, MarchSc
         find_segments(scene_, ray, state, scratch.eye, scratch.walk);
     const auto lit = lit_part(ray);
     double t0 = 0.0, t1 = 0.0;  // of the media within the lit part
+    const MediumSegment* only = nullptr;
+    int media = 0;
     if (lit)
         for (const MediumSegment& s : scratch.eye) {
             const double from = std::max(s.t0, lit->t0), to = std::min(s.t1, lit->t1);
             if (!s.medium || !(from < to)) continue;
             if (!(t0 < t1)) t0 = from;
-            t1 = to;
+            t1 = to, only = &s, ++media;
         }
+    if (media == 1)
+        if (const auto exact = integrate(ray, t0, t1, *only, scratch)) {
+            result.radiance = eye_transmittance(ray, float(t0), scratch, shared) * *exact;
+            result.transmittance = eye_transmittance(ray, ray.t_max, scratch, shared);
+            return result;
+        }
+    march_steps(ray, t0, t1, scratch, shared, result);
+    return result;
+}
+
+void InScattering::march_steps(const Ray& ray, double t0, double t1, MarchScratch& scratch,
+                               const EyeMedia* shared, MarchedRay& result) const {
     scratch.distances.clear();
     if (t0 < t1 && (std::isfinite(t1) || settings_.rule == MarchRule::equiangular))
         place_steps(ray, t0, t1, scratch.distances);
+    if (aids_.map && !scratch.distances.empty()) look_up_steps(ray, scratch);
 
     std::size_t next = 0;
     for (const MediumSegment& s : scratch.eye) {
@@ -186,13 +227,18 @@ MarchedRay InScattering::march(const Ray& ray, const MediumState& state, MarchSc
             advance(at);
             if (!s.medium) continue;
             ++scratch.steps;
-            const Rgb scattered = scattered_at(ray, at, s, scratch);
+            Rgb from_map;
+            if (aids_.map) {
+                const lights::ShadowLookup& p = scratch.lookups[next / lights::ShadowLookup::width];
+                const std::size_t lane = next % lights::ShadowLookup::width;
+                from_map = Rgb(p.r[lane], p.g[lane], p.b[lane]);
+            }
+            const Rgb scattered = scattered_at(ray, at, s, scratch, aids_.map ? &from_map : nullptr);
             if (!is_black(scattered))
                 result.radiance += result.transmittance * scattered * float(step_length(ray, t0, t1, at));
         }
         advance(s.t1);
     }
-    return result;
 }
 
 }  // namespace mote::screenspace

@@ -6,6 +6,10 @@
 // moves all steps together: pictures of one pass are smooth, and over offsets evenly spread in [0, 1) the
 // mean is exact for either rule. Transmittances are deterministic: in closed form, or by marching through
 // grids.
+//
+// Two things can stand in for that. In homogeneous media the integral is taken exactly, and where nothing
+// is in the way without any shadow ray (in_scattering_exact.cpp). A volumetric shadow map of the light can
+// answer instead of shadow rays and of marching towards the light.
 #pragma once
 
 #include <vector>
@@ -14,7 +18,10 @@
 #include "core/scene/ray_walk.h"
 #include "core/scene/scene.h"
 #include "lights/light_cone.h"
+#include "lights/volumetric_shadow_map.h"
+#include "screenspace/clear_space.h"
 #include "screenspace/in_scattering_source.h"
+#include "screenspace/steady_light.h"
 
 namespace mote::screenspace {
 
@@ -25,6 +32,12 @@ struct MarchSettings {
     MarchRule rule = MarchRule::equiangular;
     float offset = 0.5f;  ///< of all steps, in [0, 1)
     float voxels = 1.0f;  ///< step of optical depths through grids, in voxels
+};
+
+/// What can stand in for steps and shadow rays. Not owned.
+struct MarchAids {
+    const ClearSpace* clear = nullptr;                 ///< null: all is marched
+    const lights::VolumetricShadowMap* map = nullptr;  ///< of this light; null: shadow rays
 };
 
 /// The part of a ray in one medium, and the media there.
@@ -39,7 +52,11 @@ struct MarchScratch {
     core::WalkContext walk;
     std::vector<MediumSegment> eye, shadow;
     std::vector<float> distances;  ///< of the steps, ascending [m]
+    std::vector<char> lit;         ///< steps that the light reaches
+    std::vector<core::ShadowPacket> packets;
+    std::vector<lights::ShadowLookup> lookups;
     std::uint64_t rays = 0, steps = 0;
+    std::uint64_t clear = 0;  ///< rays that needed no step, because nothing was in the way
 };
 
 /// Cuts ray.t_min to ray.t_max at the boundaries between media; `state` holds those at t_min. Neighbours of
@@ -60,7 +77,8 @@ class EyeMedia;
 class InScattering {
   public:
     /// The light must have a position (Scene::light_position). Keeps references to both.
-    InScattering(const core::Scene& scene, const core::Emitter& light, const MarchSettings& settings);
+    InScattering(const core::Scene& scene, const core::Emitter& light, const MarchSettings& settings,
+                 const MarchAids& aids = {});
 
     const core::Vec3& light_position() const { return position_; }
     /// The part of the ray that the light can reach and where there are media: box and cone, no visibility.
@@ -74,17 +92,34 @@ class InScattering {
                      const EyeMedia* shared = nullptr) const;
 
   private:
+    std::optional<core::Rgb> integrate(const core::Ray& ray, double t0, double t1, const MediumSegment& at,
+                                       MarchScratch& scratch) const;
+    const SteadyMedium* steady_medium(const core::Medium* medium) const;
+    template <bool surfaces>
+    bool is_clear(const core::Ray& ray, double t0, double t1) const;
+    void trace_steps(const core::Ray& ray, double t0, double t1, MarchScratch& scratch) const;
+    core::Rgb end_piece(const core::Ray& ray, double t0, double t1, const MediumSegment& at,
+                        const SteadyMedium& medium, MarchScratch& scratch) const;
+    void march_steps(const core::Ray& ray, double t0, double t1, MarchScratch& scratch,
+                     const EyeMedia* shared, MarchedRay& result) const;
+    core::Rgb eye_transmittance(const core::Ray& ray, float to, MarchScratch& scratch,
+                                const EyeMedia* shared) const;
+    void look_up_steps(const core::Ray& ray, MarchScratch& scratch) const;
+    double share_of_steps(const PassingRay& passing, double t0, double t1, double share) const;
     void place_steps(const core::Ray& ray, double t0, double t1, std::vector<float>& distances) const;
     double step_length(const core::Ray& ray, double t0, double t1, float t) const;
-    core::Rgb scattered_at(const core::Ray& ray, float t, const MediumSegment& at,
-                           MarchScratch& scratch) const;
+    core::Rgb scattered_at(const core::Ray& ray, float t, const MediumSegment& at, MarchScratch& scratch,
+                           const core::Rgb* from_map = nullptr) const;
 
     const core::Scene& scene_;
     const core::Emitter& light_;
     MarchSettings settings_;
+    MarchAids aids_;
     core::Vec3 position_;
     std::optional<lights::LightCone> cone_;
     core::Bounds3 media_;  ///< where anything scatters
+    std::optional<SteadyLight> steady_light_;
+    std::vector<SteadyMedium> steady_media_;
 };
 
 }  // namespace mote::screenspace

@@ -1,0 +1,176 @@
+#include "screenspace/clear_space.h"
+
+#include <algorithm>
+
+#include "core/materials/bsdf.h"
+
+namespace mote::screenspace {
+
+using namespace core;
+
+namespace {
+
+constexpr std::size_t leaf_size = 4;
+constexpr std::uint32_t whole = ~std::uint32_t(0);
+/// What rounding moves a shadow ray or its hit by, as a share of the largest coordinate: 16 units in the last
+/// place.
+constexpr double rounding = 1e-6;
+
+double largest_of(const Vec3d& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+
+/// Is there a gap wider than the margin between two sets of points, seen along `axis` of any length?
+bool gap(const Vec3d& axis, const auto& a, const auto& b, double margin) {
+    double a0 = double(infinity), a1 = -a0, b0 = a0, b1 = a1;
+    for (const Vec3d& p : a) a0 = std::min(a0, glm::dot(axis, p)), a1 = std::max(a1, glm::dot(axis, p));
+    for (const Vec3d& p : b) b0 = std::min(b0, glm::dot(axis, p)), b1 = std::max(b1, glm::dot(axis, p));
+    return std::max(b0 - a1, a0 - b1) > margin * (std::abs(axis.x) + std::abs(axis.y) + std::abs(axis.z));
+}
+
+/// The same for a box, which is its centre and half its edges.
+bool gap(const Vec3d& axis, const auto& a, const Vec3d& center, const Vec3d& half, double margin) {
+    double a0 = double(infinity), a1 = -a0;
+    for (const Vec3d& p : a) {
+        const double at = glm::dot(axis, p - center);
+        a0 = std::min(a0, at), a1 = std::max(a1, at);
+    }
+    const double reach = glm::dot(glm::abs(axis), half + margin);
+    return a0 > reach || a1 < -reach;
+}
+
+bool apart(const ClearSpace::Triangle& t, const Bounds3& box, double margin) {
+    const Vec3d lower(box.lower), upper(box.upper), center = 0.5 * (lower + upper),
+                                                    half = 0.5 * (upper - lower);
+    for (int axis = 0; axis < 3; ++axis)
+        if (std::min({t[0][axis], t[1][axis], t[2][axis]}) > upper[axis] + margin ||
+            std::max({t[0][axis], t[1][axis], t[2][axis]}) < lower[axis] - margin)
+            return true;
+    const std::array<Vec3d, 3> edge = {t[1] - t[0], t[2] - t[1], t[0] - t[2]};
+    if (gap(glm::cross(edge[0], edge[1]), t, center, half, margin)) return true;
+    for (const Vec3d& e : edge)
+        for (const Vec3d& axis : {Vec3d(0, -e.z, e.y), Vec3d(e.z, 0, -e.x), Vec3d(-e.y, e.x, 0)})
+            if (gap(axis, t, center, half, margin)) return true;
+    return false;
+}
+
+bool apart(const ClearSpace::Triangle& t, const ClearSpace::Triangle& o, double margin) {
+    const std::array<Vec3d, 3> te = {t[1] - t[0], t[2] - t[1], t[0] - t[2]};
+    const std::array<Vec3d, 3> oe = {o[1] - o[0], o[2] - o[1], o[0] - o[2]};
+    if (gap(glm::cross(oe[0], oe[1]), t, o, margin) || gap(glm::cross(te[0], te[1]), t, o, margin))
+        return true;
+    for (const Vec3d& a : te)
+        for (const Vec3d& b : oe)
+            if (gap(glm::cross(a, b), t, o, margin)) return true;
+    return false;
+}
+
+}  // namespace
+
+ClearSpace::ClearSpace(const Scene& scene) {
+    for (const auto& shape : scene.shapes())
+        (shape->bsdf && shape->bsdf->traits().null ? boundaries_ : surfaces_).add(*shape);
+    surfaces_.build(), boundaries_.build();
+}
+
+void ClearSpace::Tree::add(const Shape& shape) {
+    const auto* mesh = dynamic_cast<const TriangleMesh*>(&shape);
+    const auto index = std::uint32_t(shapes_.size());
+    shapes_.push_back(&shape), meshes_.push_back(mesh ? &mesh->data() : nullptr);
+    if (!mesh) parts_.push_back({index, whole});
+    for (std::uint32_t i = 0; mesh && i < mesh->data().triangles.size(); ++i) parts_.push_back({index, i});
+    largest_ = std::max(
+        {largest_, largest_of(Vec3d(shape.bounds().lower)), largest_of(Vec3d(shape.bounds().upper))});
+}
+
+void ClearSpace::Tree::build() {
+    if (parts_.empty()) return;
+    parts_.shrink_to_fit();
+    nodes_.reserve(4 * parts_.size() / leaf_size + 1);
+    nodes_.emplace_back();
+    split(0, 0, parts_.size());
+}
+
+Bounds3 ClearSpace::Tree::bounds_of(const Part& part) const {
+    if (part.triangle == whole) return shapes_[part.shape]->bounds();
+    const MeshData& mesh = *meshes_[part.shape];
+    Bounds3 box;
+    for (const std::uint32_t corner : mesh.triangles[part.triangle]) box.extend(mesh.positions[corner]);
+    return box;
+}
+
+/// Halves the parts along the axis that their centres are spread most along.
+void ClearSpace::Tree::split(std::uint32_t node, std::size_t begin, std::size_t end) {
+    Bounds3 box, centers;
+    for (std::size_t i = begin; i < end; ++i) {
+        const Bounds3 b = bounds_of(parts_[i]);
+        box.extend(b), centers.extend(b.center());
+    }
+    nodes_[node].bounds = box;
+    if (end - begin <= leaf_size) {
+        nodes_[node].first = std::uint32_t(begin), nodes_[node].count = std::uint32_t(end - begin);
+        return;
+    }
+    const Vec3 spread = centers.diagonal();
+    const int axis = spread.x >= spread.y && spread.x >= spread.z ? 0 : spread.y >= spread.z ? 1 : 2;
+    const auto at = [&](std::size_t i) { return parts_.begin() + std::ptrdiff_t(i); };
+    const std::size_t middle = begin + (end - begin) / 2;
+    std::nth_element(at(begin), at(middle), at(end), [&](const Part& a, const Part& b) {
+        return bounds_of(a).center()[axis] < bounds_of(b).center()[axis];
+    });
+    nodes_.emplace_back();
+    split(node + 1, begin, middle);
+    const auto right = std::uint32_t(nodes_.size());
+    nodes_.emplace_back();
+    nodes_[node].first = right, nodes_[node].count = 0;
+    split(right, middle, end);
+}
+
+bool ClearSpace::Tree::apart(const Triangle& t, const Part& part, double margin) const {
+    if (part.triangle == whole) return screenspace::apart(t, shapes_[part.shape]->bounds(), margin);
+    const MeshData& mesh = *meshes_[part.shape];
+    const auto& corners = mesh.triangles[part.triangle];
+    return screenspace::apart(t,
+                              Triangle{Vec3d(mesh.positions[corners[0]]), Vec3d(mesh.positions[corners[1]]),
+                                       Vec3d(mesh.positions[corners[2]])},
+                              margin);
+}
+
+bool ClearSpace::Tree::clear(const Triangle& t) const {
+    if (nodes_.empty()) return true;
+    const double margin =
+        rounding * std::max({largest_, largest_of(t[0]), largest_of(t[1]), largest_of(t[2])});
+    const Vec3d sum = t[0] + t[1] + t[2];
+    if (!std::isfinite(margin + sum.x + sum.y + sum.z)) return false;
+    std::array<std::uint32_t, 64> open;  // deeper than 2^64 parts
+    std::size_t count = 0;
+    open[count++] = 0;
+    while (count > 0) {
+        const std::uint32_t at = open[--count];
+        const Node& node = nodes_[at];
+        if (screenspace::apart(t, node.bounds, margin)) continue;
+        if (node.count == 0) {
+            open[count++] = node.first, open[count++] = at + 1;
+            continue;
+        }
+        for (std::uint32_t i = 0; i < node.count; ++i)
+            if (!apart(t, parts_[node.first + i], margin)) return false;
+    }
+    return true;
+}
+
+/// What is further away than all shapes together is as good as infinity; so far out the two sides are two
+/// triangles.
+bool ClearSpace::Tree::clear(const Vec3d& point, const Vec3d& from, const Vec3d& direction) const {
+    if (nodes_.empty()) return true;
+    const double far = 4.0 * (largest_ + largest_of(point) + largest_of(from));
+    const Vec3d end = from + far * direction;
+    return clear({point, from, end}) && clear({point, end, point + far * direction});
+}
+
+bool ClearSpace::clear_of_surfaces(const Vec3d& point, const Vec3d& from, const Vec3d& direction) const {
+    return surfaces_.clear(point, from, direction);
+}
+bool ClearSpace::clear_of_boundaries(const Vec3d& point, const Vec3d& from, const Vec3d& direction) const {
+    return boundaries_.clear(point, from, direction);
+}
+
+}  // namespace mote::screenspace
