@@ -3,11 +3,7 @@
 
 #include <filesystem>
 
-#include "core/render/render_driver.h"
-#include "core/scene/scene_loader.h"
-#include "tests/integrators/test_scenes.h"
-#include "tests/support/catch.h"
-#include "tests/support/render_statistics.h"
+#include "tests/screenspace/epipolar_scenes.h"
 
 using namespace mote;
 using namespace mote::core;
@@ -28,61 +24,8 @@ std::string without_area_light(std::string xml) {
 const std::string thin_fog =
     fog("0.5, 0.4, 0.3", R"(<phase type="hg"><float name="g" value="0.5"/></phase>)");
 
-std::unique_ptr<Scene> sized(std::string xml, int width, int height) {
-    const std::string film = fmt::format(R"(<film type="hdrfilm"><integer name="width" value="{}"/>
-        <integer name="height" value="{}"/><rfilter type="box"/></film></sensor>)",
-                                         width, height);
-    return load_scene_from_string(xml.replace(xml.find("</sensor>"), 9, film), ".", registry());
-}
-
-struct Picture {
-    std::vector<Vec3d> pixels;  ///< of one layer, the mean over passes
-    Statistics statistics;
-    double mean() const {
-        double sum = 0.0;
-        for (const Vec3d& p : pixels) sum += (p.x + p.y + p.z) / 3.0;
-        return sum / double(pixels.size());
-    }
-};
-
-Picture render(const Scene& scene, const std::string& integrator, std::uint32_t passes = 1,
-               std::size_t layer = 2) {
-    const int w = scene.film().width, h = scene.film().height;
-    const auto made = integrator_from(integrator);
-    const auto estimator = made->prepare(scene, {.seed = 11, .width = w, .height = h});
-    const auto filter = make_pixel_filter("box", 0.5f, 0.5f);
-    const std::atomic<bool> never{false};
-    Picture picture{std::vector<Vec3d>(std::size_t(w * h), Vec3d(0.0)), {}};
-    for (std::uint32_t i = 0; i < passes; ++i) {
-        PassImage image(w, h, made->layers(scene).size());
-        REQUIRE(estimator->pass({i, *filter, never}, image));
-        for (std::size_t k = 0; k < image.layers(); ++k)
-            for (const Rgb& value : image.layer(k)) REQUIRE(is_finite(value));
-        for (std::size_t p = 0; p < picture.pixels.size(); ++p)
-            picture.pixels[p] += Vec3d(image.layer(layer)[p]) / double(passes);
-    }
-    estimator->add_statistics(picture.statistics);
-    return picture;
-}
-
-/// Root mean square of the relative difference, where b's mean keeps dark pixels from counting too much.
-double relative_error(const Picture& a, const Picture& b) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < a.pixels.size(); ++i) {
-        const Vec3d d = (a.pixels[i] - b.pixels[i]) / (b.pixels[i] + b.mean());
-        sum += glm::dot(d, d);
-    }
-    return std::sqrt(sum / double(3 * a.pixels.size()));
-}
-
-std::string epipolar(int lines, int samples, const std::string& more = "") {
-    return fmt::format(R"(<integrator type="mote_epipolar"><integer name="lines" value="{}"/>
-        <integer name="samples" value="{}"/>{}</integrator>)",
-                       lines, samples, more);
-}
 const std::string few_steps =
     R"(<integrator type="mote_single_scattering"><integer name="steps" value="4"/></integrator>)";
-const std::string full = R"(<integrator type="mote_single_scattering"/>)";
 std::string sub_sampled(double spacing) {
     return fmt::format(
         R"(<integrator type="mote_single_scattering"><string name="sampling" value="sub_sampled"/>
@@ -99,23 +42,6 @@ const std::string bars = [] {
                            0.1 + 0.1 * i);
     return xml;
 }();
-
-/// A block before a wall in fog, and a point light at `light`; the camera stands at (0, 0, 4) and looks along
-/// -z.
-std::string block_in_fog(const Vec3d& light, const std::string& more = "") {
-    return fmt::format(R"(<scene version="3.0.0">
-        <shape type="rectangle"><transform name="to_world"><scale value="6"/><translate z="-3"/></transform>
-            <bsdf type="diffuse"/></shape>
-        <shape type="cube"><transform name="to_world"><scale x="0.3" y="0.7" z="0.2"/><translate x="0.4" y="0.2"/>
-            </transform><bsdf type="diffuse"/></shape>
-        <shape type="cube"><transform name="to_world"><scale x="0.15" y="0.15" z="0.15"/><translate x="-0.6" y="-0.5"
-            z="1"/></transform><bsdf type="diffuse"/></shape>{}
-        <emitter type="point"><point name="position" x="{}" y="{}" z="{}"/></emitter>
-        <sensor type="perspective"><float name="fov" value="50"/><transform name="to_world">
-            <lookat origin="0, 0, 4" target="0, 0, 0" up="0, 1, 0"/></transform>
-            <medium type="homogeneous"><float name="sigma_t" value="0.1"/></medium></sensor></scene>)",
-                       more, light.x, light.y, light.z);
-}
 
 void check_against_volpath(const std::string& xml, const std::string& integrator, std::uint32_t passes,
                            std::vector<std::string> layers) {
