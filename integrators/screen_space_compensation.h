@@ -12,17 +12,26 @@
 
 namespace mote::integrators {
 
+struct ScreenSpaceSettings {
+    screenspace::SsbcSettings ssbc;  ///< but for the bound, which is that of the render
+    int layers = 1;                  ///< of surfaces along a ray; 1: what the picture shows
+    bool visibility = false;         ///< trace shadow rays, to measure what is lost without
+
+    /// Of the light that hidden sides reflect, auxiliary; see hidden_light.h.
+    std::vector<core::Layer> film_layers() const;
+};
+
 /// A nested <compensation type="screen_space"> of a scene file.
 class ScreenSpaceCompensation : public core::Object {
   public:
-    ScreenSpaceCompensation(screenspace::SsbcSettings settings, compensation::CompensationSettings media)
+    ScreenSpaceCompensation(const ScreenSpaceSettings& settings, compensation::CompensationSettings media)
         : settings_(settings), media_(media) {}
-    const screenspace::SsbcSettings& settings() const { return settings_; }
+    const ScreenSpaceSettings& settings() const { return settings_; }
     /// Of receivers in media alone.
     const compensation::CompensationSettings& media() const { return media_; }
 
   private:
-    screenspace::SsbcSettings settings_;
+    ScreenSpaceSettings settings_;
     compensation::CompensationSettings media_;
 };
 
@@ -31,15 +40,19 @@ struct ScreenSpaceCost {
     double seconds = 0.0;       ///< G-buffer and all steps
 };
 
-/// Fills layer `target` of the film with what the bound took from the layers `reflected`: light that surfaces
-/// send to the eye, direct and indirect.
-ScreenSpaceCost add_screen_space_compensation(const core::Scene& scene,
-                                              const screenspace::SsbcSettings& settings,
-                                              std::span<const std::size_t> reflected, std::size_t target,
-                                              core::Film& film);
+/// Which layers of the film a compensation reads and writes.
+struct ScreenSpaceLayers {
+    std::span<const std::size_t> reflected;  ///< light that surfaces send to the eye, direct and indirect
+    std::size_t target;                      ///< filled with what the bound took from it
+    std::size_t hidden;                      ///< the first of hidden sides, where there are several layers
+};
+
+/// `bound` is b [1/m^2].
+ScreenSpaceCost add_screen_space_compensation(const core::Scene& scene, const ScreenSpaceSettings& settings,
+                                              float bound, const ScreenSpaceLayers& layers, core::Film& film);
 
 void plan_screen_space(core::Plan& plan, const core::Requirements& requirements,
-                       const screenspace::SsbcSettings& settings);
+                       const ScreenSpaceSettings& settings);
 
 void register_screen_space_compensation(core::Registry& registry);
 

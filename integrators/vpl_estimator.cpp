@@ -4,6 +4,7 @@
 
 #include "integrators/counters.h"
 #include "integrators/eye_ray.h"
+#include "integrators/hidden_light.h"
 #include "integrators/vpl_eye_tile.h"
 #include "integrators/vpl_shadow_maps.h"
 
@@ -22,17 +23,19 @@ class VplEstimator final : public Estimator {
           bound_(settings.bound_for(scene.rays().bounds())) {
         if (settings_.compensation.enabled && std::isfinite(bound_))
             transport_.emplace(scene, bound_, settings_.compensation);
+        if (settings_.screen_space && settings_.screen_space->layers > 1 && std::isfinite(bound_))
+            hidden_.emplace(scene, options, settings, bound_);
         if (settings_.visibility.used_in(scene)) maps_.emplace(scene, settings_.visibility);
     }
 
     /// Light that surfaces send to the eye is layers 1 and 2, direct and indirect (transport_layers.h).
     void finish(Film& film) override {
         if (!settings_.screen_space || !std::isfinite(bound_)) return;
-        screenspace::SsbcSettings ssbc = *settings_.screen_space;
-        ssbc.bound = bound_;
         constexpr std::size_t reflected[] = {std::size_t(Transport::direct),
                                              std::size_t(Transport::indirect)};
-        ssbc_cost_ = add_screen_space_compensation(scene_, ssbc, reflected, first_compensation_layer, film);
+        ssbc_cost_ = add_screen_space_compensation(
+            scene_, *settings_.screen_space, bound_,
+            {reflected, first_compensation_layer, first_hidden_layer}, film);
     }
 
     bool pass(const PassContext& context, PassImage& image) override {
@@ -50,6 +53,7 @@ class VplEstimator final : public Estimator {
             render_tile(context, image, vpls, maps_ ? &stores[index] : nullptr, x0, y0, x1, y1);
         };
         if (!for_each_tile(options_.width, options_.height, tile_size, context.cancelled, tile)) return false;
+        if (hidden_ && !hidden_->template pass<Media>(context, vpls, first_hidden_layer, image)) return false;
         return !maps_ || maps_->add_light(vpls, bound_, stores, context.cancelled, image);
     }
 
@@ -66,6 +70,7 @@ class VplEstimator final : public Estimator {
         if (settings_.screen_space) {
             statistics.values["ssbc_samples"] = double(ssbc_cost_.samples);
             statistics.seconds["ssbc"] = ssbc_cost_.seconds;
+            if (hidden_) hidden_->add_statistics(statistics);
         }
         if (!transport_) return;
         statistics.values["compensation_vertices"] += double(cost_.vertices);
@@ -76,6 +81,7 @@ class VplEstimator final : public Estimator {
   private:
     static constexpr int tile_size = 16;
     static constexpr std::size_t first_compensation_layer = transport_layer_count(Media);
+    static constexpr std::size_t first_hidden_layer = first_compensation_layer + (Media ? 2 : 1);
 
     void render_tile(const PassContext& context, PassImage& image, const lights::VplSet& vpls,
                      lights::ReceiverStore* store, int x0, int y0, int x1, int y1) {
@@ -136,6 +142,7 @@ class VplEstimator final : public Estimator {
     VplSettings settings_;
     float bound_;
     std::optional<compensation::ResidualTransport> transport_;  ///< nothing: no compensation
+    std::optional<HiddenLight> hidden_;                         ///< nothing: one layer
     std::optional<VplShadowMaps> maps_;                         ///< nothing: visibility is traced
     SharedCounters counters_;
     std::mutex cost_mutex_;

@@ -16,8 +16,8 @@ struct VplSettings {
     std::uint32_t paths = 256;
     bool bounded = true;
     std::optional<float> bound;                             ///< b [1/m^2]; nothing: automatic
-    compensation::CompensationSettings compensation;        ///< in the passes
-    std::optional<screenspace::SsbcSettings> screen_space;  ///< after the last pass, on surfaces
+    compensation::CompensationSettings compensation;  ///< in the passes
+    std::optional<ScreenSpaceSettings> screen_space;  ///< after the last pass, on surfaces
     int eye_samples = 1;                                    ///< eye paths a pixel and pass
     VisibilitySettings visibility;
 
