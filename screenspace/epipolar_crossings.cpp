@@ -15,6 +15,15 @@ constexpr int candidates = 12;
 /// Which places of the spread samples are taken, by line.
 using Taken = std::vector<std::vector<bool>>;
 
+/// Places that cannot move: ends of runs, which are marched anyway, and all of a line that the cap cuts,
+/// since it counts from the line's start.
+std::vector<bool> fixed_places(const SampledLine& line, int cap) {
+    std::vector<bool> fixed(std::size_t(line.spread().count), line.spread().count > cap);
+    for (std::size_t i = 0; i < fixed.size(); ++i)
+        if (line.ends_run(std::ptrdiff_t(std::ceil(line.spread().place(int(i)))))) fixed[i] = true;
+    return fixed;
+}
+
 struct Result {
     std::array<RayEnd, 2> ends;
     std::array<MarchedRay, 2> light;
@@ -82,9 +91,7 @@ std::vector<Crossing> choose_crossings(std::span<EpipolarPicture* const> lights)
     for (std::size_t l = 0; l < lights.size(); ++l) {
         if (lights[l]->sampled().empty()) return {};  // cancelled
         for (const SampledLine& line : lights[l]->sampled()) {
-            // Lines whose samples the cap cuts keep theirs: it counts from their start.
-            const bool fits = line.spread().count <= lights[l]->settings().cap;
-            taken[l].emplace_back(std::size_t(line.spread().count), !fits);
+            taken[l].push_back(fixed_places(line, lights[l]->settings().cap));
         }
     }
     std::vector<Crossing> chosen;

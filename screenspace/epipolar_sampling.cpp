@@ -43,6 +43,13 @@ bool SampledLine::lit(double texel) const {
     return run >= 0 && run == texels_[std::size_t(std::ceil(texel))].run;
 }
 
+bool SampledLine::ends_run(std::ptrdiff_t texel) const {
+    const auto run = [&](std::ptrdiff_t i) {
+        return i < 0 || i >= std::ptrdiff_t(texels_.size()) ? -1 : texels_[std::size_t(i)].run;
+    };
+    return run(texel) >= 0 && (run(texel - 1) != run(texel) || run(texel + 1) != run(texel));
+}
+
 void SampledLine::add(double texel, const RayEnd& end, const MarchedRay& light) {
     LineSample sample{float(texel), end.weight, light};
     sample.light.radiance /= end.weight;
@@ -113,11 +120,7 @@ void SampledLine::place(const LineSampling& settings) {
         bool spread = false;
         for (; next < spread_.count && spread_.place(next) <= double(i); ++next)
             spread |= wanted[std::size_t(next)];
-        const auto run = texels_[std::size_t(i)].run;
-        if (run < 0) continue;
-        const bool starts = i == 0 || texels_[std::size_t(i - 1)].run != run;
-        const bool ends = i + 1 == n || texels_[std::size_t(i + 1)].run != run;
-        if (!(starts || ends || spread)) continue;
+        if (texels_[std::size_t(i)].run < 0 || !(spread || ends_run(i))) continue;
         if (samples_.size() >= std::size_t(std::max(1, settings.cap))) return;
         samples_.push_back({float(i), 0.0f, {}});
     }

@@ -54,7 +54,9 @@ class SampledLine {
     const Spread& spread() const { return spread_; }
     /// Is this place between texels of one run, or on one?
     bool lit(double texel) const;
-    /// A ray that was marched at such a place; it stands for the spread sample nearest to it.
+    /// Is this texel the first of its run, or the last? It is marched then, spread sample or not.
+    bool ends_run(std::ptrdiff_t texel) const;
+    /// A ray that was marched at a lit place; it stands for the spread sample nearest to it.
     void add(double texel, const RayEnd& end, const MarchedRay& light);
     /// Places and marches the samples that do not depend on light: run ends, and the spread ones that were
     /// not added.

@@ -176,7 +176,7 @@ TEST_CASE("Chosen crossings lie on both lines, near the places they stand for", 
     for (const EpipolarPicture& picture : pictures.all)
         for (const SampledLine& line : picture.sampled()) places += std::size_t(line.spread().count);
     INFO(crossings.size() << " crossings for " << places << " places");
-    CHECK(2 * crossings.size() > places / 2);  // the greedy choice is worth its name
+    CHECK(2 * crossings.size() > places / 3);  // the greedy choice is worth its name
     for (const std::size_t n : by_light) CHECK(n > 0);
 }
 
@@ -222,7 +222,7 @@ TEST_CASE("Pictures with crossings converge like those without", "[epipolar]") {
         CHECK(with.shared > 100);
         CHECK(with.rms < 1.3 * without.rms);
         CHECK(with.rms < 0.5 * previous);
-        CHECK(double(with.marched) < 1.15 * double(without.marched));  // places that are ends of runs
+        CHECK(double(with.marched) < 1.05 * double(without.marched));
         previous = with.rms;
     }
     CHECK(previous < 0.03);
