@@ -34,7 +34,8 @@ struct EyePoint {
 };
 
 struct ScatteringCounts {
-    std::uint64_t rays = 0, steps = 0, filled = 0, lines = 0, texels = 0, candidates = 0, shared = 0;
+    std::uint64_t rays = 0, steps = 0, filled = 0, lines = 0, texels = 0, candidates = 0, shared = 0,
+                  clear = 0;
     std::size_t bytes = 0;
 };
 
@@ -45,6 +46,8 @@ class SingleScatteringEstimator final : public Estimator {
                               const ScatteringSettings& settings)
         : scene_(scene), options_(options), settings_(settings) {
         if (!Media) return;
+        aids_.emplace(scene, settings.aids);
+        settings_.eye.maps = aids_->maps();
         settings_.eye.voxels = settings.march.voxels;
         settings_.eye.other_lights = false;
         for (const auto& light : scene.emitters())
@@ -83,6 +86,7 @@ class SingleScatteringEstimator final : public Estimator {
     const Scene& scene_;
     RenderOptions options_;
     ScatteringSettings settings_;
+    std::optional<ScatteringAids> aids_;  ///< nothing without media
     SharedCounters counters_;
     std::mutex mutex_;
     ScatteringCounts counts_;
@@ -199,6 +203,7 @@ auto SingleScatteringEstimator<Media>::share_rays(const PassContext& context, co
     for (const EpipolarPicture* picture : pictures) bytes += picture->counts().bytes;
     counts_.shared += shared, counts_.bytes = std::max(counts_.bytes, bytes);
     counts_.rays += rays.done().rays, counts_.steps += rays.done().steps;
+    counts_.clear += rays.done().clear;
     counters_.add(rays.done().walk.rays, rays.done().walk.tracking);
     return all;
 }
@@ -238,6 +243,7 @@ bool SingleScatteringEstimator<Media>::scatter(const PassContext& context, const
     }
     counts_.bytes = std::max(counts_.bytes, bytes + points_.capacity() * sizeof(EyePoint));
     counts_.rays += source.marched(), counts_.steps += source.steps();
+    counts_.clear += source.clear();
     counters_.add(source.rays(), source.tracking());
     return done;
 }
@@ -249,7 +255,8 @@ bool SingleScatteringEstimator<Media>::pass(const PassContext& context, PassImag
     march.offset = numbers.march.x;
     std::vector<InScattering> lights;
     if constexpr (Media)
-        for (const Emitter* light : positional_lights(scene_)) lights.emplace_back(scene_, *light, march);
+        for (const Emitter* light : positional_lights(scene_))
+            lights.emplace_back(scene_, *light, march, aids_->of(*light));
     const bool full = settings_.sampling == ScatteringSampling::full;
     if (!full && !lights.empty()) points_.resize(std::size_t(options_.width) * std::size_t(options_.height));
 
@@ -262,6 +269,7 @@ bool SingleScatteringEstimator<Media>::pass(const PassContext& context, PassImag
                                         counters_.add(scratch.walk.rays, scratch.walk.tracking);
                                         const std::lock_guard lock(mutex_);
                                         counts_.rays += scratch.rays, counts_.steps += scratch.steps;
+                                        counts_.clear += scratch.clear;
                                         if (full) counts_.candidates += scratch.rays;
                                     });
     if (!eyes) return false;
@@ -279,6 +287,8 @@ void SingleScatteringEstimator<Media>::add_statistics(Statistics& statistics) co
     if (!Media) return;
     statistics.values["marched_rays"] += double(counts_.rays);
     statistics.values["march_steps"] += double(counts_.steps);
+    statistics.values["clear_rays"] += double(counts_.clear);
+    aids_->add_statistics(statistics);
     statistics.values["lit_pixels"] += double(counts_.candidates);
     if (settings_.sampling == ScatteringSampling::full) return;
     statistics.values["filled_pixels"] += double(counts_.filled);

@@ -9,6 +9,7 @@
 #include "core/render/integrator.h"
 #include "core/scene/properties.h"
 #include "core/scene/registry.h"
+#include "integrators/single_scattering_aids.h"
 #include "integrators/single_scattering_eye.h"
 #include "screenspace/epipolar_sampling.h"
 
@@ -19,6 +20,7 @@ enum class ScatteringSampling : std::uint8_t { full, sub_sampled, epipolar };
 struct ScatteringSettings {
     EyeSettings eye;
     screenspace::MarchSettings march;
+    AidSettings aids;
     ScatteringSampling sampling = ScatteringSampling::full;
     double spacing = 4.0;  ///< of sub-sampling [pixels]
     int lines = 1024;      ///< epipolar lines of a light

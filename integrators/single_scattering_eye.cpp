@@ -26,15 +26,16 @@ Rgb scattered_to_light(const Scene& scene, const ScatteringVertex& vertex, const
 }
 
 /// Lights without a position, scattered once along the ray, and emission of media: by one sampled distance.
-void add_other_lights(const Scene& scene, const Ray& ray, MediumState state, PathWeights weights,
-                      Sampler& sampler, WalkContext& context, TransportSum& sum) {
+void add_other_lights(const Scene& scene, const EyeSettings& settings, const Ray& ray, MediumState state,
+                      PathWeights weights, Sampler& sampler, WalkContext& context, TransportSum& sum) {
     weights.hero = std::min(int(context.rng.next_float() * 3.0f), 2);
     const WalkEvent event = walk<true>(scene, ray, state, weights, sum[Transport::emission], context);
     const Vec2 choices = sampler.next_2d(), u_light = sampler.next_2d(), u = sampler.next_2d();
     if (event.kind != WalkEvent::Kind::collision) return;
     const ScatteringVertex vertex = make_vertex(event, ray);
     Rgb& scattered = sum[Transport::single_scattering];
-    scattered += sample_light<true>(scene, vertex, weights, state, choices.x, u_light, context, true);
+    scattered +=
+        sample_light<true>(scene, vertex, weights, state, choices.x, u_light, context, true, settings.maps);
     if (const auto s = vertex.sample(choices.y, u, TransportMode::radiance))
         scattered += scattered_to_light<true>(scene, vertex, *s, weights, state, context);
 }
@@ -44,7 +45,8 @@ MediumState cross_media(const Scene& scene, const EyeSettings& settings,
                         std::span<const InScattering> positional, Ray ray, const MediumState& state,
                         bool first, Sampler& sampler, PathWeights& weights, MarchScratch& scratch,
                         TransportSum& sum) {
-    if (settings.other_lights) add_other_lights(scene, ray, state, weights, sampler, scratch.walk, sum);
+    if (settings.other_lights)
+        add_other_lights(scene, settings, ray, state, weights, sampler, scratch.walk, sum);
     if (!first)
         for (const InScattering& light : positional)
             sum[Transport::single_scattering] +=

@@ -10,6 +10,7 @@
 
 #include "core/math/sampler.h"
 #include "integrators/transport_layers.h"
+#include "lights/light_shadow_maps.h"
 #include "screenspace/in_scattering.h"
 
 namespace mote::integrators {
@@ -17,6 +18,7 @@ namespace mote::integrators {
 struct EyeSettings {
     int max_depth = 32;  ///< rays of one eye path through mirrors and glass
     float voxels = 1.0f;
+    const lights::LightShadowMaps* maps = nullptr;  ///< of lights without a position; null: traced
     bool other_lights =
         true;  ///< some light has no position, or a medium emits: distances are sampled for them
 };

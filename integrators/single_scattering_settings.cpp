@@ -14,6 +14,9 @@ ScatteringSettings read_scattering_settings(const Properties& p) {
     s.march.rule = p.get_choice("march", "equiangular", {"equiangular", "uniform"}) == "uniform"
                        ? screenspace::MarchRule::uniform
                        : screenspace::MarchRule::equiangular;
+    s.aids.exact = p.get_choice("in_scattering", "exact", {"exact", "steps"}) == "exact";
+    if (const auto visibility = p.child_of<Visibility>(Category::visibility))
+        s.aids.visibility = visibility->settings();
     s.march.voxels = float(p.get_float_in("voxels", 1.0, 1e-3, 1e6));
     s.line.depth_tolerance = float(p.get_float_in("depth_tolerance", 0.02, 0.0, 1e6));
     s.eye.max_depth = int(p.get_int_in("max_depth", 32, 1, 1 << 20));
@@ -23,7 +26,14 @@ ScatteringSettings read_scattering_settings(const Properties& p) {
 
 std::vector<Parameter> scattering_parameters() {
     return {
-        {"steps", "integer", "64", "steps of every marched ray"},
+        {"steps", "integer", "64",
+         "steps of every marched ray, or places that exact integrals are traced from"},
+        {"in_scattering", "string", "exact",
+         "exact: integrals where one homogeneous medium lies between ray and light, without shadow rays "
+         "where "
+         "nothing else does; steps: all rays are marched"},
+        {"visibility", "visibility", "traced",
+         "what stands between light and march steps: traced, or shadow_map with its light_size"},
         {"march", "string", "equiangular",
          "equiangular: equal angles as seen from the light; uniform: equal lengths"},
         {"voxels", "float", "1", "step of optical depths through grids, in voxels"},
@@ -76,6 +86,7 @@ void plan_single_scattering(Plan& plan, const Scene& scene, const Requirements& 
                  fmt::format("{} light{} with a position", lights, lights == 1 ? "" : "s"));
     else
         plan.leave_out("marching", "no ray is marched", "no light has a position");
+    plan_scattering_aids(plan, scene, s.aids, s.march.steps);
     if (scene.emitters().size() > lights || r.media_emissive)
         plan.run("other lights and emission of media",
                  "one sampled distance per pixel and pass, at full rate", "they have no position");

@@ -11,6 +11,8 @@ using namespace core;
 namespace {
 
 constexpr std::size_t leaf_size = 4;
+/// Nodes that a query opens before it gives up: where so much is near, something is likely in the way.
+constexpr std::size_t most_nodes = 200;
 constexpr std::uint32_t whole = ~std::uint32_t(0);
 /// What rounding moves a shadow ray or its hit by, as a share of the largest coordinate: 16 units in the last
 /// place.
@@ -26,32 +28,6 @@ bool gap(const Vec3d& axis, const auto& a, const auto& b, double margin) {
     return std::max(b0 - a1, a0 - b1) > margin * (std::abs(axis.x) + std::abs(axis.y) + std::abs(axis.z));
 }
 
-/// The same for a box, which is its centre and half its edges.
-bool gap(const Vec3d& axis, const auto& a, const Vec3d& center, const Vec3d& half, double margin) {
-    double a0 = double(infinity), a1 = -a0;
-    for (const Vec3d& p : a) {
-        const double at = glm::dot(axis, p - center);
-        a0 = std::min(a0, at), a1 = std::max(a1, at);
-    }
-    const double reach = glm::dot(glm::abs(axis), half + margin);
-    return a0 > reach || a1 < -reach;
-}
-
-bool apart(const ClearSpace::Triangle& t, const Bounds3& box, double margin) {
-    const Vec3d lower(box.lower), upper(box.upper), center = 0.5 * (lower + upper),
-                                                    half = 0.5 * (upper - lower);
-    for (int axis = 0; axis < 3; ++axis)
-        if (std::min({t[0][axis], t[1][axis], t[2][axis]}) > upper[axis] + margin ||
-            std::max({t[0][axis], t[1][axis], t[2][axis]}) < lower[axis] - margin)
-            return true;
-    const std::array<Vec3d, 3> edge = {t[1] - t[0], t[2] - t[1], t[0] - t[2]};
-    if (gap(glm::cross(edge[0], edge[1]), t, center, half, margin)) return true;
-    for (const Vec3d& e : edge)
-        for (const Vec3d& axis : {Vec3d(0, -e.z, e.y), Vec3d(e.z, 0, -e.x), Vec3d(-e.y, e.x, 0)})
-            if (gap(axis, t, center, half, margin)) return true;
-    return false;
-}
-
 bool apart(const ClearSpace::Triangle& t, const ClearSpace::Triangle& o, double margin) {
     const std::array<Vec3d, 3> te = {t[1] - t[0], t[2] - t[1], t[0] - t[2]};
     const std::array<Vec3d, 3> oe = {o[1] - o[0], o[2] - o[1], o[0] - o[2]};
@@ -64,6 +40,51 @@ bool apart(const ClearSpace::Triangle& t, const ClearSpace::Triangle& o, double 
 }
 
 }  // namespace
+
+/// A triangle, ready for many boxes: the axes that can separate them besides those of the boxes, and the
+/// triangle along each.
+class ClearSpace::Tree::Query {
+  public:
+    Query(const Triangle& t, double margin) : triangle(t), margin_(margin) {
+        const std::array<Vec3d, 3> edge = {t[1] - t[0], t[2] - t[1], t[0] - t[2]};
+        std::size_t n = 0;
+        axis_[n++] = glm::cross(edge[0], edge[1]);
+        for (const Vec3d& e : edge)
+            axis_[n++] = {0, -e.z, e.y}, axis_[n++] = {e.z, 0, -e.x}, axis_[n++] = {-e.y, e.x, 0};
+        for (std::size_t i = 0; i < n; ++i) {
+            const auto [low, high] =
+                std::minmax({glm::dot(axis_[i], t[0]), glm::dot(axis_[i], t[1]), glm::dot(axis_[i], t[2])});
+            low_[i] = low, high_[i] = high;
+        }
+        lower_ = glm::min(glm::min(t[0], t[1]), t[2]) - margin;
+        upper_ = glm::max(glm::max(t[0], t[1]), t[2]) + margin;
+    }
+
+    bool apart(const Bounds3& box) const {
+        const Vec3d lower(box.lower), upper(box.upper);
+        if (glm::any(glm::greaterThan(lower_, upper)) || glm::any(glm::lessThan(upper_, lower))) return true;
+        const Vec3d center = 0.5 * (lower + upper), half = 0.5 * (upper - lower) + margin_;
+        for (std::size_t i = 0; i < axis_.size(); ++i) {
+            const double at = glm::dot(axis_[i], center), reach = glm::dot(glm::abs(axis_[i]), half);
+            if (low_[i] > at + reach || high_[i] < at - reach) return true;
+        }
+        return false;
+    }
+    double margin() const { return margin_; }
+    const Triangle triangle;
+
+  private:
+    std::array<Vec3d, 10> axis_;
+    std::array<double, 10> low_, high_;
+    Vec3d lower_, upper_;
+    double margin_;
+};
+
+struct ClearSpace::Tree::Entry {
+    Part part;
+    Bounds3 bounds;
+    Vec3 center;
+};
 
 ClearSpace::ClearSpace(const Scene& scene) {
     for (const auto& shape : scene.shapes())
@@ -83,10 +104,16 @@ void ClearSpace::Tree::add(const Shape& shape) {
 
 void ClearSpace::Tree::build() {
     if (parts_.empty()) return;
-    parts_.shrink_to_fit();
-    nodes_.reserve(4 * parts_.size() / leaf_size + 1);
+    std::vector<Entry> entries;
+    entries.reserve(parts_.size());
+    for (const Part& part : parts_) {
+        const Bounds3 box = bounds_of(part);
+        entries.push_back({part, box, box.center()});
+    }
     nodes_.emplace_back();
-    split(0, 0, parts_.size());
+    split(entries, 0, 0, entries.size());
+    nodes_.shrink_to_fit(), parts_.shrink_to_fit();
+    for (std::size_t i = 0; i < parts_.size(); ++i) parts_[i] = entries[i].part;
 }
 
 Bounds3 ClearSpace::Tree::bounds_of(const Part& part) const {
@@ -98,12 +125,11 @@ Bounds3 ClearSpace::Tree::bounds_of(const Part& part) const {
 }
 
 /// Halves the parts along the axis that their centres are spread most along.
-void ClearSpace::Tree::split(std::uint32_t node, std::size_t begin, std::size_t end) {
+void ClearSpace::Tree::split(std::vector<Entry>& entries, std::uint32_t node, std::size_t begin,
+                             std::size_t end) {
     Bounds3 box, centers;
-    for (std::size_t i = begin; i < end; ++i) {
-        const Bounds3 b = bounds_of(parts_[i]);
-        box.extend(b), centers.extend(b.center());
-    }
+    for (std::size_t i = begin; i < end; ++i)
+        box.extend(entries[i].bounds), centers.extend(entries[i].center);
     nodes_[node].bounds = box;
     if (end - begin <= leaf_size) {
         nodes_[node].first = std::uint32_t(begin), nodes_[node].count = std::uint32_t(end - begin);
@@ -111,27 +137,26 @@ void ClearSpace::Tree::split(std::uint32_t node, std::size_t begin, std::size_t 
     }
     const Vec3 spread = centers.diagonal();
     const int axis = spread.x >= spread.y && spread.x >= spread.z ? 0 : spread.y >= spread.z ? 1 : 2;
-    const auto at = [&](std::size_t i) { return parts_.begin() + std::ptrdiff_t(i); };
+    const auto at = [&](std::size_t i) { return entries.begin() + std::ptrdiff_t(i); };
     const std::size_t middle = begin + (end - begin) / 2;
-    std::nth_element(at(begin), at(middle), at(end), [&](const Part& a, const Part& b) {
-        return bounds_of(a).center()[axis] < bounds_of(b).center()[axis];
-    });
+    std::nth_element(at(begin), at(middle), at(end),
+                     [axis](const Entry& a, const Entry& b) { return a.center[axis] < b.center[axis]; });
     nodes_.emplace_back();
-    split(node + 1, begin, middle);
+    split(entries, node + 1, begin, middle);
     const auto right = std::uint32_t(nodes_.size());
     nodes_.emplace_back();
     nodes_[node].first = right, nodes_[node].count = 0;
-    split(right, middle, end);
+    split(entries, right, middle, end);
 }
 
-bool ClearSpace::Tree::apart(const Triangle& t, const Part& part, double margin) const {
-    if (part.triangle == whole) return screenspace::apart(t, shapes_[part.shape]->bounds(), margin);
+bool ClearSpace::Tree::apart(const Query& query, const Part& part) const {
+    if (query.apart(bounds_of(part))) return true;
+    if (part.triangle == whole) return false;
     const MeshData& mesh = *meshes_[part.shape];
     const auto& corners = mesh.triangles[part.triangle];
-    return screenspace::apart(t,
-                              Triangle{Vec3d(mesh.positions[corners[0]]), Vec3d(mesh.positions[corners[1]]),
-                                       Vec3d(mesh.positions[corners[2]])},
-                              margin);
+    const Triangle other = {Vec3d(mesh.positions[corners[0]]), Vec3d(mesh.positions[corners[1]]),
+                            Vec3d(mesh.positions[corners[2]])};
+    return screenspace::apart(query.triangle, other, query.margin());
 }
 
 bool ClearSpace::Tree::clear(const Triangle& t) const {
@@ -140,19 +165,21 @@ bool ClearSpace::Tree::clear(const Triangle& t) const {
         rounding * std::max({largest_, largest_of(t[0]), largest_of(t[1]), largest_of(t[2])});
     const Vec3d sum = t[0] + t[1] + t[2];
     if (!std::isfinite(margin + sum.x + sum.y + sum.z)) return false;
+    const Query query(t, margin);
     std::array<std::uint32_t, 64> open;  // deeper than 2^64 parts
-    std::size_t count = 0;
+    std::size_t count = 0, visited = 0;
     open[count++] = 0;
     while (count > 0) {
         const std::uint32_t at = open[--count];
         const Node& node = nodes_[at];
-        if (screenspace::apart(t, node.bounds, margin)) continue;
+        if (query.apart(node.bounds)) continue;
+        if (++visited > most_nodes) return false;
         if (node.count == 0) {
             open[count++] = node.first, open[count++] = at + 1;
             continue;
         }
         for (std::uint32_t i = 0; i < node.count; ++i)
-            if (!apart(t, parts_[node.first + i], margin)) return false;
+            if (!apart(query, parts_[node.first + i])) return false;
     }
     return true;
 }

@@ -53,9 +53,11 @@ class ClearSpace {
             core::Bounds3 bounds;
             std::uint32_t first, count;  ///< count 0: children are the next node and `first`
         };
-        void split(std::uint32_t node, std::size_t begin, std::size_t end);
+        class Query;
+        struct Entry;  ///< a part while the tree is built
+        void split(std::vector<Entry>& entries, std::uint32_t node, std::size_t begin, std::size_t end);
         core::Bounds3 bounds_of(const Part& part) const;
-        bool apart(const Triangle& t, const Part& part, double margin) const;
+        bool apart(const Query& query, const Part& part) const;
 
         std::vector<const core::Shape*> shapes_;
         std::vector<const core::MeshData*> meshes_;  ///< of the shape, or null

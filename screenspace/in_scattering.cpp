@@ -97,21 +97,17 @@ std::optional<Interval> InScattering::lit_part(const Ray& ray) const {
     return Interval{float(cone->first), float(cone->second)};
 }
 
-/// Where the march has come to after a share of its steps.
-double InScattering::share_of_steps(const PassingRay& passing, double t0, double t1, double share) const {
+double StepRule::at(double share) const {
     if (share <= 0.0) return t0;
     if (share >= 1.0) return t1;
-    if (settings_.rule == MarchRule::uniform) return t0 + share * (t1 - t0);
-    const double a0 = passing.angle(t0), a1 = passing.angle(t1);
+    if (rule == MarchRule::uniform) return t0 + share * (t1 - t0);
     return std::clamp(passing.at_angle(a0 + share * (a1 - a0)), t0, t1);
 }
 
-void InScattering::place_steps(const Ray& ray, double t0, double t1, std::vector<float>& distances) const {
-    const PassingRay passing(ray, position_);
+void InScattering::place_steps(const StepRule& rule, std::vector<float>& distances) const {
     distances.clear();
     for (int i = 0; i < settings_.steps; ++i)
-        distances.push_back(
-            float(share_of_steps(passing, t0, t1, (i + double(settings_.offset)) / settings_.steps)));
+        distances.push_back(float(rule.at((i + double(settings_.offset)) / settings_.steps)));
 }
 
 double InScattering::unshadowed(const Ray& ray, double t0, double t1) const {
@@ -119,13 +115,10 @@ double InScattering::unshadowed(const Ray& ray, double t0, double t1) const {
     return (passing.angle(t1) - passing.angle(t0)) / passing.distance;
 }
 
-/// The length that the step at t stands for: one over its density.
-double InScattering::step_length(const Ray& ray, double t0, double t1, float t) const {
-    if (settings_.rule == MarchRule::uniform) return (t1 - t0) / settings_.steps;
-    const PassingRay passing(ray, position_);
-    const double s = double(t) - passing.nearest;
-    return (passing.angle(t1) - passing.angle(t0)) * (passing.distance + s * s / passing.distance) /
-           settings_.steps;
+double StepRule::length(double t) const {
+    if (rule == MarchRule::uniform) return t1 - t0;
+    const double s = t - passing.nearest;
+    return (a1 - a0) * (passing.distance + s * s / passing.distance);
 }
 
 /// sigma_s f_p T V I / d^2 at one point [1/m times radiance].
@@ -207,8 +200,9 @@ MarchedRay InScattering::march(const Ray& ray, const MediumState& state, MarchSc
 void InScattering::march_steps(const Ray& ray, double t0, double t1, MarchScratch& scratch,
                                const EyeMedia* shared, MarchedRay& result) const {
     scratch.distances.clear();
+    const StepRule rule(settings_.rule, ray, position_, t0, t1);
     if (t0 < t1 && (std::isfinite(t1) || settings_.rule == MarchRule::equiangular))
-        place_steps(ray, t0, t1, scratch.distances);
+        place_steps(rule, scratch.distances);
     if (aids_.map && !scratch.distances.empty()) look_up_steps(ray, scratch);
 
     std::size_t next = 0;
@@ -235,7 +229,8 @@ void InScattering::march_steps(const Ray& ray, double t0, double t1, MarchScratc
             }
             const Rgb scattered = scattered_at(ray, at, s, scratch, aids_.map ? &from_map : nullptr);
             if (!is_black(scattered))
-                result.radiance += result.transmittance * scattered * float(step_length(ray, t0, t1, at));
+                result.radiance +=
+                    result.transmittance * scattered * float(rule.length(double(at)) / settings_.steps);
         }
         advance(s.t1);
     }

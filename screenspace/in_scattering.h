@@ -40,6 +40,21 @@ struct MarchAids {
     const lights::VolumetricShadowMap* map = nullptr;  ///< of this light; null: shadow rays
 };
 
+/// Steps along a part of a ray.
+struct StepRule {
+    MarchRule rule;
+    PassingRay passing;
+    double t0, t1;
+    double a0, a1;  ///< as seen from the light [radians]
+
+    StepRule(MarchRule r, const core::Ray& ray, const core::Vec3& light, double from, double to)
+        : rule(r), passing(ray, light), t0(from), t1(to), a0(passing.angle(from)), a1(passing.angle(to)) {}
+    /// Where the march has come to after a share of its steps.
+    double at(double share) const;
+    /// One over the density of steps at t, per length and for a single step.
+    double length(double t) const;
+};
+
 /// The part of a ray in one medium, and the media there.
 struct MediumSegment {
     const core::Medium* medium;  ///< null: vacuum
@@ -97,7 +112,7 @@ class InScattering {
     const SteadyMedium* steady_medium(const core::Medium* medium) const;
     template <bool surfaces>
     bool is_clear(const core::Ray& ray, double t0, double t1) const;
-    void trace_steps(const core::Ray& ray, double t0, double t1, MarchScratch& scratch) const;
+    void trace_steps(const core::Ray& ray, const StepRule& rule, MarchScratch& scratch) const;
     core::Rgb end_piece(const core::Ray& ray, double t0, double t1, const MediumSegment& at,
                         const SteadyMedium& medium, MarchScratch& scratch) const;
     void march_steps(const core::Ray& ray, double t0, double t1, MarchScratch& scratch,
@@ -105,9 +120,7 @@ class InScattering {
     core::Rgb eye_transmittance(const core::Ray& ray, float to, MarchScratch& scratch,
                                 const EyeMedia* shared) const;
     void look_up_steps(const core::Ray& ray, MarchScratch& scratch) const;
-    double share_of_steps(const PassingRay& passing, double t0, double t1, double share) const;
-    void place_steps(const core::Ray& ray, double t0, double t1, std::vector<float>& distances) const;
-    double step_length(const core::Ray& ray, double t0, double t1, float t) const;
+    void place_steps(const StepRule& rule, std::vector<float>& distances) const;
     core::Rgb scattered_at(const core::Ray& ray, float t, const MediumSegment& at, MarchScratch& scratch,
                            const core::Rgb* from_map = nullptr) const;
 

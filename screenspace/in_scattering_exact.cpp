@@ -38,10 +38,10 @@ bool InScattering::is_clear(const Ray& ray, double t0, double t1) const {
                     : space.clear_of_boundaries(light, from, direction);
 }
 
-/// Whether the light reaches steps of the ray between t0 and t1.
-void InScattering::trace_steps(const Ray& ray, double t0, double t1, MarchScratch& scratch) const {
+/// Whether the light reaches the steps.
+void InScattering::trace_steps(const Ray& ray, const StepRule& rule, MarchScratch& scratch) const {
     constexpr int width = ShadowPacket::width;
-    place_steps(ray, t0, t1, scratch.distances);
+    place_steps(rule, scratch.distances);
     const std::size_t steps = scratch.distances.size();
     scratch.lit.resize(steps);
     scratch.packets.resize((steps + width - 1) / width);
@@ -80,10 +80,9 @@ std::optional<Rgb> InScattering::integrate(const Ray& ray, double t0, double t1,
     const SteadyMedium* medium = steady_medium(at.medium);
     if (!aids_.clear || !steady_light_ || !medium || t0 < double(at.t0) || t1 > double(at.t1))
         return std::nullopt;
-    const PassingRay passing(ray, position_);
-    const double a0 = passing.angle(t0), a1 = passing.angle(t1);
-    const double from = t0 > double(ray.t_min) ? passing.at_angle(a0 + end_share * (a1 - a0)) : t0;
-    const double to = std::isfinite(t1) ? passing.at_angle(a1 - end_share * (a1 - a0)) : t1;
+    const StepRule all(MarchRule::equiangular, ray, position_, t0, t1);
+    const double from = t0 > double(ray.t_min) ? all.at(end_share) : t0;
+    const double to = std::isfinite(t1) ? all.at(1.0 - end_share) : t1;
     if (!(t0 <= from && from < to && to <= t1) || !is_clear<false>(ray, from, to)) return std::nullopt;
 
     Rgb sum(0.0f);
@@ -95,13 +94,12 @@ std::optional<Rgb> InScattering::integrate(const Ray& ray, double t0, double t1,
         add(from, to);
     } else {
         if (aids_.map || (!std::isfinite(to) && settings_.rule == MarchRule::uniform)) return std::nullopt;
-        trace_steps(ray, from, to, scratch);
+        const StepRule rule(settings_.rule, ray, position_, from, to);
+        trace_steps(ray, rule, scratch);
         const int n = settings_.steps;
         for (int i = 0, end = 0; i < n; i = end + 1) {
             for (end = i; end < n && scratch.lit[std::size_t(end)];) ++end;
-            if (end > i)
-                add(share_of_steps(passing, from, to, double(i) / n),
-                    share_of_steps(passing, from, to, double(end) / n));
+            if (end > i) add(rule.at(double(i) / n), rule.at(double(end) / n));
         }
     }
     sum += end_piece(ray, t0, from, at, *medium, scratch);

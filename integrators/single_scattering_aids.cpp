@@ -1,0 +1,107 @@
+#include "integrators/single_scattering_aids.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "integrators/single_scattering_estimator.h"
+
+namespace mote::integrators {
+
+using namespace core;
+using screenspace::SteadyLight, screenspace::SteadyMedium;
+
+namespace {
+
+/// Lights and media whose in-scattering can be integrated, and all that scatter.
+struct Steady {
+    std::size_t lights = 0, all_lights = 0, media = 0, all_media = 0;
+
+    explicit Steady(const Scene& scene) {
+        for (const Emitter* light : positional_lights(scene))
+            ++all_lights, lights += SteadyLight::of(*light).has_value();
+        for (const auto& medium : scene.media()) {
+            const MediumTraits traits = medium->traits();
+            if (!traits.scattering || traits.empty) continue;
+            ++all_media, media += SteadyMedium::of(*medium).has_value();
+        }
+    }
+    bool any() const { return lights > 0 && media > 0; }
+};
+
+void plan_exact(Plan& plan, const Steady& steady, const AidSettings& settings, int steps) {
+    if (!settings.exact) {
+        plan.leave_out("exact in-scattering", "all rays are marched", "in_scattering is steps");
+        return;
+    }
+    if (!steady.any()) {
+        plan.leave_out("exact in-scattering", "all rays are marched",
+                       steady.media == 0 ? "no medium that scatters is homogeneous"
+                                         : "every light is textured, or no cone with a narrow rim");
+        return;
+    }
+    plan.run(
+        "exact in-scattering",
+        fmt::format(
+            "{} of {} lights, {} of {} media; no steps and no shadow rays where nothing is in the way",
+            steady.lights, steady.all_lights, steady.media, steady.all_media),
+        fmt::format(
+            "where one homogeneous medium lies between light and ray; behind occluders {} tell what "
+            "is lit",
+            settings.visibility.shadow_maps ? "steps in shadow maps" : fmt::format("{} shadow rays", steps)));
+    if (steady.lights < steady.all_lights)
+        plan.run("marched lights",
+                 fmt::format("{} of {}", steady.all_lights - steady.lights, steady.all_lights),
+                 "their intensity varies: a texture, or a cone that is mostly rim or wider than 90 degrees");
+}
+
+void plan_maps(Plan& plan, const Scene& scene, const VisibilitySettings& s) {
+    if (!s.shadow_maps) {
+        plan.run("visibility", "shadow rays", "exact");
+        return;
+    }
+    std::size_t count = 0;
+    for (const auto& light : scene.emitters())
+        count += lights::shadow_map_view_of(scene, *light, 1).has_value();
+    if (s.light_size == 0 || count == 0) {
+        plan.run("visibility", "shadow rays",
+                 s.light_size == 0 ? "light_size is 0" : "no light is a point, a cone or parallel");
+        return;
+    }
+    const std::size_t bytes = s.map.bytes(s.light_size, lights::needs_chromatic_maps(scene));
+    plan.run("visibility",
+             fmt::format("{} shadow map{} of {}^2 texels, {:.1f} MB each, built once", count,
+                         count == 1 ? "" : "s", s.light_size, double(bytes) * 1e-6),
+             "asked for; transmittance and shadows at march steps are looked up; surfaces are traced");
+    plan.miss("detail of shadows", "finer than the texels of shadow maps",
+              "maps interpolate: shafts are blurred, and the mean is biased");
+}
+
+}  // namespace
+
+ScatteringAids::ScatteringAids(const Scene& scene, const AidSettings& settings) {
+    if (settings.exact && Steady(scene).any()) space_.emplace(scene);
+    const VisibilitySettings& visibility = settings.visibility;
+    if (!visibility.used_in(scene) || visibility.light_size == 0) return;
+    visibility.check(scene);
+    maps_.emplace(scene, visibility.light_size, visibility.map);
+}
+
+void ScatteringAids::add_statistics(Statistics& statistics) const {
+    if (space_) statistics.values["clear_space_bytes"] = double(space_->memory_bytes());
+    if (!maps_) return;
+    const RayCounters rays = maps_->rays();
+    statistics.rays["closest"] += rays.closest;
+    statistics.rays["occlusion"] += rays.occlusion;
+    statistics.rays["boundary"] += rays.boundary;
+    statistics.values["shadow_maps"] = double(maps_->count());
+    statistics.values["shadow_map_bytes"] = double(maps_->memory_bytes());
+}
+
+void plan_scattering_aids(Plan& plan, const Scene& scene, const AidSettings& settings, int steps) {
+    const Steady steady(scene);
+    if (steady.all_lights > 0) plan_exact(plan, steady, settings, steps);
+    plan_maps(plan, scene, settings.visibility);
+}
+
+}  // namespace mote::integrators
