@@ -1,5 +1,11 @@
 // Steps of screen-space bias compensation against exact compensation, where all that matters is visible:
 // between parallel planes in closed form, in a wedge by quadrature, in a corner by Monte Carlo.
+//
+// Light is constant over a pixel: an error of first order in the pixels' size, beside an edge, where light
+// changes with the 2/3rd power of the distance, of order 2/3. Each result is taken at three sizes; their
+// differences say how far the finest may be from the limit (grid_convergence.h), and it has to be that near.
+// The error of a node is of first order in its projected solid angle, so the thresholds shrink with the
+// pixels.
 #include "screenspace/ssbc.h"
 
 #include <algorithm>
@@ -9,6 +15,7 @@
 #include "tests/screenspace/ssbc_pictures.h"
 #include "tests/screenspace/ssbc_wedge.h"
 #include "tests/support/catch.h"
+#include "tests/support/grid_convergence.h"
 
 using namespace mote;
 using namespace mote::core;
@@ -19,24 +26,27 @@ namespace {
 
 const double pi_d = std::acos(-1.0);
 
-SsbcSettings settings(double bound, int steps) {
+double index_of(const std::array<double, 3>& results) {
+    return grid_convergence_index(results, 2.0 / 3.0, 1.0);
+}
+
+SsbcSettings settings(double bound, int height) {
     SsbcSettings s;
     s.bound = float(bound);
-    s.steps = steps;
-    s.refinement.projected_angle = 0.02f, s.refinement.discontinuity_projected_angle = 0.01f;
+    s.steps = 1;
+    s.refinement.projected_angle = 1.0f / float(height);
+    s.refinement.discontinuity_projected_angle = 0.5f / float(height);
     s.grazing_angle = 0.5f * pi;  // what is seen at a slant is known here as exactly as the rest
     return s;
 }
 
-/// What one step after the other adds, as pictures.
+/// What one step after the other adds, as pictures: each is a step on the one before.
 std::vector<std::vector<Rgb>> terms(const TestPicture& picture, double bound, int steps) {
     std::vector<std::vector<Rgb>> result;
-    std::vector<Rgb> before(picture.light.size(), Rgb(0.0f));
-    for (int n = 1; n <= steps; ++n) {
-        auto sum = compensate(picture.surfaces, picture.light, settings(bound, n)).compensation;
-        result.push_back(sum);
-        for (std::size_t i = 0; i < sum.size(); ++i) result.back()[i] -= before[i];
-        before = std::move(sum);
+    std::vector<Rgb> light = picture.light;
+    for (int n = 0; n < steps; ++n) {
+        light = compensate(picture.surfaces, light, settings(bound, picture.surfaces.height)).compensation;
+        result.push_back(light);
     }
     return result;
 }
@@ -75,9 +85,8 @@ std::vector<Rgb> means(const Pinhole& camera, const TestPicture& picture, const 
 }
 
 struct Difference {
-    double rms = 0.0, rms_of_exact = 0.0, bias = 0.0, mean_of_exact = 0.0;
+    double rms = 0.0, rms_of_exact = 0.0, bias = 0.0;
     double relative() const { return rms / rms_of_exact; }
-    double relative_bias() const { return bias / mean_of_exact; }
 };
 
 /// Over the pixels near the edge around which everything within two radii of the bound is visible.
@@ -92,88 +101,135 @@ Difference against(const Pinhole& camera, const TestPicture& picture, const std:
             if (std::abs(p.x) > 0.4f || std::max(p.y, p.z) > 0.8f) continue;
             const double e = mean_over_pixel(exact, camera, x, y, picture.wall[i]),
                          error = double(found[i].x) - e;
-            d.rms += error * error, d.rms_of_exact += e * e, d.bias += error, d.mean_of_exact += e, ++n;
+            d.rms += error * error, d.rms_of_exact += e * e, d.bias += error, ++n;
         }
     REQUIRE(n > 100);
-    d.rms = std::sqrt(d.rms / n), d.rms_of_exact = std::sqrt(d.rms_of_exact / n);
+    d.rms = std::sqrt(d.rms / n), d.rms_of_exact = std::sqrt(d.rms_of_exact / n), d.bias /= n;
     return d;
 }
 
 }  // namespace
 
-TEST_CASE("In a wedge, the terms of the steps are those of exact compensation", "[ssbc][exact]") {
-    // The error is that of light which is constant over a pixel: of first order in the pixels' size. Light
-    // rises towards the edge, and each term more steeply than the one before.
-    const int sizes[2] = {48, 96};
-    Difference differences[2][4];
-    for (int k = 0; k < 2; ++k) {
-        const Pinhole camera = wedge_camera(sizes[k]);
-        const TestPicture picture = picture_of(wedge_walls, camera);
-        const auto found = terms(picture, wedge_bound, 4);
-        WedgeLight exact(wedge_view, 1.0);
-        for (int n = 0; n < 4; ++n) {
-            exact = exact.step(wedge_bound, wedge_reflectance);
-            differences[k][n] = against(camera, picture, found[std::size_t(n)], exact);
-        }
+namespace {
+
+const std::array<int, 3> wedge_sizes = {48, 96, 192};
+const int wedge_steps = 4;
+
+/// The terms of the wedge found in a picture, and by quadrature.
+struct Wedge {
+    Pinhole camera;
+    TestPicture picture;
+    std::vector<std::vector<Rgb>> found;
+
+    explicit Wedge(int size, const std::function<void(TestPicture&)>& plant = {}, double bound = wedge_bound,
+                   int steps = wedge_steps)
+        : camera(wedge_camera(size)), picture(picture_of(wedge_walls, camera)) {
+        if (plant) plant(picture);
+        found = terms(picture, bound, steps);
     }
-    for (int n = 0; n < 4; ++n) {
-        const Difference &coarse = differences[0][n], &fine = differences[1][n];
-        INFO("term " << n + 1 << ": relative rms " << coarse.relative() << " and " << fine.relative()
-                     << ", bias " << coarse.relative_bias() << " and " << fine.relative_bias());
-        CHECK(fine.relative() < 0.7 * coarse.relative());
-        CHECK(std::abs(fine.relative_bias()) < 0.7 * std::max(0.02, std::abs(coarse.relative_bias())));
+    Difference difference(int term, const WedgeLight& exact) const {
+        return against(camera, picture, found[std::size_t(term)], exact);
     }
-    CHECK(differences[1][0].relative() < 0.03);
-    CHECK(std::abs(differences[1][0].relative_bias()) < 0.01);
-    CHECK(differences[1][1].relative() < 0.08);
+    /// The first n terms.
+    std::vector<Rgb> sum(int n) const {
+        std::vector<Rgb> result(picture.light.size(), Rgb(0.0f));
+        for (int term = 0; term < n; ++term)
+            for (std::size_t i = 0; i < result.size(); ++i) result[i] += found[std::size_t(term)][i];
+        return result;
+    }
+};
+
+const std::array<Wedge, 3>& wedges() {
+    static const std::array<Wedge, 3> all = {Wedge(wedge_sizes[0]), Wedge(wedge_sizes[1]),
+                                             Wedge(wedge_sizes[2])};
+    return all;
 }
 
-TEST_CASE("In a wedge, errors fall from step to step as those of exact compensation do", "[ssbc][exact]") {
-    const Pinhole camera = wedge_camera(96);
-    const TestPicture picture = picture_of(wedge_walls, camera);
-    const int steps = 4;
-    std::vector<WedgeLight> exact = {
-        WedgeLight(wedge_view, 0.0)};  // after n steps, and in the end after many
+WedgeLight exact_term(int n) {
     WedgeLight term(wedge_view, 1.0);
-    for (int n = 1; n <= 20; ++n) {
-        term = term.step(wedge_bound, wedge_reflectance);
-        exact.push_back(exact.back() + term);
+    for (int k = 0; k <= n; ++k) term = term.step(wedge_bound, wedge_reflectance);
+    return term;
+}
+
+}  // namespace
+
+namespace {
+
+/// Over pixels, relative to the root mean square of all that exact compensation adds.
+struct TermError {
+    double rms, index, bias;  ///< of the finest picture, and what its rms may be
+};
+
+WedgeLight all_terms() {
+    WedgeLight all(wedge_view, 0.0);
+    for (int n = 0; n < 20; ++n) all = all + exact_term(n);
+    return all;
+}
+
+TermError term_error(int n, double scale) {
+    const WedgeLight exact = exact_term(n);
+    std::array<double, 3> rms{};
+    Difference d;
+    for (std::size_t k = 0; k < 3; ++k) d = wedges()[k].difference(n, exact), rms[k] = d.rms / scale;
+    INFO("term " << n + 1 << ": rms " << rms[0] << ", " << rms[1] << ", " << rms[2]);
+    CHECK(rms[2] < index_of(rms));
+    return {rms[2], index_of(rms), d.bias / scale};
+}
+
+/// Of the finest picture.
+double rms_of(const WedgeLight& exact) { return wedges()[2].difference(0, exact).rms_of_exact; }
+
+}  // namespace
+
+TEST_CASE("In a wedge the terms of the steps are those of exact compensation", "[ssbc][exact]") {
+    for (int n = 0; n < wedge_steps; ++n) {
+        const TermError error = term_error(n, rms_of(exact_term(n)));
+        INFO("term " << n + 1 << ": bias " << error.bias << ", tolerance " << error.index);
+        CHECK(std::abs(error.bias) < error.index);  // a mean is at most the root mean square
     }
-    double before = 1.0;
-    for (int n = 1; n <= steps; ++n) {
-        const auto found = compensate(picture.surfaces, picture.light, settings(wedge_bound, n)).compensation;
-        const double missing = against(camera, picture, found, exact.back()).relative();
+}
+
+TEST_CASE("In a wedge errors fall from step to step as those of exact compensation do", "[ssbc][exact]") {
+    const WedgeLight all = all_terms();
+    const Wedge& finest = wedges()[2];
+    WedgeLight exact(wedge_view, 0.0);
+    double before = 1.0, tolerance = 0.0;
+    for (int n = 1; n <= wedge_steps; ++n) {
+        exact = exact + exact_term(n - 1);
+        tolerance += term_error(n - 1, rms_of(all)).index;  // errors of terms add up at most
+        const double missing = against(finest.camera, finest.picture, finest.sum(n), all).relative();
         const double expected =
-            against(camera, picture, means(camera, picture, exact[std::size_t(n)]), exact.back()).relative();
+            against(finest.camera, finest.picture, means(finest.camera, finest.picture, exact), all)
+                .relative();
         INFO("after " << n << " steps " << missing << " of the compensation is missing, by quadrature "
-                      << expected);
-        // The margin: the rms errors of the terms above times their sizes, added up.
-        CHECK(missing == Approx(expected).margin(0.05));
-        CHECK(missing < 0.45 * before + 0.03);  // reflectance times the form factor at the edge, 1/2
-        before = missing;
+                      << expected << ", tolerance " << tolerance);
+        CHECK(std::abs(missing - expected) < tolerance);
+        // A step multiplies by the reflectance times form factors, which are 1/2 at the edge and less
+        // elsewhere.
+        CHECK(expected < 0.5 * wedge_reflectance * before);
+        before = expected;
     }
 }
 
 TEST_CASE("The test of the wedge finds planted errors", "[ssbc][exact][planted]") {
-    const Pinhole camera = wedge_camera(96);
-    const TestPicture right = picture_of(wedge_walls, camera);
-    const WedgeLight exact = WedgeLight(wedge_view, 1.0).step(wedge_bound, wedge_reflectance);
-    const auto bias = [&](const TestPicture& picture, double bound) {
-        const auto found = compensate(picture.surfaces, picture.light, settings(bound, 1)).compensation;
-        return std::abs(against(camera, picture, found, exact).relative_bias());
+    const WedgeLight exact = exact_term(0);
+    const double scale = rms_of(exact), tolerance = term_error(0, scale).index;
+    const auto with = [&](const std::function<void(TestPicture&)>& plant, double bound = wedge_bound) {
+        return std::abs(Wedge(wedge_sizes[2], plant, bound, 1).difference(0, exact).bias) / scale;
     };
-    CHECK(bias(right, wedge_bound) < 0.01);
-    CHECK_FALSE(bias(right, 1.05 * wedge_bound) < 0.01);
-    TestPicture wrong = right;
-    for (float& a : wrong.surfaces.area) a *= 1.03f;
-    CHECK_FALSE(bias(wrong, wedge_bound) < 0.01);
-    wrong = right;
-    for (std::size_t i = 0; i < wrong.light.size(); ++i)  // no division by the cosine to the viewer
-        wrong.surfaces.area[i] *= wrong.surfaces.facing[i];
-    CHECK_FALSE(bias(wrong, wedge_bound) < 0.01);
-    wrong = right;
-    for (Vec3& n : wrong.surfaces.normal) n = glm::normalize(n + Vec3(0.0f, 0.05f, 0.0f));
-    CHECK_FALSE(bias(wrong, wedge_bound) < 0.01);
+    INFO("tolerance " << tolerance);
+    CHECK(with({}) < tolerance);
+    CHECK_FALSE(with({}, 1.05 * wedge_bound) < tolerance);
+    CHECK_FALSE(with([](TestPicture& p) {
+                    for (float& a : p.surfaces.area) a *= 1.05f;
+                }) < tolerance);
+    CHECK_FALSE(with([](TestPicture& p) {  // no division by the cosine to the viewer
+                    for (std::size_t i = 0; i < p.light.size(); ++i)
+                        p.surfaces.area[i] *= p.surfaces.facing[i];
+                }) < tolerance);
+    CHECK_FALSE(with([](TestPicture& p) {
+                    for (Vec3& n : p.surfaces.normal) n = glm::normalize(n + Vec3(0.0f, 0.05f, 0.0f));
+                }) < tolerance);
 }
 
 TEST_CASE("The error after N steps is more than the next term", "[ssbc][exact]") {
@@ -192,21 +248,27 @@ TEST_CASE("Between parallel planes every step multiplies by the same factor", "[
     const double rho = 0.8, bound = 0.5, q = rho * std::pow(1.0 - std::sqrt(bound), 2.0);
     const Wall floor{{0, -0.5, 0}, {50, 0, 0}, {0, 0, 50}, Rgb(float(rho))};
     const Wall ceiling{{0, 0.5, 0}, {50, 0, 0}, {0, 0, 50}, Rgb(float(rho))};
-    const Pinhole camera{{0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 1.6, 192, 128};
-    const TestPicture picture = picture_of({floor, ceiling}, camera);
-    const auto found = terms(picture, bound, 3);
-    for (int n = 0; n < 3; ++n) {
-        double sum = 0.0;
-        int count = 0;
-        for (std::size_t i = 0; i < picture.light.size(); ++i) {
-            const Vec3 p =
-                picture.surfaces.position[i];  // within 0.6 m of it the other plane matters to 0.64 m
-            if (std::abs(p.x) < 0.2f && p.z < -1.3f && p.z > -1.7f)
-                sum += double(found[std::size_t(n)][i].x), ++count;
+    std::array<std::array<double, 3>, 3> ratio{};  // of what is found to what is right, by term and size
+    for (std::size_t k = 0; k < 3; ++k) {
+        const int size = 64 << k;
+        const TestPicture picture =
+            picture_of({floor, ceiling}, {{0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 1.6, 2 * size, size});
+        const auto found = terms(picture, bound, 3);
+        for (std::size_t n = 0; n < 3; ++n) {
+            double sum = 0.0;
+            int count = 0;
+            for (std::size_t i = 0; i < picture.light.size(); ++i) {
+                const Vec3 p = picture.surfaces.position[i];
+                // Each term reaches 0.64 m farther, and the planes are seen beyond 0.32 m.
+                if (std::abs(p.x) < 0.2f && p.z < -2.3f && p.z > -3.2f) sum += double(found[n][i].x), ++count;
+            }
+            REQUIRE(count > 0);
+            ratio[n][k] = sum / count / std::pow(q, double(n) + 1.0);
         }
-        INFO("term " << n + 1 << " over " << count << " pixels");
-        REQUIRE(count > 20);
-        CHECK(sum / count == Approx(std::pow(q, n + 1)).epsilon(0.03 * (n + 1)));
+    }
+    for (std::size_t n = 0; n < 3; ++n) {
+        INFO("term " << n + 1 << ": " << ratio[n][0] << ", " << ratio[n][1] << ", " << ratio[n][2]);
+        CHECK(std::abs(ratio[n][2] - 1.0) < index_of(ratio[n]));
     }
 }
 
@@ -216,50 +278,55 @@ TEST_CASE("In a corner of three walls, a step is what Monte Carlo finds", "[ssbc
                                {{0, 0, 0}, {0, 50, 0}, {0, 0, 50}, Rgb(0.9f)}};
     const auto light = [](const Vec3d& p) { return 0.5 + 0.4 * std::sin(4.0 * p.x + 3.0 * p.y - 2.0 * p.z); };
     for (Wall& w : walls) w.radiance = [&](const Vec3d& p) { return float(light(p)); };
-    const Pinhole camera{{3, 2.6, 2.8}, {0.2, 0.2, 0.2}, {0, 1, 0}, std::tan(0.45), 128, 128};
-    const TestPicture picture = picture_of(walls, camera);
-    const double bound = 2.0, radius = 1.0 / std::sqrt(bound);
-    const auto found = compensate(picture.surfaces, picture.light, settings(bound, 1)).compensation;
+    const double bound = 2.0;
 
+    // Over directions with density cos / pi: rho / pi int max(1 - b / G, 0) L cos dw, which is bounded.
     std::mt19937 random(7);
-    std::uniform_real_distribution<double> uniform(0.0, radius);
+    std::uniform_real_distribution<double> uniform;
+    const std::array<int, 3> normal_axis = {1, 2, 0};
     const auto monte_carlo = [&](const Vec3d& y, int own) {
-        const int n = 20000;
+        const int n = 40000, up = normal_axis[std::size_t(own)], a = (up + 1) % 3, b = (up + 2) % 3;
         double sum = 0.0, squares = 0.0;
-        for (int k = 0; k < n; ++k)
-            for (int w = 0; w < 3; ++w) {
-                if (w == own) continue;
-                // A square on the other wall's axes, from the corner of the room or one radius before y.
-                Vec3d z(0.0), low = glm::max(y - radius, Vec3d(0.0));
-                const int axis = w == 0 ? 1 : w == 1 ? 2 : 0, own_axis = own == 0 ? 1 : own == 1 ? 2 : 0;
-                double area = 1.0;
-                for (int c = 0; c < 3; ++c)
-                    if (c != axis) {
-                        const double width = y[c] + radius - low[c];
-                        z[c] = low[c] + width * uniform(random) / radius, area *= width;
-                    }
-                const double d2 = glm::dot(z - y, z - y), g = z[own_axis] * y[axis] / (d2 * d2);
-                const double value = std::max(g - bound, 0.0) * area * light(z);
-                sum += value, squares += value * value;
-            }
-        const double mean = sum / n;
-        return std::pair(mean, std::sqrt((squares / n - mean * mean / 2.0) / n));
-    };
-    int checked = 0;
-    for (int y = 4; y < 128; y += 7)
-        for (int x = 4; x < 128; x += 7) {
-            const std::size_t i = picture.index(x, y);
-            const Vec3d p(picture.surfaces.position[i]);
-            std::array<double, 3> sorted = {p.x, p.y, p.z};
-            std::sort(sorted.begin(), sorted.end());
-            if (picture.wall[i] < 0 || sorted[1] < 0.08 || sorted[1] > 0.6 || sorted[2] > 0.9) continue;
-            const auto [mean, error] = monte_carlo(p, picture.wall[i]);
-            const double scale = double(picture.surfaces.reflectance[i].x) / pi_d;
-            INFO(x << ", " << y << " at " << p.x << ' ' << p.y << ' ' << p.z);
-            // Beyond the first two rows of pixels the sum is right to 2 %, plus what light varies over a
-            // pixel.
-            CHECK(std::abs(double(found[i].x) - scale * mean) < scale * (4.5 * error + 0.03 * mean + 0.003));
-            ++checked;
+        for (int k = 0; k < n; ++k) {
+            const double u = uniform(random), phi = 2.0 * pi_d * uniform(random);
+            Vec3d w;
+            w[up] = std::sqrt(1.0 - u), w[a] = std::sqrt(u) * std::cos(phi),
+            w[b] = std::sqrt(u) * std::sin(phi);
+            const auto distance = [&](int axis) { return w[axis] < 0.0 ? -y[axis] / w[axis] : infinity; };
+            const int other = distance(a) < distance(b) ? a : b;
+            const double d = distance(other);
+            if (!(d < 50.0)) continue;
+            const double g = w[up] * -w[other] / (d * d);
+            const double value = std::max(1.0 - bound / g, 0.0) * light(y + d * w);
+            sum += value, squares += value * value;
         }
-    CHECK(checked > 15);
+        const double mean = sum / n;
+        return std::pair(mean, std::sqrt((squares / n - mean * mean) / n));
+    };
+    // Sums over the same places of the picture at three sizes, of the finest with the errors of Monte Carlo.
+    std::array<double, 3> ratio{};
+    double spread = 0.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const int size = 64 << k;
+        const Pinhole camera{{3, 2.6, 2.8}, {0.2, 0.2, 0.2}, {0, 1, 0}, std::tan(0.45), size, size};
+        const TestPicture picture = picture_of(walls, camera);
+        const auto found =
+            compensate(picture.surfaces, picture.light, settings(bound, picture.surfaces.height))
+                .compensation;
+        double sum = 0.0, exact = 0.0, variance = 0.0;
+        for (int y = size / 32; y < size; y += size / 16)
+            for (int x = size / 32; x < size; x += size / 16) {
+                const std::size_t i = picture.index(x, y);
+                const Vec3d p(picture.surfaces.position[i]);
+                // Beyond one radius of the bound nothing is left out; off the picture's borders all is seen.
+                if (picture.wall[i] < 0 || std::max({p.x, p.y, p.z}) > 0.9) continue;
+                const auto [mean, error] = monte_carlo(p, picture.wall[i]);
+                const double scale = double(picture.surfaces.reflectance[i].x);
+                sum += double(found[i].x), exact += scale * mean, variance += sqr(scale * error);
+            }
+        ratio[k] = sum / exact, spread = std::sqrt(variance) / exact;
+        REQUIRE(spread < 0.01);
+    }
+    INFO(ratio[0] << ", " << ratio[1] << ", " << ratio[2] << " +- " << spread);
+    CHECK(std::abs(ratio[2] - 1.0) < index_of(ratio) + 4.0 * spread);
 }

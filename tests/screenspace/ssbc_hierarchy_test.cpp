@@ -1,4 +1,7 @@
 // The sum over nodes against the sum over all pixels, and what half resolution and the blur change.
+//
+// Approximations are held against the error that the picture has anyway: that of light which is constant over
+// a pixel, told by a picture of half the size (grid_convergence.h).
 #include <tbb/global_control.h>
 
 #include "screenspace/ssbc.h"
@@ -13,7 +16,7 @@ using namespace mote::tests;
 
 namespace {
 
-const float room_bound = 1.0f;
+const float room_bound = 1.0f;  // radius: half the width of the room, so that levels have something to save
 
 SsbcSettings flat_settings() {
     SsbcSettings s;
@@ -47,6 +50,30 @@ const Room& test_room() {
     return room;
 }
 
+/// The error of the flat sum itself, of first order in the pixels' size: its difference to that of half the
+/// size, over squares of four pixels that show one wall.
+double resolution_error() {
+    const Room& fine = test_room();
+    const TestPicture coarse = room(48);
+    const SsbcResult flat = compensate(coarse.surfaces, coarse.light, flat_settings());
+    double error = 0.0, all = 0.0;
+    for (int y = 0; y < 36; ++y)
+        for (int x = 0; x < 48; ++x) {
+            const std::size_t here = coarse.index(x, y);
+            Vec3d mean(0.0);
+            bool same = true;
+            for (const auto& [dx, dy] : {std::pair(0, 0), {1, 0}, {0, 1}, {1, 1}}) {
+                const std::size_t i = fine.picture.index(2 * x + dx, 2 * y + dy);
+                mean += 0.25 * Vec3d(fine.flat.compensation[i]);
+                same = same && fine.picture.wall[i] == coarse.wall[here];
+            }
+            if (!same) continue;
+            const Vec3d d = Vec3d(flat.compensation[here]) - mean;
+            error += glm::dot(d, d), all += glm::dot(mean, mean);
+        }
+    return std::sqrt(error / all);
+}
+
 double samples(const SsbcResult& r) { return double(r.counts.samples) / double(r.counts.receivers); }
 
 }  // namespace
@@ -69,15 +96,17 @@ TEST_CASE("A hierarchy of pixels alone is the flat sum", "[ssbc][hierarchy]") {
 TEST_CASE("Fewer samples with every level, fewer errors with every threshold", "[ssbc][hierarchy]") {
     const Room& room = test_room();
     double before = infinity;
+    const double resolution = resolution_error();
     for (const int levels : {1, 2, 3, 6}) {
         const SsbcResult r = room.run([&](SsbcSettings& s) { s.refinement.levels = levels; });
-        INFO(levels << " levels: " << samples(r) << " samples, error " << room.error(r));
-        CHECK(samples(r) < 1.01 * before);
-        CHECK(room.error(r) < 0.02);
+        INFO(levels << " levels: " << samples(r) << " samples, error " << room.error(r) << ", resolution "
+                    << resolution);
+        CHECK(samples(r) < before + 1.0);         // a level that changes nothing may skip a little less
+        CHECK(room.error(r) < 0.1 * resolution);  // adds a hundredth to the squared error
         before = samples(r);
     }
     const SsbcResult one = room.run([](SsbcSettings& s) { s.refinement.levels = 1; });
-    CHECK(before < 0.8 * samples(one));
+    CHECK(before < samples(one));
     double error = 0.0, count = infinity;
     for (const float angle : {0.01f, 0.04f, 0.16f, 0.64f}) {
         const SsbcResult r = room.run([&](SsbcSettings& s) {
@@ -93,7 +122,7 @@ TEST_CASE("Fewer samples with every level, fewer errors with every threshold", "
         CHECK(unsplit.error(r) >= error);
         error = unsplit.error(r), count = samples(r);
     }
-    CHECK(error > 0.02);  // the thresholds matter
+    CHECK(error > 0.1 * resolution);  // the thresholds matter
 }
 
 TEST_CASE("Angles of mean positions and normals miss most of the light", "[ssbc][hierarchy][planted]") {
@@ -102,22 +131,22 @@ TEST_CASE("Angles of mean positions and normals miss most of the light", "[ssbc]
         room.run([](SsbcSettings& s) { s.refinement.estimate = RefinementRules::Estimate::at_mean; });
     const SsbcResult at_most = room.run([](SsbcSettings&) {});
     INFO("at mean " << room.error(at_mean) << ", at most " << room.error(at_most));
-    CHECK(room.error(at_most) < 0.02);
-    CHECK(room.error(at_mean) > 0.3);
+    CHECK(room.error(at_most) < 0.1 * resolution_error());
+    CHECK(room.error(at_mean) > 0.5);
 }
 
 TEST_CASE("Half resolution is near, because defective pixels are evaluated again", "[ssbc][upsampling]") {
     const Room& room = test_room();
     const SsbcResult half = room.run([](SsbcSettings& s) { s.half_resolution = true; });
     INFO("error " << room.error(half) << ", " << half.defective << " defective of " << half.counts.receivers);
-    CHECK(room.error(half) < 0.05);
+    CHECK(room.error(half) < resolution_error());
     CHECK(half.defective > 0);
     CHECK(half.counts.receivers < room.flat.counts.receivers);
     const SsbcResult careless = room.run([](SsbcSettings& s) {
         s.half_resolution = true;
         s.upsampling.contrast = infinity, s.upsampling.least_weight = 0.0f;
     });
-    CHECK(room.error(careless) > 0.1);
+    CHECK(room.error(careless) > 2.0 * room.error(half));
 }
 
 TEST_CASE("A blur keeps to its surface and changes nothing that is even", "[ssbc][blur]") {
