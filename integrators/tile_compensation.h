@@ -2,17 +2,17 @@
 // by the chosen strategy (compensation/).
 #pragma once
 
-#include <chrono>
 
 #include "compensation/light_compensation.h"
 #include "compensation/vpl_compensation.h"
+#include "core/render/cpu_clock.h"
 
 namespace mote::integrators {
 
 /// What compensation cost; added up per tile.
 struct CompensationCost {
     std::uint64_t vertices = 0;
-    double seconds = 0.0;  ///< of all threads
+    double seconds = 0.0;  ///< of processor time, all threads
 };
 
 template <bool Media>
@@ -44,7 +44,7 @@ class TileCompensation {
     std::array<core::Rgb, lights::ReceiverTile::width> run(const lights::VplRange& range, float vpl_scale) {
         std::array<core::Rgb, lights::ReceiverTile::width> sum{};
         if (!any_) return sum;
-        const auto begin = std::chrono::steady_clock::now();
+        const double begin = core::thread_cpu_seconds();
         for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = from_lights(receivers_[i]);
         const auto light = compensation::compensation_from_vpls<Media>(
             scene_, *transport_, settings_.strategy, settings_.depth, vpls_, range, receivers_, scratch_,
@@ -54,7 +54,7 @@ class TileCompensation {
             receivers_[i].max_vpl_depth = 0;
         }
         any_ = false;
-        cost_.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        cost_.seconds += core::thread_cpu_seconds() - begin;
         return sum;
     }
 

@@ -1,8 +1,6 @@
 // Passes under two clocks, and checkpoints of film and clocks that belong together.
 #include "apps/trade/contestant.h"
 
-#include <time.h>
-
 #include <cmath>
 #include <filesystem>
 
@@ -10,6 +8,7 @@
 #include "core/image/image_file.h"
 #include "core/image/metrics.h"
 #include "core/image/whole_file.h"
+#include "core/render/cpu_clock.h"
 #include "core/scene/error.h"
 
 namespace mote::apps::trade {
@@ -19,20 +18,14 @@ namespace {
 using core::Rgb;
 using nlohmann::json;
 
-double read_clock(clockid_t clock) {
-    timespec t{};
-    ::clock_gettime(clock, &t);
-    return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
-}
-
 /// Wall time and processor time of all threads since its construction.
 class Clocks {
   public:
-    double wall() const { return read_clock(CLOCK_MONOTONIC) - wall_; }
-    double cpu() const { return read_clock(CLOCK_PROCESS_CPUTIME_ID) - cpu_; }
+    double wall() const { return core::read_clock(CLOCK_MONOTONIC) - wall_; }
+    double cpu() const { return core::process_cpu_seconds() - cpu_; }
 
   private:
-    double wall_ = read_clock(CLOCK_MONOTONIC), cpu_ = read_clock(CLOCK_PROCESS_CPUTIME_ID);
+    double wall_ = core::read_clock(CLOCK_MONOTONIC), cpu_ = core::process_cpu_seconds();
 };
 
 json to_json(const Tally& t) {

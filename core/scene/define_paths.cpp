@@ -1,8 +1,8 @@
 // -D with a path: "integrator.paths=4096", "sensor.film.width=64", "left_wall.reflectance=0.2".
 //
-// Each word but the last chooses an element by id, else by tag, else by type; the last is a parameter. Where
-// that parameter is a nested object, the value is its type: "integrator.compensation=approximate", and then
-// "integrator.compensation.depth=2".
+// Each word but the last chooses an element by id, else by name, tag or type, and of those that are nested in
+// each other the outermost; the last is a parameter. Where that parameter is a nested object, the value is
+// its type: "integrator.compensation=approximate", and then "integrator.compensation.depth=2".
 #include <sstream>
 
 #include "core/scene/element_checks.h"
@@ -22,19 +22,22 @@ std::vector<std::string> split_path(const std::string& path) {
 
 bool is_object(const Element& e) { return find_category(e.tag).has_value(); }
 
+/// The elements below `parent` for which `predicate` holds, without those nested in one of them.
 template <typename Predicate>
 void collect(Element& parent, const Predicate& predicate, std::vector<Element*>& found) {
     for (Element& c : parent.children) {
         if (!is_object(c)) continue;
-        if (predicate(c)) found.push_back(&c);
-        collect(c, predicate, found);
+        if (predicate(c))
+            found.push_back(&c);
+        else
+            collect(c, predicate, found);
     }
 }
 
-/// The elements below `parent` that `word` means: those with this id, else this tag, else this type.
+/// The elements below `parent` that `word` means: those with this id, else this name, tag, type.
 std::vector<Element*> matches(Element& parent, const std::string& word) {
     std::vector<Element*> found;
-    for (const char* attribute : {"id", "", "type"}) {
+    for (const char* attribute : {"id", "name", "", "type"}) {
         collect(
             parent, [&](const Element& e) { return (*attribute ? e.get(attribute) : e.tag) == word; }, found);
         if (!found.empty()) break;
@@ -84,6 +87,7 @@ void set_nested(Element& element, const Parameter& parameter, const std::string&
     Element fresh;
     fresh.tag = parameter.type, fresh.where = where, fresh.folder = element.folder;
     fresh.set("type", type);
+    if (parameter.name != parameter.type) fresh.set("name", parameter.name);
     element.children.push_back(fresh);
 }
 

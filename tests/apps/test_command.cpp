@@ -265,6 +265,23 @@ TEST_CASE("plan, info and formats describe on stdout", "[command]") {
         CHECK(contains(formats.out, type));
 }
 
+TEST_CASE("-D reaches objects that are nested in each other", "[command]") {
+    // The outer compensation keeps its name when there is one inside it; the inner one has that of its
+    // parameter.
+    const RunResult plan =
+        run_mote(SceneFolder(),
+                 {"plan", "scene.xml", "--integrator", "mote_vpl", "-D",
+                  "integrator.compensation=screen_space", "-D", "integrator.compensation.media=approximate",
+                  "-D", "integrator.compensation.steps=5", "-D", "integrator.compensation.media.depth=3"});
+    CHECK(plan.err.empty());
+    CHECK(contains(plan.out, "5 step(s), on surfaces"));
+    CHECK(contains(run_mote(SceneFolder(),
+                            {"plan", "scene.xml", "--integrator", "mote_vpl", "-D",
+                             "integrator.compensation=exact", "-D", "integrator.compensation.medium.depth=3"})
+                       .err,
+                   "no element 'medium'"));
+}
+
 TEST_CASE("convert takes exposure and layers into account", "[command]") {
     const SceneFolder folder;
     REQUIRE(run_mote(folder, {"render", "scene.xml", "--passes", "2"}).exit_code == 0);
