@@ -90,9 +90,8 @@ std::vector<Crossing> choose_crossings(std::span<EpipolarPicture* const> lights)
     std::vector<Taken> taken(lights.size());
     for (std::size_t l = 0; l < lights.size(); ++l) {
         if (lights[l]->sampled().empty()) return {};  // cancelled
-        for (const SampledLine& line : lights[l]->sampled()) {
+        for (const SampledLine& line : lights[l]->sampled())
             taken[l].push_back(fixed_places(line, lights[l]->settings().cap));
-        }
     }
     std::vector<Crossing> chosen;
     const auto n = std::uint32_t(lights.size());
