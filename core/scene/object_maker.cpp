@@ -99,7 +99,8 @@ void ObjectMaker::attach(const Element& element, const Properties& properties, O
     for (const Element& c : element.children) {
         if (is_value_tag(c.tag) || resolve(c, ids_).tag != "medium") continue;
         const auto medium = use_medium(c);
-        if (camera ? bool(camera->medium) : emitter->medium != nullptr)
+        // A light may have read its medium itself.
+        if (camera ? bool(camera->medium) : emitter->medium != nullptr && emitter->medium != medium.get())
             throw InputError("more than one medium for " + named(element), c.where);
         if (camera) camera->medium = medium;
         if (emitter) emitter->medium = medium.get();
