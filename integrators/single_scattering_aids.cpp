@@ -55,6 +55,15 @@ void plan_exact(Plan& plan, const Steady& steady, const AidSettings& settings, i
                  "their intensity varies: a texture, or a cone that is mostly rim or wider than 90 degrees");
 }
 
+/// The camera names a medium in which a light, asked by itself, does not stand: maps would leave it out.
+bool media_disagree(const Scene& scene) {
+    return scene.camera().medium &&
+           std::any_of(scene.emitters().begin(), scene.emitters().end(), [&](const auto& e) {
+               return e->traits().delta_position && !e->medium &&
+                      !scene.emitter_medium_state(*e, {}).current();
+           });
+}
+
 void plan_maps(Plan& plan, const Scene& scene, const VisibilitySettings& s) {
     if (!s.shadow_maps) {
         plan.run("visibility", "shadow rays", "exact");
@@ -63,6 +72,11 @@ void plan_maps(Plan& plan, const Scene& scene, const VisibilitySettings& s) {
     std::size_t count = 0;
     for (const auto& light : scene.emitters())
         count += lights::shadow_map_view_of(scene, *light, 1).has_value();
+    if (media_disagree(scene)) {
+        plan.leave_out("shadow maps", "shadow rays instead",
+                       "the camera names a medium and a light in it none: name it there too");
+        return;
+    }
     if (s.light_size == 0 || count == 0) {
         plan.run("visibility", "shadow rays",
                  s.light_size == 0 ? "light_size is 0" : "no light is a point, a cone or parallel");
@@ -82,7 +96,7 @@ void plan_maps(Plan& plan, const Scene& scene, const VisibilitySettings& s) {
 ScatteringAids::ScatteringAids(const Scene& scene, const AidSettings& settings) {
     if (settings.exact && Steady(scene).any()) space_.emplace(scene);
     const VisibilitySettings& visibility = settings.visibility;
-    if (!visibility.used_in(scene) || visibility.light_size == 0) return;
+    if (!visibility.used_in(scene) || visibility.light_size == 0 || media_disagree(scene)) return;
     visibility.check(scene);
     maps_.emplace(scene, visibility.light_size, visibility.map);
 }

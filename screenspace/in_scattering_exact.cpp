@@ -16,7 +16,7 @@ using namespace core;
 
 namespace {
 constexpr double end_share = 1e-3;  ///< of the angle that the part subtends at the light
-}
+}  // namespace
 
 const SteadyMedium* InScattering::steady_medium(const Medium* medium) const {
     for (const SteadyMedium& m : steady_media_)
