@@ -1,10 +1,9 @@
 #include "integrators/hidden_light.h"
 
 #include <array>
-#include <chrono>
 #include <limits>
 
-#include "integrators/russian_roulette.h"
+#include "core/render/cpu_clock.h"
 #include "lights/direct_light.h"
 #include "lights/vpl_gather.h"
 #include "screenspace/g_buffer.h"
@@ -25,32 +24,55 @@ struct HiddenVertex {
     MediumState state;
 };
 
-/// The surface is that of side 2 k or 2 k - 1: behind layer k, or before it. Nothing where rounding lost it.
-std::optional<HiddenVertex> vertex_at(const Scene& scene, const Ray& ray, std::uint32_t side,
-                                      WalkContext& walk, std::vector<SurfaceHit>& hits) {
-    const std::size_t layer = (side + 1) / 2;
-    const bool behind = side % 2 == 0;
-    screenspace::peel(scene, ray, int(layer) + 1, hits);
-    walk.rays.closest += layer + 1;
-    if (hits.size() <= layer) return std::nullopt;
-    HiddenVertex result;
-    ScatteringVertex& v = result.vertex;
-    v.hit = hits[layer], v.position = v.hit.position, v.bsdf = v.hit.shape->bsdf.get();
-    v.wo = behind ? ray.direction : -ray.direction;
-    if (!scene.has_media()) return result;
+/// What lies along the ray of one pixel, kept while its sides follow each other.
+class PixelRay {
+  public:
+    PixelRay(const Scene& scene, int layers, WalkContext& walk)
+        : scene_(scene), layers_(layers), walk_(walk) {}
 
-    result.state = scene.camera_medium_state();
-    Ray to_surface = ray;
-    to_surface.t_max = v.hit.t;
-    ++walk.rays.boundary;
-    scene.rays().all_hits(to_surface, RayTracer::Group::boundaries, walk.boundary_hits);
-    hits.resize(behind ? layer + 1 : layer);
-    hits.insert(hits.end(), walk.boundary_hits.begin(), walk.boundary_hits.end());
-    std::stable_sort(hits.begin(), hits.end(), [](const auto& a, const auto& b) { return a.t < b.t; });
-    for (const SurfaceHit& crossed : hits)
-        result.state.cross(*crossed.shape, crossed.geometric_normal, ray.direction);
-    return result;
-}
+    void aim(std::uint32_t pixel, int columns) {
+        if (pixel == pixel_) return;
+        pixel_ = pixel;
+        const Vec2 film(float(pixel % std::uint32_t(columns)) + 0.5f,
+                        float(pixel / std::uint32_t(columns)) + 0.5f);
+        ray_ = scene_.camera().sample_ray(film, Vec2(0.5f));
+        screenspace::peel(scene_, ray_, layers_, hits_);
+        walk_.rays.closest += std::uint64_t(layers_);
+        if (!scene_.has_media()) return;
+        scene_.rays().all_hits(ray_, RayTracer::Group::boundaries, walk_.boundary_hits);
+        ++walk_.rays.boundary;
+    }
+    /// Side 2 k is behind layer k, and 2 k - 1 before it. Nothing where rounding lost it.
+    std::optional<HiddenVertex> vertex(std::uint32_t side) const {
+        const std::size_t layer = (side + 1) / 2;
+        const bool behind = side % 2 == 0;
+        if (hits_.size() <= layer) return std::nullopt;
+        HiddenVertex result;
+        ScatteringVertex& v = result.vertex;
+        v.hit = hits_[layer], v.position = v.hit.position, v.bsdf = v.hit.shape->bsdf.get();
+        v.wo = behind ? ray_.direction : -ray_.direction;
+        if (!scene_.has_media()) return result;
+        result.state = scene_.camera_medium_state();
+        const auto cross = [&](const SurfaceHit& hit) {
+            result.state.cross(*hit.shape, hit.geometric_normal, ray_.direction);
+        };
+        std::size_t b = 0;
+        for (std::size_t k = 0; k <= layer; ++k) {
+            for (; b < walk_.boundary_hits.size() && walk_.boundary_hits[b].t < hits_[k].t; ++b)
+                cross(walk_.boundary_hits[b]);
+            if (k < layer || behind) cross(hits_[k]);
+        }
+        return result;
+    }
+
+  private:
+    const Scene& scene_;
+    int layers_;
+    WalkContext& walk_;
+    std::uint32_t pixel_ = ~std::uint32_t(0);
+    Ray ray_;
+    std::vector<SurfaceHit> hits_;
+};
 
 /// Direct light by both techniques.
 template <bool Media>
@@ -76,19 +98,20 @@ HiddenLight::HiddenLight(const Scene& scene, const RenderOptions& options, const
       options_(options),
       layers_(settings.screen_space->layers),
       max_depth_(settings.eye.max_depth),
+      share_(std::uint32_t(settings.screen_space->vpl_share)),
       bound_(bound) {
     screenspace::SsbcSettings ssbc = settings.screen_space->ssbc;
     ssbc.bound = bound;
     const auto buffers = screenspace::make_g_buffers(scene, options.width, options.height, layers_);
     const auto sides = screenspace::hidden_sides(buffers);
     const auto matter = screenspace::sides_that_matter(screenspace::ssbc_surfaces(buffers[0]), sides, ssbc);
-    for (std::uint32_t side = 0; side < sides.size(); ++side) {
-        for (const float area : sides[side].area) candidates_ += area > 0.0f;
-        const auto pixels = screenspace::cells_along_z_curve(
-            options.width, options.height,
-            [&](int x, int y) { return matter[side][buffers[0].index(x, y)] != 0; });
-        for (const std::uint32_t pixel : pixels) points_.push_back({pixel, side});
-    }
+    for (const auto& side : sides)
+        for (const float area : side.area) candidates_ += area > 0.0f;
+    const auto pixels =
+        screenspace::cells_along_z_curve(options.width, options.height, [](int, int) { return true; });
+    for (const std::uint32_t pixel : pixels)
+        for (std::uint32_t side = 0; side < sides.size(); ++side)
+            if (matter[side][pixel]) points_.push_back({pixel, side});
 }
 
 template <bool Media>
@@ -105,24 +128,26 @@ bool HiddenLight::pass(const PassContext& context, const lights::VplSet& vpls, s
 template <bool Media>
 void HiddenLight::gather(const PassContext& context, const lights::VplSet& vpls, std::size_t first_layer,
                          std::span<const Point> points, PassImage& image) {
-    const auto begin = std::chrono::steady_clock::now();
+    const double begin = thread_cpu_seconds();
     const std::int32_t vpl_depth = max_depth_ < 0 ? std::numeric_limits<std::int32_t>::max() : max_depth_ - 2;
-    WalkContext walk;
+    WalkContext walk, boundaries;  // the latter keeps those of the pixel's ray
     const auto scratch = std::make_unique<lights::GatherScratch>();
     const auto tile = std::make_unique<lights::ReceiverTile>();
-    std::vector<SurfaceHit> hits;
+    PixelRay along(scene_, layers_, boundaries);
     std::array<HiddenVertex, width> vertices;
     for (; !points.empty(); points = points.subspan(std::min(points.size(), std::size_t(width)))) {
         if (context.cancelled) return;
         const std::size_t count = std::min(points.size(), std::size_t(width));
         std::array<Rgb, width> light{};
         tile->clear();
+        // Neighbouring tiles begin with different VPLs, at random, since VPLs follow each other along paths.
+        const std::uint64_t key =
+            hash_keys(options_.seed, context.index, points[0].pixel, first_stream + points[0].side);
+        const lights::VplRange some{key % share_, share_};
         for (std::size_t i = 0; i < count; ++i) {
             const Point& p = points[i];
-            const Vec2 film(float(p.pixel % std::uint32_t(options_.width)) + 0.5f,
-                            float(p.pixel / std::uint32_t(options_.width)) + 0.5f);
-            const auto found =
-                vertex_at(scene_, scene_.camera().sample_ray(film, Vec2(0.5f)), p.side, walk, hits);
+            along.aim(p.pixel, options_.width);
+            const auto found = along.vertex(p.side);
             if (!found || !found->vertex.connectable()) continue;
             vertices[i] = *found;
             Sampler sampler(options_.sampler, options_.seed, context.index, p.pixel, first_stream + p.side);
@@ -132,13 +157,14 @@ void HiddenLight::gather(const PassContext& context, const lights::VplSet& vpls,
                       vpl_depth);
         }
         const auto indirect =
-            lights::gather(scene_, vpls, {}, bound_, *tile, *scratch, walk.rays, walk.tracking);
+            lights::gather(scene_, vpls, some, bound_, *tile, *scratch, walk.rays, walk.tracking);
         for (std::size_t i = 0; i < count; ++i)
-            image.layer(first_layer + points[i].side)[points[i].pixel] = light[i] + indirect[i];
+            image.layer(first_layer + points[i].side)[points[i].pixel] =
+                light[i] + float(share_) * indirect[i];
     }
     const std::lock_guard lock(mutex_);
-    rays_.add(walk.rays), tracking_.add(walk.tracking);
-    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    rays_.add(walk.rays), rays_.add(boundaries.rays), tracking_.add(walk.tracking);
+    seconds_ += thread_cpu_seconds() - begin;
 }
 
 void HiddenLight::add_statistics(Statistics& statistics) const {

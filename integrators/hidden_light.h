@@ -4,8 +4,9 @@
 //
 // Points lie along the rays through pixel centres, on each side of each surface (screenspace/ssbc_layers.h),
 // and stay the same in all passes; their light is a layer of the film, so that means, checkpoints and resumed
-// renders need nothing else. Points that no step of the compensation can carry light from are left out, most
-// of them where the bound reaches less far than surfaces lie apart.
+// renders need nothing else. A step of the compensation takes the mean over many of them, so each need not
+// meet all VPLs of a pass: those are shared out among points. Points that no step of the compensation can
+// carry light from are left out, most of them where the bound reaches less far than surfaces lie apart.
 #pragma once
 
 #include <mutex>
@@ -46,13 +47,14 @@ class HiddenLight {
     const core::Scene& scene_;
     core::RenderOptions options_;
     int layers_, max_depth_;
+    std::uint32_t share_;
     float bound_;
-    std::vector<Point> points_;  ///< side after side, neighbours together
+    std::vector<Point> points_;  ///< pixel after pixel, neighbours together
     std::size_t candidates_ = 0;
     std::mutex mutex_;
     core::RayCounters rays_;
     core::TrackingCounters tracking_;
-    double seconds_ = 0.0;  ///< of all threads
+    double seconds_ = 0.0;  ///< of processor time, all threads
 };
 
 }  // namespace mote::integrators

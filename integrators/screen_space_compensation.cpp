@@ -2,6 +2,7 @@
 
 #include <chrono>
 
+#include "core/render/cpu_clock.h"
 #include "core/scene/properties.h"
 #include "core/scene/registry.h"
 #include "screenspace/g_buffer.h"
@@ -25,6 +26,7 @@ std::shared_ptr<Object> make(const Properties& p) {
     settings.ssbc.half_resolution = p.get_bool("half_resolution", false);
     settings.ssbc.blur = float(p.get_float_in("blur", 0.0, 0.0, 100.0));
     settings.layers = int(p.get_int_in("layers", 1, 1, 16));
+    settings.vpl_share = int(p.get_int_in("hidden_share", settings.vpl_share, 1, 1 << 20));
     settings.visibility = p.get_bool("visibility", false);
     compensation::CompensationSettings media;
     if (const auto nested = p.child<compensation::Compensation>("media")) media = nested->settings();
@@ -46,6 +48,7 @@ std::vector<Layer> ScreenSpaceSettings::film_layers() const {
 ScreenSpaceCost add_screen_space_compensation(const Scene& scene, const ScreenSpaceSettings& settings,
                                               float bound, const ScreenSpaceLayers& layers, Film& film) {
     const auto begin = std::chrono::steady_clock::now();
+    const double cpu_begin = process_cpu_seconds();
     const auto buffers = screenspace::make_g_buffers(scene, film.width(), film.height(), settings.layers);
     std::vector<Rgb> light(film.pixels(), Rgb(0.0f));
     for (const std::size_t layer : layers.reflected) {
@@ -62,7 +65,7 @@ ScreenSpaceCost add_screen_space_compensation(const Scene& scene, const ScreenSp
         screenspace::compensate(screenspace::ssbc_surfaces(buffers[0]), light, hidden, ssbc);
     film.set_mean(layers.target, result.compensation);
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
-    return {result.counts.samples, seconds.count()};
+    return {result.counts.samples, seconds.count(), process_cpu_seconds() - cpu_begin};
 }
 
 void plan_screen_space(Plan& plan, const Requirements& r, const ScreenSpaceSettings& settings) {
@@ -93,6 +96,8 @@ void register_screen_space_compensation(Registry& registry) {
           {"blur", "float", "0", "standard deviation of an edge-preserving blur of the result [pixels]"},
           {"layers", "integer", "1",
            "surfaces along every ray that send light; from 2 on also hidden ones, gathered in every pass"},
+          {"hidden_share", "integer", "4",
+           "hidden points share out the VPLs of a pass: each meets one of so many"},
           {"visibility", "boolean", "false",
            "shadow rays to what is summed, to measure what is lost without"},
           {"receivers", "string", "surfaces", "nothing else: media are not in the picture's G-buffer"},

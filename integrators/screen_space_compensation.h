@@ -15,6 +15,7 @@ namespace mote::integrators {
 struct ScreenSpaceSettings {
     screenspace::SsbcSettings ssbc;  ///< but for the bound, which is that of the render
     int layers = 1;                  ///< of surfaces along a ray; 1: what the picture shows
+    int vpl_share = 4;               ///< at each hidden point: one VPL of so many, in turn
     bool visibility = false;         ///< trace shadow rays, to measure what is lost without
 
     /// Of the light that hidden sides reflect, auxiliary; see hidden_light.h.
@@ -37,7 +38,8 @@ class ScreenSpaceCompensation : public core::Object {
 
 struct ScreenSpaceCost {
     std::uint64_t samples = 0;  ///< nodes of the hierarchy and pixels that were added up
-    double seconds = 0.0;       ///< G-buffer and all steps
+    double seconds = 0.0;       ///< G-buffers and all steps
+    double cpu_seconds = 0.0;   ///< the same, of all threads
 };
 
 /// Which layers of the film a compensation reads and writes.

@@ -70,6 +70,7 @@ class VplEstimator final : public Estimator {
         if (settings_.screen_space) {
             statistics.values["ssbc_samples"] = double(ssbc_cost_.samples);
             statistics.seconds["ssbc"] = ssbc_cost_.seconds;
+            statistics.values["ssbc_cpu_seconds"] = ssbc_cost_.cpu_seconds;
             if (hidden_) hidden_->add_statistics(statistics);
         }
         if (!transport_) return;
