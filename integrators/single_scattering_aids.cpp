@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "integrators/single_scattering_estimator.h"
 
@@ -12,6 +13,9 @@ using namespace core;
 using screenspace::SteadyLight, screenspace::SteadyMedium;
 
 namespace {
+
+/// Building a texel takes as long as a map saves on so many steps (docs/epipolar.md).
+constexpr double steps_per_texel = 8.0;
 
 /// Lights and media whose in-scattering can be integrated, and all that scatter.
 struct Steady {
@@ -42,13 +46,15 @@ void plan_exact(Plan& plan, const Steady& steady, const AidSettings& settings, i
     }
     plan.run(
         "exact in-scattering",
-        fmt::format(
-            "{} of {} lights, {} of {} media; no steps and no shadow rays where nothing is in the way",
-            steady.lights, steady.all_lights, steady.media, steady.all_media),
-        fmt::format(
-            "where one homogeneous medium lies between light and ray; behind occluders {} tell what "
-            "is lit",
-            settings.visibility.shadow_maps ? "steps in shadow maps" : fmt::format("{} shadow rays", steps)));
+        fmt::format("{} of {} lights, {} of {} media", steady.lights, steady.all_lights, steady.media,
+                    steady.all_media),
+        "where one homogeneous medium lies between light and ray; no steps and no shadow rays where nothing "
+        "is in the way");
+    if (settings.visibility.shadow_maps)
+        plan.run("behind occluders", fmt::format("{} steps a ray", steps), "looked up in shadow maps");
+    else
+        plan.run("behind occluders", fmt::format("{} shadow rays a ray", steps),
+                 "they tell which parts are lit; these are integrated");
     if (steady.lights < steady.all_lights)
         plan.run("marched lights",
                  fmt::format("{} of {}", steady.all_lights - steady.lights, steady.all_lights),
@@ -64,7 +70,7 @@ bool media_disagree(const Scene& scene) {
            });
 }
 
-void plan_maps(Plan& plan, const Scene& scene, const VisibilitySettings& s) {
+void plan_maps(Plan& plan, const Scene& scene, const VisibilitySettings& s, int steps) {
     if (!s.shadow_maps) {
         plan.run("visibility", "shadow rays", "exact");
         return;
@@ -83,10 +89,18 @@ void plan_maps(Plan& plan, const Scene& scene, const VisibilitySettings& s) {
         return;
     }
     const std::size_t bytes = s.map.bytes(s.light_size, lights::needs_chromatic_maps(scene));
+    const double texels = double(s.light_size) * double(s.light_size);
+    const double pixels = double(scene.film().width) * double(scene.film().height);
     plan.run("visibility",
              fmt::format("{} shadow map{} of {}^2 texels, {:.1f} MB each, built once", count,
                          count == 1 ? "" : "s", s.light_size, double(bytes) * 1e-6),
-             "asked for; transmittance and shadows at march steps are looked up; surfaces are traced");
+             "asked for, biased; at march steps alone: surfaces are traced");
+    plan.run("cost of shadow maps",
+             fmt::format("{:.0f} texels a light, against up to {:.0f} steps a pass", texels, pixels * steps),
+             pixels * steps > steps_per_texel * texels
+                 ? "they pay if most rays are marched"
+                 : fmt::format("tracing is cheaper for {:.0f} passes",
+                               std::ceil(steps_per_texel * texels / (pixels * steps))));
     plan.miss("detail of shadows", "finer than the texels of shadow maps",
               "maps interpolate: shafts are blurred, and the mean is biased");
 }
@@ -115,7 +129,7 @@ void ScatteringAids::add_statistics(Statistics& statistics) const {
 void plan_scattering_aids(Plan& plan, const Scene& scene, const AidSettings& settings, int steps) {
     const Steady steady(scene);
     if (steady.all_lights > 0) plan_exact(plan, steady, settings, steps);
-    plan_maps(plan, scene, settings.visibility);
+    plan_maps(plan, scene, settings.visibility, steps);
 }
 
 }  // namespace mote::integrators
