@@ -57,15 +57,15 @@ class Mote:
             raise FileNotFoundError(f"no {self.program}: build it first (tools/build_release.sh mote)")
         self.folder.mkdir(parents=True, exist_ok=True)
 
-    def render(self, scene, name, settings, passes, seed=1, threads=0):
+    def render(self, scene, name, settings, passes, seed=1, threads=0, auxiliary=False):
         """`scene` is a name in scenes/ or a path; `settings` go to -D, but for `integrator`, which is a type. 0 threads:
-        one for every core."""
+        one for every core. `auxiliary`: with what `mote ssbc` reads."""
         path = self.folder / f"{name}_{seed}.exr"
         if not (self.redraw and path.is_file()):
             scene = scene if isinstance(scene, Path) else ROOT / "scenes" / f"{scene}.xml"
             command = [self.program, "render", scene, "-o", path, "--seed", str(seed), "--quiet",
                        "--stats", path.with_suffix(".json")]
-            command += ["--passes", str(passes), "--threads", str(threads)]
+            command += ["--passes", str(passes), "--threads", str(threads)] + ["--auxiliary"] * auxiliary
             for key, value in settings.items():
                 command += ["--integrator", value] if key == "integrator" else ["-D", f"{key}={word(value)}"]
             before = children_cpu()
