@@ -84,7 +84,8 @@ def figure(mote, quick, output):
     width, height = (960, 540) if quick else (1920, 1080)
     mesh = mote.folder / "sculpture.ply"
     triangles = sculpture(mesh, 100 if quick else 200)
-    common = {"resx": width, "resy": height, "mesh": mesh.resolve(), "integrator.steps": 24 if quick else 64}
+    common = {"resx": width, "resy": height, "mesh": mesh.resolve(), "integrator.steps": 24 if quick else 64,
+              "integrator.in_scattering": "steps"}  # as the paper marches
     lines = {"integrator": "mote_epipolar", "integrator.lines": 512 if quick else 1024,
              "integrator.show_samples": True}
     paper = mote.render(SCENE, "paper", common | lines | {"integrator.samples": 32, "integrator.tolerance": 0}, passes=1)

@@ -33,7 +33,7 @@ def render(mote, quick):
     width, height = (480, 270) if quick else (960, 540)
     mesh = mote.folder / "sculpture.ply"
     sculpture(mesh, 60 if quick else 200)
-    common = {"resx": width, "resy": height, "mesh": mesh.resolve()}
+    common = {"resx": width, "resy": height, "mesh": mesh.resolve(), "integrator.in_scattering": "steps"}
     scale = width / 1920  # the paper's lines are those of 1920 x 1080
     steps, many = (32, 128) if quick else (64, 384)
 
