@@ -31,11 +31,29 @@ float bound_of(const ImageChannels& image, const SsbcArguments& a) {
     throw InputError("the picture does not say with which bound it was rendered: give --bound", {a.input, 0});
 }
 
-SsbcPicture read(const ImageChannels& image, const SsbcArguments& a) {
-    if (image.find(std::string(added_layer) + ".R"))
-        throw InputError(std::string("the picture holds a layer '") + added_layer + "' already",
-                         {a.input, 0});
+/// Takes the compensation of a picture out of its beauty.
+void take_out(ImageChannels& image) {
+    const std::vector<Rgb> before = image.rgb(added_layer);
+    for (std::size_t k = image.names.size(); k-- > 0;) {
+        const std::string& name = image.names[k];
+        if (const auto c = std::string("RGB").find(name); name.size() == 1 && c != std::string::npos)
+            for (std::size_t i = 0; i < before.size(); ++i) image.channels[k][i] -= before[i][int(c)];
+        if (!name.starts_with(std::string(added_layer) + ".")) continue;
+        image.names.erase(image.names.begin() + std::ptrdiff_t(k));
+        image.channels.erase(image.channels.begin() + std::ptrdiff_t(k));
+    }
+}
+
+SsbcPicture read(ImageChannels& image, const SsbcArguments& a) {
+    if (a.replace)
+        take_out(image);
+    else if (image.find(std::string(added_layer) + ".R"))
+        throw InputError(
+            std::string("the picture holds a layer '") + added_layer + "' already (--replace takes it out)",
+            {a.input, 0});
     try {
+        if (a.layers > 1 && a.scene.scene.empty())
+            throw InputError("several layers need --scene: a picture holds no surfaces behind others");
         if (a.scene.scene.empty()) return read_ssbc_picture(image, a.channels);
         SsbcPicture picture = read_light(image, a.channels);
         const core::Registry registry = make_registry();
@@ -44,7 +62,11 @@ SsbcPicture read(const ImageChannels& image, const SsbcArguments& a) {
             throw InputError(fmt::format("the scene's film has {} x {} pixels, the picture {} x {}",
                                          scene->film().width, scene->film().height, image.width,
                                          image.height));
-        picture.surfaces = ssbc_surfaces(screenspace::make_g_buffer(*scene, image.width, image.height));
+        const auto buffers = screenspace::make_g_buffers(*scene, image.width, image.height, a.layers);
+        picture.surfaces = ssbc_surfaces(buffers[0]);
+        for (auto& side : screenspace::hidden_sides(buffers))
+            picture.hidden.push_back(
+                {std::move(side), screenspace::read_hidden_light(image, picture.hidden.size())});
         return picture;
     } catch (const InputError& error) {
         if (!error.where().file.empty()) throw;
@@ -93,12 +115,13 @@ int ssbc_command(const SsbcArguments& a) {
     screenspace::SsbcSettings settings = a.settings;
     settings.bound = bound, settings.hierarchical = !a.flat;
     const auto begin = std::chrono::steady_clock::now();
-    const SsbcResult result = compensate(picture.surfaces, picture.light, settings);
+    const SsbcResult result = compensate(picture.surfaces, picture.light, picture.hidden, settings);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     add_to(image, result.compensation);
     for (const char* written_anyway : {"pixelAspectRatio", "screenWindowWidth"})
         image.metadata.erase(written_anyway);
     image.metadata["ssbc"] = fmt::format("bound {:.9g}, steps {}", bound, settings.steps);
+    if (a.layers > 1) image.metadata["ssbc"] += fmt::format(", layers {}", a.layers);
     core::write_exr(a.output, image, a.half);
     report(picture, result, bound, seconds);
     return exit_ok;
@@ -124,6 +147,11 @@ void add_ssbc(CLI::App& app, SsbcArguments& a, std::function<int()>& action) {
         ->expected(1)
         ->allow_extra_args(false)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    command
+        .add_option("--layers", a.layers,
+                    "Surfaces along each ray: with --scene, for pictures that hold hidden light (default: 1)")
+        ->check(CLI::Range(1, 16));
+    command.add_flag("--replace", a.replace, "Take out the compensation that the picture holds");
     command
         .add_option("--light", a.channels.light,
                     "A layer of reflected light (repeatable; default: see docs/ssbc.md)")

@@ -21,7 +21,9 @@ struct SsbcArguments {
     SceneArguments scene;  ///< "": surfaces come from the picture's channels
     screenspace::SsbcChannels channels;
     screenspace::SsbcSettings settings;
+    int layers = 1;  ///< of surfaces along a ray; hidden ones need a scene
     bool flat = false, half = false;
+    bool replace = false;  ///< a compensation that the picture holds
 };
 
 /// Adds the subcommand to the command line; `action` is what it will do.

@@ -114,6 +114,10 @@ SsbcPicture read_light(const ImageChannels& image, const SsbcChannels& channels)
     return picture;
 }
 
+std::vector<Rgb> read_hidden_light(const ImageChannels& image, std::size_t side) {
+    return required_light(image, "hidden_light_" + hidden_side_name(side));
+}
+
 SsbcPicture read_ssbc_picture(const ImageChannels& image, const SsbcChannels& channels) {
     const std::string reflectance_name = !channels.reflectance.empty()   ? channels.reflectance
                                          : image.find("DiffuseAlbedo.R") ? "DiffuseAlbedo"

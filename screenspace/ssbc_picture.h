@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/image/image_file.h"
-#include "screenspace/ssbc_surfaces.h"
+#include "screenspace/ssbc_layers.h"
 
 namespace mote::screenspace {
 
@@ -20,6 +20,7 @@ struct SsbcChannels {
 
 struct SsbcPicture {
     SsbcSurfaces surfaces;
+    std::vector<HiddenSide> hidden;  ///< what the picture does not show, where it is known
     std::vector<core::Rgb> light;
     std::string light_from;  ///< the layers that were taken for it, in words
 };
@@ -27,10 +28,14 @@ struct SsbcPicture {
 /// The light that surfaces reflect. Throws InputError naming the layers that are missing.
 SsbcPicture read_light(const core::ImageChannels& image, const SsbcChannels& channels);
 
-/// The same with the surfaces. The camera is that of the attribute worldToCamera, or stands at the origin
-/// where positions are in camera space, as some renderers write them. Reflectances above 1 by rounding, less
-/// than 1e-3, are cut off. Throws InputError naming all channels that are missing, for positions that no
-/// camera fits, and for reflectances that are none.
+/// Light that a hidden side reflects, from the layer hidden_light_NAME that `mote_vpl` writes
+/// (hidden_side_name()). Throws InputError where there is none.
+std::vector<core::Rgb> read_hidden_light(const core::ImageChannels& image, std::size_t side);
+
+/// The light of a picture with its surfaces. The camera is that of the attribute worldToCamera, or stands at
+/// the origin where positions are in camera space, as some renderers write them. Reflectances above 1 by
+/// rounding, less than 1e-3, are cut off. Throws InputError naming all channels that are missing, for
+/// positions that no camera fits, and for reflectances that are none.
 SsbcPicture read_ssbc_picture(const core::ImageChannels& image, const SsbcChannels& channels);
 
 }  // namespace mote::screenspace

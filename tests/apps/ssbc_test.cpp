@@ -109,3 +109,43 @@ TEST_CASE("ssbc takes surfaces from the scene that a picture shows", "[command][
     CHECK(size.exit_code == 1);
     CHECK(contains(size.err, "the scene's film has 8 x 8 pixels, the picture 32 x 24"));
 }
+
+TEST_CASE("ssbc takes hidden light from a picture, and does its compensation again",
+          "[command][ssbc][layers]") {
+    const TemporaryFolder folder;
+    // Two walls that meet, and a board before one of them.
+    write_file(folder.file("scene.xml"), R"(<scene version="3.0.0">
+        <integrator type="mote_vpl"><integer name="paths" value="16"/><float name="bound" value="2"/>
+          <compensation type="screen_space"><integer name="layers" value="2"/></compensation></integrator>
+        <shape type="rectangle"/><shape type="rectangle"><transform name="to_world"><rotate x="1" angle="-90"/>
+          <translate y="-1" z="1"/></transform></shape>
+        <shape type="rectangle"><transform name="to_world"><scale value="0.3"/><translate y="-0.4" z="1.5"/></transform></shape>
+        <emitter type="point"><point name="position" x="0" y="1" z="2"/></emitter>
+        <sensor type="perspective"><transform name="to_world"><lookat origin="0, 0.4, 5" target="0, -0.5, 0" up="0, 1, 0"/>
+          </transform><film type="hdrfilm"><integer name="width" value="32"/><integer name="height" value="24"/></film>
+        </sensor></scene>)");
+    REQUIRE(run_mote(folder, {"render", "scene.xml", "-o", "in.exr", "--passes", "4", "--quiet"}).exit_code ==
+            0);
+    const ImageChannels in = read_exr(folder.file("in.exr"));
+    const auto ssbc = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), {"ssbc", "in.exr", "-o", "out.exr"});
+        return run_mote(folder, more);
+    };
+    const RunResult run = ssbc({"--scene", "scene.xml", "--layers", "2", "--replace"});
+    INFO(run.out << run.err);
+    REQUIRE(run.exit_code == 0);
+    const ImageChannels out = read_exr(folder.file("out.exr"));
+    CHECK(total(in.rgb("hidden_light_2")) > 0.0);
+    CHECK(out.rgb("compensation_surface") == in.rgb("compensation_surface"));
+    for (std::size_t i = 0; i < 32 * 24; ++i) CHECK(out.rgb("")[i].y == Approx(in.rgb("")[i].y).margin(1e-6));
+    CHECK(contains(out.metadata.at("ssbc"), "layers 2"));
+
+    REQUIRE(ssbc({"--scene", "scene.xml", "--replace"}).exit_code == 0);
+    CHECK(total(read_exr(folder.file("out.exr")).rgb("compensation_surface")) <
+          0.99 * total(in.rgb("compensation_surface")));
+    CHECK(contains(ssbc({"--scene", "scene.xml"}).err, "--replace"));
+    CHECK(contains(ssbc({"--layers", "2", "--replace"}).err, "--scene"));
+    const RunResult missing = ssbc({"--scene", "scene.xml", "--layers", "3", "--replace"});
+    CHECK(missing.exit_code == 1);
+    CHECK(contains(missing.err, "hidden_light_3"));
+}
