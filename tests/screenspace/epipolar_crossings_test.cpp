@@ -317,3 +317,24 @@ TEST_CASE("mote_epipolar with crossings renders several lights alike", "[epipola
         CHECK(relative_error(render(*thin, epipolar(60, 8, crossings)), render(*thin, full)) < 0.1);
     }
 }
+
+TEST_CASE("Crossings in a grid keep to the picture at full rate", "[epipolar]") {
+    const TemporaryFolder folder;
+    std::string xml = box(grey, smoke_medium(folder.file("smoke.vol")));
+    xml.insert(xml.find("<sensor"), R"(
+        <emitter type="point"><point name="position" x="0.6" y="0.4" z="1.5"/></emitter>
+        <emitter type="point"><point name="position" x="-0.7" y="-0.3" z="1.2"/></emitter>)");
+    const auto scene = sized(xml, 32, 24);
+    const std::string steps = R"(<integer name="steps" value="16"/>)";
+    const auto picture = [&](const std::string& crossings) {
+        return render(*scene, epipolar(80, 10, steps + R"(<float name="tolerance" value="0"/>)" + crossings));
+    };
+    const Picture reference =
+        render(*scene, R"(<integrator type="mote_single_scattering">)" + steps + "</integrator>");
+    const Picture on = picture(R"(<boolean name="crossings" value="true"/>)"), off = picture("");
+    const double error = relative_error(on, reference), plain = relative_error(off, reference);
+    INFO(error << " with " << on.statistics.values.at("shared_rays") << " shared rays, without " << plain);
+    CHECK(on.statistics.values.at("shared_rays") > 50.0);
+    CHECK(error < 1.3 * plain);
+    CHECK(relative_error(on, off) > 0.0);
+}
