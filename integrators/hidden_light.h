@@ -13,7 +13,6 @@
 #include <span>
 #include <vector>
 
-#include "core/image/film.h"
 #include "core/render/integrator.h"
 #include "core/scene/ray_walk.h"
 #include "integrators/screen_space_compensation.h"
