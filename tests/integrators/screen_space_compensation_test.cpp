@@ -120,6 +120,30 @@ TEST_CASE("screen-space compensation brings back what exact compensation does in
     CHECK(one.mean("compensation_surface") < 0.97 * screen.mean("compensation_surface"));
 }
 
+TEST_CASE("screen-space compensation finds the even part of glossy surfaces, and never too much",
+          "[compensation][ssbc]") {
+    const auto with = [](const std::string& bsdf) {
+        std::string xml = corner;
+        for (std::size_t at; (at = xml.find("<bsdf type=\"diffuse\">")) != std::string::npos;)
+            xml.replace(at, xml.find("</bsdf>", at) - at, "<bsdf type=" + bsdf);
+        return scene_from(xml, 64);
+    };
+    const auto share = [](const core::Scene& scene) {
+        const Rendered exact = render(scene, R"(<compensation type="exact"/>)", 40);
+        const Rendered screen = render(
+            scene, R"(<compensation type="screen_space"><integer name="steps" value="3"/></compensation>)",
+            40);
+        CHECK(exact.mean("compensation_surface") > 0.02 * exact.mean("indirect_bounded"));
+        return screen.mean("compensation_surface") / exact.mean("compensation_surface");
+    };
+    const double plastic = share(*with(
+        R"("roughplastic"><float name="alpha" value="0.2"/><rgb name="diffuse_reflectance" value="0.6"/>)"));
+    const double metal = share(*with(R"("roughconductor"><float name="alpha" value="0.3"/>)"));
+    INFO("plastic " << plastic << ", metal " << metal);
+    CHECK((plastic > 0.3 && plastic < 1.0));  // the coat reflects some of it, and is left out: 0.60
+    CHECK((metal >= 0.0 && metal < 0.01));    // its lobe is all it has
+}
+
 TEST_CASE("screen-space compensation on surfaces, another in media", "[compensation][ssbc]") {
     const auto scene = scene_from(box(grey, fog("1, 1, 1", "")), 16);
     const Rendered both = render(*scene, R"(<compensation type="screen_space">
