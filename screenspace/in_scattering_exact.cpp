@@ -2,7 +2,7 @@
 // medium, the integral is taken exactly (steady_light.h).
 //
 // Where no surface reaches into the triangle either (clear_space.h), all of it is lit and no shadow ray is
-// traced. Else shadow rays at the places where marching would have its steps say which steps are lit, and
+// traced. Else shadow rays from the places where marching would have its steps say which steps are lit, and
 // each run of lit ones is integrated as one. The first and the last thousandth of the part, whose ends touch
 // surfaces and the borders of media, are left out of the triangle; each has a shadow ray of its own.
 #include <algorithm>
