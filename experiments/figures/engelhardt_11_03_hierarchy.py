@@ -1,0 +1,112 @@
+#!/usr/bin/python3
+"""Samples of screen-space bias compensation against levels of the hierarchy, and its share of the time: Engelhardt 2013,
+Fig. 11.3.
+
+Pictures of 1024 x 768 pixels. (a) The bound is chosen so that the sum over pixels alone takes thousands of samples a pixel
+where it takes most, as in the thesis; its radius is 0.3 times that of the scene. (b) Two steps with 6 levels beside direct
+light and 1024 virtual point lights at every pixel, and with the bound that goes with 1024 light paths; processor time.
+A full run takes about 4 minutes on two cores, --quick a tenth.
+
+    experiments/figures/engelhardt_11_03_hierarchy.py [--quick] [--redraw] [--output FOLDER] [--bin FOLDER]
+"""
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import matplotlib
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+from claims import Claims
+from occluders import sculpture
+from renders import children_cpu, main, write_csv
+
+SCENES = Path(__file__).resolve().parent / "scenes"
+LEVELS = [1, 2, 3, 4, 5, 6, 7]
+# Radius of all shapes [m], which the automatic bound goes by.
+RADIUS = {"Cornell box": 4.8, "bunny": 4.6, "sculpture": 4.6, "atrium": 21.0}
+
+
+def scenes(mote, quick):
+    mesh = mote.folder / "sculpture.ply"
+    sculpture(mesh, 60 if quick else 200)
+    room = SCENES / "statue_room.xml"
+    statue = {"format": "ply", "statue": mesh.resolve(), "size": 0.9, "height": 1.5}
+    all_of_them = {"Cornell box": ("cornell_box", {}), "bunny": (room, {}), "sculpture": (room, statue),
+                   "atrium": ("atrium", {"extinction": 0})}
+    return {name: all_of_them[name] for name in (list(all_of_them)[:2] if quick else all_of_them)}
+
+
+def ssbc(mote, source, *options):
+    """Samples a gathered pixel, and processor seconds without reading and writing."""
+    before = children_cpu()
+    said = subprocess.run([mote.program, "ssbc", source, "-o", mote.folder / "ssbc.exr", *map(str, options)], check=True,
+                          capture_output=True, text=True).stdout
+    return float(re.search(r"([\d.]+) samples each", said).group(1)), children_cpu() - before
+
+
+def measure(mote, name, scene, settings, size, paths):
+    tag = name.replace(" ", "_")
+    settings = {**settings, "resx": size[0], "resy": size[1], "integrator": "mote_vpl",
+                "integrator.bound": paths / RADIUS[name] ** 2}
+    direct = mote.render(scene, f"{tag}_direct", {**settings, "integrator.paths": 0}, passes=1)
+    vpls = mote.render(scene, f"{tag}_vpls", {**settings, "integrator.paths": paths}, passes=1, auxiliary=True)
+    source = mote.folder / f"{tag}_vpls_1.exr"
+    wide = 11 / RADIUS[name] ** 2
+    samples = [ssbc(mote, source, "--bound", wide, "--steps", 1, "--levels", level)[0] for level in LEVELS]
+    # The same without the work of a step: what reading, writing and the buffers take.
+    seconds = {}
+    for kind, bound in (("wide", wide), ("automatic", 1024 / RADIUS[name] ** 2)):
+        one, three = (min(ssbc(mote, source, "--bound", bound, "--steps", n)[1] for _ in range(2)) for n in (1, 3))
+        seconds[kind] = three - one  # two steps
+    per_vpl = max(vpls.cpu - direct.cpu, 0) / max(vpls.vpls, 1)
+    return {"samples": samples, "direct": direct.cpu, "vpls": 1024 * per_vpl, "count": vpls.vpls, **seconds}
+
+
+def draw(results, path):
+    figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4))
+    for name, r in results.items():
+        left.semilogy(LEVELS, r["samples"], "o-", label=name)
+    left.set_xlabel("levels that are summed (1: pixels alone)")
+    left.set_ylabel("samples a pixel")
+    left.grid(alpha=0.3)
+    left.legend()
+    names = list(results)
+    below = [0.0] * len(names)
+    for key, label in (("direct", "primary rays, direct light"), ("vpls", "1024 VPLs"), ("wide", "two steps, wide bound")):
+        total = [r["direct"] + r["vpls"] + r["wide"] for r in results.values()]
+        share = [100 * r[key] / t for r, t in zip(results.values(), total)]
+        right.bar(names, share, bottom=below, label=label)
+        below = [b + s for b, s in zip(below, share)]
+    right.set_ylabel("share of the processor time [%]")
+    right.legend(loc="lower right")
+    figure.tight_layout()
+    figure.savefig(path.with_suffix(".png"), dpi=80)
+    plt.close(figure)
+
+
+def figure(mote, quick, output):
+    size, paths = ((384, 288), 16) if quick else ((1024, 768), 32)
+    claims, rows = Claims(), []
+    results = {name: measure(mote, name, *scene, size, paths) for name, scene in scenes(mote, quick).items()}
+    for name, r in results.items():
+        print(f"{name}: {', '.join(f'{s:.0f}' for s in r['samples'])} samples with {LEVELS[0]} to {LEVELS[-1]} levels; direct "
+              f"light {r['direct']:.1f} s, 1024 VPLs {r['vpls']:.1f} s, two steps {r['wide']:.2f} s and, automatic bound, "
+              f"{r['automatic']:.2f} s")
+        rows.append([name, *r["samples"], r["direct"], r["vpls"], r["wide"], r["automatic"]])
+        claims.check(f"{name}: samples a pixel fall with every level up to the fourth",
+                     ", ".join(f"{s:.0f}" for s in r["samples"][:4]), all(a > b for a, b in zip(r["samples"], r["samples"][1:4])))
+        claims.check(f"{name}: four levels leave less than a {'half' if quick else 'fifth'} of the samples",
+                     f"{r['samples'][3] / r['samples'][0]:.1%}", r["samples"][3] < r["samples"][0] / (2 if quick else 5))
+        if quick:
+            continue
+        claims.check(f"{name}: two steps take at most a tenth of the time of 1024 VPLs", f"{r['wide'] / r['vpls']:.1%}, "
+                     f"{r['automatic'] / r['vpls']:.1%} with the automatic bound", r["wide"] <= 0.1 * r["vpls"])
+    write_csv(output.with_suffix(".csv"), ["scene", *(f"samples_{n}_levels" for n in LEVELS), "seconds_direct", "seconds_1024_vpls",
+                                           "seconds_two_steps", "seconds_two_steps_automatic_bound"], rows)
+    draw(results, output)
+    return claims.exit_code()
+
+
+if __name__ == "__main__":
+    sys.exit(main(__file__, __doc__, figure))

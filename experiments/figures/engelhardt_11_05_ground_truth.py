@@ -1,0 +1,120 @@
+#!/usr/bin/python3
+"""Three steps of screen-space bias compensation against exact compensation: Engelhardt 2013, Figs. 11.1 and 11.5.
+
+A bunny and a pierced sculpture in a room stand for the Buddha and the dragon, the atrium for Crytek Sponza. Exact
+compensation (Kollig and Keller 2006) and screen space are given the same light paths. Differences are taken over blocks of
+8 x 8 pixels, relative to the light there: 2 % is about the contrast that one begins to see. Times are compared at equal
+error of pixels: exact compensation has no bias, and what it takes, at least, follows from its variance. The noise of the
+exact pictures, known from seeds, is subtracted everywhere. Processor time. A full run takes about 6 minutes on two cores, --quick one.
+
+    experiments/figures/engelhardt_11_05_ground_truth.py [--quick] [--redraw] [--output FOLDER] [--bin FOLDER]
+"""
+import sys
+from pathlib import Path
+
+import matplotlib
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+from claims import Claims
+from occluders import sculpture
+from renders import compensation, luminance, main, mean_and_error, show, write_csv
+
+SCENES = Path(__file__).resolve().parent / "scenes"
+LAYER, BLOCK = "compensation_surface", 8
+METHODS = {"exact": compensation("exact"), "screen space": compensation("screen_space", steps=3)}
+# Most of what is missing in the atrium: docs/ssbc.md, Hidden surfaces.
+HIDDEN = "backs of columns, balusters and leaves, and floors and leaves thinner than a pixel, are not in the picture"
+
+
+def scenes(mote, quick):
+    mesh = mote.folder / "sculpture.ply"
+    sculpture(mesh, 60 if quick else 200)
+    room = SCENES / "statue_room.xml"
+    n = 2 if quick else 1
+    size = {"resx": 320 // n, "resy": 240 // n}
+    all_of_them = {"bunny": (room, {**size, "bound": 4}),
+                   "sculpture": (room, {**size, "bound": 4, "format": "ply", "statue": mesh.resolve(), "size": 0.9, "height": 1.5}),
+                   "atrium": ("atrium", {"resx": 320 // n, "resy": 200 // n, "extinction": 0, "bound": 1})}
+    return {name: all_of_them[name] for name in (["bunny", "atrium"] if quick else all_of_them)}
+
+
+def blocks(picture):
+    height, width = (BLOCK * (n // BLOCK) for n in picture.shape[:2])
+    return luminance(picture[:height, :width]).reshape(height // BLOCK, BLOCK, width // BLOCK, BLOCK).mean(axis=(1, 3))
+
+
+def mean_square(found, exact, weight=1):
+    """Of the difference to the mean of `exact`, without the noise of that mean; what it is at most, two standard errors
+    above; and the variance of one of `exact`."""
+    exact = np.array(exact)
+    variance = exact.var(axis=0, ddof=1)
+    square = (found - exact.mean(axis=0)) ** 2 - variance / len(exact)
+    square = square * weight
+    return max(0.0, square.mean()), max(0.0, square.mean()) + 2 * square.std() / square.size ** 0.5, np.mean(variance * weight)
+
+
+def measure(mote, name, scene, settings, quick):
+    paths, passes, seeds = (32, 2, (1, 2)) if quick else (128, 4, (1, 2, 3))
+    base = {"integrator": "mote_vpl", "integrator.paths": paths, **settings}
+    pictures = {kind: [mote.render(scene, f"{name}_{kind}".replace(" ", "_"), {**base, **extra}, passes, seed=s) for s in seeds]
+                for kind, extra in METHODS.items()}
+    mean = lambda kind, layer: np.mean([p[layer] for p in pictures[kind]], axis=0)
+    exact, truth, found = [p[LAYER] for p in pictures["exact"]], mean("exact", ""), mean("screen space", LAYER)
+    taken, error = mean_and_error([e.mean() / truth.mean() for e in exact])
+    light = blocks(truth)
+    weight = np.where(light > 0.02 * light.mean(), 1 / light ** 2, 0)  # relative, where it is not black
+    difference = lambda picture: mean_square(blocks(picture), [blocks(e) for e in exact], weight)[0] ** 0.5
+    _, square, variance = mean_square(luminance(found), [luminance(e) for e in exact])
+    seconds = np.mean([p.value("compensation_thread_seconds") for p in pictures["exact"]])
+    recovered = found.mean() / np.mean(exact)
+    return {"mean": mean, "taken": taken, "taken_error": error, "recovered": recovered,
+            "recovered_error": recovered * error / taken, "bounded": difference(0 * found), "screen": difference(found),
+            "exact_seconds": seconds, "equal_seconds": seconds * variance / square,
+            "screen_seconds": np.mean([p.value("ssbc_cpu_seconds") for p in pictures["screen space"]]),
+            "vpl_seconds": np.mean([p.cpu for p in pictures["screen space"]])}
+
+
+def draw(results, path):
+    figure, grid = plt.subplots(len(results), 5, figsize=(17, 2.9 * len(results)))
+    for row, (name, r) in zip(grid, results.items()):
+        exposure = 0.6 / np.percentile(luminance(r["mean"]("exact", "")), 95)
+        bounded = r["mean"]("screen space", "") - r["mean"]("screen space", LAYER)
+        show(row[0], bounded, exposure, f"{name}: bounded")
+        show(row[1], r["mean"]("exact", ""), exposure, f"exact compensation; equal error: {r['equal_seconds']:.0f} s")
+        show(row[2], r["mean"]("screen space", ""), exposure, f"screen space, three steps: {r['screen_seconds']:.2f} s")
+        show(row[3], r["mean"]("exact", LAYER), 4 * exposure, "recovered by exact compensation, x 4")
+        show(row[4], r["mean"]("screen space", LAYER), 4 * exposure, f"by screen space, x 4: {r['recovered']:.0%}")
+    figure.tight_layout()
+    figure.savefig(path.with_suffix(".png"), dpi=75)
+    plt.close(figure)
+
+
+def figure(mote, quick, output):
+    claims, rows = Claims(), []
+    results = {name: measure(mote, name, *scene, quick) for name, scene in scenes(mote, quick).items()}
+    for name, r in results.items():
+        ratio = r["screen_seconds"] / r["equal_seconds"]
+        print(f"{name}: the bound took {r['taken']:.2%} +- {r['taken_error']:.2%} of the light; processor seconds: VPLs "
+              f"{r['vpl_seconds']:.1f}, exact compensation {r['exact_seconds']:.2f}, screen space {r['screen_seconds']:.2f}; to equal error "
+              f"exact compensation takes {r['equal_seconds']:.1f} or more")
+        differs = HIDDEN if name == "atrium" else None
+        claims.check(f"{name}: three steps bring back most of it", f"{r['recovered']:.1%} +- {r['recovered_error']:.1%}",
+                     r["recovered"] > 0.5, differs)
+        claims.check(f"{name}: the picture is nearly that of exact compensation: 2 % or less in blocks",
+                     f"{r['screen']:.2%}, bounded {r['bounded']:.2%}", r["screen"] <= 0.02, differs)
+        if name != "atrium" or not quick:  # there too noisy to tell
+            claims.check(f"{name}: at a small fraction of its time, at equal error: a tenth at most", f"{ratio:.1%}", ratio <= 0.1,
+                         differs and "screen space stays at an error there to which exact compensation comes down soon")
+        rows.append([name, *(float(r[k]) for k in ("taken", "taken_error", "recovered", "recovered_error", "bounded", "screen",
+                                                   "vpl_seconds", "exact_seconds", "equal_seconds", "screen_seconds"))])
+    write_csv(output.with_suffix(".csv"), ["scene", "taken_by_the_bound", "standard_error", "recovered", "standard_error_recovered",
+                                           "difference_bounded", "difference_screen_space", "seconds_vpls",
+                                           "seconds_exact_compensation", "seconds_exact_to_equal_error",
+                                           "seconds_screen_space"], rows)
+    draw(results, output)
+    return claims.exit_code()
+
+
+if __name__ == "__main__":
+    sys.exit(main(__file__, __doc__, figure))
