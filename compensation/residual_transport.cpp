@@ -4,6 +4,7 @@
 
 #include "compensation/bounded_geometry.h"
 #include "compensation/region_distance.h"
+#include "core/scene/media_along.h"
 
 namespace mote::compensation {
 
@@ -16,13 +17,11 @@ namespace {
 constexpr float least_optical_depth = 0.1f;
 
 /// The media at the end of `ray`, which starts in `state`.
-MediumState state_at_end(const Scene& scene, const Ray& ray, MediumState state, WalkContext& context) {
+MediumState state_at_end(const Scene& scene, const Ray& ray, const MediumState& state, WalkContext& context) {
     if (!scene.rays().has_boundaries()) return state;
     ++context.rays.boundary;
-    scene.rays().all_hits(ray, RayTracer::Group::boundaries, context.boundary_hits);
-    for (const SurfaceHit& boundary : context.boundary_hits)
-        state.cross(*boundary.shape, boundary.geometric_normal, ray.direction);
-    return state;
+    const auto pass = [](float, float, const MediumState&) { return true; };
+    return *for_each_part(scene.rays(), ray, state, context.boundary_hits, pass);
 }
 
 Rgb exponential(const Rgb& optical_depth) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "core/scene/media_along.h"
+
 namespace mote::lights {
 
 using namespace core;
@@ -64,12 +66,10 @@ float ShadowMapBuilder::find_surface(const Ray& ray, VolumetricShadowMap::Header
 /// The media along the ray up to `end`, clipped to where they are.
 void ShadowMapBuilder::find_segments(const Ray& ray, float end) {
     segments_.clear();
-    MediumState state = at_light_;
     // Beyond the scene's bounds no receiver can be.
     const Bounds3 bounds = scene_.bounds();
     end = std::min(end, glm::distance(ray.origin, bounds.center()) + bounds.radius());
-    float t = ray.t_min;
-    const auto pass = [&](float to) {
+    const auto keep = [&](float t, float to, const MediumState& state) {
         const Medium* medium = state.current();
         if (medium && t < to) {
             const auto marched =
@@ -77,18 +77,11 @@ void ShadowMapBuilder::find_segments(const Ray& ray, float end) {
             const auto part = intersect(marched->bounds, Ray{ray.origin, ray.direction, t, to});
             if (part) segments_.push_back({&*marched, part->t0, part->t1});
         }
-        t = std::max(t, to);
+        return true;
     };
-    if (scene_.rays().has_boundaries()) {
-        ++rays_.boundary;
-        scene_.rays().all_hits(Ray{ray.origin, ray.direction, ray.t_min, end}, RayTracer::Group::boundaries,
-                               boundaries_);
-        for (const SurfaceHit& boundary : boundaries_) {
-            pass(boundary.t);
-            state.cross(*boundary.shape, boundary.geometric_normal, ray.direction);
-        }
-    }
-    pass(end);
+    rays_.boundary += scene_.rays().has_boundaries();
+    for_each_part(scene_.rays(), Ray{ray.origin, ray.direction, ray.t_min, end}, at_light_, boundaries_,
+                  keep);
 }
 
 float ShadowMapBuilder::step_of(const MarchedMedium& medium, float length) const {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "core/scene/media_along.h"
 #include "media/heterogeneous_medium.h"
 #include "screenspace/eye_media.h"
 
@@ -34,24 +35,15 @@ void find_segments(const Scene& scene, const Ray& ray, const MediumState& state,
                    std::vector<MediumSegment>& segments, WalkContext& walk) {
     segments.clear();
     const auto add = [&](float t0, float t1, const MediumState& s) {
-        if (!(t0 < t1)) return;
+        if (!(t0 < t1)) return true;
         if (!segments.empty() && segments.back().medium == s.current() && segments.back().t1 == t0)
             segments.back().t1 = t1, segments.back().state = s;
         else
             segments.push_back({s.current(), t0, t1, s});
+        return true;
     };
-    float t = ray.t_min;
-    MediumState here = state;
-    if (scene.rays().has_boundaries()) {
-        ++walk.rays.boundary;
-        scene.rays().all_hits(ray, RayTracer::Group::boundaries, walk.boundary_hits);
-        for (const SurfaceHit& hit : walk.boundary_hits) {
-            add(t, hit.t, here);
-            here.cross(*hit.shape, hit.geometric_normal, ray.direction);
-            t = hit.t;
-        }
-    }
-    add(t, ray.t_max, here);
+    walk.rays.boundary += scene.rays().has_boundaries();
+    for_each_part(scene.rays(), ray, state, walk.boundary_hits, add);
 }
 
 Rgb marched_transmittance(const Medium& medium, const Ray& ray, float voxels, WalkContext& walk) {

@@ -1,5 +1,6 @@
 // The transmittance between two points: the boundaries on the way cut the ray into segments of one medium
 // each.
+#include "core/scene/media_along.h"
 #include "core/scene/scene.h"
 
 namespace mote::core {
@@ -8,23 +9,13 @@ namespace mote::core {
 /// Returns the medium at the end, null when it was not reached.
 template <typename Segment>
 const Medium* Scene::for_each_segment(const Ray& ray, MediumState state, const Segment& segment) const {
-    const auto pass = [&](float t0, float t1) {
-        const Medium* medium = state.current();
-        if (!medium || !(t0 < t1)) return true;
-        return bool(segment(*medium, Ray{ray.origin, ray.direction, t0, t1}));
+    std::vector<SurfaceHit> boundaries;  // takes memory only when one is met
+    const auto part = [&](float t0, float t1, const MediumState& here) {
+        const Medium* medium = here.current();
+        return !medium || !(t0 < t1) || bool(segment(*medium, Ray{ray.origin, ray.direction, t0, t1}));
     };
-    if (!rays_->has_boundaries()) {
-        return pass(ray.t_min, ray.t_max) ? state.current() : nullptr;
-    }
-    std::vector<SurfaceHit> hits;  // takes memory only when a boundary is met
-    rays_->all_hits(ray, RayTracer::Group::boundaries, hits);
-    float t = ray.t_min;
-    for (const SurfaceHit& hit : hits) {
-        if (!pass(t, hit.t)) return nullptr;
-        state.cross(*hit.shape, hit.geometric_normal, ray.direction);
-        t = hit.t;
-    }
-    return pass(t, ray.t_max) ? state.current() : nullptr;
+    const auto end = for_each_part(*rays_, ray, state, boundaries, part);
+    return end ? end->current() : nullptr;
 }
 
 Rgb Scene::transmittance(const Vec3& from, const Vec3& to, const MediumState& state, Rng& rng,
