@@ -58,9 +58,9 @@ Rgb marched_transmittance(const Ray& ray, const std::vector<MediumSegment>& segm
                           WalkContext& walk) {
     Rgb product(1.0f);
     for (const MediumSegment& s : segments)
-        if (s.medium)
-            product *=
-                marched_transmittance(*s.medium, {ray.origin, ray.direction, s.t0, s.t1}, voxels, walk);
+        if (s.medium && s.t0 < ray.t_max)
+            product *= marched_transmittance(
+                *s.medium, {ray.origin, ray.direction, s.t0, std::min(s.t1, ray.t_max)}, voxels, walk);
     return product;
 }
 
@@ -98,12 +98,8 @@ double InScattering::unshadowed(const Ray& ray, double t0, double t1) const {
 Rgb InScattering::eye_transmittance(const Ray& ray, float to, MarchScratch& scratch,
                                     const EyeMedia* shared) const {
     if (shared) return shared->transmittance(to, scratch.walk);
-    Rgb product(1.0f);
-    for (const MediumSegment& s : scratch.eye)
-        if (s.medium && s.t0 < to)
-            product *= marched_transmittance(*s.medium, {ray.origin, ray.direction, s.t0, std::min(s.t1, to)},
-                                             settings_.voxels, scratch.walk);
-    return product;
+    return marched_transmittance({ray.origin, ray.direction, ray.t_min, to}, scratch.eye, settings_.voxels,
+                                 scratch.walk);
 }
 
 MarchedRay InScattering::march(const Ray& ray, const MediumState& state, MarchScratch& scratch,

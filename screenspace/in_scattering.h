@@ -83,7 +83,7 @@ void find_segments(const core::Scene& scene, const core::Ray& ray, const core::M
 /// marching.
 core::Rgb marched_transmittance(const core::Medium& medium, const core::Ray& ray, float voxels,
                                 core::WalkContext& walk);
-/// Through all segments.
+/// Through all segments, up to ray.t_max.
 core::Rgb marched_transmittance(const core::Ray& ray, const std::vector<MediumSegment>& segments,
                                 float voxels, core::WalkContext& walk);
 
