@@ -11,7 +11,6 @@ A full run takes about 15 minutes on two cores, --quick half a minute.
 """
 import csv
 import re
-import subprocess
 import sys
 from pathlib import Path
 
@@ -20,7 +19,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 from claims import Claims
 from occluders import sculpture
-from renders import children_cpu, main, write_csv
+from renders import main, write_csv
 
 SCENES = Path(__file__).resolve().parent / "scenes"
 LEVELS = [1, 2, 3, 4, 5, 6]
@@ -40,10 +39,8 @@ def scenes(mote, quick):
 
 def ssbc(mote, source, *options):
     """Samples a gathered pixel, and processor seconds."""
-    before = children_cpu()
-    said = subprocess.run([mote.program, "ssbc", source, "-o", mote.folder / "ssbc.exr", *map(str, options)], check=True,
-                          capture_output=True, text=True).stdout
-    return float(re.search(r"([\d.]+) samples each", said).group(1)), children_cpu() - before
+    _, said, seconds = mote.ssbc(source, "ssbc", *options)
+    return float(re.search(r"([\d.]+) samples each", said).group(1)), seconds
 
 
 def measure(mote, name, scene, settings, size, paths):

@@ -73,6 +73,14 @@ class Mote:
             path.with_suffix(".cpu").write_text(f"{children_cpu() - before:.3f}\n")
         return Picture(path)
 
+    def ssbc(self, source, name, *options):
+        """`mote ssbc` on an EXR file: the file it wrote, what it said, and the processor seconds of the whole command."""
+        path = self.folder / f"{name}.exr"
+        before = children_cpu()
+        said = subprocess.run([self.program, "ssbc", source, "-o", path, *map(str, options)], check=True,
+                              capture_output=True, text=True).stdout
+        return path, said, children_cpu() - before
+
 
 def word(value):
     return str(value).lower() if isinstance(value, bool) else str(value)

@@ -7,7 +7,6 @@ Exact compensation has no bias, so its error falls with the root of its passes; 
 space follows from its variance. Its time is what the render spends on it alone; that of screen space is the whole of `mote ssbc`,
 which reads and writes EXR files. Processor time. 1368 light paths leave 1024 virtual point lights. About 3 minutes.
 """
-import subprocess
 import sys
 from pathlib import Path
 
@@ -15,7 +14,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "figures"))
 import numpy as np
 from claims import Claims
 from corner import picture, reflected, transported
-from renders import children_cpu, compensation, luminance, main, mean_and_error, write_csv
+from renders import compensation, luminance, main, mean_and_error, write_csv
 from exr import read_exr
 
 SCENE = Path(__file__).resolve().parent.parent / "figures" / "scenes" / "corner.xml"
@@ -36,10 +35,8 @@ def quadrature(mote, quick, settings):
 
 def screen_space(mote, render, name):
     """The layer that `mote ssbc` adds to a render, and the seconds it took."""
-    source, path = mote.folder / f"{render}.exr", mote.folder / f"{name}.exr"
-    before = children_cpu()
-    subprocess.run([mote.program, "ssbc", source, "-o", path, "--steps", str(STEPS)], check=True, stdout=subprocess.DEVNULL)
-    return read_exr(path)[LAYER], children_cpu() - before
+    path, _, seconds = mote.ssbc(mote.folder / f"{render}.exr", name, "--steps", STEPS)
+    return read_exr(path)[LAYER], seconds
 
 
 def square(difference):
@@ -54,7 +51,8 @@ def measure(mote, paths, settings, truth, passes, seeds):
         exact = mote.render(SCENE, f"exact_{paths}", {**settings, **compensation("exact")}, passes, seed=seed)
         mote.render(SCENE, f"bounded_{paths}", settings, passes, seed=seed, auxiliary=True)
         found, took = screen_space(mote, f"bounded_{paths}_{seed}", f"ssbc_{paths}_{seed}")
-        for name, picture_of, time in (("exact", exact[LAYER], exact.value("compensation_thread_seconds")), ("screen space", found, took)):
+        took_exact = exact.value("compensation_thread_seconds")
+        for name, picture_of, time in (("exact", exact[LAYER], took_exact), ("screen space", found, took)):
             errors[name].append(square(picture_of - truth))
             seconds[name].append(time)
         sums.append(luminance(exact[LAYER]).mean() / luminance(truth).mean() - 1)
