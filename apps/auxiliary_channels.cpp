@@ -1,7 +1,7 @@
 #include "apps/auxiliary_channels.h"
 
-#include "screenspace/g_buffer.h"
-#include "screenspace/ssbc_surfaces.h"
+#include "screenspace/g_buffer/g_buffer.h"
+#include "screenspace/ssbc/ssbc_surfaces.h"
 
 namespace mote::apps {
 

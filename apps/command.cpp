@@ -12,7 +12,7 @@
 #include "apps/ssbc_command.h"
 #include "apps/subcommands.h"
 #include "apps/trade/trade_command.h"
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 
 namespace mote::apps {
 

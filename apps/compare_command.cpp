@@ -11,7 +11,7 @@
 #include "apps/subcommands.h"
 #include "core/image/error_map.h"
 #include "core/image/metrics.h"
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 
 namespace mote::apps {
 

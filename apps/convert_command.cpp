@@ -5,7 +5,7 @@
 #include "apps/picture_file.h"
 #include "apps/subcommands.h"
 #include "core/image/image_file.h"
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 
 namespace mote::apps {
 

@@ -12,7 +12,7 @@
 #include "core/geometry/triangle_mesh.h"
 #include "core/image/exr_preflight.h"
 #include "core/image/image_file.h"
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 #include "media/vdb_grid.h"
 #include "media/vol_file.h"
 

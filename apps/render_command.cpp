@@ -18,8 +18,8 @@
 #include "apps/subcommands.h"
 #include "core/image/film_image.h"
 #include "core/image/image_file.h"
+#include "core/objects/error.h"
 #include "core/render/render_driver.h"
-#include "core/scene/error.h"
 
 namespace mote::apps {
 

@@ -1,7 +1,7 @@
 // From the command line to a loaded scene.
 #include "apps/subcommands.h"
-#include "core/scene/error.h"
-#include "core/scene/scene_loader.h"
+#include "core/loading/scene_loader.h"
+#include "core/objects/error.h"
 #include "integrators/register_integrators.h"
 #include "lights/register_lights.h"
 #include "media/register_media.h"

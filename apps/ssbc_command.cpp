@@ -9,9 +9,9 @@
 
 #include "apps/command.h"
 #include "core/image/image_file.h"
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 #include "core/scene/scene.h"
-#include "screenspace/g_buffer.h"
+#include "screenspace/g_buffer/g_buffer.h"
 
 namespace mote::apps {
 

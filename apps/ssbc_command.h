@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "apps/subcommands.h"
-#include "screenspace/ssbc.h"
-#include "screenspace/ssbc_picture.h"
+#include "screenspace/ssbc/ssbc.h"
+#include "screenspace/ssbc/ssbc_picture.h"
 
 namespace CLI {
 class App;

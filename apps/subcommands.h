@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "core/loading/scene_loader.h"
+#include "core/objects/registry.h"
 #include "core/render/integrator.h"
-#include "core/scene/registry.h"
 #include "core/scene/scene.h"
-#include "core/scene/scene_loader.h"
 
 namespace mote::apps {
 

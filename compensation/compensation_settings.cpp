@@ -1,7 +1,7 @@
 #include "compensation/compensation_settings.h"
 
-#include "core/scene/properties.h"
-#include "core/scene/registry.h"
+#include "core/objects/properties.h"
+#include "core/objects/registry.h"
 
 namespace mote::compensation {
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "core/scene/object.h"
+#include "core/objects/object.h"
 
 namespace mote::core {
 class Registry;

@@ -1,6 +1,6 @@
 #include "compensation/light_compensation.h"
 
-#include "lights/direct_light.h"
+#include "lights/emitters/direct_light.h"
 
 namespace mote::compensation {
 

@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "compensation/sphere_cone.h"
-#include "lights/virtual_point_light.h"
+#include "lights/virtual_lights/virtual_point_light.h"
 
 namespace mote::compensation {
 

@@ -10,7 +10,7 @@
 #include <array>
 
 #include "compensation/residual_transport.h"
-#include "lights/vpl_gather.h"
+#include "lights/virtual_lights/vpl_gather.h"
 
 namespace mote::compensation {
 

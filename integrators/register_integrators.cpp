@@ -2,8 +2,8 @@
 
 #include "compensation/compensation_settings.h"
 #include "integrators/register_parts.h"
-#include "integrators/screen_space_compensation.h"
-#include "integrators/vpl_visibility.h"
+#include "integrators/screen_space_compensation/screen_space_compensation.h"
+#include "integrators/virtual_point_lights/vpl_visibility.h"
 
 namespace mote::integrators {
 

@@ -1,8 +1,8 @@
 // What the integrators of this folder hand to the registry, one function a file, and plan entries they share.
 #pragma once
 
+#include "core/objects/registry.h"
 #include "core/render/plan.h"
-#include "core/scene/registry.h"
 #include "core/scene/requirements.h"
 #include "core/scene/scene.h"
 

@@ -1,6 +1,6 @@
 #include "lights/register_lights.h"
 
-#include "lights/emitters.h"
+#include "lights/emitters/emitters.h"
 
 namespace mote::lights {
 

@@ -2,8 +2,8 @@
 // value itself, so that every tentative collision is real and transmittance is analytic.
 #include "media/constant_volume.h"
 
-#include "core/scene/properties.h"
-#include "core/scene/registry.h"
+#include "core/objects/properties.h"
+#include "core/objects/registry.h"
 #include "media/medium_parameters.h"
 #include "media/tracked_medium.h"
 

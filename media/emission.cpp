@@ -1,7 +1,7 @@
 // What a medium emits, and its parameters.
 #include "media/emission.h"
 
-#include "core/scene/properties.h"
+#include "core/objects/properties.h"
 #include "media/blackbody.h"
 #include "media/medium_parameters.h"
 #include "media/volume.h"

@@ -22,7 +22,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 #include "media/grid_reader_protocol.h"
 #include "media/vdb_grid.h"
 

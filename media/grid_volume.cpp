@@ -5,8 +5,8 @@
 
 #include <filesystem>
 
-#include "core/scene/properties.h"
-#include "core/scene/registry.h"
+#include "core/objects/properties.h"
+#include "core/objects/registry.h"
 #include "media/tracked_medium.h"
 #include "media/vol_file.h"
 

@@ -1,8 +1,8 @@
 // <medium type="heterogeneous">: the extinction is a volume; that volume builds the medium.
 #include "media/heterogeneous_medium.h"
 
-#include "core/scene/properties.h"
-#include "core/scene/registry.h"
+#include "core/objects/properties.h"
+#include "core/objects/registry.h"
 #include "media/medium_parameters.h"
 #include "media/volume.h"
 

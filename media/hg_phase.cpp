@@ -3,8 +3,8 @@
 // wo and wi both point away from the point, so light that keeps its direction has wi = -wo: for g > 0 the
 // preferred direction is -wo, for g < 0 it is wo.
 #include "core/math/frame.h"
-#include "core/scene/properties.h"
-#include "core/scene/registry.h"
+#include "core/objects/properties.h"
+#include "core/objects/registry.h"
 #include "media/henyey_greenstein.h"
 #include "media/phase_functions.h"
 

@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "core/scene/properties.h"
-#include "core/scene/registry.h"
+#include "core/objects/properties.h"
+#include "core/objects/registry.h"
 #include "media/medium_emitter.h"
 #include "media/medium_parameters.h"
 #include "media/tracking_random.h"

@@ -1,7 +1,7 @@
 // <phase type="isotropic">: the same value in every direction.
 #include "core/math/warp.h"
-#include "core/scene/properties.h"
-#include "core/scene/registry.h"
+#include "core/objects/properties.h"
+#include "core/objects/registry.h"
 #include "media/phase_functions.h"
 
 namespace mote::media {

@@ -1,7 +1,7 @@
 // Parameters that the media share, read from a scene file.
 #include "media/medium_parameters.h"
 
-#include "core/scene/properties.h"
+#include "core/objects/properties.h"
 #include "media/phase_functions.h"
 
 namespace mote::media {

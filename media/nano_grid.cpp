@@ -1,7 +1,7 @@
 // Checking a NanoVDB buffer before anything follows its offsets, and the bounds of its values.
 #include "media/nano_grid.h"
 
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 
 namespace mote::media {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "core/scene/error.h"
-#include "core/scene/properties.h"
+#include "core/objects/error.h"
+#include "core/objects/properties.h"
 
 namespace mote::media {
 

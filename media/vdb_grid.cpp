@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 #include "media/nano_grid.h"
 
 namespace mote::media {

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 #include "media/nano_grid.h"
 
 namespace mote::media {

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "core/scene/properties.h"
-#include "core/scene/registry.h"
+#include "core/objects/properties.h"
+#include "core/objects/registry.h"
 #include "media/nano_grid.h"
 #include "media/tracked_medium.h"
 

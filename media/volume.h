@@ -9,7 +9,7 @@
 #include <string>
 
 #include "core/math/vec.h"
-#include "core/scene/object.h"
+#include "core/objects/object.h"
 
 namespace mote::core {
 class Properties;

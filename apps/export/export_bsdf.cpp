@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "apps/export/export_context.h"
+#include "core/loading/scene_values.h"
 #include "core/materials/index_of_refraction.h"
-#include "core/scene/scene_values.h"
 
 namespace mote::apps {
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <set>
 
-#include "core/scene/scene_values.h"
+#include "core/loading/scene_values.h"
 
 namespace mote::apps {
 

@@ -2,8 +2,8 @@
 #include <filesystem>
 
 #include "apps/export/export_context.h"
+#include "core/loading/scene_values.h"
 #include "core/materials/bsdf.h"
-#include "core/scene/scene_values.h"
 
 namespace mote::apps {
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "apps/export/export_context.h"
+#include "core/loading/scene_builder.h"
+#include "core/loading/scene_values.h"
 #include "core/materials/bsdf.h"
-#include "core/scene/scene_builder.h"
-#include "core/scene/scene_values.h"
 
 namespace mote::apps {
 

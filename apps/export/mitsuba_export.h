@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/geometry/triangle_mesh.h"
-#include "core/scene/registry.h"
-#include "core/scene/scene_loader.h"
+#include "core/loading/scene_loader.h"
+#include "core/objects/registry.h"
 #include "media/vol_file.h"
 
 namespace mote::apps {

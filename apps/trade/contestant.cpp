@@ -8,8 +8,8 @@
 #include "core/image/image_file.h"
 #include "core/image/metrics.h"
 #include "core/image/whole_file.h"
+#include "core/objects/error.h"
 #include "core/render/cpu_clock.h"
-#include "core/scene/error.h"
 
 namespace mote::apps::trade {
 

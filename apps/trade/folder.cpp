@@ -7,7 +7,7 @@
 
 #include "core/image/image_file.h"
 #include "core/image/whole_file.h"
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 
 namespace mote::apps::trade {
 

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 
 namespace mote::apps::trade {
 

@@ -16,8 +16,8 @@
 #include "apps/trade/reference.h"
 #include "apps/trade/trade_command.h"
 #include "core/image/film_image.h"
-#include "core/scene/error.h"
-#include "core/scene/integrator_maker.h"
+#include "core/loading/integrator_maker.h"
+#include "core/objects/error.h"
 
 namespace mote::apps::trade {
 

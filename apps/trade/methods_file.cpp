@@ -1,4 +1,4 @@
-// From JSON to integrators. Settings go through the checks of a scene file (core/scene/integrator_maker.h).
+// From JSON to integrators. Settings go through the checks of a scene file (core/loading/integrator_maker.h).
 #include "apps/trade/methods_file.h"
 
 #include <algorithm>
@@ -7,8 +7,8 @@
 
 #include "apps/trade/json_lines.h"
 #include "core/image/whole_file.h"
-#include "core/scene/integrator_maker.h"
-#include "core/scene/scene_values.h"
+#include "core/loading/integrator_maker.h"
+#include "core/loading/scene_values.h"
 
 namespace mote::apps::trade {
 

@@ -11,7 +11,7 @@
 #include "apps/trade/page_text.h"
 #include "apps/trade/plot.h"
 #include "core/image/image_file.h"
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 
 namespace mote::apps::trade {
 

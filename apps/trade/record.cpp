@@ -9,7 +9,7 @@
 #include <iterator>
 #include <map>
 
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 
 namespace mote::apps::trade {
 

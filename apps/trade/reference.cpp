@@ -10,7 +10,7 @@
 
 #include "apps/reference_metadata.h"
 #include "core/image/metrics.h"
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 
 namespace mote::apps::trade {
 

@@ -15,8 +15,8 @@
 #include "apps/trade/draw.h"
 #include "apps/trade/run.h"
 #include "core/image/checksum.h"
-#include "core/scene/error.h"
-#include "core/scene/scene_element.h"
+#include "core/loading/scene_element.h"
+#include "core/objects/error.h"
 
 namespace mote::apps {
 

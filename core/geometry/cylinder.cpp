@@ -2,7 +2,7 @@
 #include <numbers>
 
 #include "core/geometry/quadric.h"
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 
 namespace mote::core {
 namespace {

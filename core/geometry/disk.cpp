@@ -3,7 +3,7 @@
 
 #include "core/geometry/quadric.h"
 #include "core/math/warp.h"
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 
 namespace mote::core {
 namespace {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/geometry/triangle_mesh.h"
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 
 namespace mote::core {
 

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "core/geometry/triangle_mesh.h"
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 
 namespace mote::core {
 

@@ -1,7 +1,7 @@
 // Shared parts of sphere, disk and cylinder.
 #include "core/geometry/quadric.h"
 
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 
 namespace mote::core {
 

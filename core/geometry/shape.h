@@ -8,7 +8,7 @@
 
 #include "core/math/bounds.h"
 #include "core/math/frame.h"
-#include "core/scene/object.h"
+#include "core/objects/object.h"
 
 namespace mote::core {
 

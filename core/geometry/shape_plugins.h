@@ -1,8 +1,8 @@
 // The shapes of the scene language: each function hands one or more types to the registry.
 #pragma once
 
-#include "core/scene/properties.h"
-#include "core/scene/registry.h"
+#include "core/objects/properties.h"
+#include "core/objects/registry.h"
 
 namespace mote::core {
 

@@ -4,7 +4,7 @@
 #include "core/geometry/quadric.h"
 #include "core/math/pdf_conversion.h"
 #include "core/math/warp.h"
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 
 namespace mote::core {
 namespace {

@@ -6,7 +6,7 @@
 #include "core/geometry/mesh_checks.h"
 #include "core/geometry/rounding.h"
 #include "core/math/warp.h"
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 
 namespace mote::core {
 namespace {

@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "core/image/image_file.h"
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 
 namespace mote::core {
 

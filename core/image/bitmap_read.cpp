@@ -17,7 +17,7 @@
 #include "core/image/image_file.h"
 #include "core/image/metadata_stripping.h"
 #include "core/image/whole_file.h"
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 
 namespace mote::core {
 

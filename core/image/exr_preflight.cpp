@@ -9,7 +9,7 @@
 #include <set>
 #include <vector>
 
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 
 namespace mote::core {
 

@@ -15,7 +15,7 @@
 
 #include "core/image/exr_preflight.h"
 #include "core/image/image_file.h"
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 
 namespace mote::core {
 

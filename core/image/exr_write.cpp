@@ -16,7 +16,7 @@
 #include <thread>
 
 #include "core/image/image_file.h"
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 
 namespace mote::core {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/render/integrator.h"
+#include "core/image/pass_image.h"
 
 namespace mote::core {
 

@@ -9,7 +9,7 @@
 
 #include "core/image/checksum.h"
 #include "core/image/film.h"
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 
 namespace mote::core {
 

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <string_view>
 
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 
 namespace mote::core {
 

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "core/image/image_file.h"
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 
 namespace mote::core {
 

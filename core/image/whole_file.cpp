@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 
 namespace mote::core {
 

@@ -4,7 +4,7 @@
 #include "core/materials/register_materials.h"
 #include "core/materials/textures.h"
 #include "core/materials/uv_transform.h"
-#include "core/scene/properties.h"
+#include "core/objects/properties.h"
 
 namespace mote::core {
 namespace {

@@ -5,7 +5,7 @@
 #include <cctype>
 #include <vector>
 
-#include "core/scene/properties.h"
+#include "core/objects/properties.h"
 
 namespace mote::core {
 namespace {

@@ -1,7 +1,7 @@
 // The rows that every rough BSDF shares in its manual page.
 #pragma once
 
-#include "core/scene/registry.h"
+#include "core/objects/registry.h"
 
 namespace mote::core {
 

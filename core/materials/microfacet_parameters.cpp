@@ -1,7 +1,7 @@
 // Roughness as a scene file gives it.
 #include "core/materials/microfacet.h"
 #include "core/materials/microfacet_manual.h"
-#include "core/scene/properties.h"
+#include "core/objects/properties.h"
 
 namespace mote::core {
 namespace {

@@ -7,7 +7,7 @@
 #include "core/materials/texture_slot.h"
 #include "core/materials/textures.h"
 #include "core/math/warp.h"
-#include "core/scene/properties.h"
+#include "core/objects/properties.h"
 
 namespace mote::core {
 namespace {

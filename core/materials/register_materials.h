@@ -1,7 +1,7 @@
 // The plugins of this folder: each registers its manual page and factory. Called by register_materials().
 #pragma once
 
-#include "core/scene/registry.h"
+#include "core/objects/registry.h"
 
 namespace mote::core {
 

@@ -10,8 +10,8 @@
 #include "core/materials/register_materials.h"
 #include "core/materials/texture_slot.h"
 #include "core/materials/textures.h"
-#include "core/scene/error.h"
-#include "core/scene/properties.h"
+#include "core/objects/error.h"
+#include "core/objects/properties.h"
 
 namespace mote::core {
 namespace {

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "core/math/vec.h"
-#include "core/scene/object.h"
+#include "core/objects/object.h"
 
 namespace mote::core {
 

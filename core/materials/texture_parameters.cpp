@@ -1,6 +1,6 @@
 // Constant textures, and textures as parameters: an rgb, a float or a nested texture.
 #include "core/materials/textures.h"
-#include "core/scene/properties.h"
+#include "core/objects/properties.h"
 
 namespace mote::core {
 namespace {

@@ -3,8 +3,8 @@
 
 #include "core/materials/bsdfs.h"
 #include "core/materials/register_materials.h"
-#include "core/scene/error.h"
-#include "core/scene/properties.h"
+#include "core/objects/error.h"
+#include "core/objects/properties.h"
 
 namespace mote::core {
 namespace {

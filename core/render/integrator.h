@@ -16,11 +16,13 @@
 #include <string>
 #include <vector>
 
+#include "core/image/pass_image.h"
+#include "core/image/tiles.h"
 #include "core/math/sampler.h"
 #include "core/math/vec.h"
+#include "core/objects/object.h"
 #include "core/render/plan.h"
 #include "core/render/statistics.h"
-#include "core/scene/object.h"
 #include "core/scene/requirements.h"
 
 namespace mote::core {
@@ -28,35 +30,10 @@ namespace mote::core {
 class Film;
 class Scene;
 
-struct Layer {
-    std::string name;         ///< "direct", "indirect_bounded"
-    std::string description;  ///< one line for docs and metadata
-    bool auxiliary = false;   ///< not part of the beauty (Albedo, N, P, Depth)
-};
-
 struct RenderOptions {
     std::uint64_t seed = 0;
     int width = 0, height = 0;
     SamplerKind sampler = SamplerKind::sobol;
-};
-
-/// The picture of one pass: one value per pixel and layer, row by row from the top. Zero at the start.
-class PassImage {
-  public:
-    PassImage(int width, int height, std::size_t layers);
-    int width() const { return width_; }
-    int height() const { return height_; }
-    std::size_t layers() const { return planes_.size(); }
-    std::span<Rgb> layer(std::size_t i) { return planes_[i]; }
-    std::span<const Rgb> layer(std::size_t i) const { return planes_[i]; }
-    Rgb& at(std::size_t layer, int x, int y) {
-        return planes_[layer][std::size_t(y) * std::size_t(width_) + std::size_t(x)];
-    }
-    void clear();
-
-  private:
-    int width_, height_;
-    std::vector<std::vector<Rgb>> planes_;
 };
 
 /// Where within pixel (x, y) a sample falls so that its plain mean is the filtered picture (filter importance
@@ -73,11 +50,6 @@ struct PassContext {
     const PixelFilter& filter;
     const std::atomic<bool>& cancelled;  ///< poll between tiles; a cancelled pass is thrown away
 };
-
-/// Runs `body(x0, y0, x1, y1)` over tiles of the picture in parallel, until done or cancelled. Returns false
-/// when cancelled. The order of tiles must not matter to the result.
-bool for_each_tile(int width, int height, int tile_size, const std::atomic<bool>& cancelled,
-                   const std::function<void(int, int, int, int)>& body);
 
 class Estimator {
   public:

@@ -4,8 +4,8 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "core/objects/error.h"
 #include "core/render/render_driver.h"
-#include "core/scene/error.h"
 #include "core/scene/scene.h"
 
 namespace mote::core {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "core/objects/error.h"
 #include "core/render/render_driver.h"
-#include "core/scene/error.h"
 
 namespace mote::core {
 

@@ -4,10 +4,10 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "core/objects/error.h"
 #include "core/render/checkpoint.h"
 #include "core/render/pass_runner.h"
 #include "core/render/stop_clock.h"
-#include "core/scene/error.h"
 #include "core/scene/scene.h"
 
 namespace mote::core {

@@ -18,10 +18,4 @@ struct Statistics {
     std::uint64_t clamped_samples = 0;     ///< 0 unless clamping was asked for
 };
 
-/// Counters that one task fills without synchronisation; merged at the end of the task.
-struct RayCounters {
-    std::uint64_t closest = 0, occlusion = 0, boundary = 0;
-    void add(const RayCounters& o) { closest += o.closest, occlusion += o.occlusion, boundary += o.boundary; }
-};
-
 }  // namespace mote::core

@@ -8,7 +8,7 @@
 
 #include "core/math/ray.h"
 #include "core/math/transform.h"
-#include "core/scene/object.h"
+#include "core/objects/object.h"
 
 namespace mote::core {
 

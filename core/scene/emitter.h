@@ -5,7 +5,7 @@
 
 #include "core/math/bounds.h"
 #include "core/math/vec.h"
-#include "core/scene/object.h"
+#include "core/objects/object.h"
 
 namespace mote::core {
 

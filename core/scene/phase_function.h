@@ -6,7 +6,7 @@
 #pragma once
 
 #include "core/math/vec.h"
-#include "core/scene/object.h"
+#include "core/objects/object.h"
 
 namespace mote::core {
 

@@ -8,7 +8,7 @@
 
 #include <vector>
 
-#include "core/render/statistics.h"
+#include "core/geometry/ray_counters.h"
 #include "core/scene/scene.h"
 
 namespace mote::core {

@@ -3,8 +3,7 @@
 
 #include <algorithm>
 
-#include "core/render/integrator.h"
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 
 namespace mote::core {
 namespace {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 #include "core/scene/scene.h"
 
 namespace mote::core {

@@ -2,8 +2,8 @@
 #include "experiments/benchmarks/half_million.h"
 #include "experiments/benchmarks/occlusion_forms.h"
 #include "experiments/benchmarks/turns.h"
-#include "lights/particle_tracer.h"
-#include "lights/vpl_gather.h"
+#include "lights/virtual_lights/particle_tracer.h"
+#include "lights/virtual_lights/vpl_gather.h"
 
 namespace mote::benchmarks {
 namespace {
@@ -25,7 +25,8 @@ class Gathering {
     std::size_t tiles() const { return tiles_.size(); }
     std::size_t vpls() const { return vpls_.lights.size(); }
     void gather(std::size_t tile) {
-        const auto light = lights::gather(*scene_, vpls_, {}, bound_, tiles_[tile], *scratch_, rays_, tracking_);
+        const auto light =
+            lights::gather(*scene_, vpls_, {}, bound_, tiles_[tile], *scratch_, rays_, tracking_);
         benchmark::DoNotOptimize(light);
     }
     double gather_all() {

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include "core/geometry/triangle_mesh.h"
+#include "core/loading/scene_loader.h"
 #include "core/materials/bsdf.h"
-#include "core/scene/properties.h"
-#include "core/scene/scene_loader.h"
+#include "core/objects/properties.h"
 #include "integrators/register_integrators.h"
 #include "lights/register_lights.h"
 #include "media/register_media.h"

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "core/scene/registry.h"
+#include "core/objects/registry.h"
 #include "core/scene/scene.h"
 
 namespace mote::benchmarks {

@@ -11,13 +11,13 @@
 
 #include <filesystem>
 
+#include "core/loading/scene_loader.h"
 #include "core/math/random.h"
 #include "core/scene/scattering_vertex.h"
-#include "core/scene/scene_loader.h"
 #include "experiments/benchmarks/turns.h"
 #include "integrators/register_integrators.h"
 #include "lights/register_lights.h"
-#include "lights/volumetric_shadow_map.h"
+#include "lights/shadow_maps/volumetric_shadow_map.h"
 #include "media/heterogeneous_medium.h"
 #include "media/register_media.h"
 
@@ -89,7 +89,7 @@ struct Lamp {
     Rng rng{1};
     TrackingCounters counters{};
 
-    /// As resolve_batch() of lights/vpl_gather.cpp.
+    /// As resolve_batch() of lights/virtual_lights/vpl_gather.cpp.
     float trace(const Points& points) {
         float sum = 0.0f;
         for (std::size_t first = 0; first < points.size(); first += packets.size()) {

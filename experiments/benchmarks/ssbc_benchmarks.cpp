@@ -6,10 +6,10 @@
 #include "core/scene/scattering_vertex.h"
 #include "experiments/benchmarks/half_million.h"
 #include "experiments/benchmarks/turns.h"
-#include "lights/particle_tracer.h"
-#include "lights/vpl_gather.h"
-#include "screenspace/g_buffer.h"
-#include "screenspace/ssbc.h"
+#include "lights/virtual_lights/particle_tracer.h"
+#include "lights/virtual_lights/vpl_gather.h"
+#include "screenspace/g_buffer/g_buffer.h"
+#include "screenspace/ssbc/ssbc.h"
 
 namespace mote::benchmarks {
 namespace {

@@ -70,7 +70,7 @@ class Study:
         row = {"scene": scene, "variant": name, "rms": float(np.mean(errors)), "bias": float(bias),
                "bias error": float(bias_error), "cpu": self.cpu(scene, name, settings),
                "steps per ray": picture.value("march_steps") / max(1, picture.value("marched_rays")),
-               "clear": picture.value("clear_rays") / max(1, picture.value("marched_rays")),
+               "clear": picture.value("unoccluded_rays") / max(1, picture.value("marched_rays")),
                "build": picture.statistics["seconds"]["build"],
                "megabytes": picture.statistics["values"].get("shadow_map_bytes", 0) * 1e-6}
         self.rows.append(row)

@@ -3,8 +3,8 @@
 #include <cstring>
 
 #include "core/image/image_file.h"
+#include "core/loading/scene_loader.h"
 #include "core/math/random.h"
-#include "core/scene/scene_loader.h"
 #include "media/grid_volume.h"
 #include "media/vdb_grid.h"
 #include "media/vdb_to_vol.h"

@@ -6,7 +6,7 @@
 #include "apps/trade/packed_picture.h"
 #include "apps/trade/plot.h"
 #include "apps/trade/run.h"
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 #include "tests/support/catch.h"
 
 using namespace mote::apps::trade;

@@ -6,8 +6,8 @@
 
 #include "compensation/spherical_lights.h"
 #include "core/materials/bsdfs.h"
-#include "lights/particle_tracer.h"
-#include "lights/vpl_gather.h"
+#include "lights/virtual_lights/particle_tracer.h"
+#include "lights/virtual_lights/vpl_gather.h"
 #include "tests/support/catch.h"
 #include "tests/support/render_statistics.h"
 

@@ -21,6 +21,10 @@ FLOORS = [
     ["experiments"],
 ]
 FLOOR_OF = {folder: level for level, floor in enumerate(FLOORS) for folder in floor}
+# core has floors of its own.
+CORE_FLOORS = [["math"], ["objects"], ["image"], ["materials"], ["geometry"], ["scene"], ["cameras", "render"],
+               ["loading"]]
+CORE_FLOOR_OF = {folder: level for level, floor in enumerate(CORE_FLOORS) for folder in floor}
 EXEMPT = {"tests", "tools"}
 SOURCES = {".h", ".hpp", ".cpp", ".c", ".cc", ".inl"}
 
@@ -47,18 +51,25 @@ def committed_files(root):
                   if p.is_file() and not left_out & set(p.relative_to(root).parts))
 
 
-def include_offence(folder, included):
-    """Why a file in `folder` may not include `included`, or None."""
+def include_offence(folder, included, room=None):
+    """Why a file in `folder` (in its folder `room`, where it has one) may not include `included`, or None."""
     target = included.split("/")[0]
     if ".." in included.split("/"):
         return f"'{included}' climbs out of its folder; includes are written from the root"
     if target in EXEMPT:
         return f"'{included}' belongs to {target}/, which nothing else may include"
-    if target not in FLOOR_OF or target == folder:
+    if target == folder == "core":
+        return floor_offence(CORE_FLOOR_OF, room, included.split("/")[1], included)
+    return floor_offence(FLOOR_OF, folder, target, included)
+
+
+def floor_offence(floor_of, folder, target, included):
+    """Why a file of `folder` may not include `included`, which lies in `target`, by one table of floors."""
+    if target == folder or folder not in floor_of or target not in floor_of:
         return None
-    if FLOOR_OF[target] < FLOOR_OF[folder]:
+    if floor_of[target] < floor_of[folder]:
         return None
-    relation = "a floor above" if FLOOR_OF[target] > FLOOR_OF[folder] else "the same floor as"
+    relation = "a floor above" if floor_of[target] > floor_of[folder] else "the same floor as"
     return f"'{included}' lies on {relation} {folder}/"
 
 
@@ -73,7 +84,7 @@ def offences_of_file(root, path):
     for number, line in enumerate(data.decode("utf-8", "replace").splitlines(), 1):
         found = INCLUDE.match(line)
         if found and checks_includes:
-            reason = include_offence(folder, found.group(1))
+            reason = include_offence(folder, found.group(1), relative.parts[1])
             if reason:
                 yield number, reason
         if MACHINE_PATH.search(line) and not is_exempt_from_paths(relative):

@@ -11,6 +11,10 @@ from check_floors import check
 CASES = [
     ("core/a.cpp", '#include "media/medium.h"\n', True),
     ("core/a.cpp", '#  include <lights/area.h>\n', True),
+    ("core/image/a.cpp", '#include "core/render/b.h"\n', True),
+    ("core/scene/a.h", '#include "core/loading/b.h"\n', True),
+    ("core/render/a.h", '#include "core/cameras/b.h"\n', True),
+    ("core/scene/a.h", '#include "core/geometry/b.h"\n#include "core/scene/c.h"\n', False),
     ("media/a.h", '#include "media/b.h"\n#include "core/c.h"\n#include <vector>\n', False),
     ("media/a.h", '#include "lights/b.h"\n', True),
     ("lights/a.cpp", '#include "integrators/path.h"\n', True),

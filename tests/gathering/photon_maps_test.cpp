@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "core/math/warp.h"
-#include "gathering/photon_tracer.h"
-#include "gathering/progressive_radius.h"
-#include "gathering/volume_photon_map.h"
+#include "gathering/photon_maps/photon_tracer.h"
+#include "gathering/photon_maps/progressive_radius.h"
+#include "gathering/photon_maps/volume_photon_map.h"
 #include "tests/support/catch.h"
 #include "tests/support/render_statistics.h"
 

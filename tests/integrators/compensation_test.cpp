@@ -8,9 +8,9 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "core/loading/scene_loader.h"
+#include "core/objects/error.h"
 #include "core/render/render_driver.h"
-#include "core/scene/error.h"
-#include "core/scene/scene_loader.h"
 #include "tests/integrators/test_scenes.h"
 #include "tests/support/catch.h"
 #include "tests/support/render_statistics.h"

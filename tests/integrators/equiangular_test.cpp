@@ -1,5 +1,5 @@
 // Equi-angular sampling changes the noise of single scattering, never its mean.
-#include "integrators/equiangular.h"
+#include "integrators/path_tracing/equiangular.h"
 
 #include <fmt/format.h>
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "core/image/film.h"
+#include "core/objects/error.h"
 #include "core/render/render_driver.h"
-#include "core/scene/error.h"
 #include "tests/integrators/test_scenes.h"
 #include "tests/support/catch.h"
 #include "tests/support/render_statistics.h"

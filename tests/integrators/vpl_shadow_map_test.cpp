@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
+#include "core/objects/error.h"
 #include "core/render/pass_runner.h"
-#include "core/scene/error.h"
-#include "lights/volumetric_shadow_map.h"
+#include "lights/shadow_maps/volumetric_shadow_map.h"
 #include "tests/integrators/test_scenes.h"
 #include "tests/support/catch.h"
 #include "tests/support/render_statistics.h"

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 #include "tests/integrators/test_scenes.h"
 #include "tests/support/catch.h"
 #include "tests/support/render_statistics.h"

@@ -4,8 +4,8 @@
 
 #include "core/math/random.h"
 #include "core/math/warp.h"
-#include "lights/directional_map.h"
-#include "lights/octahedral_map.h"
+#include "lights/directional_maps/directional_map.h"
+#include "lights/directional_maps/octahedral_map.h"
 #include "tests/support/catch.h"
 
 using namespace mote::core;

@@ -9,7 +9,7 @@
 #include "core/geometry/analytic_shapes.h"
 #include "core/geometry/triangle_mesh.h"
 #include "core/materials/texture.h"
-#include "lights/emitters.h"
+#include "lights/emitters/emitters.h"
 
 namespace mote::tests {
 

@@ -1,5 +1,5 @@
 // The environment map: orientation, lookup, sampling, and pictures that broke others.
-#include "lights/latlong_map.h"
+#include "lights/emitters/environment_picture.h"
 #include "tests/lights/emitter_examples.h"
 #include "tests/lights/emitter_statistics.h"
 #include "tests/support/catch.h"

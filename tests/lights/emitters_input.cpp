@@ -1,7 +1,7 @@
 // Lights as the scene language makes them: defaults, choices, and values that are refused with file and line.
+#include "core/objects/properties.h"
+#include "core/objects/registry.h"
 #include "core/scene/medium.h"
-#include "core/scene/properties.h"
-#include "core/scene/registry.h"
 #include "lights/register_lights.h"
 #include "tests/lights/emitter_examples.h"
 #include "tests/lights/emitter_statistics.h"

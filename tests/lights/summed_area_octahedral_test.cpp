@@ -1,12 +1,12 @@
 // Means over boxes of an octahedral map: against sums over the texels, and over the cuts of the map.
 
-#include "lights/summed_area_octahedral.h"
+#include "lights/directional_maps/summed_area_octahedral.h"
 
 #include <array>
 
 #include "core/math/random.h"
 #include "core/math/warp.h"
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 #include "tests/support/catch.h"
 
 using namespace mote::core;

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "lights/particle_tracer.h"
-#include "lights/vpl_gather.h"
+#include "lights/virtual_lights/particle_tracer.h"
+#include "lights/virtual_lights/vpl_gather.h"
 #include "tests/support/catch.h"
 #include "tests/support/render_statistics.h"
 

@@ -1,12 +1,12 @@
 // Volumetric shadow maps against closed forms and quadrature: every view, both storages, surfaces, limits.
-#include "lights/volumetric_shadow_map.h"
+#include "lights/shadow_maps/volumetric_shadow_map.h"
 
 #include <cmath>
 
 #include "core/math/random.h"
 #include "core/math/warp.h"
-#include "core/scene/error.h"
-#include "lights/shadow_map_cells.h"
+#include "core/objects/error.h"
+#include "lights/shadow_maps/shadow_map_cells.h"
 #include "media/heterogeneous_medium.h"
 #include "tests/integrators/test_scenes.h"
 #include "tests/support/catch.h"

@@ -1,5 +1,5 @@
 // Tracking through dense grids: against closed forms, quadrature, and with planted errors.
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 #include "media/blackbody.h"
 #include "media/homogeneous_medium.h"
 #include "tests/media/test_media.h"

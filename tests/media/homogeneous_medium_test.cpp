@@ -1,6 +1,6 @@
 // Homogeneous media: closed forms over twelve decades, distances, spectral weights, emission.
 #include "media/homogeneous_medium.h"
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 #include "media/phase_functions.h"
 #include "tests/media/spectral_estimates.h"
 #include "tests/support/catch.h"

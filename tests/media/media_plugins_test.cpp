@@ -1,6 +1,6 @@
 // The factories of media/: what a scene file can say, and how it is refused.
-#include "core/scene/properties.h"
-#include "core/scene/registry.h"
+#include "core/objects/properties.h"
+#include "core/objects/registry.h"
 #include "media/heterogeneous_medium.h"
 #include "media/register_media.h"
 #include "media/vdb_volume.h"

@@ -4,7 +4,7 @@
 #include "core/math/frame.h"
 #include "core/math/random.h"
 #include "core/math/warp.h"
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 #include "media/henyey_greenstein.h"
 #include "media/phase_functions.h"
 #include "tests/media/statistics.h"

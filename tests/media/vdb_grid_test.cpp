@@ -2,7 +2,7 @@
 #include "media/vdb_grid.h"
 
 #include "core/math/random.h"
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 #include "tests/media/statistics.h"
 #include "tests/media/tools/test_density.h"
 #include "tests/media/vdb_test_files.h"

@@ -1,7 +1,7 @@
 // Tracking through VDB grids: against closed forms and quadrature, under any linear transform.
 #include <array>
 
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 #include "media/nano_grid.h"
 #include "media/vdb_volume.h"
 #include "tests/media/test_media.h"

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "core/math/transform.h"
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 #include "media/vdb_grid.h"
 
 namespace mote::tests {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 #include "tests/media/test_media.h"
 #include "tests/support/catch.h"
 #include "tests/support/test_data.h"

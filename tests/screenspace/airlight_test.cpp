@@ -1,6 +1,6 @@
 // The air-light integral against adaptive quadrature in another variable, and for isotropic scattering
 // against its closed form, at the extremes.
-#include "screenspace/airlight.h"
+#include "screenspace/in_scattering/airlight.h"
 
 #include <complex>
 #include <numbers>

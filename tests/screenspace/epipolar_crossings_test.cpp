@@ -1,11 +1,11 @@
 // Samples where epipolar lines of two lights cross: where they are, what they are worth, and that lines stay
 // covered.
-#include "screenspace/epipolar_crossings.h"
+#include "screenspace/epipolar/epipolar_crossings.h"
 
 #include <set>
 
 #include "core/math/random.h"
-#include "screenspace/eye_media.h"
+#include "screenspace/in_scattering/eye_media.h"
 #include "tests/screenspace/epipolar_scenes.h"
 #include "tests/support/temporary_folder.h"
 

@@ -1,5 +1,5 @@
 // Epipolar lines for lights everywhere, and pictures from one pixel to a row of 8192.
-#include "screenspace/epipolar_lines.h"
+#include "screenspace/epipolar/epipolar_lines.h"
 
 #include <algorithm>
 

@@ -1,8 +1,8 @@
 // Sampling and interpolation along epipolar lines, of light that is a function of the film.
-#include "screenspace/epipolar_picture.h"
+#include "screenspace/epipolar/epipolar_picture.h"
 
 #include "core/math/random.h"
-#include "screenspace/in_scattering_grid.h"
+#include "screenspace/in_scattering/in_scattering_grid.h"
 #include "tests/support/catch.h"
 
 using namespace mote;

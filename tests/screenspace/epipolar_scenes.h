@@ -5,8 +5,8 @@
 
 #include <filesystem>
 
+#include "core/loading/scene_loader.h"
 #include "core/render/render_driver.h"
-#include "core/scene/scene_loader.h"
 #include "tests/integrators/test_scenes.h"
 #include "tests/support/catch.h"
 #include "tests/support/render_statistics.h"

@@ -1,5 +1,5 @@
 // The G-buffer against geometry that is known.
-#include "screenspace/g_buffer.h"
+#include "screenspace/g_buffer/g_buffer.h"
 
 #include "core/scene/scene.h"
 #include "tests/support/catch.h"

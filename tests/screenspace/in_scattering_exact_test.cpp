@@ -2,7 +2,7 @@
 // rays.
 #include <fmt/format.h>
 
-#include "screenspace/in_scattering.h"
+#include "screenspace/in_scattering/in_scattering.h"
 #include "tests/screenspace/epipolar_scenes.h"
 #include "tests/support/catch.h"
 #include "tests/support/render_statistics.h"
@@ -44,7 +44,7 @@ struct March {
     Vec3d transmittance{0.0};
     std::uint64_t steps, clear;
 };
-March march(const Scene& scene, const Ray& ray, int steps, float offset, const ClearSpace* clear,
+March march(const Scene& scene, const Ray& ray, int steps, float offset, const UnoccludedSpace* clear,
             MarchRule rule = MarchRule::equiangular) {
     const InScattering in(scene, *scene.emitters()[0], {steps, rule, offset, 1.0f}, {clear, nullptr});
     MarchScratch scratch;
@@ -61,12 +61,12 @@ double difference(const Vec3d& a, const Vec3d& b) {
 /// Largest relative difference from many steps over random rays, of those nothing shadows and of the others.
 struct Worst {
     double clear = 0.0, shadowed = 0.0;
-    int clear_rays = 0, shadowed_rays = 0;
+    int unoccluded_rays = 0, shadowed_rays = 0;
 };
 Worst compare(const Scene& scene, const Scene& exact_in) {
     Rng rng(4);
     const auto in = [&](float a, float b) { return a + (b - a) * rng.next_float(); };
-    const ClearSpace clear(exact_in);
+    const UnoccludedSpace clear(exact_in);
     Worst worst;
     for (int i = 0; i < 80; ++i) {
         const Vec3 target(in(-1.5f, 1.5f), in(-1.5f, 1.5f), in(-1.0f, 1.0f));
@@ -82,7 +82,7 @@ Worst compare(const Scene& scene, const Scene& exact_in) {
         const bool is_clear = exact.clear > 0;
         (is_clear ? worst.clear : worst.shadowed) =
             std::max(is_clear ? worst.clear : worst.shadowed, difference(exact.light, many.light));
-        ++(is_clear ? worst.clear_rays : worst.shadowed_rays);
+        ++(is_clear ? worst.unoccluded_rays : worst.shadowed_rays);
         if (is_clear) CHECK(exact.steps == 0);
     }
     return worst;
@@ -99,7 +99,7 @@ TEST_CASE("Integrals are many steps", "[in_scattering_exact]") {
         const auto scene = pillars(light);
         const Worst worst = compare(*scene, *scene);
         INFO(light);
-        CHECK(worst.clear_rays > 5);
+        CHECK(worst.unoccluded_rays > 5);
         CHECK(worst.shadowed_rays > 5);
         CHECK(worst.clear < 2e-5);
         CHECK(worst.shadowed < 8.0 * 0.5 / 512.0);
@@ -114,7 +114,7 @@ TEST_CASE("A light that is a hundredth too bright is found out", "[in_scattering
 
 TEST_CASE("Integrals over all offsets of few steps are those of many", "[in_scattering_exact]") {
     const auto scene = pillars(point);
-    const ClearSpace clear(*scene);
+    const UnoccludedSpace clear(*scene);
     int shadowed = 0;
     for (int k = 0; k < 40; ++k) {
         const Vec3 origin(0.3f, 0.2f, 5.0f), target(-1.2f + 0.06f * float(k), -0.2f, 0.3f);
@@ -140,12 +140,12 @@ TEST_CASE("What has no closed form is marched", "[in_scattering_exact]") {
         R"(<emitter type="spot"><texture type="checkerboard" name="texture"/></emitter>)";
     const std::string wide = R"(<emitter type="spot"><float name="cutoff_angle" value="100"/></emitter>)";
     for (const std::string& light : {rim, textured, wide})
-        CHECK_FALSE(SteadyLight::of(*pillars(light)->emitters()[0]));
+        CHECK_FALSE(AnalyticLight::of(*pillars(light)->emitters()[0]));
     // A light outside of the fog: its boundary is in the triangle.
     std::string outside = point;
     outside.replace(outside.find("x=\"0.5\""), 7, "x=\"2.5\"");
     const auto scene = pillars(outside);
-    const ClearSpace clear(*scene);
+    const UnoccludedSpace clear(*scene);
     const Ray ray{Vec3(0.3f, 1.4f, 5.0f), glm::normalize(Vec3(0.1f, 0.0f, -1.0f)), 0.0f, 20.0f};
     const March exact = march(*scene, ray, 64, 0.5f, &clear), steps = march(*scene, ray, 64, 0.5f, nullptr);
     CHECK(exact.steps == 64);
@@ -159,7 +159,7 @@ TEST_CASE("Rays without end are integrated", "[in_scattering_exact]") {
         <emitter type="point"><point name="position" x="1" y="0" z="0"/><rgb name="intensity" value="1"/></emitter>
         <sensor type="perspective"><medium type="homogeneous"><float name="sigma_t" value="0.05"/><float name="albedo" value="1"/>
         </medium></sensor></scene>)");
-    const ClearSpace clear(*scene);
+    const UnoccludedSpace clear(*scene);
     const InScattering in(*scene, *scene->emitters()[0], {64, MarchRule::equiangular, 0.5f, 1.0f},
                           {&clear, nullptr});
     MarchScratch scratch;
@@ -209,9 +209,10 @@ TEST_CASE("Pictures by integrals are pictures by many steps", "[in_scattering_ex
         CHECK(tests::relative_error(exact, expected) < tests::relative_error(steps, expected));
         CHECK(tests::relative_error(lines, expected) < 0.02);
         CHECK(std::abs(exact.mean() / expected.mean() - 1.0) < 0.003);
-        CHECK(exact.statistics.values.at("clear_rays") > 0.3 * exact.statistics.values.at("marched_rays"));
-        CHECK(steps.statistics.values.at("clear_rays") == 0.0);
-        CHECK(lines.statistics.values.at("clear_rays") > 0.0);
+        CHECK(exact.statistics.values.at("unoccluded_rays") >
+              0.3 * exact.statistics.values.at("marched_rays"));
+        CHECK(steps.statistics.values.at("unoccluded_rays") == 0.0);
+        CHECK(lines.statistics.values.at("unoccluded_rays") > 0.0);
     }
 }
 

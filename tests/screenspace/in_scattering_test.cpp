@@ -1,5 +1,5 @@
 // Ray marching of one light against integrals by another method, and the cone of a spot light.
-#include "screenspace/in_scattering.h"
+#include "screenspace/in_scattering/in_scattering.h"
 
 #include <fmt/format.h>
 

@@ -6,7 +6,7 @@
 // differences say how far the finest may be from the limit (grid_convergence.h), and it has to be that near.
 // The error of a node is of first order in its projected solid angle, so the thresholds shrink with the
 // pixels.
-#include "screenspace/ssbc.h"
+#include "screenspace/ssbc/ssbc.h"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
 // What goes through, what is left out, what is refused: borders, sky, lamps, mirrors and glass, tiny and
 // black pictures, light that is not finite, scales, and energy.
 #include "core/scene/scene.h"
-#include "screenspace/g_buffer.h"
-#include "screenspace/ssbc.h"
+#include "screenspace/g_buffer/g_buffer.h"
+#include "screenspace/ssbc/ssbc.h"
 #include "tests/screenspace/ssbc_room.h"
 #include "tests/support/catch.h"
 #include "tests/support/render_statistics.h"

@@ -4,8 +4,8 @@
 // a pixel, told by a picture of half the size (grid_convergence.h).
 #include <tbb/global_control.h>
 
-#include "screenspace/ssbc.h"
-#include "screenspace/ssbc_blur.h"
+#include "screenspace/ssbc/ssbc.h"
+#include "screenspace/ssbc/ssbc_blur.h"
 #include "tests/screenspace/ssbc_room.h"
 #include "tests/support/catch.h"
 

@@ -1,6 +1,6 @@
 // Several layers of surfaces: that each holds the surface it says, and that compensation with them is the one
 // of a picture in which nothing is hidden.
-#include "screenspace/ssbc_layers.h"
+#include "screenspace/ssbc/ssbc_layers.h"
 
 #include <fmt/format.h>
 
@@ -8,9 +8,9 @@
 #include <random>
 
 #include "core/scene/scene.h"
-#include "screenspace/g_buffer.h"
-#include "screenspace/ssbc.h"
-#include "screenspace/ssbc_visibility.h"
+#include "screenspace/g_buffer/g_buffer.h"
+#include "screenspace/ssbc/ssbc.h"
+#include "screenspace/ssbc/ssbc_visibility.h"
 #include "tests/screenspace/ssbc_pictures.h"
 #include "tests/screenspace/ssbc_wedge.h"
 #include "tests/support/catch.h"

@@ -1,9 +1,9 @@
 // Pictures of other renderers: surfaces and camera from channels, and what is said of those that lack some.
-#include "screenspace/ssbc_picture.h"
+#include "screenspace/ssbc/ssbc_picture.h"
 
 #include <algorithm>
 
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 #include "tests/screenspace/ssbc_exr.h"
 #include "tests/support/catch.h"
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "screenspace/ssbc_surfaces.h"
+#include "screenspace/ssbc/ssbc_surfaces.h"
 
 namespace mote::tests {
 

@@ -8,8 +8,8 @@
 #include <typeinfo>
 #include <vector>
 
-#include "core/scene/properties.h"
-#include "core/scene/registry.h"
+#include "core/objects/properties.h"
+#include "core/objects/registry.h"
 
 namespace mote::tests {
 

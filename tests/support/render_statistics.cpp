@@ -8,8 +8,8 @@
 #include <stdexcept>
 
 #include "core/image/film.h"
+#include "core/loading/scene_loader.h"
 #include "core/render/render_driver.h"
-#include "core/scene/scene_loader.h"
 #include "integrators/register_integrators.h"
 #include "lights/register_lights.h"
 #include "media/register_media.h"

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "core/objects/registry.h"
 #include "core/render/integrator.h"
-#include "core/scene/registry.h"
 #include "core/scene/scene.h"
 
 namespace mote::tests {

@@ -11,8 +11,8 @@
 #include <cstdio>
 #include <iostream>
 
-#include "core/scene/error.h"
-#include "lights/directional_map.h"
+#include "core/objects/error.h"
+#include "lights/directional_maps/directional_map.h"
 
 namespace {
 

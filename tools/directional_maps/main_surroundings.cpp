@@ -13,11 +13,11 @@
 #include <functional>
 #include <iostream>
 
-#include "core/scene/error.h"
-#include "core/scene/scene_loader.h"
-#include "lights/directional_map.h"
+#include "core/loading/scene_loader.h"
+#include "core/objects/error.h"
+#include "lights/directional_maps/directional_map.h"
+#include "lights/directional_maps/summed_area_octahedral.h"
 #include "lights/register_lights.h"
-#include "lights/summed_area_octahedral.h"
 #include "media/register_media.h"
 
 namespace {

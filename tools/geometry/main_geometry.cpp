@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <iostream>
 
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 #include "tools/geometry/atrium.h"
 #include "tools/geometry/city.h"
 #include "tools/geometry/mesh.h"

@@ -13,7 +13,7 @@
 #include <iostream>
 #include <optional>
 
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 #include "tools/smoke/cloud.h"
 #include "tools/smoke/preview.h"
 #include "tools/smoke/smoke_simulation.h"

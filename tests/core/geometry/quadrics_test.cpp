@@ -1,5 +1,5 @@
 // Sphere, disk and cylinder against their formulas, far away, mirrored, and as lights.
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 #include "tests/core/geometry/meshes.h"
 #include "tests/support/catch.h"
 #include "tests/support/chi2.h"

@@ -1,7 +1,7 @@
 // Shapes as the scene language makes them: parameters, defaults, errors with a place.
 #include "core/geometry/triangle_mesh.h"
-#include "core/scene/properties.h"
-#include "core/scene/registry.h"
+#include "core/objects/properties.h"
+#include "core/objects/registry.h"
 #include "tests/core/geometry/meshes.h"
 #include "tests/support/catch.h"
 

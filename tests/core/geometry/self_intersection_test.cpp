@@ -1,6 +1,6 @@
 // Rays that leave a surface must not meet it again, and must still meet what lies just behind them.
 #include "core/geometry/rounding.h"
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 #include "tests/core/geometry/meshes.h"
 #include "tests/support/catch.h"
 

@@ -2,7 +2,7 @@
 #include "core/geometry/triangle_mesh.h"
 
 #include "core/geometry/mesh_edits.h"
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 #include "tests/core/geometry/meshes.h"
 #include "tests/support/catch.h"
 #include "tests/support/chi2.h"

@@ -4,7 +4,7 @@
 #include <iostream>
 
 #include "core/image/image_file.h"
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 #include "tests/support/catch.h"
 #include "tests/support/test_data.h"
 

@@ -5,7 +5,7 @@
 #include "core/image/film.h"
 #include "core/image/film_image.h"
 #include "core/math/random.h"
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 #include "tests/support/catch.h"
 
 using namespace mote::core;

@@ -12,7 +12,7 @@
 
 #include "core/image/image_file.h"
 #include "core/math/random.h"
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 

@@ -7,7 +7,7 @@
 #include "core/materials/bsdfs.h"
 #include "core/materials/textures.h"
 #include "core/math/random.h"
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 
 namespace mote::tests {
 

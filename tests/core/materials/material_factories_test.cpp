@@ -1,6 +1,6 @@
 // The factories behind the scene language: names, defaults, and what they refuse, with file and line.
 #include "core/materials/register_materials.h"
-#include "core/scene/properties.h"
+#include "core/objects/properties.h"
 #include "tests/core/materials/bsdf_cases.h"
 #include "tests/support/catch.h"
 

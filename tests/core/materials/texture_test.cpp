@@ -5,7 +5,7 @@
 
 #include "core/materials/register_materials.h"
 #include "core/materials/texture_slot.h"
-#include "core/scene/properties.h"
+#include "core/objects/properties.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 

@@ -3,8 +3,8 @@
 #include <functional>
 
 #include "core/math/random.h"
+#include "core/objects/error.h"
 #include "core/render/render_driver.h"
-#include "core/scene/error.h"
 #include "tests/support/catch.h"
 
 using namespace mote::core;

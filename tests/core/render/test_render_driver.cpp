@@ -5,8 +5,8 @@
 #include <fstream>
 #include <thread>
 
+#include "core/objects/error.h"
 #include "core/render/stop_clock.h"
-#include "core/scene/error.h"
 #include "tests/core/render/fake_render.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"

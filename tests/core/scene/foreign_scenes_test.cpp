@@ -5,7 +5,7 @@
 #include <iostream>
 #include <map>
 
-#include "core/scene/scene_loader.h"
+#include "core/loading/scene_loader.h"
 #include "integrators/register_integrators.h"
 #include "lights/register_lights.h"
 #include "media/register_media.h"

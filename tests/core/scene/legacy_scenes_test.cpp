@@ -1,7 +1,7 @@
 // Files of version 0.x, parameters without effect, and spectra.
 #include "core/geometry/shape.h"
+#include "core/loading/spectrum.h"
 #include "core/materials/bsdf.h"
-#include "core/scene/spectrum.h"
 #include "tests/core/scene/scene_fixture.h"
 
 using namespace mote::core;

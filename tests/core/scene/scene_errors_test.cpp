@@ -1,5 +1,5 @@
 // Every kind of mistake in a file: the message names file, line and the nearest known name.
-#include "core/scene/error.h"
+#include "core/objects/error.h"
 #include "tests/core/scene/scene_fixture.h"
 
 using namespace mote::core;

@@ -4,12 +4,12 @@
 
 #include <string>
 
+#include "core/loading/scene_loader.h"
+#include "core/objects/properties.h"
+#include "core/objects/registry.h"
 #include "core/render/integrator.h"
 #include "core/scene/emitter.h"
 #include "core/scene/medium.h"
-#include "core/scene/properties.h"
-#include "core/scene/registry.h"
-#include "core/scene/scene_loader.h"
 #include "tests/support/catch.h"
 
 namespace mote::tests {

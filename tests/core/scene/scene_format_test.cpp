@@ -1,5 +1,5 @@
 // The registry's manual pages: complete, true, and written out.
-#include "core/scene/scene_format.h"
+#include "core/loading/scene_format.h"
 
 #include <fstream>
 #include <set>
@@ -140,8 +140,7 @@ TEST_CASE("The scene of the format page loads", "[scene][registry]") {
 }
 
 TEST_CASE("Categories have names", "[scene][registry]") {
-    for (int c = 0; c < category_count; ++c)
-        CHECK(find_category(category_name(Category(c))) == Category(c));
+    for (int c = 0; c < category_count; ++c) CHECK(find_category(category_name(Category(c))) == Category(c));
     CHECK_FALSE(find_category("scene").has_value());
     Registry r;
     register_core(r);

@@ -1,0 +1,14 @@
+// How many rays of each kind were cast.
+#pragma once
+
+#include <cstdint>
+
+namespace mote::core {
+
+/// Counters that one task fills without synchronisation; merged at the end of the task.
+struct RayCounters {
+    std::uint64_t closest = 0, occlusion = 0, boundary = 0;
+    void add(const RayCounters& o) { closest += o.closest, occlusion += o.occlusion, boundary += o.boundary; }
+};
+
+}  // namespace mote::core

@@ -1,0 +1,38 @@
+// A picture is the sum of named layers; a pass fills one value per pixel and layer.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/math/vec.h"
+
+namespace mote::core {
+
+struct Layer {
+    std::string name;         ///< "direct", "indirect_bounded"
+    std::string description;  ///< one line for docs and metadata
+    bool auxiliary = false;   ///< not part of the beauty (Albedo, N, P, Depth)
+};
+
+/// The picture of one pass: one value per pixel and layer, row by row from the top. Zero at the start.
+class PassImage {
+  public:
+    PassImage(int width, int height, std::size_t layers);
+    int width() const { return width_; }
+    int height() const { return height_; }
+    std::size_t layers() const { return planes_.size(); }
+    std::span<Rgb> layer(std::size_t i) { return planes_[i]; }
+    std::span<const Rgb> layer(std::size_t i) const { return planes_[i]; }
+    Rgb& at(std::size_t layer, int x, int y) {
+        return planes_[layer][std::size_t(y) * std::size_t(width_) + std::size_t(x)];
+    }
+    void clear();
+
+  private:
+    int width_, height_;
+    std::vector<std::vector<Rgb>> planes_;
+};
+
+}  // namespace mote::core

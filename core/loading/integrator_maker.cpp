@@ -1,0 +1,64 @@
+// The integrator becomes an element of a scene of its own, which is checked and made like any other.
+#include "core/loading/integrator_maker.h"
+
+#include <algorithm>
+
+#include "core/loading/object_maker.h"
+#include "core/loading/scene_defines.h"
+#include "core/render/integrator.h"
+#include "core/scene/scene.h"
+
+namespace mote::core {
+
+namespace {
+
+/// What the scene file sets for its own integrator, as far as this type knows it.
+std::vector<Element> inherited_values(const Scene& scene, const Manual& manual) {
+    std::vector<Element> values;
+    if (!scene.parts().integrator_element) return values;
+    for (const Element& child : scene.parts().integrator_element->children)
+        if (has_place_for(manual, child)) values.push_back(child);
+    return values;
+}
+
+/// "compensation" or "compensation.depth": a nested object, or a value of one.
+bool is_path_of_object(const std::string& name, const Manual& manual) {
+    if (name.find('.') != std::string::npos) return true;
+    return std::any_of(manual.parameters.begin(), manual.parameters.end(), [&](const Parameter& p) {
+        return p.name == name && (p.type == "compensation" || p.type == "visibility");
+    });
+}
+
+}  // namespace
+
+std::shared_ptr<Integrator> make_integrator(const Registry& registry, const Scene& scene,
+                                            const std::string& type,
+                                            const std::vector<IntegratorSetting>& settings,
+                                            const SourceLocation& where, std::vector<std::string>& warnings) {
+    Element element;
+    element.tag = "integrator", element.where = where;
+    element.set("type", type);
+    const Manual& manual = require_manual(element, registry);
+    element.children = inherited_values(scene, manual);
+    for (const IntegratorSetting& setting : settings) {
+        if (is_path_of_object(setting.name, manual)) {
+            set_by_path(element, setting.name, setting.text, registry, setting.where);
+            continue;
+        }
+        std::erase_if(element.children, [&](const Element& c) { return c.get("name") == setting.name; });
+        element.children.push_back(element.make_value(setting.tag, setting.name, setting.text));
+        element.children.back().where = setting.where;
+    }
+    Element root;
+    root.tag = "scene", root.where = where;
+    root.children.push_back(element);
+    check_elements(root, registry, warnings);
+    const IdTable ids = collect_ids(root);
+    check_references(root, ids, registry);
+    ObjectMaker maker(registry, ids, {});
+    auto integrator = maker.make_as<Integrator>(root.children.front());
+    warnings.insert(warnings.end(), maker.warnings.begin(), maker.warnings.end());
+    return integrator;
+}
+
+}  // namespace mote::core

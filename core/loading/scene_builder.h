@@ -1,0 +1,13 @@
+// From checked elements to objects: references, defaults, and the parts of a scene.
+#pragma once
+
+#include "core/loading/element_checks.h"
+#include "core/loading/xml_reader.h"
+#include "core/scene/scene.h"
+
+namespace mote::core {
+
+/// `file` stands in messages and in Parts::file. Throws InputError for everything that is wrong with a file.
+Scene::Parts build_scene(const SceneDocument& document, const Registry& registry, const std::string& file);
+
+}  // namespace mote::core

@@ -1,0 +1,68 @@
+// The registry: which types exist in each category, how each is made, and its manual page.
+//
+// Built once at start by calling register_core(), register_media(), ... (static registration gets lost in
+// static libraries). The scene loader knows the registry alone; docs/scene-format.md is generated from it.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/objects/object.h"
+
+namespace mote::core {
+
+class Properties;
+
+/// One row of a manual page. `type` is one of: boolean, integer, float, string, rgb, point, vector,
+/// transform, texture (an rgb, a float or a nested texture), volume, or the name of a category for a nested
+/// object.
+struct Parameter {
+    std::string name, type, default_value, description;
+};
+
+/// The manual page and the factory of one type.
+struct Manual {
+    Category category;
+    std::string type, summary;
+    std::vector<Parameter> parameters;
+    std::string example;  ///< one XML element, parsed by a test
+};
+
+using Factory = std::function<std::shared_ptr<Object>(const Properties&)>;
+
+class Registry {
+  public:
+    /// Throws std::logic_error when (category, type) is there already.
+    void add(Manual manual, Factory factory);
+    /// Returns null when unknown.
+    const Manual* find(Category category, const std::string& type) const;
+    /// Throws std::out_of_range when unknown.
+    const Factory& factory(Category category, const std::string& type) const;
+    std::vector<std::string> types(Category category) const;
+    std::vector<const Manual*> manuals() const;
+
+  private:
+    struct Entry {
+        Manual manual;
+        Factory factory;
+    };
+    std::map<std::pair<Category, std::string>, Entry> entries_;
+};
+
+/// Registers everything in core/: calls the three below, and adds film, samplers and filters.
+void register_core(Registry& registry);
+void register_materials(Registry& registry);  // core/materials/register_materials.cpp
+void register_geometry(Registry& registry);   // core/geometry/register_geometry.cpp
+void register_sensors(Registry& registry);    // core/cameras/register_sensors.cpp
+
+/// "bsdf", "texture", ... and back; nothing for an unknown word.
+const std::string& category_name(Category category);
+std::optional<Category> find_category(std::string_view name);
+
+}  // namespace mote::core

@@ -1,0 +1,37 @@
+// The photons on surfaces, and the radiance estimate from the nearest of them (Jensen 2001, Ch. 7).
+#pragma once
+
+#include "core/math/kd_tree.h"
+#include "gathering/photon_maps/photon.h"
+
+namespace mote::gathering {
+
+/// How many photons an estimate looks for, and the share of their radius that it uses (progressive_radius.h).
+struct DensityEstimate {
+    std::size_t neighbours = 50;
+    float radius_share = 1.0f;
+};
+
+class SurfacePhotonMap {
+  public:
+    SurfacePhotonMap() = default;
+    explicit SurfacePhotonMap(std::vector<Photon> photons);
+
+    /// Reflected radiance at `receiver` towards its wo, from photons of depth up to `max_depth`:
+    ///   sum over p of f*(wo, w_p) Phi_p / (pi r^2)
+    /// r is `radius_share` times the distance of the k-th nearest photon, which itself is left out: with k -
+    /// 1 in the numerator the estimate of an even density is unbiased. Photons on the receiver's other side,
+    /// and those on surfaces turned more than 60 degrees away, do not count. Zero in a map of fewer than two
+    /// photons.
+    core::Rgb radiance(const core::ScatteringVertex& receiver, const DensityEstimate& estimate, int max_depth,
+                       std::vector<core::KdTree::Neighbour>& scratch) const;
+
+    std::size_t size() const { return photons_.size(); }
+    std::size_t memory_bytes() const { return photons_.capacity() * sizeof(Photon) + tree_.memory_bytes(); }
+
+  private:
+    core::KdTree tree_;
+    std::vector<Photon> photons_;  ///< in the tree's order
+};
+
+}  // namespace mote::gathering

@@ -1,0 +1,76 @@
+#include "gathering/photon_maps/volume_photon_map.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "core/scene/transmittance_along.h"
+
+namespace mote::gathering {
+
+using namespace core;
+
+namespace {
+
+/// A few neighbours tell the density well enough for a radius , and cost less than many (Jarosz et al. 2008).
+constexpr std::size_t pilot_neighbours = 8;
+
+/// Radius that would hold `wanted` photons at the density around photon `i`: volumes grow as numbers.
+float radius_of(const KdTree& tree, std::uint32_t i, std::size_t wanted, float largest,
+                std::vector<KdTree::Neighbour>& scratch) {
+    tree.nearest(tree.point(i), std::min(pilot_neighbours, wanted) + 1, infinity, scratch);  // itself is one
+    if (scratch.size() < 2) return largest;
+    const double ratio = double(wanted) / double(scratch.size() - 1);
+    const double distance = std::sqrt(double(scratch.front().distance_squared));
+    return float(std::min(double(largest), distance * std::cbrt(ratio)));
+}
+
+}  // namespace
+
+VolumePhotonMap::VolumePhotonMap(const Scene& scene, std::vector<Photon> photons,
+                                 const DensityEstimate& estimate, float largest_radius)
+    : scene_(&scene) {
+    std::vector<Vec3> positions(photons.size());
+    for (std::size_t i = 0; i < photons.size(); ++i) positions[i] = photons[i].position;
+    KdTree tree(positions);
+    const auto order = tree.order();
+    photons_.resize(photons.size());
+    std::vector<RayFacingDiscs::Disc> discs(photons.size());
+    const float smallest = 1e-6f * largest_radius;  // photons that coincide
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, photons.size(), 256), [&](const auto& range) {
+        std::vector<KdTree::Neighbour> scratch;
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+            photons_[i] = photons[order[i]];
+            const float r = radius_of(tree, std::uint32_t(i), estimate.neighbours, largest_radius, scratch);
+            discs[i] = {photons_[i].position, std::max(smallest, r * estimate.radius_share)};
+        }
+    });
+    discs_.build(std::move(discs));
+}
+
+BeamRadiance VolumePhotonMap::radiance(const Ray& ray, float t_max, const MediumState& state, int max_depth,
+                                       WalkContext& context,
+                                       std::vector<RayFacingDiscs::Hit>& scratch) const {
+    BeamRadiance sum;
+    if (photons_.empty()) return sum;
+    Ray beam = ray;
+    beam.t_max = t_max;
+    discs_.hits(beam, scratch);
+    TransmittanceAlong along(beam, state, context.boundary_hits, context.rng, context.tracking);
+    const Vec3 wo = -ray.direction;
+    for (const RayFacingDiscs::Hit& hit : scratch) {
+        const Photon& photon = photons_[hit.index];
+        if (int(photon.depth) > max_depth) continue;
+        const Rgb transmittance = along.advance_to(hit.t);
+        if (is_black(transmittance)) break;
+        const PhaseFunction& phase = scene_->media()[photon.normal_or_medium]->phase();
+        const float r2 = sqr(discs_.discs()[hit.index].radius);
+        const Rgb light = transmittance * photon.power *
+                          phase.eval(wo, decode_direction(photon.towards_light)) * (inv_pi / r2);
+        (photon.depth == 1 ? sum.single : sum.multiple) += light;
+    }
+    return sum;
+}
+
+}  // namespace mote::gathering

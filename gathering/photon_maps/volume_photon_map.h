@@ -1,0 +1,44 @@
+// The photons in media as discs that face the eye ray: the beam radiance estimate (Jarosz et al. 2008).
+//
+// Instead of looking for photons around many points of a ray, every photon has a radius of its own, from the
+// density of photons around it, and the ray meets all discs at once:
+//   L = sum over p of  K_p tau(0, t_p) f_p(wo, w_p) Phi_p,   K_p = 1 / (pi r_p^2) within r_p of the ray
+// with a constant kernel. Photons behind the first surface do not count.
+#pragma once
+
+#include "core/geometry/ray_facing_discs.h"
+#include "core/scene/ray_walk.h"
+#include "gathering/photon_maps/photon.h"
+#include "gathering/photon_maps/surface_photon_map.h"
+
+namespace mote::gathering {
+
+/// Light scattered towards the eye along a ray, by the number of its scatterings.
+struct BeamRadiance {
+    core::Rgb single{0.0f}, multiple{0.0f};
+};
+
+class VolumePhotonMap {
+  public:
+    VolumePhotonMap() = default;
+    /// Radii follow from the distances to the nearest few photons, scaled to hold `estimate.neighbours` of
+    /// them. `largest_radius` [m] bounds those of lonely photons.
+    VolumePhotonMap(const core::Scene& scene, std::vector<Photon> photons, const DensityEstimate& estimate,
+                    float largest_radius);
+
+    /// Radiance arriving at ray.t_min along the ray from before `t_max`, its first surface. `state` holds the
+    /// media at ray.t_min; context.boundary_hits the boundaries on the ray. From photons of depth up to
+    /// `max_depth`.
+    BeamRadiance radiance(const core::Ray& ray, float t_max, const core::MediumState& state, int max_depth,
+                          core::WalkContext& context, std::vector<core::RayFacingDiscs::Hit>& scratch) const;
+
+    std::size_t size() const { return photons_.size(); }
+    std::size_t memory_bytes() const { return photons_.capacity() * sizeof(Photon) + discs_.memory_bytes(); }
+
+  private:
+    const core::Scene* scene_ = nullptr;
+    core::RayFacingDiscs discs_;
+    std::vector<Photon> photons_;  ///< in the order of the discs
+};
+
+}  // namespace mote::gathering

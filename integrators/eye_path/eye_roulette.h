@@ -1,0 +1,22 @@
+// Russian roulette for eye paths: survival follows what is left of the throughput.
+#pragma once
+
+#include "core/scene/russian_roulette.h"
+#include "lights/emitters/direct_light.h"
+
+namespace mote::integrators {
+
+/// Decides by `u` whether the path goes on, and divides the throughput by the chance so that the mean is
+/// kept. `eta` is the product of relative indices of refraction, which cancels the radiance scaling inside
+/// glass.
+template <bool Media>
+bool survives(core::PathWeights& weights, float eta, int depth, float u) {
+    const float remaining = core::max_component(weights.throughput) * core::sqr(eta) /
+                            lights::channel_average<Media>(weights.unidirectional);
+    const float q = core::survival_chance(remaining, depth, core::long_eye_path);
+    if (!(u < q)) return false;
+    weights.throughput /= q;
+    return true;
+}
+
+}  // namespace mote::integrators

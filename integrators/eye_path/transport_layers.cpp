@@ -1,0 +1,26 @@
+#include "integrators/eye_path/transport_layers.h"
+
+namespace mote::integrators {
+
+std::vector<core::Layer> transport_layers(bool media, bool bounded) {
+    return suffixed_transport_layers(media, bounded ? "_bounded" : "");
+}
+
+std::vector<core::Layer> suffixed_transport_layers(bool media, const std::string& suffix) {
+    std::vector<core::Layer> layers = {
+        {"emission", "light sources seen directly or through mirrors and glass"},
+        {"direct", "light scattered once, on a surface"},
+        {"indirect" + suffix, "light scattered more than once, first on a surface as seen from the eye"}};
+    if (media) {
+        layers.push_back({"single_scattering", "light scattered once, in a medium"});
+        layers.push_back(
+            {"multiple_scattering" + suffix, "light scattered more than once, first in a medium"});
+    }
+    return layers;
+}
+
+void store(const TransportSum& sum, core::PassImage& image, int x, int y, bool media) {
+    for (std::size_t i = 0; i < transport_layer_count(media); ++i) image.at(i, x, y) = sum.light[i];
+}
+
+}  // namespace mote::integrators

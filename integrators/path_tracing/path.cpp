@@ -1,0 +1,50 @@
+// `path`: the unbiased path tracer for scenes without media.
+//
+// Surfaces only: media are not seen, as in Mitsuba 3. Next-event estimation and BSDF sampling are combined by
+// multiple importance sampling.
+#include "integrators/path_tracing/path_estimator.h"
+#include "integrators/register_parts.h"
+
+namespace mote::integrators {
+
+using namespace core;
+
+namespace {
+
+class Path final : public Integrator {
+  public:
+    explicit Path(const Properties& properties) : settings_(read_path_settings(properties)) {}
+
+    std::string type() const override { return "path"; }
+    std::vector<Layer> layers(const Scene&) const override { return transport_layers(false, false); }
+
+    Plan plan(const Scene& scene, const Requirements& requirements) const override {
+        Plan plan;
+        plan.integrator = type();
+        plan.run("paths", "one per pixel and pass", "light and BSDF sampling combined at every vertex");
+        if (requirements.any_media())
+            plan.miss("media", std::to_string(requirements.media) + " not rendered",
+                      "path traces surfaces only; volpath renders media");
+        else
+            plan.leave_out("media", "no code for media runs", "the scene has none");
+        plan_caustics(plan, scene, requirements);
+        return plan;
+    }
+    std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
+        return make_path_estimator<false>(scene, options, settings_);
+    }
+
+  private:
+    PathSettings settings_;
+};
+
+}  // namespace
+
+void register_path(Registry& registry) {
+    registry.add(
+        {Category::integrator, "path", "Unbiased path tracer for surfaces; media are not seen.",
+         path_parameters(), R"(<integrator type="path"><integer name="max_depth" value="8"/></integrator>)"},
+        [](const Properties& p) { return std::make_shared<Path>(p); });
+}
+
+}  // namespace mote::integrators

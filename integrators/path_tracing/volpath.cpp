@@ -1,0 +1,134 @@
+// `volpath`: the unbiased volumetric path tracer, the reference of everything in this project.
+//
+// Delta tracking for distances, ratio tracking for connections, spectral multiple importance sampling over
+// the channel that drives tracking, light and scattering directions combined at every vertex. On a scene
+// without media it is `path`, compiled from the same kernel.
+//
+// `vpl_bound` renders the transport that VPLs with a bounded geometry term estimate (see path_kernel.h).
+#include <fmt/format.h>
+
+#include "integrators/path_tracing/path_estimator.h"
+#include "integrators/register_parts.h"
+
+namespace mote::integrators {
+
+using namespace core;
+
+namespace {
+
+class Volpath final : public Integrator {
+  public:
+    explicit Volpath(const Properties& properties) : settings_(read_path_settings(properties)) {
+        const double bound = properties.get_float("vpl_bound", 0.0);
+        if (bound < 0.0) throw InputError("vpl_bound must not be negative", properties.where_of("vpl_bound"));
+        if (bound > 0.0) settings_.bound = float(bound);
+        equiangular_ = properties.get_bool("equiangular", false);
+        if (equiangular_ && bounded())
+            throw InputError(
+                "equiangular and vpl_bound do not go together: the bound weighs edges that end at "
+                "collisions",
+                properties.where_of("equiangular"));
+    }
+
+    std::string type() const override { return "volpath"; }
+    std::vector<Layer> layers(const Scene& scene) const override {
+        return transport_layers(scene.has_media(), bounded());
+    }
+    Plan plan(const Scene&, const Requirements& requirements) const override;
+    std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
+        if (!scene.has_media()) return make_path_estimator<false>(scene, options, settings_);
+        PathSettings settings = settings_;
+        if (equiangular_) settings.equiangular = std::make_shared<const EquiangularLights>(scene);
+        return make_path_estimator<true>(scene, options, settings);
+    }
+
+  private:
+    bool bounded() const { return std::isfinite(settings_.bound); }
+    void plan_equiangular(Plan& plan, const Requirements& requirements) const;
+    PathSettings settings_;
+    bool equiangular_ = false;
+};
+
+void Volpath::plan_equiangular(Plan& plan, const Requirements& r) const {
+    const bool useful = r.media_scattering && r.lights_point > 0;
+    if (equiangular_ && useful)
+        plan.run("equi-angular sampling", "one distance a ray, for point and spot lights", "asked for");
+    else if (equiangular_)
+        plan.leave_out("equi-angular sampling", "asked for, without effect",
+                       r.media_scattering ? "no light has a position" : "no medium scatters");
+    else if (useful)
+        plan.leave_out("equi-angular sampling", "point lights are connected to collisions",
+                       "equiangular is false; in thin media it would cost less for the same noise");
+}
+
+Plan Volpath::plan(const Scene& scene, const Requirements& requirements) const {
+    Plan plan;
+    plan.integrator = type();
+    plan.run("paths", "one per pixel and pass", "light and scattering directions combined at every vertex");
+    plan_media(plan, requirements);
+    plan_medium_lights(plan, requirements);
+    if (bounded())
+        plan.run("bound", std::to_string(settings_.bound) + " /m^2",
+                 "asked for: second edges are weighted by min(G*, b)/G*, the transport of bounded VPLs");
+    plan_equiangular(plan, requirements);
+    plan_caustics(plan, scene, requirements);
+    return plan;
+}
+
+}  // namespace
+
+void plan_caustics(Plan& plan, const Scene& scene, const Requirements& r) {
+    if (!r.any_delta()) return;
+    bool hidden = false;
+    for (const auto& emitter : scene.emitters()) hidden |= !emitter->traits().can_be_hit();
+    if (hidden)
+        plan.miss("caustics of point, spot and directional lights", "light that passes delta surfaces last",
+                  "no path can hit these lights; mote_photon_map renders them");
+    plan.run("caustics", "by chance only",
+             "paths that reach a light through delta surfaces count when they hit it: expect noise, and use "
+             "mote_photon_map or a bidirectional method where they matter");
+}
+
+void plan_medium_lights(Plan& plan, const Requirements& r) {
+    if (r.lights_media > 0)
+        plan.run(
+            "emission of media", fmt::format("{} as lights", r.lights_media),
+            "points of heterogeneous ones are drawn for receivers, weighed against walks that meet them; "
+            "particles start in all of them");
+}
+
+void plan_media(Plan& plan, const Requirements& r) {
+    if (!r.any_media()) {
+        plan.leave_out("media", "no code for media runs", "the scene has none");
+        return;
+    }
+    for (std::size_t i = 0; i < r.media_descriptions.size(); ++i) {
+        plan.run("medium", r.media_descriptions[i], "in the scene");
+        plan.run("transmittance", r.media_estimators[i], r.media_estimator_reasons[i]);
+    }
+    if (r.media_heterogeneous > 0)
+        plan.run("distances", "delta tracking against the grid's majorants",
+                 "unbiased in heterogeneous media");
+    if (r.media_heterogeneous == 0)
+        plan.leave_out("tracking", "no null collisions",
+                       "every medium is homogeneous: distances are analytic");
+    if (!r.media_emissive) plan.leave_out("volume emission", "not looked up", "no medium emits");
+    if (!r.media_chromatic)
+        plan.leave_out("spectral weights", "all channels alike", "extinction is grey in every medium");
+}
+
+void register_volpath(Registry& registry) {
+    auto parameters = path_parameters();
+    parameters.push_back({"vpl_bound", "float", "0",
+                          "bound b [1/m^2] on the geometry term of the edge where VPLs connect; 0: none"});
+    parameters.push_back({"equiangular", "boolean", "false",
+                          "light of point and spot lights in media by equi-angular sampling along every ray, "
+                          "instead of at collisions"});
+    registry.add(
+        {Category::integrator, "volpath",
+         "Unbiased volumetric path tracer: the reference that approximations are held against.", parameters,
+         R"(<integrator type="volpath"><integer name="max_depth" value="-1"/></integrator>)"},
+        [](const Properties& p) { return std::make_shared<Volpath>(p); });
+}
+
+}  // namespace mote::integrators

@@ -1,0 +1,129 @@
+#include "integrators/screen_space_compensation/hidden_light.h"
+
+#include <array>
+#include <limits>
+
+#include "core/render/cpu_clock.h"
+#include "integrators/screen_space_compensation/hidden_vertex.h"
+#include "lights/emitters/direct_light.h"
+#include "lights/virtual_lights/vpl_gather.h"
+#include "screenspace/g_buffer/g_buffer.h"
+#include "screenspace/ssbc/ssbc_receivers.h"
+
+namespace mote::integrators {
+
+using namespace core;
+
+namespace {
+
+constexpr int width = lights::ReceiverTile::width;
+constexpr std::uint32_t first_stream = 0x68696464;  ///< of samplers, one a side; eye paths have 0
+
+/// Direct light by both techniques.
+template <bool Media>
+Rgb direct_light(const Scene& scene, const HiddenVertex& at, Sampler& sampler, WalkContext& walk) {
+    PathWeights weights;
+    if constexpr (Media) weights.hero = std::min(int(walk.rng.next_float() * 3.0f), 2);
+    const Vec2 choices = sampler.next_2d();  // of the light, and of the lobe
+    Rgb light =
+        lights::sample_light<Media>(scene, at.vertex, weights, at.state, choices.x, sampler.next_2d(), walk);
+    const auto next = at.vertex.sample(choices.y, sampler.next_2d(), TransportMode::radiance);
+    if (!next || next->delta) return light;
+    lights::apply_scattering<Media>(weights, *next, at.vertex.position);
+    const Ray ray{at.vertex.ray_origin(next->wi), next->wi};
+    const MediumState state = Media ? at.vertex.state_towards(at.state, next->wi) : at.state;
+    return light + lights::light_along<Media>(scene, ray, state, weights, &at.vertex.position, walk);
+}
+
+}  // namespace
+
+HiddenLight::HiddenLight(const Scene& scene, const RenderOptions& options, const VplSettings& settings,
+                         float bound)
+    : scene_(scene),
+      options_(options),
+      layers_(settings.screen_space->layers),
+      max_depth_(settings.eye.max_depth),
+      share_(std::uint32_t(settings.screen_space->vpl_share)),
+      bound_(bound) {
+    screenspace::SsbcSettings ssbc = settings.screen_space->ssbc;
+    ssbc.bound = bound;
+    const auto buffers = screenspace::make_g_buffers(scene, options.width, options.height, layers_);
+    const auto sides = screenspace::hidden_sides(buffers);
+    const auto matter = screenspace::sides_that_matter(screenspace::ssbc_surfaces(buffers[0]), sides, ssbc);
+    for (const auto& side : sides)
+        for (const float area : side.area) candidates_ += area > 0.0f;
+    const auto pixels =
+        screenspace::cells_along_z_curve(options.width, options.height, [](int, int) { return true; });
+    for (const std::uint32_t pixel : pixels)
+        for (std::uint32_t side = 0; side < sides.size(); ++side)
+            if (matter[side][pixel]) points_.push_back({pixel, side});
+}
+
+template <bool Media>
+bool HiddenLight::pass(const PassContext& context, const lights::VplSet& vpls, std::size_t first_layer,
+                       PassImage& image) {
+    if (max_depth_ >= 0 && max_depth_ < 2) return !context.cancelled;
+    const auto some = [&](int begin, int, int end, int) {
+        gather<Media>(context, vpls, first_layer,
+                      std::span(points_).subspan(std::size_t(begin), std::size_t(end - begin)), image);
+    };
+    return for_each_tile(int(points_.size()), 1, 8 * width, context.cancelled, some);
+}
+
+template <bool Media>
+void HiddenLight::gather(const PassContext& context, const lights::VplSet& vpls, std::size_t first_layer,
+                         std::span<const Point> points, PassImage& image) {
+    const double begin = thread_cpu_seconds();
+    const std::int32_t vpl_depth = max_depth_ < 0 ? std::numeric_limits<std::int32_t>::max() : max_depth_ - 2;
+    WalkContext walk, boundaries;  // the latter keeps those of the pixel's ray
+    const auto scratch = std::make_unique<lights::GatherScratch>();
+    const auto tile = std::make_unique<lights::ReceiverTile>();
+    PixelRay along(scene_, layers_, boundaries);
+    std::array<HiddenVertex, width> vertices;
+    for (; !points.empty(); points = points.subspan(std::min(points.size(), std::size_t(width)))) {
+        if (context.cancelled) return;
+        const std::size_t count = std::min(points.size(), std::size_t(width));
+        std::array<Rgb, width> light{};
+        tile->clear();
+        // Neighbouring tiles begin with different VPLs, at random, since VPLs follow each other along paths.
+        const std::uint64_t key =
+            hash_keys(options_.seed, context.index, points[0].pixel, first_stream + points[0].side);
+        const lights::VplRange some{key % share_, share_};
+        for (std::size_t i = 0; i < count; ++i) {
+            const Point& p = points[i];
+            along.aim(p.pixel, options_.width);
+            const auto found = along.vertex(p.side);
+            if (!found || !found->vertex.connectable()) continue;
+            vertices[i] = *found;
+            Sampler sampler(options_.sampler, options_.seed, context.index, p.pixel, first_stream + p.side);
+            walk.rng = sampler.make_rng();
+            light[i] = direct_light<Media>(scene_, vertices[i], sampler, walk);
+            tile->set(int(i), vertices[i].vertex, Rgb(1.0f), vertices[i].state, Rng(walk.rng.next_u32()),
+                      vpl_depth);
+        }
+        const auto indirect =
+            lights::gather(scene_, vpls, some, bound_, *tile, *scratch, walk.rays, walk.tracking);
+        for (std::size_t i = 0; i < count; ++i)
+            image.layer(first_layer + points[i].side)[points[i].pixel] =
+                light[i] + float(share_) * indirect[i];
+    }
+    const std::lock_guard lock(mutex_);
+    rays_.add(walk.rays), rays_.add(boundaries.rays), tracking_.add(walk.tracking);
+    seconds_ += thread_cpu_seconds() - begin;
+}
+
+void HiddenLight::add_statistics(Statistics& statistics) const {
+    statistics.values["hidden_points"] = double(points_.size());
+    statistics.values["hidden_points_without_effect"] = double(candidates_ - points_.size());
+    statistics.values["hidden_thread_seconds"] += seconds_;
+    statistics.rays["closest"] += rays_.closest;
+    statistics.rays["occlusion"] += rays_.occlusion;
+    if (!scene_.has_media()) return;
+    statistics.rays["boundary"] += rays_.boundary;
+    statistics.lookups["density"] += tracking_.lookups;
+}
+
+template bool HiddenLight::pass<true>(const PassContext&, const lights::VplSet&, std::size_t, PassImage&);
+template bool HiddenLight::pass<false>(const PassContext&, const lights::VplSet&, std::size_t, PassImage&);
+
+}  // namespace mote::integrators

@@ -1,0 +1,109 @@
+#include "integrators/screen_space_compensation/screen_space_compensation.h"
+
+#include <chrono>
+
+#include "core/objects/properties.h"
+#include "core/objects/registry.h"
+#include "core/render/cpu_clock.h"
+#include "screenspace/g_buffer/g_buffer.h"
+#include "screenspace/ssbc/ssbc_visibility.h"
+
+namespace mote::integrators {
+
+using namespace core;
+
+namespace {
+
+std::shared_ptr<Object> make(const Properties& p) {
+    const std::string receivers = p.get_string("receivers", "surfaces");
+    if (receivers != "surfaces")
+        throw InputError("screen-space compensation knows surfaces alone, not '" + printable(receivers) +
+                             "'; for media nest <compensation name=\"media\" type=\"approximate\"/>",
+                         p.where_of("receivers"));
+    ScreenSpaceSettings settings;
+    settings.ssbc.steps = int(p.get_int_in("steps", 2, 1, 100));
+    settings.ssbc.hierarchical = p.get_bool("hierarchical", true);
+    settings.ssbc.half_resolution = p.get_bool("half_resolution", false);
+    settings.ssbc.blur = float(p.get_float_in("blur", 0.0, 0.0, 100.0));
+    settings.layers = int(p.get_int_in("layers", 1, 1, 16));
+    settings.vpl_share = int(p.get_int_in("hidden_share", settings.vpl_share, 1, 1 << 20));
+    settings.visibility = p.get_bool("visibility", false);
+    compensation::CompensationSettings media;
+    if (const auto nested = p.child<compensation::Compensation>("media")) media = nested->settings();
+    media.surfaces = false;
+    return std::make_shared<ScreenSpaceCompensation>(settings, media);
+}
+
+}  // namespace
+
+std::vector<Layer> ScreenSpaceSettings::film_layers() const {
+    std::vector<Layer> result;
+    for (std::size_t side = 0; side < screenspace::hidden_side_count(layers); ++side)
+        result.push_back({"hidden_light_" + screenspace::hidden_side_name(side),
+                          "light that hidden surfaces reflect: before the layer of this number, or behind it",
+                          true});
+    return result;
+}
+
+ScreenSpaceCost add_screen_space_compensation(const Scene& scene, const ScreenSpaceSettings& settings,
+                                              float bound, const ScreenSpaceLayers& layers, Film& film) {
+    const auto begin = std::chrono::steady_clock::now();
+    const double cpu_begin = process_cpu_seconds();
+    const auto buffers = screenspace::make_g_buffers(scene, film.width(), film.height(), settings.layers);
+    std::vector<Rgb> light(film.pixels(), Rgb(0.0f));
+    for (const std::size_t layer : layers.reflected) {
+        const std::vector<Rgb> part = film.mean(layer);
+        for (std::size_t i = 0; i < light.size(); ++i) light[i] += part[i];
+    }
+    std::vector<screenspace::HiddenSide> hidden;
+    for (auto& side : screenspace::hidden_sides(buffers))
+        hidden.push_back({std::move(side), film.mean(layers.hidden + hidden.size())});
+    screenspace::SsbcSettings ssbc = settings.ssbc;
+    const screenspace::TracedVisibility traced(scene);
+    ssbc.bound = bound, ssbc.visibility = settings.visibility ? &traced : nullptr;
+    const screenspace::SsbcResult result =
+        screenspace::compensate(screenspace::ssbc_surfaces(buffers[0]), light, hidden, ssbc);
+    film.set_mean(layers.target, result.compensation);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+    return {result.counts.samples, seconds.count(), process_cpu_seconds() - cpu_begin};
+}
+
+void plan_screen_space(Plan& plan, const Requirements& r, const ScreenSpaceSettings& settings) {
+    plan.run("compensation", "screen space, " + std::to_string(settings.ssbc.steps) + " step(s), on surfaces",
+             "after the last pass, from the picture itself");
+    if (settings.layers > 1)
+        plan.run("hidden surfaces", "the first " + std::to_string(settings.layers) + " along every ray",
+                 "both sides; every pass gathers their light as well");
+    plan.miss("compensation", "of surfaces by what the camera does not see",
+              settings.layers > 1 ? "surfaces outside of the picture, and behind those layers"
+                                  : "hidden surfaces and those outside of the picture are not in it");
+    if (r.any_glossy() || r.any_delta())
+        plan.miss("compensation", "of mirrors, glass and the glossy part of surfaces",
+                  "surfaces count with what they reflect evenly");
+    if (r.any_media())
+        plan.miss("compensation", "media between surfaces that light each other",
+                  "nothing is looked up there");
+}
+
+void register_screen_space_compensation(Registry& registry) {
+    registry.add(
+        {Category::compensation,
+         "screen_space",
+         "Screen-space bias compensation on surfaces, at the end of a render (Engelhardt 2013, Ch. 11).",
+         {{"steps", "integer", "2", "how often the residual operator is applied"},
+          {"hierarchical", "boolean", "true", "false: sum over all pixels, quadratic in their number"},
+          {"half_resolution", "boolean", "false", "gather at one pixel of four, then upsample"},
+          {"blur", "float", "0", "standard deviation of an edge-preserving blur of the result [pixels]"},
+          {"layers", "integer", "1",
+           "surfaces along every ray that send light; from 2 on also hidden ones, gathered in every pass"},
+          {"hidden_share", "integer", "4",
+           "hidden points share out the VPLs of a pass: each meets one of so many"},
+          {"visibility", "boolean", "false",
+           "shadow rays to what is summed, to measure what is lost without"},
+          {"receivers", "string", "surfaces", "nothing else: media are not in the picture's G-buffer"},
+          {"media", "compensation", "none", "compensation of light first scattered in media"}},
+         R"(<compensation type="screen_space"><integer name="steps" value="3"/></compensation>)"},
+        make);
+}
+
+}  // namespace mote::integrators

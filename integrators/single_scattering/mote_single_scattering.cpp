@@ -1,0 +1,65 @@
+// `mote_single_scattering`: light scattered at most once, by ray marching.
+//
+// At full rate it is the reference of `mote_epipolar`; sub-sampled, with bilateral upsampling, its rival.
+#include <fmt/format.h>
+
+#include "integrators/register_parts.h"
+#include "integrators/single_scattering/single_scattering_estimator.h"
+
+namespace mote::integrators {
+
+using namespace core;
+
+namespace {
+
+class MoteSingleScattering final : public Integrator {
+  public:
+    explicit MoteSingleScattering(const Properties& p) : settings_(read_scattering_settings(p)) {
+        const bool sub_sampled = p.get_choice("sampling", "full", {"full", "sub_sampled"}) == "sub_sampled";
+        settings_.sampling = sub_sampled ? ScatteringSampling::sub_sampled : ScatteringSampling::full;
+        settings_.spacing = p.get_float_in("spacing", 4.0, 0.25, 1e6);
+        if (p.has("spacing") && !sub_sampled) p.warn("spacing has no effect: sampling is full");
+    }
+
+    std::string type() const override { return "mote_single_scattering"; }
+    std::vector<Layer> layers(const Scene& scene) const override {
+        return single_scattering_layers(scene.has_media(), settings_);
+    }
+    Plan plan(const Scene& scene, const Requirements& r) const override {
+        Plan plan;
+        plan.integrator = type();
+        plan_single_scattering(plan, scene, r, settings_);
+        if (!r.media_scattering || positional_lights(scene).empty()) return plan;
+        if (settings_.sampling == ScatteringSampling::full)
+            plan.run("sampling", "every pixel's ray is marched", "full rate");
+        else
+            plan.run("sampling",
+                     fmt::format("a ray every {} pixels, bilateral upsampling", settings_.spacing),
+                     "sub-sampled; pixels that no ray around them continues are marched");
+        return plan;
+    }
+    std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
+        return make_single_scattering_estimator(scene, options, settings_);
+    }
+
+  private:
+    ScatteringSettings settings_;
+};
+
+}  // namespace
+
+void register_mote_single_scattering(Registry& registry) {
+    auto parameters = scattering_parameters();
+    parameters.push_back(
+        {"sampling", "string", "full",
+         "full: every pixel is marched; sub_sampled: rays on a grid, with bilateral upsampling"});
+    parameters.push_back({"spacing", "float", "4", "of the grid when sub-sampled [pixels]"});
+    registry.add(
+        {Category::integrator, "mote_single_scattering",
+         "Light scattered at most once, by ray marching: at full rate the reference of mote_epipolar.",
+         parameters,
+         R"(<integrator type="mote_single_scattering"><integer name="steps" value="128"/></integrator>)"},
+        [](const Properties& p) { return std::make_shared<MoteSingleScattering>(p); });
+}
+
+}  // namespace mote::integrators

@@ -1,0 +1,137 @@
+#include "integrators/single_scattering/single_scattering_estimator.h"
+
+#include "integrators/single_scattering/interpolated_scattering.h"
+
+namespace mote::integrators {
+
+using namespace core;
+using namespace screenspace;
+
+namespace {
+
+constexpr int tile_size = 16;
+
+template <bool Media>
+class SingleScatteringEstimator final : public Estimator {
+  public:
+    SingleScatteringEstimator(const Scene& scene, const RenderOptions& options,
+                              const ScatteringSettings& settings)
+        : scene_(scene), options_(options), settings_(settings) {
+        if (!Media) return;
+        accelerations_.emplace(scene, settings.accelerations);
+        settings_.eye.maps = accelerations_->maps();
+        settings_.eye.voxels = settings.march.voxels;
+        settings_.eye.other_lights = false;
+        for (const auto& light : scene.emitters())
+            settings_.eye.other_lights |= !light->traits().delta_position;
+        for (const auto& medium : scene.media()) settings_.eye.other_lights |= medium->traits().emissive;
+    }
+
+    bool pass(const PassContext& context, PassImage& image) override;
+    void add_statistics(Statistics& statistics) const override;
+
+  private:
+    Ray eye_ray(const Vec2& film, const PassNumbers& numbers) const {
+        return scene_.camera().sample_ray(film, numbers.lens);
+    }
+    void render_eye(const PassContext& context, const PassNumbers& numbers,
+                    std::span<const InScattering> lights, PassImage& image, int x, int y,
+                    MarchScratch& scratch);
+
+    const Scene& scene_;
+    RenderOptions options_;
+    ScatteringSettings settings_;
+    std::optional<ScatteringAccelerations> accelerations_;  ///< nothing without media
+    SharedCounters counters_;
+    InterpolatedScattering interpolated_{scene_, options_, settings_, counters_};
+    std::mutex mutex_;
+    ScatteringCounts counts_;  ///< of eye paths
+};
+
+template <bool Media>
+void SingleScatteringEstimator<Media>::render_eye(const PassContext& context, const PassNumbers& numbers,
+                                                  std::span<const InScattering> lights, PassImage& image,
+                                                  int x, int y, MarchScratch& scratch) {
+    const std::uint64_t pixel = std::uint64_t(y) * std::uint64_t(options_.width) + std::uint64_t(x);
+    Sampler sampler(options_.sampler, options_.seed, context.index, pixel);
+    scratch.walk.rng = sampler.make_rng();
+    const Vec2 film =
+        Vec2(float(x) + 0.5f, float(y) + 0.5f) + context.filter.sample_offset(sampler.next_2d());
+    const Ray ray = eye_ray(film, numbers);
+    const MediumState state = Media ? scene_.camera_medium_state() : MediumState();
+    EyePath path = trace_eye<Media>(scene_, settings_.eye, lights, ray, state, sampler, scratch);
+    if constexpr (Media) {
+        const FirstSurface first =
+            path.first ? FirstSurface{path.first->t, path.first->geometric_normal} : FirstSurface{};
+        if (settings_.sampling != ScatteringSampling::full && !lights.empty())
+            interpolated_.set_point(std::size_t(pixel), {film, first});
+        for (const InScattering& light : lights) {
+            if (settings_.sampling != ScatteringSampling::full) break;
+            Ray lit = ray;
+            const RayEnd end = lit_end(light, ray, first);
+            if (end.dark()) continue;
+            lit.t_max = end.distance;
+            path.sum[Transport::single_scattering] += light.march(lit, state, scratch).radiance;
+            if (settings_.show_samples) image.at(3, x, y) += Rgb(1.0f);
+        }
+        image.at(2, x, y) = path.sum[Transport::single_scattering];
+    }
+    image.at(0, x, y) = path.sum[Transport::emission], image.at(1, x, y) = path.sum[Transport::direct];
+}
+
+template <bool Media>
+bool SingleScatteringEstimator<Media>::pass(const PassContext& context, PassImage& image) {
+    const PassNumbers numbers(options_, context.index);
+    MarchSettings march = settings_.march;
+    march.offset = numbers.march.x;
+    std::vector<InScattering> lights;
+    if constexpr (Media)
+        for (const Emitter* light : positional_lights(scene_))
+            lights.emplace_back(scene_, *light, march, accelerations_->of(*light));
+    const bool full = settings_.sampling == ScatteringSampling::full;
+    if (!full && !lights.empty()) interpolated_.make_room();
+
+    const bool eyes = for_each_tile(options_.width, options_.height, tile_size, context.cancelled,
+                                    [&](int x0, int y0, int x1, int y1) {
+                                        MarchScratch scratch;
+                                        for (int y = y0; y < y1; ++y)
+                                            for (int x = x0; x < x1; ++x)
+                                                render_eye(context, numbers, lights, image, x, y, scratch);
+                                        counters_.add(scratch.walk.rays, scratch.walk.tracking);
+                                        const std::lock_guard lock(mutex_);
+                                        counts_.rays += scratch.rays, counts_.steps += scratch.steps;
+                                        counts_.clear += scratch.clear;
+                                        if (full) counts_.candidates += scratch.rays;
+                                    });
+    if (!eyes) return false;
+    return full || interpolated_.run(context, numbers, lights, image);
+}
+
+template <bool Media>
+void SingleScatteringEstimator<Media>::add_statistics(Statistics& statistics) const {
+    counters_.report(statistics, Media);
+    if (!Media) return;
+    const ScatteringCounts& more = interpolated_.counts();
+    statistics.values["marched_rays"] += double(counts_.rays + more.rays);
+    statistics.values["march_steps"] += double(counts_.steps + more.steps);
+    statistics.values["unoccluded_rays"] += double(counts_.clear + more.clear);
+    accelerations_->add_statistics(statistics);
+    statistics.values["lit_pixels"] += double(counts_.candidates + more.candidates);
+    if (settings_.sampling == ScatteringSampling::full) return;
+    statistics.values["filled_pixels"] += double(more.filled);
+    statistics.values["screen_space_bytes_peak"] = double(more.bytes);
+    if (settings_.sampling != ScatteringSampling::epipolar) return;
+    statistics.values["epipolar_lines"] += double(more.lines);
+    statistics.values["epipolar_texels"] += double(more.texels);
+    if (settings_.crossings) statistics.values["shared_rays"] += double(more.shared);
+}
+
+}  // namespace
+
+std::unique_ptr<Estimator> make_single_scattering_estimator(const Scene& scene, const RenderOptions& options,
+                                                            const ScatteringSettings& settings) {
+    if (scene.has_media()) return std::make_unique<SingleScatteringEstimator<true>>(scene, options, settings);
+    return std::make_unique<SingleScatteringEstimator<false>>(scene, options, settings);
+}
+
+}  // namespace mote::integrators

@@ -1,0 +1,50 @@
+// Passes of `mote_single_scattering` and `mote_epipolar`: light scattered at most once.
+//
+// Eye paths run at full rate (single_scattering_eye.h). Light of point-like lights scattered along the first
+// rays is marched for every pixel, on a regular grid, or on epipolar lines; the last two interpolate, and
+// march the pixels that nothing around them continues. Every pass moves lines, samples, grid, march steps,
+// and the point on the lens that its rays pass, all of them together, by numbers of its own.
+#pragma once
+
+#include "core/objects/properties.h"
+#include "core/objects/registry.h"
+#include "core/render/integrator.h"
+#include "integrators/single_scattering/scattering_accelerations.h"
+#include "integrators/single_scattering/single_scattering_eye.h"
+#include "screenspace/epipolar/epipolar_sampling.h"
+
+namespace mote::integrators {
+
+enum class ScatteringSampling : std::uint8_t { full, sub_sampled, epipolar };
+
+struct ScatteringSettings {
+    EyeSettings eye;
+    screenspace::MarchSettings march;
+    AccelerationSettings accelerations;
+    ScatteringSampling sampling = ScatteringSampling::full;
+    double spacing = 4.0;  ///< of sub-sampling [pixels]
+    int lines = 1024;      ///< epipolar lines of a light
+    screenspace::LineSampling line;
+    bool crossings = false;     ///< samples move to where lines of two lights cross
+    bool show_samples = false;  ///< a layer that counts the marched rays of every pixel
+};
+
+std::unique_ptr<core::Estimator> make_single_scattering_estimator(const core::Scene& scene,
+                                                                  const core::RenderOptions& options,
+                                                                  const ScatteringSettings& settings);
+
+/// The settings that both integrators share, checked. Throws InputError.
+ScatteringSettings read_scattering_settings(const core::Properties& properties);
+/// Their rows in a manual page.
+std::vector<core::Parameter> scattering_parameters();
+
+/// emission, direct, and where there are media single_scattering, and the marched rays when asked for.
+std::vector<core::Layer> single_scattering_layers(bool media, const ScatteringSettings& settings);
+
+/// What both integrators do alike, and what they leave to others.
+void plan_single_scattering(core::Plan& plan, const core::Scene& scene,
+                            const core::Requirements& requirements, const ScatteringSettings& settings);
+/// Lights that are marched: those with a position, not black.
+std::vector<const core::Emitter*> positional_lights(const core::Scene& scene);
+
+}  // namespace mote::integrators

@@ -1,0 +1,95 @@
+// Settings, layers and plan entries that `mote_single_scattering` and `mote_epipolar` share.
+#include <fmt/format.h>
+
+#include "integrators/register_parts.h"
+#include "integrators/single_scattering/single_scattering_estimator.h"
+
+namespace mote::integrators {
+
+using namespace core;
+
+ScatteringSettings read_scattering_settings(const Properties& p) {
+    ScatteringSettings s;
+    s.march.steps = int(p.get_int_in("steps", 64, 1, 1 << 20));
+    s.march.rule = p.get_choice("march", "equiangular", {"equiangular", "uniform"}) == "uniform"
+                       ? screenspace::MarchRule::uniform
+                       : screenspace::MarchRule::equiangular;
+    s.accelerations.exact = p.get_choice("in_scattering", "exact", {"exact", "steps"}) == "exact";
+    if (const auto visibility = p.child_of<Visibility>(Category::visibility))
+        s.accelerations.visibility = visibility->settings();
+    s.march.voxels = float(p.get_float_in("voxels", 1.0, 1e-3, 1e6));
+    s.line.depth_tolerance = float(p.get_float_in("depth_tolerance", 0.02, 0.0, 1e6));
+    s.eye.max_depth = int(p.get_int_in("max_depth", 32, 1, 1 << 20));
+    s.show_samples = p.get_bool("show_samples", false);
+    return s;
+}
+
+std::vector<Parameter> scattering_parameters() {
+    return {
+        {"steps", "integer", "64",
+         "steps of every marched ray, or places that exact integrals are traced from"},
+        {"in_scattering", "string", "exact",
+         "exact: integrals where one homogeneous medium lies between ray and light, without shadow rays "
+         "where "
+         "nothing else does; steps: all rays are marched"},
+        {"visibility", "visibility", "traced",
+         "what stands between light and march steps: traced, or shadow_map with its light_size"},
+        {"march", "string", "equiangular",
+         "equiangular: equal angles as seen from the light; uniform: equal lengths"},
+        {"voxels", "float", "1", "step of optical depths through grids, in voxels"},
+        {"depth_tolerance", "float", "0.02",
+         "share by which distances to one surface may differ between neighbouring rays"},
+        {"show_samples", "boolean", "false", "adds a layer MarchedRays: rays marched in every pixel, a pass"},
+        {"max_depth", "integer", "32", "longest eye path through mirrors and glass, in rays"}};
+}
+
+std::vector<Layer> single_scattering_layers(bool media, const ScatteringSettings& settings) {
+    std::vector<Layer> layers = {{"emission", "light sources seen directly or through mirrors and glass"},
+                                 {"direct", "light scattered once, on a surface"}};
+    if (media) layers.push_back({"single_scattering", "light scattered once, in a medium"});
+    if (media && settings.show_samples) layers.push_back({"MarchedRays", "rays marched in the pixel", true});
+    return layers;
+}
+
+std::vector<const Emitter*> positional_lights(const Scene& scene) {
+    std::vector<const Emitter*> lights;
+    for (const auto& light : scene.emitters())
+        if (Scene::light_position(*light) && !is_black(light->power())) lights.push_back(light.get());
+    return lights;
+}
+
+void plan_single_scattering(Plan& plan, const Scene& scene, const Requirements& r,
+                            const ScatteringSettings& s) {
+    plan.run("surfaces", "one eye path per pixel and pass", "direct light at full rate, by two techniques");
+    plan.miss("light scattered more than once", "indirect light and multiple scattering",
+              "this integrator stops after one scattering; volpath renders the rest");
+    plan_caustics(plan, scene, r);
+    if (!r.any_media()) {
+        plan_media(plan, r);
+        return;
+    }
+    for (std::size_t i = 0; i < r.media_descriptions.size(); ++i)
+        plan.run("medium", r.media_descriptions[i], "in the scene");
+    if (r.media_heterogeneous > 0)
+        plan.run("transmittance", fmt::format("marched in steps of {} voxels", s.march.voxels),
+                 "deterministic, so that neighbouring rays can be interpolated; biased by the step");
+    if (!r.media_scattering) {
+        plan.leave_out("single scattering", "nothing is marched", "no medium scatters");
+        return;
+    }
+    const std::size_t lights = positional_lights(scene).size();
+    if (lights > 0)
+        plan.run("marching",
+                 fmt::format("{} steps a ray, {}", s.march.steps,
+                             s.march.rule == screenspace::MarchRule::uniform ? "of equal lengths"
+                                                                             : "of equal angles"),
+                 fmt::format("{} light{} with a position", lights, lights == 1 ? "" : "s"));
+    else
+        plan.leave_out("marching", "no ray is marched", "no light has a position");
+    plan_scattering_accelerations(plan, scene, s.accelerations, s.march.steps);
+    if (scene.emitters().size() > lights || r.media_emissive)
+        plan.run("other lights and emission of media",
+                 "one sampled distance per pixel and pass, at full rate", "they have no position");
+}
+
+}  // namespace mote::integrators

@@ -1,0 +1,218 @@
+// `mote_vsl`: light from virtual spherical lights (Hasan et al. 2009), on surfaces.
+//
+// As `mote_vpl`: every pass traces a fresh set of light paths, leaves a VPL at each of their vertices, and
+// gathers all of them at the first connectable vertex of every pixel's eye path; direct light is computed
+// apart. Here every VPL is a sphere that reaches to its k-th nearest neighbour, so that nothing has to be
+// bounded, also between glossy surfaces. In return light is blurred over the spheres: a bias that more passes
+// do not reduce, since each has spheres of the same size; more light paths a pass do.
+#include <limits>
+
+#include "compensation/spherical_lights.h"
+#include "integrators/eye_path/eye_ray.h"
+#include "integrators/eye_path/eye_roulette.h"
+#include "integrators/path_tracing/path_estimator.h"
+#include "integrators/register_parts.h"
+#include "lights/emitters/direct_light.h"
+#include "lights/virtual_lights/particle_tracer.h"
+
+namespace mote::integrators {
+
+using namespace core;
+namespace {
+
+struct VslSettings {
+    PathSettings eye;  ///< max_depth counts the whole path from light to eye
+    std::uint32_t paths = 256;
+    compensation::SphericalGather gather;
+
+    lights::LightPathSettings light_paths() const {
+        lights::LightPathSettings s;
+        s.paths = paths, s.rr_depth = eye.rr_depth;
+        s.max_vertices = eye.max_depth < 0 ? -1 : std::max(0, eye.max_depth - 2);
+        return s;
+    }
+};
+
+/// The lights of one pass.
+struct SphereSet {
+    lights::VplSet vpls;
+    std::vector<float> radii;
+
+    SphereSet(const Scene& scene, const VslSettings& settings, const RenderOptions& options,
+              std::uint32_t pass)
+        : vpls(lights::trace_light_paths(scene, settings.light_paths(), options.seed, pass, options.sampler)),
+          radii(compensation::sphere_radii(vpls, settings.gather.neighbours, settings.gather.radius_scale)) {}
+    std::size_t memory_bytes() const { return vpls.memory_bytes() + radii.size() * sizeof(float); }
+};
+
+class VslEstimator final : public Estimator {
+  public:
+    VslEstimator(const Scene& scene, const RenderOptions& options, const VslSettings& settings)
+        : scene_(scene), options_(options), settings_(settings) {}
+
+    bool pass(const PassContext& context, PassImage& image) override {
+        if (context.cancelled) return false;
+        const SphereSet spheres(scene_, settings_, options_, context.index);
+        counters_.add(spheres.vpls.rays, spheres.vpls.tracking);
+        vpls_ += spheres.radii.size(), paths_ += spheres.vpls.paths;
+        bytes_ = std::max(bytes_, spheres.memory_bytes());
+        for (const float r : spheres.radii) radius_sum_ += double(r);
+        return for_each_tile(options_.width, options_.height, 16, context.cancelled,
+                             [&](int x0, int y0, int x1, int y1) {
+                                 WalkContext walk;
+                                 for (int y = y0; y < y1; ++y)
+                                     for (int x = x0; x < x1; ++x) {
+                                         if (context.cancelled) return;  // a tile of many VSLs takes long
+                                         EyeRay eye = make_eye_ray(scene_, options_, context, x, y);
+                                         store(trace(eye, spheres, walk), image, x, y, false);
+                                     }
+                                 counters_.add(walk.rays, walk.tracking);
+                             });
+    }
+
+    void add_statistics(Statistics& statistics) const override {
+        counters_.report(statistics, false);
+        statistics.values["vpls"] += double(vpls_);
+        statistics.values["light_paths"] += double(paths_);
+        statistics.values["vpl_bytes_peak"] = double(bytes_);
+        if (vpls_ > 0) statistics.values["sphere_radius_mean"] = radius_sum_ / double(vpls_);
+    }
+
+  private:
+    /// The eye path, from one connectable vertex to the next through mirrors and glass.
+    TransportSum trace(EyeRay& eye, const SphereSet& spheres, WalkContext& walk_context) const {
+        walk_context.rng = eye.rng;
+        TransportSum sum;
+        PathWeights weights;
+        MediumState state;  // stays empty: there are no media
+        Ray ray = eye.ray;
+        float eta = 1.0f;
+        const int max_depth = settings_.eye.max_depth;
+        for (int depth = 1;; ++depth) {
+            Rgb emitted(0.0f);
+            const WalkEvent event = walk<false>(scene_, ray, state, weights, emitted, walk_context);
+            sum[Transport::emission] += lights::found_light<false>(scene_, event, ray, weights, nullptr);
+            if (event.kind == WalkEvent::Kind::escaped || depth == max_depth) return sum;
+
+            const ScatteringVertex vertex = make_vertex(event, ray);
+            const Vec2 choices = eye.sampler.next_2d();  // of the light, and of the lobe
+            if (vertex.connectable()) {
+                sum[Transport::direct] += lights::sample_light<false>(
+                    scene_, vertex, weights, state, choices.x, eye.sampler.next_2d(), walk_context);
+                sum[Transport::indirect] += weights.throughput * gather(vertex, depth, spheres, walk_context);
+            }
+            if (depth >= settings_.eye.rr_depth &&
+                !survives<false>(weights, eta, depth, walk_context.rng.next_float()))
+                return sum;
+            const auto next = vertex.sample(choices.y, eye.sampler.next_2d(), TransportMode::radiance);
+            if (!next) return sum;
+            lights::apply_scattering<false>(weights, *next, vertex.position);
+            eta *= next->eta;
+            ray = Ray{vertex.ray_origin(next->wi), next->wi};
+            if (next->delta) continue;
+            // The other technique for direct light: what the sampled direction happens to hit.
+            const WalkEvent end = walk<false>(scene_, ray, state, weights, emitted, walk_context);
+            sum[Transport::direct] += lights::found_light<false>(scene_, end, ray, weights, &vertex.position);
+            return sum;
+        }
+    }
+
+    Rgb gather(const ScatteringVertex& vertex, int depth, const SphereSet& spheres, WalkContext& walk) const {
+        const int max_depth = settings_.eye.max_depth;
+        const std::int32_t vpl_depth =
+            max_depth < 0 ? std::numeric_limits<std::int32_t>::max() : max_depth - depth - 1;
+        return compensation::gather_spheres(scene_, spheres.vpls, spheres.radii, settings_.gather, vertex,
+                                            vpl_depth, walk.rng, walk.rays);
+    }
+
+    const Scene& scene_;
+    RenderOptions options_;
+    VslSettings settings_;
+    SharedCounters counters_;
+    std::uint64_t vpls_ = 0, paths_ = 0;
+    std::size_t bytes_ = 0;
+    double radius_sum_ = 0.0;
+};
+
+class MoteVsl final : public Integrator {
+  public:
+    explicit MoteVsl(const Properties& properties) {
+        settings_.eye = read_path_settings(properties);
+        settings_.paths = std::uint32_t(properties.get_int_in("paths", 256, 0, std::int64_t(1) << 26));
+        auto& gather = settings_.gather;
+        gather.neighbours = std::uint32_t(properties.get_int_in("neighbours", 10, 1, 1000));
+        gather.samples = int(properties.get_int_in("samples", 4, 1, 4096));
+        gather.radius_scale = float(properties.get_float_in("radius_scale", 1.0, 0.0, 1e6));
+        gather.visibility = properties.get_choice("visibility", "sample", {"sample", "light"}) == "light"
+                                ? compensation::SphereVisibility::per_light
+                                : compensation::SphereVisibility::per_sample;
+    }
+
+    std::string type() const override { return "mote_vsl"; }
+    std::vector<Layer> layers(const Scene&) const override {
+        return suffixed_transport_layers(false, "_spherical");
+    }
+    Plan plan(const Scene& scene, const Requirements& requirements) const override;
+    std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
+        if (scene.has_media())
+            throw InputError(
+                "mote_vsl renders surfaces only, and the scene has media; volpath and mote_vpl render them");
+        return std::make_unique<VslEstimator>(scene, options, settings_);
+    }
+
+  private:
+    VslSettings settings_;
+};
+
+Plan MoteVsl::plan(const Scene&, const Requirements& r) const {
+    const auto& gather = settings_.gather;
+    Plan plan;
+    plan.integrator = type();
+    plan.run("light paths", std::to_string(settings_.paths) + " a pass", "a fresh set every pass");
+    plan.run("radius",
+             std::to_string(gather.radius_scale) + " times the distance to neighbour " +
+                 std::to_string(gather.neighbours),
+             "a light stands for the disc that its neighbours leave to it");
+    plan.run("directions", std::to_string(gather.samples) + " a light",
+             r.any_glossy() ? "from the cone and from glossy BSDFs at both ends, balance heuristic"
+                            : "from the cone: every surface is diffuse");
+    if (gather.visibility == compensation::SphereVisibility::per_sample)
+        plan.run("visibility", "a shadow ray a direction", "soft where a sphere is partly hidden");
+    else
+        plan.run("visibility", "a shadow ray to the centre of every sphere", "asked for");
+    plan.miss("detail of indirect light", "blurred over the spheres",
+              "more passes do not sharpen it, more light paths do");
+    if (r.any_delta())
+        plan.miss("caustics", "light that reaches a receiver through a delta surface",
+                  "a VPL cannot be connected through mirrors and glass; volpath renders it");
+    if (r.any_media())
+        plan.miss("the whole picture", "refused: the scene has media",
+                  "spherical lights are for surfaces; volpath and mote_vpl render media");
+    else
+        plan.leave_out("media", "no code for media runs", "the scene has none");
+    return plan;
+}
+
+}  // namespace
+
+void register_mote_vsl(Registry& registry) {
+    auto parameters = path_parameters();
+    parameters.push_back({"paths", "integer", "256", "light paths traced in every pass"});
+    parameters.push_back(
+        {"neighbours", "integer", "10", "k: a sphere reaches to the k-th nearest other light of its pass"});
+    parameters.push_back(
+        {"radius_scale", "float", "1", "factor on the radius; 0: points, as mote_vpl without a bound"});
+    parameters.push_back({"samples", "integer", "4", "directions a light, for every receiver"});
+    parameters.push_back({"visibility", "string", "sample",
+                          "sample: a shadow ray along every direction, up to the sphere; light: one to the "
+                          "centre, faster with shadow edges as hard as a point's"});
+    registry.add(
+        {Category::integrator, "mote_vsl",
+         "Virtual spherical lights (Hasan et al. 2009), for scenes without media: no splotches "
+         "between glossy surfaces, and nothing bounded, but indirect light is blurred over the "
+         "spheres. More passes remove noise only; the blur shrinks with more light paths a pass.",
+         parameters, R"(<integrator type="mote_vsl"><integer name="paths" value="512"/></integrator>)"},
+        [](const Properties& p) { return std::make_shared<MoteVsl>(p); });
+}
+
+}  // namespace mote::integrators

@@ -1,0 +1,153 @@
+// `mote_vpl`: light from virtual point lights, on surfaces and in media.
+//
+// Every pass traces a fresh set of light paths, leaves a VPL at each of their vertices, and gathers all of
+// them at the first connectable vertex of every pixel's eye path: on a surface, or where delta tracking met
+// the medium (Engelhardt 2013, Eqs. 10.4 to 10.9). Light from the primary lights that scatters once is
+// computed apart, by next-event estimation and scattering directions, so VPLs stand for everything that
+// scatters at least twice.
+//
+// The geometry term G* of a connection is bounded by b (Sec. 10.1.3), which removes the bright splotches
+// around VPLs together with the light that travels short distances; unbounded, the mean is right but its
+// variance is infinite. Paths that cross a delta surface between the VPL and the receiver cannot be connected
+// and are missing.
+#include "integrators/path_tracing/path_estimator.h"
+#include "integrators/register_parts.h"
+#include "integrators/virtual_point_lights/plan_compensation.h"
+#include "integrators/virtual_point_lights/vpl_estimator.h"
+
+namespace mote::integrators {
+
+using namespace core;
+namespace {
+
+class MoteVpl final : public Integrator {
+  public:
+    explicit MoteVpl(const Properties& properties) {
+        settings_.eye = read_path_settings(properties);
+        const auto paths = properties.get_int("paths", 256);
+        if (paths < 0 || paths > (std::int64_t(1) << 26))
+            throw InputError("paths must lie between 0 and 2^26", properties.where_of("paths"));
+        settings_.paths = std::uint32_t(paths);
+        settings_.bounded = properties.get_bool("bounded", true);
+        if (properties.has("bound")) {
+            const double bound = properties.require_float("bound");
+            if (!(bound > 0.0) || !std::isfinite(float(bound)))
+                throw InputError("bound must be positive and finite; bounded=false renders without a bound",
+                                 properties.where_of("bound"));
+            settings_.bound = float(bound);
+            if (!settings_.bounded) properties.warn("bound has no effect: bounded is false");
+        }
+        read_compensation(properties);
+        if (const auto nested = properties.child_of<Visibility>(Category::visibility))
+            settings_.visibility = nested->settings();
+    }
+
+    std::string type() const override { return "mote_vpl"; }
+    std::vector<Layer> layers(const Scene& scene) const override {
+        auto layers = transport_layers(scene.has_media(), settings_.bounded);
+        if (!settings_.compensates()) return layers;
+        layers.push_back(
+            {"compensation_surface", "what the bound took from light first scattered by a surface"});
+        if (scene.has_media())
+            layers.push_back(
+                {"compensation_volume", "what the bound took from light first scattered in a medium"});
+        if (settings_.screen_space)
+            for (Layer& layer : settings_.screen_space->film_layers()) layers.push_back(std::move(layer));
+        return layers;
+    }
+    Plan plan(const Scene& scene, const Requirements& requirements) const override;
+    std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
+        return make_vpl_estimator(scene, options, settings_);
+    }
+
+  private:
+    void read_compensation(const Properties& properties);
+    void plan_bound(Plan& plan, const Bounds3& surfaces) const;
+    VplSettings settings_;
+};
+
+void MoteVpl::read_compensation(const Properties& properties) {
+    const auto nested = properties.child_of<Object>(Category::compensation);
+    if (const auto inside = std::dynamic_pointer_cast<compensation::Compensation>(nested))
+        settings_.compensation = inside->settings();
+    if (const auto after = std::dynamic_pointer_cast<ScreenSpaceCompensation>(nested))
+        settings_.screen_space = after->settings(), settings_.compensation = after->media();
+    if (settings_.compensates() && !settings_.bounded)
+        throw InputError("compensation brings back what a bound takes: it needs bounded=true",
+                         properties.where_of("bounded"));
+    const bool one_to_one = settings_.compensation.enabled && settings_.vpls_shared_out();
+    settings_.eye_samples = int(properties.get_int_in("eye_samples", one_to_one ? 4 : 1, 1, 4096));
+}
+
+void MoteVpl::plan_bound(Plan& plan, const Bounds3& surfaces) const {
+    if (!settings_.bounded) {
+        plan.run("bound", "none", "bounded is false: right in the mean, with splotches around VPLs");
+        return;
+    }
+    const float bound = settings_.bound_for(surfaces);
+    const std::string choice =
+        std::to_string(bound) + " /m^2, radius " + std::to_string(1.0f / std::sqrt(bound)) + " m";
+    plan.run("bound", choice,
+             settings_.bound ? "asked for"
+                             : "automatic: light paths / R^2, with R = " + std::to_string(surfaces.radius()) +
+                                   " m the radius of all shapes");
+}
+
+Plan MoteVpl::plan(const Scene& scene, const Requirements& r) const {
+    Plan plan;
+    plan.integrator = type();
+    plan.run("light paths", std::to_string(settings_.paths) + " a pass", "a fresh set every pass");
+    plan_bound(plan, scene.rays().bounds());
+    const bool directional = r.any_glossy() || (r.media_anisotropic && r.media_scattering);
+    if (directional)
+        plan.run("light per VPL", "64 bytes, and the vertex where f* depends on direction",
+                 "there are glossy surfaces or anisotropic media");
+    else
+        plan.run("light per VPL", "64 bytes, one colour",
+                 "every surface is diffuse and every medium isotropic");
+    const double pixels = double(scene.film().width) * double(scene.film().height);
+    plan_visibility(plan, scene, settings_.visibility, pixels * settings_.eye_samples);
+    plan_media(plan, r);
+    if (r.any_media())
+        plan.run("eye rays", "one distance by tracking per pixel and pass", "Engelhardt 2013, Eq. 10.9");
+    if (settings_.bounded && !settings_.compensates())
+        plan.miss("short distances", "light between points closer than the bound's radius is darkened",
+                  "the bound removes it; <compensation> brings it back");
+    if (settings_.screen_space) plan_screen_space(plan, r, *settings_.screen_space);
+    if (settings_.compensation.enabled)
+        plan_compensation(plan, scene, r, settings_.compensation, settings_.bound_for(scene.rays().bounds()));
+    if (settings_.bounded)
+        plan_expected_loss(plan, scene, settings_.compensation, settings_.bound_for(scene.rays().bounds()));
+    if (settings_.eye_samples > 1)
+        plan.run("eye paths", std::to_string(settings_.eye_samples) + " a pixel and pass",
+                 settings_.vpls_shared_out() ? "VPLs are shared out among them" : "each meets all VPLs");
+    if (r.any_delta())
+        plan.miss("caustics", "light that reaches a receiver through a delta surface",
+                  "a VPL cannot be connected through mirrors and glass; volpath renders it");
+    plan_medium_lights(plan, r);
+    return plan;
+}
+
+}  // namespace
+
+void register_mote_vpl(Registry& registry) {
+    auto parameters = path_parameters();
+    parameters.push_back({"paths", "integer", "256", "light paths traced in every pass"});
+    parameters.push_back({"bound", "float", "automatic",
+                          "bound b [1/m^2] on the geometry term; automatic: light paths / R^2 with the "
+                          "radius R of all shapes"});
+    parameters.push_back({"bounded", "boolean", "true", "false: no bound on the geometry term"});
+    parameters.push_back({"compensation", "compensation", "none", "what the bound takes, brought back"});
+    parameters.push_back(
+        {"visibility", "visibility", "traced", "what stands between VPLs and receivers: traced, shadow_map"});
+    parameters.push_back(
+        {"eye_samples", "integer", "4 for 1-to-1 compensation, else 1",
+         "eye paths a pixel and pass; VPLs are shared out among them, except with compensation "
+         "that joins every receiver to all"});
+    registry.add({Category::integrator, "mote_vpl",
+                  "Virtual point lights on surfaces and in media, with a bounded geometry term.", parameters,
+                  R"(<integrator type="mote_vpl"><integer name="paths" value="512"/></integrator>)"},
+                 [](const Properties& p) { return std::make_shared<MoteVpl>(p); });
+}
+
+}  // namespace mote::integrators

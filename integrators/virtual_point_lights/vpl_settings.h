@@ -1,0 +1,46 @@
+// What a scene file sets for `mote_vpl`.
+#pragma once
+
+#include <algorithm>
+#include <optional>
+
+#include "integrators/path_tracing/path_kernel.h"
+#include "integrators/screen_space_compensation/screen_space_compensation.h"
+#include "integrators/virtual_point_lights/vpl_visibility.h"
+#include "lights/virtual_lights/light_path.h"
+
+namespace mote::integrators {
+
+struct VplSettings {
+    PathSettings eye;  ///< max_depth counts the whole path from light to eye
+    std::uint32_t paths = 256;
+    bool bounded = true;
+    std::optional<float> bound;                       ///< b [1/m^2]; nothing: automatic
+    compensation::CompensationSettings compensation;  ///< in the passes
+    std::optional<ScreenSpaceSettings> screen_space;  ///< after the last pass, on surfaces
+    int eye_samples = 1;                              ///< eye paths a pixel and pass
+    VisibilitySettings visibility;
+
+    bool compensates() const { return compensation.enabled || screen_space.has_value(); }
+    /// VPLs are shared out among the eye paths of a pixel, instead of all of them meeting every one.
+    bool vpls_shared_out() const {
+        return !compensation.enabled || compensation.strategy == compensation::Strategy::one_to_one;
+    }
+
+    /// b from the size of the shapes and the number of light paths: inside r = b^(-1/2) a VPL stands for the
+    /// light of the paths around it, and N paths spread over a scene of radius R are about R / sqrt(N) apart.
+    float bound_for(const core::Bounds3& bounds) const {
+        if (!bounded) return core::infinity;
+        if (bound) return *bound;
+        const float radius = bounds.radius();
+        return radius > 0.0f ? float(paths) / core::sqr(radius) : core::infinity;
+    }
+    lights::LightPathSettings light_paths() const {
+        lights::LightPathSettings s;
+        s.paths = paths, s.rr_depth = eye.rr_depth;
+        s.max_vertices = eye.max_depth < 0 ? -1 : std::max(0, eye.max_depth - 2);
+        return s;
+    }
+};
+
+}  // namespace mote::integrators

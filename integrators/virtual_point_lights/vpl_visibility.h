@@ -1,0 +1,44 @@
+// How `mote_vpl` finds out what stands between a VPL and its receivers: a nested <visibility> of a scene
+// file.
+#pragma once
+
+#include "core/objects/error.h"
+#include "core/objects/registry.h"
+#include "core/render/plan.h"
+#include "core/scene/requirements.h"
+#include "core/scene/scene.h"
+#include "lights/shadow_maps/volumetric_shadow_map.h"
+
+namespace mote::integrators {
+
+struct VisibilitySettings {
+    bool shadow_maps = false;  ///< else traced
+    int size = 64;             ///< texels along an edge of a VPL's map
+    int light_size = 256;      ///< of the lights' own maps; 0: none, they are traced
+    int maps = 4;              ///< kept at once
+    lights::ShadowMapSettings map;
+    core::SourceLocation where;
+
+    /// Maps are used: they are asked for, and there are media.
+    bool used_in(const core::Scene& scene) const { return shadow_maps && scene.has_media(); }
+    /// Throws InputError with its place when a map of this scene would be larger than the limit.
+    void check(const core::Scene& scene) const;
+};
+
+class Visibility : public core::Object {
+  public:
+    explicit Visibility(const VisibilitySettings& settings) : settings_(settings) {}
+    const VisibilitySettings& settings() const { return settings_; }
+
+  private:
+    VisibilitySettings settings_;
+};
+
+/// traced, shadow_map.
+void register_visibility(core::Registry& registry);
+
+/// `receivers`: of one pass, about.
+void plan_visibility(core::Plan& plan, const core::Scene& scene, const VisibilitySettings& settings,
+                     double receivers);
+
+}  // namespace mote::integrators

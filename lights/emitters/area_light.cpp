@@ -1,0 +1,121 @@
+// The area light: the front side of a shape emits the same radiance in all directions. Front is where the
+// geometric normal points to, in evaluation, density and particles alike: mixing it with the shading normal
+// would make the two halves disagree at silhouettes.
+#include "core/geometry/shape.h"
+#include "core/math/warp.h"
+#include "core/objects/registry.h"
+#include "lights/emitters/emitters.h"
+#include "lights/emitters/light_values.h"
+
+namespace mote::lights {
+namespace {
+
+using namespace core;
+
+class AreaLight final : public Emitter {
+  public:
+    AreaLight(const Rgb& radiance, std::shared_ptr<Texture> texture, SourceLocation where = {})
+        : radiance_(radiance), texture_(std::move(texture)), where_(std::move(where)) {}
+
+    EmitterTraits traits() const override {
+        return {.kind = EmitterKind::area, .textured = texture_ && !texture_->constant()};
+    }
+
+    void set_shape(const Shape* shape) override {
+        if (shape_ && shape_ != shape) throw InputError("one area light cannot belong to two shapes", where_);
+        shape_ = shape;
+    }
+    void set_scene_bounds(const Vec3&, float) override {
+        if (!shape_) throw InputError("an area light must be nested in a shape", where_);
+    }
+
+    std::optional<DirectSample> sample_direct(const Vec3& p, const Vec2& u) const override {
+        float pdf = 0.0f;
+        const auto point = shape_ ? shape_->sample_visible(p, u, pdf) : std::nullopt;
+        if (!point || !(pdf > 0.0f) || !std::isfinite(pdf)) return std::nullopt;
+        const Vec3 d = point->position - p;
+        const float distance = glm::length(d);
+        if (!(distance > 0.0f)) return std::nullopt;
+        const Vec3 wi = d / distance;
+        if (!(glm::dot(point->normal, wi) < 0.0f)) return std::nullopt;
+        const Rgb weight = emitted(point->uv) / pdf;
+        if (is_black(weight) || !is_finite(weight)) return std::nullopt;
+        return DirectSample{wi, distance, weight, pdf, false, point->normal};
+    }
+    float pdf_direct(const Vec3& p, const Vec3& wi, const SurfaceHit* hit) const override {
+        if (!hit || !shape_ || !(glm::dot(hit->geometric_normal, wi) < 0.0f)) return 0.0f;
+        return shape_->pdf_visible(p, wi, *hit);
+    }
+    Rgb radiance(const SurfaceHit& hit, const Vec3& wo) const override {
+        return glm::dot(hit.geometric_normal, wo) > 0.0f ? emitted(hit.uv) : Rgb(0.0f);
+    }
+
+    std::optional<EmissionSample> sample_emission(const Vec2& u_position,
+                                                  const Vec2& u_direction) const override {
+        if (!shape_) return std::nullopt;
+        const ShapeSample point = shape_->sample_area(u_position);
+        if (!(point.pdf_area > 0.0f)) return std::nullopt;
+        const Rgb radiance = emitted(point.uv);
+        if (is_black(radiance)) return std::nullopt;
+        const Vec3 local = square_to_cosine_hemisphere(u_direction);
+        EmissionSample sample{};
+        sample.direction = Frame(point.normal).to_world(local);
+        sample.origin = offset_origin(point.position, point.normal, point.error, sample.direction);
+        sample.normal = point.normal;
+        sample.pdf_area = point.pdf_area, sample.pdf_solid_angle = cosine_hemisphere_pdf(local);
+        sample.weight = radiance * (pi / point.pdf_area);  // the cosine cancels
+        sample.shape = shape_;
+        return sample;
+    }
+    Rgb power() const override {
+        if (!shape_) return Rgb(0.0f);
+        return (texture_ ? texture_->mean() : radiance_) * (pi * shape_->area());
+    }
+
+  private:
+    Rgb emitted(const Vec2& uv) const { return texture_ ? texture_->eval(uv) : radiance_; }
+
+    Rgb radiance_;
+    std::shared_ptr<Texture> texture_;  ///< takes the place of radiance_ where there is one
+    SourceLocation where_;
+    const Shape* shape_ = nullptr;
+};
+
+std::shared_ptr<Texture> checked_texture(std::shared_ptr<Texture> texture, const SourceLocation& where) {
+    checked_brightness(Rgb(texture->minimum()), "radiance", where);
+    checked_brightness(Rgb(texture->maximum()), "radiance", where);
+    return texture;
+}
+
+std::shared_ptr<Object> create(const Properties& properties) {
+    if (auto texture = properties.child<Texture>("radiance")) {
+        if (!(texture->maximum() > 0.0f))
+            properties.warn("'radiance' is a black texture: this light emits nothing");
+        return std::make_shared<AreaLight>(
+            Rgb(0.0f), checked_texture(std::move(texture), properties.where_of("radiance")),
+            properties.where);
+    }
+    return std::make_shared<AreaLight>(read_brightness(properties, "radiance"), nullptr, properties.where);
+}
+
+}  // namespace
+
+std::shared_ptr<Emitter> make_area_light(const Rgb& radiance) {
+    return std::make_shared<AreaLight>(checked_brightness(radiance, "radiance"), nullptr);
+}
+std::shared_ptr<Emitter> make_area_light(std::shared_ptr<Texture> radiance) {
+    return std::make_shared<AreaLight>(Rgb(0.0f), checked_texture(std::move(radiance), {}));
+}
+
+void register_area(Registry& registry) {
+    registry.add({Category::emitter,
+                  "area",
+                  "Makes the shape around it emit from its front side, where the normal points to.",
+                  {{"radiance", "texture", "1", "emitted radiance [W/(m^2 sr)], a colour or a texture"}},
+                  R"(<emitter type="area">
+    <rgb name="radiance" value="18, 14, 7"/>
+</emitter>)"},
+                 create);
+}
+
+}  // namespace mote::lights

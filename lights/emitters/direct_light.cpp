@@ -1,0 +1,93 @@
+#include "lights/emitters/direct_light.h"
+
+namespace mote::lights {
+
+using namespace core;
+
+namespace {
+/// Shadow rays stop this much short of the light, whose own surface they would hit otherwise.
+constexpr float shadow_fraction = 0.9999f;
+
+/// By a shadow ray and the transmittance along it. Returns whether the light is seen.
+template <bool Media>
+bool connect(const Scene& scene, const ScatteringVertex& vertex, const DirectSample& light,
+             const MediumState& state, PathWeights& connection, WalkContext& context) {
+    Ray shadow{vertex.ray_origin(light.wi), light.wi};
+    shadow.t_max = light.distance * (light.inside ? 1.0f : shadow_fraction);
+    ++context.rays.occlusion;
+    if (scene.rays().occluded(shadow)) return false;
+    if constexpr (Media) {
+        connection.light = connection.unidirectional;
+        const Medium* there = scene.connect(shadow, vertex.state_towards(state, light.wi), connection,
+                                            context.rng, context.tracking);
+        return !light.inside || there == light.inside;
+    } else {
+        connection.unidirectional = connection.light = Rgb(1.0f);
+        return true;
+    }
+}
+}  // namespace
+
+template <bool Media>
+Rgb sample_light(const Scene& scene, const ScatteringVertex& vertex, const PathWeights& weights,
+                 const MediumState& state, float u_light, const Vec2& u, WalkContext& context, bool lit_along,
+                 const LightShadowMaps* maps) {
+    const LightChoice choice = scene.choose_light(u_light);
+    if (!choice.emitter) return Rgb(0.0f);
+    if (lit_along && !vertex.on_surface() && choice.emitter->traits().delta_position) return Rgb(0.0f);
+    const auto light = choice.emitter->sample_direct(vertex.position, u);
+    if (!light) return Rgb(0.0f);
+    const Rgb f_cos = vertex.eval_cos(light->wi, TransportMode::radiance);
+    if (is_black(f_cos)) return Rgb(0.0f);
+
+    PathWeights connection = weights;
+    const VolumetricShadowMap* map =
+        Media && maps && !vertex.on_surface() && light->delta ? maps->of(*choice.emitter) : nullptr;
+    if (map) {
+        connection.light = weights.unidirectional;
+        connection.throughput *= map->transmittance(vertex.position);
+    } else if (!connect<Media>(scene, vertex, *light, state, connection, context)) {
+        return Rgb(0.0f);
+    }
+    // f = throughput f* C* T L_e over the mean pdf of both techniques. A delta light is found by this one
+    // alone.
+    const float pdf_light = choice.probability * (light->delta ? 1.0f : light->pdf_solid_angle);
+    const float pdf_scatter =
+        light->delta ? 0.0f
+                     : vertex.pdf_solid_angle(light->wi, TransportMode::radiance) * light->line_density;
+    const Rgb radiance = light->weight * (light->delta ? 1.0f : light->pdf_solid_angle);
+    const Rgb pdfs = connection.light * pdf_light + connection.unidirectional * pdf_scatter;
+    const float pdf = channel_average<Media>(pdfs);
+    return pdf > 0.0f ? connection.throughput * f_cos * radiance / pdf : Rgb(0.0f);
+}
+
+template <bool Media>
+Rgb found_light(const Scene& scene, const WalkEvent& event, const Ray& ray, const PathWeights& weights,
+                const Vec3* previous) {
+    const Emitter* emitter = nullptr;
+    const SurfaceHit* hit = nullptr;
+    Rgb radiance(0.0f);
+    if (event.kind == WalkEvent::Kind::surface) {
+        emitter = event.hit.shape->emitter.get(), hit = &event.hit;
+        if (emitter) radiance = emitter->radiance(event.hit, -ray.direction);
+    } else if (event.kind == WalkEvent::Kind::escaped) {
+        emitter = scene.environment();
+        if (emitter) radiance = emitter->environment(ray.direction);
+    }
+    if (!emitter || is_black(radiance)) return Rgb(0.0f);
+    const Rgb unidirectional = Media ? weights.unidirectional : Rgb(1.0f);
+    if (!previous) return weights.throughput * radiance / channel_average<Media>(unidirectional);
+    const float pdf_light =
+        scene.light_probability(emitter) * emitter->pdf_direct(*previous, ray.direction, hit);
+    return weights.throughput * radiance / channel_average<Media>(unidirectional + weights.light * pdf_light);
+}
+
+template Rgb sample_light<true>(const Scene&, const ScatteringVertex&, const PathWeights&, const MediumState&,
+                                float, const Vec2&, WalkContext&, bool, const LightShadowMaps*);
+template Rgb sample_light<false>(const Scene&, const ScatteringVertex&, const PathWeights&,
+                                 const MediumState&, float, const Vec2&, WalkContext&, bool,
+                                 const LightShadowMaps*);
+template Rgb found_light<true>(const Scene&, const WalkEvent&, const Ray&, const PathWeights&, const Vec3*);
+template Rgb found_light<false>(const Scene&, const WalkEvent&, const Ray&, const PathWeights&, const Vec3*);
+
+}  // namespace mote::lights

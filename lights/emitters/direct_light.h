@@ -1,0 +1,60 @@
+// Direct light at a vertex by two techniques, combined by the balance heuristic (Veach 1997, Sec. 9.2):
+// next-event estimation, and directions from the BSDF or phase function that happen to hit a light.
+//
+// With media, the weights follow the spectral book-keeping of PathWeights; without, they reduce to scalars.
+#pragma once
+
+#include "core/math/sampler.h"
+#include "core/scene/scattering_vertex.h"
+#include "lights/shadow_maps/light_shadow_maps.h"
+
+namespace mote::lights {
+
+/// Average over channels of the rescaled pdfs; exactly 1 without media, where no channel differs.
+template <bool Media>
+inline float channel_average(const core::Rgb& pdfs) {
+    if constexpr (Media) return core::average(pdfs);
+    return pdfs.x;
+}
+
+/// Next-event estimation: the light at `vertex` from one light drawn by `u_light` (and a point on it by `u`),
+/// weighted against directions from vertex.sample(). `weights` and `state` describe the path up to the
+/// vertex. `lit_along`: point and spot lights do not count at a vertex in a medium, because they were sampled
+/// along the ray that led there (equiangular.h). `maps`: at vertices in media, visibility and transmittance
+/// come from the map of the light where it has one.
+template <bool Media>
+core::Rgb sample_light(const core::Scene& scene, const core::ScatteringVertex& vertex,
+                       const core::PathWeights& weights, const core::MediumState& state, float u_light,
+                       const core::Vec2& u, core::WalkContext& context, bool lit_along = false,
+                       const LightShadowMaps* maps = nullptr);
+
+/// Light emitted at the end of a walk: an area light at the surface, or the environment outside. `previous`
+/// is the vertex whose sampled direction led here, null where next-event estimation could not have found this
+/// light (the eye itself, or a delta scattering): then the full contribution counts.
+template <bool Media>
+core::Rgb found_light(const core::Scene& scene, const core::WalkEvent& event, const core::Ray& ray,
+                      const core::PathWeights& weights, const core::Vec3* previous);
+
+/// The other technique for direct light: what lies along `ray`, the direction that a vertex scattered to, and
+/// the emission on the way. `weights` come from apply_scattering(), `state` holds the media at the ray's
+/// origin; `previous` as for found_light().
+template <bool Media>
+core::Rgb light_along(const core::Scene& scene, const core::Ray& ray, core::MediumState state,
+                      core::PathWeights weights, const core::Vec3* previous, core::WalkContext& context) {
+    core::Rgb emitted(0.0f);
+    const core::WalkEvent event = core::walk<Media>(scene, ray, state, weights, emitted, context);
+    return emitted + found_light<Media>(scene, event, ray, weights, previous);
+}
+
+/// Multiplies `weights` by a scattering sampled at `position` and prepares its rescaled pdfs for the next
+/// event.
+template <bool Media>
+inline void apply_scattering(core::PathWeights& weights, const core::ScatterSample& s,
+                             const core::Vec3& position) {
+    weights.throughput *= s.weight;
+    weights.vertex = position;
+    const core::Rgb base = Media ? weights.unidirectional : core::Rgb(1.0f);
+    weights.light = s.delta || !(s.pdf_solid_angle > 0.0f) ? core::Rgb(0.0f) : base / s.pdf_solid_angle;
+}
+
+}  // namespace mote::lights

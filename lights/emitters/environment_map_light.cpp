@@ -1,0 +1,99 @@
+// The environment map: light from all around, given by a latitude-longitude picture (latlong_map.h).
+#include "core/objects/registry.h"
+#include "lights/emitters/emitters.h"
+#include "lights/emitters/environment_picture.h"
+#include "lights/emitters/light_values.h"
+#include "lights/emitters/scene_sphere.h"
+
+namespace mote::lights {
+namespace {
+
+using namespace core;
+
+class EnvironmentMap final : public Emitter {
+  public:
+    EnvironmentMap(LatLongMap map, const glm::mat3& rotation, float scale)
+        : map_(std::move(map)), world_from_local_(rotation), scale_(scale) {}
+
+    EmitterTraits traits() const override {
+        return {.kind = EmitterKind::environment, .infinite = true, .textured = true};
+    }
+    void set_scene_bounds(const Vec3& center, float radius) override { scene_ = {center, radius}; }
+
+    std::optional<DirectSample> sample_direct(const Vec3& /*p*/, const Vec2& u) const override {
+        if (dark()) return std::nullopt;
+        const auto s = map_.sample(u);
+        const Rgb weight = scale_ * map_.eval(s.direction) / s.pdf_solid_angle;
+        if (is_black(weight) || !is_finite(weight)) return std::nullopt;
+        const Vec3 wi = glm::normalize(world_from_local_ * s.direction);
+        return DirectSample{wi, infinity, weight, s.pdf_solid_angle, false, Vec3(0.0f)};
+    }
+    float pdf_direct(const Vec3&, const Vec3& wi, const SurfaceHit*) const override {
+        return dark() ? 0.0f : map_.pdf_solid_angle(to_local(wi));
+    }
+    Rgb environment(const Vec3& wi) const override { return scale_ * map_.eval(to_local(wi)); }
+
+    std::optional<EmissionSample> sample_emission(const Vec2& u_position,
+                                                  const Vec2& u_direction) const override {
+        const auto from = sample_direct(scene_.center, u_direction);
+        if (!from) return std::nullopt;
+        EmissionSample sample{};
+        sample.direction = -from->wi;
+        sample.origin = scene_.origin_on_disk(sample.direction, u_position);
+        sample.pdf_area = scene_.pdf_area(), sample.pdf_solid_angle = from->pdf_solid_angle;
+        sample.weight = from->weight * scene_.disk_area();
+        return sample;
+    }
+    /// What falls on the scene's bounding sphere; exact.
+    Rgb power() const override { return scale_ * scene_.disk_area() * map_.integral(); }
+
+  private:
+    bool dark() const { return !(scale_ > 0.0f) || map_.black(); }
+    Vec3 to_local(const Vec3& w) const { return glm::transpose(world_from_local_) * w; }
+
+    LatLongMap map_;
+    glm::mat3 world_from_local_;
+    float scale_;
+    SceneSphere scene_;
+};
+
+std::shared_ptr<Object> create(const Properties& properties) {
+    const std::string name = properties.require_string("filename");
+    Bitmap picture = read_bitmap(properties.require_file("filename"), false);
+    check_pixels(picture, name, properties.where_of("filename"));
+    const auto scale = float(properties.get_float_in("scale", 1.0, 0.0, double(brightest)));
+    if (properties.get_bool("mis_compensation", false))
+        properties.warn("'mis_compensation' has no effect: every lit direction keeps its chance");
+    const glm::mat3 rotation = checked_rotation(properties.get_transform(), properties.where_of("to_world"));
+    LatLongMap map(std::move(picture));
+    if (map.black() || scale == 0.0f) properties.warn("this environment map is black: it emits nothing");
+    return std::make_shared<EnvironmentMap>(std::move(map), rotation, scale);
+}
+
+}  // namespace
+
+std::shared_ptr<Emitter> make_environment_map(Bitmap picture, const Transform& to_world, float scale) {
+    check_pixels(picture, "<pixels>");
+    checked_brightness(Rgb(scale), "scale");
+    return std::make_shared<EnvironmentMap>(LatLongMap(std::move(picture)), checked_rotation(to_world),
+                                            scale);
+}
+
+void register_envmap(Registry& registry) {
+    registry.add(
+        {Category::emitter,
+         "envmap",
+         "Light from all around, from a latitude-longitude picture: y is up, u = atan2(x, -z) / 2 pi, "
+         "v = acos(y) / pi. Columns wrap around, the first and the last row lie at the poles.",
+         {{"filename", "string", "", "the picture (EXR, HDR, PNG, ...) [W/(m^2 sr)]"},
+          {"scale", "float", "1", "multiplies the picture"},
+          {"mis_compensation", "boolean", "false", "known from Mitsuba 3, without effect"},
+          {"to_world", "transform", "identity", "turns the picture; no stretching"}},
+         R"(<emitter type="envmap">
+    <string name="filename" value="sky.exr"/>
+    <float name="scale" value="2"/>
+</emitter>)"},
+        create);
+}
+
+}  // namespace mote::lights

@@ -1,0 +1,171 @@
+#include "lights/shadow_maps/shadow_map_builder.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "core/scene/media_along.h"
+
+namespace mote::lights {
+
+using namespace core;
+
+namespace {
+/// Slope of a surface against its ray above which it is taken as that steep: a hit that grazes must not hide
+/// everything behind it.
+constexpr float steepest = 10.0f;
+/// How far, in texels at right angles to the ray, the march goes on behind a surface: neighbours may see
+/// parts of it that lie farther away.
+constexpr float march_behind = 4.0f;
+}  // namespace
+
+ShadowMapBuilder::ShadowMapBuilder(const Scene& scene, const VolumetricShadowMap& map,
+                                   const MediumState& at_light)
+    : scene_(scene), map_(map), at_light_(at_light) {
+    for (const auto& m : scene.media())
+        media_.push_back({m.get(), dynamic_cast<const media::HeterogeneousMedium*>(m.get()), m->bounds()});
+}
+
+void ShadowMapBuilder::fill(int texel, std::byte* record) {
+    const ShadowMapSettings& settings = map_.settings_;
+    const Ray ray = map_.view_.ray(texel);
+    VolumetricShadowMap::Header header{};
+    find_segments(ray, find_surface(ray, header));
+    const float begin = segments_.empty() ? 0.0f : segments_.front().begin;
+    const float end = segments_.empty() ? 0.0f : segments_.back().end;
+    const float step = (end - begin) / float(settings.intervals);
+    header.enter = begin, header.inverse_step = step > 0.0f ? 1.0f / step : 0.0f;
+    if (!std::isfinite(header.inverse_step)) header.inverse_step = 0.0f;
+    std::memcpy(record, &header, sizeof header);
+    march(ray, header, step);
+    if (settings.storage == ShadowMapSettings::Storage::nodes) keep_nodes(std::size_t(settings.nodes));
+    write(record);
+}
+
+/// The plane of the first surface. Returns how far to march.
+float ShadowMapBuilder::find_surface(const Ray& ray, VolumetricShadowMap::Header& header) {
+    header.limit = infinity;
+    ++rays_.closest;
+    const auto hit = scene_.rays().closest(ray);
+    if (!hit) return infinity;
+    const ShadowMapView& view = map_.view_;
+    const Vec3 direction = view.frame.to_local(ray.direction);
+    const Vec3 normal = view.frame.to_local(hit->geometric_normal);
+    const float cosine = glm::dot(normal, direction);
+    // The plane as direction + slope: it is 1 along the ray, and slope lies at right angles to it.
+    Vec3 slope = cosine == 0.0f ? Vec3(0.0f) : normal / cosine - direction;
+    const float length = glm::length(slope);
+    if (length > steepest) slope *= steepest / length;
+    const Vec3 plane = direction + slope;
+    const Vec3 place = view.frame.to_local(ray.at(hit->t) - view.origin);
+    const float spacing = view.spacing(hit->t);
+    header.plane_x = plane.x, header.plane_y = plane.y, header.plane_z = plane.z;
+    header.limit = glm::dot(plane, place) + spacing;
+    return hit->t + spacing * (1.0f + std::min(length, march_behind));
+}
+
+/// The media along the ray up to `end`, clipped to where they are.
+void ShadowMapBuilder::find_segments(const Ray& ray, float end) {
+    segments_.clear();
+    // Beyond the scene's bounds no receiver can be.
+    const Bounds3 bounds = scene_.bounds();
+    end = std::min(end, glm::distance(ray.origin, bounds.center()) + bounds.radius());
+    const auto keep = [&](float t, float to, const MediumState& state) {
+        const Medium* medium = state.current();
+        if (medium && t < to) {
+            const auto marched =
+                std::find_if(media_.begin(), media_.end(), [&](auto& m) { return m.medium == medium; });
+            const auto part = intersect(marched->bounds, Ray{ray.origin, ray.direction, t, to});
+            if (part) segments_.push_back({&*marched, part->t0, part->t1});
+        }
+        return true;
+    };
+    rays_.boundary += scene_.rays().has_boundaries();
+    for_each_part(scene_.rays(), Ray{ray.origin, ray.direction, ray.t_min, end}, at_light_, boundaries_,
+                  keep);
+}
+
+float ShadowMapBuilder::step_of(const MarchedMedium& medium, float length) const {
+    const float voxel = medium.grid->voxel_size();
+    return std::isfinite(voxel) ? voxel * map_.settings_.step : length;
+}
+
+Vec3d ShadowMapBuilder::depth_of(const Segment& segment, const Ray& part) {
+    const float length = part.t_max - part.t_min;
+    const MarchedMedium& m = *segment.medium;
+    if (!m.grid) return Vec3d(m.medium->coefficients(part.origin).sigma_t) * double(length);
+    return m.grid->optical_depth_by_marching(part, step_of(m, length), counters_);
+}
+
+/// Optical depth at the ends of all intervals.
+void ShadowMapBuilder::march(const Ray& ray, const VolumetricShadowMap::Header& header, float step) {
+    const auto intervals = std::size_t(map_.settings_.intervals);
+    depths_.assign(intervals, Vec3d(0.0));
+    if (header.inverse_step > 0.0f) {
+        if (segments_.size() == 1 && segments_.front().medium->grid) {
+            const Segment& only = segments_.front();
+            only.medium->grid->optical_depths_by_marching(
+                Ray{ray.origin, ray.direction, only.begin, only.end},
+                step_of(*only.medium, only.end - only.begin), depths_, counters_);
+        } else {
+            march_segments(ray, header.enter, step);
+        }
+    }
+    nodes_.assign(1, Node{header.enter, Rgb(0.0f)});
+    for (std::size_t k = 0; k < intervals; ++k)
+        nodes_.push_back({header.enter + float(k + 1) * step, Rgb(depths_[k])});
+}
+
+/// Several media, or homogeneous ones: interval by interval.
+void ShadowMapBuilder::march_segments(const Ray& ray, float enter, float step) {
+    Vec3d depth(0.0);
+    std::size_t s = 0;
+    for (std::size_t k = 0; k < depths_.size(); ++k) {
+        const float from = enter + float(k) * step, to = enter + float(k + 1) * step;
+        while (s < segments_.size() && segments_[s].end <= from) ++s;
+        for (std::size_t i = s; i < segments_.size() && segments_[i].begin < to; ++i) {
+            const Ray part{ray.origin, ray.direction, std::max(from, segments_[i].begin),
+                           std::min(to, segments_[i].end)};
+            if (part.t_min < part.t_max) depth += depth_of(segments_[i], part);
+        }
+        depths_[k] = depth;
+    }
+}
+
+/// Twice the area between the transmittance and what is left of it when `b` goes: what its integral would
+/// lose.
+float ShadowMapBuilder::loss(const Node& a, const Node& b, const Node& c) {
+    const float share = (b.distance - a.distance) / std::max(c.distance - a.distance, 1e-30f);
+    const Rgb without = a.depth + share * (c.depth - a.depth);
+    return max_component(glm::abs(glm::exp(-b.depth) - glm::exp(-without))) * (c.distance - a.distance);
+}
+
+/// Drops nodes, the least important first, until `count` are left. The first and the last always stay.
+void ShadowMapBuilder::keep_nodes(std::size_t count) {
+    while (nodes_.size() > count) {
+        std::size_t least = 1;
+        float least_loss = infinity;
+        for (std::size_t i = 1; i + 1 < nodes_.size(); ++i)
+            if (const float l = loss(nodes_[i - 1], nodes_[i], nodes_[i + 1]); l < least_loss)
+                least = i, least_loss = l;
+        nodes_.erase(nodes_.begin() + std::ptrdiff_t(least));
+    }
+    while (nodes_.size() < count) nodes_.push_back(nodes_.back());
+}
+
+void ShadowMapBuilder::write(std::byte* record) const {
+    std::byte* to = record + sizeof(VolumetricShadowMap::Header);
+    const auto put = [&to](auto value) {
+        std::memcpy(to, &value, sizeof value);
+        to += sizeof value;
+    };
+    if (map_.settings_.storage == ShadowMapSettings::Storage::nodes)
+        for (const Node& node : nodes_) put(node.distance);
+    constexpr float codes = 65535.0f;
+    for (std::size_t channel = 0; channel < map_.channels_; ++channel)
+        for (const Node& node : nodes_) {
+            const float code = node.depth[int(channel)] / VolumetricShadowMap::depth_unit;
+            put(std::uint16_t(std::min(code, codes) + 0.5f));
+        }
+}
+
+}  // namespace mote::lights

@@ -1,0 +1,65 @@
+#include "lights/virtual_lights/particle_tracer.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+namespace mote::lights {
+
+using namespace core;
+
+namespace {
+
+constexpr std::uint32_t chunk_size = 32;
+constexpr std::uint32_t light_path_stream =
+    0x56504cu;  // keeps light paths apart from pixels of the same index
+
+VplSet trace_chunk(const Scene& scene, const LightPathSettings& settings, std::uint32_t begin,
+                   std::uint32_t end, std::uint64_t seed, std::uint32_t pass, SamplerKind kind) {
+    VplSet set;
+    for (std::uint32_t path = begin; path < end; ++path) {
+        // The paths of one pass form one low-discrepancy set; every pass has a scramble of its own.
+        Sampler sampler(kind, seed, path, pass, light_path_stream);
+        WalkContext context;
+        context.rng = Rng(hash_keys(seed, pass, path, light_path_stream));
+        const auto leave_vpl = [&](const ScatteringVertex& vertex, const Rgb& alpha, int depth) {
+            append_vpl(set, vertex, alpha, std::uint32_t(depth), path);
+        };
+        if (scene.has_media())
+            follow_light_path<true>(scene, settings, sampler, context, leave_vpl);
+        else
+            follow_light_path<false>(scene, settings, sampler, context, leave_vpl);
+        set.rays.add(context.rays);
+        set.tracking.add(context.tracking);
+    }
+    return set;
+}
+
+void append(VplSet& to, VplSet&& from) {
+    const auto offset = std::uint32_t(to.details.size());
+    for (VirtualPointLight& vpl : from.lights)
+        if (vpl.detail != VirtualPointLight::no_detail) vpl.detail += offset;
+    to.lights.insert(to.lights.end(), from.lights.begin(), from.lights.end());
+    to.details.insert(to.details.end(), from.details.begin(), from.details.end());
+    to.rays.add(from.rays);
+    to.tracking.add(from.tracking);
+}
+
+}  // namespace
+
+VplSet trace_light_paths(const Scene& scene, const LightPathSettings& settings, std::uint64_t seed,
+                         std::uint32_t pass, SamplerKind sampler) {
+    const std::uint32_t chunks = (settings.paths + chunk_size - 1) / chunk_size;
+    std::vector<VplSet> parts(chunks);
+    tbb::parallel_for(std::uint32_t(0), chunks, [&](std::uint32_t c) {
+        const std::uint32_t begin = c * chunk_size, end = std::min(begin + chunk_size, settings.paths);
+        parts[c] = trace_chunk(scene, settings, begin, end, seed, pass, sampler);
+    });
+    VplSet set;
+    for (VplSet& part : parts) append(set, std::move(part));
+    set.paths = settings.paths;
+    return set;
+}
+
+}  // namespace mote::lights

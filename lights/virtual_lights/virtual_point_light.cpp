@@ -1,0 +1,54 @@
+#include "lights/virtual_lights/virtual_point_light.h"
+
+namespace mote::lights {
+
+using namespace core;
+
+namespace {
+
+/// |wi.ns| / |wi.ng|: the light's end of the adjoint correction. The other end, |wo.ng|, is the cosine in G*.
+float incoming_correction(const ScatteringVertex& v) {
+    if (!v.on_surface()) return 1.0f;
+    const float geometric = std::fabs(glm::dot(v.wo, v.hit.geometric_normal));
+    return geometric > 0.0f ? std::fabs(glm::dot(v.wo, v.hit.shading.n)) / geometric : 0.0f;
+}
+
+}  // namespace
+
+Rgb VplDetail::eval(const Vec3& to_receiver) const {
+    return vertex.eval(to_receiver, TransportMode::power) * incoming_correction(vertex);
+}
+
+void append_vpl(VplSet& set, const ScatteringVertex& vertex, const Rgb& alpha, std::uint32_t depth,
+                std::uint32_t path) {
+    if (is_black(alpha) || !vertex.connectable()) return;
+    VirtualPointLight vpl;
+    vpl.depth = depth, vpl.path = path, vpl.position = vertex.position, vpl.intensity = alpha;
+    bool plain;
+    if (vertex.on_surface()) {
+        // A plain VPL shines on the side the light came from.
+        const bool front = glm::dot(vertex.hit.geometric_normal, vertex.wo) > 0.0f;
+        vpl.normal = front ? vertex.hit.geometric_normal : -vertex.hit.geometric_normal;
+        vpl.shading_normal = front ? vertex.hit.shading.n : -vertex.hit.shading.n;
+        vpl.position = offset_origin(vertex.hit, vpl.normal);
+        const auto reflectance =
+            vertex.bsdf->diffuse_reflectance(vertex.bsdf_point(), vertex.hit.shading.to_local(vertex.wo));
+        plain = reflectance.has_value();
+        if (plain) {
+            // The light must also arrive above the shading normal, or a diffuse surface reflects nothing.
+            if (glm::dot(vpl.shading_normal, vertex.wo) <= 0.0f) return;
+            vpl.intensity *= *reflectance * inv_pi * incoming_correction(vertex);
+        }
+    } else {
+        plain = vertex.phase->isotropic();
+        if (plain) vpl.intensity *= inv_four_pi;
+    }
+    if (is_black(vpl.intensity)) return;
+    if (!plain) {
+        vpl.detail = std::uint32_t(set.details.size());
+        set.details.push_back({vertex});
+    }
+    set.lights.push_back(vpl);
+}
+
+}  // namespace mote::lights

@@ -1,0 +1,41 @@
+// Screen-space bias compensation for the channels of any picture, of whatever renderer.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/image/image_file.h"
+#include "screenspace/ssbc/ssbc_layers.h"
+
+namespace mote::screenspace {
+
+/// How the layers of the picture are called; each stands for its three channels, .X .Y .Z or .R .G .B.
+struct SsbcChannels {
+    std::string position = "P", normal = "N";
+    std::string reflectance;  ///< empty: `DiffuseAlbedo` where the picture has it, otherwise `Albedo`
+    /// Layers that add up to the light that surfaces reflect. Empty: `direct` and `indirect...` where the
+    /// picture has them, otherwise the picture less its layer `emission`.
+    std::vector<std::string> light;
+};
+
+struct SsbcPicture {
+    SsbcSurfaces surfaces;
+    std::vector<HiddenSide> hidden;  ///< what the picture does not show, where it is known
+    std::vector<core::Rgb> light;
+    std::string light_from;  ///< the layers that were taken for it, in words
+};
+
+/// The light that surfaces reflect. Throws InputError naming the layers that are missing.
+SsbcPicture read_light(const core::ImageChannels& image, const SsbcChannels& channels);
+
+/// Light that a hidden side reflects, from the layer hidden_light_NAME that `mote_vpl` writes
+/// (hidden_side_name()). Throws InputError where there is none.
+std::vector<core::Rgb> read_hidden_light(const core::ImageChannels& image, std::size_t side);
+
+/// The light of a picture with its surfaces. The camera is that of the attribute worldToCamera, or stands at
+/// the origin where positions are in camera space, as some renderers write them. Reflectances above 1 by
+/// rounding, less than 1e-3, are cut off. Throws InputError naming all channels that are missing, for
+/// positions that no camera fits, and for reflectances that are none.
+SsbcPicture read_ssbc_picture(const core::ImageChannels& image, const SsbcChannels& channels);
+
+}  // namespace mote::screenspace
