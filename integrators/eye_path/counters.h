@@ -3,6 +3,7 @@
 
 #include <mutex>
 
+#include "core/geometry/ray_counters.h"
 #include "core/render/statistics.h"
 #include "core/scene/medium.h"
 
