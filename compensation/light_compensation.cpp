@@ -17,13 +17,7 @@ Rgb direct_light(const Scene& scene, const ResidualPath& path, WalkContext& cont
     const float u_lobe = context.rng.next_float();
     const auto next = path.vertex.sample(u_lobe, context.rng.next_vec2(), TransportMode::radiance);
     if (!next) return sum;
-    PathWeights weights = path.weights;
-    lights::apply_scattering<Media>(weights, *next, path.vertex.position);
-    MediumState state = path.state;
-    if (Media && path.vertex.on_surface()) state = path.vertex.state_towards(state, next->wi);
-    const Ray ray{path.vertex.ray_origin(next->wi), next->wi};
-    const Vec3* previous = next->delta ? nullptr : &path.vertex.position;
-    return sum + lights::light_along<Media>(scene, ray, state, weights, previous, context);
+    return sum + lights::light_towards<Media>(scene, path.vertex, *next, path.weights, path.state, context);
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ MediumState state_at_end(const Scene& scene, const Ray& ray, const MediumState& 
     if (!scene.rays().has_boundaries()) return state;
     ++context.rays.boundary;
     const auto pass = [](float, float, const MediumState&) { return true; };
-    return *for_each_part(scene.rays(), ray, state, context.boundary_hits, pass);
+    return *for_each_part(scene.rays(), ray, state, pass, [](const SurfaceHit&) { return true; });
 }
 
 Rgb exponential(const Rgb& optical_depth) {
@@ -84,7 +84,7 @@ ResidualPath ResidualTransport::start(const ScatteringVertex& receiver, const Me
     ResidualPath path;
     path.vertex = receiver, path.state = state;
     path.weights.throughput = throughput;
-    path.weights.hero = std::min(int(rng.next_float() * 3.0f), 2);
+    path.weights.hero = draw_hero(rng);
     find_mean_extinction(path);
     return path;
 }

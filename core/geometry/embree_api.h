@@ -7,7 +7,9 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include <array>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace mote::core::embree {
@@ -29,12 +31,31 @@ struct RawHit {
     unsigned geometry, primitive;
 };
 
+/// The hits along a ray in the order in which Embree finds them; takes memory only for more than a few.
+class RawHits {
+  public:
+    void push_back(const RawHit& hit) {
+        if (count_ == first_.size()) more_.assign(first_.begin(), first_.end());
+        if (count_ >= first_.size())
+            more_.push_back(hit);
+        else
+            first_[count_] = hit;
+        ++count_;
+    }
+    std::span<RawHit> all() { return {count_ > first_.size() ? more_.data() : first_.data(), count_}; }
+
+  private:
+    std::array<RawHit, 32> first_;
+    std::vector<RawHit> more_;
+    std::size_t count_ = 0;
+};
+
 /// What travels with a query to the callbacks. `collected` is null unless all hits are asked for. `base`
 /// comes first: the callbacks get its address.
 #if RTC_VERSION_MAJOR >= 4
 struct Query {
     RTCRayQueryContext base;
-    std::vector<RawHit>* collected = nullptr;
+    RawHits* collected = nullptr;
     Query() { rtcInitRayQueryContext(&base); }
 };
 inline constexpr auto filter_scene_flag = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
@@ -72,7 +93,7 @@ inline void occluded_stream(RTCScene scene, Query& query, RTCRay* rays, unsigned
 #else
 struct Query {
     RTCIntersectContext base;
-    std::vector<RawHit>* collected = nullptr;
+    RawHits* collected = nullptr;
     Query() { rtcInitIntersectContext(&base); }  // with the incoherent flag, the faster one for shadow rays
 };
 inline constexpr auto filter_scene_flag = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;

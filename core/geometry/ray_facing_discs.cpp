@@ -78,11 +78,11 @@ void RayFacingDiscs::hits(const Ray& ray, std::vector<Hit>& hits) const {
     r.ray.dir_x = ray.direction.x, r.ray.dir_y = ray.direction.y, r.ray.dir_z = ray.direction.z;
     r.ray.tfar = ray.t_max + back, r.ray.mask = 0xffffffffu;
     r.hit.geomID = r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    std::vector<embree::RawHit> raw;
+    embree::RawHits raw;
     embree::Query query;
     query.collected = &raw;
     embree::intersect_filtered(impl_->scene.get(), query, r, embree::collect_hits);
-    for (const embree::RawHit& h : raw)
+    for (const embree::RawHit& h : raw.all())
         hits.push_back({std::clamp(h.t - back, ray.t_min, ray.t_max), h.primitive});
     std::sort(hits.begin(), hits.end(),
               [](const Hit& a, const Hit& b) { return a.t != b.t ? a.t < b.t : a.index < b.index; });

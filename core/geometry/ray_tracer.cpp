@@ -72,7 +72,8 @@ bool count_memory(void* user_pointer, ssize_t bytes, bool) {
     return true;
 }
 
-bool is_boundary(const Shape& shape) { return shape.bsdf && shape.bsdf->traits().null; }
+bool is_pane(const Shape& shape) { return shape.bsdf && shape.bsdf->traits().pane; }
+bool is_boundary(const Shape& shape) { return is_pane(shape) || (shape.bsdf && shape.bsdf->traits().null); }
 
 }  // namespace
 
@@ -86,7 +87,7 @@ struct RayTracer::Implementation {
     embree::Device device;
     embree::Scene scenes[2];
     std::vector<Entry> entries;  // by Embree's geometry number
-    std::size_t boundaries = 0, surface_primitives = 0;
+    std::size_t boundaries = 0, panes = 0, surface_primitives = 0;
     bool use_streams = false;
     Bounds3 bounds;
 
@@ -115,7 +116,7 @@ struct RayTracer::Implementation {
         const auto geometry = entry.mesh ? embree::make_geometry(device.get(), *entry.mesh)
                                          : embree::make_geometry(device.get(), *entry.analytic);
         const Group group = is_boundary(shape) ? Group::boundaries : Group::surfaces;
-        boundaries += group == Group::boundaries;
+        boundaries += group == Group::boundaries, panes += is_pane(shape);
         if (group == Group::surfaces) surface_primitives += shape.primitive_count();
         rtcAttachGeometryByID(scene(group), geometry.get(), unsigned(entries.size()));
         entries.push_back(entry);
@@ -151,6 +152,7 @@ RayTracer::RayTracer(std::span<const std::shared_ptr<Shape>> shapes)
 RayTracer::~RayTracer() = default;
 
 bool RayTracer::has_boundaries() const { return impl_->boundaries > 0; }
+bool RayTracer::has_panes() const { return impl_->panes > 0; }
 Bounds3 RayTracer::bounds() const { return impl_->bounds; }
 std::size_t RayTracer::memory_bytes() const { return std::size_t(std::max<std::int64_t>(0, impl_->memory)); }
 
@@ -208,10 +210,17 @@ void RayTracer::occluded(std::span<ShadowPacket> packets) const {
 
 void RayTracer::all_hits(const Ray& ray, Group group, std::vector<SurfaceHit>& hits) const {
     hits.clear();
+    for_each_hit(ray, group, [&](const SurfaceHit& hit) {
+        hits.push_back(hit);
+        return true;
+    });
+}
+
+void RayTracer::visit_hits(const Ray& ray, Group group, Visitor visitor, const void* visit) const {
     if (!traceable(ray)) return;
-    std::vector<embree::RawHit> raw;
+    embree::RawHits found;
     embree::Query query;
-    query.collected = &raw;
+    query.collected = &found;
     RTCRayHit r = embree_ray_hit(ray);
     embree::intersect_filtered(impl_->scene(group), query, r, embree::collect_hits);
 
@@ -219,12 +228,13 @@ void RayTracer::all_hits(const Ray& ray, Group group, std::vector<SurfaceHit>& h
     const auto key = [&](const embree::RawHit& h) {
         return std::tuple(h.geometry, h.primitive, impl_->entries[h.geometry].mesh ? 0.0f : h.t);
     };
+    const auto raw = found.all();
     std::sort(raw.begin(), raw.end(), [&](auto& a, auto& b) { return key(a) < key(b); });
-    raw.erase(std::unique(raw.begin(), raw.end(), [&](auto& a, auto& b) { return key(a) == key(b); }),
-              raw.end());
-    std::stable_sort(raw.begin(), raw.end(), [](auto& a, auto& b) { return a.t < b.t; });
-    hits.reserve(raw.size());
-    for (const embree::RawHit& h : raw) hits.push_back(impl_->hit(ray, h));
+    const auto end = std::unique(raw.begin(), raw.end(), [&](auto& a, auto& b) { return key(a) == key(b); });
+    // Hits at one distance stay in the order of their keys.
+    std::sort(raw.begin(), end, [&](auto& a, auto& b) { return a.t != b.t ? a.t < b.t : key(a) < key(b); });
+    for (auto h = raw.begin(); h != end; ++h)
+        if (!visitor(visit, impl_->hit(ray, *h))) return;
 }
 
 }  // namespace mote::core

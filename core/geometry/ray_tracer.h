@@ -1,8 +1,9 @@
 // Embree behind one small class.
 //
-// Surfaces come in two groups, each a scene of its own: `opaque_to_connections` surfaces (every BSDF but
-// null) and `boundaries` (null BSDFs: borders between media that light passes straight). Shadow rays look at
-// the first group only; what the boundaries change is the medium, which Scene::transmittance walks through.
+// Shapes come in two groups, each a scene of its own: `surfaces`, which stop connections, and `boundaries`,
+// which light passes straight on: null BSDFs, borders between media, and panes, which reflect a part of it
+// (thindielectric). Shadow rays look at the first group only; what the boundaries take and which media lie
+// between them is found by Scene::transmittance.
 #pragma once
 
 #include <memory>
@@ -43,6 +44,7 @@ class RayTracer {
     RayTracer& operator=(const RayTracer&) = delete;
 
     bool has_boundaries() const;
+    bool has_panes() const;  ///< among the boundaries
     Bounds3 bounds() const;
 
     /// Closest hit in one group within (t_min, t_max).
@@ -55,10 +57,22 @@ class RayTracer {
     void occluded(std::span<ShadowPacket> packets) const;
     /// All hits of one group within (t_min, t_max), sorted by distance. Clears `hits` first.
     void all_hits(const Ray& ray, Group group, std::vector<SurfaceHit>& hits) const;
+    /// Calls visit(hit) for all of them, nearest first, until it returns false. Takes no memory unless there
+    /// are many.
+    template <typename Visit>
+    void for_each_hit(const Ray& ray, Group group, const Visit& visit) const {
+        visit_hits(
+            ray, group,
+            [](const void* v, const SurfaceHit& hit) { return bool((*static_cast<const Visit*>(v))(hit)); },
+            &visit);
+    }
 
     std::size_t memory_bytes() const;  ///< of Embree's structures
 
   private:
+    using Visitor = bool (*)(const void* visit, const SurfaceHit& hit);
+    void visit_hits(const Ray& ray, Group group, Visitor visitor, const void* visit) const;
+
     struct Implementation;
     std::unique_ptr<Implementation> impl_;
 };

@@ -8,6 +8,7 @@
 
 #include "core/math/bounds.h"
 #include "core/math/frame.h"
+#include "core/objects/error.h"
 #include "core/objects/object.h"
 
 namespace mote::core {
@@ -43,8 +44,11 @@ class Shape : public Object {
     std::shared_ptr<Bsdf> bsdf;
     std::shared_ptr<Emitter> emitter;  ///< area light, or null
     std::shared_ptr<Medium> interior, exterior;
+    SourceLocation exterior_where;  ///< where the scene file names the exterior
     bool has_medium_boundary =
         false;  ///< interior or exterior was named (vacuum counts when the other is named)
+    /// Such a boundary with a border, as a window of a room: it parts the outside of all closed shapes.
+    bool parts_the_outside = false;
     /// The BSDF is anisotropic: the shading frame's s then follows dp/du. Otherwise any frame will do.
     bool tangent_matters = false;
     std::uint32_t index = 0;         ///< position in Scene::shapes

@@ -102,8 +102,8 @@ void ObjectMaker::attach(const Element& element, const Properties& properties, O
         // A light may have read its medium itself.
         if (camera ? bool(camera->medium) : emitter->medium != nullptr && emitter->medium != medium.get())
             throw InputError("more than one medium for " + named(element), c.where);
-        if (camera) camera->medium = medium;
-        if (emitter) emitter->medium = medium.get();
+        if (camera) camera->medium = medium, camera->medium_where = c.where;
+        if (emitter) emitter->medium = medium.get(), emitter->medium_where = c.where;
     }
 }
 
@@ -126,6 +126,7 @@ void ObjectMaker::attach_to_shape(const Element& element, Shape& shape) {
             if (name != "interior" && name != "exterior")
                 throw InputError("a medium of a shape is named 'interior' or 'exterior'", c.where);
             (name == "interior" ? shape.interior : shape.exterior) = use_medium(c);
+            if (name == "exterior") shape.exterior_where = c.where;
         }
     }
     shape.has_medium_boundary = shape.interior || shape.exterior;

@@ -21,6 +21,7 @@ struct BsdfTraits {
     bool delta = false;         ///< has a part that only sample() can produce
     bool transmissive = false;  ///< lets light through
     bool null = false;     ///< the surface is invisible: light passes straight (a boundary between media)
+    bool pane = false;     ///< delta; a part of the light passes straight on: see straight_passage()
     bool diffuse = false;  ///< exactly Lambertian reflection: diffuse_reflectance() says all
     bool textured = false;
     bool anisotropic = false;  ///< looks different when turned about the normal
@@ -33,6 +34,13 @@ struct BsdfSample {
     bool delta = false;
     bool transmitted = false;  ///< wi lies on the other side of the surface
     float eta = 1.0f;          ///< relative index of refraction along the path (for Russian roulette)
+};
+
+/// Light that passes a pane straight on, unbent: connections pass it, and it counts as no scattering.
+struct StraightPassage {
+    float probability;  ///< that sample() lets a path pass
+    Rgb weight;         ///< of a path that was let pass
+    Rgb transmittance() const { return probability * weight; }
 };
 
 /// Where on the surface: textures are looked up here.
@@ -55,6 +63,11 @@ class Bsdf : public Object {
     /// Draws wi given wo. `u_lobe` chooses among lobes, `u` the direction. Nothing when absorbed.
     virtual std::optional<BsdfSample> sample(const BsdfPoint& p, const Vec3& wo, float u_lobe, const Vec2& u,
                                              TransportMode mode) const = 0;
+
+    /// Of a pane seen from wo's side; the same from both sides.
+    virtual StraightPassage straight_passage(const BsdfPoint&, const Vec3& /*wo*/) const {
+        return {0.0f, Rgb(0.0f)};
+    }
 
     /// Reflectance of a purely Lambertian BSDF seen from wo's side; nothing when it is anything else.
     virtual std::optional<Rgb> diffuse_reflectance(const BsdfPoint&, const Vec3& /*wo*/) const {

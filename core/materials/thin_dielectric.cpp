@@ -19,6 +19,7 @@ class ThinDielectric final : public Bsdf {
     BsdfTraits traits() const override {
         return {.delta = true,
                 .transmissive = true,
+                .pane = true,
                 .textured = reflectance_.textured() || transmittance_.textured()};
     }
     Rgb eval(const BsdfPoint&, const Vec3&, const Vec3&, TransportMode) const override { return Rgb(0.0f); }
@@ -37,6 +38,10 @@ class ThinDielectric final : public Bsdf {
         }
         if (is_black(s.weight)) return std::nullopt;
         return s;
+    }
+    StraightPassage straight_passage(const BsdfPoint& p, const Vec3& wo) const override {
+        if (wo.z == 0.0f) return {0.0f, Rgb(0.0f)};
+        return {1.0f - reflected_share(wo), transmittance_.eval(p.uv)};
     }
     Rgb albedo(const BsdfPoint& p, const Vec3& wo) const override {
         const float r = reflected_share(wo);

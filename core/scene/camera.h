@@ -8,6 +8,7 @@
 
 #include "core/math/ray.h"
 #include "core/math/transform.h"
+#include "core/objects/error.h"
 #include "core/objects/object.h"
 
 namespace mote::core {
@@ -26,6 +27,7 @@ class Camera : public Object {
     virtual Transform to_world() const = 0;
 
     std::shared_ptr<Medium> medium;  ///< the medium around the camera where the scene file names one
+    SourceLocation medium_where;     ///< of that name
 };
 
 }  // namespace mote::core

@@ -5,6 +5,7 @@
 
 #include "core/math/bounds.h"
 #include "core/math/vec.h"
+#include "core/objects/error.h"
 #include "core/objects/object.h"
 
 namespace mote::core {
@@ -87,6 +88,7 @@ class Emitter : public Object {
     virtual void set_shape(const Shape* /*shape*/) {}
 
     const Medium* medium = nullptr;  ///< the medium around the light where the scene file names one
+    SourceLocation medium_where;     ///< of that name
 };
 
 }  // namespace mote::core

@@ -1,30 +1,36 @@
-// The media along a ray: boundaries cut it into parts of one medium each.
+// The media along a ray: boundaries cut it into parts of one medium each; panes among them take light.
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "core/geometry/ray_tracer.h"
+#include "core/materials/bsdf.h"
 #include "core/scene/medium_state.h"
 
 namespace mote::core {
 
+/// What a ray meets where it crosses a pane.
+inline StraightPassage passage_through(const SurfaceHit& pane, const Vec3& direction) {
+    return pane.shape->bsdf->straight_passage({pane.uv}, pane.shading.to_local(-direction));
+}
+inline bool is_pane(const SurfaceHit& boundary) { return boundary.shape->bsdf->traits().pane; }
+
 /// Calls part(t0, t1, state) for every part of the ray between boundaries, vacuum and parts of no length
-/// among them, until it returns false. `state` holds the media at ray.t_min; `boundaries` is memory to reuse,
-/// and holds what was met. Returns the media at ray.t_max, nothing when it was stopped.
-template <typename Part>
+/// among them, and pane(hit) for every pane between them, until one returns false. `state` holds the media at
+/// ray.t_min. Returns the media at ray.t_max, nothing when it was stopped.
+template <typename Part, typename Pane>
 std::optional<MediumState> for_each_part(const RayTracer& rays, const Ray& ray, MediumState state,
-                                         std::vector<SurfaceHit>& boundaries, const Part& part) {
+                                         const Part& part, const Pane& pane) {
     float t = ray.t_min;
-    if (rays.has_boundaries()) {
-        rays.all_hits(ray, RayTracer::Group::boundaries, boundaries);
-        for (const SurfaceHit& boundary : boundaries) {
-            if (!part(t, boundary.t, state)) return std::nullopt;
-            state.cross(*boundary.shape, boundary.geometric_normal, ray.direction);
-            t = boundary.t;
-        }
-    }
-    if (!part(t, ray.t_max, state)) return std::nullopt;
+    bool goes_on = true;
+    const auto cross = [&](const SurfaceHit& boundary) {
+        goes_on = part(t, boundary.t, state) && (!is_pane(boundary) || pane(boundary));
+        state.cross(*boundary.shape, boundary.geometric_normal, ray.direction);
+        t = boundary.t;
+        return goes_on;
+    };
+    if (rays.has_boundaries()) rays.for_each_hit(ray, RayTracer::Group::boundaries, cross);
+    if (!goes_on || !part(t, ray.t_max, state)) return std::nullopt;
     return state;
 }
 

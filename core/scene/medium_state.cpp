@@ -21,8 +21,8 @@ void MediumState::cross(const Shape& shape, const Vec3& geometric_normal, const 
 
 void MediumState::enter(const Shape& shape) {
     if (!shape.has_medium_boundary || inside(shape)) return;
-    // Outside of every shape, the medium on this side is the one that the shape itself names.
-    if (count_ == 0 && shape.exterior) outside_ = shape.exterior.get();
+    // Outside of every shape, the medium on this side is the one that the wall itself names.
+    if (count_ == 0 && shape.parts_the_outside && shape.exterior) outside_ = shape.exterior.get();
     if (count_ == capacity) {
         overflow_ = true;
         return;
@@ -40,9 +40,11 @@ void MediumState::leave(const Shape& shape) {
         was_inside = true;
         break;
     }
-    // The path began on the inner side of an open surface, such as a window of a room full of fog.
-    if (!was_inside && outside_ == shape.interior.get()) outside_ = shape.exterior.get();
-    if (count_ == 0 && shape.exterior) outside_ = shape.exterior.get();
+    if (shape.parts_the_outside) {
+        // The path began on the inner side of an open surface, such as a window of a room full of fog.
+        if (!was_inside && outside_ == shape.interior.get()) outside_ = shape.exterior.get();
+        if (count_ == 0 && shape.exterior) outside_ = shape.exterior.get();
+    }
     update();
 }
 

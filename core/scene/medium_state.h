@@ -1,5 +1,9 @@
 // Which media surround a point of a path: the shapes it is inside of, and the medium outside all of them.
 //
+// A scene has one outermost medium (Scene::outermost_medium): who is outside of all shapes is in it, be it
+// the sensor, a light, or a vertex of a path. Open walls, such as those of a room with a window, may part the
+// outside into regions of different media; closed shapes never do.
+//
 // Media are interior and exterior of shapes. Inside several shapes at once the one declared last in the scene
 // file wins: a rule of position alone, so that a path and its reverse agree (a stack ordered by entry would
 // not), and overlapping media are well defined. A shape whose interior was left out holds vacuum.

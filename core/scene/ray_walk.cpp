@@ -1,5 +1,7 @@
 #include "core/scene/ray_walk.h"
 
+#include "core/scene/media_along.h"
+
 namespace mote::core {
 namespace {
 
@@ -11,6 +13,23 @@ std::optional<float> cross_segment(const MediumState& state, const Ray& ray, flo
     Ray segment = ray;
     segment.t_min = t0, segment.t_max = t1;
     return medium->sample_collision(segment, weights, emitted, context.rng, context.tracking);
+}
+
+/// A path passes a pane by chance. Light that was looked for through it, with certainty, could have been
+/// found this way with that chance: what `light` compares.
+bool passes(const SurfaceHit& pane, const Vec3& direction, PathWeights& weights, Rng& rng) {
+    const StraightPassage passage = passage_through(pane, direction);
+    if (!(rng.next_float() < passage.probability)) return false;
+    weights.throughput *= passage.weight;
+    weights.light /= passage.probability;
+    return true;
+}
+
+WalkEvent reflected_at(const SurfaceHit& pane, float surface_distance) {
+    WalkEvent event;
+    event.kind = WalkEvent::Kind::surface, event.hit = pane, event.distance = pane.t;
+    event.surface_distance = surface_distance, event.reflected = true;
+    return event;
 }
 
 WalkEvent collision_at(float t, const Medium* medium, float surface_distance) {
@@ -27,25 +46,27 @@ WalkEvent walk(const Scene& scene, const Ray& ray, MediumState& state, PathWeigh
                WalkContext& context) {
     ++context.rays.closest;
     const auto hit = scene.rays().closest(ray);
-    if constexpr (Media) {
-        context.boundary_hits.clear();
-        float t = ray.t_min;
-        const float t_end = hit ? hit->t : ray.t_max;
-        if (scene.rays().has_boundaries()) {
-            Ray boundary_ray = ray;
-            boundary_ray.t_max = t_end;
-            ++context.rays.boundary;
-            scene.rays().all_hits(boundary_ray, RayTracer::Group::boundaries, context.boundary_hits);
-            for (const SurfaceHit& boundary : context.boundary_hits) {
+    const float t_end = hit ? hit->t : ray.t_max;
+    float t = ray.t_min;
+    if constexpr (Media) context.boundary_hits.clear();
+    if (Media ? scene.rays().has_boundaries() : scene.rays().has_panes()) {
+        Ray boundary_ray = ray;
+        boundary_ray.t_max = t_end;
+        ++context.rays.boundary;
+        scene.rays().all_hits(boundary_ray, RayTracer::Group::boundaries, context.boundary_hits);
+        for (const SurfaceHit& boundary : context.boundary_hits) {
+            if constexpr (Media)
                 if (const auto c = cross_segment(state, ray, t, boundary.t, weights, emitted, context))
                     return collision_at(*c, state.current(), t_end);
-                state.cross(*boundary.shape, boundary.geometric_normal, ray.direction);
-                t = boundary.t;
-            }
+            if (is_pane(boundary) && !passes(boundary, ray.direction, weights, context.rng))
+                return reflected_at(boundary, t_end);
+            if constexpr (Media) state.cross(*boundary.shape, boundary.geometric_normal, ray.direction);
+            t = boundary.t;
         }
+    }
+    if constexpr (Media)
         if (const auto c = cross_segment(state, ray, t, t_end, weights, emitted, context))
             return collision_at(*c, state.current(), t_end);
-    }
     WalkEvent event;
     event.surface_distance = ray.t_max;
     if (hit) {

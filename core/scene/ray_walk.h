@@ -1,11 +1,12 @@
-// Follows a ray through null boundaries and media to its next real event: a surface, a collision, or the
-// outside.
+// Follows a ray through null boundaries, panes and media to its next real event: a surface, a collision, or
+// the outside. A pane that lets the path pass is no event; one that reflects it is.
 //
 // Everything that traces paths (path tracers, light particles, eye paths of many-light methods) advances by
 // this one function, so that all of them agree on which medium lies where. Without media it is one
 // closest-hit query.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "core/geometry/ray_counters.h"
@@ -21,18 +22,23 @@ struct WalkContext {
     std::vector<SurfaceHit> boundary_hits;  ///< up to the first surface on the last ray; reused between rays
 };
 
+/// The channel that drives the distances of a path, drawn once a path (PathWeights::hero).
+inline int draw_hero(Rng& rng) { return std::min(int(rng.next_float() * 3.0f), 2); }
+
 struct WalkEvent {
     enum class Kind : std::uint8_t { escaped, surface, collision };
     Kind kind = Kind::escaped;
     float distance = infinity;          ///< along the ray [m]
-    float surface_distance = infinity;  ///< of the first surface on the ray, reached or not; else t_max
+    float surface_distance = infinity;  ///< of the first surface on the ray, reached or not; else t_max.
+                                        ///< Panes are passed
     SurfaceHit hit;                     ///< surface only
+    bool reflected = false;             ///< by the pane `hit`, which the path did not pass
     const Medium* medium = nullptr;     ///< collision only
 };
 
 /// Advances along `ray` and updates `state` (media at the end), `weights` (see Medium::sample_collision) and
-/// `emitted` (emission of media met on the way). `Media` = false compiles the media away: state, weights and
-/// emitted are left alone.
+/// `emitted` (emission of media met on the way). `Media` = false compiles the media away: state and emitted
+/// are left alone, weights where there are no panes.
 template <bool Media>
 WalkEvent walk(const Scene& scene, const Ray& ray, MediumState& state, PathWeights& weights, Rgb& emitted,
                WalkContext& context);

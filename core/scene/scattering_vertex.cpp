@@ -32,7 +32,8 @@ std::optional<ScatterSample> ScatteringVertex::sample(float u_lobe, const Vec2& 
         const PhaseSample s = phase->sample(wo, u);
         return ScatterSample{s.wi, s.weight, s.pdf_solid_angle};
     }
-    const auto s = bsdf->sample(bsdf_point(), hit.shading.to_local(wo), u_lobe, u, mode);
+    // The chance to be reflected was taken by the walk (ray_walk.cpp): the first lobe is the reflection.
+    const auto s = bsdf->sample(bsdf_point(), hit.shading.to_local(wo), reflected ? 0.0f : u_lobe, u, mode);
     if (!s || is_black(s->weight)) return std::nullopt;
     const Vec3 wi = glm::normalize(hit.shading.to_world(s->wi));
     if (!sides_agree(hit, wo, wi)) return std::nullopt;
@@ -54,6 +55,7 @@ ScatteringVertex make_vertex(const WalkEvent& event, const Ray& ray) {
     v.wo = -ray.direction;
     if (event.kind == WalkEvent::Kind::surface) {
         v.position = event.hit.position, v.hit = event.hit, v.bsdf = event.hit.shape->bsdf.get();
+        v.reflected = event.reflected;
     } else {
         v.position = ray.at(event.distance), v.phase = &event.medium->phase();
     }

@@ -27,6 +27,7 @@ struct ScatteringVertex {
     const Bsdf* bsdf = nullptr;            ///< surface
     const PhaseFunction* phase = nullptr;  ///< medium
     SurfaceHit hit;                        ///< surface only
+    bool reflected = false;                ///< by a pane: what passes it is not part of what it scatters
 
     bool on_surface() const { return bsdf != nullptr; }
     BsdfPoint bsdf_point() const { return {hit.uv}; }

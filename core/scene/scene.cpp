@@ -29,18 +29,16 @@ Scene::Scene(Parts parts) : parts_(std::move(parts)) {
         Shape& shape = *parts_.shapes[i];
         shape.index = std::uint32_t(i);
         shape.has_medium_boundary = shape.has_medium_boundary || shape.interior || shape.exterior;
+        shape.parts_the_outside = shape.has_medium_boundary && !shape.closed();
         if (shape.emitter) shape.emitter->set_shape(&shape);
     }
     rays_ = std::make_unique<RayTracer>(parts_.shapes);
     find_bounds();
+    find_boundaries();
+    find_outermost_medium();
     add_medium_lights();
     build_light_tables();
-    find_boundaries();
-    // Where the picture's middle begins to be seen: a boundary nearer than that, or at the camera itself, is
-    // never crossed.
-    const Ray middle = parts_.camera->sample_ray(
-        0.5f * Vec2(float(parts_.film.width), float(parts_.film.height)), Vec2(0.5f));
-    camera_state_ = medium_state_at(middle.at(middle.t_min), parts_.camera->medium.get());
+    find_eye_states();
     find_emitter_states();
 }
 
@@ -100,8 +98,7 @@ Bounds3 Scene::medium_extent(const Medium& medium) const {
         if (shape->interior.get() == &medium) box.extend(shape->closed() ? shape->bounds() : bounds_);
         named_by(shape->exterior.get());
     }
-    named_by(parts_.camera->medium.get());
-    for (const auto& emitter : parts_.emitters) named_by(emitter->medium);
+    named_by(outermost_);
     const Bounds3 own = medium.bounds();
     box.lower = glm::max(box.lower, own.lower), box.upper = glm::min(box.upper, own.upper);
     return box;
@@ -111,13 +108,8 @@ Bounds3 Scene::medium_extent(const Medium& medium) const {
 void Scene::add_medium_lights() {
     for (const auto& medium : parts_.media) {
         if (!medium->traits().emissive) continue;
-        auto light = medium->make_emitter(medium_extent(*medium));
-        if (!light) continue;
-        const bool outside =
-            parts_.camera->medium == medium || std::any_of(parts_.shapes.begin(), parts_.shapes.end(),
-                                                           [&](auto& s) { return s->exterior == medium; });
-        if (outside) light->medium = medium.get();
-        parts_.emitters.push_back(std::move(light));
+        if (auto light = medium->make_emitter(medium_extent(*medium)))
+            parts_.emitters.push_back(std::move(light));
     }
 }
 

@@ -88,20 +88,30 @@ class Scene {
     /// Where a light without extent (point, spot) stands; nothing for all others.
     static std::optional<Vec3> light_position(const Emitter& emitter);
 
+    /// The medium that surrounds everything, of which all who name it agree; null: vacuum.
+    const Medium* outermost_medium() const { return outermost_; }
     /// The media around a point: found by casting rays against the medium boundaries, see medium_state.h.
+    /// `declared`: what stands there says in which medium it is; counts where open walls part the outside.
     MediumState medium_state_at(const Vec3& p, const Medium* declared) const;
+    /// Where an eye ray begins, at ray.t_min: what lies nearer is not seen.
+    MediumState eye_medium_state(const Ray& ray) const;
+    /// The same for the middle of the picture.
     MediumState camera_medium_state() const { return camera_state_; }
     /// State at the origin of a light particle or at a light's position.
     MediumState emitter_medium_state(const Emitter& emitter, const EmissionSample& sample) const;
 
-    /// The transmittance from one point to another through all media and null boundaries, estimated without
-    /// bias; opaque surfaces are not looked at. `state` holds the media at `from`.
+    /// Does anything but opaque surfaces take light from connections: media, panes?
+    bool attenuates() const { return has_media() || rays_->has_panes(); }
+    /// The transmittance from one point to another through all media, null boundaries and panes, estimated
+    /// without bias; opaque surfaces are not looked at. `state` holds the media at `from`.
     Rgb transmittance(const Vec3& from, const Vec3& to, const MediumState& state, Rng& rng,
                       TrackingCounters& counters) const;
     /// The same as a connection to a light, for multiple importance sampling (see Medium::connect). Returns
     /// the medium at ray.t_max, or null where that is vacuum or nothing came through.
     const Medium* connect(const Ray& ray, const MediumState& state, PathWeights& weights, Rng& rng,
                           TrackingCounters& counters) const;
+    /// The same for methods that do not see media: panes alone.
+    void connect_through_panes(const Ray& ray, PathWeights& weights) const;
     bool has_media() const { return !parts_.media.empty(); }
 
   private:
@@ -111,13 +121,21 @@ class Scene {
     void add_medium_lights();
     void build_light_tables();
     void find_boundaries();
+    void find_outermost_medium();
+    bool reaches_outside(const Shape& shape) const;
+    const Medium* exterior_of_all_walls() const;
+    bool names_outermost(const Medium* medium, const MediumState& here) const;
+    Vec3 eye_start() const;
+    void find_eye_states();
     void find_emitter_states();
+    bool any_boundary_in(const Bounds3& box, const Shape* except) const;
     MediumState medium_state_near(const Vec3& p, const Medium* declared, const Shape* excluded) const;
     MediumState area_light_state(const Emitter& emitter, const Shape& shape, const Vec3& p,
                                  const Vec3& normal) const;
     const Medium* outside_medium(const MediumState& inside, ProbeRays& probes, const Shape* excluded) const;
-    template <typename Segment>
-    const Medium* for_each_segment(const Ray& ray, MediumState state, const Segment& segment) const;
+    template <typename Segment, typename Pane>
+    const Medium* for_each_segment(const Ray& ray, const MediumState& state, const Segment& segment,
+                                   const Pane& pane) const;
 
     Parts parts_;
     std::unique_ptr<RayTracer> rays_;
@@ -125,13 +143,16 @@ class Scene {
     const Emitter* environment_ = nullptr;
     Distribution1D direct_lights_, particle_lights_;
     std::map<const Emitter*, std::size_t> emitter_index_;
+    const Medium* outermost_ = nullptr;
     MediumState camera_state_;
+    bool eyes_differ_ = false;  ///< a boundary passes through where eye rays begin
     /// Shapes with a medium on either side; a closed one whose normals point inwards (a room) is `inward`.
     struct Boundary {
         const Shape* shape;
         bool closed, inward;
     };
     std::vector<Boundary> boundaries_;
+    bool outside_is_parted_ = false;  ///< by open boundaries
     /// Lights whose media are the same wherever on the light a particle starts.
     std::map<const Emitter*, MediumState> emitter_states_;
 };

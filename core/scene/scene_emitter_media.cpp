@@ -37,14 +37,15 @@ bool may_cross(const Shape& boundary, const Bounds3& box) {
 
 }  // namespace
 
+bool Scene::any_boundary_in(const Bounds3& box, const Shape* except) const {
+    return std::any_of(boundaries_.begin(), boundaries_.end(),
+                       [&](const Boundary& b) { return b.shape != except && may_cross(*b.shape, box); });
+}
+
 void Scene::find_emitter_states() {
     for (const auto& shape : parts_.shapes) {
         if (!shape->emitter) continue;
-        const Bounds3 box = shape->bounds();
-        const bool straddles = std::any_of(boundaries_.begin(), boundaries_.end(), [&](const Boundary& b) {
-            return b.shape != shape.get() && may_cross(*b.shape, box);
-        });
-        if (straddles) continue;  // found particle by particle
+        if (any_boundary_in(shape->bounds(), shape.get())) continue;  // found particle by particle
         const ShapeSample s = shape->sample_area({0.37f, 0.61f});
         emitter_states_[shape->emitter.get()] =
             area_light_state(*shape->emitter, *shape, s.position, s.normal);
@@ -53,7 +54,7 @@ void Scene::find_emitter_states() {
         const EmitterTraits traits = emitter->traits();
         if (traits.kind == EmitterKind::area) continue;
         MediumState state;
-        state.set_outside(emitter->medium);
+        state.set_outside(outside_is_parted_ && emitter->medium ? emitter->medium : outermost_);
         if (!traits.infinite) {
             const auto position = light_position(*emitter);
             if (!position) continue;

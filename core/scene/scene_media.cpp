@@ -123,6 +123,7 @@ void Scene::find_boundaries() {
             boundary.inward = c.count > 0 && c.first_leaves;
         }
         boundaries_.push_back(boundary);
+        outside_is_parted_ = outside_is_parted_ || !boundary.closed;
     }
     if (boundaries_.size() <= std::size_t(MediumState::capacity)) return;
     for (const Boundary& b : boundaries_) {
@@ -143,10 +144,8 @@ MediumState Scene::medium_state_at(const Vec3& p, const Medium* declared) const 
 /// `excluded`: the shape that p lies on; it takes no part.
 MediumState Scene::medium_state_near(const Vec3& p, const Medium* declared, const Shape* excluded) const {
     MediumState state;
-    if (boundaries_.empty()) {
-        state.set_outside(declared);
-        return state;
-    }
+    state.set_outside(outermost_);
+    if (boundaries_.empty()) return state;
     ProbeRays probes(*rays_, p);
     bool declared_is_inside = false;
     for (const Boundary& b : boundaries_)
@@ -154,11 +153,14 @@ MediumState Scene::medium_state_near(const Vec3& p, const Medium* declared, cons
             state.enter(*b.shape);
             declared_is_inside = declared_is_inside || b.shape->interior.get() == declared;
         }
-    state.set_outside(declared && !declared_is_inside ? declared : outside_medium(state, probes, excluded));
+    if (outside_is_parted_)
+        state.set_outside(declared && !declared_is_inside ? declared
+                                                          : outside_medium(state, probes, excluded));
     return state;
 }
 
-/// The medium outside of all shapes that `inside` lists: the one that the nearest surface names on our side.
+/// Where open walls part the outside of all closed shapes: the medium that the nearest surface names on our
+/// side. `inside`: the closed shapes around the point.
 const Medium* Scene::outside_medium(const MediumState& inside, ProbeRays& probes,
                                     const Shape* excluded) const {
     struct Nearest {
@@ -181,16 +183,12 @@ const Medium* Scene::outside_medium(const MediumState& inside, ProbeRays& probes
             }
             if (shape.closed() && hit.shape != excluded)
                 state.cross(shape, hit.geometric_normal, probes.direction(i));
-            blocked = blocked || !shape.bsdf->traits().null;
+            blocked = blocked || !(shape.bsdf->traits().null || shape.bsdf->traits().pane);
         }
     }
     if (seen.t < infinity) return seen.medium;
     if (hidden.t < infinity) return hidden.medium;
-    // Nothing in sight: all shapes may still agree on what is outside of them.
-    const Medium* common = boundaries_.front().shape->exterior.get();
-    for (const Boundary& b : boundaries_)
-        if (b.shape->exterior.get() != common) common = nullptr;
-    return common;
+    return outermost_;
 }
 
 }  // namespace mote::core

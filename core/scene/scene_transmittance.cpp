@@ -5,39 +5,66 @@
 
 namespace mote::core {
 
-/// Calls segment(medium, ray) for every part of the ray that lies in a medium, until it returns false.
-/// Returns the medium at the end, null when it was not reached.
-template <typename Segment>
-const Medium* Scene::for_each_segment(const Ray& ray, MediumState state, const Segment& segment) const {
-    std::vector<SurfaceHit> boundaries;  // takes memory only when one is met
+/// Calls segment(medium, ray) for every part of the ray that lies in a medium, and pane(passage) at every
+/// pane, until one returns false. Returns the medium at the end, null when it was not reached.
+template <typename Segment, typename Pane>
+const Medium* Scene::for_each_segment(const Ray& ray, const MediumState& state, const Segment& segment,
+                                      const Pane& pane) const {
     const auto part = [&](float t0, float t1, const MediumState& here) {
         const Medium* medium = here.current();
         return !medium || !(t0 < t1) || bool(segment(*medium, Ray{ray.origin, ray.direction, t0, t1}));
     };
-    const auto end = for_each_part(*rays_, ray, state, boundaries, part);
+    const auto end = for_each_part(*rays_, ray, state, part, [&](const SurfaceHit& hit) {
+        return bool(pane(passage_through(hit, ray.direction)));
+    });
     return end ? end->current() : nullptr;
 }
 
 Rgb Scene::transmittance(const Vec3& from, const Vec3& to, const MediumState& state, Rng& rng,
                          TrackingCounters& counters) const {
     Rgb result(1.0f);
-    if (!has_media()) return result;
+    if (!attenuates()) return result;
     const Vec3 d = to - from;
     const float distance = glm::length(d);
     if (!(distance > 0.0f)) return result;
-    for_each_segment(Ray{from, d / distance, 0.0f, distance}, state, [&](const Medium& m, const Ray& r) {
+    const auto medium = [&](const Medium& m, const Ray& r) {
         result *= m.transmittance(r, rng, counters);
         return !is_black(result);
-    });
+    };
+    const auto pane = [&](const StraightPassage& p) {
+        result *= p.transmittance();
+        return !is_black(result);
+    };
+    for_each_segment(Ray{from, d / distance, 0.0f, distance}, state, medium, pane);
     return result;
 }
 
+namespace {
+
+/// A path that goes this way passes the pane by chance (ray_walk.cpp), this connection always.
+bool connect_through(const StraightPassage& pane, PathWeights& weights) {
+    weights.throughput *= pane.transmittance();
+    weights.unidirectional *= pane.probability;
+    return !is_black(weights.throughput);
+}
+
+}  // namespace
+
 const Medium* Scene::connect(const Ray& ray, const MediumState& state, PathWeights& weights, Rng& rng,
                              TrackingCounters& counters) const {
-    if (!has_media()) return nullptr;
-    return for_each_segment(ray, state, [&](const Medium& m, const Ray& r) {
+    if (!attenuates()) return nullptr;
+    const auto medium = [&](const Medium& m, const Ray& r) {
         m.connect(r, weights, rng, counters);
         return !is_black(weights.throughput);
+    };
+    const auto pane = [&](const StraightPassage& p) { return connect_through(p, weights); };
+    return for_each_segment(ray, state, medium, pane);
+}
+
+void Scene::connect_through_panes(const Ray& ray, PathWeights& weights) const {
+    if (!rays_->has_panes()) return;
+    rays_->for_each_hit(ray, RayTracer::Group::boundaries, [&](const SurfaceHit& hit) {
+        return !is_pane(hit) || connect_through(passage_through(hit, ray.direction), weights);
     });
 }
 

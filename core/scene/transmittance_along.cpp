@@ -1,5 +1,7 @@
 #include "core/scene/transmittance_along.h"
 
+#include "core/scene/media_along.h"
+
 namespace mote::core {
 
 void TransmittanceAlong::pass(float t) {
@@ -13,6 +15,7 @@ Rgb TransmittanceAlong::advance_to(float t) {
     while (!boundaries_.empty() && boundaries_.front().t <= t) {
         const SurfaceHit& boundary = boundaries_.front();
         pass(boundary.t);
+        if (is_pane(boundary)) transmittance_ *= passage_through(boundary, ray_.direction).transmittance();
         state_.cross(*boundary.shape, boundary.geometric_normal, ray_.direction);
         boundaries_ = boundaries_.subspan(1);
     }

@@ -9,19 +9,21 @@ namespace mote::integrators {
 
 struct EyeRay {
     core::Ray ray;
+    core::Vec2 film;        ///< its place in the picture [pixels]
     core::Sampler sampler;  ///< its first dimensions have been used for film and lens
     core::Rng rng;          ///< for tracking and roulette
 };
 
+/// `lens`: a point on the lens that all rays of a pass share; null: every ray has its own.
 inline EyeRay make_eye_ray(const core::Scene& scene, const core::RenderOptions& options,
-                           const core::PassContext& pass, int x, int y) {
+                           const core::PassContext& pass, int x, int y, const core::Vec2* lens = nullptr) {
     const std::uint64_t pixel = std::uint64_t(y) * std::uint64_t(options.width) + std::uint64_t(x);
     core::Sampler sampler(options.sampler, options.seed, pass.index, pixel);
     core::Rng rng = sampler.make_rng();
     const core::Vec2 offset = pass.filter.sample_offset(sampler.next_2d());
     const core::Vec2 film = core::Vec2(float(x) + 0.5f, float(y) + 0.5f) + offset;
-    const core::Ray ray = scene.camera().sample_ray(film, sampler.next_2d());
-    return {ray, sampler, rng};
+    const core::Ray ray = scene.camera().sample_ray(film, lens ? *lens : sampler.next_2d());
+    return {ray, film, sampler, rng};
 }
 
 }  // namespace mote::integrators

@@ -19,6 +19,14 @@ namespace mote::integrators {
 enum class Transport : std::uint8_t { emission, direct, indirect, single_scattering, multiple_scattering };
 inline constexpr std::size_t transport_count = 5;
 
+/// The layer of light that scattered `scatterings` times, first on a surface or in a medium as seen from the
+/// eye.
+constexpr Transport transport_layer(int scatterings, bool surface_first) {
+    if (scatterings == 0) return Transport::emission;
+    if (scatterings == 1) return surface_first ? Transport::direct : Transport::single_scattering;
+    return surface_first ? Transport::indirect : Transport::multiple_scattering;
+}
+
 /// How many of them a scene has: those of media come last.
 constexpr std::size_t transport_layer_count(bool media) { return media ? transport_count : 3; }
 

@@ -13,7 +13,7 @@ namespace {
 
 class Path final : public Integrator {
   public:
-    explicit Path(const Properties& properties) : settings_(read_path_settings(properties)) {}
+    explicit Path(const Properties& properties) : settings_{read_eye_path_limits(properties)} {}
 
     std::string type() const override { return "path"; }
     std::vector<Layer> layers(const Scene&) const override { return transport_layers(false, false); }
@@ -41,10 +41,10 @@ class Path final : public Integrator {
 }  // namespace
 
 void register_path(Registry& registry) {
-    registry.add(
-        {Category::integrator, "path", "Unbiased path tracer for surfaces; media are not seen.",
-         path_parameters(), R"(<integrator type="path"><integer name="max_depth" value="8"/></integrator>)"},
-        [](const Properties& p) { return std::make_shared<Path>(p); });
+    registry.add({Category::integrator, "path", "Unbiased path tracer for surfaces; media are not seen.",
+                  eye_path_parameters(),
+                  R"(<integrator type="path"><integer name="max_depth" value="8"/></integrator>)"},
+                 [](const Properties& p) { return std::make_shared<Path>(p); });
 }
 
 }  // namespace mote::integrators

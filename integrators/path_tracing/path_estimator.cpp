@@ -1,5 +1,6 @@
 #include "integrators/path_tracing/path_estimator.h"
 
+#include "integrators/eye_path/counters.h"
 #include "integrators/eye_path/eye_ray.h"
 
 namespace mote::integrators {
@@ -29,11 +30,9 @@ class PathEstimator final : public Estimator {
 
   private:
     void render_pixel(const PassContext& context, PassImage& image, int x, int y, WalkContext& walk) const {
-        EyeRay eye = make_eye_ray(scene_, options_, context, x, y);
+        const EyeRay eye = make_eye_ray(scene_, options_, context, x, y);
         walk.rng = eye.rng;
-        MediumState state;
-        if constexpr (Media) state = scene_.camera_medium_state();
-        store(trace_path<Media>(scene_, settings_, eye.ray, state, eye.sampler, walk), image, x, y, Media);
+        store(trace_path<Media>(scene_, settings_, eye, walk), image, x, y, Media);
     }
 
     const Scene& scene_;
@@ -53,24 +52,5 @@ template std::unique_ptr<Estimator> make_path_estimator<true>(const Scene&, cons
                                                               const PathSettings&);
 template std::unique_ptr<Estimator> make_path_estimator<false>(const Scene&, const RenderOptions&,
                                                                const PathSettings&);
-
-PathSettings read_path_settings(const Properties& properties) {
-    PathSettings settings;
-    settings.max_depth = int(properties.get_int("max_depth", -1));
-    if (settings.max_depth < -1 || settings.max_depth == 0)
-        throw InputError("max_depth must be -1 (no limit) or at least 1", properties.where_of("max_depth"));
-    settings.rr_depth = int(properties.get_int("rr_depth", 5));
-    if (settings.rr_depth < 1)
-        throw InputError("rr_depth must be at least 1", properties.where_of("rr_depth"));
-    return settings;
-}
-
-std::vector<Parameter> path_parameters() {
-    return {{"max_depth", "integer", "-1",
-             "longest path in edges: 1 emission only, 2 direct light, -1 no limit; a scattering in a medium "
-             "counts, "
-             "a null collision does not"},
-            {"rr_depth", "integer", "5", "depth from which Russian roulette may end a path"}};
-}
 
 }  // namespace mote::integrators

@@ -4,7 +4,7 @@
 // the channel that drives tracking, light and scattering directions combined at every vertex. On a scene
 // without media it is `path`, compiled from the same kernel.
 //
-// `vpl_bound` renders the transport that VPLs with a bounded geometry term estimate (see path_kernel.h).
+// `vpl_bound` renders the transport that VPLs with a bounded geometry term estimate (see trace_path.h).
 #include <fmt/format.h>
 
 #include "integrators/path_tracing/path_estimator.h"
@@ -18,7 +18,7 @@ namespace {
 
 class Volpath final : public Integrator {
   public:
-    explicit Volpath(const Properties& properties) : settings_(read_path_settings(properties)) {
+    explicit Volpath(const Properties& properties) : settings_{read_eye_path_limits(properties)} {
         const double bound = properties.get_float("vpl_bound", 0.0);
         if (bound < 0.0) throw InputError("vpl_bound must not be negative", properties.where_of("vpl_bound"));
         if (bound > 0.0) settings_.bound = float(bound);
@@ -77,48 +77,8 @@ Plan Volpath::plan(const Scene& scene, const Requirements& requirements) const {
 
 }  // namespace
 
-void plan_caustics(Plan& plan, const Scene& scene, const Requirements& r) {
-    if (!r.any_delta()) return;
-    bool hidden = false;
-    for (const auto& emitter : scene.emitters()) hidden |= !emitter->traits().can_be_hit();
-    if (hidden)
-        plan.miss("caustics of point, spot and directional lights", "light that passes delta surfaces last",
-                  "no path can hit these lights; mote_photon_map renders them");
-    plan.run("caustics", "by chance only",
-             "paths that reach a light through delta surfaces count when they hit it: expect noise, and use "
-             "mote_photon_map or a bidirectional method where they matter");
-}
-
-void plan_medium_lights(Plan& plan, const Requirements& r) {
-    if (r.lights_media > 0)
-        plan.run(
-            "emission of media", fmt::format("{} as lights", r.lights_media),
-            "points of heterogeneous ones are drawn for receivers, weighed against walks that meet them; "
-            "particles start in all of them");
-}
-
-void plan_media(Plan& plan, const Requirements& r) {
-    if (!r.any_media()) {
-        plan.leave_out("media", "no code for media runs", "the scene has none");
-        return;
-    }
-    for (std::size_t i = 0; i < r.media_descriptions.size(); ++i) {
-        plan.run("medium", r.media_descriptions[i], "in the scene");
-        plan.run("transmittance", r.media_estimators[i], r.media_estimator_reasons[i]);
-    }
-    if (r.media_heterogeneous > 0)
-        plan.run("distances", "delta tracking against the grid's majorants",
-                 "unbiased in heterogeneous media");
-    if (r.media_heterogeneous == 0)
-        plan.leave_out("tracking", "no null collisions",
-                       "every medium is homogeneous: distances are analytic");
-    if (!r.media_emissive) plan.leave_out("volume emission", "not looked up", "no medium emits");
-    if (!r.media_chromatic)
-        plan.leave_out("spectral weights", "all channels alike", "extinction is grey in every medium");
-}
-
 void register_volpath(Registry& registry) {
-    auto parameters = path_parameters();
+    auto parameters = eye_path_parameters();
     parameters.push_back({"vpl_bound", "float", "0",
                           "bound b [1/m^2] on the geometry term of the edge where VPLs connect; 0: none"});
     parameters.push_back({"equiangular", "boolean", "false",

@@ -9,8 +9,8 @@
 
 #include "gathering/photon_maps/photon_tracer.h"
 #include "gathering/photon_maps/progressive_radius.h"
-#include "integrators/eye_path/eye_ray.h"
-#include "integrators/path_tracing/path_estimator.h"
+#include "integrators/eye_path/counters.h"
+#include "integrators/eye_path/eye_path_parameters.h"
 #include "integrators/photon_map/photon_eye_path.h"
 #include "integrators/register_parts.h"
 
@@ -21,7 +21,7 @@ using namespace core;
 namespace {
 
 struct PhotonMapSettings {
-    PathSettings eye;  ///< max_depth counts the whole path from light to eye
+    EyePathLimits eye;  ///< max_depth counts the whole path from light to eye
     std::uint32_t paths = 100000;
     std::size_t neighbours = 50, max_photons = std::size_t(1) << 23;
     double alpha = 2.0 / 3.0;
@@ -54,11 +54,9 @@ class PhotonMapEstimator final : public Estimator {
                                  for (int y = y0; y < y1; ++y)
                                      for (int x = x0; x < x1; ++x) {
                                          if (context.cancelled) return;
-                                         EyeRay eye = make_eye_ray(scene_, options_, context, x, y);
+                                         const EyeRay eye = make_eye_ray(scene_, options_, context, x, y);
                                          walk.rng = eye.rng;
-                                         const MediumState state =
-                                             Media ? scene_.camera_medium_state() : MediumState();
-                                         store(path.trace(eye.ray, state, eye.sampler), image, x, y, Media);
+                                         store(path.trace(eye), image, x, y, Media);
                                      }
                                  counters_.add(walk.rays, walk.tracking);
                              });
@@ -108,7 +106,8 @@ class PhotonMapEstimator final : public Estimator {
 class MotePhotonMap final : public Integrator {
   public:
     explicit MotePhotonMap(const Properties& p) {
-        settings_.eye = read_path_settings(p);
+        settings_.eye = read_eye_path_limits(p);
+        settings_.eye.max_scatterings = 1;  // from then on photons take over
         settings_.paths = std::uint32_t(p.get_int_in("photon_paths", 100000, 1, std::int64_t(1) << 26));
         settings_.neighbours = std::size_t(p.get_int_in("neighbours", 50, 2, 1 << 16));
         settings_.max_photons =
@@ -170,7 +169,7 @@ Plan MotePhotonMap::plan(const Scene&, const Requirements& r) const {
 }  // namespace
 
 void register_mote_photon_map(Registry& registry) {
-    auto parameters = path_parameters();
+    auto parameters = eye_path_parameters();
     parameters.push_back({"photon_paths", "integer", "100000", "light paths traced in every pass"});
     parameters.push_back({"neighbours", "integer", "50", "photons that an estimate of the first pass holds"});
     parameters.push_back({"alpha", "float", "0.6667",

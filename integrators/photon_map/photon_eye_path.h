@@ -9,9 +9,7 @@
 #include <limits>
 
 #include "gathering/photon_maps/volume_photon_map.h"
-#include "integrators/eye_path/eye_roulette.h"
-#include "integrators/path_tracing/path_kernel.h"
-#include "lights/emitters/direct_light.h"
+#include "integrators/eye_path/eye_path.h"
 
 namespace mote::integrators {
 
@@ -32,52 +30,23 @@ struct PhotonScratch {
 template <bool Media>
 class PhotonEyePath {
   public:
-    PhotonEyePath(const core::Scene& scene, const PathSettings& settings, const PhotonMaps& maps,
+    PhotonEyePath(const core::Scene& scene, const EyePathLimits& limits, const PhotonMaps& maps,
                   core::WalkContext& context, PhotonScratch& scratch)
-        : scene_(scene), settings_(settings), maps_(maps), context_(context), scratch_(scratch) {}
+        : scene_(scene), limits_(limits), maps_(maps), context_(context), scratch_(scratch) {}
 
-    /// Radiance along `ray`, by layer. `state` holds the media at its origin.
-    TransportSum trace(core::Ray ray, core::MediumState state, core::Sampler& sampler) {
+    /// Radiance along the eye ray, by layer.
+    TransportSum trace(const EyeRay& eye) {
         TransportSum sum;
-        core::PathWeights weights;
-        if constexpr (Media) weights.hero = std::min(int(context_.rng.next_float() * 3.0f), 2);
-        float eta = 1.0f;
-        for (int depth = 1; settings_.max_depth < 0 || depth <= settings_.max_depth; ++depth) {
-            const core::MediumState start = state;
-            const core::Rgb throughput =
-                weights.throughput / lights::channel_average<Media>(weights.unidirectional);
-            core::Rgb emitted(0.0f);
-            const core::WalkEvent event = core::walk<Media>(scene_, ray, state, weights, emitted, context_);
-            if constexpr (Media) add_beam(sum, throughput, ray, event, start, depth);
-            sum[Transport::emission] +=
-                emitted + lights::found_light<Media>(scene_, event, ray, weights, nullptr);
-            if (event.kind == core::WalkEvent::Kind::escaped || depth == settings_.max_depth) break;
-
-            const core::ScatteringVertex vertex = make_vertex(event, ray);
-            const core::Vec2 choices = sampler.next_2d();  // of the light, and of the lobe
-            const bool sampled = vertex.on_surface() || !maps_.single_scattering;
-            const Transport direct = vertex.on_surface() ? Transport::direct : Transport::single_scattering;
-            if (vertex.connectable()) {
-                const core::Vec2 u = sampler.next_2d();
-                if (sampled)
-                    sum[direct] +=
-                        lights::sample_light<Media>(scene_, vertex, weights, state, choices.x, u, context_);
-                if (vertex.on_surface()) add_density(sum, weights, vertex, depth);
-            }
-            if (!sampled) break;
-            if (depth >= settings_.rr_depth &&
-                !survives<Media>(weights, eta, depth, context_.rng.next_float()))
-                break;
-            const auto next = vertex.sample(choices.y, sampler.next_2d(), core::TransportMode::radiance);
-            if (!next) break;
-            lights::apply_scattering<Media>(weights, *next, vertex.position);
-            eta *= next->eta;
-            if (Media && vertex.on_surface()) state = vertex.state_towards(state, next->wi);
-            ray = core::Ray{vertex.ray_origin(next->wi), next->wi};
-            if (next->delta) continue;
-            sum[direct] +=
-                lights::light_along<Media>(scene_, ray, state, weights, &vertex.position, context_);
-            break;
+        EyePath<Media> path(scene_, limits_, eye, context_);
+        const auto add_beam = [&](const EyeLeg& leg) {
+            if (Media && path.scatterings() == 0) this->add_beam(sum, leg, path.depth());
+        };
+        while (path.advance(context_, sum, add_beam)) {
+            const bool surface = path.vertex().on_surface();
+            if (!surface && maps_.single_scattering) break;  // the beam has it all
+            if (!path.vertex().connectable()) continue;
+            sum[path.layer_of_connection()] += path.sample_light(context_);
+            if (surface) add_density(sum, path);
         }
         return sum;
     }
@@ -85,28 +54,26 @@ class PhotonEyePath {
   private:
     /// Photons deeper than this would make the path longer than max_depth.
     int photon_depth(int eye_depth) const {
-        return settings_.max_depth < 0 ? std::numeric_limits<int>::max() : settings_.max_depth - eye_depth;
+        return limits_.max_depth < 0 ? std::numeric_limits<int>::max() : limits_.max_depth - eye_depth;
     }
 
-    void add_beam(TransportSum& sum, const core::Rgb& throughput, const core::Ray& ray,
-                  const core::WalkEvent& event, const core::MediumState& start, int depth) {
-        const auto light = maps_.volume.radiance(ray, event.surface_distance, start, photon_depth(depth),
-                                                 context_, scratch_.hits);
+    void add_beam(TransportSum& sum, const EyeLeg& leg, int depth) {
+        const core::Rgb throughput =
+            leg.before.throughput / lights::channel_average<Media>(leg.before.unidirectional);
+        const auto light = maps_.volume.radiance(leg.ray, leg.event.surface_distance, leg.start,
+                                                 photon_depth(depth), context_, scratch_.hits);
         sum[Transport::single_scattering] += throughput * light.single;
         sum[Transport::multiple_scattering] += throughput * light.multiple;
     }
 
-    void add_density(TransportSum& sum, const core::PathWeights& weights,
-                     const core::ScatteringVertex& vertex, int depth) {
-        const core::Rgb throughput =
-            weights.throughput / lights::channel_average<Media>(weights.unidirectional);
+    void add_density(TransportSum& sum, const EyePath<Media>& path) {
         sum[Transport::indirect] +=
-            throughput *
-            maps_.surface.radiance(vertex, maps_.estimate, photon_depth(depth), scratch_.neighbours);
+            path.throughput() * maps_.surface.radiance(path.vertex(), maps_.estimate,
+                                                       photon_depth(path.depth()), scratch_.neighbours);
     }
 
     const core::Scene& scene_;
-    const PathSettings& settings_;
+    const EyePathLimits& limits_;
     const PhotonMaps& maps_;
     core::WalkContext& context_;
     PhotonScratch& scratch_;

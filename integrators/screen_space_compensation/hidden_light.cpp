@@ -23,16 +23,13 @@ constexpr std::uint32_t first_stream = 0x68696464;  ///< of samplers, one a side
 template <bool Media>
 Rgb direct_light(const Scene& scene, const HiddenVertex& at, Sampler& sampler, WalkContext& walk) {
     PathWeights weights;
-    if constexpr (Media) weights.hero = std::min(int(walk.rng.next_float() * 3.0f), 2);
+    if constexpr (Media) weights.hero = draw_hero(walk.rng);
     const Vec2 choices = sampler.next_2d();  // of the light, and of the lobe
     Rgb light =
         lights::sample_light<Media>(scene, at.vertex, weights, at.state, choices.x, sampler.next_2d(), walk);
     const auto next = at.vertex.sample(choices.y, sampler.next_2d(), TransportMode::radiance);
     if (!next || next->delta) return light;
-    lights::apply_scattering<Media>(weights, *next, at.vertex.position);
-    const Ray ray{at.vertex.ray_origin(next->wi), next->wi};
-    const MediumState state = Media ? at.vertex.state_towards(at.state, next->wi) : at.state;
-    return light + lights::light_along<Media>(scene, ray, state, weights, &at.vertex.position, walk);
+    return light + lights::light_towards<Media>(scene, at.vertex, *next, weights, at.state, walk);
 }
 
 }  // namespace

@@ -31,6 +31,7 @@ class PixelRay {
         screenspace::peel(scene_, ray_, layers_, hits_);
         walk_.rays.closest += std::uint64_t(layers_);
         if (!scene_.has_media()) return;
+        state_ = scene_.eye_medium_state(ray_);
         scene_.rays().all_hits(ray_, core::RayTracer::Group::boundaries, walk_.boundary_hits);
         ++walk_.rays.boundary;
     }
@@ -44,7 +45,7 @@ class PixelRay {
         v.hit = hits_[layer], v.position = v.hit.position, v.bsdf = v.hit.shape->bsdf.get();
         v.wo = behind ? ray_.direction : -ray_.direction;
         if (!scene_.has_media()) return result;
-        result.state = scene_.camera_medium_state();
+        result.state = state_;
         const auto cross = [&](const core::SurfaceHit& hit) {
             result.state.cross(*hit.shape, hit.geometric_normal, ray_.direction);
         };
@@ -63,6 +64,7 @@ class PixelRay {
     core::WalkContext& walk_;
     std::uint32_t pixel_ = ~std::uint32_t(0);
     core::Ray ray_;
+    core::MediumState state_;  ///< where the ray begins
     std::vector<core::SurfaceHit> hits_;
 };
 

@@ -61,15 +61,6 @@ void plan_exact(Plan& plan, const AnalyticCounts& analytic, const AccelerationSe
                  "their intensity varies: a texture, or a cone that is mostly rim or wider than 90 degrees");
 }
 
-/// The camera names a medium in which a light, asked by itself, does not stand: maps would leave it out.
-bool media_disagree(const Scene& scene) {
-    return scene.camera().medium &&
-           std::any_of(scene.emitters().begin(), scene.emitters().end(), [&](const auto& e) {
-               return e->traits().delta_position && !e->medium &&
-                      !scene.emitter_medium_state(*e, {}).current();
-           });
-}
-
 void plan_maps(Plan& plan, const Scene& scene, const VisibilitySettings& s, int steps) {
     if (!s.shadow_maps) {
         plan.run("visibility", "shadow rays", "exact");
@@ -78,11 +69,6 @@ void plan_maps(Plan& plan, const Scene& scene, const VisibilitySettings& s, int 
     std::size_t count = 0;
     for (const auto& light : scene.emitters())
         count += lights::shadow_map_view_of(scene, *light, 1).has_value();
-    if (media_disagree(scene)) {
-        plan.leave_out("shadow maps", "shadow rays instead",
-                       "the camera names a medium and a light in it none: name it there too");
-        return;
-    }
     if (s.light_size == 0 || count == 0) {
         plan.run("visibility", "shadow rays",
                  s.light_size == 0 ? "light_size is 0" : "no light is a point, a cone or parallel");
@@ -110,7 +96,7 @@ void plan_maps(Plan& plan, const Scene& scene, const VisibilitySettings& s, int 
 ScatteringAccelerations::ScatteringAccelerations(const Scene& scene, const AccelerationSettings& settings) {
     if (settings.exact && AnalyticCounts(scene).any()) space_.emplace(scene);
     const VisibilitySettings& visibility = settings.visibility;
-    if (!visibility.used_in(scene) || visibility.light_size == 0 || media_disagree(scene)) return;
+    if (!visibility.used_in(scene) || visibility.light_size == 0) return;
     visibility.check(scene);
     maps_.emplace(scene, visibility.light_size, visibility.map);
 }

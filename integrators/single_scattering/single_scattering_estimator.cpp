@@ -53,22 +53,19 @@ void SingleScatteringEstimator<Media>::render_eye(const PassContext& context, co
                                                   std::span<const InScattering> lights, PassImage& image,
                                                   int x, int y, MarchScratch& scratch) {
     const std::uint64_t pixel = std::uint64_t(y) * std::uint64_t(options_.width) + std::uint64_t(x);
-    Sampler sampler(options_.sampler, options_.seed, context.index, pixel);
-    scratch.walk.rng = sampler.make_rng();
-    const Vec2 film =
-        Vec2(float(x) + 0.5f, float(y) + 0.5f) + context.filter.sample_offset(sampler.next_2d());
-    const Ray ray = eye_ray(film, numbers);
-    const MediumState state = Media ? scene_.camera_medium_state() : MediumState();
-    EyePath path = trace_eye<Media>(scene_, settings_.eye, lights, ray, state, sampler, scratch);
+    const EyeRay eye = make_eye_ray(scene_, options_, context, x, y, &numbers.lens);
+    scratch.walk.rng = eye.rng;
+    EyeLight path = trace_eye<Media>(scene_, settings_.eye, lights, eye, scratch);
     if constexpr (Media) {
         const FirstSurface first =
             path.first ? FirstSurface{path.first->t, path.first->geometric_normal} : FirstSurface{};
         if (settings_.sampling != ScatteringSampling::full && !lights.empty())
-            interpolated_.set_point(std::size_t(pixel), {film, first});
+            interpolated_.set_point(std::size_t(pixel), {eye.film, first});
+        const MediumState state = scene_.eye_medium_state(eye.ray);
         for (const InScattering& light : lights) {
             if (settings_.sampling != ScatteringSampling::full) break;
-            Ray lit = ray;
-            const RayEnd end = lit_end(light, ray, first);
+            Ray lit = eye.ray;
+            const RayEnd end = lit_end(light, eye.ray, first);
             if (end.dark()) continue;
             lit.t_max = end.distance;
             path.sum[Transport::single_scattering] += light.march(lit, state, scratch).radiance;

@@ -8,7 +8,8 @@
 
 #include <span>
 
-#include "core/math/sampler.h"
+#include "integrators/eye_path/eye_path_limits.h"
+#include "integrators/eye_path/eye_ray.h"
 #include "integrators/eye_path/transport_layers.h"
 #include "lights/shadow_maps/light_shadow_maps.h"
 #include "screenspace/in_scattering/in_scattering.h"
@@ -16,22 +17,24 @@
 namespace mote::integrators {
 
 struct EyeSettings {
-    int max_depth = 32;  ///< rays of one eye path through mirrors and glass
+    /// Rays through mirrors and glass, and one that tells what a surface scatters.
+    EyePathLimits limits{.max_depth = 33, .rr_depth = 1 << 30, .max_scatterings = 1};
     float voxels = 1.0f;
     const lights::LightShadowMaps* maps = nullptr;  ///< of lights without a position; null: traced
     bool other_lights =
         true;  ///< some light has no position, or a medium emits: distances are sampled for them
 };
 
-struct EyePath {
+/// One estimate of a pixel.
+struct EyeLight {
     TransportSum sum;
-    std::optional<core::SurfaceHit> first;  ///< what the first ray meets
+    std::optional<core::SurfaceHit> first;  ///< that the first ray meets, behind panes
 };
 
-/// `positional` are the lights that are marched. `state` holds the media at the ray's origin.
+/// `positional` are the lights that are marched. scratch.walk holds the path's generator.
 template <bool Media>
-EyePath trace_eye(const core::Scene& scene, const EyeSettings& settings,
-                  std::span<const screenspace::InScattering> positional, core::Ray ray,
-                  core::MediumState state, core::Sampler& sampler, screenspace::MarchScratch& scratch);
+EyeLight trace_eye(const core::Scene& scene, const EyeSettings& settings,
+                   std::span<const screenspace::InScattering> positional, const EyeRay& eye,
+                   screenspace::MarchScratch& scratch);
 
 }  // namespace mote::integrators

@@ -19,7 +19,7 @@ ScatteringSettings read_scattering_settings(const Properties& p) {
         s.accelerations.visibility = visibility->settings();
     s.march.voxels = float(p.get_float_in("voxels", 1.0, 1e-3, 1e6));
     s.line.depth_tolerance = float(p.get_float_in("depth_tolerance", 0.02, 0.0, 1e6));
-    s.eye.max_depth = int(p.get_int_in("max_depth", 32, 1, 1 << 20));
+    s.eye.limits.max_depth = 1 + int(p.get_int_in("max_depth", 32, 1, 1 << 20));
     s.show_samples = p.get_bool("show_samples", false);
     return s;
 }

@@ -8,11 +8,10 @@
 #include <limits>
 
 #include "compensation/spherical_lights.h"
-#include "integrators/eye_path/eye_ray.h"
-#include "integrators/eye_path/eye_roulette.h"
-#include "integrators/path_tracing/path_estimator.h"
+#include "integrators/eye_path/counters.h"
+#include "integrators/eye_path/eye_path.h"
+#include "integrators/eye_path/eye_path_parameters.h"
 #include "integrators/register_parts.h"
-#include "lights/emitters/direct_light.h"
 #include "lights/virtual_lights/particle_tracer.h"
 
 namespace mote::integrators {
@@ -21,7 +20,7 @@ using namespace core;
 namespace {
 
 struct VslSettings {
-    PathSettings eye;  ///< max_depth counts the whole path from light to eye
+    EyePathLimits eye;  ///< max_depth counts the whole path from light to eye
     std::uint32_t paths = 256;
     compensation::SphericalGather gather;
 
@@ -63,7 +62,7 @@ class VslEstimator final : public Estimator {
                                  for (int y = y0; y < y1; ++y)
                                      for (int x = x0; x < x1; ++x) {
                                          if (context.cancelled) return;  // a tile of many VSLs takes long
-                                         EyeRay eye = make_eye_ray(scene_, options_, context, x, y);
+                                         const EyeRay eye = make_eye_ray(scene_, options_, context, x, y);
                                          store(trace(eye, spheres, walk), image, x, y, false);
                                      }
                                  counters_.add(walk.rays, walk.tracking);
@@ -79,42 +78,17 @@ class VslEstimator final : public Estimator {
     }
 
   private:
-    /// The eye path, from one connectable vertex to the next through mirrors and glass.
-    TransportSum trace(EyeRay& eye, const SphereSet& spheres, WalkContext& walk_context) const {
-        walk_context.rng = eye.rng;
+    TransportSum trace(const EyeRay& eye, const SphereSet& spheres, WalkContext& walk) const {
+        walk.rng = eye.rng;
         TransportSum sum;
-        PathWeights weights;
-        MediumState state;  // stays empty: there are no media
-        Ray ray = eye.ray;
-        float eta = 1.0f;
-        const int max_depth = settings_.eye.max_depth;
-        for (int depth = 1;; ++depth) {
-            Rgb emitted(0.0f);
-            const WalkEvent event = walk<false>(scene_, ray, state, weights, emitted, walk_context);
-            sum[Transport::emission] += lights::found_light<false>(scene_, event, ray, weights, nullptr);
-            if (event.kind == WalkEvent::Kind::escaped || depth == max_depth) return sum;
-
-            const ScatteringVertex vertex = make_vertex(event, ray);
-            const Vec2 choices = eye.sampler.next_2d();  // of the light, and of the lobe
-            if (vertex.connectable()) {
-                sum[Transport::direct] += lights::sample_light<false>(
-                    scene_, vertex, weights, state, choices.x, eye.sampler.next_2d(), walk_context);
-                sum[Transport::indirect] += weights.throughput * gather(vertex, depth, spheres, walk_context);
-            }
-            if (depth >= settings_.eye.rr_depth &&
-                !survives<false>(weights, eta, depth, walk_context.rng.next_float()))
-                return sum;
-            const auto next = vertex.sample(choices.y, eye.sampler.next_2d(), TransportMode::radiance);
-            if (!next) return sum;
-            lights::apply_scattering<false>(weights, *next, vertex.position);
-            eta *= next->eta;
-            ray = Ray{vertex.ray_origin(next->wi), next->wi};
-            if (next->delta) continue;
-            // The other technique for direct light: what the sampled direction happens to hit.
-            const WalkEvent end = walk<false>(scene_, ray, state, weights, emitted, walk_context);
-            sum[Transport::direct] += lights::found_light<false>(scene_, end, ray, weights, &vertex.position);
-            return sum;
+        EyePath<false> path(scene_, settings_.eye, eye, walk);
+        while (path.advance(walk, sum)) {
+            if (!path.vertex().connectable()) continue;
+            sum[Transport::direct] += path.sample_light(walk);
+            sum[Transport::indirect] +=
+                path.throughput() * gather(path.vertex(), path.depth(), spheres, walk);
         }
+        return sum;
     }
 
     Rgb gather(const ScatteringVertex& vertex, int depth, const SphereSet& spheres, WalkContext& walk) const {
@@ -137,7 +111,8 @@ class VslEstimator final : public Estimator {
 class MoteVsl final : public Integrator {
   public:
     explicit MoteVsl(const Properties& properties) {
-        settings_.eye = read_path_settings(properties);
+        settings_.eye = read_eye_path_limits(properties);
+        settings_.eye.max_scatterings = 1;  // from then on spherical lights take over
         settings_.paths = std::uint32_t(properties.get_int_in("paths", 256, 0, std::int64_t(1) << 26));
         auto& gather = settings_.gather;
         gather.neighbours = std::uint32_t(properties.get_int_in("neighbours", 10, 1, 1000));
@@ -196,7 +171,7 @@ Plan MoteVsl::plan(const Scene&, const Requirements& r) const {
 }  // namespace
 
 void register_mote_vsl(Registry& registry) {
-    auto parameters = path_parameters();
+    auto parameters = eye_path_parameters();
     parameters.push_back({"paths", "integer", "256", "light paths traced in every pass"});
     parameters.push_back(
         {"neighbours", "integer", "10", "k: a sphere reaches to the k-th nearest other light of its pass"});

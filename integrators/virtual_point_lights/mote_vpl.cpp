@@ -10,7 +10,8 @@
 // around VPLs together with the light that travels short distances; unbounded, the mean is right but its
 // variance is infinite. Paths that cross a delta surface between the VPL and the receiver cannot be connected
 // and are missing.
-#include "integrators/path_tracing/path_estimator.h"
+#include "integrators/eye_path/eye_path_parameters.h"
+#include "integrators/eye_path/transport_layers.h"
 #include "integrators/register_parts.h"
 #include "integrators/virtual_point_lights/plan_compensation.h"
 #include "integrators/virtual_point_lights/vpl_estimator.h"
@@ -23,7 +24,8 @@ namespace {
 class MoteVpl final : public Integrator {
   public:
     explicit MoteVpl(const Properties& properties) {
-        settings_.eye = read_path_settings(properties);
+        settings_.eye = read_eye_path_limits(properties);
+        settings_.eye.max_scatterings = 1;  // from then on virtual lights take over
         const auto paths = properties.get_int("paths", 256);
         if (paths < 0 || paths > (std::int64_t(1) << 26))
             throw InputError("paths must lie between 0 and 2^26", properties.where_of("paths"));
@@ -131,7 +133,7 @@ Plan MoteVpl::plan(const Scene& scene, const Requirements& r) const {
 }  // namespace
 
 void register_mote_vpl(Registry& registry) {
-    auto parameters = path_parameters();
+    auto parameters = eye_path_parameters();
     parameters.push_back({"paths", "integer", "256", "light paths traced in every pass"});
     parameters.push_back({"bound", "float", "automatic",
                           "bound b [1/m^2] on the geometry term; automatic: light paths / R^2 with the "

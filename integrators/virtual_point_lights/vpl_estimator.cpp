@@ -114,7 +114,7 @@ class VplEstimator final : public Estimator {
             for (int lane = 0; lane < side * side; ++lane) {
                 const int x = x0 + lane % side, y = y0 + lane / side;
                 if (x < x1 && y < y1)
-                    tile.start(lane, make_eye_ray(scene_, options_, eye, x, y), scene_.camera_medium_state());
+                    tile.start(lane, make_eye_ray(scene_, options_, eye, x, y));
                 else
                     tile.stop(lane);
             }

@@ -5,12 +5,9 @@
 #include <limits>
 #include <optional>
 
-#include "integrators/eye_path/eye_ray.h"
-#include "integrators/eye_path/eye_roulette.h"
-#include "integrators/path_tracing/path_kernel.h"
+#include "integrators/eye_path/eye_path.h"
 #include "integrators/virtual_point_lights/tile_compensation.h"
 #include "integrators/virtual_point_lights/vpl_settings.h"
-#include "lights/emitters/direct_light.h"
 #include "lights/shadow_maps/shadow_map_gather.h"
 #include "lights/virtual_lights/particle_tracer.h"
 #include "lights/virtual_lights/vpl_gather.h"
@@ -56,13 +53,17 @@ class EyeTile {
           maps_(maps),
           compensation_(scene, settings.compensation, transport, vpls, scratch, walk) {}
 
-    void start(int lane, const EyeRay& eye, const core::MediumState& state) {
+    void start(int lane, const EyeRay& eye) {
         Lane& l = lanes_[std::size_t(lane)];
-        l = Lane{};
-        l.ray = eye.ray, l.sampler.emplace(eye.sampler), l.rng = eye.rng, l.state = state, l.alive = true;
-        if constexpr (Media) l.weights.hero = std::min(int(l.rng.next_float() * 3.0f), 2);
+        l.sum = {}, l.receiver_layer = Transport::indirect, l.alive = true;
+        walk_.rng = eye.rng;
+        l.path.emplace(scene_, settings_.eye, eye, walk_);
+        l.rng = walk_.rng;
     }
-    void stop(int lane) { lanes_[std::size_t(lane)] = Lane{}; }
+    void stop(int lane) {
+        Lane& l = lanes_[std::size_t(lane)];
+        l.sum = {}, l.alive = false;
+    }
     const VplPixel& sum(int lane) const { return lanes_[std::size_t(lane)].sum; }
     CompensationCost compensation_cost() const { return compensation_.cost(); }
 
@@ -99,74 +100,37 @@ class EyeTile {
 
   private:
     struct Lane {
-        core::Ray ray;
-        std::optional<core::Sampler> sampler;
-        core::Rng rng;
-        core::MediumState state;
-        core::PathWeights weights;
-        core::ScatteringVertex vertex;  ///< of the current receiver
+        std::optional<EyePath<Media>> path;
+        core::Rng rng;  ///< of the path, while other lanes advance
         VplPixel sum;
         Transport receiver_layer = Transport::indirect;
-        int depth = 0;
-        float eta = 1.0f;
         bool alive = false;
     };
 
     /// Follows one eye path to its next vertex; makes it a receiver where it can be connected. Returns
-    /// whether the path goes on behind it, through a mirror or glass.
+    /// whether there is one.
     bool advance(Lane& lane, int index) {
         walk_.rng = lane.rng;
-        const bool goes_on = advance_with_rng(lane, index);
-        lane.rng = walk_.rng;
-        return goes_on;
-    }
-
-    bool advance_with_rng(Lane& lane, int index) {
-        const int max_depth = settings_.eye.max_depth;
-        ++lane.depth;
-        core::Rgb emitted(0.0f);
-        const core::WalkEvent event =
-            core::walk<Media>(scene_, lane.ray, lane.state, lane.weights, emitted, walk_);
-        lane.sum.transport[Transport::emission] +=
-            emitted + lights::found_light<Media>(scene_, event, lane.ray, lane.weights, nullptr);
-        if (event.kind == core::WalkEvent::Kind::escaped || lane.depth == max_depth) return false;
-
-        lane.vertex = make_vertex(event, lane.ray);
-        const bool surface = lane.vertex.on_surface();
-        const Transport direct = surface ? Transport::direct : Transport::single_scattering;
-        const core::Vec2 choices = lane.sampler->next_2d();  // of the light, and of the lobe
-        if (lane.vertex.connectable()) {
-            lane.sum.transport[direct] +=
-                lights::sample_light<Media>(scene_, lane.vertex, lane.weights, lane.state, choices.x,
-                                            lane.sampler->next_2d(), walk_, false, maps_.lights);
+        EyePath<Media>& path = *lane.path;
+        const bool at_vertex = path.advance(walk_, lane.sum.transport);
+        if (at_vertex && path.vertex().connectable()) {
+            lane.sum.transport[path.layer_of_connection()] += path.sample_light(walk_, {false, maps_.lights});
             add_receiver(lane, index);
         }
-        if (lane.depth >= settings_.eye.rr_depth &&
-            !survives<Media>(lane.weights, lane.eta, lane.depth, walk_.rng.next_float()))
-            return false;
-        const auto next =
-            lane.vertex.sample(choices.y, lane.sampler->next_2d(), core::TransportMode::radiance);
-        if (!next) return false;
-        lights::apply_scattering<Media>(lane.weights, *next, lane.vertex.position);
-        lane.eta *= next->eta;
-        if (Media && surface) lane.state = lane.vertex.state_towards(lane.state, next->wi);
-        lane.ray = core::Ray{lane.vertex.ray_origin(next->wi), next->wi};
-        if (next->delta) return true;
-        lane.sum.transport[direct] += lights::light_along<Media>(scene_, lane.ray, lane.state, lane.weights,
-                                                                 &lane.vertex.position, walk_);
-        return false;
+        lane.rng = walk_.rng;
+        return at_vertex;
     }
 
     void add_receiver(Lane& lane, int index) {
+        EyePath<Media>& path = *lane.path;
         const int max_depth = settings_.eye.max_depth;
         const std::int32_t vpl_depth =
-            max_depth < 0 ? std::numeric_limits<std::int32_t>::max() : max_depth - lane.depth - 1;
-        lane.receiver_layer = lane.vertex.on_surface() ? Transport::indirect : Transport::multiple_scattering;
-        const core::Rgb throughput =
-            lane.weights.throughput / lights::channel_average<Media>(lane.weights.unidirectional);
-        receivers_.set(index, lane.vertex, throughput, lane.state, core::Rng(walk_.rng.next_u32()),
+            max_depth < 0 ? std::numeric_limits<std::int32_t>::max() : max_depth - path.depth() - 1;
+        lane.receiver_layer = transport_layer(2, path.vertex().on_surface());
+        const core::Rgb throughput = path.throughput();
+        receivers_.set(index, path.vertex(), throughput, path.state(), core::Rng(walk_.rng.next_u32()),
                        vpl_depth);
-        compensation_.add(index, lane.vertex, throughput, lane.state, vpl_depth);
+        compensation_.add(index, path.vertex(), throughput, path.state(), vpl_depth);
     }
 
     const core::Scene& scene_;

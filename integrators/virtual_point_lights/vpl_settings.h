@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "integrators/path_tracing/path_kernel.h"
+#include "integrators/eye_path/eye_path_limits.h"
 #include "integrators/screen_space_compensation/screen_space_compensation.h"
 #include "integrators/virtual_point_lights/vpl_visibility.h"
 #include "lights/virtual_lights/light_path.h"
@@ -12,7 +12,7 @@
 namespace mote::integrators {
 
 struct VplSettings {
-    PathSettings eye;  ///< max_depth counts the whole path from light to eye
+    EyePathLimits eye;  ///< max_depth counts the whole path from light to eye
     std::uint32_t paths = 256;
     bool bounded = true;
     std::optional<float> bound;                       ///< b [1/m^2]; nothing: automatic

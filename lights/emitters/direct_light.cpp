@@ -23,18 +23,19 @@ bool connect(const Scene& scene, const ScatteringVertex& vertex, const DirectSam
         return !light.inside || there == light.inside;
     } else {
         connection.unidirectional = connection.light = Rgb(1.0f);
-        return true;
+        scene.connect_through_panes(shadow, connection);
+        return !is_black(connection.throughput);
     }
 }
 }  // namespace
 
 template <bool Media>
 Rgb sample_light(const Scene& scene, const ScatteringVertex& vertex, const PathWeights& weights,
-                 const MediumState& state, float u_light, const Vec2& u, WalkContext& context, bool lit_along,
-                 const LightShadowMaps* maps) {
+                 const MediumState& state, float u_light, const Vec2& u, WalkContext& context,
+                 const LightSampling& how) {
     const LightChoice choice = scene.choose_light(u_light);
     if (!choice.emitter) return Rgb(0.0f);
-    if (lit_along && !vertex.on_surface() && choice.emitter->traits().delta_position) return Rgb(0.0f);
+    if (how.lit_along && !vertex.on_surface() && choice.emitter->traits().delta_position) return Rgb(0.0f);
     const auto light = choice.emitter->sample_direct(vertex.position, u);
     if (!light) return Rgb(0.0f);
     const Rgb f_cos = vertex.eval_cos(light->wi, TransportMode::radiance);
@@ -42,7 +43,7 @@ Rgb sample_light(const Scene& scene, const ScatteringVertex& vertex, const PathW
 
     PathWeights connection = weights;
     const VolumetricShadowMap* map =
-        Media && maps && !vertex.on_surface() && light->delta ? maps->of(*choice.emitter) : nullptr;
+        Media && how.maps && !vertex.on_surface() && light->delta ? how.maps->of(*choice.emitter) : nullptr;
     if (map) {
         connection.light = weights.unidirectional;
         connection.throughput *= map->transmittance(vertex.position);
@@ -83,10 +84,9 @@ Rgb found_light(const Scene& scene, const WalkEvent& event, const Ray& ray, cons
 }
 
 template Rgb sample_light<true>(const Scene&, const ScatteringVertex&, const PathWeights&, const MediumState&,
-                                float, const Vec2&, WalkContext&, bool, const LightShadowMaps*);
+                                float, const Vec2&, WalkContext&, const LightSampling&);
 template Rgb sample_light<false>(const Scene&, const ScatteringVertex&, const PathWeights&,
-                                 const MediumState&, float, const Vec2&, WalkContext&, bool,
-                                 const LightShadowMaps*);
+                                 const MediumState&, float, const Vec2&, WalkContext&, const LightSampling&);
 template Rgb found_light<true>(const Scene&, const WalkEvent&, const Ray&, const PathWeights&, const Vec3*);
 template Rgb found_light<false>(const Scene&, const WalkEvent&, const Ray&, const PathWeights&, const Vec3*);
 

@@ -17,16 +17,22 @@ inline float channel_average(const core::Rgb& pdfs) {
     return pdfs.x;
 }
 
+/// How lights are sampled.
+struct LightSampling {
+    /// Point and spot lights do not count at a vertex in a medium: they were sampled along the ray that led
+    /// there (equiangular sampling, marching).
+    bool lit_along = false;
+    /// At vertices in media, visibility and transmittance come from the map of the light where it has one.
+    const LightShadowMaps* maps = nullptr;
+};
+
 /// Next-event estimation: the light at `vertex` from one light drawn by `u_light` (and a point on it by `u`),
 /// weighted against directions from vertex.sample(). `weights` and `state` describe the path up to the
-/// vertex. `lit_along`: point and spot lights do not count at a vertex in a medium, because they were sampled
-/// along the ray that led there (equiangular.h). `maps`: at vertices in media, visibility and transmittance
-/// come from the map of the light where it has one.
+/// vertex.
 template <bool Media>
 core::Rgb sample_light(const core::Scene& scene, const core::ScatteringVertex& vertex,
                        const core::PathWeights& weights, const core::MediumState& state, float u_light,
-                       const core::Vec2& u, core::WalkContext& context, bool lit_along = false,
-                       const LightShadowMaps* maps = nullptr);
+                       const core::Vec2& u, core::WalkContext& context, const LightSampling& how = {});
 
 /// Light emitted at the end of a walk: an area light at the surface, or the environment outside. `previous`
 /// is the vertex whose sampled direction led here, null where next-event estimation could not have found this
@@ -34,17 +40,6 @@ core::Rgb sample_light(const core::Scene& scene, const core::ScatteringVertex& v
 template <bool Media>
 core::Rgb found_light(const core::Scene& scene, const core::WalkEvent& event, const core::Ray& ray,
                       const core::PathWeights& weights, const core::Vec3* previous);
-
-/// The other technique for direct light: what lies along `ray`, the direction that a vertex scattered to, and
-/// the emission on the way. `weights` come from apply_scattering(), `state` holds the media at the ray's
-/// origin; `previous` as for found_light().
-template <bool Media>
-core::Rgb light_along(const core::Scene& scene, const core::Ray& ray, core::MediumState state,
-                      core::PathWeights weights, const core::Vec3* previous, core::WalkContext& context) {
-    core::Rgb emitted(0.0f);
-    const core::WalkEvent event = core::walk<Media>(scene, ray, state, weights, emitted, context);
-    return emitted + found_light<Media>(scene, event, ray, weights, previous);
-}
 
 /// Multiplies `weights` by a scattering sampled at `position` and prepares its rescaled pdfs for the next
 /// event.
@@ -55,6 +50,21 @@ inline void apply_scattering(core::PathWeights& weights, const core::ScatterSamp
     weights.vertex = position;
     const core::Rgb base = Media ? weights.unidirectional : core::Rgb(1.0f);
     weights.light = s.delta || !(s.pdf_solid_angle > 0.0f) ? core::Rgb(0.0f) : base / s.pdf_solid_angle;
+}
+
+/// The other technique for direct light: what lies in the direction `s` that `vertex` scatters to, and the
+/// emission on the way. `weights` and `state` describe the path up to the vertex, as for sample_light().
+template <bool Media>
+core::Rgb light_towards(const core::Scene& scene, const core::ScatteringVertex& vertex,
+                        const core::ScatterSample& s, core::PathWeights weights, core::MediumState state,
+                        core::WalkContext& context) {
+    apply_scattering<Media>(weights, s, vertex.position);
+    if (core::is_black(weights.throughput)) return core::Rgb(0.0f);
+    if (Media && vertex.on_surface()) state = vertex.state_towards(state, s.wi);
+    const core::Ray ray{vertex.ray_origin(s.wi), s.wi};
+    core::Rgb emitted(0.0f);
+    const core::WalkEvent event = core::walk<Media>(scene, ray, state, weights, emitted, context);
+    return emitted + found_light<Media>(scene, event, ray, weights, s.delta ? nullptr : &vertex.position);
 }
 
 }  // namespace mote::lights

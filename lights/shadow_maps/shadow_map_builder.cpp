@@ -30,8 +30,7 @@ void ShadowMapBuilder::fill(int texel, std::byte* record) {
     const Ray ray = map_.view_.ray(texel);
     VolumetricShadowMap::Header header{};
     find_segments(ray, find_surface(ray, header));
-    const float begin = segments_.empty() ? 0.0f : segments_.front().begin;
-    const float end = segments_.empty() ? 0.0f : segments_.back().end;
+    const auto [begin, end] = extent(map_.view_.spacing(panes_.empty() ? 0.0f : panes_.back().distance));
     const float step = (end - begin) / float(settings.intervals);
     header.enter = begin, header.inverse_step = step > 0.0f ? 1.0f / step : 0.0f;
     if (!std::isfinite(header.inverse_step)) header.inverse_step = 0.0f;
@@ -39,6 +38,17 @@ void ShadowMapBuilder::fill(int texel, std::byte* record) {
     march(ray, header, step);
     if (settings.storage == ShadowMapSettings::Storage::nodes) keep_nodes(std::size_t(settings.nodes));
     write(record);
+}
+
+/// From the first medium or pane to the last; a pane is never narrower than a texel.
+Interval ShadowMapBuilder::extent(float spacing) const {
+    Interval all{segments_.empty() ? infinity : segments_.front().begin,
+                 segments_.empty() ? 0.0f : segments_.back().end};
+    for (const Pane& pane : panes_) {
+        all.t0 = std::min(all.t0, std::max(0.0f, pane.distance - 0.5f * spacing));
+        all.t1 = std::max(all.t1, pane.distance + 0.5f * spacing);
+    }
+    return all.t0 < all.t1 ? all : Interval{0.0f, 0.0f};
 }
 
 /// The plane of the first surface. Returns how far to march.
@@ -65,7 +75,7 @@ float ShadowMapBuilder::find_surface(const Ray& ray, VolumetricShadowMap::Header
 
 /// The media along the ray up to `end`, clipped to where they are.
 void ShadowMapBuilder::find_segments(const Ray& ray, float end) {
-    segments_.clear();
+    segments_.clear(), panes_.clear();
     // Beyond the scene's bounds no receiver can be.
     const Bounds3 bounds = scene_.bounds();
     end = std::min(end, glm::distance(ray.origin, bounds.center()) + bounds.radius());
@@ -79,9 +89,13 @@ void ShadowMapBuilder::find_segments(const Ray& ray, float end) {
         }
         return true;
     };
+    const auto keep_pane = [&](const SurfaceHit& hit) {
+        const Rgb passes = glm::max(passage_through(hit, ray.direction).transmittance(), Rgb(1e-30f));
+        panes_.push_back({hit.t, -glm::log(Vec3d(passes))});
+        return true;
+    };
     rays_.boundary += scene_.rays().has_boundaries();
-    for_each_part(scene_.rays(), Ray{ray.origin, ray.direction, ray.t_min, end}, at_light_, boundaries_,
-                  keep);
+    for_each_part(scene_.rays(), Ray{ray.origin, ray.direction, ray.t_min, end}, at_light_, keep, keep_pane);
 }
 
 float ShadowMapBuilder::step_of(const MarchedMedium& medium, float length) const {
@@ -101,7 +115,7 @@ void ShadowMapBuilder::march(const Ray& ray, const VolumetricShadowMap::Header& 
     const auto intervals = std::size_t(map_.settings_.intervals);
     depths_.assign(intervals, Vec3d(0.0));
     if (header.inverse_step > 0.0f) {
-        if (segments_.size() == 1 && segments_.front().medium->grid) {
+        if (segments_.size() == 1 && segments_.front().medium->grid && panes_.empty()) {
             const Segment& only = segments_.front();
             only.medium->grid->optical_depths_by_marching(
                 Ray{ray.origin, ray.direction, only.begin, only.end},
@@ -115,7 +129,7 @@ void ShadowMapBuilder::march(const Ray& ray, const VolumetricShadowMap::Header& 
         nodes_.push_back({header.enter + float(k + 1) * step, Rgb(depths_[k])});
 }
 
-/// Several media, or homogeneous ones: interval by interval.
+/// Several media, homogeneous ones, or panes: interval by interval.
 void ShadowMapBuilder::march_segments(const Ray& ray, float enter, float step) {
     Vec3d depth(0.0);
     std::size_t s = 0;
@@ -127,6 +141,8 @@ void ShadowMapBuilder::march_segments(const Ray& ray, float enter, float step) {
                            std::min(to, segments_[i].end)};
             if (part.t_min < part.t_max) depth += depth_of(segments_[i], part);
         }
+        for (const Pane& pane : panes_)
+            if (from < pane.distance && pane.distance <= to) depth += pane.depth;
         depths_[k] = depth;
     }
 }

@@ -27,6 +27,11 @@ class ShadowMapBuilder {
         const MarchedMedium* medium;
         float begin, end;
     };
+    /// What a pane across the ray takes: spread over one interval, as everything between two values is.
+    struct Pane {
+        float distance;
+        core::Vec3d depth;
+    };
     struct Node {
         float distance;
         core::Rgb depth;
@@ -35,6 +40,7 @@ class ShadowMapBuilder {
     float find_surface(const core::Ray& ray, VolumetricShadowMap::Header& header);
     void find_segments(const core::Ray& ray, float end);
     void march(const core::Ray& ray, const VolumetricShadowMap::Header& header, float step);
+    core::Interval extent(float spacing) const;
     void march_segments(const core::Ray& ray, float enter, float step);
     float step_of(const MarchedMedium& medium, float length) const;
     core::Vec3d depth_of(const Segment& segment, const core::Ray& part);
@@ -48,8 +54,8 @@ class ShadowMapBuilder {
     std::vector<MarchedMedium> media_;
     core::RayCounters rays_;
     core::TrackingCounters counters_;
-    std::vector<core::SurfaceHit> boundaries_;
     std::vector<Segment> segments_;
+    std::vector<Pane> panes_;
     std::vector<core::Vec3d> depths_;
     std::vector<Node> nodes_;  ///< at the ends of all intervals, or what is left of them
 };

@@ -45,7 +45,7 @@ void follow_light_path(const core::Scene& scene, const LightPathSettings& settin
     const core::Rgb start = weights.throughput;
     core::MediumState state;
     if constexpr (Media) {
-        weights.hero = std::min(int(context.rng.next_float() * 3.0f), 2);
+        weights.hero = core::draw_hero(context.rng);
         state = scene.emitter_medium_state(*choice.emitter, *emission);
         if (emission->inside && state.current() != emission->inside) return;
     }

@@ -121,14 +121,14 @@ void resolve_batch(const Scene& scene, int count, ReceiverTile& tile, GatherScra
     for (int p = 0; p < count; ++p)
         for (int i = 0; i < width; ++i) rays.occlusion += scratch.packets[std::size_t(p)].t_max[i] > 0.0f;
     scene.rays().occluded(std::span(scratch.packets).first(std::size_t(count)));
-    const bool media = scene.has_media();
+    const bool attenuates = scene.attenuates();
     for (int p = 0; p < count; ++p) {
         const ShadowPacket& packet = scratch.packets[std::size_t(p)];
         const GatherScratch::Contribution& c = scratch.contributions[std::size_t(p)];
         for (int i = 0; i < width; ++i) {
             if (packet.occluded(i)) continue;  // idle lanes as well: their t_max was negative from the start
             Rgb value(c.r[i], c.g[i], c.b[i]);
-            if (media) {
+            if (attenuates) {
                 const Vec3 from(packet.origin_x[i], packet.origin_y[i], packet.origin_z[i]);
                 const Vec3 to =
                     from + Vec3(packet.direction_x[i], packet.direction_y[i], packet.direction_z[i]);

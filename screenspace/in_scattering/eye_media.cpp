@@ -16,6 +16,7 @@ EyeMedia::EyeMedia(const Scene& scene, const Ray& ray, const MediumState& state,
     find_segments(scene, ray, state, segments, walk);
     Rgb before(1.0f);
     for (const MediumSegment& s : segments) {
+        before *= s.panes;
         Piece piece{s, before, {}};
         const auto* grid = dynamic_cast<const media::HeterogeneousMedium*>(s.medium);
         if (grid && std::isfinite(s.t1)) {

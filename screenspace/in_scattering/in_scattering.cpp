@@ -16,8 +16,7 @@ namespace {
 /// Where a medium can be: the closed shapes it fills, or everywhere when something names it as outside.
 Bounds3 extent(const Scene& scene, const Medium& medium) {
     Bounds3 box;
-    bool everywhere = scene.camera().medium.get() == &medium;
-    for (const auto& light : scene.emitters()) everywhere |= light->medium == &medium;
+    bool everywhere = scene.outermost_medium() == &medium;
     for (const auto& shape : scene.shapes()) {
         everywhere |=
             shape->exterior.get() == &medium || (shape->interior.get() == &medium && !shape->closed());
@@ -34,16 +33,25 @@ Bounds3 extent(const Scene& scene, const Medium& medium) {
 void find_segments(const Scene& scene, const Ray& ray, const MediumState& state,
                    std::vector<MediumSegment>& segments, WalkContext& walk) {
     segments.clear();
+    Rgb panes(1.0f);
+    bool pane_between = false;
     const auto add = [&](float t0, float t1, const MediumState& s) {
         if (!(t0 < t1)) return true;
-        if (!segments.empty() && segments.back().medium == s.current() && segments.back().t1 == t0)
+        const bool goes_on = !segments.empty() && segments.back().medium == s.current() &&
+                             segments.back().t1 == t0 && !pane_between;
+        if (goes_on)
             segments.back().t1 = t1, segments.back().state = s;
         else
-            segments.push_back({s.current(), t0, t1, s});
+            segments.push_back({s.current(), t0, t1, s, panes});
+        panes = Rgb(1.0f), pane_between = false;
+        return true;
+    };
+    const auto pane = [&](const SurfaceHit& hit) {
+        panes *= passage_through(hit, ray.direction).transmittance(), pane_between = true;
         return true;
     };
     walk.rays.boundary += scene.rays().has_boundaries();
-    for_each_part(scene.rays(), ray, state, walk.boundary_hits, add);
+    for_each_part(scene.rays(), ray, state, add, pane);
 }
 
 Rgb marched_transmittance(const Medium& medium, const Ray& ray, float voxels, WalkContext& walk) {
@@ -56,6 +64,14 @@ Rgb marched_transmittance(const Medium& medium, const Ray& ray, float voxels, Wa
 
 Rgb marched_transmittance(const Ray& ray, const std::vector<MediumSegment>& segments, float voxels,
                           WalkContext& walk) {
+    Rgb product = transmittance_of_media(ray, segments, voxels, walk);
+    for (const MediumSegment& s : segments)
+        if (s.t0 <= ray.t_max) product *= s.panes;  // a part may begin at a pane
+    return product;
+}
+
+Rgb transmittance_of_media(const Ray& ray, const std::vector<MediumSegment>& segments, float voxels,
+                           WalkContext& walk) {
     Rgb product(1.0f);
     for (const MediumSegment& s : segments)
         if (s.medium && s.t0 < ray.t_max)

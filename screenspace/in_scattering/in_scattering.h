@@ -60,6 +60,7 @@ struct MediumSegment {
     const core::Medium* medium;  ///< null: vacuum
     float t0, t1;
     core::MediumState state;
+    core::Rgb panes{1.0f};  ///< transmittance of the panes right before it
 };
 
 /// Generator, counters and memory of one thread.
@@ -74,8 +75,8 @@ struct MarchScratch {
     std::uint64_t clear = 0;  ///< rays that needed no step, because nothing was in the way
 };
 
-/// Cuts ray.t_min to ray.t_max at the boundaries between media; `state` holds those at t_min. Neighbours of
-/// the same medium are one segment.
+/// Cuts ray.t_min to ray.t_max at the boundaries between media and at panes; `state` holds those at t_min.
+/// Neighbours of the same medium without a pane between them are one segment.
 void find_segments(const core::Scene& scene, const core::Ray& ray, const core::MediumState& state,
                    std::vector<MediumSegment>& segments, core::WalkContext& walk);
 
@@ -83,9 +84,12 @@ void find_segments(const core::Scene& scene, const core::Ray& ray, const core::M
 /// marching.
 core::Rgb marched_transmittance(const core::Medium& medium, const core::Ray& ray, float voxels,
                                 core::WalkContext& walk);
-/// Through all segments, up to ray.t_max.
+/// Through all segments and panes, up to ray.t_max.
 core::Rgb marched_transmittance(const core::Ray& ray, const std::vector<MediumSegment>& segments,
                                 float voxels, core::WalkContext& walk);
+/// The same of the media alone: for paths that passed the panes by chance.
+core::Rgb transmittance_of_media(const core::Ray& ray, const std::vector<MediumSegment>& segments,
+                                 float voxels, core::WalkContext& walk);
 
 class EyeMedia;
 

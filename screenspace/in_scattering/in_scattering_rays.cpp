@@ -46,7 +46,7 @@ class InScatteringRays::Task final : public InScatteringTask {
         eye.t_max = std::min(eye.t_max, end.distance);
         scratch_.walk.rng =
             Rng(hash_keys(std::bit_cast<std::uint64_t>(film.x), std::bit_cast<std::uint64_t>(film.y)));
-        return source_.light_.march(eye, source_.scene_.camera_medium_state(), scratch_);
+        return source_.light_.march(eye, source_.scene_.eye_medium_state(eye), scratch_);
     }
 
   private:

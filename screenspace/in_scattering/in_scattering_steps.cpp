@@ -73,6 +73,7 @@ void InScattering::march_steps(const Ray& ray, double t0, double t1, MarchScratc
     std::size_t next = 0;
     for (const MediumSegment& s : scratch.eye) {
         float t = s.t0;
+        if (!shared) result.transmittance *= s.panes;
         const auto advance = [&](float to) {
             if (shared)
                 result.transmittance = shared->transmittance(to, scratch.walk);

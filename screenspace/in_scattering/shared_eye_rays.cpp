@@ -33,8 +33,8 @@ class SharedEyeRays::Task final : public SharedRayTask {
     std::array<MarchedRay, 2> march(const Crossing& crossing, const std::array<RayEnd, 2>& ends) override {
         scratch_.walk.rng = Rng(hash_keys(std::bit_cast<std::uint64_t>(crossing.film.x),
                                           std::bit_cast<std::uint64_t>(crossing.film.y)));
-        const MediumState& state = source_.scene_.camera_medium_state();
         Ray eye = ray(crossing.film);
+        const MediumState state = source_.scene_.eye_medium_state(eye);
         const float reach = eye.t_max;
         eye.t_max = std::min(reach, std::max(ends[0].distance, ends[1].distance));
         const EyeMedia media(source_.scene_, eye, state, source_.voxels_, scratch_.walk);

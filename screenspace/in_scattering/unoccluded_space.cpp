@@ -18,6 +18,11 @@ constexpr std::uint32_t whole = ~std::uint32_t(0);
 /// place.
 constexpr double rounding = 1e-6;
 
+/// Null BSDFs and panes, as RayTracer groups them.
+bool passes_straight(const Shape& shape) {
+    return shape.bsdf && (shape.bsdf->traits().null || shape.bsdf->traits().pane);
+}
+
 double largest_of(const Vec3d& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
 /// Is there a gap wider than the margin between two sets of points, seen along `axis` of any length?
@@ -87,8 +92,7 @@ struct UnoccludedSpace::Tree::Entry {
 };
 
 UnoccludedSpace::UnoccludedSpace(const Scene& scene) {
-    for (const auto& shape : scene.shapes())
-        (shape->bsdf && shape->bsdf->traits().null ? boundaries_ : surfaces_).add(*shape);
+    for (const auto& shape : scene.shapes()) (passes_straight(*shape) ? boundaries_ : surfaces_).add(*shape);
     surfaces_.build(), boundaries_.build();
 }
 

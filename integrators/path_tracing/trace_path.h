@@ -9,24 +9,22 @@
 // tested against.
 #pragma once
 
-#include "integrators/eye_path/transport_layers.h"
+#include "integrators/eye_path/eye_path.h"
 #include "integrators/path_tracing/equiangular.h"
-#include "lights/emitters/direct_light.h"
 
 namespace mote::integrators {
 
 struct PathSettings {
-    int max_depth = -1;            ///< edges of a path: 1 emission only, 2 direct light; -1 no limit
-    int rr_depth = 5;              ///< Russian roulette from this depth on
+    EyePathLimits limits{};
     float bound = core::infinity;  ///< b [1/m^2]; infinity: the true transport
     /// Where there are any, these light media by equi-angular sampling instead of next-event estimation at
     /// collisions. Not together with a bound.
-    std::shared_ptr<const EquiangularLights> equiangular;
+    std::shared_ptr<const EquiangularLights> equiangular{};
 };
 
-/// Radiance along `ray`, by layer. `state` holds the media at its origin.
+/// Radiance along the eye ray, by layer. `context` holds the path's generator.
 template <bool Media>
-TransportSum trace_path(const core::Scene& scene, const PathSettings& settings, core::Ray ray,
-                        core::MediumState state, core::Sampler& sampler, core::WalkContext& context);
+TransportSum trace_path(const core::Scene& scene, const PathSettings& settings, const EyeRay& eye,
+                        core::WalkContext& context);
 
 }  // namespace mote::integrators

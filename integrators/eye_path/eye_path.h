@@ -1,0 +1,151 @@
+// The eye path: one loop for every method that looks from the camera.
+//
+// A path walks from vertex to vertex (core/scene/ray_walk.h), sorts the light that it finds on the way into
+// layers, and hands each vertex over to its method, which adds what it knows there: light of lights that it
+// draws, of virtual lights, of photons. Methods that gather at the first vertex let a path scatter once
+// (max_scatterings = 1): what its direction then finds is the other technique for direct light.
+#pragma once
+
+#include "core/scene/scattering_vertex.h"
+#include "integrators/eye_path/eye_path_limits.h"
+#include "integrators/eye_path/eye_ray.h"
+#include "integrators/eye_path/eye_roulette.h"
+#include "integrators/eye_path/transport_layers.h"
+#include "lights/emitters/direct_light.h"
+
+namespace mote::integrators {
+
+/// The part of a path between two vertices, for what is gathered along it.
+struct EyeLeg {
+    const core::Ray& ray;
+    const core::WalkEvent& event;     ///< at its end
+    const core::MediumState& start;   ///< media at ray.t_min
+    const core::PathWeights& before;  ///< weights at its start
+};
+
+template <bool Media>
+class EyePath {
+  public:
+    /// `context` holds the path's generator: the channel that drives distances is drawn from it.
+    EyePath(const core::Scene& scene, const EyePathLimits& limits, const EyeRay& eye,
+            core::WalkContext& context)
+        : scene_(scene), limits_(limits), sampler_(eye.sampler), ray_(eye.ray) {
+        if constexpr (Media) {
+            weights_.hero = core::draw_hero(context.rng);
+            state_ = scene.eye_medium_state(eye.ray);
+        }
+    }
+
+    /// Goes on to the next vertex, and adds light found on the way and at its end to `sum`. Returns false
+    /// where the path ends. `on_leg(EyeLeg)` sees every leg before its vertex is made.
+    template <typename OnLeg>
+    bool advance(core::WalkContext& context, TransportSum& sum, const OnLeg& on_leg) {
+        return advance_by(
+            [this](core::Rgb& emitted, core::WalkContext& c) {
+                return core::walk<Media>(scene_, ray_, state_, weights_, emitted, c);
+            },
+            context, sum, on_leg);
+    }
+    bool advance(core::WalkContext& context, TransportSum& sum) {
+        return advance(context, sum, [](const EyeLeg&) {});
+    }
+    /// The same with a walk of the method's own: walker(emitted, context) -> WalkEvent moves state() and
+    /// weights() to the end of ray().
+    template <typename Walker, typename OnLeg>
+    bool advance_by(Walker&& walker, core::WalkContext& context, TransportSum& sum, const OnLeg& on_leg);
+
+    // At a vertex:
+    const core::ScatteringVertex& vertex() const { return vertex_; }
+    /// Next-event estimation: the light of one light drawn for the vertex (lights/emitters/direct_light.h).
+    core::Rgb sample_light(core::WalkContext& context, const lights::LightSampling& how = {}) {
+        return lights::sample_light<Media>(scene_, vertex_, weights_, state_, choices_.x, sampler_.next_2d(),
+                                           context, how);
+    }
+    /// A path that would leave the vertex by a mirror or through glass ends.
+    void end_at_delta(bool ends = true) { ends_at_delta_ = ends; }
+    void scale(float factor) { weights_.throughput *= factor; }
+
+    const core::Ray& ray() const { return ray_; }
+    core::MediumState& state() { return state_; }  ///< media on the side where the path is
+    core::PathWeights& weights() { return weights_; }
+    core::Sampler& sampler() { return sampler_; }
+    /// The weight of light that reaches the path's end.
+    core::Rgb throughput() const {
+        return weights_.throughput / lights::channel_average<Media>(weights_.unidirectional);
+    }
+    int depth() const { return depth_; }              ///< edges so far
+    int scatterings() const { return scatterings_; }  ///< without those at mirrors and glass before the first
+    float first_cosine() const { return first_cosine_; }  ///< C* of the first, towards the next vertex
+    float leg_length() const { return leg_length_; }      ///< of the last edge [m]
+    /// Layer of light joined to the vertex; of light scattered once more, in a medium, along a leg; of light
+    /// found at the end of a leg.
+    Transport layer_of_connection() const {
+        return transport_layer(scatterings_ + 1, scatterings_ == 0 ? vertex_.on_surface() : surface_first_);
+    }
+    Transport layer_along() const {
+        return transport_layer(scatterings_ + 1, scatterings_ > 0 && surface_first_);
+    }
+    Transport layer_of_emission() const { return transport_layer(scatterings_, surface_first_); }
+
+  private:
+    bool scatter(core::WalkContext& context);
+
+    const core::Scene& scene_;
+    EyePathLimits limits_;
+    core::Sampler sampler_;
+    core::Ray ray_;
+    core::MediumState state_;
+    core::PathWeights weights_;
+    core::ScatteringVertex vertex_;
+    core::Vec2 choices_{0.0f};  ///< of the light, and of the lobe
+    core::Vec3 previous_{0.0f};
+    bool connected_ = false;  ///< could next-event estimation at `previous_` have found what comes?
+    bool surface_first_ = true, ends_at_delta_ = false;
+    int depth_ = 0, scatterings_ = 0;
+    float eta_ = 1.0f, first_cosine_ = 1.0f, leg_length_ = 0.0f;
+};
+
+template <bool Media>
+template <typename Walker, typename OnLeg>
+bool EyePath<Media>::advance_by(Walker&& walker, core::WalkContext& context, TransportSum& sum,
+                                const OnLeg& on_leg) {
+    if (depth_ > 0 && !scatter(context)) return false;
+    ++depth_;
+    const core::MediumState start = state_;
+    const core::PathWeights before = weights_;
+    core::Rgb emitted(0.0f);
+    const core::WalkEvent event = walker(emitted, context);
+    core::Rgb& found = sum[layer_of_emission()];
+    if constexpr (Media) found += emitted;
+    found += lights::found_light<Media>(scene_, event, ray_, weights_, connected_ ? &previous_ : nullptr);
+    on_leg(EyeLeg{ray_, event, start, before});
+    if (event.kind == core::WalkEvent::Kind::escaped || depth_ == limits_.max_depth ||
+        scatterings_ == limits_.max_scatterings || core::is_black(weights_.throughput))
+        return false;
+    vertex_ = make_vertex(event, ray_), leg_length_ = event.distance;
+    choices_ = sampler_.next_2d();
+    return true;
+}
+
+/// Leaves the vertex. Returns false where the path ends instead.
+template <bool Media>
+bool EyePath<Media>::scatter(core::WalkContext& context) {
+    if (depth_ >= limits_.rr_depth && !survives<Media>(weights_, eta_, depth_, context.rng.next_float()))
+        return false;
+    const auto next = vertex_.sample(choices_.y, sampler_.next_2d(), core::TransportMode::radiance);
+    if (!next || (next->delta && ends_at_delta_)) return false;
+    if (!next->delta || scatterings_ > 0) {  // mirrors and glass before the first connectable vertex: none
+        if (scatterings_ == 0)
+            surface_first_ = vertex_.on_surface(), first_cosine_ = vertex_.shading_cosine(next->wi);
+        ++scatterings_;
+    }
+    lights::apply_scattering<Media>(weights_, *next, vertex_.position);
+    if (core::is_black(weights_.throughput)) return false;
+    if (Media && vertex_.on_surface()) state_ = vertex_.state_towards(state_, next->wi);
+    eta_ *= next->eta;
+    connected_ = !next->delta, previous_ = vertex_.position;
+    ray_ = core::Ray{vertex_.ray_origin(next->wi), next->wi};
+    return true;
+}
+
+}  // namespace mote::integrators

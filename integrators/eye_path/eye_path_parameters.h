@@ -1,0 +1,15 @@
+// What every method reads from a scene file for its eye paths.
+#pragma once
+
+#include "core/objects/properties.h"
+#include "core/objects/registry.h"
+#include "integrators/eye_path/eye_path_limits.h"
+
+namespace mote::integrators {
+
+/// max_depth and rr_depth of a scene file, checked. Throws InputError.
+EyePathLimits read_eye_path_limits(const core::Properties& properties);
+/// Their rows in a manual page.
+std::vector<core::Parameter> eye_path_parameters();
+
+}  // namespace mote::integrators
