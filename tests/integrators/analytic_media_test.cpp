@@ -117,7 +117,7 @@ TEST_CASE("single scattering from a point light against quadrature", "[analytic]
 
 // A grid of constant density is the homogeneous medium, layer by layer, for both integrators that see media.
 TEST_CASE("a VDB of constant density equals the homogeneous medium", "[analytic][media][vdb]") {
-    const TemporaryFolder folder;
+    const GridFolder folder;
     const auto scene_with = [&](const std::string& medium) {
         return scene_from(
             R"(<scene version="3.0.0"><emitter type="point"><point name="position" x="1.5" y="3.2" z="1.5"/>

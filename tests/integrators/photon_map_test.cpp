@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <filesystem>
 
 #include "tests/integrators/test_scenes.h"
 #include "tests/support/catch.h"
 #include "tests/support/render_statistics.h"
+#include "tests/support/temporary_folder.h"
 
 using namespace mote::tests;
 
@@ -108,9 +108,8 @@ TEST_CASE("beams in homogeneous fog agree with volpath", "[photon_map][equality]
 }
 
 TEST_CASE("beams in smoke approach volpath as kernels shrink", "[photon_map]") {
-    const auto path = std::filesystem::temp_directory_path() / "mote_photon_map.vol";
-    const auto scene = scene_from(box(grey, smoke_medium(path.string())), 8);
-    std::filesystem::remove(path);
+    const TemporaryFolder folder;
+    const auto scene = scene_from(box(grey, smoke_medium(folder.file("smoke.vol"))), 8);
     const auto reference = render(*scene, "volpath", "", 20000, 4);
     const auto coarse = render(*scene, "mote_photon_map", photon_settings(200, 150), 150, 3);
     const auto fine = render(*scene, "mote_photon_map",
@@ -128,10 +127,49 @@ TEST_CASE("beams in smoke approach volpath as kernels shrink", "[photon_map]") {
     }
 }
 
-TEST_CASE("photon mapping without photons is black where photons would be", "[photon_map]") {
+TEST_CASE("where no photon comes, what is made of photons is black", "[photon_map]") {
+    // A spot on a one-sided floor: what lies below the floor gets no light, neither at once nor by the floor.
+    const auto floor_and_fog = [](double height) {
+        return scene_from(fmt::format(R"(<scene version="3.0.0">
+            <shape type="rectangle"><bsdf type="diffuse"><rgb name="reflectance" value="0.8"/></bsdf></shape>
+            <shape type="sphere"><point name="center" x="0" y="0" z="{}"/><bsdf type="null"/>
+                <medium type="homogeneous" name="interior"><rgb name="sigma_t" value="2"/>
+                <rgb name="albedo" value="0.9"/></medium></shape>
+            <emitter type="spot"><float name="cutoff_angle" value="20"/><transform name="to_world">
+                <lookat origin="0, 0, 2.4" target="0, 0, 0" up="0, 1, 0"/></transform></emitter>
+            <sensor type="perspective"><float name="fov" value="50"/><transform name="to_world">
+                <lookat origin="6, 0, 1.5" target="0, 0, 0" up="0, 0, 1"/></transform></sensor></scene>)",
+                                      height),
+                          8);
+    };
+    const auto dark = floor_and_fog(-1.5), lit = floor_and_fog(1.2);
+    for (const std::string single : {"sampled", "photons"}) {
+        const std::string settings = photon_settings(1000, 5) +
+                                     fmt::format(R"(<string name="single_scattering" value="{}"/>)", single);
+        const auto below = render(*dark, "mote_photon_map", settings, 4, 1),
+                   above = render(*lit, "mote_photon_map", settings, 4, 1);
+        const auto mean = [](const RenderStatistics& r, const char* layer) {
+            return r.whole[r.layer(layer)][0].mean;
+        };
+        INFO("single scattering " << single);
+        CHECK((below.non_finite == 0 && above.non_finite == 0));
+        CHECK(mean(below, "direct") > 0.0);
+        for (const char* layer : {"indirect", "single_scattering", "multiple_scattering"}) {
+            INFO(layer);
+            CHECK(mean(below, layer) == 0.0);
+            CHECK(mean(above, layer) > 0.0);
+        }
+    }
+}
+
+TEST_CASE("fewer photons than neighbours are finite light", "[photon_map]") {
     const auto scene = scene_from(box(grey, fog("1", "")), 8);
-    const auto r = render(*scene, "mote_photon_map", photon_settings(1, 50), 4, 1);
+    const auto r = render(*scene, "mote_photon_map", photon_settings(1, 50), 40, 1);
     CHECK(r.non_finite == 0);
+    CHECK(r.whole[r.layer("indirect")][0].mean > 0.0);
+}
+
+TEST_CASE("photon mapping refuses wrong settings", "[photon_map][input]") {
     CHECK_THROWS_WITH(
         integrator_from(R"(<integrator type="mote_photon_map"><float name="alpha" value="0"/></integrator>)"),
         Catch::Contains("alpha"));

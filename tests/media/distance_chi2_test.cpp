@@ -103,7 +103,7 @@ TEST_CASE("distances through dense grids, local and global majorants", "[media][
 }
 
 TEST_CASE("distances through VDB grids, local and global majorants", "[media][distances][chi2][vdb]") {
-    const tests::TemporaryFolder folder;
+    const tests::GridFolder folder;
     const auto lump = media::load_vdb_grid(folder.grid("lump"));
     const Vec3 direction = glm::normalize(Vec3(1.0f, 0.9f, 0.8f));
     const Ray ray{Vec3(11.0f) - 20.0f * direction, direction, 0.0f, 40.0f};

@@ -255,7 +255,7 @@ TEST_CASE("every estimator under rotation, shear, anisotropic voxels of 1e-4 to 
 }
 
 TEST_CASE("rays that start on, end on, or graze the boundary of a grid", "[media][extremes]") {
-    const tests::TemporaryFolder folder;
+    const tests::GridFolder folder;
     const auto grid = media::load_vdb_grid(folder.grid("tiles"));  // 0.75 from voxel -4 to 35, vacuum beyond
     for (const Majorants majorants : both_majorants) {
         const auto m = media::VdbVolume(grid).make_medium(parts_with(0.1f, majorants));

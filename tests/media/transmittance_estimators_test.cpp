@@ -132,7 +132,7 @@ TEST_CASE("every estimator of the transmittance agrees with quadrature on a real
 }
 
 TEST_CASE("estimators agree on grids of tiles and of one smooth lump", "[media][estimators]") {
-    const tests::TemporaryFolder folder;
+    const tests::GridFolder folder;
     for (const char* kind : {"tiles", "lump"}) {
         INFO(kind);
         const GridCosts costs = costs_of(folder.grid(kind), "density", 3.0);
@@ -141,7 +141,7 @@ TEST_CASE("estimators agree on grids of tiles and of one smooth lump", "[media][
 }
 
 TEST_CASE("ray marching keeps its tolerance", "[media][estimators]") {
-    const tests::TemporaryFolder folder;
+    const tests::GridFolder folder;
     const auto grid = media::load_vdb_grid(folder.grid("lump"));
     const auto probe = medium_with(grid, 1.0f, media::Majorants::local);
     const auto rays = rays_through(probe->bounds(), 24);
@@ -194,7 +194,7 @@ TEST_CASE("local majorants save most lookups in sparse smoke", "[media][estimato
 }
 
 TEST_CASE("a wrong estimator of the transmittance is caught", "[media][estimators][planted]") {
-    const tests::TemporaryFolder folder;
+    const tests::GridFolder folder;
     const auto grid = media::load_vdb_grid(folder.grid("lump"));
     auto parts = tests::medium_parts(Rgb(0.8f), 0.5f);
     const auto right = media::VdbVolume(grid, {}).make_medium(parts);
@@ -225,7 +225,7 @@ TEST_CASE("a wrong estimator of the transmittance is caught", "[media][estimator
 
 TEST_CASE("the automatic estimator is residual tracking where bounds make much certain",
           "[media][estimators]") {
-    const tests::TemporaryFolder folder;
+    const tests::GridFolder folder;
     const auto tiles = medium_with(media::load_vdb_grid(folder.grid("tiles")), 1.0f, media::Majorants::local);
     CHECK(tiles->estimator() == TransmittanceEstimator::residual_ratio_tracking);
     const auto single =

@@ -39,7 +39,7 @@ double reference_at(const Vec3d& p) {
 }  // namespace
 
 TEST_CASE("a VDB fog volume is read value by value", "[media][vdb]") {
-    const tests::TemporaryFolder folder;
+    const tests::GridFolder folder;
     struct Kind {
         const char* name;
         double factor, tolerance;
@@ -64,7 +64,7 @@ TEST_CASE("a VDB fog volume is read value by value", "[media][vdb]") {
 }
 
 TEST_CASE("tiles, backgrounds, single voxels and far lookups", "[media][vdb]") {
-    const tests::TemporaryFolder folder;
+    const tests::GridFolder folder;
     const auto tiles = media::load_vdb_grid(folder.grid("tiles"));
     CHECK(tiles->lower() == media::Voxel(-4));
     CHECK(tiles->upper() == media::Voxel(35));
@@ -85,7 +85,7 @@ TEST_CASE("tiles, backgrounds, single voxels and far lookups", "[media][vdb]") {
 }
 
 TEST_CASE("what is not a fog volume of numbers is refused by name", "[media][vdb]") {
-    const tests::TemporaryFolder folder;
+    const tests::GridFolder folder;
     const auto refuses = [&](const std::string& kind, const std::string& word) {
         const std::string path = folder.grid(kind), message = tests::vdb_refusal(path);
         INFO(kind << ": " << message);
@@ -117,7 +117,7 @@ TEST_CASE("what is not a fog volume of numbers is refused by name", "[media][vdb
 }
 
 TEST_CASE("of several grids with one name the first is taken, with a warning", "[media][vdb]") {
-    const tests::TemporaryFolder folder;
+    const tests::GridFolder folder;
     const std::string path = folder.grid("three");
     const auto first = media::load_vdb_grid(path), second = media::load_vdb_grid(path, "density[1]");
     REQUIRE(first->warnings().size() == 1);
@@ -134,7 +134,7 @@ TEST_CASE("of several grids with one name the first is taken, with a warning", "
 }
 
 TEST_CASE("time and memory limits end the reader, not the program", "[media][vdb]") {
-    const tests::TemporaryFolder folder;
+    const tests::GridFolder folder;
     const std::string path = folder.grid("lump");
     media::VdbLoadOptions options;
     options.time_limit = 1e-6;
@@ -162,7 +162,7 @@ TEST_CASE("time and memory limits end the reader, not the program", "[media][vdb
 }
 
 TEST_CASE("damaged VDB files never harm the program", "[media][vdb][damage]") {
-    const tests::TemporaryFolder folder;
+    const tests::GridFolder folder;
     core::Rng rng(2024);
     int read = 0, refused = 0, crashed = 0;
     media::VdbLoadOptions options;

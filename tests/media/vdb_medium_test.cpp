@@ -35,7 +35,7 @@ double depth_between(const media::HeterogeneousMedium& m, const Vec3d& a, const 
 }  // namespace
 
 TEST_CASE("a VDB of constant density is the homogeneous medium", "[media][vdb][tracking]") {
-    const tests::TemporaryFolder folder;
+    const tests::GridFolder folder;
     const Rgb albedo(0.8f);
     const auto m = vdb_medium(folder.grid("tiles"), 0.1f, albedo);  // 0.75 from voxel -4 to 35
     const Ray inside = between(Vec3d(0, 1, 3), Vec3d(30, 28, 33));
@@ -56,7 +56,7 @@ TEST_CASE("a VDB of constant density is the homogeneous medium", "[media][vdb][t
 }
 
 TEST_CASE("optical depth does not depend on how a grid is placed", "[media][vdb][transforms]") {
-    const tests::TemporaryFolder folder;
+    const tests::GridFolder folder;
     const auto reference = vdb_medium(folder.grid("lump"), 1.0f, Rgb(0.5f));
     const Vec3d a(-3.0, 2.5, 4.0), b(27.0, 19.0, 21.5);  // in index space
     const double tau = depth_between(*reference, a, b) / glm::distance(a, b);
@@ -110,7 +110,7 @@ TEST_CASE("optical depth does not depend on how a grid is placed", "[media][vdb]
 }
 
 TEST_CASE("singular placings are refused", "[media][vdb][transforms]") {
-    const tests::TemporaryFolder folder;
+    const tests::GridFolder folder;
     const auto grid = media::load_vdb_grid(folder.grid("lump"));
     const Transform flat(glm::scale(glm::dmat4(1.0), Vec3d(1, 0, 1)));
     CHECK_THROWS_AS(media::VdbVolume(grid, flat), core::InputError);
@@ -120,7 +120,7 @@ TEST_CASE("singular placings are refused", "[media][vdb][transforms]") {
 }
 
 TEST_CASE("VDB majorants bound every lookup", "[media][vdb]") {
-    const tests::TemporaryFolder folder;
+    const tests::GridFolder folder;
     for (const char* kind : {"lump", "tiles", "single", "step", "background"}) {
         const auto grid = media::load_vdb_grid(folder.grid(kind));
         const auto majorants = media::nano_majorants(*grid);
@@ -150,7 +150,7 @@ TEST_CASE("VDB majorants bound every lookup", "[media][vdb]") {
 }
 
 TEST_CASE("an empty grid is vacuum", "[media][vdb]") {
-    const tests::TemporaryFolder folder;
+    const tests::GridFolder folder;
     const auto m = vdb_medium(folder.grid("empty"), 5.0f, Rgb(0.5f));
     CHECK(m->traits().empty);
     CHECK(m->bounds().empty());
@@ -167,7 +167,7 @@ TEST_CASE("an empty grid is vacuum", "[media][vdb]") {
 }
 
 TEST_CASE("a medium without bounds around a grid with a background", "[media][vdb]") {
-    const tests::TemporaryFolder folder;
+    const tests::GridFolder folder;
     const Rgb albedo(0.7f);
     const auto m = vdb_medium(folder.grid("background"), 0.05f, albedo);
     const Ray ray = between(Vec3d(-20, 8, 9), Vec3d(50, 13, 12));
@@ -205,7 +205,7 @@ TEST_CASE("real smoke: every estimator agrees with quadrature", "[media][vdb][da
 }
 
 TEST_CASE("emission and temperature of a VDB", "[media][vdb][emission]") {
-    const tests::TemporaryFolder folder;
+    const tests::GridFolder folder;
     auto parts = tests::medium_parts(Rgb(0.0f), 0.02f);
     parts.emission.radiance = std::make_shared<media::ConstantVolume>(Rgb(3.0f));
     const auto m = media::VdbVolume(media::load_vdb_grid(folder.grid("lump"))).make_medium(parts);

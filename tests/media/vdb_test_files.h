@@ -1,11 +1,7 @@
 // Test grids written by mote_test_grid_writer, in a folder that is removed at the end.
 #pragma once
 
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -13,23 +9,12 @@
 #include "core/math/transform.h"
 #include "core/objects/error.h"
 #include "media/vdb_grid.h"
+#include "tests/support/temporary_folder.h"
 
 namespace mote::tests {
 
-class TemporaryFolder {
+class GridFolder : public TemporaryFolder {
   public:
-    TemporaryFolder()
-        : path_(std::filesystem::temp_directory_path() / ("mote_media_" + std::to_string(::getpid()))) {
-        std::filesystem::create_directories(path_);
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    std::string file(const std::string& name) const { return (path_ / name).string(); }
-
     /// A file of the given kind (see tools/main_write_test_grids.cpp) under the given transform.
     std::string grid(const std::string& kind, const core::Transform* index_to_world = nullptr) const {
         const std::string path = file(kind + ".vdb");
@@ -42,9 +27,6 @@ class TemporaryFolder {
         if (std::system(command.c_str()) != 0) throw std::runtime_error("cannot write " + path);
         return path;
     }
-
-  private:
-    std::filesystem::path path_;
 };
 
 inline std::string read_bytes(const std::string& path) {

@@ -318,7 +318,8 @@ TEST_CASE("mote_epipolar with crossings renders several lights alike", "[epipola
     CHECK(relative_error(render(*one, epipolar(60, 8, crossings)), render(*one, epipolar(60, 8))) == 0.0);
     for (const auto& [w, h] : std::vector<std::pair<int, int>>{{1, 1}, {300, 1}}) {
         const auto thin = sized(block_in_fog({2.5, 0.5, 0.0}, more), w, h);
-        CHECK(relative_error(render(*thin, epipolar(60, 8, crossings)), render(*thin, full)) < 0.1);
+        CHECK(relative_error(render(*thin, epipolar(60, 8, crossings)), render(*thin, full)) <
+              usual_tolerance);
     }
 }
 

@@ -1,9 +1,10 @@
 // `mote_epipolar` and `mote_single_scattering` against each other and against volpath.
 #include <fmt/format.h>
 
-#include <filesystem>
+#include <algorithm>
 
 #include "tests/screenspace/epipolar_scenes.h"
+#include "tests/support/temporary_folder.h"
 
 using namespace mote;
 using namespace mote::core;
@@ -31,6 +32,14 @@ std::string sub_sampled(double spacing) {
         R"(<integrator type="mote_single_scattering"><string name="sampling" value="sub_sampled"/>
         <float name="spacing" value="{}"/></integrator>)",
         spacing);
+}
+
+/// How much light changes from a pixel to the one `stride` further on, as a share of the mean.
+double change(const Picture& picture, std::size_t stride) {
+    double sum = 0.0;
+    for (std::size_t i = stride; i < picture.pixels.size(); ++i)
+        sum += std::abs(picture.pixels[i].x - picture.pixels[i - stride].x);
+    return sum / double(picture.pixels.size() - stride) / picture.mean();
 }
 
 /// A fence beside the block, that cuts the light from the right into shafts.
@@ -75,10 +84,9 @@ TEST_CASE("Lights without a position and mirrors join in at full rate", "[epipol
 }
 
 TEST_CASE("Grids are marched as closely as volpath tracks them", "[epipolar]") {
-    const auto path = std::filesystem::temp_directory_path() / "mote_epipolar.vol";
-    check_against_volpath(with(box(grey, smoke_medium(path.string())), lamps), few_steps, 300,
+    const TemporaryFolder folder;
+    check_against_volpath(with(box(grey, smoke_medium(folder.file("smoke.vol"))), lamps), few_steps, 300,
                           {"direct", "single_scattering"});
-    std::filesystem::remove(path);
 }
 
 TEST_CASE("Epipolar pictures converge to full rate", "[epipolar]") {
@@ -87,16 +95,29 @@ TEST_CASE("Epipolar pictures converge to full rate", "[epipolar]") {
         const std::string steps = R"(<integer name="steps" value="128"/>)";
         const Picture reference =
             render(*scene, R"(<integrator type="mote_single_scattering">)" + steps + "</integrator>");
-        const auto error_at = [&](int rate) {
+        const auto at = [&](int rate) {
             const std::string texels = fmt::format(R"(<float name="texels" value="{}"/>)", 0.5 * rate);
-            return relative_error(render(*scene, epipolar(40 * rate, 8 * rate * rate, steps + texels)),
-                                  reference);
+            return render(*scene, epipolar(40 * rate, 8 * rate * rate, steps + texels));
         };
-        const double coarse = error_at(1), middle = error_at(3), fine = error_at(9);
+        const Picture finest = at(9);
+        const double coarse = relative_error(at(1), reference), middle = relative_error(at(3), reference),
+                     fine = relative_error(finest, reference);
         INFO("light " << light.x << ": " << coarse << ", " << middle << ", " << fine);
-        CHECK(middle < 0.6 * coarse);
-        CHECK(fine < 0.6 * middle);
-        CHECK(fine < 1e-2);
+        // Three times as fine: beside edges of shafts pixels are hit or missed, so the error is of first
+        // order in the distance of lines where edges fall evenly, and of order one half at least.
+        CHECK(middle < coarse / std::sqrt(3.0));
+        CHECK(fine < middle / std::sqrt(3.0));
+        // What is left falls to either side, pixel by pixel.
+        const auto bias = [&](double factor) {  // in standard errors
+            double sum = 0.0, squares = 0.0;
+            for (std::size_t i = 0; i < finest.pixels.size(); ++i) {
+                const double d = factor * finest.pixels[i].x - reference.pixels[i].x;
+                sum += d, squares += d * d;
+            }
+            return std::abs(sum) / std::sqrt(squares);
+        };
+        CHECK(bias(1.0) < 4.5);
+        CHECK(bias(1.02) > 4.5);  // planted
     }
 }
 
@@ -124,13 +145,14 @@ TEST_CASE("Sweeping the light past the frame and behind the camera makes no jump
         const double angle = (0.02 + 0.95 * i / 59.0) * double(pi);  // from the view, at the camera
         const auto scene =
             sized(block_in_fog(Vec3d(2.5 * std::sin(angle), 0.3, 4.0 - 2.5 * std::cos(angle))), 32, 24);
-        errors.push_back(relative_error(render(*scene, epipolar(96, 12)), render(*scene, full)));
+        errors.push_back(
+            relative_error(render(*scene, epipolar(96, 12, tolerance(0.01))), render(*scene, full)));
         INFO("position " << i << ", error " << errors.back());
-        CHECK(errors.back() < 0.08);
+        CHECK(errors.back() < 0.01);
     }
     for (std::size_t i = 1; i + 1 < errors.size(); ++i) {  // no spike above its neighbours
         INFO("position " << i << ": " << errors[i - 1] << ", " << errors[i] << ", " << errors[i + 1]);
-        CHECK(errors[i] < 2.0 * std::max(errors[i - 1], errors[i + 1]) + 0.005);
+        CHECK(errors[i] < 2.0 * std::max(errors[i - 1], errors[i + 1]) + 0.0005);
     }
 }
 
@@ -148,8 +170,8 @@ TEST_CASE("A spot light with a texture sends shafts of its pattern", "[epipolar]
     const Picture lines = render(*scene, epipolar(160, 8)), dark = render(*scene, epipolar(3, 8));
     const double error = relative_error(lines, reference);
     INFO(error << ", with three lines " << relative_error(dark, reference));
-    CHECK(error < 0.1);
-    CHECK(relative_error(dark, reference) > 2.0 * error);
+    CHECK(error < usual_tolerance);
+    CHECK(relative_error(dark, reference) > 2.0 * usual_tolerance);
     CHECK(lines.statistics.values.at("marched_rays") < 0.4 * reference.statistics.values.at("marched_rays"));
     // Outside the cone nothing is marched, in either.
     CHECK(reference.statistics.values.at("marched_rays") < 0.9 * 96 * 64);
@@ -161,19 +183,35 @@ TEST_CASE("A light at the camera, on a pixel and on the border", "[epipolar]") {
                                Vec3d(2 * half, 0, 2), Vec3d(2 * half, 1.5 * half, 2), Vec3d(1.0, 0, 4)}) {
         const auto scene = sized(block_in_fog(light), 48, 36);
         const Picture reference = render(*scene, full);
-        const double error = relative_error(render(*scene, epipolar(120, 16)), reference);
+        const double error = relative_error(render(*scene, epipolar(120, 16, tolerance(0.01))), reference);
         INFO("light at " << light.x << ", " << light.y << ", " << light.z << ": " << error);
-        CHECK(error < 0.1);
+        CHECK(error < 0.01);
     }
 }
 
 TEST_CASE("Pictures of one pixel and of one row", "[epipolar]") {
     for (const auto& [w, h] : std::vector<std::pair<int, int>>{{1, 1}, {2, 1}, {3, 300}, {8192, 1}}) {
         INFO(w << " x " << h);
-        const auto scene = sized(block_in_fog({0.3, 0.1, 0.5}), w, h);
+        const std::string xml = block_in_fog({0.3, 0.1, 0.5});
+        const auto scene = sized(xml, w, h);
         const Picture reference = render(*scene, full);
-        CHECK(relative_error(render(*scene, epipolar(256, 8)), reference) < 0.1);
-        CHECK(relative_error(render(*scene, sub_sampled(2.0)), reference) < 1.0);
+        // A pixel of one or two holds much of the view: lines need texels within it to know how light varies.
+        const std::string more = tolerance(0.02) + R"(<float name="texels" value="4"/>)";
+        CHECK(relative_error(render(*scene, epipolar(256, 8, more)), reference) < 0.02);
+        // A sub-sampled pixel is a mean of rays at most two pixels away, or its own ray.
+        const Picture grid = render(*scene, sub_sampled(2.0));
+        if (w * h > 2) {
+            const double two_pixels = change(reference, std::size_t(w < h ? 2 * w : 2));
+            CHECK(two_pixels < 0.1);
+            CHECK(relative_error(grid, reference) < two_pixels);
+        } else {
+            std::vector<double> seen;  // anywhere in the view
+            for (const Vec3d& pixel : render(*sized(xml, 32 * w, 32 * h), full).pixels)
+                seen.push_back(pixel.x);
+            const auto [least, most] = std::minmax_element(seen.begin(), seen.end());
+            CHECK(*least > 0.0);
+            for (const Vec3d& pixel : grid.pixels) CHECK((pixel.x >= *least && pixel.x <= *most));
+        }
     }
 }
 
@@ -181,6 +219,7 @@ TEST_CASE("Black lights, closed eyes and vacuum", "[epipolar]") {
     const std::string lid =
         R"(<shape type="sphere"><point name="center" x="0" y="0" z="4"/><float name="radius"
         value="0.2"/><bsdf type="diffuse"/></shape>)";
+    CHECK(render(*sized(block_in_fog({0.3, 0.1, 0.5}), 16, 16), epipolar(32, 4)).mean() > 0.0);
     CHECK(render(*sized(block_in_fog({0.3, 0.1, 0.5}, lid), 16, 16), epipolar(32, 4)).mean() == 0.0);
     std::string black = block_in_fog({0.3, 0.1, 0.5});
     black.insert(black.find("</emitter>"), R"(<rgb name="intensity" value="0"/>)");

@@ -201,13 +201,13 @@ TEST_CASE("Pictures by integrals are pictures by many steps", "[in_scattering_ex
         const auto expected = tests::render(*scene, integrator("mote_single_scattering", many + by_steps));
         const auto exact = tests::render(*scene, integrator("mote_single_scattering", ""));
         const auto steps = tests::render(*scene, integrator("mote_single_scattering", by_steps));
-        const auto lines =
-            tests::render(*scene, tests::epipolar(256, 32, R"(<float name="tolerance" value="0.01"/>)"));
+        const auto lines = tests::render(*scene, tests::epipolar(256, 32, tests::tolerance(0.01)));
         // An edge of a shadow is off by half a step of 64 at most, where the next pixel is as often off the
-        // other way.
-        CHECK(tests::relative_error(exact, expected) < 0.01);
+        // other way. Lines add their tolerance.
+        const double half_a_step = 0.5 / 64.0;
+        CHECK(tests::relative_error(exact, expected) < half_a_step);
         CHECK(tests::relative_error(exact, expected) < tests::relative_error(steps, expected));
-        CHECK(tests::relative_error(lines, expected) < 0.02);
+        CHECK(tests::relative_error(lines, expected) < half_a_step + 0.01);
         CHECK(std::abs(exact.mean() / expected.mean() - 1.0) < 0.003);
         CHECK(exact.statistics.values.at("unoccluded_rays") >
               0.3 * exact.statistics.values.at("marched_rays"));

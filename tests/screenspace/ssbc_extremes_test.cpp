@@ -177,13 +177,30 @@ TEST_CASE("Sky, lamps, mirrors and glass take no part; plastic does with its bas
     for (const int n : seen) CHECK(n > 0);
 }
 
-TEST_CASE("The printed radius on the screen is too small", "[ssbc]") {
-    // A point within r of y that projects outside of r / (tan(delta/2) |x - y|), see docs/errata.md.
-    const double r = 1.0, d = 2.0, tangent = 1.0;  // of half the field of view
-    const double angle = std::asin(r / d);         // the line of sight that touches the sphere
-    const double touching = std::tan(angle) / tangent, printed = r / (tangent * d);
-    CHECK(touching > 1.15 * printed);
-    const Vec3d point = d * std::cos(angle) * Vec3d(std::sin(angle), 0.0, std::cos(angle));
-    CHECK(glm::length(point - Vec3d(0, 0, d)) == Approx(r));
-    CHECK(point.x / point.z == Approx(touching * tangent));
+TEST_CASE("Light comes from outside of the printed radius on the screen", "[ssbc]") {
+    // Printed, docs/errata.md: what is within r of y lies within r / (tan(delta/2) |x - y|) on the screen. In
+    // a row of 65 pixels, whose half holds a tangent of 1, a patch 18 pixels away is near enough, and 16 are
+    // printed.
+    const double r = 1.0, d = 2.0, pixel = 2.0 / 65.0;
+    const int receiver = 32, sender = receiver + 18;
+    const double printed = r / d / pixel;
+    CHECK(printed < sender - receiver - 1);
+    const Vec3d y(0.0, 0.0, d), along(18 * pixel, 0.0, 1.0);
+    const Vec3d z = along * (glm::dot(along, y) / glm::dot(along, along));  // the point nearest to y
+    const Vec3d n_y = glm::normalize(z - y), n_z = glm::normalize(Vec3d(-1.0, 0.0, 0.3));
+    const double distance = glm::length(z - y), area = 1e-8, rho = 0.5, light = 3.0;
+    CHECK(distance < r);
+    SsbcSurfaces s(65, 1);
+    s.set(receiver, Vec3(y), Vec3(n_y), Vec3(-y), float(area), Rgb(float(rho)));
+    s.set(sender, Vec3(z), Vec3(n_z), Vec3(-z), float(area), Rgb(float(rho)));
+    std::vector<Rgb> sent(65, Rgb(0.0f));
+    sent[sender] = Rgb(float(light));
+    const double g = glm::dot(n_z, -n_y) / (distance * distance);
+    for (const bool hierarchical : {true, false}) {
+        SsbcSettings settings = with_bound(float(1.0 / (r * r)), 1);
+        settings.hierarchical = hierarchical;
+        const auto c = compensate(s, sent, settings).compensation;
+        CHECK(double(c[receiver].x) ==
+              Approx(rho / double(pi) * (g - 1.0 / (r * r)) * area * light).epsilon(1e-3));
+    }
 }

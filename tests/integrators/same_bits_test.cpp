@@ -1,0 +1,301 @@
+// One thread or many, in one go or interrupted and resumed: the same bits, for everything that is registered.
+//
+// The settings are walked through by the manual pages: every integrator with its defaults, then with one
+// parameter changed at a time, and with every pair of nested objects (compensation and visibility). Whatever
+// is registered later takes part; a word that its manual does not list has to be entered in `words`.
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <map>
+#include <set>
+
+#include "core/objects/error.h"
+#include "core/render/render_driver.h"
+#include "tests/integrators/test_scenes.h"
+#include "tests/support/catch.h"
+#include "tests/support/render_statistics.h"
+#include "tests/support/temporary_folder.h"
+
+using namespace mote;
+using namespace mote::core;
+using namespace mote::tests;
+
+namespace {
+
+using Words = std::vector<std::string>;
+
+/// Values of string parameters, by type and name: manual pages give them in prose alone.
+const std::map<std::string, Words> words = {
+    {"mote_photon_map.single_scattering", {"sampled", "photons"}},
+    {"mote_vsl.visibility", {"sample", "light"}},
+    {"mote_single_scattering.sampling", {"full", "sub_sampled"}},
+    {"mote_single_scattering.in_scattering", {"exact", "steps"}},
+    {"mote_single_scattering.march", {"equiangular", "uniform"}},
+    {"mote_epipolar.in_scattering", {"exact", "steps"}},
+    {"mote_epipolar.march", {"equiangular", "uniform"}},
+    {"exact.strategy", {"1-to-n", "n-to-1", "1-to-1", "1-to-1-homogeneous"}},
+    {"exact.receivers", {"all", "surfaces", "media"}},
+    {"approximate.strategy", {"1-to-n", "n-to-1", "1-to-1", "1-to-1-homogeneous"}},
+    {"approximate.receivers", {"all", "surfaces", "media"}},
+    {"approximate.transmittance", {"mean", "exact"}},
+    {"screen_space.receivers", {"surfaces"}},
+    {"shadow_map.storage", {"intervals", "nodes"}},
+};
+
+/// Numbers by name. The first is used throughout and keeps pictures quick, but for light paths, which are
+/// traced in more than one chunk; then come those to be tried. An empty first one stands for the default.
+const std::map<std::string, Words> numbers = {
+    {"paths", {"40"}},
+    {"photon_paths", {"200"}},
+    {"neighbours", {"5"}},
+    {"lines", {"24"}},
+    {"samples", {"2"}},
+    {"steps", {"4"}},
+    {"size", {"6"}},
+    {"light_size", {"8", "0"}},
+    {"max_depth", {"", "3"}},
+    {"rr_depth", {"", "1"}},
+    {"eye_samples", {"", "3"}},
+    {"max_photons", {"", "99"}},
+    {"alpha", {"", "1"}},
+    {"vpl_bound", {"", "1"}},
+    {"radius_scale", {"", "0"}},
+    {"depth", {"", "-1", "0"}},
+    {"layers", {"", "2"}},
+    {"blur", {"", "1"}},
+    {"maps", {"", "1"}},
+    {"tolerance", {"", "0"}},
+    {"spacing", {"", "2"}},
+    {"texels", {"", "0.5"}},
+};
+
+std::string element(const Parameter& p, const std::string& value) {
+    return fmt::format(R"(<{} name="{}" value="{}"/>)", p.type, p.name, value);
+}
+
+/// One way to set a type up: its parameters as XML.
+struct Settings {
+    std::vector<std::pair<std::string, std::string>> values;  ///< parameter and element
+    Settings with(const std::string& name, const std::string& xml) const {
+        Settings result = *this;
+        std::erase_if(result.values, [&](const auto& v) { return v.first == name; });
+        result.values.emplace_back(name, xml);
+        return result;
+    }
+    std::string xml() const {
+        std::string all;
+        for (const auto& [name, element] : values) all += element;
+        return all;
+    }
+};
+
+Settings usual(const Manual& manual) {
+    Settings settings;
+    for (const Parameter& p : manual.parameters)
+        if (const auto it = numbers.find(p.name); it != numbers.end() && !it->second[0].empty())
+            settings.values.emplace_back(p.name, element(p, it->second[0]));
+    return settings;
+}
+
+std::vector<Settings> variations(const Manual& manual, int nesting);
+
+/// A nested object of every registered type; on the first level with its own settings varied.
+std::vector<std::string> nested(const Parameter& p, Category category, int nesting) {
+    std::vector<std::string> result;
+    for (const std::string& type : registry().types(category)) {
+        const Manual& manual = *registry().find(category, type);
+        for (const Settings& s : nesting > 0 ? variations(manual, nesting - 1) : std::vector{usual(manual)})
+            result.push_back(
+                fmt::format(R"(<{0} name="{1}" type="{2}">{3}</{0}>)", p.type, p.name, type, s.xml()));
+    }
+    return result;
+}
+
+std::vector<std::string> values_of(const Manual& manual, const Parameter& p, int nesting) {
+    std::vector<std::string> result;
+    if (p.type == "boolean") {
+        result.push_back(element(p, p.default_value == "true" ? "false" : "true"));
+    } else if (p.type == "string") {
+        const auto it = words.find(manual.type + "." + p.name);
+        if (it == words.end()) FAIL("no words are known for " << manual.type << "." << p.name);
+        for (const std::string& word : it->second)
+            if (word != p.default_value) result.push_back(element(p, word));
+    } else if (const auto category = find_category(p.type)) {
+        result = nested(p, *category, nesting);
+    } else if (const auto it = numbers.find(p.name); it != numbers.end()) {
+        for (std::size_t i = 1; i < it->second.size(); ++i) result.push_back(element(p, it->second[i]));
+    }
+    return result;
+}
+
+std::vector<Settings> variations(const Manual& manual, int nesting) {
+    std::vector<Settings> result{usual(manual)};
+    for (const Parameter& p : manual.parameters)
+        for (const std::string& xml : values_of(manual, p, nesting))
+            result.push_back(result[0].with(p.name, xml));
+    for (const Parameter& a : manual.parameters)  // pairs of nested objects
+        for (const Parameter& b : manual.parameters)
+            if (const auto first = find_category(a.type), second = find_category(b.type);
+                first && second && a.name < b.name)
+                for (const std::string& one : nested(a, *first, 0))
+                    for (const std::string& two : nested(b, *second, 0))
+                        result.push_back(result[0].with(a.name, one).with(b.name, two));
+    return result;
+}
+
+constexpr std::uint32_t passes = 2, passes_before = 1;
+
+/// The film's sums, and the means that post-processes may have replaced.
+struct Bits {
+    std::vector<std::byte> sums;
+    std::vector<std::vector<Rgb>> means;
+    bool operator==(const Bits&) const = default;
+};
+
+Bits bits(const Film& film) {
+    Bits result{film.serialize(), {film.beauty()}};
+    for (std::size_t i = 0; i < film.layers().size(); ++i) result.means.push_back(film.mean(i));
+    return result;
+}
+
+/// In an arena of its own, since a machine of two cores would give two threads whatever is allowed.
+template <typename F>
+auto on_threads(int threads, const F& work) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
+    return tbb::task_arena(threads).execute(work);
+}
+
+RenderRequest request(std::uint64_t seed = 5) {
+    RenderRequest r;
+    r.seed = seed, r.stop.passes = passes, r.content_hash = "0123456789abcdef";
+    return r;
+}
+
+Bits straight(const Scene& scene, const Integrator& integrator, int threads, std::uint64_t seed = 5) {
+    return on_threads(threads, [&] { return bits(render(scene, integrator, request(seed)).film); });
+}
+
+Bits resumed(const Scene& scene, const Integrator& integrator, int threads) {
+    const TemporaryFolder folder;
+    return on_threads(threads, [&] {
+        std::atomic<bool> flag{false};
+        RenderRequest first = request();
+        first.checkpoint_path = folder.file("checkpoint");
+        RenderRequest second = first;
+        first.interrupted = &flag;
+        first.progress = [&](const RenderProgress& p) { flag = p.passes == passes_before; };
+        const RenderResult cut = render(scene, integrator, first);
+        REQUIRE(cut.interrupted);
+        REQUIRE(cut.film.pass_count() == passes_before);
+        second.resume = true;
+        const RenderResult result = render(scene, integrator, second);
+        REQUIRE(result.resumed_at == passes_before);
+        return bits(result.film);
+    });
+}
+
+constexpr int edge = 20;  ///< of the picture: four tiles
+
+/// The box with three kinds of lights.
+std::unique_ptr<Scene> lit_box(const std::string& medium) {
+    std::string xml = box(mixed, medium);
+    xml.insert(xml.find("<sensor"), R"(<emitter type="point"><point name="position" x="0.5" y="0.3" z="0.6"/>
+            <rgb name="intensity" value="1, 2, 3"/></emitter>
+        <emitter type="spot"><transform name="to_world"><lookat origin="-0.5, 0.8, 0.8" target="0, -0.5, 0" up="0, 0, 1"/>
+            </transform><rgb name="intensity" value="3, 2, 1"/></emitter>)");
+    return scene_from(xml, edge);
+}
+
+double brightness(const Bits& bits) {
+    double sum = 0.0;
+    for (const Rgb& pixel : bits.means[0]) sum += double(average(pixel));
+    return sum;
+}
+
+/// Every setting of an integrator in a scene. Returns how many were rendered, and enters what was refused.
+int check_all(const Scene& scene, const std::string& type, std::set<std::string>& refused) {
+    int rendered = 0;
+    for (const Settings& s : variations(*registry().find(Category::integrator, type), 1)) {
+        INFO(type << " " << s.xml());
+        std::shared_ptr<const Integrator> integrator;
+        try {
+            integrator = integrator_from("<integrator type=\"" + type + "\">" + s.xml() + "</integrator>");
+            integrator->prepare(scene, {.seed = 5, .width = edge, .height = edge});
+        } catch (const InputError& error) {
+            refused.insert(type + ": " + error.what());
+            continue;
+        }
+        const Bits one = straight(scene, *integrator, 1);
+        CHECK(brightness(one) > 0.0);
+        if (const bool same = one == resumed(scene, *integrator, 4); !same) {
+            INFO("interrupted and resumed on one thread the same: "
+                 << (one == resumed(scene, *integrator, 1)));
+            INFO("in one go on four threads the same: " << (one == straight(scene, *integrator, 4)));
+            CHECK(same);
+        }
+        if (rendered++ == 0) CHECK_FALSE((one == straight(scene, *integrator, 1, 6)));
+    }
+    return rendered;
+}
+
+/// Errors of the two kinds that are looked for.
+enum class Carelessness { threads, state };
+
+class Careless final : public Integrator {
+  public:
+    explicit Careless(Carelessness how) : how_(how) {}
+    std::string type() const override { return "careless"; }
+    std::vector<Layer> layers(const Scene&) const override { return {{"direct", ""}}; }
+    Plan plan(const Scene&, const Requirements&) const override { return {}; }
+    std::unique_ptr<Estimator> prepare(const Scene&, const RenderOptions&) const override {
+        return std::make_unique<Pass>(how_);
+    }
+
+  private:
+    class Pass final : public Estimator {
+      public:
+        explicit Pass(Carelessness how) : how_(how) {}
+        bool pass(const PassContext&, PassImage& image) override {
+            ++passes_;
+            const int value =
+                how_ == Carelessness::threads ? tbb::this_task_arena::max_concurrency() : passes_;
+            for (Rgb& pixel : image.layer(0)) pixel = Rgb(float(value));
+            return true;
+        }
+
+      private:
+        Carelessness how_;
+        int passes_ = 0;
+    };
+    Carelessness how_;
+};
+
+}  // namespace
+
+TEST_CASE("every integrator gives the same bits on one thread, and on many after a resume", "[same_bits]") {
+    const TemporaryFolder folder;
+    std::set<std::string> refused;
+    for (const auto& medium :
+         {std::string(), fog("0.8, 1.0, 1.3", ""), smoke_medium(folder.file("smoke.vol"))}) {
+        const auto scene = lit_box(medium);
+        INFO("medium " << medium);
+        for (const std::string& type : registry().types(Category::integrator)) {
+            const int rendered = check_all(*scene, type, refused);
+            CHECK((rendered > 0) == (type != "mote_vsl" || !scene->has_media()));
+        }
+    }
+    // Nothing else is left out.
+    REQUIRE(refused.size() == 2);
+    CHECK_THAT(*refused.begin(), Catch::Contains("'media' is an object of the wrong kind"));
+    CHECK_THAT(*refused.rbegin(), Catch::Contains("renders surfaces only"));
+}
+
+TEST_CASE("a pass that knows its threads or its predecessors gives other bits", "[same_bits][planted]") {
+    const auto scene = lit_box("");
+    const Careless threads(Carelessness::threads), state(Carelessness::state);
+    CHECK_FALSE((straight(*scene, threads, 1) == straight(*scene, threads, 4)));
+    CHECK((straight(*scene, threads, 4) == resumed(*scene, threads, 4)));
+    CHECK_FALSE((straight(*scene, state, 1) == resumed(*scene, state, 1)));
+    CHECK((straight(*scene, state, 1) == straight(*scene, state, 4)));
+}
