@@ -1,14 +1,19 @@
-// What the camera sees besides light, as channels of a picture: for denoisers, and for `mote ssbc`.
+// What the camera sees besides light: layers of the render for denoisers, channels at pixel centres for
+// `mote ssbc`.
 #pragma once
 
 #include "core/image/image_file.h"
-#include "core/scene/scene.h"
+#include "core/render/first_hit_features.h"
 
 namespace mote::apps {
 
-/// Adds, at pixel centres: P, N, Ns (geometric and shading normal, turned to the viewer) in the world,
-/// Depth.Z (along the ray; infinity where nothing is hit), Albedo of the whole BSDF, and DiffuseAlbedo of
-/// what it reflects to all sides alike. The picture must have the size of the scene's film.
-void add_auxiliary_channels(core::ImageChannels& image, const core::Scene& scene);
+/// core::first_hit_features(), and DiffuseAlbedo: what the BSDF reflects to all sides alike.
+std::vector<core::HitFeature> auxiliary_features(const core::Scene& scene);
+
+/// Adds Center.P, Center.N (geometric, turned to the viewer) and Center.DiffuseAlbedo: what the rays through
+/// the middle of the pixels and of the lens hit, zero where that is nothing. The picture must have the size
+/// of the scene's film. Methods in the space of the picture need sharp edges, which the features are filtered
+/// over.
+void add_center_channels(core::ImageChannels& image, const core::Scene& scene);
 
 }  // namespace mote::apps

@@ -59,7 +59,8 @@ void add_render(CLI::App& app, RenderArguments& a, std::function<int()>& action)
         ->check(CLI::NonNegativeNumber);
     command.add_option("--stats", a.stats, "Write statistics to this JSON file");
     command.add_flag("--half", a.half, "Write float16 instead of float32");
-    command.add_flag("--auxiliary", a.auxiliary, "Also write positions, normals, depth and albedo");
+    command.add_flag("--auxiliary", a.auxiliary,
+                     "Also write what is seen: positions, normals, depth, albedo, with variances");
     command.add_flag("--quiet", a.quiet, "No progress, no warnings");
     command.add_flag("-v,--verbose", a.verbose, "Also print the plan and where the time went");
     command.callback([&a, &action] { action = [&a] { return render_command(a); }; });

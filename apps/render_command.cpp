@@ -77,7 +77,7 @@ std::string hash_of(const core::Scene& scene, const core::Integrator& integrator
 void write_outputs(const OutputFiles& files, const RenderReport& report, const RenderArguments& arguments) {
     core::ImageChannels image = core::film_image(report.result.film);
     image.metadata = picture_metadata(report);
-    if (arguments.auxiliary) add_auxiliary_channels(image, report.scene);
+    if (arguments.auxiliary) add_center_channels(image, report.scene);
     core::write_exr(files.picture, image, arguments.half || report.scene.film().half);
     core::write_png(files.preview, image.width, image.height, image.rgb(""));
 }
@@ -127,6 +127,7 @@ int render_command(const RenderArguments& arguments) {
     request.checkpoint_at_end = false;
     request.resume = arguments.resume;
     request.content_hash = hash_of(*scene, integrator, arguments.scene);
+    if (arguments.auxiliary) request.features = auxiliary_features(*scene);
     const double load_seconds = seconds_since(load_start);
 
     if (!arguments.quiet) {

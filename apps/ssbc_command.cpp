@@ -158,10 +158,10 @@ void add_ssbc(CLI::App& app, SsbcArguments& a, std::function<int()>& action) {
         ->expected(1)
         ->allow_extra_args(false)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    command.add_option("--position", a.channels.position, "The layer of positions (default: P)");
-    command.add_option("--normal", a.channels.normal, "The layer of normals (default: N)");
+    command.add_option("--position", a.channels.position, "The layer of positions (default: Center.P or P)");
+    command.add_option("--normal", a.channels.normal, "The layer of normals (default: Center.N or N)");
     command.add_option("--albedo", a.channels.reflectance,
-                       "The layer of diffuse reflectance (default: DiffuseAlbedo or Albedo)");
+                       "The layer of diffuse reflectance (default: that of Center, DiffuseAlbedo or Albedo)");
     command.add_option("--levels", s.refinement.levels, "Levels of the pyramid that are summed (default: 6)")
         ->check(CLI::Range(1, 32));
     command

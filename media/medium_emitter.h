@@ -28,6 +28,10 @@ class MediumEmitter final : public core::Emitter {
     }
     std::optional<core::EmissionSample> sample_emission(const core::Vec2& u_position,
                                                         const core::Vec2& u_direction) const override;
+    core::EmissionDensity pdf_emission(const core::Vec3& origin, const core::Vec3& /*normal*/,
+                                       const core::Vec3& /*direction*/) const override {
+        return {pdf_volume(origin), core::inv_four_pi};
+    }
     core::Rgb power() const override { return power_; }
     void set_direct_probability(float p) override { probability_ = p; }
 

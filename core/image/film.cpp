@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <functional>
+#include <map>
 #include <stdexcept>
 
 namespace mote::core {
@@ -20,8 +21,8 @@ double luminance_of(const double c[3]) { return 0.2126 * c[0] + 0.7152 * c[1] + 
 
 // Variance of a mean of n values from their sum and sum of squares: (sum of squares / n - mean^2) / (n - 1).
 // Rounding can leave a tiny negative number where all values are equal.
-double variance_from_sums(double sum, double squares, std::uint32_t n) {
-    if (n < 2) return 0.0;
+double variance_from_sums(double sum, double squares, double n) {
+    if (n < 2.0) return 0.0;
     const double mean = sum / n;
     return std::fmax(0.0, (squares / n - mean * mean) / (n - 1.0));
 }
@@ -59,8 +60,27 @@ Film::Film(int width, int height, std::vector<Layer> layers, bool all_squares)
       luminance_squares_(width > 0 && height > 0 ? pixels() : 0) {
     if (width < 1 || height < 1) throw std::invalid_argument("a film needs at least one pixel");
     sums_.assign(layers_.size(), Sums(3 * pixels()));
-    if (all_squares_) layer_squares_.assign(layers_.size(), Sums(3 * pixels()));
+    for (const Layer& layer : layers_)
+        layer_squares_.emplace_back(all_squares_ || layer.squares ? 3 * pixels() : 0);
     replaced_means_.resize(layers_.size());
+    find_where();
+}
+
+void Film::find_where() {
+    std::map<std::string, std::size_t> index;
+    for (std::size_t i = 0; i < layers_.size(); ++i)
+        if (!index.emplace(layers_[i].name, i).second)
+            throw std::invalid_argument("two layers are called '" + layers_[i].name + "'");
+    for (const Layer& layer : layers_) {
+        if (!layer.where.empty() && !index.contains(layer.where))
+            throw std::invalid_argument("there is no layer '" + layer.where + "'");
+        where_.push_back(layer.where.empty() ? layers_.size() : index[layer.where]);
+    }
+}
+
+double Film::passes_of(std::size_t layer, std::size_t pixel) const {
+    const std::size_t where = where_[layer];
+    return where < layers_.size() ? sums_[where].at(3 * pixel) : double(passes_);
 }
 
 void Film::add_pixel(const PassImage& image, std::size_t pixel) {
@@ -71,7 +91,7 @@ void Film::add_pixel(const PassImage& image, std::size_t pixel) {
             const double v = value[c];
             const std::size_t i = 3 * pixel + std::size_t(c);
             sums_[layer].block[i] += v;
-            if (all_squares_) layer_squares_[layer].block[i] += v * v;
+            if (has_squares(layer)) layer_squares_[layer].block[i] += v * v;
             if (!layers_[layer].auxiliary) beauty[c] += v;
         }
     }
@@ -112,7 +132,9 @@ std::vector<Rgb> Film::mean(std::size_t layer) const {
     if (passes_ == 0) return result;
     const Sums& sums = sums_[layer];
     for_each_pixel(pixels(), [&](std::size_t p) {
-        for (int c = 0; c < 3; ++c) result[p][c] = float(sums.at(3 * p + std::size_t(c)) / passes_);
+        const double n = passes_of(layer, p);
+        if (n == 0.0) return;
+        for (int c = 0; c < 3; ++c) result[p][c] = float(sums.at(3 * p + std::size_t(c)) / n);
     });
     return result;
 }
@@ -140,7 +162,8 @@ std::vector<Rgb> Film::variance_of_mean(std::span<const std::size_t> layers, con
             const std::size_t i = 3 * p + std::size_t(c);
             double sum = 0.0;
             for (const std::size_t layer : layers) sum += sums_[layer].at(i);
-            result[p][c] = float(variance_from_sums(sum, squares.at(i), passes_));
+            const double n = layers.size() == 1 ? passes_of(layers.front(), p) : double(passes_);
+            result[p][c] = float(variance_from_sums(sum, squares.at(i), n));
         }
     });
     return result;
@@ -151,7 +174,7 @@ std::vector<Rgb> Film::beauty_variance_of_mean() const {
 }
 
 std::vector<Rgb> Film::layer_variance_of_mean(std::size_t layer) const {
-    if (!all_squares_) throw std::logic_error("the film keeps the squares of the beauty alone");
+    if (!has_squares(layer)) throw std::logic_error("the film does not keep the squares of this layer");
     return variance_of_mean(std::span(&layer, 1), layer_squares_.at(layer));
 }
 

@@ -17,7 +17,8 @@ class Film {
   public:
     static constexpr std::uint32_t block_size = 16;
 
-    /// `all_squares`: keep the sum of squares of every layer, not of the beauty alone.
+    /// `all_squares`: keep the sum of squares of every layer, not of the beauty and of those that ask for it.
+    /// Throws std::invalid_argument when two layers have one name, or a Layer::where names none.
     Film(int width, int height, std::vector<Layer> layers, bool all_squares = false);
 
     int width() const { return width_; }
@@ -32,7 +33,7 @@ class Film {
     /// Adds the next pass. Must be called in index order. Undoes set_mean().
     void add_pass(const PassImage& image);
 
-    /// Mean over passes of one layer, as float.
+    /// Mean over passes of one layer, as float. Over the passes of Layer::where, zero where there are none.
     std::vector<Rgb> mean(std::size_t layer) const;
     /// The beauty: the float sum of the float means of all layers that are not auxiliary, in order, so that
     /// whoever adds up the layers of a written file gets the same bits.
@@ -40,7 +41,9 @@ class Film {
     /// Variance of the beauty's mean per pixel and channel: (sum of squares / n - mean^2) / (n - 1). Zero for
     /// n < 2.
     std::vector<Rgb> beauty_variance_of_mean() const;
-    /// The same for a layer; needs all_squares.
+    /// Does the film know the variance of a layer?
+    bool has_squares(std::size_t layer) const { return !layer_squares_.at(layer).total.empty(); }
+    /// The same for a layer, over the passes of Layer::where; needs has_squares(layer).
     std::vector<Rgb> layer_variance_of_mean(std::size_t layer) const;
     /// Replaces what mean() returns for a layer, for post-processes (Estimator::finish). The sums, and with
     /// them the variances, the noise and the serialised film, stay those of the passes.
@@ -69,6 +72,9 @@ class Film {
     void add_pixel(const PassImage& image, std::size_t pixel);
     Mean beauty_luminance(std::size_t pixel) const;
     std::vector<Rgb> variance_of_mean(std::span<const std::size_t> layers, const Sums& squares) const;
+    /// How many passes the mean of a layer is over, for a pixel.
+    double passes_of(std::size_t layer, std::size_t pixel) const;
+    void find_where();
     std::vector<std::size_t> beauty_layers() const;
     std::vector<const Sums*> all_sums() const;
     std::size_t serialized_size(std::uint32_t passes) const;
@@ -81,7 +87,8 @@ class Film {
     std::vector<Sums> sums_;                        ///< one per layer, three channels
     Sums beauty_squares_;                           ///< three channels
     Sums luminance_squares_;                        ///< of the beauty, one channel
-    std::vector<Sums> layer_squares_;               ///< one per layer when all_squares_
+    std::vector<Sums> layer_squares_;               ///< one per layer, empty where not kept
+    std::vector<std::size_t> where_;                ///< index of Layer::where, or that of no layer
     std::vector<std::vector<Rgb>> replaced_means_;  ///< per layer; empty unless set_mean() was called
 };
 

@@ -14,11 +14,24 @@ void add_plane(ImageChannels& image, const std::string& name, const std::vector<
     image.add(name, std::move(plane));
 }
 
-void add_auxiliary(ImageChannels& image, const std::string& name, const std::vector<Rgb>& pixels) {
-    if (name == "Depth") return add_plane(image, "Depth.Z", pixels, 0);
-    if (name != "N" && name != "Ns" && name != "P") return image.add_rgb(name, pixels);
+/// Scalars are one plane, vectors of the world have axes, all others are colours.
+void add_auxiliary(ImageChannels& image, const std::string& name, const std::string& kind,
+                   const std::vector<Rgb>& pixels) {
+    if (kind == "Depth") return add_plane(image, name + ".Z", pixels, 0);
+    if (kind == "Coverage") return add_plane(image, name + ".Y", pixels, 0);
+    if (kind != "N" && kind != "Ns" && kind != "P") return image.add_rgb(name, pixels);
     const char* axes[3] = {".X", ".Y", ".Z"};
     for (int c = 0; c < 3; ++c) add_plane(image, name + axes[c], pixels, c);
+}
+
+void add_auxiliary(ImageChannels& image, const Film& film, std::size_t i) {
+    const std::string& name = film.layers()[i].name;
+    std::vector<Rgb> mean = film.mean(i);
+    // Nothing was hit, so it is as far away as can be.
+    if (name == "Depth") std::replace(mean.begin(), mean.end(), Rgb(0.0f), Rgb(infinity));
+    add_auxiliary(image, name, name, mean);
+    if (film.has_squares(i) && film.pass_count() >= 2)
+        add_auxiliary(image, "Variance." + name, name, film.layer_variance_of_mean(i));
 }
 
 }  // namespace
@@ -30,7 +43,7 @@ ImageChannels film_image(const Film& film) {
     for (std::size_t i = 0; i < film.layers().size(); ++i) {
         const Layer& layer = film.layers()[i];
         if (layer.auxiliary)
-            add_auxiliary(image, layer.name, film.mean(i));
+            add_auxiliary(image, film, i);
         else
             image.add_rgb(layer.name, film.mean(i));
     }

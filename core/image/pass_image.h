@@ -14,6 +14,9 @@ struct Layer {
     std::string name;         ///< "direct", "indirect_bounded"
     std::string description;  ///< one line for docs and metadata
     bool auxiliary = false;   ///< not part of the beauty (Albedo, N, P, Depth)
+    bool squares = false;     ///< the film keeps the sum of squares, and with it the variance
+    std::string where = "";   ///< name of a layer of zeros and ones: the mean is that of the passes where it
+                              ///< is one (a position where nothing was hit is no position); "": of all
 };
 
 /// The picture of one pass: one value per pixel and layer, row by row from the top. Zero at the start.

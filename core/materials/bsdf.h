@@ -16,6 +16,11 @@ namespace mote::core {
 /// not.
 enum class TransportMode : std::uint8_t { radiance, power };
 
+/// The mode of the same path traced from its other end.
+inline TransportMode opposite(TransportMode mode) {
+    return mode == TransportMode::radiance ? TransportMode::power : TransportMode::radiance;
+}
+
 struct BsdfTraits {
     bool smooth = false;        ///< has a part that eval() sees (non-delta)
     bool delta = false;         ///< has a part that only sample() can produce
@@ -57,6 +62,11 @@ class Bsdf : public Object {
 
     /// Density of sample() choosing wi given wo, per solid angle, over the smooth part, and including the
     /// chance of choosing the smooth part at all.
+    ///
+    /// The reverse density, with which a path that goes the other way is scattered from wi to wo, is this one
+    /// with the directions exchanged and the other mode: pdf_solid_angle(p, wi, wo, opposite(mode)). Nothing
+    /// in the arguments tells the two ways apart, because both directions point away from the surface and the
+    /// local frame stays where it is; indices of refraction are taken from the side that wo is on.
     virtual float pdf_solid_angle(const BsdfPoint& p, const Vec3& wo, const Vec3& wi,
                                   TransportMode mode) const = 0;
 

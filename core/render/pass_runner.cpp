@@ -23,32 +23,56 @@ std::unique_ptr<PixelFilter> filter_of(const FilmSettings& film) {
     return make_pixel_filter(film.filter, film.filter_radius, film.filter_stddev);
 }
 
+RenderOptions render_options(const Scene& scene, std::uint64_t seed) {
+    const FilmSettings& film = scene.film();
+    return {seed, film.width, film.height, sampler_kind(film.sampler)};
+}
+
 std::unique_ptr<Estimator> timed_prepare(const Scene& scene, const Integrator& integrator, std::uint64_t seed,
                                          double& seconds) {
-    const FilmSettings& film = scene.film();
     const auto start = std::chrono::steady_clock::now();
-    auto estimator = integrator.prepare(scene, {seed, film.width, film.height, sampler_kind(film.sampler)});
+    auto estimator = integrator.prepare(scene, render_options(scene, seed));
     seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return estimator;
 }
 
 }  // namespace
 
-PassRunner::PassRunner(const Scene& scene, const Integrator& integrator, std::uint64_t seed, Film& film)
+std::vector<Layer> film_layers(const Scene& scene, const Integrator& integrator,
+                               std::span<const HitFeature> features) {
+    std::vector<Layer> layers = integrator.layers(scene);
+    for (const HitFeature& feature : features) layers.push_back(feature.layer);
+    return layers;
+}
+
+PassRunner::PassRunner(const Scene& scene, const Integrator& integrator, std::uint64_t seed, Film& film,
+                       std::vector<HitFeature> features)
     : film_(film),
       filter_(filter_of(scene.film())),
       estimator_(timed_prepare(scene, integrator, seed, build_seconds_)),
-      image_(film.width(), film.height(), film.layers().size()) {}
+      image_(film.width(), film.height(), film.layers().size()) {
+    if (features.size() > film.layers().size())
+        throw std::invalid_argument("the film has no layers for the features");
+    const std::size_t first_layer = film.layers().size() - features.size();
+    if (!features.empty())
+        features_.emplace(scene, render_options(scene, seed), std::move(features), first_layer);
+}
 
 bool PassRunner::run_pass(const std::atomic<bool>& cancelled) {
     image_.clear();
-    if (!estimator_->pass({film_.pass_count(), *filter_, cancelled}, image_)) {
+    const PassContext context{film_.pass_count(), *filter_, cancelled};
+    if (!estimator_->pass(context, image_) || (features_ && !features_->fill(context, image_))) {
         if (!cancelled.load(std::memory_order_relaxed))
             throw std::logic_error("a pass ended early without being cancelled");
         return false;
     }
     film_.add_pass(image_);
     return true;
+}
+
+void PassRunner::add_statistics(Statistics& statistics) const {
+    estimator_->add_statistics(statistics);
+    if (features_) statistics.rays["closest"] += features_->rays();
 }
 
 }  // namespace mote::core

@@ -5,24 +5,32 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "core/image/film.h"
+#include "core/render/first_hit_features.h"
 #include "core/render/integrator.h"
 
 namespace mote::core {
 
+/// The layers of a film for both: those of the integrator, then those of the features.
+std::vector<Layer> film_layers(const Scene& scene, const Integrator& integrator,
+                               std::span<const HitFeature> features);
+
 class PassRunner {
   public:
-    /// Calls Integrator::prepare(). `film` has the size of the scene's film and the integrator's layers; it
-    /// may hold the first passes already. Scene and film must outlive the runner. Throws InputError for an
+    /// Calls Integrator::prepare(). `film` has the size of the scene's film and the layers of film_layers();
+    /// it may hold the first passes already. Scene and film must outlive the runner. Throws InputError for an
     /// unknown filter or sampler.
-    PassRunner(const Scene& scene, const Integrator& integrator, std::uint64_t seed, Film& film);
+    PassRunner(const Scene& scene, const Integrator& integrator, std::uint64_t seed, Film& film,
+               std::vector<HitFeature> features = {});
 
     /// Adds the film's next pass. Returns false, with the film unchanged, when it was cancelled.
     bool run_pass(const std::atomic<bool>& cancelled);
     /// The pass that was added last.
     const PassImage& last_pass() const { return image_; }
     Estimator& estimator() { return *estimator_; }
+    void add_statistics(Statistics& statistics) const;       ///< of the estimator and of the features
     double build_seconds() const { return build_seconds_; }  ///< wall time of prepare()
 
   private:
@@ -31,6 +39,7 @@ class PassRunner {
     double build_seconds_ = 0.0;
     std::unique_ptr<Estimator> estimator_;
     PassImage image_;
+    std::optional<FirstHitPass> features_;
 };
 
 }  // namespace mote::core

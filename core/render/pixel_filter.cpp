@@ -16,6 +16,12 @@ class BoxFilter final : public PixelFilter {
   public:
     explicit BoxFilter(float radius) : radius_(radius) {}
     Vec2 sample_offset(const Vec2& u) const override { return (2.0f * u - 1.0f) * radius_; }
+    /// Half open, as the offsets are: neighbouring boxes of radius 1/2 share no point.
+    float pdf_area(const Vec2& offset) const override {
+        const auto inside = [&](float x) { return x >= -radius_ && x < radius_; };
+        return inside(offset.x) && inside(offset.y) ? 1.0f / sqr(2.0f * radius_) : 0.0f;
+    }
+    float radius() const override { return radius_; }
 
   private:
     float radius_;
@@ -25,8 +31,11 @@ class TentFilter final : public PixelFilter {
   public:
     explicit TentFilter(float radius) : radius_(radius) {}
     Vec2 sample_offset(const Vec2& u) const override { return radius_ * Vec2(invert(u.x), invert(u.y)); }
+    float pdf_area(const Vec2& offset) const override { return density(offset.x) * density(offset.y); }
+    float radius() const override { return radius_; }
 
   private:
+    float density(float x) const { return std::fmax(0.0f, 1.0f - std::fabs(x) / radius_) / radius_; }
     // Inverse of the distribution function of the density 1 - |x| on [-1, 1].
     static float invert(float u) {
         return u < 0.5f ? std::sqrt(2.0f * u) - 1.0f : 1.0f - std::sqrt(2.0f * (1.0f - u));
@@ -50,9 +59,21 @@ class GaussianFilter final : public PixelFilter {
             cdf_[i + 1] = cdf_[i] + 0.5 * cell_ * (density_[i] + density_[i + 1]);
     }
     Vec2 sample_offset(const Vec2& u) const override { return {float(invert(u.x)), float(invert(u.y))}; }
+    float pdf_area(const Vec2& offset) const override {
+        return float(density(double(offset.x)) * density(double(offset.y)));
+    }
+    float radius() const override { return float(radius_); }
 
   private:
     static constexpr int cells = 512;
+
+    /// Of the table, so that it is exactly what invert() draws by.
+    double density(double x) const {
+        const double at = (x + radius_) / cell_;
+        if (!(at >= 0.0 && at < double(cells))) return 0.0;
+        const auto i = std::size_t(at);
+        return (density_[i] + (at - double(i)) * (density_[i + 1] - density_[i])) / cdf_.back();
+    }
 
     double invert(double u) const {
         const double target = u * cdf_.back();

@@ -96,11 +96,14 @@ RenderResult render(const Scene& scene, const Integrator& integrator, const Rend
     const FilmSettings& settings = scene.film();
     StopRule stop = request.stop;
     if (!stop.passes && !stop.seconds && !stop.noise) stop.passes = std::uint32_t(settings.sample_count);
-    RenderResult result{
-        Film(settings.width, settings.height, integrator.layers(scene), request.all_squares), {}, false, 0};
+    RenderResult result{Film(settings.width, settings.height,
+                             film_layers(scene, integrator, request.features), request.all_squares),
+                        {},
+                        false,
+                        0};
     if (request.resume) resume(request, result);  // before the work of prepare(): it may be refused
 
-    PassRunner runner(scene, integrator, request.seed, result.film);
+    PassRunner runner(scene, integrator, request.seed, result.film, request.features);
     result.statistics.seconds["build"] = runner.build_seconds();
 
     PassLoop(request, stop, runner, result).run();
@@ -110,7 +113,7 @@ RenderResult render(const Scene& scene, const Integrator& integrator, const Rend
         runner.estimator().finish(result.film);
         result.statistics.seconds["finish"] = seconds_since(finish_start);
     }
-    runner.estimator().add_statistics(result.statistics);
+    runner.add_statistics(result.statistics);
     result.statistics.non_finite_samples += result.film.non_finite();
     return result;
 }

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "core/image/film.h"
+#include "core/render/first_hit_features.h"
 #include "core/render/integrator.h"
 
 namespace mote::core {
@@ -38,6 +39,7 @@ struct RenderRequest {
     bool resume = false;            ///< continue from checkpoint_path; from the start where there is none
     std::string content_hash;       ///< of the scene, its files and the options that change the picture
     bool all_squares = false;
+    std::vector<HitFeature> features;          ///< become layers of the film, behind those of the integrator
     std::function<double(const Film&)> noise;  ///< the measure of the noise; empty: Film::relative_noise()
     std::function<void(const RenderProgress&)> progress;  ///< called after every pass; may be empty
     const std::atomic<bool>* interrupted = nullptr;       ///< set by Ctrl-C

@@ -56,6 +56,12 @@ struct EmissionSample {
     const Medium* inside = nullptr;  ///< the particle counts only where this medium is the one at its origin
 };
 
+/// The two densities of EmissionSample, of a particle that some other technique found.
+struct EmissionDensity {
+    float pdf_area = 0.0f;         ///< of the origin, in the measure of EmissionSample::pdf_area
+    float pdf_solid_angle = 0.0f;  ///< of the direction, given the origin
+};
+
 class Emitter : public Object {
   public:
     virtual EmitterTraits traits() const = 0;
@@ -77,6 +83,17 @@ class Emitter : public Object {
     /// Draws a particle. Nothing when the sample carries no light.
     virtual std::optional<EmissionSample> sample_emission(const Vec2& u_position,
                                                           const Vec2& u_direction) const = 0;
+
+    /// With which densities sample_emission() draws this origin and this direction (unit, away from the
+    /// light). `normal` is that of the light's surface at the origin, and of no consequence for other lights.
+    /// Draws that carry no light count like all others.
+    ///
+    /// A delta part (see EmitterTraits) is taken to be the light's own and counts as 1: no other technique
+    /// can find it. For lights at infinity any point of the particle's ray will do for its origin, since all
+    /// of them belong to one point of the disk; the density of a vertex there is pdf_area |cos|, without a
+    /// distance. A path that leaves the scene in direction w found a particle of direction -w.
+    virtual EmissionDensity pdf_emission(const Vec3& origin, const Vec3& normal,
+                                         const Vec3& direction) const = 0;
 
     /// Emitted power [W]; a good estimate is enough: it only steers how often the light is chosen.
     virtual Rgb power() const = 0;

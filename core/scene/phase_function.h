@@ -19,6 +19,7 @@ struct PhaseSample {
 class PhaseFunction : public Object {
   public:
     virtual Rgb eval(const Vec3& wo, const Vec3& wi) const = 0;
+    /// Density of sample() choosing wi given wo. The reverse density is this with the directions exchanged.
     virtual float pdf_solid_angle(const Vec3& wo, const Vec3& wi) const = 0;
     virtual PhaseSample sample(const Vec3& wo, const Vec2& u) const = 0;
     virtual bool isotropic() const = 0;

@@ -67,6 +67,11 @@ class AreaLight final : public Emitter {
         sample.shape = shape_;
         return sample;
     }
+    EmissionDensity pdf_emission(const Vec3& /*origin*/, const Vec3& normal,
+                                 const Vec3& direction) const override {
+        if (!shape_ || !(shape_->area() > 0.0f)) return {};
+        return {1.0f / shape_->area(), std::fmax(0.0f, glm::dot(normal, direction)) * inv_pi};
+    }
     Rgb power() const override {
         if (!shape_) return Rgb(0.0f);
         return (texture_ ? texture_->mean() : radiance_) * (pi * shape_->area());

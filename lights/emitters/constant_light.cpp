@@ -36,6 +36,10 @@ class ConstantLight final : public Emitter {
         sample.weight = power();
         return sample;
     }
+    EmissionDensity pdf_emission(const Vec3& origin, const Vec3& /*normal*/,
+                                 const Vec3& direction) const override {
+        return {scene_.pdf_area(origin, direction), inv_four_pi};
+    }
     /// What falls on the scene's bounding sphere.
     Rgb power() const override { return 4.0f * pi * scene_.disk_area() * radiance_; }
 

@@ -37,6 +37,10 @@ class DirectionalLight final : public Emitter {
         sample.weight = power();
         return sample;
     }
+    EmissionDensity pdf_emission(const Vec3& origin, const Vec3& /*normal*/,
+                                 const Vec3& /*direction*/) const override {
+        return {scene_.pdf_area(origin, direction_), 1.0f};
+    }
     /// What falls on the scene's bounding sphere.
     Rgb power() const override { return irradiance_ * scene_.disk_area(); }
 

@@ -44,6 +44,10 @@ class EnvironmentMap final : public Emitter {
         sample.weight = from->weight * scene_.disk_area();
         return sample;
     }
+    EmissionDensity pdf_emission(const Vec3& origin, const Vec3& /*normal*/,
+                                 const Vec3& direction) const override {
+        return {scene_.pdf_area(origin, direction), pdf_direct(origin, -direction, nullptr)};
+    }
     /// What falls on the scene's bounding sphere; exact.
     Rgb power() const override { return scale_ * scene_.disk_area() * map_.integral(); }
 

@@ -38,6 +38,9 @@ class PointLight final : public Emitter {
         sample.weight = power();
         return sample;
     }
+    EmissionDensity pdf_emission(const Vec3&, const Vec3&, const Vec3&) const override {
+        return {1.0f, inv_four_pi};
+    }
     Rgb power() const override { return 4.0f * pi * intensity_; }
 
   private:

@@ -18,6 +18,15 @@ struct SceneSphere {
 
     /// Density of the origin over the disk [1/m^2].
     float pdf_area() const { return 1.0f / disk_area(); }
+    /// The same for the ray through p: zero where it passes the disk by. The rim is a little wider than the
+    /// disk, by what rounding moves its points.
+    float pdf_area(const core::Vec3& p, const core::Vec3& direction) const {
+        const core::Vec3d d(direction), from_center = core::Vec3d(p) - core::Vec3d(center);
+        const double along = glm::dot(from_center, d) / glm::dot(d, d);
+        const core::Vec3d across = from_center - along * d;
+        const double reach = 1.00001 * double(radius);
+        return glm::dot(across, across) <= reach * reach ? pdf_area() : 0.0f;
+    }
     float disk_area() const { return core::pi * radius * radius; }
 
     core::Vec3 origin_on_disk(const core::Vec3& direction, const core::Vec2& u) const {

@@ -56,6 +56,12 @@ class SpotLight final : public Emitter, public ConeLight {
         sample.origin = position_, sample.direction = glm::normalize(world_from_local_ * local);
         return sample;
     }
+    EmissionDensity pdf_emission(const Vec3& /*origin*/, const Vec3& /*normal*/,
+                                 const Vec3& direction) const override {
+        return {1.0f, angle(glm::transpose(world_from_local_) * direction) < cutoff_
+                          ? cone_pdf(one_minus_cos_cutoff_)
+                          : 0.0f};
+    }
     Rgb power() const override { return power_; }
     LightCone cone() const override {
         return {position_, world_from_local_ * Vec3(0, 0, 1), double(cutoff_),
@@ -63,12 +69,14 @@ class SpotLight final : public Emitter, public ConeLight {
     }
 
   private:
+    /// Between the unit vector d of the light's own frame and its axis. acos(d.z) loses half the digits of a
+    /// narrow cone's angle.
+    static float angle(const Vec3& d) { return std::atan2(std::hypot(d.x, d.y), d.z); }
     /// Radiant intensity [W/sr] towards the unit vector d of the light's own frame.
     Rgb intensity(const Vec3& d) const {
-        // acos(d.z) loses half the digits of a narrow cone's angle.
-        const float angle = std::atan2(std::hypot(d.x, d.y), d.z);
-        if (!(angle < cutoff_)) return Rgb(0.0f);
-        const float fall_off = angle <= beam_ ? 1.0f : (cutoff_ - angle) / (cutoff_ - beam_);
+        const float a = angle(d);
+        if (!(a < cutoff_)) return Rgb(0.0f);
+        const float fall_off = a <= beam_ ? 1.0f : (cutoff_ - a) / (cutoff_ - beam_);
         return fall_off * intensity_ * (texture_ ? texture_->eval(texture_coordinates(d)) : Rgb(1.0f));
     }
     /// The unit square circumscribes the cone.

@@ -49,6 +49,15 @@ std::vector<Rgb> required_light(const ImageChannels& image, const std::string& n
     return values;
 }
 
+/// The name that was chosen, or the first of the names that the picture has, or the last.
+std::string first_of(const ImageChannels& image, const std::string& chosen,
+                     const std::vector<std::string>& names) {
+    if (!chosen.empty()) return chosen;
+    for (const std::string& name : names)
+        if (!layer(image, name).empty()) return name;
+    return names.back();
+}
+
 /// Layers of reflected light by the names that this project gives them.
 std::vector<std::string> reflected_layers(const ImageChannels& image) {
     std::vector<std::string> found;
@@ -119,11 +128,11 @@ std::vector<Rgb> read_hidden_light(const ImageChannels& image, std::size_t side)
 }
 
 SsbcPicture read_ssbc_picture(const ImageChannels& image, const SsbcChannels& channels) {
-    const std::string reflectance_name = !channels.reflectance.empty()   ? channels.reflectance
-                                         : image.find("DiffuseAlbedo.R") ? "DiffuseAlbedo"
-                                                                         : "Albedo";
-    const std::vector<Vec3> position = layer(image, channels.position),
-                            normal = layer(image, channels.normal),
+    const std::string position_name = first_of(image, channels.position, {"Center.P", "P"}),
+                      normal_name = first_of(image, channels.normal, {"Center.N", "N"}),
+                      reflectance_name = first_of(image, channels.reflectance,
+                                                  {"Center.DiffuseAlbedo", "DiffuseAlbedo", "Albedo"});
+    const std::vector<Vec3> position = layer(image, position_name), normal = layer(image, normal_name),
                             reflectance = layer(image, reflectance_name);
     std::string missing, first;
     const auto need = [&](const std::vector<Vec3>& values, const std::string& name, const char* what) {
@@ -131,7 +140,7 @@ SsbcPicture read_ssbc_picture(const ImageChannels& image, const SsbcChannels& ch
         if (missing.empty()) first = name;
         missing += (missing.empty() ? "" : ", ") + ("'" + printable(name) + "' (" + what + ")");
     };
-    need(position, channels.position, "position"), need(normal, channels.normal, "normal");
+    need(position, position_name, "position"), need(normal, normal_name, "normal");
     need(reflectance, reflectance_name, "diffuse reflectance");
     if (!missing.empty())
         throw InputError("the picture lacks " + missing + suggestion(first, layer_names(image)));

@@ -9,10 +9,13 @@
 
 namespace mote::screenspace {
 
-/// How the layers of the picture are called; each stands for its three channels, .X .Y .Z or .R .G .B.
+/// How the layers of the picture are called; each stands for its three channels, .X .Y .Z or .R .G .B. Empty:
+/// the first of the names here that the picture has. Those of Center were taken at pixel centres; the others
+/// may be filtered as the picture is, which leaves no sharp edges between surfaces.
 struct SsbcChannels {
-    std::string position = "P", normal = "N";
-    std::string reflectance;  ///< empty: `DiffuseAlbedo` where the picture has it, otherwise `Albedo`
+    std::string position;     ///< `Center.P`, `P`
+    std::string normal;       ///< `Center.N`, `N`
+    std::string reflectance;  ///< `Center.DiffuseAlbedo`, `DiffuseAlbedo`, `Albedo`
     /// Layers that add up to the light that surfaces reflect. Empty: `direct` and `indirect...` where the
     /// picture has them, otherwise the picture less its layer `emission`.
     std::vector<std::string> light;

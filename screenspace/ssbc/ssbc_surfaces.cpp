@@ -16,13 +16,13 @@ using namespace core;
 
 namespace {
 
-/// pi times the smallest value of the BSDF over directions around the normal: the base of a plastic, and next
-/// to nothing for a metal, whose lobe misses some.
+/// pi times the smallest value of the BSDF over directions around the normal on wo's side: the base of a
+/// plastic, and next to nothing for a metal, whose lobe misses some.
 Rgb even_part(const Bsdf& bsdf, const BsdfPoint& p, const Vec3& wo) {
-    const float s = std::sqrt(0.5f);
+    const float s = std::sqrt(0.5f), up = wo.z > 0.0f ? 1.0f : -1.0f;
     Rgb least(1.0f);
     for (const Vec3& wi : {Vec3(0, 0, 1), Vec3(s, 0, s), Vec3(-s, 0, s), Vec3(0, s, s), Vec3(0, -s, s)})
-        least = glm::min(least, pi * bsdf.eval(p, wo, wi, TransportMode::radiance));
+        least = glm::min(least, pi * bsdf.eval(p, wo, Vec3(wi.x, wi.y, up * wi.z), TransportMode::radiance));
     return least;
 }
 
@@ -68,6 +68,14 @@ float beam_area(const GBuffer& buffer) {
 }
 
 }  // namespace
+
+Rgb diffuse_reflectance(const Bsdf& bsdf, const BsdfPoint& p, const Vec3& wo) {
+    const BsdfTraits traits = bsdf.traits();
+    if (!traits.smooth) return Rgb(0.0f);
+    const Rgb albedo = bsdf.albedo(p, wo);
+    return glm::clamp(traits.diffuse ? albedo : glm::min(even_part(bsdf, p, wo), albedo), Rgb(0.0f),
+                      Rgb(1.0f));
+}
 
 SsbcSurfaces::SsbcSurfaces(int w, int h) : width(w), height(h) {
     if (w <= 0 || h <= 0) throw std::invalid_argument("a picture needs at least one pixel");

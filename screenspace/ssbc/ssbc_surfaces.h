@@ -9,9 +9,18 @@
 
 #include "core/math/vec.h"
 
+namespace mote::core {
+class Bsdf;
+struct BsdfPoint;
+}  // namespace mote::core
+
 namespace mote::screenspace {
 
 struct GBuffer;
+
+/// What a BSDF reflects to all sides alike, seen from wo (in its local frame), [0, 1]: all of a diffuse one,
+/// the base of a plastic, next to nothing of a metal, nothing of a mirror or glass.
+core::Rgb diffuse_reflectance(const core::Bsdf& bsdf, const core::BsdfPoint& p, const core::Vec3& wo);
 
 struct SsbcSurfaces {
     int width = 0, height = 0;

@@ -1,8 +1,8 @@
 // Every emitter draws what it claims, by the chi-square test of directions: connections against pdf_direct(),
 // the directions of particles and the points where they start against pdf_solid_angle and pdf_area.
 //
-// Particles carry their densities at the sample alone. They are compared there with a density written down
-// here, and that density with the samples. Points on a surface are counted as directions in which they are
+// The densities that particles carry are compared with pdf_emission() and with a density written down here,
+// and pdf_emission() with the samples. Points on a surface are counted as directions in which they are
 // seen from a point that sees every one of them; points on the disk of lights at infinity as directions of
 // the hemisphere, onto which the disk is mapped with equal areas.
 #include <set>
@@ -129,10 +129,12 @@ DirectionSampler starts_on_shape(const Emitter& light, const Vec3& witness) {
         return s ? std::optional<Vec3>(glm::normalize(s->origin - witness)) : std::nullopt;
     };
 }
-DirectionDensity start_density(const Target& target, const Vec3& witness, double pdf_area) {
-    return [&target, witness, pdf_area](const Vec3& w) -> double {
+DirectionDensity start_density(const Target& target, const Vec3& witness, const Emitter& light) {
+    return [&target, witness, &light](const Vec3& w) -> double {
         const auto hit = target.rays.closest(Ray{witness, w, 0.0f, infinity});
         if (!hit) return 0.0;
+        const Vec3& n = hit->geometric_normal;
+        const double pdf_area = double(light.pdf_emission(hit->position, n, n).pdf_area);
         const double cosine = std::fabs(double(glm::dot(hit->geometric_normal, w)));
         return pdf_area * double(hit->t) * double(hit->t) / cosine;
     };
@@ -150,7 +152,28 @@ DirectionSampler starts_on_disk(const Emitter& light) {
         return Vec3(Vec3d(r * std::cos(phi), r * std::sin(phi), 1.0 - h));
     };
 }
+/// The density of that, from pdf_emission() at points of rays through the disk.
+DirectionDensity disk_density(const Emitter& light, const EmissionSample& some) {
+    return [&light, some](const Vec3& w) {
+        const Frame frame(some.direction);
+        const float r = std::sqrt(std::fmax(0.0f, 1.0f - w.z) / (pi * some.pdf_area));
+        const float phi = std::atan2(w.y, w.x);
+        const Vec3 across = r * (std::cos(phi) * frame.s + std::sin(phi) * frame.t);
+        const Vec3 p = Vec3(0, 0, 1) + across + 1.7f * some.direction;  // anywhere along the ray
+        return double(light.pdf_emission(p, Vec3(0.0f), some.direction).pdf_area / some.pdf_area) *
+               double(inv_two_pi);
+    };
+}
 double on_hemisphere(const Vec3& w) { return w.z > -1e-6f ? double(inv_two_pi) : 0.0; }
+
+/// pdf_emission() of directions as direction_of() counts them, at the origin of some particle.
+DirectionDensity direction_density(const LightExample& example, const EmissionSample& some) {
+    const Emitter* light = example.light.get();
+    return [light, some, on_shape = example.shape != nullptr](const Vec3& w) {
+        const Vec3 direction = on_shape ? Frame(some.normal).to_world(w) : w;
+        return double(light->pdf_emission(some.origin, some.normal, direction).pdf_solid_angle);
+    };
+}
 
 }  // namespace
 
@@ -174,9 +197,15 @@ TEST_CASE("directions of particles follow pdf_solid_angle", "[lights][emitters][
         const auto density = particle_density(example);
         Rng rng(5);
         std::optional<Vec3> only;
+        std::optional<EmissionSample> some;
         for (int i = 0; i < 1000; ++i) {
             const auto s = particle(*example.light, rng);
             if (!s) continue;
+            some = s;
+            const EmissionDensity pdf = example.light->pdf_emission(s->origin, s->normal, s->direction);
+            REQUIRE(pdf.pdf_area == Approx(s->pdf_area).epsilon(1e-5));
+            // A direction is rounded to some 1e-7, which narrow cells of a picture show near the poles.
+            REQUIRE(pdf.pdf_solid_angle == Approx(s->pdf_solid_angle).epsilon(2e-3).margin(1e-5));
             if (density) {
                 const double expected = (*density)(direction_of(example, *s));
                 REQUIRE(s->pdf_solid_angle == Approx(expected).epsilon(2e-3).margin(1e-5));
@@ -193,7 +222,26 @@ TEST_CASE("directions of particles follow pdf_solid_angle", "[lights][emitters][
             const auto s = particle(*example.light, r);
             return s ? std::optional<Vec3>(direction_of(example, *s)) : std::nullopt;
         };
-        check(chi2_test(drawn, *density, o));
+        check(chi2_test(drawn, direction_density(example, *some), o));
+    }
+}
+
+TEST_CASE("nothing is emitted where no particle goes", "[lights][emitters]") {
+    for (const auto& example : light_examples()) {
+        INFO(example.name);
+        const auto pdf = [&](const Vec3& p, const Vec3& n, const Vec3& w) {
+            return example.light->pdf_emission(p, n, w);
+        };
+        Rng rng(6);
+        std::optional<EmissionSample> s;
+        while (!s) s = particle(*example.light, rng);
+        if (example.shape) CHECK(pdf(s->origin, s->normal, -s->direction).pdf_solid_angle == 0.0f);
+        if (type_of(example) == "spot") CHECK(pdf(s->origin, {}, Vec3(0, 0, 1)).pdf_solid_angle == 0.0f);
+        if (!example.light->traits().infinite) continue;
+        // The disk has the radius of the scene, three metres and a thousandth.
+        const Vec3 side = Frame(s->direction).s, center(0, 0, 1);
+        CHECK(pdf(center + 2.99f * side, {}, s->direction).pdf_area == s->pdf_area);
+        CHECK(pdf(center + 3.01f * side, {}, s->direction).pdf_area == 0.0f);
     }
 }
 
@@ -216,9 +264,9 @@ TEST_CASE("particles start where pdf_area says", "[lights][emitters][chi2]") {
             Chi2Options seen = o;
             aim(seen, example, witness);
             check(chi2_test(starts_on_shape(*example.light, witness),
-                            start_density(target, witness, double(first->pdf_area)), seen));
+                            start_density(target, witness, *example.light), seen));
         } else {
-            check(chi2_test(starts_on_disk(*example.light), on_hemisphere, o));
+            check(chi2_test(starts_on_disk(*example.light), disk_density(*example.light, *first), o));
         }
     }
 }
@@ -261,6 +309,18 @@ TEST_CASE("planted errors of emitters are caught", "[lights][emitters][chi2][pla
             CHECK_FALSE(chi2_test(connections(*example.light, Vec3(0.1f, 0, 0)), density, o).passed);
     }
     for (const auto& example : light_examples()) {
+        if (example.name != "constant" && example.name != "directional") continue;
+        // A disk three per cent larger or smaller than that of the particles.
+        Rng rng(5);
+        const auto some = particle(*example.light, rng);
+        const auto starts = starts_on_disk(*example.light);
+        const auto right = disk_density(*example.light, *some);
+        for (const double factor : {0.97, 1.03})
+            CHECK_FALSE(chi2_test(
+                            starts, [&](const Vec3& w) { return factor * right(w); }, planted(example))
+                            .passed);
+    }
+    for (const auto& example : light_examples()) {
         if (example.name != "disk") continue;
         // The cosine of emission dropped: even over the hemisphere.
         const auto drawn = [&](Rng& r) -> std::optional<Vec3> {
@@ -274,7 +334,12 @@ TEST_CASE("planted errors of emitters are caught", "[lights][emitters][chi2][pla
         aim(o, example, witness);
         const double pdf = 1.0 / double(example.shape->area());
         const auto starts = starts_on_shape(*example.light, witness);
-        REQUIRE(chi2_test(starts, start_density(target, witness, pdf), o).passed);
+        const auto right = start_density(target, witness, *example.light);
+        REQUIRE(chi2_test(starts, right, o).passed);
+        for (const double factor : {0.97, 1.03})
+            CHECK_FALSE(chi2_test(
+                            starts, [&](const Vec3& w) { return factor * right(w); }, o)
+                            .passed);
         const auto without_cosine = [&](const Vec3& w) -> double {
             const auto hit = target.rays.closest(Ray{witness, w, 0.0f, infinity});
             return hit ? pdf * double(hit->t) * double(hit->t) : 0.0;

@@ -30,6 +30,10 @@ class PlantedError final : public Emitter {
         if (s) s->weight *= emission_;
         return s;
     }
+    EmissionDensity pdf_emission(const Vec3& origin, const Vec3& normal,
+                                 const Vec3& direction) const override {
+        return light_->pdf_emission(origin, normal, direction);
+    }
     Rgb power() const override { return light_->power(); }
 
   private:

@@ -65,9 +65,7 @@ DistanceCdf marginal(const Glow& glow, int axis) {
     std::vector<double> slabs(n, 0.0);
     for (int i = 0; i < n * n * n; ++i) {
         const Vec3 p = (Vec3(float(i % n), float(i / n % n), float(i / (n * n))) + 0.5f) / float(n);
-        const Vec3 away(0.0f, 0.0f, -1.0f);
-        const double d2 = double(glm::dot(p - away, p - away));
-        slabs[std::size_t(p[axis] * n)] += glow.pdf_along(away, p) / d2 / (n * n);
+        slabs[std::size_t(p[axis] * n)] += double(glow.light->pdf_emission(p, {}, {}).pdf_area) / (n * n);
     }
     return cdf_of_density([=](double t) { return slabs[std::size_t(t * n)]; }, 0.0, 1.0, n);
 }
@@ -135,8 +133,23 @@ TEST_CASE("particles of a glowing medium start by its density of points, in all 
         const auto s = glow.light->sample_emission(u, rng.next_vec2());
         return s ? std::optional<Vec3>(s->direction) : std::nullopt;
     };
-    const Chi2Result result = chi2_test(
-        direction, [](const Vec3&) { return double(core::inv_four_pi); }, direction_options("directions"));
+    const auto density = [&](const Vec3& w) {
+        return double(glow.light->pdf_emission(Vec3(0.5f), {}, w).pdf_solid_angle);
+    };
+    const Chi2Result result = chi2_test(direction, density, direction_options("directions"));
     INFO(result.message);
     CHECK(result.passed);
+    core::Rng rng(4);
+    for (int i = 0; i < 1000; ++i) {
+        const core::Vec2 u = rng.next_vec2();
+        const auto s = glow.light->sample_emission(u, rng.next_vec2());
+        REQUIRE(s);
+        const core::EmissionDensity pdf = glow.light->pdf_emission(s->origin, s->normal, s->direction);
+        REQUIRE(pdf.pdf_area == Approx(s->pdf_area).epsilon(1e-5));
+        REQUIRE(pdf.pdf_solid_angle == s->pdf_solid_angle);
+        // The density of points is that of connections, by another way.
+        const float squared = glm::dot(s->origin - receiver, s->origin - receiver);
+        REQUIRE(double(pdf.pdf_area * squared) == Approx(glow.pdf_along(receiver, s->origin)).epsilon(1e-4));
+    }
+    CHECK(glow.light->pdf_emission(Vec3(0.5f, 1.1f, 0.5f), {}, {}).pdf_area == 0.0f);
 }

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "core/scene/phase_function.h"
+#include "core/scene/reverse_density.h"
 #include "tests/support/catch.h"
 #include "tests/support/chi2.h"
 #include "tests/support/registered_cases.h"
@@ -63,6 +64,14 @@ DirectionSampler sampler_of(const PhasePtr& phase, const Vec3& wo) {
 DirectionDensity density_of(const PhasePtr& phase, const Vec3& wo, double factor = 1.0) {
     return [=](const Vec3& wi) { return factor * double(phase->pdf_solid_angle(wo, wi)); };
 }
+/// Of the samples too, as a path knows it that comes from wi and goes on to wo.
+DirectionDensity reverse_density(const PhasePtr& phase, const Vec3& wo) {
+    return [=](const Vec3& wi) {
+        core::ScatteringVertex vertex;
+        vertex.phase = phase.get(), vertex.wo = wi;
+        return double(core::reverse_pdf_solid_angle(vertex, wo, core::TransportMode::radiance));
+    };
+}
 
 std::set<std::string> tested_types() {
     std::set<std::string> types;
@@ -88,6 +97,11 @@ TEST_CASE("phase functions draw what they claim by a chi-square test", "[media][
                           options(c, v, cases.size() * viewers.size()));
             INFO(result.message);
             CHECK(result.passed);
+            const Chi2Result reverse =
+                chi2_test(sampler_of(c.phase, viewers[v]), reverse_density(c.phase, viewers[v]),
+                          options(c, v, cases.size() * viewers.size()));
+            INFO(reverse.message);
+            CHECK(reverse.passed);
             if (c.cap == 2.0) CHECK(result.integral == Approx(1.0).epsilon(1e-3));
             // They are normalised and drawn in proportion to their value.
             core::Rng rng(v);

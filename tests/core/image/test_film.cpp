@@ -102,6 +102,45 @@ TEST_CASE("Variance and noise agree with the two-pass formula", "[film]") {
     CHECK(black.relative_noise() == 0.0);
 }
 
+TEST_CASE("Means where another layer is one, and variances of single layers", "[film]") {
+    const std::vector<Layer> kept = {{"direct", ""}, {"hit", "", true}, {"Depth", "", true, true, "hit"}};
+    const int w = 3, h = 2;
+    constexpr std::uint32_t n = 19;
+    Film film(w, h, kept);
+    double sum = 0.0, squares = 0.0;
+    int hits = 0;
+    for (std::uint32_t i = 0; i < n; ++i) {
+        PassImage image(w, h, 3);
+        for (int p = 0; p < w * h; ++p) {
+            const bool hit = p < 4 && (i * 7u + unsigned(p)) % 3u != 0u;  // the last pixels are never hit
+            image.layer(0)[std::size_t(p)] = Rgb(1.0f);
+            image.layer(1)[std::size_t(p)] = Rgb(hit ? 1.0f : 0.0f);
+            image.layer(2)[std::size_t(p)] = Rgb(hit ? 10.0f + float(i) : 0.0f);
+            if (p != 2 || !hit) continue;
+            ++hits, sum += 10.0 + i, squares += (10.0 + i) * (10.0 + i);
+        }
+        film.add_pass(image);
+    }
+    REQUIRE((hits > 5 && hits < int(n)));
+    const double mean = sum / hits;
+    CHECK(film.mean(2)[2].y == Approx(mean).epsilon(1e-6));
+    CHECK(film.layer_variance_of_mean(2)[2].y ==
+          Approx((squares / hits - mean * mean) / (hits - 1)).epsilon(1e-6));
+    CHECK(film.mean(2)[5] == Rgb(0.0f));
+    CHECK(film.layer_variance_of_mean(2)[5] == Rgb(0.0f));
+    CHECK(film.has_squares(2));
+    CHECK_FALSE(film.has_squares(0));
+    CHECK_THROWS_AS(film.layer_variance_of_mean(0), std::logic_error);
+    // The squares go into checkpoints.
+    Film copy(w, h, kept);
+    copy.deserialize(film.serialize());
+    CHECK(copy.layer_variance_of_mean(2) == film.layer_variance_of_mean(2));
+    CHECK(copy.serialize() == film.serialize());
+
+    CHECK_THROWS_AS(Film(w, h, {{"a", ""}, {"a", ""}}), std::invalid_argument);
+    CHECK_THROWS_AS(Film(w, h, {{"a", "", true, false, "b"}}), std::invalid_argument);
+}
+
 TEST_CASE("Pixels that are not finite are counted and add zero", "[film]") {
     Film film(3, 2, layers);
     for (std::uint32_t i = 0; i < 4; ++i) {

@@ -1,4 +1,6 @@
-// Every BSDF with a smooth part draws directions with the density it claims.
+// Every BSDF with a smooth part draws directions with the density it claims, for the eye and for the light,
+// and the density that a vertex gives for the way back is that of the paths that go it.
+#include "core/scene/reverse_density.h"
 #include "tests/core/materials/bsdf_cases.h"
 #include "tests/support/catch.h"
 #include "tests/support/chi2.h"
@@ -16,27 +18,48 @@ const core::BsdfPoint point{};
 const std::vector<Vec3> views = {direction_at(1.0, 0.0),  direction_at(0.8, 0.7),  direction_at(0.3, 4.0),
                                  direction_at(0.02, 2.5), direction_at(-0.9, 1.0), direction_at(-0.2, 5.0)};
 
-int test_count() { return int(smooth_cases().size() * views.size()); }
+int test_count() { return int(2 * smooth_cases().size() * views.size()); }
 
-Chi2Result run(const BsdfCase& c, const Vec3& wo, std::size_t view) {
+Chi2Options options_of(const BsdfCase& c, const Vec3& wo, std::size_t view, TransportMode mode) {
     Chi2Options options;
     options.name = c.name + "_" + std::to_string(view);
-    options.seed = core::hash_keys(0x636869ull, view, c.name.size());
+    options.seed =
+        core::hash_keys(mode == TransportMode::radiance ? 0x636869ull : 0x6c69ull, view, c.name.size());
     options.tests = test_count();
     if (c.narrow > 0.0f) {  // cells over a cap of a few widths around the mirror direction
         options.frame = core::Frame(core::reflect_local(wo));
         options.cap = std::min(2.0, 8.0 * double(c.narrow) * double(c.narrow));
         options.subdivisions = 3;  // seen at grazing angles, the lobe is a thin blade across the cells
     }
-    const auto sampler = [&](core::Rng& rng) -> std::optional<Vec3> {
-        const auto s = draw(*c.bsdf, wo, rng, TransportMode::radiance);
+    return options;
+}
+
+DirectionSampler sampler_of(const BsdfCase& c, const Vec3& wo, TransportMode mode) {
+    return [&c, wo, mode](core::Rng& rng) -> std::optional<Vec3> {
+        const auto s = draw(*c.bsdf, wo, rng, mode);
         if (!s || s->delta) return std::nullopt;
         return s->wi;
     };
-    const auto density = [&](const Vec3& wi) {
-        return double(c.bsdf->pdf_solid_angle(point, wo, wi, TransportMode::radiance));
+}
+
+/// The density of directions w of light paths that come from `from`, as the eye paths know it that come from
+/// w and go on to `from`: at a vertex turned away from the axes.
+DirectionDensity reverse_density(const BsdfCase& c, const Vec3& from) {
+    core::ScatteringVertex vertex;
+    vertex.bsdf = c.bsdf.get();
+    vertex.hit.shading = core::Frame(glm::normalize(Vec3(0.3f, -0.5f, 0.6f)));
+    vertex.hit.geometric_normal = vertex.hit.shading.n;
+    return [vertex, from](const Vec3& w) mutable {
+        vertex.wo = vertex.hit.shading.to_world(w);
+        return double(core::reverse_pdf_solid_angle(vertex, vertex.hit.shading.to_world(from),
+                                                    TransportMode::radiance));
     };
-    return chi2_test(sampler, density, options);
+}
+
+/// Black from behind: another test says so.
+bool one_sided(const BsdfCase& c, const Vec3& wo) {
+    const auto probe = c.bsdf->sample(point, wo, 0.99f, {0.4f, 0.3f}, TransportMode::radiance);
+    return wo.z < 0.0f && !c.bsdf->traits().transmissive && !probe;
 }
 
 }  // namespace
@@ -44,13 +67,74 @@ Chi2Result run(const BsdfCase& c, const Vec3& wo, std::size_t view) {
 TEST_CASE("sampling agrees with its density by a chi-square test", "[materials][bsdf][chi2]") {
     for (const BsdfCase& c : smooth_cases()) {
         for (std::size_t v = 0; v < views.size(); ++v) {
-            const auto probe = c.bsdf->sample(point, views[v], 0.99f, {0.4f, 0.3f}, TransportMode::radiance);
-            const bool one_sided = views[v].z < 0.0f && !c.bsdf->traits().transmissive && !probe;
-            if (one_sided) continue;  // black from behind: another test says so
-            const Chi2Result result = run(c, views[v], v);
+            if (one_sided(c, views[v])) continue;
+            const auto density = [&](const Vec3& wi) {
+                return double(c.bsdf->pdf_solid_angle(point, views[v], wi, TransportMode::radiance));
+            };
+            const Chi2Result result = chi2_test(sampler_of(c, views[v], TransportMode::radiance), density,
+                                                options_of(c, views[v], v, TransportMode::radiance));
             INFO(result.message);
             CHECK(result.passed);
             CHECK(result.integral <= 1.001);
+        }
+    }
+}
+
+TEST_CASE("paths from the light follow the reverse density of paths from the eye",
+          "[materials][bsdf][chi2]") {
+    for (const BsdfCase& c : smooth_cases()) {
+        for (std::size_t v = 1; v < views.size(); v += 2) {
+            // Directions turned into the vertex's frame and back are off by 1e-7: too much for these lobes.
+            if (one_sided(c, views[v]) || (c.narrow > 0.0f && c.narrow < 1e-3f)) continue;
+            const Chi2Result result =
+                chi2_test(sampler_of(c, views[v], TransportMode::power), reverse_density(c, views[v]),
+                          options_of(c, views[v], v, TransportMode::power));
+            INFO(result.message);
+            CHECK(result.passed);
+        }
+    }
+}
+
+TEST_CASE("the way back is not the way there", "[materials][bsdf][chi2][planted]") {
+    // Directions that were not exchanged: the densities of these differ between the two ways.
+    int found = 0;
+    for (const BsdfCase& c : smooth_cases()) {
+        if (c.name != "roughdielectric_ggx_0.5" && c.name != "roughdielectric_bubble" &&
+            c.name != "diffuse" && c.name != "phong_5" && c.name != "twosided_mixed")
+            continue;
+        INFO(c.name);
+        const Vec3 from = views[1];
+        const auto not_exchanged = [&](const Vec3& w) {
+            return double(c.bsdf->pdf_solid_angle(point, w, from, TransportMode::power));
+        };
+        Chi2Options o = options_of(c, from, 1, TransportMode::power);
+        o.write_table = false;
+        CHECK(chi2_test(sampler_of(c, from, TransportMode::power), reverse_density(c, from), o).passed);
+        CHECK_FALSE(chi2_test(sampler_of(c, from, TransportMode::power), not_exchanged, o).passed);
+        ++found;
+    }
+    CHECK(found == 5);
+}
+
+TEST_CASE("a vertex knows the reverse density of both modes", "[materials][bsdf]") {
+    for (const BsdfCase& c : all_cases()) {
+        core::Rng rng(7);
+        core::ScatteringVertex vertex;
+        vertex.bsdf = c.bsdf.get();
+        for (int i = 0; i < 200; ++i) {
+            vertex.wo = random_direction(rng);
+            const Vec3 wi = random_direction(rng);
+            for (const TransportMode mode : {TransportMode::radiance, TransportMode::power}) {
+                const TransportMode back = core::opposite(mode);
+                CHECK(back != mode);
+                REQUIRE(core::reverse_pdf_solid_angle(vertex, wi, mode) ==
+                        c.bsdf->pdf_solid_angle(point, wi, vertex.wo, back));
+                // There and back again.
+                core::ScatteringVertex other_end = vertex;
+                other_end.wo = wi;
+                REQUIRE(core::reverse_pdf_solid_angle(other_end, vertex.wo, back) ==
+                        vertex.pdf_solid_angle(wi, mode));
+            }
         }
     }
 }

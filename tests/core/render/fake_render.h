@@ -16,6 +16,15 @@ namespace mote::tests {
 class FakeCamera final : public core::Camera {
   public:
     core::Ray sample_ray(const core::Vec2&, const core::Vec2&) const override { return {}; }
+    core::CameraTraits traits() const override { return {.delta_position = true}; }
+    std::optional<core::RayImportance> importance(const core::Vec3&, const core::Vec3&,
+                                                  float) const override {
+        return std::nullopt;
+    }
+    std::optional<core::CameraSample> sample_importance(const core::Vec3&, const core::Vec2&,
+                                                        float) const override {
+        return std::nullopt;
+    }
     core::Vec3 position() const override { return core::Vec3(0.0f); }
     core::Transform to_world() const override { return {}; }
 };
@@ -33,6 +42,10 @@ class FakeLight final : public core::Emitter {
     }
     std::optional<core::EmissionSample> sample_emission(const core::Vec2&, const core::Vec2&) const override {
         return std::nullopt;
+    }
+    core::EmissionDensity pdf_emission(const core::Vec3&, const core::Vec3&,
+                                       const core::Vec3&) const override {
+        return {};
     }
     core::Rgb power() const override { return core::Rgb(1.0f); }
 };

@@ -1,13 +1,19 @@
 // Pixel filters: moments of the offsets against the analytic filter.
 #include <cmath>
 #include <functional>
+#include <set>
 
 #include "core/math/random.h"
 #include "core/objects/error.h"
 #include "core/render/render_driver.h"
+#include "core/render/splat.h"
 #include "tests/support/catch.h"
+#include "tests/support/chi2.h"
+#include "tests/support/registered_cases.h"
+#include "tests/support/render_statistics.h"
 
 using namespace mote::core;
+using namespace mote::tests;
 
 namespace {
 
@@ -72,6 +78,108 @@ TEST_CASE("Offsets of pixel filters follow the filter", "[filter]") {
     check_filter("gaussian", 2.0f, 0.5f, gaussian(2.0, 0.5));
     check_filter("gaussian", 1.0f, 1.0f, gaussian(1.0, 1.0));  // here the subtracted value matters
     check_filter("gaussian", 8.0f, 0.25f, gaussian(8.0, 0.25));
+}
+
+namespace {
+
+/// The square of a filter's reach as the sphere, with equal areas: x becomes the cosine, y the azimuth.
+Vec3 on_sphere(const Vec2& offset, float radius) {
+    const double z = double(offset.x) / double(radius), r = std::sqrt(std::fmax(0.0, 1.0 - z * z));
+    const double phi = double(pi) * (double(offset.y) / double(radius) + 1.0);
+    return Vec3(Vec3d(r * std::cos(phi), r * std::sin(phi), z));
+}
+Vec2 from_sphere(const Vec3& w, float radius) {
+    double phi = std::atan2(double(w.y), double(w.x));
+    if (phi < 0.0) phi += 2.0 * double(pi);
+    return {w.z * radius, float((phi / double(pi) - 1.0) * double(radius))};
+}
+
+struct FilterCase {
+    std::string type;
+    float radius, stddev;
+    std::unique_ptr<PixelFilter> filter() const { return make_pixel_filter(type, radius, stddev); }
+};
+const std::vector<FilterCase> filter_cases = {
+    {"box", 0.5f, 0.5f},      {"box", 1.5f, 0.5f},      {"tent", 1.0f, 0.5f},     {"tent", 2.5f, 0.5f},
+    {"gaussian", 2.0f, 0.5f}, {"gaussian", 1.0f, 1.0f}, {"gaussian", 8.0f, 2.0f}, {"gaussian", 8.0f, 0.25f}};
+
+DirectionSampler offsets(const PixelFilter& filter) {
+    return [&filter](Rng& rng) -> std::optional<Vec3> {
+        return on_sphere(filter.sample_offset(rng.next_vec2()), filter.radius());
+    };
+}
+DirectionDensity offset_density(const PixelFilter& filter, double factor = 1.0) {
+    return [&filter, factor](const Vec3& w) {
+        const float r = filter.radius();
+        return factor * double(filter.pdf_area(from_sphere(w, r))) * double(r) * double(r) / double(pi);
+    };
+}
+
+Chi2Options filter_options(const FilterCase& c) {
+    Chi2Options o;
+    o.name = "filter_" + c.type;
+    o.seed = hash_keys(0x66696c74ull, std::uint64_t(1000 * c.radius), std::uint64_t(1000 * c.stddev));
+    o.cos_cells = 32, o.phi_cells = 32, o.subdivisions = 3, o.tests = int(filter_cases.size());
+    return o;
+}
+
+}  // namespace
+
+TEST_CASE("Offsets of pixel filters follow their density", "[filter][chi2]") {
+    for (const FilterCase& c : filter_cases) {
+        const auto filter = c.filter();
+        Chi2Options o = filter_options(c);
+        const Chi2Result result = chi2_test(offsets(*filter), offset_density(*filter), o);
+        INFO(result.message);
+        CHECK(result.passed);
+        CHECK(result.integral == Approx(1.0).epsilon(1e-3));
+        CHECK(filter->radius() <= c.radius);
+        for (const Vec2& far : {Vec2(1.001f, 0.0f), Vec2(0.0f, -1.001f)})
+            CHECK(filter->pdf_area(far * filter->radius()) == 0.0f);
+        // Planted: a factor, and a filter a little narrower.
+        o.write_table = false;
+        CHECK_FALSE(chi2_test(offsets(*filter), offset_density(*filter, 0.97), o).passed);
+        // (the cells are too coarse for the one that is cut far out).
+        const auto narrow = make_pixel_filter(c.type, c.radius, 0.97f * c.stddev);
+        if (c.type == "gaussian" && c.stddev < c.radius && filter->radius() <= 4.0f * c.stddev)
+            CHECK_FALSE(chi2_test(offsets(*filter), offset_density(*narrow), o).passed);
+    }
+}
+
+TEST_CASE("every registered filter has a chi-square case", "[filter][chi2][coverage]") {
+    std::set<std::string> tested;
+    for (const FilterCase& c : filter_cases) tested.insert(c.type);
+    for (const std::string& complaint : untested_types(registry(), Category::rfilter, tested))
+        FAIL_CHECK(complaint);
+}
+
+TEST_CASE("Splats reach the pixels whose filter holds the position", "[filter][splat]") {
+    constexpr int width = 7, height = 5;
+    for (const FilterCase& c : filter_cases) {
+        const auto filter = c.filter();
+        const float r = filter->radius();
+        Rng rng(5);
+        for (int i = 0; i < 2000; ++i) {
+            const Vec2 at = Vec2(-r) + (Vec2(width, height) + 2.0f * r) * rng.next_vec2();
+            double found[width][height] = {};
+            for_each_splat(*filter, at, width, height, [&](int x, int y, float f) {
+                REQUIRE((x >= 0 && x < width && y >= 0 && y < height && f > 0.0f));
+                REQUIRE(found[x][y] == 0.0);
+                found[x][y] = f;
+            });
+            for (int x = 0; x < width; ++x)
+                for (int y = 0; y < height; ++y)
+                    REQUIRE(found[x][y] ==
+                            double(filter->pdf_area(at - Vec2(float(x) + 0.5f, float(y) + 0.5f))));
+        }
+    }
+    // Box and tent share every point of the film out without a rest.
+    for (const auto& filter : {make_pixel_filter("box", 0.5f, 0.5f), make_pixel_filter("tent", 1.0f, 0.5f)})
+        for (const Vec2& at : {Vec2(3.0f, 2.0f), Vec2(2.25f, 3.5f), Vec2(4.9999f, 1.0001f)}) {
+            double sum = 0.0;
+            for_each_splat(*filter, at, width, height, [&](int, int, float f) { sum += double(f); });
+            CHECK(sum == Approx(1.0).epsilon(1e-5));
+        }
 }
 
 TEST_CASE("The corners of the unit square are finite offsets within the radius", "[filter]") {

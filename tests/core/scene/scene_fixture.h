@@ -29,6 +29,10 @@ struct FakeEmitter : core::Emitter {
         return 0.0f;
     }
     std::optional<core::EmissionSample> sample_emission(const core::Vec2&, const core::Vec2&) const override;
+    core::EmissionDensity pdf_emission(const core::Vec3&, const core::Vec3&,
+                                       const core::Vec3&) const override {
+        return {1.0f, 1.0f};
+    }
     core::Rgb power() const override { return strength; }
     void set_shape(const core::Shape* s) override { shape = s; }
 };

@@ -1,0 +1,27 @@
+// The ray with which the eye path of a pixel starts in a pass: the first four numbers of its sampler choose
+// the place on the film, through the pixel's filter, and the place on the lens.
+//
+// Eye paths of integrators begin with the same draws (integrators/eye_path/eye_ray.h), so whoever needs the
+// ray once more finds the very same one here.
+#pragma once
+
+#include "core/math/sampler.h"
+#include "core/render/integrator.h"
+#include "core/scene/camera.h"
+
+namespace mote::core {
+
+/// The key of a pixel's random numbers.
+inline std::uint64_t pixel_key(const RenderOptions& options, int x, int y) {
+    return std::uint64_t(y) * std::uint64_t(options.width) + std::uint64_t(x);
+}
+
+inline Ray camera_ray(const Camera& camera, const RenderOptions& options, const PassContext& pass, int x,
+                      int y) {
+    Sampler sampler(options.sampler, options.seed, pass.index, pixel_key(options, x, y));
+    const Vec2 offset = pass.filter.sample_offset(sampler.next_2d());
+    const Vec2 film = Vec2(float(x) + 0.5f, float(y) + 0.5f) + offset;
+    return camera.sample_ray(film, sampler.next_2d());
+}
+
+}  // namespace mote::core

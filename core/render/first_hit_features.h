@@ -1,0 +1,71 @@
+// What the eye rays of a render meet first, as layers of its film: positions, normals, depth, albedo, and how
+// much of it comes through the media before it.
+//
+// The rays are those of the picture itself: every pass draws its place on the film and on the lens from the
+// same keys as the eye paths do, so features are filtered as the picture is, blurred as the lens blurs it,
+// and their variance belongs to the same samples. This costs one closest hit a pixel and pass and needs
+// nothing of the integrator, whose layers keep their bits.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "core/geometry/shape.h"
+#include "core/math/random.h"
+#include "core/math/ray.h"
+#include "core/render/integrator.h"
+
+namespace mote::core {
+
+struct FirstHit {
+    const Scene& scene;
+    const Ray& ray;
+    const SurfaceHit& hit;
+    Rng& rng;  ///< for estimates
+
+    Vec3 to_viewer() const { return -ray.direction; }
+    /// A normal of the hit, turned to the viewer.
+    Vec3 facing(const Vec3& normal) const {
+        return glm::dot(hit.geometric_normal, ray.direction) > 0.0f ? -normal : normal;
+    }
+};
+
+struct HitFeature {
+    Layer layer;
+    /// Of a ray that hits a surface; the layer is zero for all others. Called from many threads at once.
+    std::function<Rgb(const FirstHit&)> value;
+};
+
+/// The layer that says where there is anything: its mean is the share of rays that hit a surface.
+inline const std::string coverage_layer = "Coverage";
+
+/// Coverage; means over all rays of N, Ns (geometric and shading normal, turned to the viewer, in the world)
+/// and Albedo (of the whole BSDF); means over the rays that hit a surface of P [m] and Depth (along the ray
+/// [m], the same in all channels), and in scenes with media of Transmittance (from the camera to the hit, an
+/// estimate). The film keeps the variance of all but Coverage, whose variance follows from its mean.
+std::vector<HitFeature> first_hit_features(const Scene& scene);
+
+/// Fills the layers of features, one pass at a time.
+class FirstHitPass {
+  public:
+    /// Feature k goes to layer first_layer + k. The scene must outlive this.
+    FirstHitPass(const Scene& scene, const RenderOptions& options, std::vector<HitFeature> features,
+                 std::size_t first_layer);
+
+    /// Returns false when it was cancelled half-way.
+    bool fill(const PassContext& context, PassImage& image);
+    std::uint64_t rays() const { return rays_; }  ///< that were traced
+
+  private:
+    void fill_pixel(const PassContext& context, PassImage& image, int x, int y) const;
+
+    const Scene& scene_;
+    RenderOptions options_;
+    std::vector<HitFeature> features_;
+    std::size_t first_layer_;
+    std::uint64_t rays_ = 0;
+};
+
+}  // namespace mote::core
