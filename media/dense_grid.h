@@ -1,4 +1,4 @@
-// Dense voxels and their trilinear interpolation, clamped outside.
+// Dense voxels and their trilinear interpolation; outside they go on by one of three rules.
 #pragma once
 
 #include <memory>
@@ -7,13 +7,29 @@
 
 #include "core/math/transform.h"
 #include "media/majorant_grid.h"
+#include "media/world_box.h"
 
 namespace mote::media {
+
+/// What stands beyond the first and the last voxel of an axis, as in Mitsuba 3.
+enum class WrapMode {
+    clamp,   ///< the border's voxel
+    repeat,  ///< the grid again
+    mirror   ///< the grid reversed, then again
+};
+
+/// The voxel of 0..n-1 that stands at place i.
+inline int wrapped(int i, int n, WrapMode mode) {
+    if (mode == WrapMode::clamp) return std::clamp(i, 0, n - 1);
+    const int period = int(detail::floor_div(i, n)), within = i - period * n;
+    return mode == WrapMode::mirror && period % 2 != 0 ? n - 1 - within : within;
+}
 
 struct DenseVoxels {
     glm::ivec3 resolution{0};
     int channels = 1;  ///< 1 or 3, interleaved
     std::vector<float> values;
+    WrapMode wrap = WrapMode::clamp;
 
     template <typename Value>
     Value at(int x, int y, int z) const {
@@ -26,15 +42,17 @@ struct DenseVoxels {
             return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
     }
 
-    /// `p` in index space: voxel centres at integers.
+    /// `p` in index space: voxel centres at integers. Clamped to +-1e9.
     template <typename Value>
     Value interpolate(const core::Vec3d& p) const {
         glm::ivec3 a, b;
         core::Vec3 f;
         for (int axis = 0; axis < 3; ++axis) {
-            const int last = resolution[axis] - 1;
-            const double x = std::fmin(std::fmax(p[axis], 0.0), double(last));
-            a[axis] = int(x), b[axis] = std::min(a[axis] + 1, last), f[axis] = float(x - a[axis]);
+            const double x = std::fmin(std::fmax(p[axis], -1e9), 1e9), whole = std::floor(x);
+            a[axis] = int(whole), b[axis] = a[axis] + 1, f[axis] = float(x - whole);
+            if (a[axis] >= 0 && b[axis] < resolution[axis]) continue;
+            a[axis] = wrapped(a[axis], resolution[axis], wrap);
+            b[axis] = wrapped(b[axis], resolution[axis], wrap);
         }
         const auto mix = [](const Value& u, const Value& v, float t) { return u + t * (v - u); };
         const Value y0z0 = mix(at<Value>(a.x, a.y, a.z), at<Value>(b.x, a.y, a.z), f.x);
@@ -59,10 +77,12 @@ struct DenseGrid {
     core::Transform world_to_index;
     MajorantGrid<Value> majorants;
     std::string description;
+    WorldBox box;
 };
 
-/// Bounds of the voxels on cells from one voxel below the first to one above the last, so that the clamped
-/// border lies within the cells; outside, the bounds of the border voxels hold.
+/// Bounds of the voxels on cells from one voxel below the first to one above the last, so that the half of a
+/// border voxel that reaches into the box lies within the cells; outside, the bounds of the border voxels
+/// hold for clamped grids, those of all voxels for the others.
 template <typename Value>
 MajorantGrid<Value> dense_majorants(const DenseVoxels& voxels);
 

@@ -1,5 +1,6 @@
 // <volume type="gridvolume">: a dense grid from a .vol file, as Mitsuba 3 places it: cell-centred voxels in
-// the unit cube (or the file's own box), trilinear, clamped outside.
+// the unit cube (or the file's own box), trilinear. As the extinction of a medium it ends there: outside of
+// the box that is vacuum. Other volumes (albedo, emission) go on by the wrap mode.
 #pragma once
 
 #include "core/math/transform.h"
@@ -17,7 +18,8 @@ struct VolFile;
 class GridVolume final : public Volume {
   public:
     /// Throws InputError when `to_world` or the file's box is singular.
-    GridVolume(VolFile file, const core::Transform& to_world, bool use_grid_bbox, std::string name);
+    GridVolume(VolFile file, const core::Transform& to_world, bool use_grid_bbox, std::string name,
+               WrapMode wrap = WrapMode::clamp);
     core::Rgb eval(const core::Vec3& p) const override;
     core::Rgb upper_bound() const override { return upper_bound_; }
     std::shared_ptr<HeterogeneousMedium> make_medium(MediumParts parts) const override;
@@ -25,6 +27,7 @@ class GridVolume final : public Volume {
   private:
     std::shared_ptr<const DenseVoxels> voxels_;
     core::Transform world_to_index_;
+    WorldBox box_;
     core::Rgb upper_bound_{0.0f};
     std::string description_;
 };

@@ -14,7 +14,8 @@ HeterogeneousMedium::HeterogeneousMedium(MediumParts parts)
     : parts_(std::move(parts)),
       constant_albedo_(parts_.albedo->constant()),
       emissive_(parts_.emission.any() &&
-                !(constant_albedo_ && core::min_component(*constant_albedo_) == 1.0f)) {}
+                !(constant_albedo_ && core::min_component(*constant_albedo_) == 1.0f)),
+      absorbs_alone_(!emissive_ && core::is_black(parts_.albedo->upper_bound())) {}
 
 Rgb HeterogeneousMedium::albedo_at(const core::Vec3& p) const {
     return constant_albedo_ ? *constant_albedo_ : parts_.albedo->eval(p);

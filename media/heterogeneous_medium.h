@@ -50,8 +50,15 @@ class HeterogeneousMedium : public core::Medium {
         return transmittance_by(estimator_, ray, rng, counters);
     }
 
-    /// As in traits(), for loops: coefficients vary over lengths of this size [m]; infinity: nowhere.
-    float voxel_size() const { return voxel_size_; }
+    float marching_step(float voxels, float) const override { return voxels * voxel_size_; }
+    core::Vec3d optical_depth_along(const core::Ray& ray, float voxels,
+                                    core::TrackingCounters& counters) const override {
+        return optical_depth_by_marching(ray, voxels * voxel_size_, counters);
+    }
+    void optical_depths_along(const core::Ray& ray, float voxels, std::span<core::Vec3d> depths,
+                              core::TrackingCounters& counters) const override {
+        optical_depths_by_marching(ray, voxels * voxel_size_, depths, counters);
+    }
 
     /// Optical depth per channel by the midpoint rule: deterministic, biased by the step. The segment,
     /// clipped to the grid where the medium ends there, is cut into equal steps of at most `step` metres. The
@@ -66,10 +73,12 @@ class HeterogeneousMedium : public core::Medium {
   protected:
     explicit HeterogeneousMedium(MediumParts parts);
     core::Rgb albedo_at(const core::Vec3& p) const;
+    /// Nothing scatters and nothing glows: the transmittance says everything.
+    bool absorbs_alone() const { return absorbs_alone_; }
 
     MediumParts parts_;
     std::optional<core::Rgb> constant_albedo_;
-    bool emissive_;
+    bool emissive_, absorbs_alone_;
     TransmittanceEstimator estimator_ = TransmittanceEstimator::ratio_tracking;
     float voxel_size_ = core::infinity;
     std::shared_ptr<MediumEmitter> emitter_;  ///< null until make_emitter()

@@ -21,7 +21,7 @@ HenyeyGreensteinPhase::HenyeyGreensteinPhase(float g) : g_(g) {
 float HenyeyGreensteinPhase::pdf_solid_angle(const Vec3& wo, const Vec3& wi) const {
     const Vec3 difference = g_ >= 0.0f ? wi + wo : wi - wo;  // wi minus the preferred direction
     const float h = 0.5f * glm::dot(difference, difference);
-    return henyey_greenstein(std::fabs(g_), h);
+    return media::henyey_greenstein(std::fabs(g_), h);
 }
 
 Rgb HenyeyGreensteinPhase::eval(const Vec3& wo, const Vec3& wi) const { return Rgb(pdf_solid_angle(wo, wi)); }

@@ -49,6 +49,7 @@ HomogeneousMedium::HomogeneousMedium(const Rgb& sigma_t, const Rgb& sigma_s, con
         sigma_s_[c] = std::fmin(sigma_s[c], sigma_t[c]);
     }
     emission_ = (sigma_t_ - sigma_s_) * emitted_radiance;
+    absorbs_alone_ = core::is_black(sigma_s_);
 }
 
 core::Bounds3 HomogeneousMedium::bounds() const {
@@ -81,6 +82,10 @@ std::optional<float> HomogeneousMedium::sample_collision(const Ray& ray, core::P
     if (!core::is_black(emission_))
         emitted += weights.throughput * emission_along(sigma_t_, emission_, length) /
                    core::average(weights.unidirectional);
+    if (absorbs_alone_) {
+        weights.throughput *= transmittance_over(sigma_t_, length);
+        return std::nullopt;
+    }
 
     const double sigma_h = sigma_t_[weights.hero];
     const double t = sigma_h > 0.0 ? sample_optical_depth(rng) / sigma_h : double(core::infinity);
@@ -105,11 +110,17 @@ void HomogeneousMedium::connect(const Ray& ray, core::PathWeights& weights, Rng&
                                 core::TrackingCounters&) const {
     const Rgb t = transmittance_over(sigma_t_, length_of(ray));
     weights.throughput *= t;
-    weights.unidirectional *= t;
+    if (!absorbs_alone_) weights.unidirectional *= t;
 }
 
 Rgb HomogeneousMedium::transmittance(const Ray& ray, Rng&, core::TrackingCounters&) const {
     return transmittance_over(sigma_t_, length_of(ray));
+}
+
+core::Vec3d HomogeneousMedium::optical_depth_along(const Ray& ray, float, core::TrackingCounters&) const {
+    core::Vec3d depth;
+    for (int c = 0; c < 3; ++c) depth[c] = optical_depth(sigma_t_[c], length_of(ray));
+    return depth;
 }
 
 namespace {

@@ -34,9 +34,13 @@ class HomogeneousMedium final : public core::Medium {
                  core::TrackingCounters& counters) const override;
     core::Rgb transmittance(const core::Ray& ray, core::Rng& rng,
                             core::TrackingCounters& counters) const override;
+    core::Vec3d optical_depth_along(const core::Ray& ray, float voxels,
+                                    core::TrackingCounters& counters) const override;
+    float marching_step(float, float) const override { return core::infinity; }
 
   private:
     core::Rgb sigma_t_, sigma_s_, emission_;  // emission_ = sigma_a * L_e
+    bool absorbs_alone_;                      // sigma_s is zero
     std::shared_ptr<core::PhaseFunction> phase_;
 };
 

@@ -142,52 +142,65 @@ template <typename Value>
 template <typename Visit>
 void MajorantGrid<Value>::walk(const core::Vec3d& origin, const core::Vec3d& direction, double t_begin,
                                double t_end, Visit&& visit) const {
+    // Rarely needed, so that `visit` is compiled into the loop below and once for all that lies outside.
+    const auto beyond = [&](double t0, double t1) __attribute__((noinline)) {
+        return outside_is_zero_ || !(t0 < t1) || visit(outside_, t0, t1);
+    };
     double enter = t_begin, leave = t_end;
     if (!has_cells() || !clip(origin, direction, enter, leave)) {
-        if (!outside_is_zero_ && t_begin < t_end) visit(outside_, t_begin, t_end);
+        beyond(t_begin, t_end);
         return;
     }
-    if (!outside_is_zero_ && t_begin < enter && !visit(outside_, t_begin, enter)) return;
+    if (!beyond(t_begin, enter)) return;
 
-    // Amanatides & Woo 1987, with every crossing computed from the cell's integer coordinate: nothing
-    // accumulates, and each step moves one cell in a fixed direction, so the walk ends. `border[axis]` is the
-    // coordinate of the face ahead, `left[axis]` the number of cells behind it.
+    // Amanatides & Woo 1987, with every crossing computed from the cell's integer coordinate, so that nothing
+    // accumulates. A ray that crosses two faces at once crosses both. Without branches on the axis: which
+    // face comes next is a matter of chance.
     const double to_cells = 1.0 / double(edge_);
-    const std::array<std::ptrdiff_t, 3> strides = {1, resolution_.x,
-                                                   std::ptrdiff_t(resolution_.x) * resolution_.y};
-    std::array<int, 3> left;
-    std::array<std::ptrdiff_t, 3> stride;
-    std::array<double, 3> next, border, step, offset, inverse;
-    std::ptrdiff_t index = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const int i = int(axis);
+    struct Axis {
+        double offset, inverse, step;  ///< of the ray in cells; 1 or -1
+        double border, next, after;    ///< the face ahead; its t, and that of the face behind it
+        std::ptrdiff_t stride;
+        double t_of(double face) const { return (face - offset) * inverse; }
+        std::ptrdiff_t cross(double t) {
+            const bool here = next == t;
+            next = here ? after : next, border += here ? step : 0.0;
+            after = t_of(border + step);
+            return here ? stride : 0;
+        }
+    };
+    std::array<Axis, 3> axes;
+    std::ptrdiff_t index = 0, stride = 1;
+    double last = leave;  // a crossing from here on leaves the cells
+    for (int i = 0; i < 3; ++i) {
+        Axis& a = axes[std::size_t(i)];
         const double d = direction[i] * to_cells;
         const bool up = d > 0.0;
-        offset[axis] = (origin[i] - double(lower_[i])) * to_cells;
-        const int cell =
-            int(std::clamp(std::floor(offset[axis] + enter * d), 0.0, double(resolution_[i] - 1)));
-        index += cell * strides[axis];
-        left[axis] = up ? resolution_[i] - 1 - cell : cell;
-        stride[axis] = up ? strides[axis] : -strides[axis];
-        border[axis] = up ? cell + 1 : cell, step[axis] = up ? 1.0 : -1.0;
-        inverse[axis] = d != 0.0 ? 1.0 / d : 0.0;
-        next[axis] = d != 0.0 ? (border[axis] - offset[axis]) * inverse[axis]
-                              : std::numeric_limits<double>::infinity();
+        a.offset = (origin[i] - double(lower_[i])) * to_cells;
+        const int cell = int(std::clamp(std::floor(a.offset + enter * d), 0.0, double(resolution_[i] - 1)));
+        index += cell * stride;
+        a.stride = up ? stride : -stride, stride *= resolution_[i];
+        a.border = up ? cell + 1 : cell, a.step = up ? 1.0 : -1.0;
+        a.inverse = d != 0.0 ? 1.0 / d : 0.0;
+        a.next = a.after = std::numeric_limits<double>::infinity();
+        if (d == 0.0) continue;
+        a.next = a.t_of(a.border), a.after = a.t_of(a.border + a.step);
+        last = std::min(last, a.t_of(up ? double(resolution_[i]) : 0.0));
     }
+    Axis x = axes[0], y = axes[1], z = axes[2];
     for (double t = enter;;) {
-        const std::size_t xy = std::size_t(next[1] < next[0]);
-        const std::size_t axis = next[2] < next[xy] ? 2 : xy;
-        const double crossing = next[axis], t_exit = std::min(crossing, leave);
+        const double crossing = std::min(x.next, std::min(y.next, z.next));
+        const bool leaves = !(crossing < last);
+        const double t_exit = leaves ? leave : crossing;
         if (t_exit > t) {
-            if (!visit(cells_[std::size_t(index)], t, t_exit)) return;
+            const Range& range = cells_[std::size_t(index)];
+            if (detail::largest(range.upper) != 0.0 && !visit(range, t, t_exit)) return;
             t = t_exit;
         }
-        if (crossing >= leave || --left[axis] < 0) break;
-        index += stride[axis];
-        border[axis] += step[axis];  // small integers: exact
-        next[axis] = (border[axis] - offset[axis]) * inverse[axis];
+        if (leaves) break;
+        index += x.cross(crossing), index += y.cross(crossing), index += z.cross(crossing);
     }
-    if (!outside_is_zero_ && leave < t_end) visit(outside_, leave, t_end);
+    beyond(leave, t_end);
 }
 
 }  // namespace mote::media

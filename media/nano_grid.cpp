@@ -68,6 +68,55 @@ const nanovdb::FloatGrid* checked_nano_grid(const AlignedBuffer& buffer, const s
     return StructureCheck(buffer, path).run();
 }
 
+BlockTable::BlockTable(const nanovdb::FloatGrid& grid, const Voxel& lower, const Voxel& upper) {
+    // Positions from a voxel below the first to one above the last differ from the background; a little more,
+    // so that clamping to the table changes nothing.
+    const auto block_of = [](const Voxel& v) { return Voxel(v.x >> 3, v.y >> 3, v.z >> 3); };
+    const Voxel first = block_of(lower - Voxel(2)), last = block_of(upper + Voxel(2));
+    const glm::dvec3 size = glm::dvec3(last - first) + 1.0;
+    constexpr double always = double(1 << 21);  // 16 MB
+    const double leaves = double(grid.tree().nodeCount(0));
+    if (size.x * size.y * size.z > std::max(always, 8.0 * leaves)) return;
+    origin_ = 8.0 * core::Vec3d(first), last_ = 8.0 * size - 2.0;
+    const Voxel count = last - first + Voxel(1);
+    stride_y_ = std::int32_t(count.z), stride_x_ = std::int32_t(count.y * count.z);
+    blocks_.assign(std::size_t(count.x * count.y * count.z), uniform(grid.tree().background()));
+    for_each_node(
+        grid,
+        [&](const Voxel& origin, const float* values) {
+            const Voxel b = block_of(origin) - first;
+            if (glm::all(glm::greaterThanEqual(b, Voxel(0))) && glm::all(glm::lessThan(b, count)))
+                blocks_[std::size_t(b.x * stride_x_ + b.y * stride_y_ + b.z)] = values;
+        },
+        [&](const Voxel& origin, std::int64_t edge, float value) {
+            const Voxel begin = glm::max(block_of(origin) - first, Voxel(0));
+            const Voxel end = glm::min(block_of(origin + Voxel(edge)) - first, count);
+            if (value == grid.tree().background() || !glm::all(glm::lessThan(begin, end))) return;
+            const float* values = uniform(value);
+            for (std::int64_t x = begin.x; x < end.x; ++x)
+                for (std::int64_t y = begin.y; y < end.y; ++y)
+                    for (std::int64_t z = begin.z; z < end.z; ++z)
+                        blocks_[std::size_t(x * stride_x_ + y * stride_y_ + z)] = values;
+        });
+}
+
+const float* BlockTable::uniform(float value) {
+    const auto [at, is_new] = uniform_.try_emplace(value);
+    if (is_new) at->second.fill(value);
+    return at->second.data();
+}
+
+/// Through NanoVDB's tree.
+float NanoCursor::sparse_lookup(const core::Vec3d& p) const {
+    const core::Vec3d q = glm::clamp(p, core::Vec3d(-1e9), core::Vec3d(1e9)), whole = glm::floor(q);
+    const nanovdb::Coord c(int(whole.x), int(whole.y), int(whole.z));
+    const auto accessor = grid_.getAccessor();
+    const auto at = [&](int x, int y, int z) { return accessor.getValue(c.offsetBy(x, y, z)); };
+    return interpolate(float(q.x - whole.x), float(q.y - whole.y), float(q.z - whole.z), at(0, 0, 0),
+                       at(0, 0, 1), at(0, 1, 0), at(0, 1, 1), at(1, 0, 0), at(1, 0, 1), at(1, 1, 0),
+                       at(1, 1, 1));
+}
+
 MajorantGrid<float> nano_majorants(const VdbGrid& grid) {
     const float background = grid.background();
     if (grid.uniform()) return MajorantGrid<float>({background, background});

@@ -4,6 +4,8 @@
 
 #include <nanovdb/NanoVDB.h>
 
+#include <array>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,6 +14,35 @@
 #include "media/vdb_grid.h"
 
 namespace mote::media {
+
+/// Where the 8^3 values of each block of voxels are: one array instead of NanoVDB's tree. Tiles and the
+/// background become blocks of equal values, shared by all of one value.
+class BlockTable {
+  public:
+    BlockTable() = default;
+    /// Over the voxels from `lower` to `upper` and what interpolation sees beyond them. Grids with far more
+    /// blocks than leaves get no table.
+    BlockTable(const nanovdb::FloatGrid& grid, const Voxel& lower, const Voxel& upper);
+
+    bool empty() const { return blocks_.empty(); }
+    std::uint64_t bytes() const { return blocks_.size() * sizeof(float*) + uniform_.size() * sizeof(Block); }
+    const float* const* blocks() const { return blocks_.data(); }
+    /// Index positions are taken relative to the first voxel, and clamped to where eight voxels are at hand;
+    /// from there on outwards all is background.
+    const core::Vec3d& origin() const { return origin_; }
+    const core::Vec3d& last() const { return last_; }
+    std::int32_t stride_x() const { return stride_x_; }
+    std::int32_t stride_y() const { return stride_y_; }
+
+  private:
+    using Block = std::array<float, 512>;
+    const float* uniform(float value);
+
+    std::vector<const float*> blocks_;  ///< z fastest, as within a block
+    std::map<float, Block> uniform_;
+    core::Vec3d origin_{0.0}, last_{0.0};
+    std::int32_t stride_x_ = 0, stride_y_ = 0;
+};
 
 struct VdbGrid::Data {
     AlignedBuffer buffer;
@@ -23,36 +54,47 @@ struct VdbGrid::Data {
     bool uniform = true;
     std::uint64_t active_voxels = 0, clamped = 0;
     std::vector<std::string> warnings;
+    BlockTable table;  ///< made by VdbGrid
 };
 
-/// Trilinear lookups with a cache of the nodes visited last: one a ray.
+/// Trilinear lookups: one a ray.
 class NanoCursor {
   public:
-    explicit NanoCursor(const nanovdb::FloatGrid& grid) : accessor_(grid.tree().root()) {
-        enter_block(0, 0, 0);
-    }
+    explicit NanoCursor(const VdbGrid& grid)
+        : table_(grid.data().table), blocks_(table_.blocks()), grid_(*grid.data().grid) {}
 
     /// `p` in index space, clamped to +-1e9 (load_vdb_grid refuses grids that reach so far).
-    float lookup(const core::Vec3d& p) {
-        const core::Vec3d q = glm::clamp(p, core::Vec3d(-1e9), core::Vec3d(1e9));
-        const int x = floor_to_int(q.x), y = floor_to_int(q.y), z = floor_to_int(q.z);
+    float lookup(const core::Vec3d& p) const {
+        if (!blocks_) return sparse_lookup(p);
+        const core::Vec3d q = glm::min(glm::max(p - table_.origin(), core::Vec3d(0.0)), table_.last());
+        const auto x = std::int32_t(q.x), y = std::int32_t(q.y), z = std::int32_t(q.z);
         const float fx = float(q.x - x), fy = float(q.y - y), fz = float(q.z - z);
-        // Within one leaf of 8^3 voxels, which is where two thirds of all lookups fall, all eight values lie
-        // at fixed offsets from the first; where there is no leaf, a tile or the background gives all eight.
+        const std::int32_t block = (x >> 3) * table_.stride_x() + (y >> 3) * table_.stride_y() + (z >> 3);
+        const std::int32_t voxel = (x & 7) << 6 | (y & 7) << 3 | (z & 7);
+        // Within one block, which is where two thirds of all lookups fall, all eight values lie at fixed
+        // offsets from the first.
         if ((x & 7) != 7 && (y & 7) != 7 && (z & 7) != 7) {
-            look_at(x, y, z);
-            if (!values_) return uniform_;
-            const float* v = values_ + (((x & 7) << 6) | ((y & 7) << 3) | (z & 7));
+            const float* v = blocks_[block] + voxel;
             return interpolate(fx, fy, fz, v[0], v[1], v[8], v[9], v[64], v[65], v[72], v[73]);
         }
-        return across_leaves(x, y, z, fx, fy, fz);
+        // The step to the next voxel of an axis, in blocks and in voxels.
+        const auto step = [](std::int32_t i, std::int32_t blocks, std::int32_t voxels) {
+            return (i & 7) == 7 ? Step{blocks, -7 * voxels} : Step{0, voxels};
+        };
+        const Step sx = step(x, table_.stride_x(), 64), sy = step(y, table_.stride_y(), 8),
+                   sz = step(z, 1, 1);
+        const auto at = [&](std::int32_t b, std::int32_t v) { return blocks_[block + b][voxel + v]; };
+        return interpolate(fx, fy, fz, at(0, 0), at(sz.block, sz.voxel), at(sy.block, sy.voxel),
+                           at(sy.block + sz.block, sy.voxel + sz.voxel), at(sx.block, sx.voxel),
+                           at(sx.block + sz.block, sx.voxel + sz.voxel),
+                           at(sx.block + sy.block, sx.voxel + sy.voxel),
+                           at(sx.block + sy.block + sz.block, sx.voxel + sy.voxel + sz.voxel));
     }
 
   private:
-    static int floor_to_int(double v) {
-        const int i = int(v);
-        return i - int(v < double(i));
-    }
+    struct Step {
+        std::int32_t block, voxel;
+    };
     static float mix(float a, float b, float t) { return a + t * (b - a); }
     static float interpolate(float fx, float fy, float fz, float v000, float v001, float v010, float v011,
                              float v100, float v101, float v110, float v111) {
@@ -60,55 +102,17 @@ class NanoCursor {
         const float y1 = mix(mix(v100, v101, fz), mix(v110, v111, fz), fy);
         return mix(y0, y1, fx);
     }
-    void enter_block(int x, int y, int z) {
-        x_ = x, y_ = y, z_ = z;
-        const auto* leaf = accessor_.probeLeaf({x, y, z});
-        values_ = leaf ? leaf->data()->mValues : nullptr;
-        if (!leaf) uniform_ = accessor_.getValue({x, y, z});
-    }
-    float across_leaves(int x, int y, int z, float fx, float fy, float fz) {
-        const bool cx = (x & 7) == 7, cy = (y & 7) == 7, cz = (z & 7) == 7;
-        if (int(cx) + int(cy) + int(cz) > 1) return across_edges(x, y, z, fx, fy, fz);
-        // One axis crosses, as a rule: a face of four values in this block, and one in the next.
-        const int offset = ((x & 7) << 6) | ((y & 7) << 3) | (z & 7);
-        const int stride = cx ? 64 : cy ? 8 : 1, first = cx ? 8 : 64, second = cz ? 8 : 1;
-        const float f = cx ? fx : cy ? fy : fz, f1 = cx ? fy : fx, f2 = cz ? fy : fz;
-        look_at(x, y, z);
-        const float here = face(offset, first, second, f1, f2);
-        enter_block(x + int(cx), y + int(cy), z + int(cz));
-        return mix(here, face(offset - 7 * stride, first, second, f1, f2), f);
-    }
-    float face(int offset, int first, int second, float f1, float f2) const {
-        if (!values_) return uniform_;
-        const float* v = values_ + offset;
-        return mix(mix(v[0], v[second], f2), mix(v[first], v[first + second], f2), f1);
-    }
-    float across_edges(int x, int y, int z, float fx, float fy, float fz) {
-        float v[8];
-        for (int i = 0; i < 8; ++i) {
-            const int a = x + (i >> 2), b = y + ((i >> 1) & 1), c = z + (i & 1);
-            look_at(a, b, c);
-            v[i] = in_block(a, b, c);
-        }
-        return interpolate(fx, fy, fz, v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7]);
-    }
-    void look_at(int x, int y, int z) {
-        if ((((x ^ x_) | (y ^ y_) | (z ^ z_)) & ~7) != 0) enter_block(x, y, z);
-    }
-    float in_block(int x, int y, int z) const {
-        return values_ ? values_[((x & 7) << 6) | ((y & 7) << 3) | (z & 7)] : uniform_;
-    }
+    float sparse_lookup(const core::Vec3d& p) const;
 
-    nanovdb::DefaultReadAccessor<float> accessor_;
-    int x_ = 0, y_ = 0, z_ = 0;      ///< a voxel of the block looked at last
-    const float* values_ = nullptr;  ///< its leaf, or null: then uniform_ holds throughout the block
-    float uniform_ = 0.0f;
+    const BlockTable& table_;
+    const float* const* blocks_;  ///< null: no table
+    const nanovdb::FloatGrid& grid_;
 };
 
 /// The grid that TrackedMedium wants (see there).
 struct NanoGrid {
     using Value = float;
-    NanoCursor cursor() const { return NanoCursor(*grid->data().grid); }
+    NanoCursor cursor() const { return NanoCursor(*grid); }
 
     std::shared_ptr<const VdbGrid> grid;
     core::Transform world_to_index;

@@ -18,6 +18,7 @@ class IsotropicPhase final : public core::PhaseFunction {
     core::PhaseSample sample(const core::Vec3& wo, const core::Vec2& u) const override;
     bool isotropic() const override { return true; }
     float mean_cosine() const override { return 0.0f; }
+    std::optional<float> henyey_greenstein() const override { return 0.0f; }
 };
 
 class HenyeyGreensteinPhase final : public core::PhaseFunction {
@@ -29,6 +30,7 @@ class HenyeyGreensteinPhase final : public core::PhaseFunction {
     core::PhaseSample sample(const core::Vec3& wo, const core::Vec2& u) const override;
     bool isotropic() const override { return g_ == 0.0f; }
     float mean_cosine() const override { return g_; }
+    std::optional<float> henyey_greenstein() const override { return g_; }
 
   private:
     float g_;

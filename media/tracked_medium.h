@@ -6,7 +6,7 @@
 // collisions only (Woodcock et al. 1965; Miller et al. 2019; pbrt-v4, section 14.2).
 //
 // Grid must provide: Value (float: grey, or Rgb), world_to_index, cursor() with lookup(index position),
-// majorants, description, kind.
+// majorants, description; and, where the medium ends before the grid's values do, box (a WorldBox).
 #pragma once
 
 #include <fmt/format.h>
@@ -64,6 +64,7 @@ class TrackedMedium final : public HeterogeneousMedium {
     using Wide = std::conditional_t<std::is_same_v<Value, float>, double, core::Vec3d>;
     using Range = typename MajorantGrid<Value>::Range;
     static constexpr bool chromatic = !std::is_same_v<Value, float>;
+    static constexpr bool boxed = requires(Grid grid) { grid.box; };
 
     TrackedMedium(Grid grid, MediumParts parts)
         : HeterogeneousMedium(std::move(parts)), grid_(std::move(grid)) {
@@ -116,6 +117,12 @@ class TrackedMedium final : public HeterogeneousMedium {
     core::Rgb by_residual_tracking(const core::Ray& ray, core::Rng& rng,
                                    core::TrackingCounters& counters) const;
 
+    /// The part of the segment that can hold the medium; false when there is none.
+    bool clip(const core::Ray& ray, double& t0, double& t1) const {
+        t0 = ray.t_min, t1 = ray.t_max;
+        if constexpr (boxed) return grid_.box.clip(ray, t0, t1);
+        return true;
+    }
     core::Vec3d index_origin(const core::Ray& ray) const {
         return grid_.world_to_index.point(core::Vec3d(ray.origin));
     }

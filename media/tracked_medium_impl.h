@@ -17,7 +17,7 @@ std::optional<double> TrackedMedium<Grid>::track(const core::Ray& ray, core::Rng
         sample_optical_depth(rng);  // majorant optical depth left until the next tentative collision
     std::uint64_t steps = 0;
     std::optional<double> given_up;
-    const auto visit = [&](const Range& range, double t0, double t1) {
+    const auto visit = [&](const Range& range, double t0, double t1) __attribute__((always_inline)) {
         const double length = t1 - t0, rate = rate_of(range), rate_per_metre = rate * scale;
         if (!(rate_per_metre > 0.0)) {
             at_piece(range, length);
@@ -44,7 +44,7 @@ std::optional<double> TrackedMedium<Grid>::track(const core::Ray& ray, core::Rng
             depth = sample_optical_depth(rng);
         }
     };
-    grid_.majorants.walk(origin, direction, double(ray.t_min), double(ray.t_max), visit);
+    if (double t0, t1; clip(ray, t0, t1)) grid_.majorants.walk(origin, direction, t0, t1, visit);
     counters.lookups += steps, counters.collisions += steps;
     if (given_up) ++counters.fallbacks;
     return given_up;
@@ -54,6 +54,10 @@ template <typename Grid>
 std::optional<float> TrackedMedium<Grid>::sample_collision(const core::Ray& ray, core::PathWeights& weights,
                                                            core::Rgb& emitted, core::Rng& rng,
                                                            core::TrackingCounters& counters) const {
+    if (absorbs_alone_) {
+        weights.throughput *= transmittance(ray, rng, counters);
+        return std::nullopt;
+    }
     std::optional<float> found;
     const int hero = weights.hero;
     const auto at_collision = [&](const Range&, double majorant, double t, Wide density) {
@@ -100,6 +104,10 @@ std::optional<float> TrackedMedium<Grid>::sample_collision(const core::Ray& ray,
 template <typename Grid>
 void TrackedMedium<Grid>::connect(const core::Ray& ray, core::PathWeights& weights, core::Rng& rng,
                                   core::TrackingCounters& counters) const {
+    if (absorbs_alone_) {
+        weights.throughput *= transmittance(ray, rng, counters);
+        return;
+    }
     // `passed` is both the estimate and the chance that sample_collision() passes the same tentative
     // collisions; roulette divides the estimate alone.
     Wide passed(1.0), estimate(1.0);
@@ -215,7 +223,7 @@ core::Rgb TrackedMedium<Grid>::by_marching(const core::Ray& ray, core::TrackingC
         depth += sum * (length / double(n));
         return true;
     };
-    grid_.majorants.walk(origin, direction, double(ray.t_min), double(ray.t_max), visit);
+    if (double t0, t1; clip(ray, t0, t1)) grid_.majorants.walk(origin, direction, t0, t1, visit);
     return detail::exp_minus_rgb(depth * double(parts_.scale));
 }
 
@@ -249,10 +257,17 @@ template <typename Grid>
 core::Vec3d TrackedMedium<Grid>::optical_depth_by_marching(const core::Ray& ray, float step,
                                                            core::TrackingCounters& counters) const {
     const core::Vec3d origin = index_origin(ray), direction = index_direction(ray);
-    double t0 = ray.t_min, t1 = ray.t_max;
-    if (detail::largest(grid_.majorants.outside().upper) == 0.0 &&
-        !(grid_.majorants.has_cells() && grid_.majorants.clip(origin, direction, t0, t1)))
-        return core::Vec3d(0.0);
+    const double scale = parts_.scale;
+    double t0, t1;
+    if (majorant_ == 0.0f || !clip(ray, t0, t1)) return core::Vec3d(0.0);
+    core::Vec3d beyond(0.0);
+    if constexpr (!boxed) {  // beyond the cells it is the same everywhere
+        const double whole = t1 - t0;
+        if (!(grid_.majorants.has_cells() && grid_.majorants.clip(origin, direction, t0, t1))) t1 = t0;
+        const core::Vec3d outside(core::Rgb(grid_.majorants.outside().upper));
+        for (int c = 0; c < 3; ++c) beyond[c] = optical_depth(scale * outside[c], whole - (t1 - t0));
+    }
+    if (!(t0 < t1)) return beyond;
     const auto count = std::uint64_t(std::ceil((t1 - t0) / double(step)));
     const double h = (t1 - t0) / double(count);
     const core::Vec3d start = origin + (t0 + 0.5 * h) * direction, delta = h * direction;
@@ -260,7 +275,7 @@ core::Vec3d TrackedMedium<Grid>::optical_depth_by_marching(const core::Ray& ray,
     Wide sum(0.0);
     for (std::uint64_t i = 0; i < count; ++i) sum += detail::widen(cursor.lookup(start + double(i) * delta));
     counters.lookups += count;
-    return core::Vec3d(sum) * (h * double(parts_.scale));
+    return beyond + core::Vec3d(sum) * (h * scale);
 }
 
 template <typename Grid>
@@ -269,22 +284,36 @@ void TrackedMedium<Grid>::optical_depths_by_marching(const core::Ray& ray, float
                                                      core::TrackingCounters& counters) const {
     std::fill(depths.begin(), depths.end(), core::Vec3d(0.0));
     const double t0 = ray.t_min, part = (double(ray.t_max) - t0) / double(depths.size());
-    if (!(part > 0.0)) return;
+    double enter, leave;
+    if (!(part > 0.0) || !clip(ray, enter, leave)) return;
     const auto points = std::uint64_t(std::max(std::ceil(part / double(step)), 1.0));  // of each part
     const double h = part / double(points);
     const core::Vec3d origin = index_origin(ray), direction = index_direction(ray);
     auto cursor = grid_.cursor();
     std::uint64_t i = 0, looked_up = 0;  // the next point, at t0 + (i + 1/2) h
     const std::uint64_t end = points * depths.size();
-    grid_.majorants.walk(
-        origin, direction, t0, double(ray.t_max), [&](const Range& range, double begin, double t1) {
-            if (detail::largest(range.upper) == 0.0) return true;
-            const double first = std::ceil((begin - t0) / h - 0.5);
-            if (first > double(i)) i = std::uint64_t(first);
-            for (double t; i < end && (t = t0 + (double(i) + 0.5) * h) < t1; ++i, ++looked_up)
-                depths[i / points] += core::Vec3d(detail::widen(cursor.lookup(origin + t * direction)));
-            return true;
-        });
+    const auto add = [&](std::uint64_t at, double t, double weight) {
+        ++looked_up;
+        depths[at / points] += weight * core::Vec3d(detail::widen(cursor.lookup(origin + t * direction)));
+    };
+    // A step that the medium's box cuts counts with the part inside.
+    const auto add_part = [&](double from, double to) {
+        const auto at = std::uint64_t(std::clamp((0.5 * (from + to) - t0) / h, 0.0, double(end - 1)));
+        if (from < to) add(at, 0.5 * (from + to), (to - from) / h);
+    };
+    const double first_whole = std::min(t0 + std::ceil((enter - t0) / h) * h, leave);
+    const double last_whole = std::max(t0 + std::floor((leave - t0) / h) * h, first_whole);
+    add_part(enter, first_whole);
+    grid_.majorants.walk(origin, direction, first_whole, last_whole,
+                         [&](const Range& range, double begin, double t1) {
+                             if (detail::largest(range.upper) == 0.0) return true;
+                             const double first = std::ceil((begin - t0) / h - 0.5);
+                             if (first > double(i)) i = std::uint64_t(first);
+                             for (double t; i < end && (t = t0 + (double(i) + 0.5) * h) < t1; ++i)
+                                 add(i, t, 1.0);
+                             return true;
+                         });
+    add_part(last_whole, leave);
     counters.lookups += looked_up;
     core::Vec3d sum(0.0);
     for (core::Vec3d& depth : depths) depth = sum += depth * (h * double(parts_.scale));
@@ -292,8 +321,10 @@ void TrackedMedium<Grid>::optical_depths_by_marching(const core::Ray& ray, float
 
 template <typename Grid>
 core::MediumCoefficients TrackedMedium<Grid>::coefficients(const core::Vec3& p) const {
-    const Value density = grid_.cursor().lookup(grid_.world_to_index.point(core::Vec3d(p)));
     core::MediumCoefficients c;
+    if constexpr (boxed)
+        if (!grid_.box.contains(p)) return c;
+    const Value density = grid_.cursor().lookup(grid_.world_to_index.point(core::Vec3d(p)));
     c.sigma_t = parts_.scale * core::Rgb(density);
     c.sigma_s = c.sigma_t * albedo_at(p);
     if (emissive_) c.emission = (c.sigma_t - c.sigma_s) * parts_.emission.at(p);
@@ -303,6 +334,17 @@ core::MediumCoefficients TrackedMedium<Grid>::coefficients(const core::Vec3& p) 
 template <typename Grid>
 core::Bounds3 TrackedMedium<Grid>::bounds() const {
     core::Bounds3 box;
+    const auto hold = [&](const core::Vec3d& exact) {  // outwards, so that rounding cannot cut the medium
+        const core::Vec3 p(exact);
+        for (int axis = 0; axis < 3; ++axis) {
+            box.lower[axis] = std::fmin(box.lower[axis], std::nextafter(p[axis], -core::infinity));
+            box.upper[axis] = std::fmax(box.upper[axis], std::nextafter(p[axis], core::infinity));
+        }
+    };
+    if constexpr (boxed) {
+        hold(grid_.box.lower), hold(grid_.box.upper);
+        return box;
+    }
     if (detail::largest(grid_.majorants.outside().upper) > 0.0)
         return {core::Vec3(-core::infinity), core::Vec3(core::infinity)};
     if (!grid_.majorants.has_cells()) return box;
@@ -311,11 +353,7 @@ core::Bounds3 TrackedMedium<Grid>::bounds() const {
         const Voxel v(corner & 1 ? grid_.majorants.upper().x : grid_.majorants.lower().x,
                       corner & 2 ? grid_.majorants.upper().y : grid_.majorants.lower().y,
                       corner & 4 ? grid_.majorants.upper().z : grid_.majorants.lower().z);
-        const core::Vec3 p(to_world.point(core::Vec3d(v)));
-        for (int axis = 0; axis < 3; ++axis) {  // outwards, so that rounding cannot cut the medium
-            box.lower[axis] = std::fmin(box.lower[axis], std::nextafter(p[axis], -core::infinity));
-            box.upper[axis] = std::fmax(box.upper[axis], std::nextafter(p[axis], core::infinity));
-        }
+        hold(to_world.point(core::Vec3d(v)));
     }
     return box;
 }

@@ -77,7 +77,11 @@ void measure(VdbGrid::Data& d, const std::string& path) {
 
 }  // namespace
 
-VdbGrid::VdbGrid(std::unique_ptr<Data> data) : data_(std::move(data)) {}
+VdbGrid::VdbGrid(std::unique_ptr<Data> data) : data_(std::move(data)) {
+    const Voxel none(0);
+    data_->table = data_->uniform ? BlockTable(*data_->grid, none, none)
+                                  : BlockTable(*data_->grid, data_->lower, data_->upper);
+}
 VdbGrid::~VdbGrid() = default;
 const std::string& VdbGrid::name() const { return data_->name; }
 const core::Transform& VdbGrid::index_to_world() const { return data_->index_to_world; }
@@ -87,7 +91,7 @@ const Voxel& VdbGrid::lower() const { return data_->lower; }
 const Voxel& VdbGrid::upper() const { return data_->upper; }
 bool VdbGrid::uniform() const { return data_->uniform; }
 std::uint64_t VdbGrid::active_voxels() const { return data_->active_voxels; }
-std::uint64_t VdbGrid::bytes() const { return data_->buffer.size(); }
+std::uint64_t VdbGrid::bytes() const { return data_->buffer.size() + data_->table.bytes(); }
 std::uint64_t VdbGrid::clamped_voxels() const { return data_->clamped; }
 const std::vector<std::string>& VdbGrid::warnings() const { return data_->warnings; }
 const void* VdbGrid::nanovdb_grid() const { return data_->grid; }
@@ -147,7 +151,7 @@ std::vector<VdbGridInfo> list_vdb_grids(const std::string& path, const VdbLoadOp
 
 void lookup_density(const VdbGrid& grid, std::span<const core::Vec3d> index_positions,
                     std::span<float> values) {
-    NanoCursor cursor(*grid.data().grid);
+    NanoCursor cursor(grid);
     for (std::size_t i = 0; i < index_positions.size(); ++i) values[i] = cursor.lookup(index_positions[i]);
 }
 

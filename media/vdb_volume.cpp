@@ -20,7 +20,7 @@ VdbVolume::VdbVolume(std::shared_ptr<const VdbGrid> grid, const Transform& to_wo
 }
 
 Rgb VdbVolume::eval(const core::Vec3& p) const {
-    return Rgb(NanoCursor(*grid_->data().grid).lookup(world_to_index_.point(Vec3d(p))));
+    return Rgb(NanoCursor(*grid_).lookup(world_to_index_.point(Vec3d(p))));
 }
 
 Rgb VdbVolume::upper_bound() const { return Rgb(grid_->max_value()); }

@@ -1,9 +1,9 @@
 // Media: coefficients in Mitsuba's words, emission dropped, grids as .vol files.
 //
 // Mitsuba's heterogeneous medium ends at the bounding box of its sigma_t, and that of a <volume
-// type="constvolume"> is the unit cube (src/media/heterogeneous.cpp, intersect_aabb; Volume::bbox). Where
-// ours goes on to the shape that bounds it, a constant extinction is therefore written as a homogeneous
-// medium or as a grid of one voxel.
+// type="constvolume"> is the unit cube (src/media/heterogeneous.cpp, intersect_aabb; Volume::bbox). So does
+// ours for a gridvolume, which is written as it is; a constant goes on to the shape that bounds it, and is
+// therefore written as a homogeneous medium or as a grid of one voxel.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -149,11 +149,7 @@ void export_vdb(Element& volume, bool is_extinction, const ExportContext& contex
     replace_by_grid(volume, name, std::move(to_world));
 }
 
-void export_vol(Element& volume, bool is_extinction, const ExportContext& context) {
-    if (is_extinction)
-        context.note(volume,
-                     "a gridvolume as extinction: Mitsuba's medium ends at its box, ours goes on with "
-                     "the border's values");
+void export_vol(Element& volume, const ExportContext& context) {
     if (remove_child(volume, "clamp_negative")) {
         const std::string path = context.find_file(volume);
         const std::string name =
@@ -169,7 +165,7 @@ void export_vol(Element& volume, bool is_extinction, const ExportContext& contex
 void export_volume(Element& volume, bool is_extinction, const ExportContext& context) {
     if (volume.get("type") == "vdbvolume") export_vdb(volume, is_extinction, context);
     if (volume.get("type") == "gridvolume" && text_of(volume, "filename", "").rfind("volumes/", 0) != 0)
-        export_vol(volume, is_extinction, context);
+        export_vol(volume, context);
 }
 
 /// A constant parameter of a medium, or nothing when it is a grid.

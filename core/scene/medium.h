@@ -8,6 +8,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "core/math/bounds.h"
@@ -75,18 +76,33 @@ class Medium : public Object {
     /// on the way is added to `emitted`, divided by average(unidirectional), or by the average of both
     /// techniques where light sampling at weights.vertex could have found it too. Exact for homogeneous
     /// media.
+    /// A medium that only absorbs needs no distances: nothing is decided, the ray passes with chance 1, and
+    /// throughput alone is multiplied, by the transmittance or an unbiased estimate of it.
     virtual std::optional<float> sample_collision(const Ray& ray, PathWeights& weights, Rgb& emitted,
                                                   Rng& rng, TrackingCounters& counters) const = 0;
 
     /// Ratio tracking of the transmittance from t_min to t_max for a connection to a light: multiplies
     /// `weights` so that throughput holds the estimate, `light` the pdf ratio of this technique, and
-    /// `unidirectional` that of sample_collision() having passed the same way. Deterministic for homogeneous
-    /// media.
+    /// `unidirectional` that of sample_collision() having passed the same way (1 where the medium only
+    /// absorbs). Deterministic for homogeneous media.
     virtual void connect(const Ray& ray, PathWeights& weights, Rng& rng,
                          TrackingCounters& counters) const = 0;
 
     /// Unbiased estimate of the transmittance per channel, for connections without another technique (VPLs).
     virtual Rgb transmittance(const Ray& ray, Rng& rng, TrackingCounters& counters) const = 0;
+
+    /// Optical depth per channel from t_min to t_max, by marching: deterministic, biased by the step, exact
+    /// for homogeneous media. The segment, clipped to bounds(), is cut into equal steps of at most
+    /// marching_step(); each counts with the extinction in its middle. An infinite segment of a medium
+    /// without bounds counts as if the extinction of its start went on.
+    virtual Vec3d optical_depth_along(const Ray& ray, float voxels, TrackingCounters& counters) const;
+    /// The same from t_min to the end of each of depths.size() equal parts of a finite segment.
+    virtual void optical_depths_along(const Ray& ray, float voxels, std::span<Vec3d> depths,
+                                      TrackingCounters& counters) const;
+    /// Steps of `voxels` voxels [m]; of a medium that varies but names no voxel size, `default_steps` to a
+    /// segment of `length` metres; infinity for homogeneous media, which need none.
+    virtual float marching_step(float voxels, float length) const;
+    static constexpr int default_steps = 256;
 
     /// Its emission within `box` as a light, to be drawn from; null where there is none. From then on
     /// sample_collision() weighs the emission it meets against that light.

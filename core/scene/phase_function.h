@@ -5,6 +5,8 @@
 // -1.
 #pragma once
 
+#include <optional>
+
 #include "core/math/vec.h"
 #include "core/objects/object.h"
 
@@ -25,6 +27,9 @@ class PhaseFunction : public Object {
     virtual bool isotropic() const = 0;
     /// Mean cosine of the scattering angle (0 for isotropic, > 0 forward).
     virtual float mean_cosine() const = 0;
+    /// The g of Henyey & Greenstein's function where it is that one (0 for isotropic), which has closed
+    /// forms; nothing where it is another.
+    virtual std::optional<float> henyey_greenstein() const { return std::nullopt; }
 };
 
 }  // namespace mote::core

@@ -21,8 +21,7 @@ constexpr float march_behind = 4.0f;
 ShadowMapBuilder::ShadowMapBuilder(const Scene& scene, const VolumetricShadowMap& map,
                                    const MediumState& at_light)
     : scene_(scene), map_(map), at_light_(at_light) {
-    for (const auto& m : scene.media())
-        media_.push_back({m.get(), dynamic_cast<const media::HeterogeneousMedium*>(m.get()), m->bounds()});
+    for (const auto& m : scene.media()) media_.push_back({m.get(), m->bounds()});
 }
 
 void ShadowMapBuilder::fill(int texel, std::byte* record) {
@@ -82,10 +81,10 @@ void ShadowMapBuilder::find_segments(const Ray& ray, float end) {
     const auto keep = [&](float t, float to, const MediumState& state) {
         const Medium* medium = state.current();
         if (medium && t < to) {
-            const auto marched =
+            const auto known =
                 std::find_if(media_.begin(), media_.end(), [&](auto& m) { return m.medium == medium; });
-            const auto part = intersect(marched->bounds, Ray{ray.origin, ray.direction, t, to});
-            if (part) segments_.push_back({&*marched, part->t0, part->t1});
+            const auto part = intersect(known->bounds, Ray{ray.origin, ray.direction, t, to});
+            if (part) segments_.push_back({medium, part->t0, part->t1});
         }
         return true;
     };
@@ -98,28 +97,15 @@ void ShadowMapBuilder::find_segments(const Ray& ray, float end) {
     for_each_part(scene_.rays(), Ray{ray.origin, ray.direction, ray.t_min, end}, at_light_, keep, keep_pane);
 }
 
-float ShadowMapBuilder::step_of(const MarchedMedium& medium, float length) const {
-    const float voxel = medium.grid->voxel_size();
-    return std::isfinite(voxel) ? voxel * map_.settings_.step : length;
-}
-
-Vec3d ShadowMapBuilder::depth_of(const Segment& segment, const Ray& part) {
-    const float length = part.t_max - part.t_min;
-    const MarchedMedium& m = *segment.medium;
-    if (!m.grid) return Vec3d(m.medium->coefficients(part.origin).sigma_t) * double(length);
-    return m.grid->optical_depth_by_marching(part, step_of(m, length), counters_);
-}
-
 /// Optical depth at the ends of all intervals.
 void ShadowMapBuilder::march(const Ray& ray, const VolumetricShadowMap::Header& header, float step) {
     const auto intervals = std::size_t(map_.settings_.intervals);
     depths_.assign(intervals, Vec3d(0.0));
     if (header.inverse_step > 0.0f) {
-        if (segments_.size() == 1 && segments_.front().medium->grid && panes_.empty()) {
+        if (segments_.size() == 1 && panes_.empty()) {
             const Segment& only = segments_.front();
-            only.medium->grid->optical_depths_by_marching(
-                Ray{ray.origin, ray.direction, only.begin, only.end},
-                step_of(*only.medium, only.end - only.begin), depths_, counters_);
+            only.medium->optical_depths_along(Ray{ray.origin, ray.direction, only.begin, only.end},
+                                              map_.settings_.step, depths_, counters_);
         } else {
             march_segments(ray, header.enter, step);
         }
@@ -129,7 +115,7 @@ void ShadowMapBuilder::march(const Ray& ray, const VolumetricShadowMap::Header& 
         nodes_.push_back({header.enter + float(k + 1) * step, Rgb(depths_[k])});
 }
 
-/// Several media, homogeneous ones, or panes: interval by interval.
+/// Several media, or panes: interval by interval.
 void ShadowMapBuilder::march_segments(const Ray& ray, float enter, float step) {
     Vec3d depth(0.0);
     std::size_t s = 0;
@@ -139,7 +125,8 @@ void ShadowMapBuilder::march_segments(const Ray& ray, float enter, float step) {
         for (std::size_t i = s; i < segments_.size() && segments_[i].begin < to; ++i) {
             const Ray part{ray.origin, ray.direction, std::max(from, segments_[i].begin),
                            std::min(to, segments_[i].end)};
-            if (part.t_min < part.t_max) depth += depth_of(segments_[i], part);
+            if (part.t_min < part.t_max)
+                depth += segments_[i].medium->optical_depth_along(part, map_.settings_.step, counters_);
         }
         for (const Pane& pane : panes_)
             if (from < pane.distance && pane.distance <= to) depth += pane.depth;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "lights/shadow_maps/volumetric_shadow_map.h"
-#include "media/heterogeneous_medium.h"
 
 namespace mote::lights {
 
@@ -16,15 +15,14 @@ class ShadowMapBuilder {
     const core::RayCounters& rays() const { return rays_; }
 
   private:
-    /// What marching needs to know of a medium, asked once.
-    struct MarchedMedium {
+    /// A medium and where it is, asked once.
+    struct BoundedMedium {
         const core::Medium* medium;
-        const media::HeterogeneousMedium* grid;  ///< null: homogeneous
         core::Bounds3 bounds;
     };
     /// One medium along a part of the ray.
     struct Segment {
-        const MarchedMedium* medium;
+        const core::Medium* medium;
         float begin, end;
     };
     /// What a pane across the ray takes: spread over one interval, as everything between two values is.
@@ -42,8 +40,6 @@ class ShadowMapBuilder {
     void march(const core::Ray& ray, const VolumetricShadowMap::Header& header, float step);
     core::Interval extent(float spacing) const;
     void march_segments(const core::Ray& ray, float enter, float step);
-    float step_of(const MarchedMedium& medium, float length) const;
-    core::Vec3d depth_of(const Segment& segment, const core::Ray& part);
     void keep_nodes(std::size_t count);
     void write(std::byte* record) const;
     static float loss(const Node& a, const Node& b, const Node& c);
@@ -51,7 +47,7 @@ class ShadowMapBuilder {
     const core::Scene& scene_;
     const VolumetricShadowMap& map_;
     const core::MediumState& at_light_;
-    std::vector<MarchedMedium> media_;
+    std::vector<BoundedMedium> media_;
     core::RayCounters rays_;
     core::TrackingCounters counters_;
     std::vector<Segment> segments_;

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "media/phase_functions.h"
-
 namespace mote::screenspace {
 
 using namespace core;
@@ -16,10 +14,10 @@ constexpr double smallest_beam = 0.25;
 std::optional<AnalyticMedium> AnalyticMedium::of(const Medium& medium) {
     const MediumTraits traits = medium.traits();
     if (!traits.homogeneous) return std::nullopt;
-    const PhaseFunction& phase = medium.phase();
-    if (!phase.isotropic() && !dynamic_cast<const media::HenyeyGreensteinPhase*>(&phase)) return std::nullopt;
+    const auto g = medium.phase().henyey_greenstein();
+    if (!g) return std::nullopt;
     const MediumCoefficients c = medium.coefficients(Vec3(0.0f));
-    return AnalyticMedium{&medium, c.sigma_t, c.sigma_s, phase.isotropic() ? 0.0f : phase.mean_cosine()};
+    return AnalyticMedium{&medium, c.sigma_t, c.sigma_s, *g};
 }
 
 Rgb AnalyticMedium::transmittance(double length) const {

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "media/heterogeneous_medium.h"
-
 namespace mote::screenspace {
 
 using namespace core;
@@ -18,13 +16,12 @@ EyeMedia::EyeMedia(const Scene& scene, const Ray& ray, const MediumState& state,
     for (const MediumSegment& s : segments) {
         before *= s.panes;
         Piece piece{s, before, {}};
-        const auto* grid = dynamic_cast<const media::HeterogeneousMedium*>(s.medium);
-        if (grid && std::isfinite(s.t1)) {
-            const float step = voxels * grid->voxel_size();
+        const float step = s.medium ? s.medium->marching_step(voxels, s.t1 - s.t0) : infinity;
+        if (std::isfinite(step) && std::isfinite(s.t1)) {
             constexpr float most = 65536.0f;  // of 24 bytes
             piece.depths.resize(std::size_t(std::clamp(std::ceil((s.t1 - s.t0) / step), 1.0f, most)));
-            grid->optical_depths_by_marching({ray.origin, ray.direction, s.t0, s.t1}, step, piece.depths,
-                                             walk.tracking);
+            s.medium->optical_depths_along({ray.origin, ray.direction, s.t0, s.t1}, voxels, piece.depths,
+                                           walk.tracking);
         }
         before *= within(piece, s.t1, walk);
         pieces_.push_back(std::move(piece));

@@ -4,7 +4,6 @@
 #include <stdexcept>
 
 #include "core/scene/media_along.h"
-#include "media/heterogeneous_medium.h"
 #include "screenspace/in_scattering/eye_media.h"
 
 namespace mote::screenspace {
@@ -55,11 +54,8 @@ void find_segments(const Scene& scene, const Ray& ray, const MediumState& state,
 }
 
 Rgb marched_transmittance(const Medium& medium, const Ray& ray, float voxels, WalkContext& walk) {
-    if (const auto* grid = dynamic_cast<const media::HeterogeneousMedium*>(&medium)) {
-        const Vec3d depth = grid->optical_depth_by_marching(ray, voxels * grid->voxel_size(), walk.tracking);
-        return {float(std::exp(-depth.x)), float(std::exp(-depth.y)), float(std::exp(-depth.z))};
-    }
-    return medium.transmittance(ray, walk.rng, walk.tracking);
+    const Vec3d depth = medium.optical_depth_along(ray, voxels, walk.tracking);
+    return {float(std::exp(-depth.x)), float(std::exp(-depth.y)), float(std::exp(-depth.z))};
 }
 
 Rgb marched_transmittance(const Ray& ray, const std::vector<MediumSegment>& segments, float voxels,

@@ -124,7 +124,7 @@ TEST_CASE("VDB majorants bound every lookup", "[media][vdb]") {
     for (const char* kind : {"lump", "tiles", "single", "step", "background"}) {
         const auto grid = media::load_vdb_grid(folder.grid(kind));
         const auto majorants = media::nano_majorants(*grid);
-        media::NanoCursor cursor(*grid->data().grid);
+        media::NanoCursor cursor(*grid);
         core::Rng rng(8);
         INFO(kind);
         CHECK(majorants.total().upper == grid->max_value());

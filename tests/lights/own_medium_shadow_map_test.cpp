@@ -1,0 +1,105 @@
+// Shadow maps of a medium that the project does not know: marched through its interface alone.
+#include <cmath>
+
+#include "core/loading/scene_loader.h"
+#include "core/math/random.h"
+#include "core/objects/properties.h"
+#include "core/scene/scene.h"
+#include "lights/shadow_maps/volumetric_shadow_map.h"
+#include "media/phase_functions.h"
+#include "tests/support/catch.h"
+#include "tests/support/render_statistics.h"
+
+using namespace mote;
+using namespace mote::core;
+using lights::ShadowMapSettings, lights::ShadowMapView, lights::VolumetricShadowMap;
+
+namespace {
+
+/// Extinction in waves along x, chromatic; it names a voxel size or none.
+class Waves final : public Medium {
+  public:
+    explicit Waves(float voxel_size) : voxel_size_(voxel_size) {}
+    MediumTraits traits() const override {
+        MediumTraits t;
+        t.chromatic = true, t.voxel_size = voxel_size_;
+        return t;
+    }
+    const PhaseFunction& phase() const override { return phase_; }
+    MediumCoefficients coefficients(const Vec3& p) const override {
+        MediumCoefficients c;
+        c.sigma_t = (1.0f + std::sin(4.0f * p.x)) * Rgb(0.2f, 0.8f, 1.6f);
+        return c;
+    }
+    float majorant() const override { return 3.2f; }
+    Bounds3 bounds() const override { return {Vec3(-infinity), Vec3(infinity)}; }
+    std::optional<float> sample_collision(const Ray&, PathWeights&, Rgb&, Rng&,
+                                          TrackingCounters&) const override {
+        return std::nullopt;
+    }
+    void connect(const Ray&, PathWeights&, Rng&, TrackingCounters&) const override {}
+    Rgb transmittance(const Ray&, Rng&, TrackingCounters&) const override { return Rgb(1.0f); }
+
+  private:
+    float voxel_size_;
+    media::IsotropicPhase phase_;
+};
+
+/// A ball of radius 2 around the origin, filled with waves.
+std::unique_ptr<Scene> ball_of_waves(float voxel_size) {
+    Registry registry = tests::registry();
+    registry.add({Category::medium, "waves", "", {}, ""},
+                 [=](const Properties&) { return std::make_shared<Waves>(voxel_size); });
+    return load_scene_from_string(R"(<scene version="3.0.0">
+        <shape type="sphere"><float name="radius" value="2"/><bsdf type="null"/>
+          <medium type="waves" name="interior"/></shape>
+        <emitter type="point"><point name="position" x="3" y="0" z="0"/></emitter>
+        <sensor type="perspective"/></scene>)",
+                                  ".", registry);
+}
+
+/// Optical depth from a to b inside the ball, and the length of the way there.
+struct Way {
+    Vec3d depth{0.0};
+    double length = 0.0;
+};
+Way quadrature(const Medium& medium, const Vec3& a, const Vec3& b) {
+    constexpr int steps = 4000;
+    const double h = double(glm::distance(a, b)) / steps;
+    Way way;
+    for (int i = 0; i < steps; ++i) {
+        const Vec3 p = a + (float(i) + 0.5f) / float(steps) * (b - a);
+        if (glm::length(p) < 2.0f) way.depth += h * Vec3d(medium.coefficients(p).sigma_t), way.length += h;
+    }
+    return way;
+}
+
+}  // namespace
+
+TEST_CASE("a shadow map of any medium that varies is its quadrature", "[shadow_map][marching]") {
+    for (const float voxel_size : {infinity, 0.02f}) {
+        const auto scene = ball_of_waves(voxel_size);
+        const ShadowMapView view = ShadowMapView::of_point(Vec3(3.0f, 0.1f, 0.2f), 128);
+        ShadowMapSettings settings;
+        settings.intervals = 128;
+        VolumetricShadowMap map;
+        map.build(*scene, view, scene->medium_state_at(view.origin, nullptr), settings);
+        const Medium& medium = *scene->media().front();
+        Rng rng(5);
+        double squares = 0.0, squares_if_constant = 0.0;
+        const int points = 1000;
+        for (int i = 0; i < points; ++i) {
+            const Vec3 p = 2.0f * Vec3(rng.next_float(), rng.next_float(), rng.next_float()) - 1.0f;
+            const Way way = quadrature(medium, view.origin, p);
+            const Rgb t = map.transmittance(p);
+            for (int c = 0; c < 3; ++c)
+                squares += std::pow(double(t[c]) / std::exp(-way.depth[c]) - 1.0, 2.0) / (3.0 * points);
+            const double constant = std::exp(-0.8 * way.length);  // of the mean extinction
+            squares_if_constant += std::pow(constant / std::exp(-way.depth.y) - 1.0, 2.0) / points;
+        }
+        INFO("voxel size " << voxel_size << ": rms error " << std::sqrt(squares) << ", with a constant "
+                           << std::sqrt(squares_if_constant));
+        CHECK(std::sqrt(squares) < 0.005);
+        CHECK(std::sqrt(squares_if_constant) > 0.1);  // what a map of a constant would miss
+    }
+}
