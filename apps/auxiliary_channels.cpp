@@ -18,7 +18,8 @@ void add_vectors(core::ImageChannels& image, const std::string& layer, std::span
 }  // namespace
 
 void add_auxiliary_channels(core::ImageChannels& image, const core::Scene& scene) {
-    const screenspace::GBuffer g = screenspace::make_g_buffer(scene, image.width, image.height);
+    const screenspace::GBuffer g =
+        screenspace::make_g_buffer(scene, scene.camera(), image.width, image.height);
     add_vectors(image, "P", g.position);
     add_vectors(image, "N", g.geometric_normal);
     add_vectors(image, "Ns", g.shading_normal);

@@ -4,8 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/geometry/ray_tracer.h"
-#include "core/scene/medium_state.h"
+#include "core/scene/ray_queries.h"
 
 namespace mote::core {
 
@@ -13,11 +12,11 @@ namespace mote::core {
 /// among them, until it returns false. `state` holds the media at ray.t_min; `boundaries` is memory to reuse,
 /// and holds what was met. Returns the media at ray.t_max, nothing when it was stopped.
 template <typename Part>
-std::optional<MediumState> for_each_part(const RayTracer& rays, const Ray& ray, MediumState state,
+std::optional<MediumState> for_each_part(const RayQueries& scene, const Ray& ray, MediumState state,
                                          std::vector<SurfaceHit>& boundaries, const Part& part) {
     float t = ray.t_min;
-    if (rays.has_boundaries()) {
-        rays.all_hits(ray, RayTracer::Group::boundaries, boundaries);
+    if (scene.has_boundaries()) {
+        scene.boundaries_along(ray, boundaries);
         for (const SurfaceHit& boundary : boundaries) {
             if (!part(t, boundary.t, state)) return std::nullopt;
             state.cross(*boundary.shape, boundary.geometric_normal, ray.direction);

@@ -14,7 +14,7 @@ const Medium* Scene::for_each_segment(const Ray& ray, MediumState state, const S
         const Medium* medium = here.current();
         return !medium || !(t0 < t1) || bool(segment(*medium, Ray{ray.origin, ray.direction, t0, t1}));
     };
-    const auto end = for_each_part(*rays_, ray, state, boundaries, part);
+    const auto end = for_each_part(*this, ray, state, boundaries, part);
     return end ? end->current() : nullptr;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "compensation/bounded_geometry.h"
+#include "core/scene/scene.h"
 #include "integrators/eye_path/eye_roulette.h"
 
 namespace mote::integrators {

@@ -1,5 +1,6 @@
 #include "integrators/single_scattering/single_scattering_eye.h"
 
+#include "core/scene/scene.h"
 #include "lights/emitters/direct_light.h"
 
 namespace mote::integrators {

@@ -10,12 +10,12 @@ constexpr float shadow_fraction = 0.9999f;
 
 /// By a shadow ray and the transmittance along it. Returns whether the light is seen.
 template <bool Media>
-bool connect(const Scene& scene, const ScatteringVertex& vertex, const DirectSample& light,
-             const MediumState& state, PathWeights& connection, WalkContext& context) {
+bool reaches_light(const LitScene& scene, const ScatteringVertex& vertex, const DirectSample& light,
+                   const MediumState& state, PathWeights& connection, WalkContext& context) {
     Ray shadow{vertex.ray_origin(light.wi), light.wi};
     shadow.t_max = light.distance * (light.inside ? 1.0f : shadow_fraction);
     ++context.rays.occlusion;
-    if (scene.rays().occluded(shadow)) return false;
+    if (!scene.visible(shadow)) return false;
     if constexpr (Media) {
         connection.light = connection.unidirectional;
         const Medium* there = scene.connect(shadow, vertex.state_towards(state, light.wi), connection,
@@ -29,7 +29,7 @@ bool connect(const Scene& scene, const ScatteringVertex& vertex, const DirectSam
 }  // namespace
 
 template <bool Media>
-Rgb sample_light(const Scene& scene, const ScatteringVertex& vertex, const PathWeights& weights,
+Rgb sample_light(const LitScene& scene, const ScatteringVertex& vertex, const PathWeights& weights,
                  const MediumState& state, float u_light, const Vec2& u, WalkContext& context, bool lit_along,
                  const LightShadowMaps* maps) {
     const LightChoice choice = scene.choose_light(u_light);
@@ -46,7 +46,7 @@ Rgb sample_light(const Scene& scene, const ScatteringVertex& vertex, const PathW
     if (map) {
         connection.light = weights.unidirectional;
         connection.throughput *= map->transmittance(vertex.position);
-    } else if (!connect<Media>(scene, vertex, *light, state, connection, context)) {
+    } else if (!reaches_light<Media>(scene, vertex, *light, state, connection, context)) {
         return Rgb(0.0f);
     }
     // f = throughput f* C* T L_e over the mean pdf of both techniques. A delta light is found by this one
@@ -62,7 +62,7 @@ Rgb sample_light(const Scene& scene, const ScatteringVertex& vertex, const PathW
 }
 
 template <bool Media>
-Rgb found_light(const Scene& scene, const WalkEvent& event, const Ray& ray, const PathWeights& weights,
+Rgb found_light(const LitScene& scene, const WalkEvent& event, const Ray& ray, const PathWeights& weights,
                 const Vec3* previous) {
     const Emitter* emitter = nullptr;
     const SurfaceHit* hit = nullptr;
@@ -82,12 +82,15 @@ Rgb found_light(const Scene& scene, const WalkEvent& event, const Ray& ray, cons
     return weights.throughput * radiance / channel_average<Media>(unidirectional + weights.light * pdf_light);
 }
 
-template Rgb sample_light<true>(const Scene&, const ScatteringVertex&, const PathWeights&, const MediumState&,
-                                float, const Vec2&, WalkContext&, bool, const LightShadowMaps*);
-template Rgb sample_light<false>(const Scene&, const ScatteringVertex&, const PathWeights&,
+template Rgb sample_light<true>(const LitScene&, const ScatteringVertex&, const PathWeights&,
+                                const MediumState&, float, const Vec2&, WalkContext&, bool,
+                                const LightShadowMaps*);
+template Rgb sample_light<false>(const LitScene&, const ScatteringVertex&, const PathWeights&,
                                  const MediumState&, float, const Vec2&, WalkContext&, bool,
                                  const LightShadowMaps*);
-template Rgb found_light<true>(const Scene&, const WalkEvent&, const Ray&, const PathWeights&, const Vec3*);
-template Rgb found_light<false>(const Scene&, const WalkEvent&, const Ray&, const PathWeights&, const Vec3*);
+template Rgb found_light<true>(const LitScene&, const WalkEvent&, const Ray&, const PathWeights&,
+                               const Vec3*);
+template Rgb found_light<false>(const LitScene&, const WalkEvent&, const Ray&, const PathWeights&,
+                                const Vec3*);
 
 }  // namespace mote::lights

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "core/math/sampler.h"
+#include "core/scene/lit_scene.h"
 #include "core/scene/scattering_vertex.h"
 #include "lights/shadow_maps/light_shadow_maps.h"
 
@@ -23,7 +24,7 @@ inline float channel_average(const core::Rgb& pdfs) {
 /// along the ray that led there (equiangular.h). `maps`: at vertices in media, visibility and transmittance
 /// come from the map of the light where it has one.
 template <bool Media>
-core::Rgb sample_light(const core::Scene& scene, const core::ScatteringVertex& vertex,
+core::Rgb sample_light(const core::LitScene& scene, const core::ScatteringVertex& vertex,
                        const core::PathWeights& weights, const core::MediumState& state, float u_light,
                        const core::Vec2& u, core::WalkContext& context, bool lit_along = false,
                        const LightShadowMaps* maps = nullptr);
@@ -32,14 +33,14 @@ core::Rgb sample_light(const core::Scene& scene, const core::ScatteringVertex& v
 /// is the vertex whose sampled direction led here, null where next-event estimation could not have found this
 /// light (the eye itself, or a delta scattering): then the full contribution counts.
 template <bool Media>
-core::Rgb found_light(const core::Scene& scene, const core::WalkEvent& event, const core::Ray& ray,
+core::Rgb found_light(const core::LitScene& scene, const core::WalkEvent& event, const core::Ray& ray,
                       const core::PathWeights& weights, const core::Vec3* previous);
 
 /// The other technique for direct light: what lies along `ray`, the direction that a vertex scattered to, and
 /// the emission on the way. `weights` come from apply_scattering(), `state` holds the media at the ray's
 /// origin; `previous` as for found_light().
 template <bool Media>
-core::Rgb light_along(const core::Scene& scene, const core::Ray& ray, core::MediumState state,
+core::Rgb light_along(const core::LitScene& scene, const core::Ray& ray, core::MediumState state,
                       core::PathWeights weights, const core::Vec3* previous, core::WalkContext& context) {
     core::Rgb emitted(0.0f);
     const core::WalkEvent event = core::walk<Media>(scene, ray, state, weights, emitted, context);

@@ -18,7 +18,7 @@ constexpr float steepest = 10.0f;
 constexpr float march_behind = 4.0f;
 }  // namespace
 
-ShadowMapBuilder::ShadowMapBuilder(const Scene& scene, const VolumetricShadowMap& map,
+ShadowMapBuilder::ShadowMapBuilder(const RayQueries& scene, const VolumetricShadowMap& map,
                                    const MediumState& at_light)
     : scene_(scene), map_(map), at_light_(at_light) {
     for (const auto& m : scene.media())
@@ -45,7 +45,7 @@ void ShadowMapBuilder::fill(int texel, std::byte* record) {
 float ShadowMapBuilder::find_surface(const Ray& ray, VolumetricShadowMap::Header& header) {
     header.limit = infinity;
     ++rays_.closest;
-    const auto hit = scene_.rays().closest(ray);
+    const auto hit = scene_.first_hit(ray);
     if (!hit) return infinity;
     const ShadowMapView& view = map_.view_;
     const Vec3 direction = view.frame.to_local(ray.direction);
@@ -79,9 +79,8 @@ void ShadowMapBuilder::find_segments(const Ray& ray, float end) {
         }
         return true;
     };
-    rays_.boundary += scene_.rays().has_boundaries();
-    for_each_part(scene_.rays(), Ray{ray.origin, ray.direction, ray.t_min, end}, at_light_, boundaries_,
-                  keep);
+    rays_.boundary += scene_.has_boundaries();
+    for_each_part(scene_, Ray{ray.origin, ray.direction, ray.t_min, end}, at_light_, boundaries_, keep);
 }
 
 float ShadowMapBuilder::step_of(const MarchedMedium& medium, float length) const {

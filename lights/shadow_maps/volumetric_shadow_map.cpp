@@ -35,13 +35,13 @@ void ShadowMapSettings::check(int size, bool chromatic) const {
         fits > 0 ? fmt::format("{0} x {0} would fit", fits) : "not even one texel would fit"));
 }
 
-bool needs_chromatic_maps(const Scene& scene) {
+bool needs_chromatic_maps(const RayQueries& scene) {
     const auto media = scene.media();
     return std::any_of(media.begin(), media.end(), [](const auto& m) { return m->traits().chromatic; });
 }
 
-void VolumetricShadowMap::build(const Scene& scene, const ShadowMapView& view, const MediumState& at_light,
-                                const ShadowMapSettings& settings) {
+void VolumetricShadowMap::build(const RayQueries& scene, const ShadowMapView& view,
+                                const MediumState& at_light, const ShadowMapSettings& settings) {
     const bool chromatic = needs_chromatic_maps(scene);
     settings.check(view.size, chromatic);
     view_ = view, settings_ = settings, channels_ = chromatic ? 3 : 1;

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "core/scene/media_along.h"
+#include "core/scene/scene.h"
 #include "media/heterogeneous_medium.h"
 #include "screenspace/in_scattering/eye_media.h"
 
@@ -31,7 +32,7 @@ Bounds3 extent(const Scene& scene, const Medium& medium) {
 
 }  // namespace
 
-void find_segments(const Scene& scene, const Ray& ray, const MediumState& state,
+void find_segments(const RayQueries& scene, const Ray& ray, const MediumState& state,
                    std::vector<MediumSegment>& segments, WalkContext& walk) {
     segments.clear();
     const auto add = [&](float t0, float t1, const MediumState& s) {
@@ -42,8 +43,8 @@ void find_segments(const Scene& scene, const Ray& ray, const MediumState& state,
             segments.push_back({s.current(), t0, t1, s});
         return true;
     };
-    walk.rays.boundary += scene.rays().has_boundaries();
-    for_each_part(scene.rays(), ray, state, walk.boundary_hits, add);
+    walk.rays.boundary += scene.has_boundaries();
+    for_each_part(scene, ray, state, walk.boundary_hits, add);
 }
 
 Rgb marched_transmittance(const Medium& medium, const Ray& ray, float voxels, WalkContext& walk) {

@@ -86,8 +86,8 @@ struct UnoccludedSpace::Tree::Entry {
     Vec3 center;
 };
 
-UnoccludedSpace::UnoccludedSpace(const Scene& scene) {
-    for (const auto& shape : scene.shapes())
+UnoccludedSpace::UnoccludedSpace(std::span<const std::shared_ptr<Shape>> shapes) {
+    for (const auto& shape : shapes)
         (shape->bsdf && shape->bsdf->traits().null ? boundaries_ : surfaces_).add(*shape);
     surfaces_.build(), boundaries_.build();
 }
