@@ -32,7 +32,7 @@ std::vector<core::HitFeature> auxiliary_features(const core::Scene& scene) {
 }
 
 void add_center_channels(core::ImageChannels& image, const core::Scene& scene) {
-    const screenspace::GBuffer g = screenspace::make_g_buffer(scene, image.width, image.height);
+    const screenspace::GBuffer g = screenspace::make_g_buffer(scene, scene.camera(), image.width, image.height);
     add_vectors(image, "Center.P", g.position);
     add_vectors(image, "Center.N", g.geometric_normal);
     image.add_rgb("Center.DiffuseAlbedo", screenspace::ssbc_surfaces(g).reflectance);

@@ -62,7 +62,8 @@ SsbcPicture read(ImageChannels& image, const SsbcArguments& a) {
             throw InputError(fmt::format("the scene's film has {} x {} pixels, the picture {} x {}",
                                          scene->film().width, scene->film().height, image.width,
                                          image.height));
-        const auto buffers = screenspace::make_g_buffers(*scene, image.width, image.height, a.layers);
+        const auto buffers =
+            screenspace::make_g_buffers(*scene, scene->camera(), image.width, image.height, a.layers);
         picture.surfaces = ssbc_surfaces(buffers[0]);
         for (auto& side : screenspace::hidden_sides(buffers))
             picture.hidden.push_back(

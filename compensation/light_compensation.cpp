@@ -10,7 +10,7 @@ namespace {
 
 /// Direct light at a vertex by light sampling and by the directions in which it scatters.
 template <bool Media>
-Rgb direct_light(const Scene& scene, const ResidualPath& path, WalkContext& context) {
+Rgb direct_light(const LitScene& scene, const ResidualPath& path, WalkContext& context) {
     const float u_light = context.rng.next_float();
     const Vec2 u = context.rng.next_vec2();
     Rgb sum = lights::sample_light<Media>(scene, path.vertex, path.weights, path.state, u_light, u, context);
@@ -23,7 +23,7 @@ Rgb direct_light(const Scene& scene, const ResidualPath& path, WalkContext& cont
 }  // namespace
 
 template <bool Media>
-Rgb compensation_from_lights(const Scene& scene, const ResidualTransport& transport, ResidualPath path,
+Rgb compensation_from_lights(const LitScene& scene, const ResidualTransport& transport, ResidualPath path,
                              int steps, WalkContext& context, std::uint64_t& vertices) {
     Rgb sum(0.0f);
     for (int i = 0; (steps < 0 || i < steps) && transport.step<Media>(path, context); ++i) {
@@ -33,9 +33,9 @@ Rgb compensation_from_lights(const Scene& scene, const ResidualTransport& transp
     return sum;
 }
 
-template Rgb compensation_from_lights<true>(const Scene&, const ResidualTransport&, ResidualPath, int,
+template Rgb compensation_from_lights<true>(const LitScene&, const ResidualTransport&, ResidualPath, int,
                                             WalkContext&, std::uint64_t&);
-template Rgb compensation_from_lights<false>(const Scene&, const ResidualTransport&, ResidualPath, int,
+template Rgb compensation_from_lights<false>(const LitScene&, const ResidualTransport&, ResidualPath, int,
                                              WalkContext&, std::uint64_t&);
 
 }  // namespace mote::compensation

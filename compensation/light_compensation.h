@@ -7,13 +7,14 @@
 #pragma once
 
 #include "compensation/residual_transport.h"
+#include "core/scene/lit_scene.h"
 
 namespace mote::compensation {
 
 /// Light of the primary lights, over `steps` steps at most (-1: no limit), at the receiver that `path` starts
 /// from, times the path's weights. Draws from context.rng; counts vertices, rays and tracking.
 template <bool Media>
-core::Rgb compensation_from_lights(const core::Scene& scene, const ResidualTransport& transport,
+core::Rgb compensation_from_lights(const core::LitScene& scene, const ResidualTransport& transport,
                                    ResidualPath path, int steps, core::WalkContext& context,
                                    std::uint64_t& vertices);
 

@@ -17,11 +17,12 @@ namespace {
 constexpr float least_optical_depth = 0.1f;
 
 /// The media at the end of `ray`, which starts in `state`.
-MediumState state_at_end(const Scene& scene, const Ray& ray, const MediumState& state, WalkContext& context) {
-    if (!scene.rays().has_boundaries()) return state;
+MediumState state_at_end(const RayQueries& scene, const Ray& ray, const MediumState& state,
+                         WalkContext& context) {
+    if (!scene.has_boundaries()) return state;
     ++context.rays.boundary;
     const auto pass = [](float, float, const MediumState&) { return true; };
-    return *for_each_part(scene.rays(), ray, state, pass, [](const SurfaceHit&) { return true; });
+    return *for_each_part(scene, ray, state, pass, [](const SurfaceHit&) { return true; });
 }
 
 Rgb exponential(const Rgb& optical_depth) {
@@ -64,7 +65,8 @@ bool within(const Bounds3& box, const Vec3& p, float distance) {
 
 }  // namespace
 
-ResidualTransport::ResidualTransport(const Scene& scene, float bound, const CompensationSettings& settings)
+ResidualTransport::ResidualTransport(const RayQueries& scene, float bound,
+                                     const CompensationSettings& settings)
     : scene_(scene), settings_(settings), bound_(bound), radius_(bounding_radius(bound)) {
     if (by_free_path()) return;
     for (const auto& medium : scene.media()) {
@@ -123,7 +125,7 @@ bool ResidualTransport::place_in_mean_medium(ResidualPath& path, const Ray& ray,
     std::optional<SurfaceHit> hit;
     if (look) {
         ++context.rays.closest;
-        hit = scene_.rays().closest(ray);
+        hit = scene_.first_hit(ray);
     }
     if (!path.mean_known) find_mean_extinction(path);
     if (!path.mean_extinction && !hit) return false;

@@ -34,7 +34,7 @@ struct ResidualPath {
 class ResidualTransport {
   public:
     /// Finds the mean extinction of every medium where the settings need it. `bound` is b [1/m^2], above 0.
-    ResidualTransport(const core::Scene& scene, float bound, const CompensationSettings& settings);
+    ResidualTransport(const core::RayQueries& scene, float bound, const CompensationSettings& settings);
 
     /// A path that starts at a receiver: y's own weights do not matter to the steps, so they are one number a
     /// channel. Draws the channel that drives distances.
@@ -59,7 +59,7 @@ class ResidualTransport {
     bool by_free_path() const;
     bool may_hold(const core::Medium& medium, const core::Vec3& p) const;
 
-    const core::Scene& scene_;
+    const core::RayQueries& scene_;
     CompensationSettings settings_;
     float bound_, radius_;
     struct LocalMedium {

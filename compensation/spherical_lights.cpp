@@ -56,8 +56,8 @@ Rgb sample_sphere(const ScatteringVertex& receiver, const SphericalLight& light,
 /// One receiver that looks at one sphere after the other.
 class Gatherer {
   public:
-    Gatherer(const Scene& scene, const SphericalGather& settings, const ScatteringVertex& receiver, Rng& rng,
-             RayCounters& rays)
+    Gatherer(const RayQueries& scene, const SphericalGather& settings, const ScatteringVertex& receiver,
+             Rng& rng, RayCounters& rays)
         : scene_(scene),
           settings_(settings),
           receiver_(receiver),
@@ -94,7 +94,7 @@ class Gatherer {
     }
     bool free(const Vec3& origin, const Vec3& direction, float distance) const {
         ++rays_.occlusion;
-        return !scene_.rays().occluded({origin, direction, 0.0f, distance * shadow_fraction});
+        return scene_.visible({origin, direction, 0.0f, distance * shadow_fraction});
     }
     bool sees_centre(const SphericalLight& light, const SphereCone& cone) const {
         // Behind its own surface either end would start the ray inside the solid, past what hides it.
@@ -114,7 +114,7 @@ class Gatherer {
         return free(origin, w, std::min(to_plane, cone.entry(w)));
     }
 
-    const Scene& scene_;
+    const RayQueries& scene_;
     const SphericalGather& settings_;
     const ScatteringVertex& receiver_;
     bool glossy_, reflects_;
@@ -164,7 +164,7 @@ Rgb unoccluded_light(const ScatteringVertex& receiver, const SphericalLight& lig
     return sample_sphere(receiver, light, cone, n, rng, [](const Vec3&) { return true; });
 }
 
-Rgb gather_spheres(const Scene& scene, const lights::VplSet& set, const std::vector<float>& radii,
+Rgb gather_spheres(const RayQueries& scene, const lights::VplSet& set, const std::vector<float>& radii,
                    const SphericalGather& settings, const ScatteringVertex& receiver,
                    std::int32_t max_vpl_depth, Rng& rng, RayCounters& rays) {
     const Gatherer gatherer(scene, settings, receiver, rng, rays);

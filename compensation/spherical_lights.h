@@ -77,8 +77,9 @@ struct SphericalGather {
 
 /// The light of all spheres at `receiver`, a vertex on a surface of a scene without media. VPLs deeper than
 /// `max_vpl_depth` are left out. Counts shadow rays.
-core::Rgb gather_spheres(const core::Scene& scene, const lights::VplSet& set, const std::vector<float>& radii,
-                         const SphericalGather& settings, const core::ScatteringVertex& receiver,
-                         std::int32_t max_vpl_depth, core::Rng& rng, core::RayCounters& rays);
+core::Rgb gather_spheres(const core::RayQueries& scene, const lights::VplSet& set,
+                         const std::vector<float>& radii, const SphericalGather& settings,
+                         const core::ScatteringVertex& receiver, std::int32_t max_vpl_depth, core::Rng& rng,
+                         core::RayCounters& rays);
 
 }  // namespace mote::compensation

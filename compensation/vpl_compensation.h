@@ -20,20 +20,28 @@ struct CompensatedReceiver {
     core::Rng rng;
     std::int32_t max_vpl_depth = 0;  ///< of VPLs at the receiver itself; 0: an idle lane
 };
-using CompensatedTile = std::array<CompensatedReceiver, lights::ReceiverTile::width>;
+using CompensatedTile = std::array<CompensatedReceiver, lights::ReceiverLanes::width>;
 
 /// Memory that one task reuses, and what it counted.
 struct VplCompensationScratch {
     lights::ReceiverTile tile;
-    std::array<ResidualPath, lights::ReceiverTile::width> paths;
+    std::array<ResidualPath, lights::ReceiverLanes::width> paths;
     std::uint64_t vertices = 0;
 };
 
-/// Compensation from the VPLs of `range` per lane, over `steps` steps at most (-1: no limit).
+/// What is asked for: the light of the VPLs of `range`, over `steps` steps at most (-1: no limit).
+struct VplCompensation {
+    const ResidualTransport& transport;
+    Strategy strategy;
+    int steps;
+    const lights::VplSet& vpls;
+    lights::VplRange range;
+};
+
+/// Compensation from the VPLs per lane. Vertices are gathered by `gather`, which counts where `context` does.
 template <bool Media>
-std::array<core::Rgb, lights::ReceiverTile::width> compensation_from_vpls(
-    const core::Scene& scene, const ResidualTransport& transport, Strategy strategy, int steps,
-    const lights::VplSet& vpls, const lights::VplRange& range, CompensatedTile& receivers,
-    VplCompensationScratch& scratch, lights::GatherScratch& gather_scratch, core::WalkContext& context);
+lights::TileLight compensation_from_vpls(const VplCompensation& request, CompensatedTile& receivers,
+                                         VplCompensationScratch& scratch, const lights::GatherContext& gather,
+                                         core::WalkContext& context);
 
 }  // namespace mote::compensation

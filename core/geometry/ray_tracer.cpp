@@ -135,11 +135,6 @@ struct RayTracer::Implementation {
     }
 };
 
-void ShadowPacket::clear() {
-    for (int lane = 0; lane < width; ++lane)
-        time[lane] = 0.0f, mask[lane] = 0xffffffffu, id[lane] = std::uint32_t(lane), flags[lane] = 0;
-}
-
 RayTracer::RayTracer(std::span<const std::shared_ptr<Shape>> shapes)
     : impl_(std::make_unique<Implementation>()) {
     impl_->open();

@@ -3,9 +3,8 @@
 
 #include <optional>
 
-#include "core/geometry/ray_tracer.h"
 #include "core/materials/bsdf.h"
-#include "core/scene/medium_state.h"
+#include "core/scene/ray_queries.h"
 
 namespace mote::core {
 
@@ -15,11 +14,26 @@ inline StraightPassage passage_through(const SurfaceHit& pane, const Vec3& direc
 }
 inline bool is_pane(const SurfaceHit& boundary) { return boundary.shape->bsdf->traits().pane; }
 
+/// A path that goes this way passes the pane by chance (ray_walk.cpp), a connection always. Returns false where
+/// nothing passes.
+inline bool connect_through(const StraightPassage& pane, PathWeights& weights) {
+    weights.throughput *= pane.transmittance();
+    weights.unidirectional *= pane.probability;
+    return !is_black(weights.throughput);
+}
+/// RayQueries::connect() for methods that do not see media: panes alone.
+inline void connect_through_panes(const RayQueries& scene, const Ray& ray, PathWeights& weights) {
+    if (!scene.has_panes()) return;
+    scene.for_each_boundary(ray, [&](const SurfaceHit& hit) {
+        return !is_pane(hit) || connect_through(passage_through(hit, ray.direction), weights);
+    });
+}
+
 /// Calls part(t0, t1, state) for every part of the ray between boundaries, vacuum and parts of no length
 /// among them, and pane(hit) for every pane between them, until one returns false. `state` holds the media at
 /// ray.t_min. Returns the media at ray.t_max, nothing when it was stopped.
 template <typename Part, typename Pane>
-std::optional<MediumState> for_each_part(const RayTracer& rays, const Ray& ray, MediumState state,
+std::optional<MediumState> for_each_part(const RayQueries& scene, const Ray& ray, MediumState state,
                                          const Part& part, const Pane& pane) {
     float t = ray.t_min;
     bool goes_on = true;
@@ -29,7 +43,7 @@ std::optional<MediumState> for_each_part(const RayTracer& rays, const Ray& ray, 
         t = boundary.t;
         return goes_on;
     };
-    if (rays.has_boundaries()) rays.for_each_hit(ray, RayTracer::Group::boundaries, cross);
+    if (scene.has_boundaries()) scene.for_each_boundary(ray, cross);
     if (!goes_on || !part(t, ray.t_max, state)) return std::nullopt;
     return state;
 }

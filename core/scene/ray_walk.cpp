@@ -42,18 +42,18 @@ WalkEvent collision_at(float t, const Medium* medium, float surface_distance) {
 }  // namespace
 
 template <bool Media>
-WalkEvent walk(const Scene& scene, const Ray& ray, MediumState& state, PathWeights& weights, Rgb& emitted,
-               WalkContext& context) {
+WalkEvent walk(const RayQueries& scene, const Ray& ray, MediumState& state, PathWeights& weights,
+               Rgb& emitted, WalkContext& context) {
     ++context.rays.closest;
-    const auto hit = scene.rays().closest(ray);
+    const auto hit = scene.first_hit(ray);
     const float t_end = hit ? hit->t : ray.t_max;
     float t = ray.t_min;
     if constexpr (Media) context.boundary_hits.clear();
-    if (Media ? scene.rays().has_boundaries() : scene.rays().has_panes()) {
+    if (Media ? scene.has_boundaries() : scene.has_panes()) {
         Ray boundary_ray = ray;
         boundary_ray.t_max = t_end;
         ++context.rays.boundary;
-        scene.rays().all_hits(boundary_ray, RayTracer::Group::boundaries, context.boundary_hits);
+        scene.boundaries_along(boundary_ray, context.boundary_hits);
         for (const SurfaceHit& boundary : context.boundary_hits) {
             if constexpr (Media)
                 if (const auto c = cross_segment(state, ray, t, boundary.t, weights, emitted, context))
@@ -76,7 +76,7 @@ WalkEvent walk(const Scene& scene, const Ray& ray, MediumState& state, PathWeigh
     return event;
 }
 
-template WalkEvent walk<true>(const Scene&, const Ray&, MediumState&, PathWeights&, Rgb&, WalkContext&);
-template WalkEvent walk<false>(const Scene&, const Ray&, MediumState&, PathWeights&, Rgb&, WalkContext&);
+template WalkEvent walk<true>(const RayQueries&, const Ray&, MediumState&, PathWeights&, Rgb&, WalkContext&);
+template WalkEvent walk<false>(const RayQueries&, const Ray&, MediumState&, PathWeights&, Rgb&, WalkContext&);
 
 }  // namespace mote::core

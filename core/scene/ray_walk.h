@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/geometry/ray_counters.h"
-#include "core/scene/scene.h"
+#include "core/scene/ray_queries.h"
 
 namespace mote::core {
 
@@ -40,12 +40,12 @@ struct WalkEvent {
 /// `emitted` (emission of media met on the way). `Media` = false compiles the media away: state and emitted
 /// are left alone, weights where there are no panes.
 template <bool Media>
-WalkEvent walk(const Scene& scene, const Ray& ray, MediumState& state, PathWeights& weights, Rgb& emitted,
-               WalkContext& context);
+WalkEvent walk(const RayQueries& scene, const Ray& ray, MediumState& state, PathWeights& weights,
+               Rgb& emitted, WalkContext& context);
 
-extern template WalkEvent walk<true>(const Scene&, const Ray&, MediumState&, PathWeights&, Rgb&,
+extern template WalkEvent walk<true>(const RayQueries&, const Ray&, MediumState&, PathWeights&, Rgb&,
                                      WalkContext&);
-extern template WalkEvent walk<false>(const Scene&, const Ray&, MediumState&, PathWeights&, Rgb&,
+extern template WalkEvent walk<false>(const RayQueries&, const Ray&, MediumState&, PathWeights&, Rgb&,
                                       WalkContext&);
 
 }  // namespace mote::core

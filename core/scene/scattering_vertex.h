@@ -7,6 +7,7 @@
 
 #include <optional>
 
+#include "core/materials/bsdf.h"
 #include "core/math/sampler.h"
 #include "core/scene/medium_state.h"
 #include "core/scene/ray_walk.h"

@@ -59,16 +59,6 @@ void Scene::check() const {
         throw InputError("there is nothing to see: no shapes, no media, no environment", where);
 }
 
-/// Where a light with a position stands. Lights at infinity and area lights (part of the shapes) have none.
-std::optional<Vec3> Scene::light_position(const Emitter& emitter) {
-    const EmitterTraits traits = emitter.traits();
-    if (!traits.delta_position || traits.infinite) return std::nullopt;
-    // A textured light is black in some directions; one of these draws will do.
-    for (const float u : {0.5f, 0.1f, 0.9f, 0.3f, 0.7f})
-        if (const auto sample = emitter.sample_emission({u, u}, {u, 1.0f - u})) return sample->origin;
-    return std::nullopt;
-}
-
 /// Scenes built in code need not list what their shapes and camera hold already.
 void Scene::collect_media() {
     const auto add = [&](const std::shared_ptr<Medium>& medium) {
@@ -87,6 +77,30 @@ void Scene::find_bounds() {
     const float radius = bounds_.radius();
     for (const auto& emitter : parts_.emitters)
         emitter->set_scene_bounds(bounds_.center(), radius > 0.0f ? radius : 1.0f);
+}
+
+std::optional<SurfaceHit> Scene::first_hit(const Ray& ray) const { return rays_->closest(ray); }
+
+bool Scene::visible(const Ray& segment) const { return !rays_->occluded(segment); }
+
+void Scene::find_occluded(std::span<ShadowPacket> packets) const { rays_->occluded(packets); }
+
+bool Scene::has_boundaries() const { return rays_->has_boundaries(); }
+
+bool Scene::has_panes() const { return rays_->has_panes(); }
+bool Scene::has_coloured_panes() const {
+    return std::any_of(parts_.shapes.begin(), parts_.shapes.end(), [](const auto& shape) {
+        if (!shape->bsdf->traits().pane) return false;
+        const Rgb passes = shape->bsdf->straight_passage({}, Vec3(0, 0, 1)).weight;
+        return shape->bsdf->traits().textured || passes.x != passes.y || passes.y != passes.z;
+    });
+}
+void Scene::visit_boundaries(const Ray& ray, BoundaryVisitor visitor, const void* visit) const {
+    rays_->for_each_hit(ray, RayTracer::Group::boundaries,
+                        [&](const SurfaceHit& hit) { return visitor(visit, hit); });
+}
+void Scene::boundaries_along(const Ray& ray, std::vector<SurfaceHit>& hits) const {
+    rays_->all_hits(ray, RayTracer::Group::boundaries, hits);
 }
 
 Bounds3 Scene::medium_extent(const Medium& medium) const {

@@ -1,4 +1,4 @@
-// A complete scene: shapes, lights, media, the ray tracer, and the questions that integrators ask of it.
+// A complete scene: shapes, lights, media, the ray tracer, and the answers to what algorithms ask of it.
 #pragma once
 
 #include <map>
@@ -13,9 +13,7 @@
 #include "core/materials/bsdf.h"
 #include "core/math/distribution.h"
 #include "core/scene/camera.h"
-#include "core/scene/emitter.h"
-#include "core/scene/medium.h"
-#include "core/scene/medium_state.h"
+#include "core/scene/lit_scene.h"
 
 namespace mote::core {
 
@@ -34,13 +32,7 @@ struct FilmSettings {
     int sample_count = 16;            ///< passes when the command line does not say
 };
 
-/// A light drawn from the scene for direct lighting.
-struct LightChoice {
-    const Emitter* emitter;
-    float probability;
-};
-
-class Scene {
+class Scene final : public LitScene {
   public:
     /// Builds the ray tracer and the light tables. Throws InputError when there is nothing to see or no
     /// light.
@@ -57,11 +49,11 @@ class Scene {
         std::vector<std::string> warnings;
     };
     explicit Scene(Parts parts);
-    ~Scene();
+    ~Scene() override;
 
     std::span<const std::shared_ptr<Shape>> shapes() const { return parts_.shapes; }
-    std::span<const std::shared_ptr<Emitter>> emitters() const { return parts_.emitters; }
-    std::span<const std::shared_ptr<Medium>> media() const { return parts_.media; }
+    std::span<const std::shared_ptr<Emitter>> emitters() const override { return parts_.emitters; }
+    std::span<const std::shared_ptr<Medium>> media() const override { return parts_.media; }
     const Camera& camera() const { return *parts_.camera; }
     const Integrator* integrator() const { return parts_.integrator.get(); }
     const FilmSettings& film() const { return parts_.film; }
@@ -69,24 +61,24 @@ class Scene {
     const Parts& parts() const { return parts_; }
     const RayTracer& rays() const { return *rays_; }
 
-    /// Where a medium can be met: inside the shapes that hold it, or anywhere when something names it as
-    /// outside.
-    Bounds3 medium_extent(const Medium& medium) const;
+    std::optional<SurfaceHit> first_hit(const Ray& ray) const override;
+    bool visible(const Ray& segment) const override;
+    void find_occluded(std::span<ShadowPacket> packets) const override;
+    bool attenuates() const override { return has_media() || has_panes(); }
+    bool has_boundaries() const override;
+    bool has_panes() const override;
+    bool has_coloured_panes() const override;
+    void boundaries_along(const Ray& ray, std::vector<SurfaceHit>& hits) const override;
+    void visit_boundaries(const Ray& ray, BoundaryVisitor visitor, const void* visit) const override;
+    Bounds3 medium_extent(const Medium& medium) const override;
+    Bounds3 bounds() const override { return bounds_; }
+    const Emitter* environment() const override { return environment_; }
 
-    /// Everything with a surface, the camera, and the lights that have a position.
-    Bounds3 bounds() const { return bounds_; }
-    const Emitter* environment() const {
-        return environment_;
-    }  ///< the light at infinity with a picture, or null
-
-    /// Light for a receiver: half the chances follow power, half are equal, so that no light is starved.
-    LightChoice choose_light(float u, float* remapped = nullptr) const;
-    float light_probability(const Emitter* emitter) const;
-    /// Light for a particle: proportional to power.
-    LightChoice choose_emitter_by_power(float u, float* remapped = nullptr) const;
-
-    /// Where a light without extent (point, spot) stands; nothing for all others.
-    static std::optional<Vec3> light_position(const Emitter& emitter);
+    /// Half the chances follow power, half are equal, so that no light is starved.
+    LightChoice choose_light(float u, float* remapped = nullptr) const override;
+    float light_probability(const Emitter* emitter) const override;
+    /// Proportional to power.
+    LightChoice choose_emitter_by_power(float u, float* remapped = nullptr) const override;
 
     /// The medium that surrounds everything, of which all who name it agree; null: vacuum.
     const Medium* outermost_medium() const { return outermost_; }
@@ -97,22 +89,12 @@ class Scene {
     MediumState eye_medium_state(const Ray& ray) const;
     /// The same for the middle of the picture.
     MediumState camera_medium_state() const { return camera_state_; }
-    /// State at the origin of a light particle or at a light's position.
-    MediumState emitter_medium_state(const Emitter& emitter, const EmissionSample& sample) const;
+    MediumState emitter_medium_state(const Emitter& emitter, const EmissionSample& sample) const override;
 
-    /// Does anything but opaque surfaces take light from connections: media, panes?
-    bool attenuates() const { return has_media() || rays_->has_panes(); }
-    /// The transmittance from one point to another through all media, null boundaries and panes, estimated
-    /// without bias; opaque surfaces are not looked at. `state` holds the media at `from`.
     Rgb transmittance(const Vec3& from, const Vec3& to, const MediumState& state, Rng& rng,
-                      TrackingCounters& counters) const;
-    /// The same as a connection to a light, for multiple importance sampling (see Medium::connect). Returns
-    /// the medium at ray.t_max, or null where that is vacuum or nothing came through.
+                      TrackingCounters& counters) const override;
     const Medium* connect(const Ray& ray, const MediumState& state, PathWeights& weights, Rng& rng,
-                          TrackingCounters& counters) const;
-    /// The same for methods that do not see media: panes alone.
-    void connect_through_panes(const Ray& ray, PathWeights& weights) const;
-    bool has_media() const { return !parts_.media.empty(); }
+                          TrackingCounters& counters) const override;
 
   private:
     void check() const;

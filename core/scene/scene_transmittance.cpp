@@ -14,7 +14,7 @@ const Medium* Scene::for_each_segment(const Ray& ray, const MediumState& state, 
         const Medium* medium = here.current();
         return !medium || !(t0 < t1) || bool(segment(*medium, Ray{ray.origin, ray.direction, t0, t1}));
     };
-    const auto end = for_each_part(*rays_, ray, state, part, [&](const SurfaceHit& hit) {
+    const auto end = for_each_part(*this, ray, state, part, [&](const SurfaceHit& hit) {
         return bool(pane(passage_through(hit, ray.direction)));
     });
     return end ? end->current() : nullptr;
@@ -39,17 +39,6 @@ Rgb Scene::transmittance(const Vec3& from, const Vec3& to, const MediumState& st
     return result;
 }
 
-namespace {
-
-/// A path that goes this way passes the pane by chance (ray_walk.cpp), this connection always.
-bool connect_through(const StraightPassage& pane, PathWeights& weights) {
-    weights.throughput *= pane.transmittance();
-    weights.unidirectional *= pane.probability;
-    return !is_black(weights.throughput);
-}
-
-}  // namespace
-
 const Medium* Scene::connect(const Ray& ray, const MediumState& state, PathWeights& weights, Rng& rng,
                              TrackingCounters& counters) const {
     if (!attenuates()) return nullptr;
@@ -59,13 +48,6 @@ const Medium* Scene::connect(const Ray& ray, const MediumState& state, PathWeigh
     };
     const auto pane = [&](const StraightPassage& p) { return connect_through(p, weights); };
     return for_each_segment(ray, state, medium, pane);
-}
-
-void Scene::connect_through_panes(const Ray& ray, PathWeights& weights) const {
-    if (!rays_->has_panes()) return;
-    rays_->for_each_hit(ray, RayTracer::Group::boundaries, [&](const SurfaceHit& hit) {
-        return !is_pane(hit) || connect_through(passage_through(hit, ray.direction), weights);
-    });
 }
 
 }  // namespace mote::core

@@ -25,8 +25,8 @@ class Gathering {
     std::size_t tiles() const { return tiles_.size(); }
     std::size_t vpls() const { return vpls_.lights.size(); }
     void gather(std::size_t tile) {
-        const auto light =
-            lights::gather(*scene_, vpls_, {}, bound_, tiles_[tile], *scratch_, rays_, tracking_);
+        const auto light = lights::gather({*scene_, *scratch_, rays_, tracking_}, vpls_, lights::VplRange{},
+                                          lights::BoundedGeometry{bound_}, tiles_[tile]);
         benchmark::DoNotOptimize(light);
     }
     double gather_all() {
@@ -101,7 +101,7 @@ void gather_against_bare_occlusion(benchmark::State& state, bool glossy, double 
     state.counters["connections"] =
         double(gathering.vpls()) * double(gathering.tiles()) * ReceiverTile::width;
 }
-BENCHMARK_CAPTURE(gather_against_bare_occlusion, diffuse, false, 1.4)
+BENCHMARK_CAPTURE(gather_against_bare_occlusion, diffuse, false, 1.2)
     ->UseManualTime()
     ->Iterations(25)
     ->Unit(benchmark::kMillisecond);

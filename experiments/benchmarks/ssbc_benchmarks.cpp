@@ -26,7 +26,8 @@ class Picture {
         // As many paths as leave 1024 VPLs, about; all that there are take part.
         vpls_ = lights::trace_light_paths(*scene_, {.paths = 512}, 1, 0, SamplerKind::sobol);
         bound_ = 1024.0f / sqr(scene_->rays().bounds().radius());
-        surfaces_ = screenspace::ssbc_surfaces(screenspace::make_g_buffer(*scene_, width, height));
+        surfaces_ =
+            screenspace::ssbc_surfaces(screenspace::make_g_buffer(*scene_, scene_->camera(), width, height));
         light_.assign(surfaces_.reflectance.begin(), surfaces_.reflectance.end());
     }
     double compensate(bool half_resolution) const {
@@ -63,7 +64,8 @@ class Picture {
             tile.set(lane, vertex, Rgb(1.0f), MediumState{}, Rng(std::uint64_t(lane)), 1 << 30);
         }
         return seconds_of([&] {
-            const auto light = lights::gather(*scene_, vpls_, {}, bound_, tile, *scratch_, rays_, tracking_);
+            const auto light = lights::gather({*scene_, *scratch_, rays_, tracking_}, vpls_,
+                                              lights::VplRange{}, lights::BoundedGeometry{bound_}, tile);
             benchmark::DoNotOptimize(light);
         });
     }

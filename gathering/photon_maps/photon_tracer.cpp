@@ -14,7 +14,7 @@ constexpr std::uint32_t chunk_size = 64;              ///< paths of one task
 constexpr std::uint32_t batch_size = 16384;           ///< paths between two looks at the memory
 constexpr std::uint32_t photon_stream = 0x50484f54u;  // keeps light paths apart from pixels of the same index
 
-std::uint16_t medium_index(const Scene& scene, const PhaseFunction* phase) {
+std::uint16_t medium_index(const LitScene& scene, const PhaseFunction* phase) {
     const auto media = scene.media();
     for (std::size_t i = 0; i < media.size(); ++i)
         if (&media[i]->phase() == phase) return std::uint16_t(i);
@@ -44,7 +44,7 @@ struct Chunk {
 
 class ChunkTracer {
   public:
-    ChunkTracer(const Scene& scene, const PhotonSettings& settings, int halvings)
+    ChunkTracer(const LitScene& scene, const PhotonSettings& settings, int halvings)
         : scene_(scene), settings_(settings), halvings_(halvings) {}
 
     template <bool Media>
@@ -81,7 +81,7 @@ class ChunkTracer {
         chunk.kept.push_back({photon, key, std::uint32_t(depth), surface});
     }
 
-    const Scene& scene_;
+    const LitScene& scene_;
     const PhotonSettings& settings_;
     int halvings_;
 };
@@ -106,7 +106,7 @@ PhotonSet split(std::vector<Candidate>&& candidates, int halvings) {
 
 }  // namespace
 
-PhotonSet trace_photons(const Scene& scene, const PhotonSettings& settings, std::uint64_t seed,
+PhotonSet trace_photons(const LitScene& scene, const PhotonSettings& settings, std::uint64_t seed,
                         std::uint32_t pass, SamplerKind sampler) {
     std::vector<Candidate> kept;
     std::uint64_t met = 0;

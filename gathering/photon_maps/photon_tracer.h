@@ -29,7 +29,7 @@ struct PhotonSet {
 
 /// Traces in parallel. (seed, pass, path index) determines every path; the order of the photons does not
 /// depend on threads.
-PhotonSet trace_photons(const core::Scene& scene, const PhotonSettings& settings, std::uint64_t seed,
+PhotonSet trace_photons(const core::LitScene& scene, const PhotonSettings& settings, std::uint64_t seed,
                         std::uint32_t pass, core::SamplerKind sampler);
 
 }  // namespace mote::gathering

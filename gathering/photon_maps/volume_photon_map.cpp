@@ -28,7 +28,7 @@ float radius_of(const KdTree& tree, std::uint32_t i, std::size_t wanted, float l
 
 }  // namespace
 
-VolumePhotonMap::VolumePhotonMap(const Scene& scene, std::vector<Photon> photons,
+VolumePhotonMap::VolumePhotonMap(const RayQueries& scene, std::vector<Photon> photons,
                                  const DensityEstimate& estimate, float largest_radius)
     : scene_(&scene) {
     std::vector<Vec3> positions(photons.size());

@@ -23,8 +23,8 @@ class VolumePhotonMap {
     VolumePhotonMap() = default;
     /// Radii follow from the distances to the nearest few photons, scaled to hold `estimate.neighbours` of
     /// them. `largest_radius` [m] bounds those of lonely photons.
-    VolumePhotonMap(const core::Scene& scene, std::vector<Photon> photons, const DensityEstimate& estimate,
-                    float largest_radius);
+    VolumePhotonMap(const core::RayQueries& scene, std::vector<Photon> photons,
+                    const DensityEstimate& estimate, float largest_radius);
 
     /// Radiance arriving at ray.t_min along the ray from before `t_max`, its first surface. `state` holds the
     /// media at ray.t_min; context.boundary_hits the boundaries on the ray. From photons of depth up to
@@ -36,7 +36,7 @@ class VolumePhotonMap {
     std::size_t memory_bytes() const { return photons_.capacity() * sizeof(Photon) + discs_.memory_bytes(); }
 
   private:
-    const core::Scene* scene_ = nullptr;
+    const core::RayQueries* scene_ = nullptr;
     core::RayFacingDiscs discs_;
     std::vector<Photon> photons_;  ///< in the order of the discs
 };

@@ -12,6 +12,7 @@
 
 #include "core/math/distribution.h"
 #include "core/scene/scattering_vertex.h"
+#include "core/scene/scene.h"
 
 namespace mote::integrators {
 

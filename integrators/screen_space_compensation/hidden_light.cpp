@@ -44,7 +44,8 @@ HiddenLight::HiddenLight(const Scene& scene, const RenderOptions& options, const
       bound_(bound) {
     screenspace::SsbcSettings ssbc = settings.screen_space->ssbc;
     ssbc.bound = bound;
-    const auto buffers = screenspace::make_g_buffers(scene, options.width, options.height, layers_);
+    const auto buffers =
+        screenspace::make_g_buffers(scene, scene.camera(), options.width, options.height, layers_);
     const auto sides = screenspace::hidden_sides(buffers);
     const auto matter = screenspace::sides_that_matter(screenspace::ssbc_surfaces(buffers[0]), sides, ssbc);
     for (const auto& side : sides)
@@ -98,8 +99,8 @@ void HiddenLight::gather(const PassContext& context, const lights::VplSet& vpls,
             tile->set(int(i), vertices[i].vertex, Rgb(1.0f), vertices[i].state, Rng(walk.rng.next_u32()),
                       vpl_depth);
         }
-        const auto indirect =
-            lights::gather(scene_, vpls, some, bound_, *tile, *scratch, walk.rays, walk.tracking);
+        const auto indirect = lights::gather({scene_, *scratch, walk.rays, walk.tracking}, vpls, some,
+                                             lights::BoundedGeometry{bound_}, *tile);
         for (std::size_t i = 0; i < count; ++i)
             image.layer(first_layer + points[i].side)[points[i].pixel] =
                 light[i] + float(share_) * indirect[i];

@@ -49,7 +49,8 @@ ScreenSpaceCost add_screen_space_compensation(const Scene& scene, const ScreenSp
                                               float bound, const ScreenSpaceLayers& layers, Film& film) {
     const auto begin = std::chrono::steady_clock::now();
     const double cpu_begin = process_cpu_seconds();
-    const auto buffers = screenspace::make_g_buffers(scene, film.width(), film.height(), settings.layers);
+    const auto buffers =
+        screenspace::make_g_buffers(scene, scene.camera(), film.width(), film.height(), settings.layers);
     std::vector<Rgb> light(film.pixels(), Rgb(0.0f));
     for (const std::size_t layer : layers.reflected) {
         const std::vector<Rgb> part = film.mean(layer);

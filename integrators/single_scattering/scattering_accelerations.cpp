@@ -94,7 +94,7 @@ void plan_maps(Plan& plan, const Scene& scene, const VisibilitySettings& s, int 
 }  // namespace
 
 ScatteringAccelerations::ScatteringAccelerations(const Scene& scene, const AccelerationSettings& settings) {
-    if (settings.exact && AnalyticCounts(scene).any()) space_.emplace(scene);
+    if (settings.exact && AnalyticCounts(scene).any()) space_.emplace(scene.shapes());
     const VisibilitySettings& visibility = settings.visibility;
     if (!visibility.used_in(scene) || visibility.light_size == 0) return;
     visibility.check(scene);

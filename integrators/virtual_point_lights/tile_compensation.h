@@ -5,6 +5,7 @@
 #include "compensation/light_compensation.h"
 #include "compensation/vpl_compensation.h"
 #include "core/render/cpu_clock.h"
+#include "core/scene/lit_scene.h"
 
 namespace mote::integrators {
 
@@ -18,7 +19,7 @@ template <bool Media>
 class TileCompensation {
   public:
     /// `transport` null: compensation is off, and nothing here does anything.
-    TileCompensation(const core::Scene& scene, const compensation::CompensationSettings& settings,
+    TileCompensation(const core::LitScene& scene, const compensation::CompensationSettings& settings,
                      const compensation::ResidualTransport* transport, const lights::VplSet& vpls,
                      lights::GatherScratch& gather_scratch, core::WalkContext& walk)
         : scene_(scene),
@@ -40,14 +41,15 @@ class TileCompensation {
     }
 
     /// The light of all receivers since the last call, those of VPLs in `range` times `vpl_scale`.
-    std::array<core::Rgb, lights::ReceiverTile::width> run(const lights::VplRange& range, float vpl_scale) {
-        std::array<core::Rgb, lights::ReceiverTile::width> sum{};
+    lights::TileLight run(const lights::VplRange& range, float vpl_scale) {
+        lights::TileLight sum{};
         if (!any_) return sum;
         const double begin = core::thread_cpu_seconds();
         for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = from_lights(receivers_[i]);
+        const compensation::VplCompensation request{*transport_, settings_.strategy, settings_.depth, vpls_,
+                                                    range};
         const auto light = compensation::compensation_from_vpls<Media>(
-            scene_, *transport_, settings_.strategy, settings_.depth, vpls_, range, receivers_, scratch_,
-            gather_scratch_, walk_);
+            request, receivers_, scratch_, {scene_, gather_scratch_, walk_.rays, walk_.tracking}, walk_);
         for (std::size_t i = 0; i < sum.size(); ++i) {
             sum[i] += vpl_scale * light[i];
             receivers_[i].max_vpl_depth = 0;
@@ -70,7 +72,7 @@ class TileCompensation {
         return light;
     }
 
-    const core::Scene& scene_;
+    const core::LitScene& scene_;
     const compensation::CompensationSettings& settings_;
     const compensation::ResidualTransport* transport_;
     const lights::VplSet& vpls_;

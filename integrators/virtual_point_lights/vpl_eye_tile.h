@@ -82,12 +82,12 @@ class EyeTile {
                 if (lane.alive) lane.alive = advance(lane, i);
                 any |= lane.alive;
             }
-            std::array<core::Rgb, lights::ReceiverTile::width> light{};
+            lights::TileLight light{};
             if (maps_.receivers)
                 maps_.receivers->add(receivers_, maps_.column, maps_.row, range, vpl_scale * maps_.scale);
             else
-                light = lights::gather(scene_, vpls_, range, bound_, receivers_, scratch_, walk_.rays,
-                                       walk_.tracking);
+                light = lights::gather({scene_, scratch_, walk_.rays, walk_.tracking}, vpls_, range,
+                                       lights::BoundedGeometry{bound_}, receivers_);
             const auto compensated = compensation_.run(range, vpl_scale);
             for (int i = 0; i < lights::ReceiverTile::width; ++i) {
                 Lane& lane = lanes_[std::size_t(i)];

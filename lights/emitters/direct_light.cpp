@@ -1,5 +1,7 @@
 #include "lights/emitters/direct_light.h"
 
+#include "core/scene/media_along.h"
+
 namespace mote::lights {
 
 using namespace core;
@@ -10,12 +12,12 @@ constexpr float shadow_fraction = 0.9999f;
 
 /// By a shadow ray and the transmittance along it. Returns whether the light is seen.
 template <bool Media>
-bool connect(const Scene& scene, const ScatteringVertex& vertex, const DirectSample& light,
-             const MediumState& state, PathWeights& connection, WalkContext& context) {
+bool reaches_light(const LitScene& scene, const ScatteringVertex& vertex, const DirectSample& light,
+                   const MediumState& state, PathWeights& connection, WalkContext& context) {
     Ray shadow{vertex.ray_origin(light.wi), light.wi};
     shadow.t_max = light.distance * (light.inside ? 1.0f : shadow_fraction);
     ++context.rays.occlusion;
-    if (scene.rays().occluded(shadow)) return false;
+    if (!scene.visible(shadow)) return false;
     if constexpr (Media) {
         connection.light = connection.unidirectional;
         const Medium* there = scene.connect(shadow, vertex.state_towards(state, light.wi), connection,
@@ -23,14 +25,14 @@ bool connect(const Scene& scene, const ScatteringVertex& vertex, const DirectSam
         return !light.inside || there == light.inside;
     } else {
         connection.unidirectional = connection.light = Rgb(1.0f);
-        scene.connect_through_panes(shadow, connection);
+        connect_through_panes(scene, shadow, connection);
         return !is_black(connection.throughput);
     }
 }
 }  // namespace
 
 template <bool Media>
-Rgb sample_light(const Scene& scene, const ScatteringVertex& vertex, const PathWeights& weights,
+Rgb sample_light(const LitScene& scene, const ScatteringVertex& vertex, const PathWeights& weights,
                  const MediumState& state, float u_light, const Vec2& u, WalkContext& context,
                  const LightSampling& how) {
     const LightChoice choice = scene.choose_light(u_light);
@@ -47,7 +49,7 @@ Rgb sample_light(const Scene& scene, const ScatteringVertex& vertex, const PathW
     if (map) {
         connection.light = weights.unidirectional;
         connection.throughput *= map->transmittance(vertex.position);
-    } else if (!connect<Media>(scene, vertex, *light, state, connection, context)) {
+    } else if (!reaches_light<Media>(scene, vertex, *light, state, connection, context)) {
         return Rgb(0.0f);
     }
     // f = throughput f* C* T L_e over the mean pdf of both techniques. A delta light is found by this one
@@ -63,7 +65,7 @@ Rgb sample_light(const Scene& scene, const ScatteringVertex& vertex, const PathW
 }
 
 template <bool Media>
-Rgb found_light(const Scene& scene, const WalkEvent& event, const Ray& ray, const PathWeights& weights,
+Rgb found_light(const LitScene& scene, const WalkEvent& event, const Ray& ray, const PathWeights& weights,
                 const Vec3* previous) {
     const Emitter* emitter = nullptr;
     const SurfaceHit* hit = nullptr;
@@ -83,11 +85,13 @@ Rgb found_light(const Scene& scene, const WalkEvent& event, const Ray& ray, cons
     return weights.throughput * radiance / channel_average<Media>(unidirectional + weights.light * pdf_light);
 }
 
-template Rgb sample_light<true>(const Scene&, const ScatteringVertex&, const PathWeights&, const MediumState&,
-                                float, const Vec2&, WalkContext&, const LightSampling&);
-template Rgb sample_light<false>(const Scene&, const ScatteringVertex&, const PathWeights&,
+template Rgb sample_light<true>(const LitScene&, const ScatteringVertex&, const PathWeights&,
+                                const MediumState&, float, const Vec2&, WalkContext&, const LightSampling&);
+template Rgb sample_light<false>(const LitScene&, const ScatteringVertex&, const PathWeights&,
                                  const MediumState&, float, const Vec2&, WalkContext&, const LightSampling&);
-template Rgb found_light<true>(const Scene&, const WalkEvent&, const Ray&, const PathWeights&, const Vec3*);
-template Rgb found_light<false>(const Scene&, const WalkEvent&, const Ray&, const PathWeights&, const Vec3*);
+template Rgb found_light<true>(const LitScene&, const WalkEvent&, const Ray&, const PathWeights&,
+                               const Vec3*);
+template Rgb found_light<false>(const LitScene&, const WalkEvent&, const Ray&, const PathWeights&,
+                                const Vec3*);
 
 }  // namespace mote::lights

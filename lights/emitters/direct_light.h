@@ -5,6 +5,7 @@
 #pragma once
 
 #include "core/math/sampler.h"
+#include "core/scene/lit_scene.h"
 #include "core/scene/scattering_vertex.h"
 #include "lights/shadow_maps/light_shadow_maps.h"
 
@@ -30,7 +31,7 @@ struct LightSampling {
 /// weighted against directions from vertex.sample(). `weights` and `state` describe the path up to the
 /// vertex.
 template <bool Media>
-core::Rgb sample_light(const core::Scene& scene, const core::ScatteringVertex& vertex,
+core::Rgb sample_light(const core::LitScene& scene, const core::ScatteringVertex& vertex,
                        const core::PathWeights& weights, const core::MediumState& state, float u_light,
                        const core::Vec2& u, core::WalkContext& context, const LightSampling& how = {});
 
@@ -38,7 +39,7 @@ core::Rgb sample_light(const core::Scene& scene, const core::ScatteringVertex& v
 /// is the vertex whose sampled direction led here, null where next-event estimation could not have found this
 /// light (the eye itself, or a delta scattering): then the full contribution counts.
 template <bool Media>
-core::Rgb found_light(const core::Scene& scene, const core::WalkEvent& event, const core::Ray& ray,
+core::Rgb found_light(const core::LitScene& scene, const core::WalkEvent& event, const core::Ray& ray,
                       const core::PathWeights& weights, const core::Vec3* previous);
 
 /// Multiplies `weights` by a scattering sampled at `position` and prepares its rescaled pdfs for the next
@@ -55,7 +56,7 @@ inline void apply_scattering(core::PathWeights& weights, const core::ScatterSamp
 /// The other technique for direct light: what lies in the direction `s` that `vertex` scatters to, and the
 /// emission on the way. `weights` and `state` describe the path up to the vertex, as for sample_light().
 template <bool Media>
-core::Rgb light_towards(const core::Scene& scene, const core::ScatteringVertex& vertex,
+core::Rgb light_towards(const core::LitScene& scene, const core::ScatteringVertex& vertex,
                         const core::ScatterSample& s, core::PathWeights weights, core::MediumState state,
                         core::WalkContext& context) {
     apply_scattering<Media>(weights, s, vertex.position);

@@ -11,7 +11,7 @@ namespace {
 constexpr double widest_plane = 1.2;
 }  // namespace
 
-std::optional<ShadowMapView> shadow_map_view_of(const Scene& scene, const Emitter& emitter, int size) {
+std::optional<ShadowMapView> shadow_map_view_of(const LitScene& scene, const Emitter& emitter, int size) {
     if (is_black(emitter.power())) return std::nullopt;
     if (emitter.traits().delta_direction) {
         const Bounds3 bounds = scene.bounds();
@@ -19,7 +19,7 @@ std::optional<ShadowMapView> shadow_map_view_of(const Scene& scene, const Emitte
         if (!light) return std::nullopt;
         return ShadowMapView::of_parallel(-light->wi, bounds.center(), 1.001f * bounds.radius(), size);
     }
-    const auto position = Scene::light_position(emitter);
+    const auto position = LitScene::light_position(emitter);
     if (!position) return std::nullopt;
     if (const auto* spot = dynamic_cast<const ConeLight*>(&emitter))
         if (const LightCone cone = spot->cone(); cone.angle < widest_plane)
@@ -27,7 +27,7 @@ std::optional<ShadowMapView> shadow_map_view_of(const Scene& scene, const Emitte
     return ShadowMapView::of_point(*position, size);
 }
 
-LightShadowMaps::LightShadowMaps(const Scene& scene, int size, const ShadowMapSettings& settings) {
+LightShadowMaps::LightShadowMaps(const LitScene& scene, int size, const ShadowMapSettings& settings) {
     for (const auto& emitter : scene.emitters())
         if (const auto view = shadow_map_view_of(scene, *emitter, size))
             maps_[emitter.get()].build(scene, *view, scene.emitter_medium_state(*emitter, {}), settings);

@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "core/scene/lit_scene.h"
 #include "lights/shadow_maps/volumetric_shadow_map.h"
 
 namespace mote::lights {
@@ -12,7 +13,7 @@ class LightShadowMaps {
   public:
     /// Throws InputError when a map would be larger than settings.max_bytes. Lights that are not given a map
     /// are traced.
-    LightShadowMaps(const core::Scene& scene, int size, const ShadowMapSettings& settings);
+    LightShadowMaps(const core::LitScene& scene, int size, const ShadowMapSettings& settings);
 
     /// Null: none for this light.
     const VolumetricShadowMap* of(const core::Emitter& emitter) const {
@@ -28,7 +29,7 @@ class LightShadowMaps {
 };
 
 /// The view of a light that can have a map: a point, a cone, or parallel light; nothing for all others.
-std::optional<ShadowMapView> shadow_map_view_of(const core::Scene& scene, const core::Emitter& emitter,
+std::optional<ShadowMapView> shadow_map_view_of(const core::LitScene& scene, const core::Emitter& emitter,
                                                 int size);
 
 }  // namespace mote::lights

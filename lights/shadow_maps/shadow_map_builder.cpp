@@ -18,7 +18,7 @@ constexpr float steepest = 10.0f;
 constexpr float march_behind = 4.0f;
 }  // namespace
 
-ShadowMapBuilder::ShadowMapBuilder(const Scene& scene, const VolumetricShadowMap& map,
+ShadowMapBuilder::ShadowMapBuilder(const RayQueries& scene, const VolumetricShadowMap& map,
                                    const MediumState& at_light)
     : scene_(scene), map_(map), at_light_(at_light) {
     for (const auto& m : scene.media()) media_.push_back({m.get(), m->bounds()});
@@ -54,7 +54,7 @@ Interval ShadowMapBuilder::extent(float spacing) const {
 float ShadowMapBuilder::find_surface(const Ray& ray, VolumetricShadowMap::Header& header) {
     header.limit = infinity;
     ++rays_.closest;
-    const auto hit = scene_.rays().closest(ray);
+    const auto hit = scene_.first_hit(ray);
     if (!hit) return infinity;
     const ShadowMapView& view = map_.view_;
     const Vec3 direction = view.frame.to_local(ray.direction);
@@ -93,8 +93,8 @@ void ShadowMapBuilder::find_segments(const Ray& ray, float end) {
         panes_.push_back({hit.t, -glm::log(Vec3d(passes))});
         return true;
     };
-    rays_.boundary += scene_.rays().has_boundaries();
-    for_each_part(scene_.rays(), Ray{ray.origin, ray.direction, ray.t_min, end}, at_light_, keep, keep_pane);
+    rays_.boundary += scene_.has_boundaries();
+    for_each_part(scene_, Ray{ray.origin, ray.direction, ray.t_min, end}, at_light_, keep, keep_pane);
 }
 
 /// Optical depth at the ends of all intervals.

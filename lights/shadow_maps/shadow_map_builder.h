@@ -7,7 +7,7 @@ namespace mote::lights {
 
 class ShadowMapBuilder {
   public:
-    ShadowMapBuilder(const core::Scene& scene, const VolumetricShadowMap& map,
+    ShadowMapBuilder(const core::RayQueries& scene, const VolumetricShadowMap& map,
                      const core::MediumState& at_light);
 
     /// Traces and marches one texel's ray and writes its piece of memory.
@@ -44,7 +44,7 @@ class ShadowMapBuilder {
     void write(std::byte* record) const;
     static float loss(const Node& a, const Node& b, const Node& c);
 
-    const core::Scene& scene_;
+    const core::RayQueries& scene_;
     const VolumetricShadowMap& map_;
     const core::MediumState& at_light_;
     std::vector<BoundedMedium> media_;

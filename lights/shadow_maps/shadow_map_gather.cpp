@@ -36,25 +36,21 @@ VplViews views_of(const VplSet& vpls, std::size_t index, int size) {
     return {{front, ShadowMapView::of_surface(behind, -vpl.normal, size)}, 2};
 }
 
-void ShadowMapGather::look_up(const ReceiverStore& store, const VplSet& vpls, float bound,
-                              const MappedVpl& light) {
-    tiles_.clear(), points_.clear();
-    contributions_.resize(store.tiles().size());
-    for (const ReceiverStore::Tile& tile : store.tiles()) {
-        const VplRange& range = tile.range;
-        if (light.index < range.first || light.index >= range.end ||
-            (light.index - range.first) % range.stride != 0)
-            continue;
-        if (!connect(tile, vpls, vpls.lights[light.index], bound, packet_, contributions_[points_.size()]))
-            continue;
-        ShadowLookup& points = points_.emplace_back();
-        std::copy_n(tile.x, ReceiverLanes::width, points.x);
-        std::copy_n(tile.y, ReceiverLanes::width, points.y);
-        std::copy_n(tile.z, ReceiverLanes::width, points.z);
-        tiles_.push_back(&tile);
+void MappedVisibility::operator()(std::span<ShadowPacket>, std::span<LaneLight> light) {
+    std::array<ShadowLookup, GatherScratch::batch> points;
+    for (std::size_t k = 0; k < light.size(); ++k) {
+        const ReceiverLanes& receivers = *light[k].receivers;
+        std::copy_n(receivers.x, ReceiverLanes::width, points[k].x);
+        std::copy_n(receivers.y, ReceiverLanes::width, points[k].y);
+        std::copy_n(receivers.z, ReceiverLanes::width, points[k].z);
     }
-    light.map->look_up(points_);
-    lookups_ += points_.size() * ShadowLookup::width;
+    map_.look_up(std::span(points).first(light.size()));
+    lookups_ += light.size() * ShadowLookup::width;
+    for (std::size_t k = 0; k < light.size(); ++k)
+        for (int i = 0; i < ReceiverLanes::width; ++i) {
+            LaneLight& l = light[k];
+            l.r[i] *= points[k].r[i], l.g[i] *= points[k].g[i], l.b[i] *= points[k].b[i];
+        }
 }
 
 }  // namespace mote::lights

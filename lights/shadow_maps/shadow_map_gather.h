@@ -1,6 +1,6 @@
 // Gathering by shadow maps: receivers are stored first, then lights come one after the other with their maps
-// and add to all of them. The other way round than vpl_gather.h, because a map pays when many receivers look
-// at it while it is there.
+// and add to all of them. The other way round than a tile that looks at all lights, because a map pays when
+// many receivers look at it while it is there; the loop is the same (virtual_lights/vpl_gather.h).
 #pragma once
 
 #include <deque>
@@ -48,34 +48,44 @@ struct VplViews {
 };
 VplViews views_of(const VplSet& vpls, std::size_t index, int size);
 
+/// V* from the map of the one light that is gathered.
+class MappedVisibility {
+  public:
+    explicit MappedVisibility(const VolumetricShadowMap& map) : map_(map) {}
+    void operator()(std::span<core::ShadowPacket> packets, std::span<LaneLight> light);
+    std::uint64_t lookups() const { return lookups_; }
+
+  private:
+    const VolumetricShadowMap& map_;
+    std::uint64_t lookups_ = 0;
+};
+
 /// Adds the light of VPLs to stored receivers; one a thread.
 class ShadowMapGather {
   public:
     /// `add(tile, lane, light)` is called for every receiver and VPL with light, in the order of `lights`.
-    template <typename Add>
-    void run(const ReceiverStore& store, const VplSet& vpls, float bound, std::span<const MappedVpl> lights,
-             Add&& add) {
+    template <typename Weight, typename Add>
+    void run(const ReceiverStore& store, const VplSet& vpls, const Weight& weight,
+             std::span<const MappedVpl> lights, const Add& add) {
         for (const MappedVpl& light : lights) {
-            look_up(store, vpls, bound, light);
-            for (std::size_t k = 0; k < points_.size(); ++k)
-                for (int lane = 0; lane < ReceiverLanes::width; ++lane) {
-                    const auto& c = contributions_[k];
-                    const ShadowLookup& p = points_[k];
-                    const core::Rgb value(c.r[lane] * p.r[lane], c.g[lane] * p.g[lane],
-                                          c.b[lane] * p.b[lane]);
-                    if (!core::is_black(value)) add(*tiles_[k], lane, value);
-                }
+            const auto pairs = [&](const auto& visit) {
+                for (const ReceiverStore::Tile& tile : store.tiles())
+                    if (tile.range.contains(light.index)) visit(tile, WeightedVpl{light.index});
+            };
+            MappedVisibility visibility(*light.map);
+            gather_pairs(vpls, pairs, weight, visibility, scratch_, [&](const LaneLight& l) {
+                const auto& tile = static_cast<const ReceiverStore::Tile&>(*l.receivers);
+                for (int i = 0; i < ReceiverLanes::width; ++i)
+                    if (const core::Rgb value(l.r[i], l.g[i], l.b[i]); !core::is_black(value))
+                        add(tile, i, value);
+            });
+            lookups_ += visibility.lookups();
         }
     }
     std::uint64_t lookups() const { return lookups_; }
 
   private:
-    void look_up(const ReceiverStore& store, const VplSet& vpls, float bound, const MappedVpl& light);
-
-    core::ShadowPacket packet_{};
-    std::vector<const ReceiverStore::Tile*> tiles_;
-    std::vector<ShadowLookup> points_;
-    std::vector<GatherScratch::Contribution> contributions_;
+    GatherScratch scratch_;
     std::uint64_t lookups_ = 0;
 };
 

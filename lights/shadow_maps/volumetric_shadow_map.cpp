@@ -35,26 +35,14 @@ void ShadowMapSettings::check(int size, bool chromatic) const {
         fits > 0 ? fmt::format("{0} x {0} would fit", fits) : "not even one texel would fit"));
 }
 
-namespace {
-
-bool is_coloured_pane(const Shape& shape) {
-    if (!shape.bsdf->traits().pane) return false;
-    const Rgb passes = shape.bsdf->straight_passage({}, Vec3(0, 0, 1)).weight;
-    return shape.bsdf->traits().textured || passes.x != passes.y || passes.y != passes.z;
-}
-
-}  // namespace
-
-bool needs_chromatic_maps(const Scene& scene) {
-    const auto shapes = scene.shapes();
-    if (std::any_of(shapes.begin(), shapes.end(), [](const auto& s) { return is_coloured_pane(*s); }))
-        return true;
+bool needs_chromatic_maps(const RayQueries& scene) {
+    if (scene.has_coloured_panes()) return true;
     const auto media = scene.media();
     return std::any_of(media.begin(), media.end(), [](const auto& m) { return m->traits().chromatic; });
 }
 
-void VolumetricShadowMap::build(const Scene& scene, const ShadowMapView& view, const MediumState& at_light,
-                                const ShadowMapSettings& settings) {
+void VolumetricShadowMap::build(const RayQueries& scene, const ShadowMapView& view,
+                                const MediumState& at_light, const ShadowMapSettings& settings) {
     const bool chromatic = needs_chromatic_maps(scene);
     settings.check(view.size, chromatic);
     view_ = view, settings_ = settings, channels_ = chromatic ? 3 : 1;

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "core/geometry/ray_counters.h"
-#include "core/scene/scene.h"
+#include "core/scene/ray_queries.h"
 #include "lights/shadow_maps/shadow_map_cells.h"
 
 namespace mote::lights {
@@ -42,7 +42,7 @@ struct ShadowMapSettings {
 };
 
 /// Whether maps of this scene need three channels.
-bool needs_chromatic_maps(const core::Scene& scene);
+bool needs_chromatic_maps(const core::RayQueries& scene);
 
 /// Sixteen points, and the transmittance per channel from the light to each.
 struct alignas(64) ShadowLookup {
@@ -56,7 +56,7 @@ class VolumetricShadowMap {
     /// Traces and marches all texels in parallel; takes memory only when it grows. `at_light` holds the media
     /// at the light (parallel light: outside). Throws InputError when the map would be larger than
     /// settings.max_bytes.
-    void build(const core::Scene& scene, const ShadowMapView& view, const core::MediumState& at_light,
+    void build(const core::RayQueries& scene, const ShadowMapView& view, const core::MediumState& at_light,
                const ShadowMapSettings& settings);
 
     /// From the light to the points, interpolated between the four texels around each; 0 where the map does

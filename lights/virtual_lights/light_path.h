@@ -10,6 +10,7 @@
 #include <algorithm>
 
 #include "core/math/sampler.h"
+#include "core/scene/lit_scene.h"
 #include "core/scene/russian_roulette.h"
 #include "core/scene/scattering_vertex.h"
 
@@ -30,7 +31,7 @@ inline float remaining_power(const core::Rgb& alpha, const core::Rgb& alpha_star
 /// Calls visit(vertex, alpha / paths, depth) at every vertex of one path, delta surfaces included; `depth`
 /// counts from 1 at the first. The vertex's `wo` points back along the path.
 template <bool Media, typename Visit>
-void follow_light_path(const core::Scene& scene, const LightPathSettings& settings, core::Sampler& sampler,
+void follow_light_path(const core::LitScene& scene, const LightPathSettings& settings, core::Sampler& sampler,
                        core::WalkContext& context, const Visit& visit) {
     float u_light = sampler.next_1d();
     const core::LightChoice choice = scene.choose_emitter_by_power(u_light, &u_light);

@@ -15,7 +15,7 @@ constexpr std::uint32_t chunk_size = 32;
 constexpr std::uint32_t light_path_stream =
     0x56504cu;  // keeps light paths apart from pixels of the same index
 
-VplSet trace_chunk(const Scene& scene, const LightPathSettings& settings, std::uint32_t begin,
+VplSet trace_chunk(const LitScene& scene, const LightPathSettings& settings, std::uint32_t begin,
                    std::uint32_t end, std::uint64_t seed, std::uint32_t pass, SamplerKind kind) {
     VplSet set;
     for (std::uint32_t path = begin; path < end; ++path) {
@@ -48,7 +48,7 @@ void append(VplSet& to, VplSet&& from) {
 
 }  // namespace
 
-VplSet trace_light_paths(const Scene& scene, const LightPathSettings& settings, std::uint64_t seed,
+VplSet trace_light_paths(const LitScene& scene, const LightPathSettings& settings, std::uint64_t seed,
                          std::uint32_t pass, SamplerKind sampler) {
     const std::uint32_t chunks = (settings.paths + chunk_size - 1) / chunk_size;
     std::vector<VplSet> parts(chunks);

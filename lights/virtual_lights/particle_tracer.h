@@ -11,7 +11,7 @@ namespace mote::lights {
 
 /// Traces one set of light paths in parallel. (seed, pass, path index) determines every path; the order of
 /// the VPLs does not depend on threads.
-VplSet trace_light_paths(const core::Scene& scene, const LightPathSettings& settings, std::uint64_t seed,
+VplSet trace_light_paths(const core::LitScene& scene, const LightPathSettings& settings, std::uint64_t seed,
                          std::uint32_t pass, core::SamplerKind sampler);
 
 }  // namespace mote::lights

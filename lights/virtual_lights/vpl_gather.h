@@ -1,81 +1,111 @@
-// Gathering: the light of all VPLs at sixteen receivers at once.
+// Gathering: the light of virtual point lights at receivers, sixteen at once.
 //
-// Engelhardt 2013, Eqs. 10.4 and 10.5 with the bounded geometry term of Sec. 10.1.3:
-//   sum over j of  f*(x) min(G*(x,y_j), b) V*(x,y_j) I_j
-// Receivers are the first connectable vertices of a 4x4 tile of pixels, on surfaces and in media mixed; f* of
-// a diffuse surface or an isotropic medium is a constant, so the loop over plain VPLs is straight arithmetic
-// on sixteen lanes, and all shadow rays of a batch of VPLs go to Embree in one call.
+// Engelhardt 2013, Eqs. 10.4 and 10.5, whose sum over lights is the one loop here:
+//   sum over j of  f*(x) w(G*(x,y_j)) V*(x,y_j) I_j
+// Three policies fill it in. Which pairs of receivers and lights meet, and how much each light counts
+// (vpl_choice.h): one tile and many lights, or one light and many stored tiles. What becomes of the geometry
+// term (geometry_weights.h). And V*, asked for a batch of pairs at a time: shadow rays and transmittance
+// (TracedVisibility), or a map of what the light sees (shadow_maps/shadow_map_gather.h).
 #pragma once
 
 #include <array>
 #include <span>
 #include <vector>
 
-#include "lights/virtual_lights/virtual_point_light.h"
+#include "core/geometry/ray_counters.h"
+#include "core/scene/ray_queries.h"
+#include "lights/virtual_lights/vpl_contributions.h"
 
 namespace mote::lights {
 
-/// Where sixteen receivers stand and what they make of light: all that a connection needs but its visibility.
-struct alignas(64) ReceiverLanes {
-    static constexpr int width = core::ShadowPacket::width;
-
-    // Position moved off the surface towards the viewer: the start of shadow rays.
-    float x[width] = {}, y[width] = {}, z[width] = {};
-    // Shading and geometric normal on the viewer's side; zero in a medium.
-    float shading_x[width] = {}, shading_y[width] = {}, shading_z[width] = {};
-    float geometric_x[width] = {}, geometric_y[width] = {}, geometric_z[width] = {};
-    float in_medium[width] = {};  ///< 1 in a medium, else 0
-    // Path throughput, times f* where that is a constant.
-    float weight_r[width] = {}, weight_g[width] = {}, weight_b[width] = {};
-    std::int32_t max_vpl_depth[width] = {};  ///< VPLs deeper than this are left out; 0 for an idle lane
-
-    const core::ScatteringVertex* directional[width] = {};  ///< set where f* depends on direction
-    bool any_directional = false;
-    bool any_active = false;
-};
-
-struct alignas(64) ReceiverTile : ReceiverLanes {
-    core::MediumState state[width];  ///< media at the receiver
-    core::Rng rng[width];            ///< for transmittance estimates
-
-    /// Fills a lane. `throughput` is the weight of the eye path; `vertex` must outlive the tile when f*
-    /// depends on direction.
-    void set(int lane, const core::ScatteringVertex& vertex, const core::Rgb& throughput,
-             const core::MediumState& medium_state, const core::Rng& tracking_rng, std::int32_t max_depth);
-    void clear();
-};
-
-/// Memory that one task reuses between tiles: a batch of shadow rays with what they would carry.
-class GatherScratch {
-  public:
-    static constexpr int batch = 32;
+/// Memory that one task reuses between tiles: a batch of lights at receivers, with the rays between them.
+struct GatherScratch {
+    static constexpr std::size_t batch = 32;
     std::array<core::ShadowPacket, batch> packets;
-    struct alignas(64) Contribution {
-        float r[ReceiverTile::width], g[ReceiverTile::width], b[ReceiverTile::width];
-        const VirtualPointLight* vpl;
+    std::array<LaneLight, batch> light;
+
+    GatherScratch() {
+        for (core::ShadowPacket& packet : packets) packet.clear();
+    }
+};
+
+/// Calls add(LaneLight) for every pair whose light arrives at a receiver, in the order of the pairs.
+/// `pairs(visit)` calls visit(receivers, WeightedVpl). `visibility(packets, light)` multiplies light by V*; a
+/// lane without light has t_max < 0.
+template <typename Pairs, typename Weight, typename Visibility, typename Add>
+void gather_pairs(const VplSet& vpls, const Pairs& pairs, const Weight& weight, Visibility& visibility,
+                  GatherScratch& scratch, const Add& add) {
+    std::size_t count = 0;
+    const auto resolve = [&] {
+        const auto light = std::span(scratch.light).first(count);
+        if (count > 0) visibility(std::span(scratch.packets).first(count), light);
+        for (const LaneLight& l : light) add(l);
+        count = 0;
     };
-    std::array<Contribution, batch> contributions;
-    GatherScratch();
+    pairs([&](const ReceiverLanes& receivers, const WeightedVpl& light) {
+        count +=
+            contributions_of(vpls, light, receivers, weight, scratch.packets[count], scratch.light[count]);
+        if (count == GatherScratch::batch) resolve();
+    });
+    resolve();
+}
+
+/// What gathering by rays works with and counts in.
+struct GatherContext {
+    const core::RayQueries& scene;
+    GatherScratch& scratch;
+    core::RayCounters& rays;
+    core::TrackingCounters& tracking;
 };
 
-/// Which VPLs of a set: every `stride`-th from `first` on, before `end`.
-struct VplRange {
-    std::size_t first = 0, stride = 1, end = std::size_t(-1);
+/// V* by shadow rays, all of a batch in one call, times an estimate of the transmittance where the scene
+/// attenuates light. Draws from the tile's generators.
+class TracedVisibility {
+  public:
+    TracedVisibility(const GatherContext& context, ReceiverTile& tile) : context_(context), tile_(tile) {}
+    void operator()(std::span<core::ShadowPacket> packets, std::span<LaneLight> light);
 
-    static VplRange one(std::size_t index) { return {index, 1, index + 1}; }
+  private:
+    void attenuate(const core::ShadowPacket& packet, LaneLight& light);
+
+    const GatherContext& context_;
+    ReceiverTile& tile_;
 };
 
-/// What one VPL would send to the receivers if nothing stood between them, into `out`, and the shadow rays
-/// into `packet`, which has been cleared once. Returns whether any lane receives light; else nothing of
-/// `packet` counts.
-bool connect(const ReceiverLanes& receivers, const VplSet& vpls, const VirtualPointLight& vpl, float bound,
-             core::ShadowPacket& packet, GatherScratch::Contribution& out);
+using TileLight = std::array<core::Rgb, ReceiverLanes::width>;
 
-/// Light of the VPLs in `range` at the receivers of a tile, per lane. `bound` is b [1/m^2], infinity for
-/// unbounded. Counts shadow rays and tracking.
-std::array<core::Rgb, ReceiverTile::width> gather(const core::Scene& scene, const VplSet& vpls,
-                                                  const VplRange& range, float bound, ReceiverTile& tile,
-                                                  GatherScratch& scratch, core::RayCounters& rays,
-                                                  core::TrackingCounters& tracking);
+/// Sixteen sums.
+struct alignas(64) TileSum {
+    float r[ReceiverLanes::width] = {}, g[ReceiverLanes::width] = {}, b[ReceiverLanes::width] = {};
+
+    void add(const LaneLight& light) {
+        for (int i = 0; i < ReceiverLanes::width; ++i)
+            r[i] += light.r[i], g[i] += light.g[i], b[i] += light.b[i];
+    }
+    TileLight value() const {
+        TileLight sum;
+        for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = {r[i], g[i], b[i]};
+        return sum;
+    }
+};
+
+/// The light of `lights` at the receivers of a tile, per lane, with traced visibility.
+template <typename Lights, typename Weight>
+TileLight gather(const GatherContext& context, const VplSet& vpls, const Lights& lights, const Weight& weight,
+                 ReceiverTile& tile) {
+    TileSum sum;
+    if (!tile.any_active) return sum.value();
+    TracedVisibility visibility(context, tile);
+    const auto pairs = [&](const auto& visit) {
+        lights.for_each(vpls.lights.size(), [&](const WeightedVpl& light) { visit(tile, light); });
+    };
+    gather_pairs(vpls, pairs, weight, visibility, context.scratch,
+                 [&](const LaneLight& light) { sum.add(light); });
+    return sum.value();
+}
+
+// What all renderers use; other policies are compiled where they are named.
+extern template TileLight gather(const GatherContext&, const VplSet&, const VplRange&, const BoundedGeometry&,
+                                 ReceiverTile&);
 
 }  // namespace mote::lights

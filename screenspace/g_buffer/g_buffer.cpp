@@ -5,9 +5,10 @@
 #include <span>
 #include <stdexcept>
 
+#include "core/image/tiles.h"
 #include "core/materials/bsdf.h"
-#include "core/render/integrator.h"
-#include "core/scene/scene.h"
+#include "core/scene/camera.h"
+#include "core/scene/ray_queries.h"
 
 namespace mote::screenspace {
 
@@ -36,11 +37,11 @@ void enter(GBuffer& buffer, std::size_t i, const SurfaceHit& hit, const Vec3& wo
     buffer.reflectance_behind[i] = hit.shape->bsdf->albedo(BsdfPoint{hit.uv}, -local);
 }
 
-void fill_pixel(std::span<GBuffer> buffers, const Scene& scene, int x, int y,
+void fill_pixel(std::span<GBuffer> buffers, const RayQueries& scene, const Camera& camera, int x, int y,
                 std::vector<SurfaceHit>& scratch) {
     const std::size_t i = buffers[0].index(x, y);
-    const Ray ray = scene.camera().sample_ray({float(x) + 0.5f, float(y) + 0.5f}, Vec2(0.5f));
-    const float solid_angle = pixel_solid_angle(scene.camera(), x, y);
+    const Ray ray = camera.sample_ray({float(x) + 0.5f, float(y) + 0.5f}, Vec2(0.5f));
+    const float solid_angle = pixel_solid_angle(camera, x, y);
     for (GBuffer& buffer : buffers) buffer.view[i] = ray.direction, buffer.solid_angle[i] = solid_angle;
     peel(scene, ray, int(buffers.size()), scratch);
     for (std::size_t k = 0; k < scratch.size(); ++k) enter(buffers[k], i, scratch[k], -ray.direction);
@@ -71,11 +72,11 @@ float pixel_solid_angle(const Camera& camera, int x, int y) {
     return float(triangle_solid_angle(a, b, c) + triangle_solid_angle(a, c, d));
 }
 
-void peel(const Scene& scene, const Ray& ray, int count, std::vector<SurfaceHit>& hits) {
+void peel(const RayQueries& scene, const Ray& ray, int count, std::vector<SurfaceHit>& hits) {
     hits.clear();
     Ray rest = ray;
     for (int k = 0; k < count; ++k) {
-        auto hit = scene.rays().closest(rest);
+        auto hit = scene.first_hit(rest);
         if (!hit) return;
         const float before = glm::dot(rest.origin - ray.origin, ray.direction);
         hit->t += before;
@@ -86,18 +87,19 @@ void peel(const Scene& scene, const Ray& ray, int count, std::vector<SurfaceHit>
     }
 }
 
-GBuffer make_g_buffer(const Scene& scene, int width, int height) {
-    return std::move(make_g_buffers(scene, width, height, 1).front());
+GBuffer make_g_buffer(const RayQueries& scene, const Camera& camera, int width, int height) {
+    return std::move(make_g_buffers(scene, camera, width, height, 1).front());
 }
 
-std::vector<GBuffer> make_g_buffers(const Scene& scene, int width, int height, int layers) {
+std::vector<GBuffer> make_g_buffers(const RayQueries& scene, const Camera& camera, int width, int height,
+                                    int layers) {
     if (layers <= 0) throw std::invalid_argument("a G-buffer needs at least one layer");
     std::vector<GBuffer> buffers(std::size_t(layers), GBuffer(width, height));
     const std::atomic<bool> never{false};
     for_each_tile(width, height, 32, never, [&](int x0, int y0, int x1, int y1) {
         std::vector<SurfaceHit> scratch;
         for (int y = y0; y < y1; ++y)
-            for (int x = x0; x < x1; ++x) fill_pixel(buffers, scene, x, y, scratch);
+            for (int x = x0; x < x1; ++x) fill_pixel(buffers, scene, camera, x, y, scratch);
     });
     return buffers;
 }

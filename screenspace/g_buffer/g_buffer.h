@@ -13,7 +13,8 @@
 
 namespace mote::core {
 class Camera;
-class Scene;
+class Camera;
+class RayQueries;
 class Shape;
 struct SurfaceHit;
 }  // namespace mote::core
@@ -48,16 +49,18 @@ struct GBuffer {
 
 /// One primary ray through the centre of every pixel, and through the centre of the lens. Boundaries between
 /// media are not seen. Film positions are those of the camera: the picture must have the size of its film.
-GBuffer make_g_buffer(const core::Scene& scene, int width, int height);
+GBuffer make_g_buffer(const core::RayQueries& scene, const core::Camera& camera, int width, int height);
 
 /// The first `count` surfaces along the ray, or as many as there are, into `hits`; distances from its origin.
 /// Each search goes on from the surface found before as rays of paths do (offset_origin): it meets no surface
 /// twice, and loses none that lies farther behind it than rounding moves both.
-void peel(const core::Scene& scene, const core::Ray& ray, int count, std::vector<core::SurfaceHit>& hits);
+void peel(const core::RayQueries& scene, const core::Ray& ray, int count,
+          std::vector<core::SurfaceHit>& hits);
 
 /// Layer after layer, the first of which is make_g_buffer(). Light passes none of the surfaces here: behind a
 /// mirror or glass lies what stands there. Throws std::invalid_argument unless `layers` is positive.
-std::vector<GBuffer> make_g_buffers(const core::Scene& scene, int width, int height, int layers);
+std::vector<GBuffer> make_g_buffers(const core::RayQueries& scene, const core::Camera& camera, int width,
+                                    int height, int layers);
 
 /// The other side of the same surfaces, as a viewer behind them would see it who looks back along the rays.
 GBuffer seen_from_behind(GBuffer buffer);

@@ -28,7 +28,7 @@ Rgb AnalyticMedium::transmittance(double length) const {
 }
 
 std::optional<AnalyticLight> AnalyticLight::of(const Emitter& light) {
-    const auto position = Scene::light_position(light);
+    const auto position = LitScene::light_position(light);
     if (!position || light.traits().textured) return std::nullopt;
     AnalyticLight result(light, *position);
     Vec3 axis(0, 0, 1);

@@ -8,7 +8,7 @@
 
 #include <optional>
 
-#include "core/scene/scene.h"
+#include "core/scene/lit_scene.h"
 #include "lights/emitters/light_cone.h"
 #include "screenspace/in_scattering/airlight.h"
 

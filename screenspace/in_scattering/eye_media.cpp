@@ -7,7 +7,7 @@ namespace mote::screenspace {
 
 using namespace core;
 
-EyeMedia::EyeMedia(const Scene& scene, const Ray& ray, const MediumState& state, float voxels,
+EyeMedia::EyeMedia(const RayQueries& scene, const Ray& ray, const MediumState& state, float voxels,
                    WalkContext& walk)
     : ray_(ray), voxels_(voxels) {
     std::vector<MediumSegment> segments;

@@ -11,8 +11,8 @@ namespace mote::screenspace {
 class EyeMedia {
   public:
     /// From ray.t_min, where `state` holds the media, to ray.t_max; grids in steps of `voxels` voxels.
-    EyeMedia(const core::Scene& scene, const core::Ray& ray, const core::MediumState& state, float voxels,
-             core::WalkContext& walk);
+    EyeMedia(const core::RayQueries& scene, const core::Ray& ray, const core::MediumState& state,
+             float voxels, core::WalkContext& walk);
 
     /// The segments up to the distance t.
     void segments_up_to(float t, std::vector<MediumSegment>& segments) const;

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "core/scene/media_along.h"
+#include "core/scene/scene.h"
 #include "screenspace/in_scattering/eye_media.h"
 
 namespace mote::screenspace {
@@ -29,7 +30,7 @@ Bounds3 extent(const Scene& scene, const Medium& medium) {
 
 }  // namespace
 
-void find_segments(const Scene& scene, const Ray& ray, const MediumState& state,
+void find_segments(const RayQueries& scene, const Ray& ray, const MediumState& state,
                    std::vector<MediumSegment>& segments, WalkContext& walk) {
     segments.clear();
     Rgb panes(1.0f);
@@ -49,8 +50,8 @@ void find_segments(const Scene& scene, const Ray& ray, const MediumState& state,
         panes *= passage_through(hit, ray.direction).transmittance(), pane_between = true;
         return true;
     };
-    walk.rays.boundary += scene.rays().has_boundaries();
-    for_each_part(scene.rays(), ray, state, add, pane);
+    walk.rays.boundary += scene.has_boundaries();
+    for_each_part(scene, ray, state, add, pane);
 }
 
 Rgb marched_transmittance(const Medium& medium, const Ray& ray, float voxels, WalkContext& walk) {

@@ -16,12 +16,15 @@
 
 #include "core/scene/medium_state.h"
 #include "core/scene/ray_walk.h"
-#include "core/scene/scene.h"
 #include "lights/emitters/light_cone.h"
 #include "lights/shadow_maps/volumetric_shadow_map.h"
 #include "screenspace/in_scattering/analytic_light.h"
 #include "screenspace/in_scattering/in_scattering_source.h"
 #include "screenspace/in_scattering/unoccluded_space.h"
+
+namespace mote::core {
+class Scene;
+}
 
 namespace mote::screenspace {
 
@@ -77,7 +80,7 @@ struct MarchScratch {
 
 /// Cuts ray.t_min to ray.t_max at the boundaries between media and at panes; `state` holds those at t_min.
 /// Neighbours of the same medium without a pane between them are one segment.
-void find_segments(const core::Scene& scene, const core::Ray& ray, const core::MediumState& state,
+void find_segments(const core::RayQueries& scene, const core::Ray& ray, const core::MediumState& state,
                    std::vector<MediumSegment>& segments, core::WalkContext& walk);
 
 /// Transmittance through one medium: deterministic, but for media that offer neither a closed form nor
@@ -128,7 +131,7 @@ class InScattering {
     core::Rgb scattered_at(const core::Ray& ray, float t, const MediumSegment& at, MarchScratch& scratch,
                            const core::Rgb* from_map = nullptr) const;
 
-    const core::Scene& scene_;
+    const core::RayQueries& scene_;
     const core::Emitter& light_;
     MarchSettings settings_;
     MarchAccelerations accelerations_;

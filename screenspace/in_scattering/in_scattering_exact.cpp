@@ -56,7 +56,7 @@ void InScattering::trace_steps(const Ray& ray, const StepRule& rule, MarchScratc
         p.direction_z[lane] = to_light.z / distance;
         p.t_min[lane] = 0.0f, p.t_max[lane] = i < steps ? distance : -1.0f;
     }
-    scene_.rays().occluded(scratch.packets);
+    scene_.find_occluded(scratch.packets);
     for (std::size_t i = 0; i < steps; ++i)
         scratch.lit[i] = !scratch.packets[i / width].occluded(int(i % width));
     scratch.walk.rays.occlusion += steps, scratch.steps += steps;

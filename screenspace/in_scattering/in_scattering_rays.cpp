@@ -2,6 +2,8 @@
 
 #include <bit>
 
+#include "core/scene/scene.h"
+
 namespace mote::screenspace {
 
 using namespace core;
@@ -37,7 +39,7 @@ class InScatteringRays::Task final : public InScatteringTask {
         const Ray eye = ray(film);
         if (!source_.light_.lit_part(eye)) return {};  // dark whatever it meets
         ++scratch_.walk.rays.closest;
-        const auto hit = source_.scene_.rays().closest(eye);
+        const auto hit = source_.scene_.first_hit(eye);
         return lit_end(source_.light_, eye,
                        hit ? FirstSurface{hit->t, hit->geometric_normal} : FirstSurface{});
     }

@@ -42,7 +42,7 @@ Rgb InScattering::scattered_at(const Ray& ray, float t, const MediumSegment& at,
     } else {
         const Ray shadow{x, light->wi, 0.0f, light->distance};
         ++scratch.walk.rays.occlusion;
-        if (scene_.rays().occluded(shadow)) return Rgb(0.0f);
+        if (!scene_.visible(shadow)) return Rgb(0.0f);
         find_segments(scene_, shadow, at.state, scratch.shadow, scratch.walk);
         to_light = marched_transmittance(shadow, scratch.shadow, settings_.voxels, scratch.walk);
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "core/scene/scene.h"
 #include "screenspace/in_scattering/eye_media.h"
 #include "screenspace/in_scattering/in_scattering_rays.h"
 
@@ -26,7 +27,7 @@ class SharedEyeRays::Task final : public SharedRayTask {
     std::array<RayEnd, 2> ends_of(const Crossing& crossing) override {
         const Ray eye = ray(crossing.film);
         ++scratch_.walk.rays.closest;
-        const auto hit = source_.scene_.rays().closest(eye);
+        const auto hit = source_.scene_.first_hit(eye);
         const FirstSurface surface = hit ? FirstSurface{hit->t, hit->geometric_normal} : FirstSurface{};
         return {lit_end(light(crossing, 0), eye, surface), lit_end(light(crossing, 1), eye, surface)};
     }

@@ -91,8 +91,8 @@ struct UnoccludedSpace::Tree::Entry {
     Vec3 center;
 };
 
-UnoccludedSpace::UnoccludedSpace(const Scene& scene) {
-    for (const auto& shape : scene.shapes()) (passes_straight(*shape) ? boundaries_ : surfaces_).add(*shape);
+UnoccludedSpace::UnoccludedSpace(std::span<const std::shared_ptr<Shape>> shapes) {
+    for (const auto& shape : shapes) (passes_straight(*shape) ? boundaries_ : surfaces_).add(*shape);
     surfaces_.build(), boundaries_.build();
 }
 

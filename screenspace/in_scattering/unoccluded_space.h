@@ -8,18 +8,18 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "core/geometry/triangle_mesh.h"
-#include "core/scene/scene.h"
 
 namespace mote::screenspace {
 
 class UnoccludedSpace {
   public:
-    /// Surfaces and boundaries of media apart. Keeps references to the shapes of the scene. Memory: about 25
+    /// Surfaces and boundaries of media apart. Keeps references to the shapes. Memory: about 25
     /// bytes a triangle.
-    explicit UnoccludedSpace(const core::Scene& scene);
+    explicit UnoccludedSpace(std::span<const std::shared_ptr<core::Shape>> shapes);
 
     using Triangle = std::array<core::Vec3d, 3>;
     /// Of everything that stops shadow rays.

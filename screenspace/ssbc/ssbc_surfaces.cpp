@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "core/geometry/shape.h"
 #include "core/materials/bsdf.h"
 #include "core/math/frame.h"
-#include "core/scene/scene.h"
 #include "screenspace/g_buffer/g_buffer.h"
 
 namespace mote::screenspace {

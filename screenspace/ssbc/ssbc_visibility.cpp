@@ -1,6 +1,6 @@
 #include "screenspace/ssbc/ssbc_visibility.h"
 
-#include "core/scene/scene.h"
+#include "core/scene/ray_queries.h"
 
 namespace mote::screenspace {
 
@@ -21,7 +21,7 @@ void TracedVisibility::shadow(const ReceiverPacket& r, const SurfaceNode& node, 
         packet.t_min[l] = 0.0f, packet.t_max[l] = residual[l] > 0.0f ? 1.0f : -1.0f;
     }
     const auto wanted = residual;
-    scene_.rays().occluded(packet);
+    scene_.find_occluded({&packet, 1});
     for (std::size_t l = 0; l < packet_size; ++l)
         if (wanted[l] > 0.0f && packet.occluded(int(l))) residual[l] = 0.0f;
 }

@@ -5,7 +5,7 @@
 #include "screenspace/ssbc/ssbc_sum.h"
 
 namespace mote::core {
-class Scene;
+class RayQueries;
 }
 
 namespace mote::screenspace {
@@ -13,12 +13,12 @@ namespace mote::screenspace {
 class TracedVisibility final : public ResidualVisibility {
   public:
     /// Keeps a reference to the scene.
-    explicit TracedVisibility(const core::Scene& scene) : scene_(scene) {}
+    explicit TracedVisibility(const core::RayQueries& scene) : scene_(scene) {}
     /// Both ends of a ray stand off their patches by a twentieth of the patch, and by what a node is thick.
     void shadow(const ReceiverPacket& receivers, const SurfaceNode& node, Lanes& residual) const override;
 
   private:
-    const core::Scene& scene_;
+    const core::RayQueries& scene_;
 };
 
 }  // namespace mote::screenspace

@@ -299,7 +299,8 @@ TEST_CASE("gathering small spheres equals gathering points", "[vsl][limit][visib
             lights::GatherScratch scratch;
             RayCounters rays;
             TrackingCounters tracking;
-            points += Vec3d(lights::gather(*scene, set, {}, infinity, tile, scratch, rays, tracking)[0]);
+            points += Vec3d(lights::gather({*scene, scratch, rays, tracking}, set, lights::VplRange{},
+                                           lights::BoundedGeometry{infinity}, tile)[0]);
             for (int kind = 0; kind < 2; ++kind) {
                 compensation::SphericalGather settings;
                 settings.visibility = compensation::SphereVisibility(kind);

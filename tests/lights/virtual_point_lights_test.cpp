@@ -99,7 +99,8 @@ TEST_CASE("gathering sixteen receivers equals the plain sum", "[vpl][gather]") {
             lights::GatherScratch scratch;
             RayCounters rays;
             TrackingCounters tracking;
-            const auto light = lights::gather(*scene, vpls, {}, bound, tile, scratch, rays, tracking);
+            const auto light = lights::gather({*scene, scratch, rays, tracking}, vpls, lights::VplRange{},
+                                              lights::BoundedGeometry{bound}, tile);
             CHECK(rays.occlusion > 0);
             for (std::size_t i = 0; i < vertices.size(); ++i) {
                 glm::dvec3 expected(0.0);
@@ -141,5 +142,6 @@ TEST_CASE("no paths, a dark light, and a receiver on a VPL stay finite", "[vpl][
     RayCounters rays;
     TrackingCounters tracking;
     for (const float bound : {infinity, 10.0f})
-        CHECK(is_finite(lights::gather(*scene, vpls, {}, bound, tile, scratch, rays, tracking)[0]));
+        CHECK(is_finite(lights::gather({*scene, scratch, rays, tracking}, vpls, lights::VplRange{},
+                                       lights::BoundedGeometry{bound}, tile)[0]));
 }

@@ -26,7 +26,7 @@ std::unique_ptr<Scene> wall(
 TEST_CASE("Pixels cover the picture's solid angle, and a wall's area", "[g_buffer]") {
     const int size = 64;
     const auto scene = wall(size);
-    const GBuffer g = make_g_buffer(*scene, size, size);
+    const GBuffer g = make_g_buffer(*scene, scene->camera(), size, size);
     double solid_angle = 0.0, area = 0.0;
     for (std::size_t i = 0; i < g.pixel_count(); ++i) {
         solid_angle += g.solid_angle[i], area += g.surface_area(i);

@@ -66,7 +66,7 @@ struct Worst {
 Worst compare(const Scene& scene, const Scene& exact_in) {
     Rng rng(4);
     const auto in = [&](float a, float b) { return a + (b - a) * rng.next_float(); };
-    const UnoccludedSpace clear(exact_in);
+    const UnoccludedSpace clear(exact_in.shapes());
     Worst worst;
     for (int i = 0; i < 80; ++i) {
         const Vec3 target(in(-1.5f, 1.5f), in(-1.5f, 1.5f), in(-1.0f, 1.0f));
@@ -114,7 +114,7 @@ TEST_CASE("A light that is a hundredth too bright is found out", "[in_scattering
 
 TEST_CASE("Integrals over all offsets of few steps are those of many", "[in_scattering_exact]") {
     const auto scene = pillars(point);
-    const UnoccludedSpace clear(*scene);
+    const UnoccludedSpace clear(scene->shapes());
     int shadowed = 0;
     for (int k = 0; k < 40; ++k) {
         const Vec3 origin(0.3f, 0.2f, 5.0f), target(-1.2f + 0.06f * float(k), -0.2f, 0.3f);
@@ -145,7 +145,7 @@ TEST_CASE("What has no closed form is marched", "[in_scattering_exact]") {
     std::string outside = point;
     outside.replace(outside.find("x=\"0.5\""), 7, "x=\"2.5\"");
     const auto scene = pillars(outside);
-    const UnoccludedSpace clear(*scene);
+    const UnoccludedSpace clear(scene->shapes());
     const Ray ray{Vec3(0.3f, 1.4f, 5.0f), glm::normalize(Vec3(0.1f, 0.0f, -1.0f)), 0.0f, 20.0f};
     const March exact = march(*scene, ray, 64, 0.5f, &clear), steps = march(*scene, ray, 64, 0.5f, nullptr);
     CHECK(exact.steps == 64);
@@ -159,7 +159,7 @@ TEST_CASE("Rays without end are integrated", "[in_scattering_exact]") {
         <emitter type="point"><point name="position" x="1" y="0" z="0"/><rgb name="intensity" value="1"/></emitter>
         <sensor type="perspective"><medium type="homogeneous"><float name="sigma_t" value="0.05"/><float name="albedo" value="1"/>
         </medium></sensor></scene>)");
-    const UnoccludedSpace clear(*scene);
+    const UnoccludedSpace clear(scene->shapes());
     const InScattering in(*scene, *scene->emitters()[0], {64, MarchRule::equiangular, 0.5f, 1.0f},
                           {&clear, nullptr});
     MarchScratch scratch;

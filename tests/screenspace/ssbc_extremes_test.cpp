@@ -158,7 +158,7 @@ TEST_CASE("Sky, lamps, mirrors and glass take no part; plastic does with its bas
         <sensor type="orthographic"><transform name="to_world"><scale x="6" y="6"/>
           <lookat origin="0, 0, 5" target="0, 0, 0" up="0, 1, 0"/></transform></sensor></scene>)",
                                   12);
-    const GBuffer g = make_g_buffer(*scene, 12, 12);
+    const GBuffer g = make_g_buffer(*scene, scene->camera(), 12, 12);
     const SsbcSurfaces s = ssbc_surfaces(g);
     int seen[5] = {};
     for (std::size_t i = 0; i < s.pixel_count(); ++i) {

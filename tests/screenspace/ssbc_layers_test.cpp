@@ -134,7 +134,7 @@ TEST_CASE("Layer k holds the k-th surface along each ray", "[g_buffer][layers]")
     }
     const int size = 48, layers = 8;
     const auto scene = scene_from(xml + view, size);
-    const auto buffers = make_g_buffers(*scene, size, size, layers);
+    const auto buffers = make_g_buffers(*scene, scene->camera(), size, size, layers);
     int deepest = 0, compared = 0;
     for (std::size_t i = 0; i < buffers[0].pixel_count(); ++i) {
         const Vec3d o(0, 0, 3), d(buffers[0].view[i]);
@@ -161,7 +161,7 @@ TEST_CASE("Layer k holds the k-th surface along each ray", "[g_buffer][layers]")
     }
     CHECK(deepest > 4);
     CHECK(compared > 2000);
-    CHECK_THROWS_AS(make_g_buffers(*scene, size, size, 0), std::invalid_argument);
+    CHECK_THROWS_AS(make_g_buffers(*scene, scene->camera(), size, size, 0), std::invalid_argument);
 }
 
 TEST_CASE("Sheets a hundredth of a millimetre apart are all found, and once each", "[g_buffer][layers]") {
@@ -171,7 +171,7 @@ TEST_CASE("Sheets a hundredth of a millimetre apart are all found, and once each
     for (int k = 0; k < sheets; ++k)
         xml += rectangle(fmt::format(R"(<scale value="4"/><translate z="{}"/>)", -1e-5 * k), one_sided);
     const auto scene = scene_from(xml + view, size);
-    const auto buffers = make_g_buffers(*scene, size, size, sheets + 1);
+    const auto buffers = make_g_buffers(*scene, scene->camera(), size, size, sheets + 1);
     const auto count_with_offset = [&](float offset, std::size_t pixel) {
         Ray ray{{0, 0, 3}, buffers[0].view[pixel]};
         int count = 0;
@@ -192,7 +192,7 @@ TEST_CASE("Which sides reflect is up to the BSDF", "[ssbc][layers]") {
                        rectangle("<translate z=\"-1\"/>", one_sided) +
                        rectangle("<rotate y=\"1\" angle=\"180\"/><translate z=\"-2\"/>", one_sided) + view,
                    9);
-    const auto buffers = make_g_buffers(*scene, 9, 9, 4);
+    const auto buffers = make_g_buffers(*scene, scene->camera(), 9, 9, 4);
     const std::size_t middle = buffers[0].index(4, 4);
     const auto sides = hidden_sides(buffers);
     REQUIRE(sides.size() == hidden_side_count(4));
@@ -333,7 +333,7 @@ TEST_CASE("Light comes through a thin wall from behind it, and not past shadow r
             rectangle("<scale value=\"3\"/><translate z=\"-0.2\" y=\"1\"/>", twosided) +
             rectangle("<scale value=\"3\"/><translate z=\"-0.3\" y=\"1\"/>", twosided) + view,
         40);
-    const auto buffers = make_g_buffers(*scene, 40, 40, 2);
+    const auto buffers = make_g_buffers(*scene, scene->camera(), 40, 40, 2);
     const SsbcSurfaces seen = ssbc_surfaces(buffers[0]);
     std::vector<HiddenSide> hidden;
     for (const SsbcSurfaces& side : hidden_sides(buffers))

@@ -60,7 +60,7 @@ Outcome try_triangles(float size, double shrink, bool infinite) {
     Outcome o;
     for (int s = 0; s < 12; ++s) {
         const auto scene = random_scene(random, 10 + 4 * s, size, "diffuse");
-        const UnoccludedSpace space(*scene);
+        const UnoccludedSpace space(scene->shapes());
         CHECK(space.memory_bytes() > 0);
         for (int i = 0; i < 250; ++i) {
             Ray ray{random.point(size), random.direction()};
@@ -103,7 +103,7 @@ TEST_CASE("Boundaries of media are apart from surfaces", "[unoccluded_space]") {
         <shape type="cube"><bsdf type="null"/><medium type="homogeneous" name="interior"/></shape>
         <shape type="rectangle"><transform name="to_world"><translate z="3"/></transform><bsdf type="diffuse"/></shape>
         <emitter type="point"/><sensor type="perspective"/></scene>)");
-    const UnoccludedSpace space(*scene);
+    const UnoccludedSpace space(scene->shapes());
     const UnoccludedSpace::Triangle inside = {Vec3d(0, 0, 0), Vec3d(0.5, 0, 0), Vec3d(0, 0.9, 0.2)};
     const UnoccludedSpace::Triangle across = {Vec3d(0, 0, 0), Vec3d(0.5, 0, 0), Vec3d(0, 1.1, 0.2)};
     const UnoccludedSpace::Triangle beyond = {Vec3d(0, 0, 2), Vec3d(0.5, 0, 2), Vec3d(0, 0.5, 3.1)};

@@ -1,0 +1,35 @@
+// What algorithms ask that need the lights besides what lies along rays: a light to connect to, a light to
+// start a particle from.
+#pragma once
+
+#include "core/scene/emitter.h"
+#include "core/scene/ray_queries.h"
+
+namespace mote::core {
+
+/// A light drawn from the scene.
+struct LightChoice {
+    const Emitter* emitter;
+    float probability;
+};
+
+class LitScene : public RayQueries {
+  public:
+    virtual std::span<const std::shared_ptr<Emitter>> emitters() const = 0;
+    /// The light at infinity with a picture, or null.
+    virtual const Emitter* environment() const = 0;
+
+    /// Light for a receiver. A null emitter: there is none to choose. `remapped` is u, ready to be used
+    /// again.
+    virtual LightChoice choose_light(float u, float* remapped = nullptr) const = 0;
+    virtual float light_probability(const Emitter* emitter) const = 0;  ///< of choose_light()
+    /// Light for a particle.
+    virtual LightChoice choose_emitter_by_power(float u, float* remapped = nullptr) const = 0;
+
+    /// Where a light without extent (point, spot) stands; nothing for all others.
+    static std::optional<Vec3> light_position(const Emitter& emitter);
+    /// The media at the origin of a light particle or at a light's position.
+    virtual MediumState emitter_medium_state(const Emitter& emitter, const EmissionSample& sample) const = 0;
+};
+
+}  // namespace mote::core

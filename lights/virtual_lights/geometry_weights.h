@@ -1,0 +1,32 @@
+// What becomes of the geometry term between a receiver x and a virtual point light y.
+//
+// A policy is called with G*(x,y) = C*(x->y) C*(y->x) / |x-y|^2 [1/m^2], the squared distance [m^2] and the
+// two C*, and returns G* times its weight. It is called in the sixteen-lane loop and must be straight
+// arithmetic. A technique that is weighed against another one is a policy too: its weight is a function of
+// the same four numbers.
+#pragma once
+
+namespace mote::lights {
+
+/// Smaller of two numbers as the vector instruction has it.
+inline float min_of(float a, float b) { return a < b ? a : b; }
+inline float max_of(float a, float b) { return a > b ? a : b; }
+
+/// All of G*.
+struct UnboundedGeometry {
+    float operator()(float g, float, float, float) const { return g; }
+};
+
+/// min(G*, b) (Engelhardt 2013, Sec. 10.1.3); `bound` is b [1/m^2], infinity for all.
+struct BoundedGeometry {
+    float bound;
+    float operator()(float g, float, float, float) const { return min_of(g, bound); }
+};
+
+/// max(0, G* - b) = B* G*: what BoundedGeometry leaves out (Eq. 10.10 with the bound that it does not print).
+struct ResidualGeometry {
+    float bound;
+    float operator()(float g, float, float, float) const { return max_of(0.0f, g - bound); }
+};
+
+}  // namespace mote::lights
