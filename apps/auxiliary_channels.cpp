@@ -1,6 +1,7 @@
 #include "apps/auxiliary_channels.h"
 
 #include "core/materials/bsdf.h"
+#include "core/scene/scene.h"
 #include "screenspace/g_buffer/g_buffer.h"
 #include "screenspace/ssbc/ssbc_surfaces.h"
 
