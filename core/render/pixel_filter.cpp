@@ -1,8 +1,9 @@
 // Pixel filters as distributions of offsets (filter importance sampling, Ernst et al. 2006).
 //
 // All three are products of one function per axis and nowhere negative, so that every sample weighs the same.
-#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "core/objects/error.h"
@@ -57,6 +58,8 @@ class GaussianFilter final : public PixelFilter {
         }
         for (std::size_t i = 0; i < cells; ++i)
             cdf_[i + 1] = cdf_[i] + 0.5 * cell_ * (density_[i] + density_[i + 1]);
+        for (std::size_t k = 0; k < starts; ++k)
+            start_[k] = std::uint16_t(cell_from(0, double(k) / starts * cdf_.back()));
     }
     Vec2 sample_offset(const Vec2& u) const override { return {float(invert(u.x)), float(invert(u.y))}; }
     float pdf_area(const Vec2& offset) const override {
@@ -66,6 +69,13 @@ class GaussianFilter final : public PixelFilter {
 
   private:
     static constexpr int cells = 512;
+    static constexpr std::size_t starts = 1024;
+
+    /// The cell that holds the target of the distribution function, at `i` or behind it.
+    std::size_t cell_from(std::size_t i, double target) const {
+        while (i + 1 < cells && cdf_[i + 1] <= target) ++i;
+        return i;
+    }
 
     /// Of the table, so that it is exactly what invert() draws by.
     double density(double x) const {
@@ -77,8 +87,7 @@ class GaussianFilter final : public PixelFilter {
 
     double invert(double u) const {
         const double target = u * cdf_.back();
-        const auto above = std::upper_bound(cdf_.begin() + 1, cdf_.end() - 1, target);
-        const auto i = std::size_t(above - cdf_.begin()) - 1;
+        const std::size_t i = cell_from(start_[std::size_t(u * starts)], target);
         // Area up to the fraction f of a trapezoid: cell (a f + (b - a) f^2 / 2) = rest, in the form of the
         // quadratic formula that does not cancel where a and b are nearly equal.
         const double a = density_[i], b = density_[i + 1], rest = (target - cdf_[i]) / cell_;
@@ -89,6 +98,7 @@ class GaussianFilter final : public PixelFilter {
 
     double radius_, cell_;
     std::vector<double> density_, cdf_;
+    std::array<std::uint16_t, starts> start_{};  ///< where the search begins for u from k / starts on
 };
 
 }  // namespace

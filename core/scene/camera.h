@@ -5,7 +5,7 @@
 // A pixel j with filter density f_j (PixelFilter::pdf_area around its centre) has the value
 //   I_j = int int f_j(x) L(ray(x, u)) dx du = int int W_e(y, w) f_j(x(y, w)) L(y, w) cos(w) dw dA(y),
 // y on the lens and w into the scene. The second form defines the importance W_e [pixels / (m^2 sr)]: the
-// Jacobian of sample_ray() without the filter (Veach 1997, Sec. 8.3.2). It does not depend on the pixel, and
+// Jacobian of sample_ray(), for the measurement equation (Veach 1997). It does not depend on the pixel, and
 // over rays through the film W_e cos integrates to width * height. Where one ray is traced a pixel, rays have
 // the density pdf_area * pdf_solid_angle = W_e cos, which is why each has the weight 1.
 #pragma once
@@ -44,7 +44,7 @@ struct CameraSample {
     Vec3 wi;         ///< unit, from the point to the camera
     float distance;  ///< to `origin` [m]
     Vec3 origin;     ///< where the ray through the point starts
-    float t_min;     ///< the near clipping plane, in distance from `origin`: nothing nearer hides the point
+    float t_min;     ///< the near clipping plane, in distance from `origin`: nothing nearer hides or dims
     Vec2 film_position;
     float weight;  ///< W_e / pdf, with the cosine at the camera where there is no pdf; without visibility,
                    ///< transmittance and the point's own cosine

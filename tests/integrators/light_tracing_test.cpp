@@ -29,29 +29,39 @@ class LightTracer final : public core::Estimator {
             core::WalkContext context;
             context.rng = core::Rng(core::hash_keys(options_.seed, pass.index, path));
             core::Rng lens(core::hash_keys(options_.seed, path, pass.index, 7));
-            lights::follow_light_path<false>(
-                scene_, settings_, sampler, context,
-                [&](const core::ScatteringVertex& vertex, const Rgb& alpha, int) {
-                    connect(vertex, alpha, lens.next_vec2(), pass.filter, image);
-                });
+            const auto visit = [&](const core::ScatteringVertex& vertex, const Rgb& alpha, int) {
+                connect(vertex, alpha, lens, pass.filter, image);
+            };
+            if (scene_.has_media())
+                lights::follow_light_path<true>(scene_, settings_, sampler, context, visit);
+            else
+                lights::follow_light_path<false>(scene_, settings_, sampler, context, visit);
         }
         return true;
     }
 
   private:
-    void connect(const core::ScatteringVertex& vertex, const Rgb& alpha, const core::Vec2& u_lens,
+    void connect(const core::ScatteringVertex& vertex, const Rgb& alpha, core::Rng& rng,
                  const core::PixelFilter& filter, core::PassImage& image) const {
         if (!vertex.connectable()) return;
-        const auto s = scene_.camera().sample_importance(vertex.position, u_lens, filter.radius());
+        const auto s = scene_.camera().sample_importance(vertex.position, rng.next_vec2(), filter.radius());
         if (!s) return;
         const auto mode = error_ == Error::mode ? core::TransportMode::radiance : core::TransportMode::power;
         const Rgb f = vertex.eval_cos(s->wi, mode) * core::adjoint_correction(vertex, vertex.wo, s->wi);
         if (core::is_black(f)) return;
         const float near = error_ == Error::clipping ? 0.0f : s->t_min;
-        if (scene_.rays().occluded({vertex.ray_origin(s->wi), s->wi, 0.0f, s->distance - near})) return;
+        const core::Ray ray{vertex.ray_origin(s->wi), s->wi, 0.0f, s->distance - near};
+        if (scene_.rays().occluded(ray)) return;
+        const Rgb light = alpha * f * transmittance(ray, rng);
         core::for_each_splat(
             filter, s->film_position, options_.width, options_.height,
-            [&](int x, int y, float weight) { image.at(0, x, y) += alpha * f * (s->weight * weight); });
+            [&](int x, int y, float weight) { image.at(0, x, y) += light * (s->weight * weight); });
+    }
+    Rgb transmittance(const core::Ray& ray, core::Rng& rng) const {
+        if (!scene_.has_media()) return Rgb(1.0f);
+        core::TrackingCounters counters;
+        return scene_.transmittance(ray.origin, ray.at(ray.t_max),
+                                    scene_.medium_state_at(ray.origin, nullptr), rng, counters);
     }
 
     const core::Scene& scene_;
@@ -109,7 +119,7 @@ std::string full_box() {
 }  // namespace
 
 TEST_CASE("light traced to the camera is the picture of path", "[integrators][light_tracing][equality]") {
-    const RenderSpec eye_spec{4, 1500, 1, {{"scattered", {"direct", "indirect"}}}}, light_spec{4, 150, 2};
+    const RenderSpec eye_spec{4, 800, 1, {{"scattered", {"direct", "indirect"}}}}, light_spec{4, 100, 2};
     for (const std::string& sensor : sensors()) {
         INFO(sensor);
         const auto scene = scene_from(with_sensor(full_box(), sensor));
@@ -129,6 +139,21 @@ TEST_CASE("light traced to the camera is the picture of path", "[integrators][li
         CHECK(differs(Error::mode));      // glass scales power as if it were radiance
         CHECK(differs(Error::clipping));  // what lies before the near plane casts its shadow
     }
+}
+
+TEST_CASE("light traced to the camera through fog is the picture of volpath",
+          "[integrators][light_tracing][equality]") {
+    const std::string hazy =
+        box(mixed, fog("0.6, 0.9, 1.2", R"(<phase type="hg"><float name="g" value="0.6"/></phase>)"));
+    const RenderSpec eye_spec{
+        4, 800, 1, {{"scattered", {"direct", "indirect", "single_scattering", "multiple_scattering"}}}};
+    const auto scene = scene_from(with_sensor(hazy, sensors()[1]));
+    const auto eye = render_statistics(*scene, *integrator_from(R"(<integrator type="volpath"/>)"), eye_spec);
+    const auto light = render_statistics(*scene, LightTracing(4000), {4, 100, 2});
+    const ZTest test = same_mean(light, "scattered", eye, "scattered");
+    INFO(test.report);
+    CHECK(test.passed);
+    CHECK_FALSE(same_mean(light.scaled(1.04), "scattered", eye, "scattered").passed);
 }
 
 TEST_CASE("a plane in the sun is as bright from the sun's side", "[integrators][light_tracing]") {

@@ -209,6 +209,32 @@ TEST_CASE("points that the camera does not see have no importance", "[cameras]")
     }
 }
 
+TEST_CASE("importance knows no unit of length", "[cameras]") {
+    for (const float scale : {1e-3f, 1e5f}) {
+        const std::vector<CameraCase> metres = camera_cases(), scaled = camera_cases(double(scale));
+        for (std::size_t k = 0; k < metres.size(); ++k) {
+            INFO(metres[k].name << " times " << scale);
+            const Vec3 p(metres[k].camera().to_world().point(in_view));
+            const auto a = metres[k].camera().sample_importance(p, some_lens, 100.0f),
+                       b = scaled[k].camera().sample_importance(scale * p, some_lens, 100.0f);
+            REQUIRE(a);
+            REQUIRE(b);
+            CHECK(glm::length(a->film_position - b->film_position) < 1e-3f);
+            CHECK(b->weight * scale * scale == Approx(a->weight).epsilon(1e-4));
+            CHECK(b->distance == Approx(a->distance * scale).epsilon(1e-5));
+            // A direction's density has none.
+            CHECK(b->pdf_solid_angle == Approx(a->pdf_solid_angle).epsilon(1e-4));
+            const auto i = metres[k].camera().importance(a->origin, -a->wi, 100.0f),
+                       j = scaled[k].camera().importance(b->origin, -b->wi, 100.0f);
+            REQUIRE(i);
+            REQUIRE(j);
+            CHECK(j->pdf_area * j->pdf_solid_angle / j->importance ==
+                  Approx(i->pdf_area * i->pdf_solid_angle / i->importance).epsilon(1e-4));
+            CHECK(is_finite(j->importance));
+        }
+    }
+}
+
 TEST_CASE("every registered sensor has a chi-square case", "[cameras][chi2][coverage]") {
     std::set<std::string> tested;
     for (const CameraCase& c : camera_cases()) tested.insert(c.type);
