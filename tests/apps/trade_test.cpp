@@ -390,7 +390,7 @@ TEST_CASE("Wrong usage of trade ends with 2", "[trade][command]") {
 
 TEST_CASE("An interrupted trade continues to the errors of one that was not", "[trade][command]") {
     const JudgedFolder folder;
-    write_file(folder.file("methods.json"), R"({"passes": 200, "seeds": 2, "methods": [
+    write_file(folder.file("methods.json"), R"({"passes": 400, "seeds": 2, "methods": [
         {"name": "path", "integrator": "path"},
         {"name": "VPL", "integrator": "mote_vpl", "settings": {"paths": 32}}]})");
     const auto arguments = [](const std::string& out) {
@@ -404,12 +404,25 @@ TEST_CASE("An interrupted trade continues to the errors of one that was not", "[
 
     for (const auto& [name, signal_number] : {std::pair("stopped", SIGINT), std::pair("killed", SIGKILL)}) {
         INFO(name);
-        MoteProcess process(folder, arguments(name));
         const std::string film = folder.file(std::string(name) + "/checkpoints/vpl.seed1.film");
-        REQUIRE(wait_for_file(process, film));
-        process.send(signal_number);
-        const RunResult r = process.wait();
+        // On a busy machine the signal may come when the seed is done, and its checkpoint gone or of no more
+        // use: then once more.
+        const auto cut_in_time = [&, out = std::string(name)] {
+            if (!fs::exists(film)) return false;
+            const auto records = folder.records(out);
+            return std::none_of(records.begin(), records.end(), [](const Record& record) {
+                return record.method == "VPL" && record.seed == 1 && record.final;
+            });
+        };
+        RunResult r;
+        for (int attempt = 0; attempt < 20 && !cut_in_time(); ++attempt) {
+            fs::remove_all(folder.file(name));
+            MoteProcess process(folder, arguments(name));
+            if (wait_for_file(process, film)) process.send(signal_number);
+            r = process.wait();
+        }
         INFO(r.err);
+        REQUIRE(cut_in_time());
         CHECK(r.exit_code == (signal_number == SIGINT ? 130 : -1));
         const auto part = folder.records(name);
         CHECK(part.size() < whole.size());
@@ -443,14 +456,17 @@ TEST_CASE("Within a time limit every method gets its time", "[trade][command]") 
                                       "--time", "0.3", "--seeds", "1"});
     INFO(r.err);
     REQUIRE(r.exit_code == 0);
+    int methods_done = 0;
     for (const Record& record : folder.records("out")) {
         if (!record.final) continue;
+        ++methods_done;
         INFO(record.method << " " << record.passes);
         CHECK(record.passes >= 4);
         const double pass = (record.wall - record.build) / record.passes;
         CHECK(record.wall + 0.5 * pass >= 0.299);
         CHECK(record.wall < 3.0);  // far less, unless the system holds a pass up
     }
+    CHECK(methods_done == 3);
 }
 
 TEST_CASE("A bias is found where there is one, and only there", "[trade][command]") {
