@@ -71,6 +71,11 @@ class MajorantGrid {
     }
 
   private:
+    /// Nearer than that a ray walks from cell to cell, even where they are empty.
+    static constexpr int shortest_leap = 1;
+
+    bool clip_with(const core::Vec3d& origin, const core::Vec3d& direction, const core::Vec3d& inverse,
+                   double& t_begin, double& t_end) const;
     std::size_t cell_index(int x, int y, int z) const {
         return (std::size_t(z) * std::size_t(resolution_.y) + std::size_t(y)) * std::size_t(resolution_.x) +
                std::size_t(x);
@@ -84,7 +89,12 @@ class MajorantGrid {
     std::int64_t edge_ = 1;
     Range outside_;
     bool outside_is_zero_ = false;
+    void find_distances();
+
     std::vector<Range> cells_;
+    /// How many cells away, along the axis on which it is farthest, the nearest cell is that is not empty: 0
+    /// for those themselves. A walk leaps over what lies nearer.
+    std::vector<std::uint8_t> distance_;
     std::vector<double> covered_;  ///< voxels reported per cell; only while building
 };
 
