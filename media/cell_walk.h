@@ -33,7 +33,8 @@ class CellWalk {
         up_ = direction_ > zero ? zero + 1.0 : zero;
         step_ = up_ + up_ - 1.0;
         last_cell_ = count - 1.0;
-        end_ = least(t_of(direction_ > zero ? count : zero));
+        set_t_of(direction_ > zero ? count : zero, next_);
+        end_ = least(next_);
         const std::int64_t row = resolution.x, slice = row * resolution.y;
         stride_ = Vec4l{1, row, slice, 0};
         signed_stride_ = direction_ > zero ? stride_ : -stride_;
@@ -49,7 +50,7 @@ class CellWalk {
         const Vec4l cell = __builtin_convertvector(whole, Vec4l) * stride_;
         index_ = cell[0] + cell[1] + cell[2];
         border_ = __builtin_convertvector(whole, Vec4d) + up_;
-        next_ = t_of(border_), after_ = t_of(border_ + step_);
+        set_t_of(border_, next_), set_t_of(border_ + step_, after_);
         crossing_ = least(next_);
     }
     /// Place of the cell in an array with x fastest.
@@ -64,14 +65,19 @@ class CellWalk {
         next_ = here ? after_ : next_;
         border_ += here ? step_ : zero;
         crossing_ = least(next_);
-        after_ = t_of(border_ + step_);
+        set_t_of(border_ + step_, after_);
     }
     /// The t at which the ray has left all cells that lie at most `cells` beside this one.
-    double leap(int cells) const { return least(t_of(border_ + double(cells) * step_)); }
+    double leap(int cells) const {
+        Vec4d t;
+        set_t_of(border_ + double(cells) * step_, t);
+        return least(t);
+    }
 
   private:
-    Vec4d t_of(const Vec4d& face) const {
-        return parallel_ ? Vec4d{} + std::numeric_limits<double>::infinity() : (face - offset_) * inverse_;
+    /// By reference: vectors as results mean different things with and without AVX.
+    void set_t_of(const Vec4d& face, Vec4d& t) const {
+        t = parallel_ ? Vec4d{} + std::numeric_limits<double>::infinity() : (face - offset_) * inverse_;
     }
     static double least(const Vec4d& v) {
         const double xy = v[0] < v[1] ? v[0] : v[1];

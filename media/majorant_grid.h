@@ -4,7 +4,7 @@
 // lookups in thin parts, so space is divided into cells, each with the bound of its own trilinear support
 // (Szirmay-Kalos et al. 2011; Novák et al. 2014). The lower bound serves residual ratio tracking. All
 // coordinates are index space: voxel centres at integers; the box given at construction holds every position
-// whose value differs from the outside's. Cells are cubes of 4 voxels or more: as small as a limit on their
+// whose value differs from the outside's. Cells are cubes of 8 voxels or more: as small as a limit on their
 // number allows.
 #pragma once
 
