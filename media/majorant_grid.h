@@ -4,7 +4,7 @@
 // lookups in thin parts, so space is divided into cells, each with the bound of its own trilinear support
 // (Szirmay-Kalos et al. 2011; Novák et al. 2014). The lower bound serves residual ratio tracking. All
 // coordinates are index space: voxel centres at integers; the box given at construction holds every position
-// whose value differs from the outside's. Cells are cubes of 4 voxels or more: as small as a limit on their
+// whose value differs from the outside's. Cells are cubes of 8 voxels or more: as small as a limit on their
 // number allows.
 #pragma once
 
@@ -71,6 +71,11 @@ class MajorantGrid {
     }
 
   private:
+    /// Nearer than that a ray walks from cell to cell, even where they are empty.
+    static constexpr int shortest_leap = 1;
+
+    bool clip_with(const core::Vec3d& origin, const core::Vec3d& direction, const core::Vec3d& inverse,
+                   double& t_begin, double& t_end) const;
     std::size_t cell_index(int x, int y, int z) const {
         return (std::size_t(z) * std::size_t(resolution_.y) + std::size_t(y)) * std::size_t(resolution_.x) +
                std::size_t(x);
@@ -84,7 +89,12 @@ class MajorantGrid {
     std::int64_t edge_ = 1;
     Range outside_;
     bool outside_is_zero_ = false;
+    void find_distances();
+
     std::vector<Range> cells_;
+    /// How many cells away, along the axis on which it is farthest, the nearest cell is that is not empty: 0
+    /// for those themselves. A walk leaps over what lies nearer.
+    std::vector<std::uint8_t> distance_;
     std::vector<double> covered_;  ///< voxels reported per cell; only while building
 };
 

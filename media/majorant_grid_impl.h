@@ -1,6 +1,7 @@
 // The template bodies of majorant_grid.h.
 #pragma once
 
+#include "media/cell_walk.h"
 #include "media/majorant_grid.h"
 
 namespace mote::media {
@@ -19,7 +20,7 @@ MajorantGrid<Value>::MajorantGrid(const Voxel& lower, const Voxel& upper, const 
       outside_is_zero_(detail::largest(outside.upper) == 0.0) {
     const Voxel extent = glm::max(upper - lower, Voxel(1));
     const auto cells_along = [&](int axis) { return (extent[axis] + edge_ - 1) / edge_; };
-    for (edge_ = 4;
+    for (edge_ = 8;
          double(cells_along(0)) * double(cells_along(1)) * double(cells_along(2)) > double(max_cells);)
         edge_ *= 2;
     for (int axis = 0; axis < 3; ++axis) resolution_[axis] = int(cells_along(axis));
@@ -92,6 +93,33 @@ void MajorantGrid<Value>::finish(const Value& background) {
                 cells_[cell].upper = glm::max(cells_[cell].upper, background);
             }
     covered_ = {};
+    find_distances();
+}
+
+/// In two sweeps: each cell looks at the neighbours that its sweep has met, which is exact for this distance.
+template <typename Value>
+void MajorantGrid<Value>::find_distances() {
+    constexpr int most = 255;
+    distance_.resize(cells_.size());
+    for (std::size_t i = 0; i < cells_.size(); ++i)
+        distance_[i] = detail::largest(cells_[i].upper) > 0.0 ? 0 : most;
+    const auto inside = [&](const glm::ivec3& c) {
+        return glm::all(glm::greaterThanEqual(c, glm::ivec3(0))) && glm::all(glm::lessThan(c, resolution_));
+    };
+    const auto look = [&](const glm::ivec3& cell, int sweep) {
+        std::uint8_t& distance = distance_[cell_index(cell.x, cell.y, cell.z)];
+        for (int n = 0; n < 13; ++n) {  // half of the 27 places around: -1 -1 -1 to -1 0 0
+            const glm::ivec3 c = cell + sweep * glm::ivec3(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+            if (inside(c))
+                distance = std::uint8_t(std::min<int>(distance, distance_[cell_index(c.x, c.y, c.z)] + 1));
+        }
+    };
+    const glm::ivec3 n = resolution_;
+    for (const int sweep : {1, -1})
+        for (int z = 0; z < n.z; ++z)
+            for (int y = 0; y < n.y; ++y)
+                for (int x = 0; x < n.x; ++x)
+                    look(sweep > 0 ? glm::ivec3(x, y, z) : n - 1 - glm::ivec3(x, y, z), sweep);
 }
 
 template <typename Value>
@@ -112,6 +140,7 @@ void MajorantGrid<Value>::merge_cells() {
     edge_ = std::max({extent.x, extent.y, extent.z});
     resolution_ = glm::ivec3(1);
     cells_.assign(1, all);
+    find_distances();
 }
 
 template <typename Value>
@@ -125,14 +154,19 @@ double MajorantGrid<Value>::certain_share() const {
 template <typename Value>
 bool MajorantGrid<Value>::clip(const core::Vec3d& origin, const core::Vec3d& direction, double& t_begin,
                                double& t_end) const {
+    return clip_with(origin, direction, 1.0 / direction, t_begin, t_end);
+}
+
+template <typename Value>
+bool MajorantGrid<Value>::clip_with(const core::Vec3d& origin, const core::Vec3d& direction,
+                                    const core::Vec3d& inverse, double& t_begin, double& t_end) const {
     for (int axis = 0; axis < 3; ++axis) {
         const double lo = double(lower_[axis]), hi = double(upper_[axis]);
         if (direction[axis] == 0.0) {
             if (origin[axis] < lo || origin[axis] > hi) return false;
             continue;
         }
-        const double inverse = 1.0 / direction[axis];
-        const double a = (lo - origin[axis]) * inverse, b = (hi - origin[axis]) * inverse;
+        const double a = (lo - origin[axis]) * inverse[axis], b = (hi - origin[axis]) * inverse[axis];
         t_begin = std::max(t_begin, std::min(a, b)), t_end = std::min(t_end, std::max(a, b));
     }
     return t_begin < t_end;
@@ -142,63 +176,41 @@ template <typename Value>
 template <typename Visit>
 void MajorantGrid<Value>::walk(const core::Vec3d& origin, const core::Vec3d& direction, double t_begin,
                                double t_end, Visit&& visit) const {
+    using detail::CellWalk;
     // Rarely needed, so that `visit` is compiled into the loop below and once for all that lies outside.
     const auto beyond = [&](double t0, double t1) __attribute__((noinline)) {
         return outside_is_zero_ || !(t0 < t1) || visit(outside_, t0, t1);
     };
+    const core::Vec3d inverse = 1.0 / direction;
     double enter = t_begin, leave = t_end;
-    if (!has_cells() || !clip(origin, direction, enter, leave)) {
+    if (!has_cells() || !clip_with(origin, direction, inverse, enter, leave)) {
         beyond(t_begin, t_end);
         return;
     }
     if (!beyond(t_begin, enter)) return;
 
-    // Amanatides & Woo 1987, with every crossing computed from the cell's integer coordinate, so that nothing
-    // accumulates. A ray that crosses two faces at once crosses both. Without branches on the axis: which
-    // face comes next is a matter of chance.
-    const double to_cells = 1.0 / double(edge_);
-    struct Axis {
-        double offset, inverse, step;  ///< of the ray in cells; 1 or -1
-        double border, next, after;    ///< the face ahead; its t, and that of the face behind it
-        std::ptrdiff_t stride;
-        double t_of(double face) const { return (face - offset) * inverse; }
-        std::ptrdiff_t cross(double t) {
-            const bool here = next == t;
-            next = here ? after : next, border += here ? step : 0.0;
-            after = t_of(border + step);
-            return here ? stride : 0;
-        }
-    };
-    std::array<Axis, 3> axes;
-    std::ptrdiff_t index = 0, stride = 1;
-    double last = leave;  // a crossing from here on leaves the cells
-    for (int i = 0; i < 3; ++i) {
-        Axis& a = axes[std::size_t(i)];
-        const double d = direction[i] * to_cells;
-        const bool up = d > 0.0;
-        a.offset = (origin[i] - double(lower_[i])) * to_cells;
-        const int cell = int(std::clamp(std::floor(a.offset + enter * d), 0.0, double(resolution_[i] - 1)));
-        index += cell * stride;
-        a.stride = up ? stride : -stride, stride *= resolution_[i];
-        a.border = up ? cell + 1 : cell, a.step = up ? 1.0 : -1.0;
-        a.inverse = d != 0.0 ? 1.0 / d : 0.0;
-        a.next = a.after = std::numeric_limits<double>::infinity();
-        if (d == 0.0) continue;
-        a.next = a.t_of(a.border), a.after = a.t_of(a.border + a.step);
-        last = std::min(last, a.t_of(up ? double(resolution_[i]) : 0.0));
-    }
-    Axis x = axes[0], y = axes[1], z = axes[2];
+    CellWalk walk(origin - core::Vec3d(lower_), direction, inverse, double(edge_), resolution_);
+    walk.go_to(enter);
+    const double last = std::min(leave, walk.end());  // a crossing from here on leaves the cells
     for (double t = enter;;) {
-        const double crossing = std::min(x.next, std::min(y.next, z.next));
+        const std::size_t cell = walk.cell();
+        const Range& range = cells_[cell];
+        const bool empty = detail::largest(range.upper) == 0.0;
+        if (empty && distance_[cell] > shortest_leap) {
+            t = walk.leap(distance_[cell] - 1);
+            if (!(t < last)) break;
+            walk.go_to(t);
+            continue;
+        }
+        const double crossing = walk.next_crossing();
         const bool leaves = !(crossing < last);
         const double t_exit = leaves ? leave : crossing;
         if (t_exit > t) {
-            const Range& range = cells_[std::size_t(index)];
-            if (detail::largest(range.upper) != 0.0 && !visit(range, t, t_exit)) return;
+            if (!empty && !visit(range, t, t_exit)) return;
             t = t_exit;
         }
         if (leaves) break;
-        index += x.cross(crossing), index += y.cross(crossing), index += z.cross(crossing);
+        walk.cross();
     }
     beyond(leave, t_end);
 }

@@ -31,7 +31,7 @@ std::optional<double> TrackedMedium<Grid>::track(const core::Ray& ray, core::Rng
                 at_piece(range, length);
                 return true;
             }
-            s += depth / rate_per_metre;
+            s += depth / rate_per_metre;  // -ln(u) / majorant (Woodcock et al. 1965)
             ++steps;
             const double t = t0 + s;
             const Wide density = detail::widen(cursor.lookup(origin + t * direction));
@@ -75,6 +75,8 @@ std::optional<float> TrackedMedium<Grid>::sample_collision(const core::Ray& ray,
                 emitted += weights.throughput * emission / core::average(pdfs);
             }
         }
+        // Real with the chance sigma_t / majorant of the hero, else null (Woodcock et al. 1965). Throughput
+        // and pdf of a channel c move alike, by the ratio of its chance to the hero's (Miller et al. 2019).
         const double real = detail::channel(density, hero);
         if (sample_event(real / majorant, rng)) {
             if constexpr (chromatic) {
@@ -112,6 +114,7 @@ void TrackedMedium<Grid>::connect(const core::Ray& ray, core::PathWeights& weigh
     // collisions; roulette divides the estimate alone.
     Wide passed(1.0), estimate(1.0);
     const auto at_collision = [&](const Range&, double majorant, double, const Wide& density) {
+        // T = prod (1 - sigma_t(x_i) / majorant), ratio tracking (Novák et al. 2014)
         const Wide factor = Wide(1.0) - glm::min(density, Wide(majorant)) / majorant;
         passed *= factor, estimate *= factor;
         return detail::russian_roulette(estimate, rng);
@@ -148,7 +151,7 @@ core::Rgb TrackedMedium<Grid>::by_delta_tracking(const core::Ray& ray, core::Rng
     // One random number decides for all channels: each passes with its own chance.
     Wide passes(1.0);
     const auto at_collision = [&](const Range&, double majorant, double, const Wide& density) {
-        const double u = uniform_double(rng) * majorant;
+        const double u = uniform_double(rng) * majorant;  // T = P(no real collision) (Woodcock et al. 1965)
         if constexpr (chromatic) {
             for (int c = 0; c < 3; ++c)
                 if (u <= density[c]) passes[c] = 0.0;
@@ -168,6 +171,7 @@ core::Rgb TrackedMedium<Grid>::by_ratio_tracking(const core::Ray& ray, core::Rng
                                                  core::TrackingCounters& counters) const {
     Wide estimate(1.0);
     const auto at_collision = [&](const Range&, double majorant, double, const Wide& density) {
+        // T = prod (1 - sigma_t(x_i) / majorant), ratio tracking (Novák et al. 2014)
         estimate *= Wide(1.0) - glm::min(density, Wide(majorant)) / majorant;
         return detail::russian_roulette(estimate, rng);
     };
@@ -244,6 +248,7 @@ core::Rgb TrackedMedium<Grid>::by_residual_tracking(const core::Ray& ray, core::
     };
     const auto at_collision = [&](const Range& r, double rate, double, const Wide& density) {
         const Wide residual = glm::clamp(density - detail::widen(r.lower), Wide(0.0), Wide(rate));
+        // T = exp(-control depth) prod (1 - (sigma_t(x_i) - control) / rate) (Novák et al. 2014)
         estimate *= Wide(1.0) - residual / rate;
         return detail::russian_roulette(estimate, rng);
     };

@@ -92,7 +92,7 @@ TEST_CASE("distances through dense grids, local and global majorants", "[media][
         const std::string which = majorants == media::Majorants::local ? "local" : "global";
         for (const int channels : {1, 3})
             for (const Ray& ray : {within, through}) {
-                // Cells of four voxels: several of them, empty ones and full ones.
+                // Several cells, empty voxels beside full ones.
                 const auto m = medium_of(random_grid({19, 13, 16}, channels, 7), parts_with(majorants, 1.5f));
                 REQUIRE(m->traits().chromatic == (channels == 3));
                 check(*m, ray, "grid_" + which);

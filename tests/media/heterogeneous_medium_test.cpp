@@ -79,7 +79,7 @@ TEST_CASE("a majorant that is too low is caught", "[media][heterogeneous][plante
     const auto sigmas = [&](float factor) {
         auto parts = tests::medium_parts(albedo, 3.0f);
         parts.plant_majorant_factor = factor;
-        // A peak in every cell of 4 voxels, so that the bound is met
+        // A peak in every cell, so that the bound is met
         const auto m = tests::medium_of(
             tests::vol_grid({12, 12, 12}, 1,
                             [](int x, int y, int z) { return Rgb((x + y + z) % 3 ? 1.0f : 0.6f); }),
