@@ -1,4 +1,5 @@
 // Hands everything in core/ to the registry.
+#include "core/assets/register_assets.h"
 #include "core/cameras/film_objects.h"
 #include "core/objects/registry.h"
 
@@ -7,6 +8,8 @@ namespace mote::core {
 void register_core(Registry& registry) {
     register_materials(registry);
     register_geometry(registry);
+    register_mesh_files(registry);
+    register_bitmap_texture(registry);
     register_sensors(registry);
     register_film_objects(registry);
 }

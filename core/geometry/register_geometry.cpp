@@ -11,7 +11,6 @@ Parameter to_world_parameter(const std::string& description) {
 Parameter flip_normals_parameter() { return {"flip_normals", "boolean", "false", "turn the outside in"}; }
 
 void register_geometry(Registry& registry) {
-    register_mesh_files(registry);
     register_primitives(registry);
     register_quadrics(registry);
 }

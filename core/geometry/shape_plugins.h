@@ -6,7 +6,6 @@
 
 namespace mote::core {
 
-void register_mesh_files(Registry& registry);  // obj, ply, mesh
 void register_primitives(Registry& registry);  // rectangle, cube
 void register_quadrics(Registry& registry);    // sphere, disk, cylinder
 

@@ -16,7 +16,6 @@ void register_materials(Registry& registry) {
     register_phong(registry);
     register_null(registry);
     register_twosided(registry);
-    register_bitmap_texture(registry);
     register_checkerboard_texture(registry);
 }
 

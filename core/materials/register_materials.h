@@ -16,7 +16,6 @@ void register_rough_plastic(Registry& registry);
 void register_phong(Registry& registry);
 void register_null(Registry& registry);
 void register_twosided(Registry& registry);
-void register_bitmap_texture(Registry& registry);
 void register_checkerboard_texture(Registry& registry);
 
 }  // namespace mote::core

@@ -37,6 +37,7 @@ bool plain_contributions(const ReceiverLanes& x, const VirtualPointLight& y, flo
     const core::Rgb intensity = y.intensity * light_weight;  // I_j, Eq. 10.3
     const float ir = intensity.x, ig = intensity.y, ib = intensity.z;
     const auto depth = std::int32_t(y.depth);
+    const Weight own_weight = weight;  // a copy: its members are no loads within the loop
     float brightest = 0.0f;
     MOTE_INDEPENDENT_LANES
     for (int i = 0; i < ReceiverLanes::width; ++i) {
@@ -52,7 +53,8 @@ bool plain_contributions(const ReceiverLanes& x, const VirtualPointLight& y, flo
         const float c_x = min_of(side_x, cos_x) > 0.0f ? cos_x * inv_d : x.in_medium[i];
         const float c_y = min_of(side_y, cos_y) > 0.0f ? cos_y * inv_d : y_in_medium;
         const float g = c_x * c_y * (inv_d * inv_d);  // G* = C* C* / d^2
-        const float weighted = depth <= x.max_vpl_depth[i] ? weight(g, d2, c_x, c_y) : 0.0f;
+        const float weighted_g = own_weight(g, d2, c_x, c_y);
+        const float weighted = depth <= x.max_vpl_depth[i] ? weighted_g : 0.0f;
         // f* w(G*) I_j of Eqs. 10.4 and 10.5
         const float r = x.weight_r[i] * ir * weighted;
         const float gr = x.weight_g[i] * ig * weighted;

@@ -1,5 +1,5 @@
 // Mesh files: what OBJ and PLY say, what others damaged, and what a thousand random changes do.
-#include "core/geometry/mesh_file.h"
+#include "core/assets/mesh_file.h"
 
 #include <cstring>
 #include <filesystem>

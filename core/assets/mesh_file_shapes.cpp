@@ -1,6 +1,7 @@
 // Shapes "obj", "ply" and "mesh": triangle meshes from files.
+#include "core/assets/mesh_file.h"
+#include "core/assets/register_assets.h"
 #include "core/geometry/mesh_edits.h"
-#include "core/geometry/mesh_file.h"
 #include "core/geometry/shape_plugins.h"
 
 namespace mote::core {

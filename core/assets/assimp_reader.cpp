@@ -17,8 +17,8 @@
 #include <cstring>
 #include <fstream>
 
+#include "core/assets/mesh_file.h"
 #include "core/geometry/mesh_edits.h"
-#include "core/geometry/mesh_file.h"
 #include "core/geometry/polygon_triangulation.h"
 
 namespace mote::core {

@@ -5,9 +5,9 @@
 #include <bit>
 #include <cstring>
 
-#include "core/geometry/mesh_file.h"
+#include "core/assets/mesh_file.h"
+#include "core/assets/text_scanner.h"
 #include "core/geometry/polygon_triangulation.h"
-#include "core/geometry/text_scanner.h"
 
 namespace mote::core {
 namespace {

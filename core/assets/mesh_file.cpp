@@ -1,5 +1,5 @@
 // load_mesh(): chooses the reader, then repairs or refuses what all formats have in common.
-#include "core/geometry/mesh_file.h"
+#include "core/assets/mesh_file.h"
 
 #include <algorithm>
 #include <filesystem>

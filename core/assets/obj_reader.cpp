@@ -4,9 +4,9 @@
 // of first use by a face, as Mitsuba numbers them.
 #include <algorithm>
 
-#include "core/geometry/mesh_file.h"
+#include "core/assets/mesh_file.h"
+#include "core/assets/text_scanner.h"
 #include "core/geometry/polygon_triangulation.h"
-#include "core/geometry/text_scanner.h"
 
 namespace mote::core {
 namespace {
