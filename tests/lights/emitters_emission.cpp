@@ -78,10 +78,12 @@ TEST_CASE("particles start where their densities say", "[lights][emitters]") {
         INFO(example.name);
         const auto traits = example.light->traits();
         Rng rng(11);
+        int started = 0;
         for (int i = 0; i < 2000; ++i) {
             const Vec2 u_position = rng.next_vec2();
             const auto s = example.light->sample_emission(u_position, rng.next_vec2());
             if (!s) continue;
+            ++started;
             REQUIRE(std::fabs(glm::length(s->direction) - 1.0f) < 1e-5f);
             REQUIRE(s->pdf_area > 0.0f);
             REQUIRE(s->pdf_solid_angle > 0.0f);
@@ -102,6 +104,7 @@ TEST_CASE("particles start where their densities say", "[lights][emitters]") {
                 REQUIRE(std::fabs(s->pdf_solid_angle * pi - glm::dot(s->normal, s->direction)) < 1e-4f);
             }
         }
+        CHECK(started > 100);
     }
 }
 

@@ -10,7 +10,8 @@ using namespace mote::tests;
 
 namespace {
 
-/// Areas of the triangles, and the length of the sum of their normals: equal when none is turned over.
+/// Areas of the triangles, and the length of the sum of their normals: equal when none is turned over. That
+/// sum is the vector area of the polygon, whether it crosses itself or not.
 std::pair<double, double> areas(const std::vector<Vec3>& p) {
     std::vector<std::uint32_t> polygon(p.size());
     std::iota(polygon.begin(), polygon.end(), 0u);
@@ -20,9 +21,14 @@ std::pair<double, double> areas(const std::vector<Vec3>& p) {
     double sum = 0.0;
     Vec3d normal(0.0);
     for (const auto& t : triangles) {
+        CHECK((t[0] != t[1] && t[1] != t[2] && t[2] != t[0]));
         const Vec3d n = 0.5 * glm::cross(Vec3d(p[t[1]] - p[t[0]]), Vec3d(p[t[2]] - p[t[0]]));
         sum += glm::length(n), normal += n;
     }
+    Vec3d vector_area(0.0);
+    for (std::size_t i = 0; i < p.size(); ++i)
+        vector_area += 0.5 * glm::cross(Vec3d(p[i]), Vec3d(p[(i + 1) % p.size()]));
+    CHECK(glm::length(normal - vector_area) < 1e-9 * double(p.size()));
     return {sum, glm::length(normal)};
 }
 
@@ -50,11 +56,12 @@ TEST_CASE("polygons keep their area", "[geometry][polygon]") {
 }
 
 TEST_CASE("polygons that cross themselves or have no area end", "[geometry][polygon]") {
-    areas({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}});
-    areas({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {1.5f, 0, 0}});
-    areas({{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}});
+    CHECK(areas({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}}).second == 0.0);
+    CHECK(areas({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {1.5f, 0, 0}}).first == 0.0);
+    CHECK(areas({{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}}).first == 0.0);
     Rng rng(12);
     std::vector<Vec3> tangle;
     for (int i = 0; i < 256; ++i) tangle.push_back({rng.next_float(), rng.next_float(), rng.next_float()});
-    areas(tangle);
+    const auto [sum, oriented] = areas(tangle);
+    CHECK(sum > oriented);
 }
