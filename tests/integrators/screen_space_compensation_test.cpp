@@ -227,7 +227,7 @@ TEST_CASE("screen-space compensation finds the even part of glossy surfaces", "[
         } sum;
         const auto scene = corner_with(bsdf, true);
         const auto found = layer(*scene);
-        const auto buffer = screenspace::make_g_buffer(*scene, 64, 64);
+        const auto buffer = screenspace::make_g_buffer(*scene, scene->camera(), 64, 64);
         for (std::size_t i = 0; i < found.size(); ++i) {
             if (!buffer.hit[i] || buffer.shading_normal[i].y < 0.99f) continue;
             const core::Vec3 wo = core::Frame(buffer.shading_normal[i]).to_local(-buffer.view[i]);
@@ -278,8 +278,8 @@ TEST_CASE("layers bring back what hidden walls send", "[compensation][ssbc][laye
     const auto scene = scene_from(corner_with_board(), 96), open = scene_from(corner, 96);
     const Rendered one = render(*scene, screen_space(3, 1), 10), two = render(*scene, screen_space(3, 2), 10),
                    whole = render(*open, screen_space(3, 1), 10);
-    const auto buffer = screenspace::make_g_buffer(*scene, 96, 96),
-               behind = screenspace::make_g_buffer(*open, 96, 96);
+    const auto buffer = screenspace::make_g_buffer(*scene, scene->camera(), 96, 96),
+               behind = screenspace::make_g_buffer(*open, open->camera(), 96, 96);
     const auto board = [&](std::size_t i) { return buffer.distance[i] != behind.distance[i]; };
     double with_one = 0.0, with_two = 0.0, all = 0.0;
     int hidden = 0, border = 0;
