@@ -47,9 +47,10 @@ float transmittance(const Scene& scene, const Vec3& from, const Vec3& to) {
 
 struct TestSphere {
     std::shared_ptr<AnalyticShape> shape = make_sphere(Vec3d(0.0), 1.0, Transform(), false);
+    /// With an exterior of its own it stands for an open wall, which parts the outside.
     TestSphere(std::uint32_t index, std::shared_ptr<Medium> in, std::shared_ptr<Medium> out = nullptr) {
         shape->index = index, shape->interior = std::move(in), shape->exterior = std::move(out);
-        shape->has_medium_boundary = true;
+        shape->has_medium_boundary = true, shape->parts_the_outside = shape->exterior != nullptr;
     }
     const Shape& operator*() const { return *shape; }
 };
@@ -75,7 +76,7 @@ TEST_CASE("Inside several shapes the one declared last wins, whatever the order 
     CHECK_FALSE(two.inside_any());
 }
 
-TEST_CASE("The medium outside follows what shapes declare", "[scene][media]") {
+TEST_CASE("The medium outside follows what open walls declare, never closed shapes", "[scene][media]") {
     const auto fog = std::make_shared<FakeMedium>(), smoke = std::make_shared<FakeMedium>();
     const TestSphere both(0, smoke, fog), plain(1, smoke);
     MediumState s;
@@ -89,6 +90,13 @@ TEST_CASE("The medium outside follows what shapes declare", "[scene][media]") {
     CHECK(s.outside() == fog.get());
     s.leave(*both);
     CHECK(s.current() == fog.get());
+    // A closed shape leaves the outside as it is, whatever it declares.
+    TestSphere closed(3, smoke, fog);
+    closed.shape->parts_the_outside = false;
+    s.set_outside(nullptr);
+    s.enter(*closed), s.leave(*closed), s.leave(*closed);
+    CHECK(s.current() == nullptr);
+    s.set_outside(fog.get());
     // A start on the inner side, not counted as inside: leaving leads to the exterior.
     s.set_outside(smoke.get());
     s.leave(*both);
