@@ -18,7 +18,6 @@
 #include "integrators/register_integrators.h"
 #include "lights/register_lights.h"
 #include "lights/shadow_maps/volumetric_shadow_map.h"
-#include "media/heterogeneous_medium.h"
 #include "media/register_media.h"
 
 namespace mote::benchmarks {
@@ -123,10 +122,8 @@ struct Lamp {
         const Medium& smoke = *scene.media().front();
         const auto part = intersect(smoke.bounds(), Ray{position, glm::normalize(d), 0.0f, glm::length(d)});
         if (!part) return 1.0;
-        const auto& grid = dynamic_cast<const media::HeterogeneousMedium&>(smoke);
         const Ray inside{position, glm::normalize(d), part->t0, part->t1};
-        const float step = 0.1f * smoke.traits().voxel_size;
-        return std::exp(-grid.optical_depth_by_marching(inside, step, counters).x);
+        return std::exp(-smoke.optical_depth_along(inside, 0.1f, counters).x);
     }
 };
 
