@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "core/math/kd_tree.h"
+#include "core/scene/media_along.h"
 
 namespace mote::compensation {
 
@@ -25,14 +26,16 @@ bool reflects_only(const SphericalLight& light) {
     return !light.detail || reflects_only(light.detail->vertex);
 }
 
-/// The sum over all samples; `visible(w)` is asked only about directions that carry light.
-template <typename Visible>
+/// The sum over all samples; `arrives(w)`, the share of the light, is asked only about directions that carry
+/// any.
+template <typename Arrives>
 Rgb sample_sphere(const ScatteringVertex& receiver, const SphericalLight& light, const SphereCone& cone,
-                  const SampleCounts& n, Rng& rng, const Visible& visible) {
+                  const SampleCounts& n, Rng& rng, const Arrives& arrives) {
     Rgb sum(0.0f);
     const auto add = [&](const Vec3& w) {
-        const Rgb value = receiver.eval_cos(w, TransportMode::radiance) * light.intensity_cos(w);
-        if (is_black(value) || !visible(w)) return;
+        Rgb value = receiver.eval_cos(w, TransportMode::radiance) * light.intensity_cos(w);
+        if (!is_black(value)) value *= arrives(w);
+        if (is_black(value)) return;
         float densities = 0.0f;
         if (n.receiver > 0)
             densities += float(n.receiver) * receiver.pdf_solid_angle(w, TransportMode::radiance);
@@ -74,11 +77,12 @@ class Gatherer {
         const SphereCone cone(receiver_.position, light.centre(), light.radius);
         const SampleCounts n(settings_.samples, glossy_, light.detail != nullptr);
         if (cone.inside() || settings_.visibility == SphereVisibility::per_light) {
-            const Rgb sum = sample_sphere(receiver_, light, cone, n, rng_, [](const Vec3&) { return true; });
-            return !is_black(sum) && sees_centre(light, cone) ? sum : Rgb(0.0f);
+            const Rgb sum =
+                sample_sphere(receiver_, light, cone, n, rng_, [](const Vec3&) { return Rgb(1.0f); });
+            return is_black(sum) ? sum : sum * from_centre(light, cone);
         }
         return sample_sphere(receiver_, light, cone, n, rng_,
-                             [&](const Vec3& w) { return sees_sphere(light, cone, w); });
+                             [&](const Vec3& w) { return from_sphere(light, cone, w); });
     }
 
   private:
@@ -92,25 +96,30 @@ class Gatherer {
     static Vec3 target(const SphericalLight& light, const Vec3& w) {
         return light.detail ? light.detail->vertex.ray_origin(-w) : light.vpl.position;
     }
-    bool free(const Vec3& origin, const Vec3& direction, float distance) const {
+    /// What surfaces and panes leave of light along a segment; there are no media.
+    Rgb free(const Vec3& origin, const Vec3& direction, float distance) const {
         ++rays_.occlusion;
-        return scene_.visible({origin, direction, 0.0f, distance * shadow_fraction});
+        const Ray segment{origin, direction, 0.0f, distance * shadow_fraction};
+        if (!scene_.visible(segment)) return Rgb(0.0f);
+        PathWeights passes;
+        connect_through_panes(scene_, segment, passes);
+        return passes.throughput;
     }
-    bool sees_centre(const SphericalLight& light, const SphereCone& cone) const {
+    Rgb from_centre(const SphericalLight& light, const SphereCone& cone) const {
         // Behind its own surface either end would start the ray inside the solid, past what hides it.
-        if (reflects_ && !(glm::dot(normal_, cone.axis()) > 0.0f)) return false;
-        if (reflects_only(light) && !(glm::dot(light.vpl.normal, cone.axis()) < 0.0f)) return false;
+        if (reflects_ && !(glm::dot(normal_, cone.axis()) > 0.0f)) return Rgb(0.0f);
+        if (reflects_only(light) && !(glm::dot(light.vpl.normal, cone.axis()) < 0.0f)) return Rgb(0.0f);
         const Vec3 origin = receiver_.ray_origin(cone.axis());
         const Vec3 to = target(light, cone.axis()) - origin;
         const float distance = glm::length(to);
-        return !(distance > 0.0f) || free(origin, to / distance, distance);
+        return distance > 0.0f ? free(origin, to / distance, distance) : Rgb(1.0f);
     }
-    bool sees_sphere(const SphericalLight& light, const SphereCone& cone, const Vec3& w) const {
+    Rgb from_sphere(const SphericalLight& light, const SphereCone& cone, const Vec3& w) const {
         const Vec3 origin = receiver_.ray_origin(w);
         // Never 0/0: a direction along the plane carries no light and is not asked about.
         const float to_plane =
             glm::dot(target(light, w) - origin, light.vpl.normal) / glm::dot(w, light.vpl.normal);
-        if (!(to_plane > 0.0f)) return false;  // behind the light's surface, looking further away
+        if (!(to_plane > 0.0f)) return Rgb(0.0f);  // behind the light's surface, looking further away
         return free(origin, w, std::min(to_plane, cone.entry(w)));
     }
 
@@ -161,7 +170,7 @@ SampleCounts::SampleCounts(int samples, bool glossy_receiver, bool glossy_light)
 Rgb unoccluded_light(const ScatteringVertex& receiver, const SphericalLight& light, int samples, Rng& rng) {
     const SphereCone cone(receiver.position, light.centre(), light.radius);
     const SampleCounts n(samples, is_glossy(receiver), light.detail != nullptr);
-    return sample_sphere(receiver, light, cone, n, rng, [](const Vec3&) { return true; });
+    return sample_sphere(receiver, light, cone, n, rng, [](const Vec3&) { return Rgb(1.0f); });
 }
 
 Rgb gather_spheres(const RayQueries& scene, const lights::VplSet& set, const std::vector<float>& radii,

@@ -58,9 +58,8 @@ class ChunkTracer {
             const std::uint64_t key = hash_keys(seed, pass, path, photon_stream);
             context.rng = Rng(key);
             lights::follow_light_path<Media>(scene_, settings_.paths, sampler, context,
-                                             [&](const ScatteringVertex& v, const Rgb& alpha, int depth) {
-                                                 leave(chunk, v, alpha, depth, key);
-                                             });
+                                             [&](const ScatteringVertex& v, const Rgb& alpha, int depth,
+                                                 const MediumState&) { leave(chunk, v, alpha, depth, key); });
             chunk.rays.add(context.rays);
             chunk.tracking.add(context.tracking);
         }

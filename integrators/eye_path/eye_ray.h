@@ -1,8 +1,7 @@
 // The start of every eye path: the sampler and the camera ray of a pixel in a pass.
 #pragma once
 
-#include "core/math/sampler.h"
-#include "core/render/integrator.h"
+#include "core/render/camera_ray.h"
 #include "core/scene/scene.h"
 
 namespace mote::integrators {
@@ -17,8 +16,7 @@ struct EyeRay {
 /// `lens`: a point on the lens that all rays of a pass share; null: every ray has its own.
 inline EyeRay make_eye_ray(const core::Scene& scene, const core::RenderOptions& options,
                            const core::PassContext& pass, int x, int y, const core::Vec2* lens = nullptr) {
-    const std::uint64_t pixel = std::uint64_t(y) * std::uint64_t(options.width) + std::uint64_t(x);
-    core::Sampler sampler(options.sampler, options.seed, pass.index, pixel);
+    core::Sampler sampler(options.sampler, options.seed, pass.index, core::pixel_key(options, x, y));
     core::Rng rng = sampler.make_rng();
     const core::Vec2 offset = pass.filter.sample_offset(sampler.next_2d());
     const core::Vec2 film = core::Vec2(float(x) + 0.5f, float(y) + 0.5f) + offset;

@@ -52,7 +52,7 @@ template <bool Media>
 void SingleScatteringEstimator<Media>::render_eye(const PassContext& context, const PassNumbers& numbers,
                                                   std::span<const InScattering> lights, PassImage& image,
                                                   int x, int y, MarchScratch& scratch) {
-    const std::uint64_t pixel = std::uint64_t(y) * std::uint64_t(options_.width) + std::uint64_t(x);
+    const std::uint64_t pixel = core::pixel_key(options_, x, y);
     const EyeRay eye = make_eye_ray(scene_, options_, context, x, y, &numbers.lens);
     scratch.walk.rng = eye.rng;
     EyeLight path = trace_eye<Media>(scene_, settings_.eye, lights, eye, scratch);

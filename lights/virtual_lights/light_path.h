@@ -28,8 +28,9 @@ inline float remaining_power(const core::Rgb& alpha, const core::Rgb& alpha_star
     return start > 0.0f ? std::max(core::max_component(alpha) / start, 0.05f) : 0.0f;
 }
 
-/// Calls visit(vertex, alpha / paths, depth) at every vertex of one path, delta surfaces included; `depth`
-/// counts from 1 at the first. The vertex's `wo` points back along the path.
+/// Calls visit(vertex, alpha / paths, depth, state) at every vertex of one path, delta surfaces included;
+/// `depth` counts from 1 at the first. The vertex's `wo` points back along the path; `state` holds the media
+/// on its side.
 template <bool Media, typename Visit>
 void follow_light_path(const core::LitScene& scene, const LightPathSettings& settings, core::Sampler& sampler,
                        core::WalkContext& context, const Visit& visit) {
@@ -57,7 +58,7 @@ void follow_light_path(const core::LitScene& scene, const LightPathSettings& set
         if (event.kind == core::WalkEvent::Kind::escaped) return;
         const core::ScatteringVertex vertex = make_vertex(event, ray);
         const float channels = Media ? core::average(weights.unidirectional) : 1.0f;
-        visit(vertex, weights.throughput / channels, depth);
+        visit(vertex, weights.throughput / channels, depth, state);
 
         if (depth > settings.rr_depth) {
             const float q = core::survival_chance(remaining_power(weights.throughput / channels, start),

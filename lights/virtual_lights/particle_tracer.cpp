@@ -23,8 +23,10 @@ VplSet trace_chunk(const LitScene& scene, const LightPathSettings& settings, std
         Sampler sampler(kind, seed, path, pass, light_path_stream);
         WalkContext context;
         context.rng = Rng(hash_keys(seed, pass, path, light_path_stream));
-        const auto leave_vpl = [&](const ScatteringVertex& vertex, const Rgb& alpha, int depth) {
+        const auto leave_vpl = [&](const ScatteringVertex& vertex, const Rgb& alpha, int depth,
+                                   const MediumState& state) {
             append_vpl(set, vertex, alpha, std::uint32_t(depth), path);
+            if (scene.has_media() && set.states.size() < set.lights.size()) set.states.push_back(state);
         };
         if (scene.has_media())
             follow_light_path<true>(scene, settings, sampler, context, leave_vpl);
@@ -42,6 +44,7 @@ void append(VplSet& to, VplSet&& from) {
         if (vpl.detail != VirtualPointLight::no_detail) vpl.detail += offset;
     to.lights.insert(to.lights.end(), from.lights.begin(), from.lights.end());
     to.details.insert(to.details.end(), from.details.begin(), from.details.end());
+    to.states.insert(to.states.end(), from.states.begin(), from.states.end());
     to.rays.add(from.rays);
     to.tracking.add(from.tracking);
 }

@@ -19,6 +19,15 @@ Rgb VplDetail::eval(const Vec3& to_receiver) const {
     return vertex.eval(to_receiver, TransportMode::power) * incoming_correction(vertex);
 }
 
+MediumState VplSet::state_towards(std::size_t light, const Vec3& direction) const {
+    if (states.empty()) return {};
+    const std::uint32_t detail =
+        lights[light].detail;  // without one it shines to the side its light came from
+    return detail == VirtualPointLight::no_detail
+               ? states[light]
+               : details[detail].vertex.state_towards(states[light], direction);
+}
+
 void append_vpl(VplSet& set, const ScatteringVertex& vertex, const Rgb& alpha, std::uint32_t depth,
                 std::uint32_t path) {
     if (is_black(alpha) || !vertex.connectable()) return;

@@ -42,13 +42,18 @@ struct VplDetail {
 struct VplSet {
     std::vector<VirtualPointLight> lights;
     std::vector<VplDetail> details;
+    /// Media at every light, on the side that its light came from; none where the scene has no media.
+    std::vector<core::MediumState> states;
     std::uint32_t paths = 0;  ///< light paths traced, whether or not they left a VPL
     core::RayCounters rays;
     core::TrackingCounters tracking;
 
     std::size_t memory_bytes() const {
-        return lights.size() * sizeof(VirtualPointLight) + details.size() * sizeof(VplDetail);
+        return lights.size() * sizeof(VirtualPointLight) + details.size() * sizeof(VplDetail) +
+               states.size() * sizeof(core::MediumState);
     }
+    /// Media on the side of a light that `direction` leaves to.
+    core::MediumState state_towards(std::size_t light, const core::Vec3& direction) const;
 };
 
 /// The VPL for a vertex that light of weight alpha / paths arrived at, or nothing when it reflects no light

@@ -29,7 +29,8 @@ class LightTracer final : public core::Estimator {
             core::WalkContext context;
             context.rng = core::Rng(core::hash_keys(options_.seed, pass.index, path));
             core::Rng lens(core::hash_keys(options_.seed, path, pass.index, 7));
-            const auto visit = [&](const core::ScatteringVertex& vertex, const Rgb& alpha, int) {
+            const auto visit = [&](const core::ScatteringVertex& vertex, const Rgb& alpha, int,
+                                   const core::MediumState&) {
                 connect(vertex, alpha, lens, pass.filter, image);
             };
             if (scene_.has_media())
