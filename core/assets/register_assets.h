@@ -8,4 +8,10 @@ namespace mote::core {
 void register_mesh_files(Registry& registry);  // obj, ply, mesh
 void register_bitmap_texture(Registry& registry);
 
+/// All of them.
+inline void register_assets(Registry& registry) {
+    register_mesh_files(registry);
+    register_bitmap_texture(registry);
+}
+
 }  // namespace mote::core

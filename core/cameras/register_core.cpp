@@ -8,8 +8,7 @@ namespace mote::core {
 void register_core(Registry& registry) {
     register_materials(registry);
     register_geometry(registry);
-    register_mesh_files(registry);
-    register_bitmap_texture(registry);
+    register_assets(registry);
     register_sensors(registry);
     register_film_objects(registry);
 }

@@ -4,8 +4,8 @@ namespace mote::lights {
 
 using namespace core;
 
-LaneConnection connect_lane(const ReceiverLanes& x, int i, const VplSet& vpls, const VirtualPointLight& vpl,
-                            float light_weight) {
+LaneConnection lane_connection(const ReceiverLanes& x, int i, const VplSet& vpls,
+                               const VirtualPointLight& vpl, float light_weight) {
     const ScatteringVertex* receiver = x.directional[i];
     const VplDetail* detail =
         vpl.detail == VirtualPointLight::no_detail ? nullptr : &vpls.details[vpl.detail];

@@ -78,8 +78,8 @@ struct LaneConnection {
     core::Vec3 origin, target;  ///< of the shadow ray
 };
 /// `light_weight` is in the value.
-LaneConnection connect_lane(const ReceiverLanes& x, int lane, const VplSet& vpls, const VirtualPointLight& y,
-                            float light_weight);
+LaneConnection lane_connection(const ReceiverLanes& x, int lane, const VplSet& vpls,
+                               const VirtualPointLight& y, float light_weight);
 
 template <typename Weight>
 bool general_contributions(const ReceiverLanes& x, const VplSet& vpls, const VirtualPointLight& y,
@@ -90,7 +90,7 @@ bool general_contributions(const ReceiverLanes& x, const VplSet& vpls, const Vir
         out.r[i] = out.g[i] = out.b[i] = 0.0f;
         packet.t_max[i] = -1.0f;
         if (std::int32_t(y.depth) > x.max_vpl_depth[i]) continue;
-        const LaneConnection c = connect_lane(x, i, vpls, y, light_weight);
+        const LaneConnection c = lane_connection(x, i, vpls, y, light_weight);
         const float g = c.cos_x * c.cos_y / c.distance_squared;
         const core::Rgb value = c.value * weight(g, c.distance_squared, c.cos_x, c.cos_y);
         if (!(core::max_component(value) > 0.0f)) continue;

@@ -1,4 +1,5 @@
 // Shapes as the scene language makes them: parameters, defaults, errors with a place.
+#include "core/assets/register_assets.h"
 #include "core/geometry/triangle_mesh.h"
 #include "core/objects/properties.h"
 #include "core/objects/registry.h"
@@ -12,7 +13,7 @@ namespace {
 
 std::shared_ptr<Shape> make(const std::string& type, std::map<std::string, PropertyValue> values) {
     Registry registry;
-    register_geometry(registry);
+    register_geometry(registry), register_assets(registry);
     Properties p;
     p.category = Category::shape, p.type = type, p.where = {"scene.xml", 12};
     for (auto& [name, value] : values) p.values[name] = {value, {"scene.xml", 13}};
@@ -29,7 +30,7 @@ std::shared_ptr<Shape> make(const std::string& type, std::map<std::string, Prope
 
 TEST_CASE("the shapes of the scene language", "[geometry][registry]") {
     Registry registry;
-    register_geometry(registry);
+    register_geometry(registry), register_assets(registry);
     CHECK(registry.types(Category::shape) ==
           std::vector<std::string>{"cube", "cylinder", "disk", "mesh", "obj", "ply", "rectangle", "sphere"});
     CHECK(make("rectangle", {})->area() == Approx(4.0));

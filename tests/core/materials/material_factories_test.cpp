@@ -1,4 +1,5 @@
 // The factories behind the scene language: names, defaults, and what they refuse, with file and line.
+#include "core/assets/register_assets.h"
 #include "core/materials/register_materials.h"
 #include "core/objects/properties.h"
 #include "tests/core/materials/bsdf_cases.h"
@@ -19,7 +20,7 @@ const core::BsdfPoint point{};
 struct Made {
     core::Registry registry;
     std::vector<std::string> warnings;
-    Made() { core::register_materials(registry); }
+    Made() { core::register_materials(registry), core::register_assets(registry); }
 
     std::shared_ptr<core::Object> make(Properties p) {
         p.where = {"scene.xml", 7};

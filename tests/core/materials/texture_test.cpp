@@ -1,4 +1,5 @@
 // Bitmap and checkerboard textures.
+#include "core/assets/register_assets.h"
 #include "core/materials/textures.h"
 
 #include <fstream>
@@ -123,7 +124,7 @@ TEST_CASE("bitmaps are read from files, or refused at the line that names them",
     write_png(folder.file("four.png"), 2, 2, pixels);
     std::ofstream(folder.file("broken.png")) << "not a picture";
     Registry registry;
-    register_materials(registry);
+    register_materials(registry), register_assets(registry);
     const auto make = [&](const std::string& file) {
         Properties p;
         p.category = Category::texture, p.type = "bitmap";
