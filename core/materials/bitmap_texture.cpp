@@ -86,7 +86,7 @@ class BitmapTexture final : public Texture {
     bool constant_ = true;
 };
 
-std::shared_ptr<Object> create(const Properties& p) {
+std::shared_ptr<Object> create_bitmap_texture(const Properties& p) {
     BitmapTextureParameters parameters;
     parameters.filter = p.get_choice("filter_type", "bilinear", {"bilinear", "nearest"}) == "nearest"
                             ? TextureFilter::nearest
@@ -127,7 +127,7 @@ void register_bitmap_texture(Registry& registry) {
     <string name="filename" value="wood.png"/>
     <string name="wrap_mode" value="mirror"/>
 </texture>)"};
-    registry.add(std::move(manual), create);
+    registry.add(std::move(manual), create_bitmap_texture);
 }
 
 }  // namespace mote::core
