@@ -1,5 +1,6 @@
-# mote_folder(NAME PUBLIC libs... PRIVATE libs...): the static library mote_NAME of every .cpp below NAME/.
-# Executables that live beside a library (main_*.cpp) are left out.
+# mote_folder(NAME PUBLIC libs... PRIVATE libs... [ALONE regexes...] [COMMAND_LINE regex]): the static library mote_NAME
+# of every .cpp below NAME/. Executables that live beside a library (main_*.cpp) are left out. ALONE and COMMAND_LINE:
+# see mote_sources in units.cmake.
 
 add_library(mote_options INTERFACE)
 target_include_directories(mote_options INTERFACE ${CMAKE_SOURCE_DIR})
@@ -27,9 +28,10 @@ if(MOTE_SANITIZE)
 endif()
 
 function(mote_folder name)
-  cmake_parse_arguments(ARG "" "" "PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "" "COMMAND_LINE" "PUBLIC;PRIVATE;ALONE" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/${name}/*.cpp)
   list(FILTER sources EXCLUDE REGEX "/main_[^/]*\\.cpp$")
-  add_library(mote_${name} STATIC ${sources})
+  add_library(mote_${name} STATIC)
+  mote_sources(mote_${name} ${sources} ALONE ${ARG_ALONE} COMMAND_LINE ${ARG_COMMAND_LINE})
   target_link_libraries(mote_${name} PUBLIC mote_options ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
 endfunction()
