@@ -46,6 +46,7 @@ void walk_lanes(const Lanes& lanes, const Scene& scene, const ResidualTransport&
         if (alive[i]) scratch.paths[i] = receivers[i].path;
     for (int step = 1; steps < 0 || step <= steps; ++step) {
         if (!step_lanes<Media>(transport, step, receivers, alive, scratch, context)) return;
+        // L_b of Eq. 10.12 at z, which Eq. 10.11 takes back to the receiver (Engelhardt 2013).
         const auto light = lights::gather(scene, vpls, range, transport.bound(), scratch.tile, gather_scratch,
                                           context.rays, context.tracking);
         for (std::size_t i = 0; i < width; ++i) sum[i] += light[i];
