@@ -16,8 +16,8 @@
 
 #include "core/image/image_file.h"
 #include "core/image/metadata_stripping.h"
-#include "core/image/whole_file.h"
 #include "core/image/srgb.h"
+#include "core/image/whole_file.h"
 #include "core/objects/error.h"
 
 namespace mote::core {
