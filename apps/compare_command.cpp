@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "apps/command.h"
+#include "apps/number_or_null.h"
 #include "apps/picture_file.h"
 #include "apps/subcommands.h"
 #include "core/image/error_map.h"
@@ -61,8 +62,6 @@ void check_sizes(const core::Bitmap& a, const core::Bitmap& r, const CompareArgu
                                  core::printable(arguments.reference), r.width, r.height),
                      {arguments.image, 0});
 }
-
-json number_or_null(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
 json mean_json(const std::array<double, 3>& rgb, double average) {
     return {{"rgb", {number_or_null(rgb[0]), number_or_null(rgb[1]), number_or_null(rgb[2])}},

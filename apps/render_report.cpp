@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "apps/number_or_null.h"
 #include "apps/reference_metadata.h"
 #include "git_hash.h"
 
@@ -22,8 +23,6 @@ json entries_json(const std::vector<core::PlanEntry>& entries) {
         list.push_back({{"topic", e.topic}, {"choice", e.choice}, {"reason", e.reason}});
     return list;
 }
-
-json number_or_null(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
 double total_seconds(const core::Statistics& statistics) {
     double total = 0.0;

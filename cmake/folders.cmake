@@ -1,5 +1,6 @@
-# mote_folder(NAME [FOLDERS folders...] PUBLIC libs... PRIVATE libs...): the static library mote_NAME of every .cpp below
-# NAME/, or below the folders. Executables that live beside a library (main_*.cpp) are left out.
+# mote_folder(NAME [FOLDERS folders...] PUBLIC libs... PRIVATE libs... [ALONE regexes...] [COMMAND_LINE regex]): the
+# static library mote_NAME of every .cpp below NAME/, or below the folders. Executables that live beside a library
+# (main_*.cpp) are left out. ALONE and COMMAND_LINE: see mote_sources in units.cmake.
 
 add_library(mote_options INTERFACE)
 target_include_directories(mote_options INTERFACE ${CMAKE_SOURCE_DIR})
@@ -27,13 +28,14 @@ if(MOTE_SANITIZE)
 endif()
 
 function(mote_folder name)
-  cmake_parse_arguments(ARG "" "" "FOLDERS;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "" "COMMAND_LINE" "FOLDERS;PUBLIC;PRIVATE;ALONE" ${ARGN})
   if(NOT ARG_FOLDERS)
     set(ARG_FOLDERS ${name})
   endif()
   list(TRANSFORM ARG_FOLDERS REPLACE "(.+)" "${CMAKE_SOURCE_DIR}/\\1/*.cpp")
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${ARG_FOLDERS})
   list(FILTER sources EXCLUDE REGEX "/main_[^/]*\\.cpp$")
-  add_library(mote_${name} STATIC ${sources})
+  add_library(mote_${name} STATIC)
+  mote_sources(mote_${name} ${sources} ALONE ${ARG_ALONE} COMMAND_LINE ${ARG_COMMAND_LINE})
   target_link_libraries(mote_${name} PUBLIC mote_options ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
 endfunction()

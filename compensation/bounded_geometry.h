@@ -17,21 +17,22 @@
 
 namespace mote::compensation {
 
-/// B*: the share of the light between two points that a bound `bound` [1/m^2] takes away, 0 to 1. `cosines`
-/// is C* C*, `distance` in metres. A bound of 0 takes everything, an infinite one nothing. Without cosines
-/// there is no light to share: 0.
+/// B*, below Eq. 10.11 (on surfaces in Eq. 4.7): the share of the light between two points that a bound
+/// `bound` [1/m^2] takes away, 0 to 1. `cosines` is C* C*, `distance` in metres. A bound of 0 takes
+/// everything, an infinite one nothing. Without cosines there is no light to share: 0.
 inline float residual_share(float cosines, float distance, float bound) {
     const float x = bound * distance * distance;
     return std::isfinite(bound) && x < cosines ? 1.0f - x / cosines : 0.0f;
 }
 
-/// min(G*, b) / G* = 1 - B*: what the bound leaves.
+/// G_b / G* = min(G*, b) / G* = 1 - B*: what the bound leaves.
 inline float bounded_share(float cosines, float distance, float bound) {
     const float x = bound * distance * distance;
     return std::isfinite(bound) && x < cosines ? x / cosines : 1.0f;
 }
 
-/// Beyond this distance [m] no bound takes effect. Infinite for b = 0, 0 for an infinite b.
+/// r = b^(-1/2), Sec. 10.2.2: beyond this distance [m] no bound takes effect. Infinite for b = 0, 0 for an
+/// infinite b.
 inline float bounding_radius(float bound) { return 1.0f / std::sqrt(bound); }
 
 }  // namespace mote::compensation

@@ -8,7 +8,8 @@ using namespace core;
 
 namespace {
 
-/// Direct light at a vertex by light sampling and by the directions in which it scatters.
+/// L of Eq. 10.11 from the primary lights, L_S^d and L_M^d below Eq. 10.7 of Engelhardt 2013: at a vertex by
+/// light sampling and by the directions in which it scatters.
 template <bool Media>
 Rgb direct_light(const LitScene& scene, const ResidualPath& path, WalkContext& context) {
     const float u_light = context.rng.next_float();
@@ -26,6 +27,7 @@ template <bool Media>
 Rgb compensation_from_lights(const LitScene& scene, const ResidualTransport& transport, ResidualPath path,
                              int steps, WalkContext& context, std::uint64_t& vertices) {
     Rgb sum(0.0f);
+    // One term L_r of Eq. 10.12 after the other: the recursion ends where B* is 0 (Sec. 10.1.3, step 2).
     for (int i = 0; (steps < 0 || i < steps) && transport.step<Media>(path, context); ++i) {
         sum += direct_light<Media>(scene, path, context);
         ++vertices;

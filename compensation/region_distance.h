@@ -18,12 +18,12 @@ class RegionDistance {
         reached_ = uniform_ ? 1.0f : -std::expm1(-extinction * limit);  // 1 - e^(-s d)
     }
 
-    /// For u in [0, 1): a distance in [0, d].
+    /// Eq. 10.14. For u in [0, 1): a distance in [0, d].
     float sample(float u) const {
         if (uniform_) return u * limit_;
         return std::min(-std::log1p(-u * reached_) / extinction_, limit_);
     }
-    /// [1/m], for t in [0, d].
+    /// Eq. 10.13: p(t) [1/m], for t in [0, d].
     float pdf_distance(float t) const {
         return uniform_ ? 1.0f / limit_ : extinction_ * std::exp(-extinction_ * t) / reached_;
     }

@@ -52,7 +52,7 @@ Placement1D place(const Rgb& extinction, float surface, float radius, bool keep_
         }
         return p;
     }
-    p.distance = RegionDistance(s, radius).sample(u);
+    p.distance = RegionDistance(s, radius).sample(u);  // Engelhardt 2013, Eqs. 10.14 and 10.13
     for (int c = 0; c < 3; ++c)
         p.density += RegionDistance(extinction[c], radius).pdf_distance(p.distance) / 3.0f;
     return p;
@@ -146,13 +146,14 @@ bool ResidualTransport::place_in_mean_medium(ResidualPath& path, const Ray& ray,
     } else {
         event.kind = WalkEvent::Kind::collision, event.medium = path.state.current();
         if (!event.medium || !may_hold(*event.medium, z)) return false;
-        path.weights.throughput *= event.medium->coefficients(z).sigma_s;
+        path.weights.throughput *= event.medium->coefficients(z).sigma_s;  // in L(y <- z) of Eq. 10.11
     }
     path.vertex = make_vertex(event, ray);
+    // The mean: Sec. 10.2.2, tau = exp(-mean |y - z|).
     const Rgb transmittance = settings_.transmittance == LocalTransmittance::mean
                                   ? exponential(mean * p.distance)
                                   : scene_.transmittance(ray.origin, z, start, context.rng, context.tracking);
-    path.weights.throughput *= transmittance / p.density;
+    path.weights.throughput *= transmittance / p.density;  // tau(y,z) / p(t) of Eq. 10.11
     return true;
 }
 
@@ -161,8 +162,8 @@ bool ResidualTransport::step(ResidualPath& path, WalkContext& context) const {
     const float before = max_component(path.throughput());
     const float u_lobe = context.rng.next_float();
     const auto next = path.vertex.sample(u_lobe, context.rng.next_vec2(), TransportMode::radiance);
-    if (!next || next->delta) return false;  // light through mirrors and glass is no VPL's
-    path.weights.throughput *= next->weight;
+    if (!next || next->delta) return false;   // light through mirrors and glass is no VPL's
+    path.weights.throughput *= next->weight;  // f*(x<-y<-z) C*(y->z) / p(w) of Eq. 10.11
     if (Media && path.vertex.on_surface()) path.state = path.vertex.state_towards(path.state, next->wi);
     const float cosine = path.vertex.shading_cosine(next->wi);
     const Ray ray{path.vertex.ray_origin(next->wi), next->wi, 0.0f, radius_};
@@ -176,8 +177,8 @@ bool ResidualTransport::step(ResidualPath& path, WalkContext& context) const {
     if (!placed || !path.vertex.connectable()) return false;
 
     const float distance = glm::distance(ray.origin, path.vertex.position);
-    // C* with the shading normal at the receiver and the geometric one at the other end, as VPLs are
-    // gathered.
+    // B*(y,z), below Eq. 10.11, and on surfaces the factor of Eq. 4.7. C* with the shading normal at the
+    // receiver and the geometric one at the other end, as VPLs are gathered.
     path.weights.throughput *=
         residual_share(cosine * path.vertex.geometric_cosine(path.vertex.wo), distance, bound_);
     const float remaining = max_component(path.throughput());

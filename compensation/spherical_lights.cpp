@@ -36,6 +36,7 @@ Rgb sample_sphere(const ScatteringVertex& receiver, const SphericalLight& light,
         Rgb value = receiver.eval_cos(w, TransportMode::radiance) * light.intensity_cos(w);
         if (!is_black(value)) value *= arrives(w);
         if (is_black(value)) return;
+        // Balance heuristic with n samples of each technique: Veach 1997, Eq. 9.8.
         float densities = 0.0f;
         if (n.receiver > 0)
             densities += float(n.receiver) * receiver.pdf_solid_angle(w, TransportMode::radiance);

@@ -26,6 +26,7 @@ class TileWalk {
         const lights::BoundedGeometry bounded{request_.transport.bound()};
         for (int step = 1; request_.steps < 0 || step <= request_.steps; ++step) {
             if (!move_on(step, alive)) return;
+            // L_b of Eq. 10.12 at z, which Eq. 10.11 takes back to the receiver (Engelhardt 2013).
             const TileLight light = lights::gather(gather_, request_.vpls, range, bounded, scratch_.tile);
             for (std::size_t i = 0; i < width; ++i) sum[i] += light[i];
         }

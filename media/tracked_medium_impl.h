@@ -2,6 +2,7 @@
 #pragma once
 
 #include "media/tracked_medium.h"
+#include "media/volume.h"
 
 namespace mote::media {
 

@@ -23,11 +23,11 @@ std::string cell(const std::string& html, const char* css = "") {
     return *css ? fmt::format("<td class=\"{}\">{}</td>", css, html) : "<td>" + html + "</td>";
 }
 
-std::string number_text(double v, const char* unit = "") {
+std::string rounded_text(double v, const char* unit = "") {
     return std::isfinite(v) ? fmt::format("{:.3g}{}", v, unit) : "unknown";
 }
 
-std::string seconds_cell(double v) { return cell(v < 0.01 ? "&lt; 0.01" : number_text(v)); }
+std::string seconds_cell(double v) { return cell(v < 0.01 ? "&lt; 0.01" : rounded_text(v)); }
 
 std::string bias_cell(const Results& results, const Curve& c) {
     if (!std::isfinite(c.bias)) return cell("unknown");
@@ -50,14 +50,14 @@ std::string row(const Results& results, std::size_t index) {
     std::string html = fmt::format("<tr><td><span class=\"swatch\" style=\"background:{}\"></span>{}</td>",
                                    curve_colour(index), escaped(c.method));
     html += cell(escaped(c.integrator + (c.settings.empty() ? "" : ": " + c.settings)), "text wrap");
-    html += cell(number_text(c.passes)) + seconds_cell(c.wall) + seconds_cell(c.cpu) + seconds_cell(c.build) +
+    html += cell(rounded_text(c.passes)) + seconds_cell(c.wall) + seconds_cell(c.cpu) + seconds_cell(c.build) +
             error_cell(c) + bias_cell(results, c);
     for (const Reach& r : results.reaches(c))
         html += cell(escaped(to_text(r, c)), r.kind == Reach::Kind::measured ? "wrap" : "wrap guess");
     const std::string front = results.front_text(c);
-    html += cell(front.empty() ? "no" : front, "wrap") + cell(number_text(c.inefficiency())) +
-            cell(number_text(100.0 * std::sqrt(c.relmse_trimmed), " %")) +
-            cell(number_text(c.peak_memory_mb)) + cell(fmt::format("{}", c.non_finite));
+    html += cell(front.empty() ? "no" : front, "wrap") + cell(rounded_text(c.inefficiency())) +
+            cell(rounded_text(100.0 * std::sqrt(c.relmse_trimmed), " %")) +
+            cell(rounded_text(c.peak_memory_mb)) + cell(fmt::format("{}", c.non_finite));
     return html + "</tr>\n";
 }
 

@@ -119,12 +119,12 @@ std::vector<Row> parse_rows(const std::string& text, const std::string& path) {
 }
 
 std::vector<Column> columns_in_order(const Row& header, const std::string& path) {
-    std::map<std::string, Column> left;
+    std::map<std::string, Column> missing;
     std::vector<std::string> names;
-    for (const Column& c : columns()) left.emplace(c.name, c), names.emplace_back(c.name);
+    for (const Column& c : columns()) missing.emplace(c.name, c), names.emplace_back(c.name);
     std::vector<Column> order;
     for (const std::string& name : header.fields) {
-        auto node = left.extract(name);
+        auto node = missing.extract(name);
         if (node.empty())
             throw InputError(
                 "unknown or repeated column '" + core::printable(name) + "'" + core::suggestion(name, names),
@@ -132,7 +132,7 @@ std::vector<Column> columns_in_order(const Row& header, const std::string& path)
         order.push_back(node.mapped());
     }
     for (const char* name : {"method", "seed", "passes", "wall_s", "error"})
-        if (left.count(name))
+        if (missing.count(name))
             throw InputError(std::string("there is no column '") + name + "'", {path, header.line});
     return order;
 }

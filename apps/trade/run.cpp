@@ -34,13 +34,13 @@ class Forecast {
         std::string text = fmt::format("seed {}/{}, {}: pass {}", seed_index + 1, plan_.seeds.size(),
                                        last.method().name, last.tally().passes);
         if (error >= 0.0) text += fmt::format(", error {:.3g} %", 100.0 * error);
-        double left = 0.0, whole = 0.0;
+        double rest = 0.0, whole = 0.0;
         for (const auto& c : running) {
             if (!c) continue;
             const double all = total_seconds(*c);
-            left += std::max(0.0, all - c->tally().seconds()), whole = std::max(whole, all);
+            rest += std::max(0.0, all - c->tally().seconds()), whole = std::max(whole, all);
         }
-        return text + ", " + duration_text(left + whole * double(pending)) + " left";
+        return text + ", " + duration_text(rest + whole * double(pending)) + " left";
     }
 
   private:

@@ -16,6 +16,7 @@
 
 #include "core/image/image_file.h"
 #include "core/image/metadata_stripping.h"
+#include "core/image/srgb.h"
 #include "core/image/whole_file.h"
 #include "core/objects/error.h"
 
@@ -25,7 +26,7 @@ namespace {
 
 // No lossless coder of these formats, nor JPEG, packs more pixels into a byte.
 constexpr std::size_t max_ratio = 2048;
-constexpr std::size_t always_allowed_bytes = std::size_t(64) << 20;
+constexpr std::size_t small_enough_bytes = std::size_t(64) << 20;
 
 // The name of the kind as OpenImageIO calls it, or nothing.
 std::optional<std::string> kind_of(std::string_view head, const std::string& path) {
@@ -52,12 +53,10 @@ void check_size(std::int64_t width, std::int64_t height, std::int64_t bytes_per_
     if (std::uint64_t(width) > max_pixels / std::uint64_t(height))
         throw InputError("declares " + size + " pixels: more than " + std::to_string(max_pixels));
     const std::size_t declared = std::size_t(width) * std::size_t(height) * std::size_t(bytes_per_pixel);
-    if (declared > always_allowed_bytes && declared / max_ratio > file_size)
+    if (declared > small_enough_bytes && declared / max_ratio > file_size)
         throw InputError("damaged picture: " + size + " pixels do not fit in " + std::to_string(file_size) +
                          " bytes");
 }
-
-float decode_srgb(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }
 
 // Interleaved channels to RGB: one or two channels are grey (and alpha), more are red, green, blue (and
 // more).

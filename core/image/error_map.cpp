@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "core/image/metrics.h"
+#include "core/image/srgb.h"
 
 namespace mote::core {
 
@@ -20,8 +21,6 @@ Rgb srgb_entry(int i) {
     const std::uint32_t c = viridis[i];
     return {float(c >> 16 & 255u) / 255.0f, float(c >> 8 & 255u) / 255.0f, float(c & 255u) / 255.0f};
 }
-
-float decode_srgb(float s) { return s <= 0.04045f ? s / 12.92f : std::pow((s + 0.055f) / 1.055f, 2.4f); }
 
 /// x in [0, 1].
 Rgb colour(double x) {

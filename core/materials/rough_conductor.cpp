@@ -30,6 +30,7 @@ class RoughConductor final : public Bsdf {
         const float value = d / (4.0f * microfacet_.projected_area(wo) * microfacet_.projected_area(wi));
         return specular_.eval(p.uv) * fresnel(wo, m) * value;
     }
+    /// Walter 2007, Eq. 38 with the Jacobian of Eq. 14, for visible normals: <wo, m> D / A(wo) / (4 <wo, m>).
     float pdf_solid_angle(const BsdfPoint&, const Vec3& wo, const Vec3& wi, TransportMode) const override {
         if (!(wo.z > 0.0f && wi.z > 0.0f)) return 0.0f;
         return microfacet_.density(half_vector(wo, wi)) / (4.0f * microfacet_.projected_area(wo));

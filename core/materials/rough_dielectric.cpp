@@ -45,6 +45,7 @@ class RoughDielectric final : public Bsdf {
                (scale * (1.0f - f.reflectance) * f.density * f.jacobian * f.cos_o / area);
     }
 
+    /// Walter 2007, Eq. 38 with the Jacobians of Eqs. 14 and 17, for visible normals.
     float pdf_solid_angle(const BsdfPoint&, const Vec3& wo, const Vec3& wi, TransportMode) const override {
         const Facet f = facet(wo, wi);
         if (f.density == 0.0f) return 0.0f;

@@ -56,7 +56,7 @@ class TwoSided final : public Bsdf {
     BsdfPtr front_, back_;
 };
 
-std::shared_ptr<Object> create(const Properties& p) {
+std::shared_ptr<Object> create_twosided(const Properties& p) {
     std::vector<BsdfPtr> sides;
     for (const Properties::Child& c : p.children) {
         const auto bsdf = std::dynamic_pointer_cast<const Bsdf>(c.object);
@@ -86,7 +86,7 @@ void register_twosided(Registry& registry) {
         <rgb name="reflectance" value="0.4"/>
     </bsdf>
 </bsdf>)"};
-    registry.add(std::move(manual), create);
+    registry.add(std::move(manual), create_twosided);
 }
 
 }  // namespace mote::core

@@ -8,8 +8,8 @@
 
 namespace mote::core {
 
-/// The unfolded octahedron: [-1, 1]^2, z up in the middle. sign(0) is +1, so that no axis collapses
-/// (docs/errata.md).
+/// Eqs. 7.1 and 7.2, the unfolded octahedron: [-1, 1]^2, z up in the middle. sign(0) is +1, so that no axis
+/// collapses (docs/errata.md).
 inline Vec2 octahedral_project(const Vec3& v) {
     const float scale = 1.0f / (std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z));
     const Vec2 p = scale * Vec2(v.x, v.y);
@@ -26,8 +26,8 @@ inline Vec3 octahedral_unproject(const Vec2& p) {
     return glm::normalize(v);
 }
 
-/// The upper half of the octahedron, turned by 45 degrees so that it fills [-1, 1]^2 (Eq. 7.3 without its
-/// shift). Directions with z < 0 are mirrored at the horizon.
+/// The upper half of the octahedron, turned by 45 degrees so that it fills [-1, 1]^2 (Eqs. 7.1 and 7.3,
+/// without the shift). Directions with z < 0 are mirrored at the horizon.
 inline Vec2 hemi_octahedral_project(const Vec3& v) {
     const float scale = 1.0f / (std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z));
     return scale * Vec2(v.x - v.y, v.x + v.y);

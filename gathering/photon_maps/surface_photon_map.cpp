@@ -39,7 +39,7 @@ Rgb SurfacePhotonMap::radiance(const ScatteringVertex& receiver, const DensityEs
         // Photons measure light per area of the true surface; f* C* belongs to the shading normal.
         sum += photon.power * receiver.eval_cos(wi, TransportMode::radiance) / geometric;
     }
-    return sum * (inv_pi / r2);
+    return sum * (inv_pi / r2);  // kappa of Engelhardt 2013, Eq. 4.5
 }
 
 }  // namespace mote::gathering

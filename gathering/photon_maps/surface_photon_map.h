@@ -18,7 +18,7 @@ class SurfacePhotonMap {
     explicit SurfacePhotonMap(std::vector<Photon> photons);
 
     /// Reflected radiance at `receiver` towards its wo, from photons of depth up to `max_depth`:
-    ///   sum over p of f*(wo, w_p) Phi_p / (pi r^2)
+    ///   sum over p of f*(wo, w_p) Phi_p / (pi r^2)   (Engelhardt 2013, Eq. 4.5)
     /// r is `radius_share` times the distance of the k-th nearest photon, which itself is left out: with k -
     /// 1 in the numerator the estimate of an even density is unbiased. Photons on the receiver's other side,
     /// and those on surfaces turned more than 60 degrees away, do not count. Zero in a map of fewer than two

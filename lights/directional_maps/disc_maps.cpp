@@ -58,6 +58,7 @@ class ParaboloidMap : public DiscMap {
   public:
     explicit ParaboloidMap(int size) : DiscMap(2, size, size) {}
 
+    /// Sec. 5.1.4: u = w_x / (1 + w_z), and v alike, of either hemisphere.
     MapPoint project(const Vec3& d) const override {
         const float scale = 0.5f / (glm::length(d) + std::fabs(d.z));
         return {int(!(d.z >= 0.0f)), scale * Vec2(d.x, d.y) + 0.5f};

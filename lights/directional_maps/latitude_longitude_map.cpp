@@ -21,6 +21,7 @@ class LatitudeLongitudeMap : public DirectionalMap {
         const float v = std::atan2(std::hypot(d.x, d.y), d.z) * inv_pi;
         return {0, {u < 0.0f ? u + 1.0f : u, v}};
     }
+    /// Eq. 5.1.
     Vec3 unproject(const MapPoint& p) const override {
         const float phi = 2.0f * pi * p.uv.x, theta = pi * p.uv.y;
         return {std::cos(phi) * std::sin(theta), std::sin(phi) * std::sin(theta), std::cos(theta)};

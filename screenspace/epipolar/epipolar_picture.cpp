@@ -77,7 +77,7 @@ EpipolarPicture::Tap EpipolarPicture::tap(std::size_t line, const Vec2d& film, d
         spacing * double(sampled.texels().size() - 1) / std::max(1e-9, sampled.line().length());
     for (const double k : {-1.0, 1.0, -2.0, 2.0})
         if (const auto light = texel_light(sampled, texel + k * step, end, task)) {
-            const auto weight = float(std::exp(-0.5 * k * k));
+            const auto weight = float(std::exp(-0.5 * k * k));  // w_G of Engelhardt 2013, Sec. 9.2.3
             result.light += weight * *light, result.weight += weight;
         }
     if (result.weight > 0.0f) result.light /= result.weight;
@@ -93,6 +93,7 @@ std::optional<Rgb> EpipolarPicture::light_at(const Vec2d& film, const RayEnd& en
     const auto foot = [&](std::size_t i) { return sampled_[i].line().at(sampled_[i].line().project(film)); };
     const double spacing = std::max(1.0, glm::length(foot(after) - foot(before)));
     Tap left = tap(before, film, spacing, end, task), right = tap(after, film, spacing, end, task);
+    // Sec. 9.2.3: a line without valid taps is replaced by the next one outwards.
     const auto outwards = [&](std::size_t from, int step, Tap& side) {
         const auto i = lines_.next(from, step);
         if (side.weight > 0.0f || !i) return;

@@ -81,6 +81,7 @@ Vec2d SampledLine::film(double texel) const {
     return texels_.size() < 2 ? line_.end : line_.at(texel / double(texels_.size() - 1));
 }
 
+/// Where neighbours along the line differ in depth (Engelhardt 2013, Sec. 9.2.2).
 void SampledLine::find_runs(float tolerance, InScatteringTask& task) {
     RayEnd previous;
     std::int32_t run = -1;
@@ -99,6 +100,7 @@ void SampledLine::find_runs(float tolerance, InScatteringTask& task) {
     }
 }
 
+/// The few samples that would do without occluders (Engelhardt 2013, Sec. 9.2.1).
 void SampledLine::find_spread(const LineSampling& settings) {
     const auto lit = [](const LineTexel& t) { return t.run >= 0; };
     const auto first = std::find_if(texels_.begin(), texels_.end(), lit) - texels_.begin();
@@ -120,6 +122,7 @@ void SampledLine::place(const LineSampling& settings) {
         bool spread = false;
         for (; next < spread_.count && spread_.place(next) <= double(i); ++next)
             spread |= wanted[std::size_t(next)];
+        // One directly before and one directly after every discontinuity: Sec. 9.2.2.
         if (texels_[std::size_t(i)].run < 0 || !(spread || ends_run(i))) continue;
         if (samples_.size() >= std::size_t(std::max(1, settings.cap))) return;
         samples_.push_back({float(i), 0.0f, {}});

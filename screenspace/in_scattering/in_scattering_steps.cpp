@@ -27,7 +27,8 @@ void InScattering::place_steps(const StepRule& rule, std::vector<float>& distanc
         distances.push_back(float(rule.at((i + double(settings_.offset)) / settings_.steps)));
 }
 
-/// sigma_s f_p T V I / d^2 at one point [1/m times radiance].
+/// L_M^d, the integrand of Engelhardt 2013, Eq. 10.7: sigma_s f_p T V I / d^2 at one point [1/m times
+/// radiance].
 Rgb InScattering::scattered_at(const Ray& ray, float t, const MediumSegment& at, MarchScratch& scratch,
                                const Rgb* from_map) const {
     const Vec3 x = ray.at(t);
@@ -95,7 +96,7 @@ void InScattering::march_steps(const Ray& ray, double t0, double t1, MarchScratc
             }
             const Rgb scattered = scattered_at(ray, at, s, scratch, accelerations_.map ? &from_map : nullptr);
             if (!is_black(scattered))
-                result.radiance +=
+                result.radiance +=  // the first integral of Eq. 10.7
                     result.transmittance * scattered * float(rule.length(double(at)) / settings_.steps);
         }
         advance(s.t1);

@@ -74,7 +74,7 @@ SsbcResult compensate(const SsbcSurfaces& surfaces, std::span<const Rgb> reflect
     for (int step = 0; step < settings.steps; ++step) {
         const bool last = step + 1 == settings.steps;
         const std::vector<Rgb> irradiance = steps.irradiance(light, !last, result);
-        for (std::size_t i = 0; i < light.size(); ++i)
+        for (std::size_t i = 0; i < light.size(); ++i)  // T_r^n R_0, a term of Eq. 11.3
             light[i] = steps.surfaces().reflectance[i] * irradiance[i];
         for (std::size_t i = 0; i < total.size(); ++i) total[i] += irradiance[i];
     }

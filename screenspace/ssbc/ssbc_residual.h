@@ -39,7 +39,7 @@ struct ReceiverPacket {
     }
 };
 
-/// The mean of max(G - b, 0) over a patch [1/m^2].
+/// G_r = max(G - b, 0) of Eq. 11.5, its mean over a patch [1/m^2].
 inline void residual_of(const ReceiverPacket& r, const SurfaceNode& node, float bound, Lanes& residual) {
     const core::Vec3 p = node.position, n = node.normal;
     const float disc = node.area * core::inv_pi;

@@ -28,6 +28,7 @@ struct PacketSums {
     std::uint64_t store(std::span<Rgb> irradiance) const {
         std::uint64_t limited = 0;
         for (std::size_t l = 0; l < irradiance.size(); ++l) {
+            // f_r of Eq. 11.5 without the reflectance: 1/pi.
             const Real total = form_factor[l] * Real(inv_pi), scale = Real(inv_pi) / std::max(Real(1), total);
             irradiance[l] = {float(r[l] * scale), float(g[l] * scale), float(b[l] * scale)};
             limited += total > Real(1);
@@ -72,7 +73,7 @@ class PatchSum {
     void add(const SurfaceNode& node, const Rgb& radiance, SumCounts& counts) {
         residual_of(packet_, node, sum_.bound, lanes_);
         if (sum_.visibility) sum_.visibility->shadow(packet_, node, lanes_);
-        sums.add(lanes_, node.area * radiance, node.area);
+        sums.add(lanes_, node.area * radiance, node.area);  // G_r A_i L_i of Engelhardt 2013, Eq. 11.5
         ++counts.samples;
     }
 
@@ -117,7 +118,7 @@ class Traversal {
           rules_(rules),
           packet_(packet),
           bound_(sum.bound),
-          radius_squared_(1.0f / sum.bound),
+          radius_squared_(1.0f / sum.bound),  // r = b^(-1/2), Sec. 11.2.1
           patches_(sum, rules, packet) {}
 
     PacketSums<float> run(SumCounts& counts) {
@@ -156,6 +157,7 @@ class Traversal {
             residual_of(packet_, node, 0.0f, lanes_);
         const float g = largest_of(lanes_);
         if (rules_.estimate == RefinementRules::Estimate::at_most && g <= bound_) return Decision::skip;
+        // Sec. 11.2.2, criteria 1 and 2: the projected solid angle, less of it across a discontinuity.
         const float limit = discontinuity ? rules_.discontinuity_projected_angle : rules_.projected_angle;
         return at.level >= rules_.levels || g * node.area > limit ? Decision::refine : Decision::sum;
     }
