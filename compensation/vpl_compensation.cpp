@@ -79,9 +79,9 @@ TileLight compensation_from_vpls(const VplCompensation& request, CompensatedTile
     TileWalk<Media> walk(request, receivers, scratch, gather, context);
     walk.run(to_all, request.range, sum);
     if (!any_to_one) return sum;
-    request.range.for_each(request.vpls.lights.size(), [&](const WeightedVpl& light) {
-        walk.run(to_one, VplRange::one(light.index), sum);
-    });
+    const std::size_t end = std::min(request.range.end, request.vpls.lights.size());
+    for (std::size_t j = request.range.first; j < end; j += request.range.stride)
+        walk.run(to_one, VplRange::one(j), sum);
     return sum;
 }
 

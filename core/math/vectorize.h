@@ -1,5 +1,5 @@
 // MOTE_INDEPENDENT_LANES before a loop tells the compiler that its iterations do not depend on each other
-// through memory, which it cannot prove once references have been inlined away.
+// through memory, which it cannot prove once references have been inlined away. And what such loops use.
 #pragma once
 
 #if defined(__clang__)
@@ -9,3 +9,11 @@
 #else
 #define MOTE_INDEPENDENT_LANES
 #endif
+
+namespace mote::core {
+
+// Without a branch, as vector code has them; std::min and std::max take references. NaN turns into b.
+inline float min_of(float a, float b) { return a < b ? a : b; }
+inline float max_of(float a, float b) { return a > b ? a : b; }
+
+}  // namespace mote::core

@@ -22,9 +22,7 @@ struct alignas(64) ShadowMapCells {
 
 namespace detail {
 
-// NaN turns into b.
-inline float min_of(float a, float b) { return a < b ? a : b; }
-inline float max_of(float a, float b) { return a > b ? a : b; }
+using core::max_of, core::min_of;
 
 /// Coordinates on the map in [-1, 1]^2.
 struct MapPoint {

@@ -9,7 +9,6 @@
 namespace mote::lights {
 
 using namespace core;
-using detail::max_of, detail::min_of;
 
 namespace {
 

@@ -6,11 +6,9 @@
 // the same four numbers.
 #pragma once
 
-namespace mote::lights {
+#include "core/math/vectorize.h"
 
-/// Smaller of two numbers as the vector instruction has it.
-inline float min_of(float a, float b) { return a < b ? a : b; }
-inline float max_of(float a, float b) { return a > b ? a : b; }
+namespace mote::lights {
 
 /// All of G*.
 struct UnboundedGeometry {
@@ -20,13 +18,13 @@ struct UnboundedGeometry {
 /// min(G*, b) (Engelhardt 2013, Sec. 10.1.3); `bound` is b [1/m^2], infinity for all.
 struct BoundedGeometry {
     float bound;
-    float operator()(float g, float, float, float) const { return min_of(g, bound); }
+    float operator()(float g, float, float, float) const { return core::min_of(g, bound); }
 };
 
 /// max(0, G* - b) = B* G*: what BoundedGeometry leaves out (Eq. 10.10 with the bound that it does not print).
 struct ResidualGeometry {
     float bound;
-    float operator()(float g, float, float, float) const { return max_of(0.0f, g - bound); }
+    float operator()(float g, float, float, float) const { return core::max_of(0.0f, g - bound); }
 };
 
 }  // namespace mote::lights

@@ -42,7 +42,7 @@ bool plain_contributions(const ReceiverLanes& x, const VirtualPointLight& y, flo
     MOTE_INDEPENDENT_LANES
     for (int i = 0; i < ReceiverLanes::width; ++i) {
         const float dx = px - x.x[i], dy = py - x.y[i], dz = pz - x.z[i];
-        const float d2 = max_of(dx * dx + dy * dy + dz * dz, min_distance_squared);
+        const float d2 = core::max_of(dx * dx + dy * dy + dz * dz, min_distance_squared);
         const float inv_d = 1.0f / std::sqrt(d2);
         const float side_x = dx * x.geometric_x[i] + dy * x.geometric_y[i] + dz * x.geometric_z[i];
         const float cos_x = dx * x.shading_x[i] + dy * x.shading_y[i] + dz * x.shading_z[i];
@@ -50,8 +50,8 @@ bool plain_contributions(const ReceiverLanes& x, const VirtualPointLight& y, flo
         const float side_y = -(dx * sx + dy * sy + dz * sz);
         // C* is the positive cosine on a surface and 1 in a medium; both sides of a shading normal must
         // agree.
-        const float c_x = min_of(side_x, cos_x) > 0.0f ? cos_x * inv_d : x.in_medium[i];
-        const float c_y = min_of(side_y, cos_y) > 0.0f ? cos_y * inv_d : y_in_medium;
+        const float c_x = core::min_of(side_x, cos_x) > 0.0f ? cos_x * inv_d : x.in_medium[i];
+        const float c_y = core::min_of(side_y, cos_y) > 0.0f ? cos_y * inv_d : y_in_medium;
         const float g = c_x * c_y * (inv_d * inv_d);  // G* = C* C* / d^2
         const float weighted_g = own_weight(g, d2, c_x, c_y);
         const float weighted = depth <= x.max_vpl_depth[i] ? weighted_g : 0.0f;
@@ -60,13 +60,13 @@ bool plain_contributions(const ReceiverLanes& x, const VirtualPointLight& y, flo
         const float gr = x.weight_g[i] * ig * weighted;
         const float b = x.weight_b[i] * ib * weighted;
         out.r[i] = r, out.g[i] = gr, out.b[i] = b;
-        const float lit = max_of(r, max_of(gr, b));
+        const float lit = core::max_of(r, core::max_of(gr, b));
         packet.origin_x[i] = x.x[i], packet.origin_y[i] = x.y[i], packet.origin_z[i] = x.z[i];
         packet.direction_x[i] = dx, packet.direction_y[i] = dy, packet.direction_z[i] = dz;
         packet.t_min[i] = 0.0f;
         packet.t_max[i] = lit > 0.0f ? shadow_t_max : -1.0f;
     }
-    for (int i = 0; i < ReceiverLanes::width; ++i) brightest = max_of(brightest, packet.t_max[i]);
+    for (int i = 0; i < ReceiverLanes::width; ++i) brightest = core::max_of(brightest, packet.t_max[i]);
     return brightest > 0.0f;
 }
 
