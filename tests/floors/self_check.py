@@ -5,6 +5,7 @@ import tempfile
 from pathlib import Path
 
 import check_references
+import count_loops
 from check_floors import check
 
 # (file, content, must be refused)
@@ -69,8 +70,22 @@ def check_citations():
     return failures
 
 
+def check_loops():
+    """1 where a second eye path, or a comment that only speaks of one, is taken for the other."""
+    with tempfile.TemporaryDirectory() as folder:
+        root = Path(folder)
+        (root / "integrators").mkdir()
+        (root / "integrators/second.cpp").write_text("event = core::walk<Media>(scene, ray, state);\n")
+        (root / "integrators/comment.cpp").write_text("// as walk<Media>(scene) does\n")
+        lines = [line for line in count_loops.offences(root) if not line.endswith("are known") or ": 0 where" not in line]
+    if len(lines) == 1 and lines[0].startswith("integrators/second.cpp: a walk"):
+        return 0
+    print(f"a second eye path: found {lines}")
+    return 1
+
+
 def main():
-    failures = check_citations()
+    failures = check_citations() + check_loops()
     for name, content, refused in CASES:
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / name
@@ -81,7 +96,7 @@ def main():
             failures += 1
             print(f"{name}: {content.strip()!r}: expected {'an offence' if refused else 'none'}, "
                   f"got {offences} in {count} files")
-    print(f"{len(CASES) + len(CITATIONS)} cases, {failures} wrong")
+    print(f"{len(CASES) + len(CITATIONS) + 1} cases, {failures} wrong")
     return 1 if failures else 0
 
 
