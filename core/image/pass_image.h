@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "core/math/vec.h"
@@ -31,6 +32,9 @@ class PassImage {
     Rgb& at(std::size_t layer, int x, int y) {
         return planes_[layer][std::size_t(y) * std::size_t(width_) + std::size_t(x)];
     }
+    /// By a name that the integrator has for it.
+    template <typename Name>
+    requires std::is_enum_v<Name> Rgb& at(Name layer, int x, int y) { return at(std::size_t(layer), x, y); }
     void clear();
 
   private:

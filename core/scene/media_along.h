@@ -12,7 +12,9 @@ namespace mote::core {
 inline StraightPassage passage_through(const SurfaceHit& pane, const Vec3& direction) {
     return pane.shape->bsdf->straight_passage({pane.uv}, pane.shading.to_local(-direction));
 }
-inline bool is_pane(const SurfaceHit& boundary) { return boundary.shape->bsdf->traits().pane; }
+inline bool is_pane(const SurfaceHit& boundary) {
+    return boundary.shape->bsdf && boundary.shape->bsdf->traits().pane;
+}
 
 /// A path that goes this way passes the pane by chance (ray_walk.cpp), a connection always. Returns false where
 /// nothing passes.

@@ -36,7 +36,7 @@ FilmRectangle InterpolatedScattering::frame() const {
 /// Counts marched rays. What lies outside the film belongs to its border.
 void InterpolatedScattering::show(const std::vector<Vec2d>& places, PassImage& image) const {
     for (const Vec2d& p : places)
-        image.at(3, std::clamp(int(std::floor(p.x)), 0, options_.width - 1),
+        image.at(ScatteringLayer::marched_rays, std::clamp(int(std::floor(p.x)), 0, options_.width - 1),
                  std::clamp(int(std::floor(p.y)), 0, options_.height - 1)) += Rgb(1.0f);
 }
 
@@ -60,9 +60,10 @@ bool InterpolatedScattering::upsample(const PassContext& context, const PassNumb
                     auto scattered = light_at(Vec2d(point.film), end, *task);
                     if (!scattered) {
                         scattered = task->march(Vec2d(point.film), end).radiance, ++filled;
-                        if (settings_.show_samples) image.at(3, x, y) += Rgb(1.0f);
+                        if (settings_.show_samples)
+                            image.at(ScatteringLayer::marched_rays, x, y) += Rgb(1.0f);
                     }
-                    image.at(2, x, y) += *scattered;
+                    image.at(ScatteringLayer::single_scattering, x, y) += *scattered;
                 }
             const std::lock_guard lock(mutex_);
             counts_.filled += filled, counts_.candidates += candidates;

@@ -69,11 +69,13 @@ void SingleScatteringEstimator<Media>::render_eye(const PassContext& context, co
             if (end.dark()) continue;
             lit.t_max = end.distance;
             path.sum[Transport::single_scattering] += light.march(lit, state, scratch).radiance;
-            if (settings_.show_samples) image.at(3, x, y) += Rgb(1.0f);
+            if (settings_.show_samples) image.at(ScatteringLayer::marched_rays, x, y) += Rgb(1.0f);
         }
-        image.at(2, x, y) = path.sum[Transport::single_scattering];
+        image.at(ScatteringLayer::single_scattering, x, y) = path.sum[Transport::single_scattering];
     }
-    image.at(0, x, y) = path.sum[Transport::emission], image.at(1, x, y) = path.sum[Transport::direct];
+    image.at(ScatteringLayer::emission, x, y) = path.sum[Transport::emission],
+                                           image.at(ScatteringLayer::direct, x, y) =
+                                               path.sum[Transport::direct];
 }
 
 template <bool Media>

@@ -38,6 +38,9 @@ ScatteringSettings read_scattering_settings(const core::Properties& properties);
 /// Their rows in a manual page.
 std::vector<core::Parameter> scattering_parameters();
 
+/// In the order of single_scattering_layers(); the last two only in media.
+enum class ScatteringLayer : std::uint8_t { emission, direct, single_scattering, marched_rays };
+
 /// emission, direct, and where there are media single_scattering, and the marched rays when asked for.
 std::vector<core::Layer> single_scattering_layers(bool media, const ScatteringSettings& settings);
 

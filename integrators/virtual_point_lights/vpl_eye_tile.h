@@ -14,10 +14,13 @@
 
 namespace mote::integrators {
 
+/// Where a receiver lies: the layers of compensation are named after it.
+enum class ReceiverKind : std::uint8_t { surface, medium };
+
 /// One estimate of a pixel.
 struct VplPixel {
     TransportSum transport;
-    std::array<core::Rgb, 2> compensation{};  ///< of receivers on surfaces; in media
+    std::array<core::Rgb, 2> compensation{};  ///< by ReceiverKind
 
     void add(const VplPixel& other, float weight) {
         for (std::size_t i = 0; i < transport.light.size(); ++i)
@@ -55,7 +58,7 @@ class EyeTile {
 
     void start(int lane, const EyeRay& eye) {
         Lane& l = lanes_[std::size_t(lane)];
-        l.sum = {}, l.receiver_layer = Transport::indirect, l.alive = true;
+        l.sum = {}, l.receiver = ReceiverKind::surface, l.alive = true;
         walk_.rng = eye.rng;
         l.path.emplace(scene_, settings_.eye, eye, walk_);
         l.rng = walk_.rng;
@@ -91,9 +94,9 @@ class EyeTile {
             const auto compensated = compensation_.run(range, vpl_scale);
             for (int i = 0; i < lights::ReceiverTile::width; ++i) {
                 Lane& lane = lanes_[std::size_t(i)];
-                lane.sum.transport[lane.receiver_layer] += vpl_scale * light[std::size_t(i)];
-                lane.sum.compensation[lane.receiver_layer == Transport::indirect ? 0 : 1] +=
-                    compensated[std::size_t(i)];
+                const bool surface = lane.receiver == ReceiverKind::surface;
+                lane.sum.transport[transport_layer(2, surface)] += vpl_scale * light[std::size_t(i)];
+                lane.sum.compensation[std::size_t(lane.receiver)] += compensated[std::size_t(i)];
             }
         }
     }
@@ -103,7 +106,7 @@ class EyeTile {
         std::optional<EyePath<Media>> path;
         core::Rng rng;  ///< of the path, while other lanes advance
         VplPixel sum;
-        Transport receiver_layer = Transport::indirect;
+        ReceiverKind receiver = ReceiverKind::surface;
         bool alive = false;
     };
 
@@ -126,7 +129,7 @@ class EyeTile {
         const int max_depth = settings_.eye.max_depth;
         const std::int32_t vpl_depth =
             max_depth < 0 ? std::numeric_limits<std::int32_t>::max() : max_depth - path.depth() - 1;
-        lane.receiver_layer = transport_layer(2, path.vertex().on_surface());
+        lane.receiver = path.vertex().on_surface() ? ReceiverKind::surface : ReceiverKind::medium;
         const core::Rgb throughput = path.throughput();
         receivers_.set(index, path.vertex(), throughput, path.state(), core::Rng(walk_.rng.next_u32()),
                        vpl_depth);

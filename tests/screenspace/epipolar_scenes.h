@@ -92,7 +92,7 @@ inline std::string block_in_fog(const Vec3d& light, const std::string& more = ""
         <emitter type="point"><point name="position" x="{}" y="{}" z="{}"/></emitter>
         <sensor type="perspective"><float name="fov" value="50"/><transform name="to_world">
             <lookat origin="0, 0, 4" target="0, 0, 0" up="0, 1, 0"/></transform>
-            <medium type="homogeneous"><float name="sigma_t" value="0.1"/></medium></sensor></scene>)",
+            <medium type="homogeneous" id="fog"><float name="sigma_t" value="0.1"/></medium></sensor></scene>)",
                        more, light.x, light.y, light.z);
 }
 

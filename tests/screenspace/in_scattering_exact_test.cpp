@@ -247,8 +247,7 @@ TEST_CASE("Shadow maps of the lights leave marched light as it is", "[in_scatter
 
 TEST_CASE("Marching by shadow maps traces no shadow rays", "[in_scattering_exact][shadow_map]") {
     const auto named = [](std::string xml) {  // the light names the fog, as the camera does
-        const std::string fog = R"(<medium type="homogeneous"><float name="sigma_t" value="0.1"/></medium>)";
-        return xml.insert(xml.find("</emitter>"), fog);
+        return xml.insert(xml.find("</emitter>"), R"(<ref id="fog"/>)");
     };
     const std::string xml = tests::block_in_fog({0.8, 0.6, -1.0});
     const auto map = integrator("mote_single_scattering", by_steps + by_map(64));
