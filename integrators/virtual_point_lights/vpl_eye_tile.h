@@ -128,8 +128,8 @@ class EyeTile {
         const std::int32_t vpl_depth =
             max_depth < 0 ? std::numeric_limits<std::int32_t>::max() : max_depth - path.depth() - 1;
         lane.receiver_layer = transport_layer(2, path.vertex().on_surface());
-        // Engelhardt 2013, Eq. 10.9: tau sigma_s / p(t) of a receiver in a medium is in the throughput. The print
-        // leaves out sigma_s (docs/errata.md).
+        // Engelhardt 2013, Eq. 10.9: tau sigma_s / p(t) of a receiver in a medium is in the throughput. The
+        // print leaves out sigma_s (docs/errata.md).
         const core::Rgb throughput = path.throughput();
         receivers_.set(index, path.vertex(), throughput, path.state(), core::Rng(walk_.rng.next_u32()),
                        vpl_depth);
