@@ -20,7 +20,7 @@ class RayTracer {
   public:
     enum class Group { surfaces, boundaries };
 
-    /// Keeps pointers to the shapes, which must outlive it. A shape is a boundary when its BSDF is null.
+    /// Keeps pointers to the shapes, which must outlive it. Boundaries are null BSDFs and panes.
     explicit RayTracer(std::span<const std::shared_ptr<Shape>> shapes);
     ~RayTracer();
     RayTracer(const RayTracer&) = delete;

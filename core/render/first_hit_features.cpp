@@ -23,7 +23,7 @@ Rgb albedo(const FirstHit& first) {
 Rgb transmittance(const FirstHit& first) {
     TrackingCounters counters;
     return first.scene.transmittance(first.ray.at(first.ray.t_min), first.hit.position,
-                                     first.scene.camera_medium_state(), first.rng, counters);
+                                     first.scene.eye_medium_state(first.ray), first.rng, counters);
 }
 
 }  // namespace

@@ -16,8 +16,8 @@ namespace mote::core {
 class TransmittanceAlong {
   public:
     /// `state` holds the media at ray.t_min; `boundaries` are the boundaries on the ray, sorted by distance
-    /// (RayTracer::all_hits, or WalkContext::boundary_hits after walk()). Keeps references to all but the
-    /// state.
+    /// (RayQueries::boundaries_along(), or WalkContext::boundary_hits after walk()). Keeps references to all
+    /// but the state.
     TransmittanceAlong(const Ray& ray, const MediumState& state, std::span<const SurfaceHit> boundaries,
                        Rng& rng, TrackingCounters& counters)
         : ray_(ray), state_(state), boundaries_(boundaries), rng_(rng), counters_(counters), t_(ray.t_min) {}

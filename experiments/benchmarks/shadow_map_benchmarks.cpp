@@ -88,7 +88,7 @@ struct Lamp {
     Rng rng{1};
     TrackingCounters counters{};
 
-    /// As resolve_batch() of lights/virtual_lights/vpl_gather.cpp.
+    /// As TracedVisibility of lights/virtual_lights/vpl_gather.h.
     float trace(const Points& points) {
         float sum = 0.0f;
         for (std::size_t first = 0; first < points.size(); first += packets.size()) {

@@ -5,7 +5,8 @@
 //   single_scattering      one scattering, in a medium
 //   indirect               more scatterings, the first on a surface
 //   multiple_scattering    more scatterings, the first in a medium
-// Scatterings are counted from the first vertex that is not a delta reflection or refraction.
+// Scatterings are counted from the first vertex that is not a delta reflection or refraction. Engelhardt 2013
+// has the last two in Eq. 10.6, direct light and single scattering in Eq. 10.7, and their sum in Eq. 10.8.
 #pragma once
 
 #include <array>

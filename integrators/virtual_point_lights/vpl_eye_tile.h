@@ -89,6 +89,7 @@ class EyeTile {
             if (maps_.receivers)
                 maps_.receivers->add(receivers_, maps_.column, maps_.row, range, vpl_scale * maps_.scale);
             else
+                // The sum over VPLs of Eqs. 10.4 and 10.5, with min(G*, b).
                 light = lights::gather({scene_, scratch_, walk_.rays, walk_.tracking}, vpls_, range,
                                        lights::BoundedGeometry{bound_}, receivers_);
             const auto compensated = compensation_.run(range, vpl_scale);
@@ -130,6 +131,8 @@ class EyeTile {
         const std::int32_t vpl_depth =
             max_depth < 0 ? std::numeric_limits<std::int32_t>::max() : max_depth - path.depth() - 1;
         lane.receiver = path.vertex().on_surface() ? ReceiverKind::surface : ReceiverKind::medium;
+        // Engelhardt 2013, Eq. 10.9: tau sigma_s / p(t) of a receiver in a medium is in the throughput. The
+        // print leaves out sigma_s (docs/errata.md).
         const core::Rgb throughput = path.throughput();
         receivers_.set(index, path.vertex(), throughput, path.state(), core::Rng(walk_.rng.next_u32()),
                        vpl_depth);

@@ -1,6 +1,6 @@
 // Columns along the azimuth, rows from the pole +z to the pole -z (Blinn & Newell 1976; Engelhardt 2013,
-// Sec. 5.1.1). Unlike latlong_map.h, which follows the pictures of environments, no row of texels lies on a
-// pole.
+// Sec. 5.1.1). Unlike emitters/environment_picture.h, which follows the pictures of environments, no row of
+// texels lies on a pole.
 
 #include "lights/directional_maps/directional_map_kinds.h"
 

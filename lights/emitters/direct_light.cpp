@@ -52,8 +52,8 @@ Rgb sample_light(const LitScene& scene, const ScatteringVertex& vertex, const Pa
     } else if (!reaches_light<Media>(scene, vertex, *light, state, connection, context)) {
         return Rgb(0.0f);
     }
-    // f = throughput f* C* T L_e over the mean pdf of both techniques. A delta light is found by this one
-    // alone.
+    // f = throughput f* C* T L_e over the sum of both techniques' pdfs: the balance heuristic (Veach 1997,
+    // Eq. 9.8), averaged over channels. A delta light is found by this one alone.
     const float pdf_light = choice.probability * (light->delta ? 1.0f : light->pdf_solid_angle);
     const float pdf_scatter =
         light->delta ? 0.0f
@@ -82,6 +82,7 @@ Rgb found_light(const LitScene& scene, const WalkEvent& event, const Ray& ray, c
     if (!previous) return weights.throughput * radiance / channel_average<Media>(unidirectional);
     const float pdf_light =
         scene.light_probability(emitter) * emitter->pdf_direct(*previous, ray.direction, hit);
+    // Eq. 9.8 seen from the other technique: weights.light holds 1 / p(w) of the direction that led here.
     return weights.throughput * radiance / channel_average<Media>(unidirectional + weights.light * pdf_light);
 }
 

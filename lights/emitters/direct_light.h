@@ -1,4 +1,4 @@
-// Direct light at a vertex by two techniques, combined by the balance heuristic (Veach 1997, Sec. 9.2):
+// Direct light at a vertex by two techniques, combined by the balance heuristic (Veach 1997, Eq. 9.8):
 // next-event estimation, and directions from the BSDF or phase function that happen to hit a light.
 //
 // With media, the weights follow the spectral book-keeping of PathWeights; without, they reduce to scalars.

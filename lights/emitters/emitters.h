@@ -44,7 +44,8 @@ std::shared_ptr<core::Emitter> make_area_light(std::shared_ptr<core::Texture> ra
 /// The same radiance [W/(m^2 sr)] from every direction.
 std::shared_ptr<core::Emitter> make_constant_light(const core::Rgb& radiance);
 
-/// Radiance from a latitude-longitude picture (see latlong_map.h); to_world may rotate and mirror.
+/// Radiance from a latitude-longitude picture (see environment_picture.h); to_world may rotate and
+/// mirror.
 std::shared_ptr<core::Emitter> make_environment_map(core::Bitmap picture,
                                                     const core::Transform& to_world = {}, float scale = 1.0f);
 

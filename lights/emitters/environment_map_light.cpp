@@ -1,4 +1,5 @@
-// The environment map: light from all around, given by a latitude-longitude picture (latlong_map.h).
+// The environment map: light from all around, given by a latitude-longitude picture
+// (environment_picture.h).
 #include "core/objects/registry.h"
 #include "lights/emitters/emitters.h"
 #include "lights/emitters/environment_picture.h"

@@ -54,6 +54,7 @@ void follow_light_path(const core::LitScene& scene, const LightPathSettings& set
     core::Ray ray{emission->origin, emission->direction};
     for (int depth = 1; settings.max_vertices < 0 || depth <= settings.max_vertices; ++depth) {
         core::Rgb emitted(0.0f);
+        // tau / p(t): sigma_s / sigma_t at a collision, 1 at a surface.
         const core::WalkEvent event = core::walk<Media>(scene, ray, state, weights, emitted, context);
         if (event.kind == core::WalkEvent::Kind::escaped) return;
         const core::ScatteringVertex vertex = make_vertex(event, ray);
@@ -64,11 +65,12 @@ void follow_light_path(const core::LitScene& scene, const LightPathSettings& set
             const float q = core::survival_chance(remaining_power(weights.throughput / channels, start),
                                                   depth, core::long_light_path);
             if (context.rng.next_float() >= q) return;
-            weights.throughput /= q;
+            weights.throughput /= q;  // 1 / q of alpha_{i+1}
         }
         const float u_lobe = sampler.next_1d();
         const auto next = vertex.sample(u_lobe, sampler.next_2d(), core::TransportMode::power);
         if (!next) return;
+        // f* C* / p(w) of alpha_{i+1} (Engelhardt 2013, Sec. 10.1.1, step 2).
         weights.throughput *= next->weight * adjoint_correction(vertex, vertex.wo, next->wi);
         if (core::is_black(weights.throughput)) return;
         if (Media && vertex.on_surface()) state = vertex.state_towards(state, next->wi);

@@ -46,6 +46,7 @@ void append_vpl(VplSet& set, const ScatteringVertex& vertex, const Rgb& alpha, s
         if (plain) {
             // The light must also arrive above the shading normal, or a diffuse surface reflects nothing.
             if (glm::dot(vpl.shading_normal, vertex.wo) <= 0.0f) return;
+            // f* is a constant, and I_j one colour (Engelhardt 2013, Eq. 10.3).
             vpl.intensity *= *reflectance * inv_pi * incoming_correction(vertex);
         }
     } else {

@@ -1,6 +1,6 @@
 // What one virtual point light would send to sixteen receivers if nothing stood between them.
 //
-// Engelhardt 2013, Eqs. 10.4 (surfaces) and 10.5 (media), one term of the sum without its visibility:
+// Engelhardt 2013, Eqs. 10.4 (media) and 10.5 (surfaces), one term of the sum without its visibility:
 //   f*(x) w(G*(x,y_j)) I_j
 // Where f* is constant at both ends the loop over the lanes is branch-free arithmetic.
 #pragma once
