@@ -64,21 +64,27 @@ bool overlap(const core::Bounds3& a, const core::Bounds3& b) {
     return glm::all(glm::lessThan(a.lower, b.upper)) && glm::all(glm::lessThan(b.lower, a.upper));
 }
 
-/// Ours knows all shapes that a point is inside of; Mitsuba's paths know the last one they crossed.
-void warn_of_nested_media(const Element& element, const core::Shape& shape, const ExportContext& context) {
+/// Ours knows all shapes that a point is inside of, and the medium around all of them; Mitsuba's paths know
+/// the last one they crossed, and take what is outside of it to be empty unless it says otherwise.
+void write_exterior(Element& element, const core::Shape& shape, const ExportContext& context) {
     if (!shape.has_medium_boundary || shape.exterior) return;
+    bool nested = false;
     for (const auto& other : context.scene.shapes())
-        if (other.get() != &shape && other->has_medium_boundary && overlap(shape.bounds(), other->bounds()))
-            context.note(element,
-                         "its medium may lie within that of another shape: Mitsuba takes what is outside to "
-                         "be empty unless the shape names its 'exterior'");
+        nested = nested || (other.get() != &shape && other->has_medium_boundary &&
+                            overlap(shape.bounds(), other->bounds()));
+    if (nested)
+        context.note(element,
+                     "its medium may lie within that of another shape: Mitsuba takes what is outside to "
+                     "be empty unless the shape names its 'exterior'");
+    else if (const core::Medium* outermost = context.scene.outermost_medium())
+        element.children.push_back(make_reference(element, "exterior", outermost->id));
 }
 
 }  // namespace
 
 void export_shape(Element& element, const core::Shape& shape, const ExportContext& context) {
     write_default_bsdf(element, shape, context);
-    warn_of_nested_media(element, shape, context);
+    write_exterior(element, shape, context);
     const auto* mesh = dynamic_cast<const core::TriangleMesh*>(&shape);
     if (mesh && (element.get("type") == "mesh" || mirrored(element)))
         write_mesh(element, *mesh, context);

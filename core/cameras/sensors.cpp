@@ -36,7 +36,9 @@ void add_common_parameters(std::vector<Parameter>& parameters) {
     parameters.push_back({"far_clip", "float", "10000", "nothing farther is seen, m along the view"});
     parameters.push_back({"film", "film", "hdrfilm", "the picture"});
     parameters.push_back({"sampler", "sampler", "sobol", "where samples fall"});
-    parameters.push_back({"medium", "medium", "found from the shapes", "the medium around the camera"});
+    parameters.push_back(
+        {"medium", "medium", "",
+         "the medium around the camera; when absent, that of the shapes around it, or the outermost one"});
 }
 
 void add_view_parameters(std::vector<Parameter>& parameters) {

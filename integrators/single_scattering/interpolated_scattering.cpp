@@ -103,7 +103,7 @@ auto InterpolatedScattering::share_rays(const PassContext& context, const PassNu
     for (const EpipolarPicture* picture : pictures) bytes += picture->counts().bytes;
     counts_.shared += shared, counts_.bytes = std::max(counts_.bytes, bytes);
     counts_.rays += rays.done().rays, counts_.steps += rays.done().steps;
-    counts_.clear += rays.done().clear;
+    counts_.unoccluded += rays.done().unoccluded;
     counters_.add(rays.done().walk.rays, rays.done().walk.tracking);
     return all;
 }
@@ -142,7 +142,7 @@ bool InterpolatedScattering::scatter(const PassContext& context, const PassNumbe
     }
     counts_.bytes = std::max(counts_.bytes, bytes + points_.capacity() * sizeof(EyePoint));
     counts_.rays += source.marched(), counts_.steps += source.steps();
-    counts_.clear += source.clear();
+    counts_.unoccluded += source.unoccluded();
     counters_.add(source.rays(), source.tracking());
     return done;
 }

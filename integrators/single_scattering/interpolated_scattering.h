@@ -25,8 +25,9 @@ struct EyePoint {
 };
 
 struct ScatteringCounts {
-    std::uint64_t rays = 0, steps = 0, clear = 0, candidates = 0;  ///< of marched rays; pixels that are lit
-    std::uint64_t filled = 0, lines = 0, texels = 0, shared = 0;   ///< of interpolation
+    std::uint64_t rays = 0, steps = 0, unoccluded = 0,
+                  candidates = 0;                                 ///< of marched rays; pixels that are lit
+    std::uint64_t filled = 0, lines = 0, texels = 0, shared = 0;  ///< of interpolation
     std::size_t bytes = 0;
 };
 

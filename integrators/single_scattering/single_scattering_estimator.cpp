@@ -99,7 +99,7 @@ bool SingleScatteringEstimator<Media>::pass(const PassContext& context, PassImag
                                         counters_.add(scratch.walk.rays, scratch.walk.tracking);
                                         const std::lock_guard lock(mutex_);
                                         counts_.rays += scratch.rays, counts_.steps += scratch.steps;
-                                        counts_.clear += scratch.clear;
+                                        counts_.unoccluded += scratch.unoccluded;
                                         if (full) counts_.candidates += scratch.rays;
                                     });
     if (!eyes) return false;
@@ -113,7 +113,7 @@ void SingleScatteringEstimator<Media>::add_statistics(Statistics& statistics) co
     const ScatteringCounts& more = interpolated_.counts();
     statistics.values["marched_rays"] += double(counts_.rays + more.rays);
     statistics.values["march_steps"] += double(counts_.steps + more.steps);
-    statistics.values["unoccluded_rays"] += double(counts_.clear + more.clear);
+    statistics.values["unoccluded_rays"] += double(counts_.unoccluded + more.unoccluded);
     accelerations_->add_statistics(statistics);
     statistics.values["lit_pixels"] += double(counts_.candidates + more.candidates);
     if (settings_.sampling == ScatteringSampling::full) return;

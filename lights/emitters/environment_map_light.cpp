@@ -13,7 +13,7 @@ using namespace core;
 
 class EnvironmentMap final : public Emitter {
   public:
-    EnvironmentMap(LatLongMap map, const glm::mat3& rotation, float scale)
+    EnvironmentMap(EnvironmentPicture map, const glm::mat3& rotation, float scale)
         : map_(std::move(map)), world_from_local_(rotation), scale_(scale) {}
 
     EmitterTraits traits() const override {
@@ -56,7 +56,7 @@ class EnvironmentMap final : public Emitter {
     bool dark() const { return !(scale_ > 0.0f) || map_.black(); }
     Vec3 to_local(const Vec3& w) const { return glm::transpose(world_from_local_) * w; }
 
-    LatLongMap map_;
+    EnvironmentPicture map_;
     glm::mat3 world_from_local_;
     float scale_;
     SceneSphere scene_;
@@ -70,7 +70,7 @@ std::shared_ptr<Object> create(const Properties& properties) {
     if (properties.get_bool("mis_compensation", false))
         properties.warn("'mis_compensation' has no effect: every lit direction keeps its chance");
     const glm::mat3 rotation = checked_rotation(properties.get_transform(), properties.where_of("to_world"));
-    LatLongMap map(std::move(picture));
+    EnvironmentPicture map(std::move(picture));
     if (map.black() || scale == 0.0f) properties.warn("this environment map is black: it emits nothing");
     return std::make_shared<EnvironmentMap>(std::move(map), rotation, scale);
 }
@@ -80,8 +80,8 @@ std::shared_ptr<Object> create(const Properties& properties) {
 std::shared_ptr<Emitter> make_environment_map(Bitmap picture, const Transform& to_world, float scale) {
     check_pixels(picture, "<pixels>");
     checked_brightness(Rgb(scale), "scale");
-    return std::make_shared<EnvironmentMap>(LatLongMap(std::move(picture)), checked_rotation(to_world),
-                                            scale);
+    return std::make_shared<EnvironmentMap>(EnvironmentPicture(std::move(picture)),
+                                            checked_rotation(to_world), scale);
 }
 
 void register_envmap(Registry& registry) {

@@ -28,7 +28,7 @@ HatWeights hat_weights(double a, double d) {
 
 }  // namespace
 
-LatLongMap::LatLongMap(Bitmap picture)
+EnvironmentPicture::EnvironmentPicture(Bitmap picture)
     : picture_(std::move(picture)), columns_(picture_.width), rows_(std::max(picture_.height - 1, 1)) {
     const double row_angle = pi_d / double(rows_);
     for (int row = 0; row <= rows_; ++row) cosines_.push_back(float(std::cos(double(row) * row_angle)));
@@ -50,13 +50,13 @@ LatLongMap::LatLongMap(Bitmap picture)
     integral_ = Rgb(sum);
 }
 
-const Rgb& LatLongMap::pixel(int column, int row) const {
+const Rgb& EnvironmentPicture::pixel(int column, int row) const {
     const int x = column >= columns_ ? column - columns_ : column;
     const int y = std::min(row, picture_.height - 1);
     return picture_.pixels[std::size_t(y) * std::size_t(columns_) + std::size_t(x)];
 }
 
-Vec2 LatLongMap::cell_coordinates(const Vec3& d) const {
+Vec2 EnvironmentPicture::cell_coordinates(const Vec3& d) const {
     const float u = std::atan2(d.x, -d.z) * inv_two_pi;
     // acos(y) would lose half the digits near the poles.
     const float v = std::atan2(std::hypot(d.x, d.z), d.y) * inv_pi;
@@ -66,7 +66,7 @@ Vec2 LatLongMap::cell_coordinates(const Vec3& d) const {
             std::clamp(v * float(rows_), 0.0f, float(rows_) * one_minus_epsilon)};
 }
 
-Rgb LatLongMap::eval(const Vec3& d) const {
+Rgb EnvironmentPicture::eval(const Vec3& d) const {
     const Vec2 at = cell_coordinates(d);
     const int column = int(at.x), row = int(at.y);
     const float s = at.x - float(column), t = at.y - float(row);
@@ -74,11 +74,11 @@ Rgb LatLongMap::eval(const Vec3& d) const {
            t * ((1.0f - s) * pixel(column, row + 1) + s * pixel(column + 1, row + 1));
 }
 
-float LatLongMap::cell_solid_angle(int row) const {
+float EnvironmentPicture::cell_solid_angle(int row) const {
     return 2.0f * pi / float(columns_) * (cosines_[std::size_t(row)] - cosines_[std::size_t(row) + 1]);
 }
 
-LatLongMap::Sample LatLongMap::sample(const Vec2& u) const {
+EnvironmentPicture::Sample EnvironmentPicture::sample(const Vec2& u) const {
     const auto s = distribution_.sample(u);
     const float y = s.uv.y * float(rows_);
     const int row = std::min(int(y), rows_ - 1);
@@ -91,7 +91,7 @@ LatLongMap::Sample LatLongMap::sample(const Vec2& u) const {
     return {direction, s.pdf / (float(columns_) * float(rows_) * cell_solid_angle(row))};
 }
 
-float LatLongMap::pdf_solid_angle(const Vec3& d) const {
+float EnvironmentPicture::pdf_solid_angle(const Vec3& d) const {
     if (black()) return 0.0f;
     const Vec2 at = cell_coordinates(d);
     const Vec2 center(std::floor(at.x) + 0.5f, std::floor(at.y) + 0.5f);

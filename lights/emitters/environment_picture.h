@@ -11,10 +11,10 @@
 
 namespace mote::lights {
 
-class LatLongMap {
+class EnvironmentPicture {
   public:
     /// Pixels must be finite and not negative (see check_pixels).
-    explicit LatLongMap(core::Bitmap picture);
+    explicit EnvironmentPicture(core::Bitmap picture);
 
     /// Radiance from the unit direction d.
     core::Rgb eval(const core::Vec3& d) const;

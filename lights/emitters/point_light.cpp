@@ -73,7 +73,8 @@ void register_point(Registry& registry) {
          {{"intensity", "rgb", "1", "radiant intensity [W/sr]"},
           {"position", "point", "0, 0, 0", "where it stands [m]"},
           {"to_world", "transform", "identity", "instead of position: moves the origin"},
-          {"medium", "medium", "", "the medium around the light, found from the shapes when absent"}},
+          {"medium", "medium", "",
+           "the medium around the light; when absent, that of the shapes around it, or the outermost one"}},
          R"(<emitter type="point">
     <point name="position" x="0" y="2" z="0"/>
     <rgb name="intensity" value="10"/>

@@ -160,7 +160,8 @@ void register_spot(Registry& registry) {
           {"beam_width", "float", "0.75 cutoff_angle", "half angle of full intensity [degrees]"},
           {"texture", "texture", "", "projected through the cone; its square touches the cone; multiplies"},
           {"to_world", "transform", "identity", "places and turns the light; no stretching"},
-          {"medium", "medium", "", "the medium around the light, found from the shapes when absent"}},
+          {"medium", "medium", "",
+           "the medium around the light; when absent, that of the shapes around it, or the outermost one"}},
          R"(<emitter type="spot">
     <transform name="to_world"><lookat origin="0, 3, 0" target="0, 0, 0" up="0, 0, 1"/></transform>
     <rgb name="intensity" value="20"/>

@@ -87,7 +87,7 @@ InScattering::InScattering(const Scene& scene, const Emitter& light, const March
     if (const auto* spot = dynamic_cast<const lights::ConeLight*>(&light)) cone_ = spot->cone();
     for (const auto& medium : scene.media())
         if (medium->traits().scattering && !medium->traits().empty) media_.extend(extent(scene, *medium));
-    if (!accelerations.clear) return;
+    if (!accelerations.space) return;
     if (const auto analytic = AnalyticLight::of(light)) analytic_light_.emplace(*analytic);
     for (const auto& medium : scene.media())
         if (const auto analytic = AnalyticMedium::of(*medium)) analytic_media_.push_back(*analytic);

@@ -39,7 +39,7 @@ struct MarchSettings {
 
 /// What can stand in for steps and shadow rays. Not owned.
 struct MarchAccelerations {
-    const UnoccludedSpace* clear = nullptr;            ///< null: all is marched
+    const UnoccludedSpace* space = nullptr;            ///< null: all is marched
     const lights::VolumetricShadowMap* map = nullptr;  ///< of this light; null: shadow rays
 };
 
@@ -75,7 +75,7 @@ struct MarchScratch {
     std::vector<core::ShadowPacket> packets;
     std::vector<lights::ShadowLookup> lookups;
     std::uint64_t rays = 0, steps = 0;
-    std::uint64_t clear = 0;  ///< rays that needed no step, because nothing was in the way
+    std::uint64_t unoccluded = 0;  ///< rays that needed no step, because nothing was in the way
 };
 
 /// Cuts ray.t_min to ray.t_max at the boundaries between media and at panes; `state` holds those at t_min.
@@ -118,7 +118,7 @@ class InScattering {
                                        MarchScratch& scratch) const;
     const AnalyticMedium* analytic_medium(const core::Medium* medium) const;
     template <bool surfaces>
-    bool is_clear(const core::Ray& ray, double t0, double t1) const;
+    bool is_free(const core::Ray& ray, double t0, double t1) const;
     void trace_steps(const core::Ray& ray, const StepRule& rule, MarchScratch& scratch) const;
     core::Rgb end_piece(const core::Ray& ray, double t0, double t1, const MediumSegment& at,
                         const AnalyticMedium& medium, MarchScratch& scratch) const;

@@ -26,10 +26,10 @@ const AnalyticMedium* InScattering::analytic_medium(const Medium* medium) const 
 
 /// The triangle between the light and a part of the ray.
 template <bool surfaces>
-bool InScattering::is_clear(const Ray& ray, double t0, double t1) const {
+bool InScattering::is_free(const Ray& ray, double t0, double t1) const {
     const Vec3d light(position_), direction(ray.direction), from = Vec3d(ray.origin) + t0 * direction;
     const double far = 4.0 * double(scene_.bounds().radius());
-    const UnoccludedSpace& space = *accelerations_.clear;
+    const UnoccludedSpace& space = *accelerations_.space;
     if (t1 - t0 < far) {
         const UnoccludedSpace::Triangle triangle = {light, from, Vec3d(ray.origin) + t1 * direction};
         return surfaces ? space.free_of_surfaces(triangle) : space.free_of_boundaries(triangle);
@@ -78,19 +78,19 @@ Rgb InScattering::end_piece(const Ray& ray, double t0, double t1, const MediumSe
 std::optional<Rgb> InScattering::integrate(const Ray& ray, double t0, double t1, const MediumSegment& at,
                                            MarchScratch& scratch) const {
     const AnalyticMedium* medium = analytic_medium(at.medium);
-    if (!accelerations_.clear || !analytic_light_ || !medium || t0 < double(at.t0) || t1 > double(at.t1))
+    if (!accelerations_.space || !analytic_light_ || !medium || t0 < double(at.t0) || t1 > double(at.t1))
         return std::nullopt;
     const StepRule all(MarchRule::equiangular, ray, position_, t0, t1);
     const double from = t0 > double(ray.t_min) ? all.at(end_share) : t0;
     const double to = std::isfinite(t1) ? all.at(1.0 - end_share) : t1;
-    if (!(t0 <= from && from < to && to <= t1) || !is_clear<false>(ray, from, to)) return std::nullopt;
+    if (!(t0 <= from && from < to && to <= t1) || !is_free<false>(ray, from, to)) return std::nullopt;
 
     Rgb sum(0.0f);
     const auto add = [&](double begin, double end) {
         sum += medium->transmittance(begin - t0) * analytic_light_->in_scattered(ray, begin, end, *medium);
     };
-    if (is_clear<true>(ray, from, to)) {
-        ++scratch.clear;
+    if (is_free<true>(ray, from, to)) {
+        ++scratch.unoccluded;
         add(from, to);
     } else {
         if (accelerations_.map || (!std::isfinite(to) && settings_.rule == MarchRule::uniform))

@@ -29,7 +29,7 @@ class InScatteringRays::Task final : public InScatteringTask {
         const std::lock_guard lock(source_.mutex_);
         source_.rays_.add(scratch_.walk.rays), source_.tracking_.add(scratch_.walk.tracking);
         source_.marched_ += scratch_.rays, source_.steps_ += scratch_.steps;
-        source_.clear_ += scratch_.clear;
+        source_.unoccluded_ += scratch_.unoccluded;
     }
 
     Ray ray(const Vec2d& film) override {

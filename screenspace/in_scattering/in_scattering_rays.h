@@ -20,7 +20,7 @@ class InScatteringRays final : public InScatteringSource {
     const core::TrackingCounters& tracking() const { return tracking_; }
     std::uint64_t marched() const { return marched_; }
     std::uint64_t steps() const { return steps_; }
-    std::uint64_t clear() const { return clear_; }  ///< rays that needed none
+    std::uint64_t unoccluded() const { return unoccluded_; }  ///< rays that needed none
 
   private:
     class Task;
@@ -30,7 +30,7 @@ class InScatteringRays final : public InScatteringSource {
     mutable std::mutex mutex_;
     mutable core::RayCounters rays_;
     mutable core::TrackingCounters tracking_;
-    mutable std::uint64_t marched_ = 0, steps_ = 0, clear_ = 0;
+    mutable std::uint64_t marched_ = 0, steps_ = 0, unoccluded_ = 0;
 };
 
 /// The first surface on an eye ray.

@@ -18,7 +18,7 @@ class SharedEyeRays::Task final : public SharedRayTask {
         const std::lock_guard lock(source_.mutex_);
         MarchScratch& done = source_.done_;
         done.walk.rays.add(scratch_.walk.rays), done.walk.tracking.add(scratch_.walk.tracking);
-        done.rays += scratch_.rays, done.steps += scratch_.steps, done.clear += scratch_.clear;
+        done.rays += scratch_.rays, done.steps += scratch_.steps, done.unoccluded += scratch_.unoccluded;
     }
 
     Ray ray(const Vec2d& film) override {

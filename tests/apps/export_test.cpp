@@ -91,6 +91,23 @@ TEST_CASE("an exported scene renders the same bits", "[export]") {
     }
 }
 
+TEST_CASE("a shape in an outermost fog is exported with its exterior", "[export][media]") {
+    const TemporaryFolder folder;
+    const auto scene = [](const std::string& named) {
+        return R"(<scene version="3.0.0"><medium type="homogeneous" id="fog"/>
+            <sensor type="perspective"><transform name="to_world"><lookat origin="0, 0, 5" target="0, 0, 0"
+                up="0, 1, 0"/></transform>)" +
+               named + R"(</sensor><emitter type="constant"/><shape type="sphere"><bsdf type="null"/>
+            <medium type="homogeneous" name="interior"><float name="sigma_t" value="2"/></medium></shape></scene>)";
+    };
+    write_file(folder.file("fog.xml"), scene(R"(<ref id="fog"/>)"));
+    REQUIRE(run_export(folder, folder.file("fog.xml")).exit_code == 0);
+    CHECK(exported(folder).find(R"(<ref name="exterior" id="fog")") != std::string::npos);
+    write_file(folder.file("none.xml"), scene(""));
+    REQUIRE(run_export(folder, folder.file("none.xml")).exit_code == 0);
+    CHECK(exported(folder).find("exterior") == std::string::npos);
+}
+
 TEST_CASE("the twin of a VDB grid has its values everywhere, turned and stretched", "[export][media]") {
     const TemporaryFolder folder;
     const auto grid = media::load_vdb_grid(small_smoke(folder));

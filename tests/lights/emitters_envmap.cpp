@@ -38,7 +38,7 @@ TEST_CASE("an environment map is oriented as documented", "[lights][emitters][en
             INFO(column << ", " << row);
             Bitmap picture = black(8, 5);
             picture.pixels[std::size_t(row * 8 + column)] = Rgb(1, 2, 3);
-            const LatLongMap map(picture);
+            const EnvironmentPicture map(picture);
             if (row > 0 && row < 4)
                 CHECK(glm::length(map.eval(direction((column + 0.5) / 8.0, row / 4.0)) - Rgb(1, 2, 3)) <
                       1e-4f);
@@ -55,7 +55,7 @@ TEST_CASE("an environment map is oriented as documented", "[lights][emitters][en
     for (int x = 0; x < 8; ++x) picture.pixels[std::size_t(x)] = Rgb(1.0f);
     picture.pixels[16 + 1] = picture.pixels[16 + 2] = Rgb(2.0f);
     picture.pixels[16 + 0] = picture.pixels[16 + 7] = Rgb(3.0f);
-    const LatLongMap map(picture);
+    const EnvironmentPicture map(picture);
     CHECK(map.eval(Vec3(0, 1, 0)).x == Approx(1.0));
     CHECK(map.eval(Vec3(0, -1, 0)).x == 0.0f);
     CHECK(map.eval(Vec3(1, 0, 0)).x == Approx(2.0).epsilon(1e-4));
@@ -64,7 +64,7 @@ TEST_CASE("an environment map is oriented as documented", "[lights][emitters][en
 }
 
 TEST_CASE("an environment map turns with to_world", "[lights][emitters][envmap]") {
-    const LatLongMap map(sky_picture());
+    const EnvironmentPicture map(sky_picture());
     const auto turn = glm::rotate(glm::dmat4(1.0), 1.1, glm::normalize(Vec3d(3, -1, 2)));
     const auto light = make_environment_map(sky_picture(), Transform(turn), 2.0f);
     Rng rng(3);
@@ -77,7 +77,7 @@ TEST_CASE("an environment map turns with to_world", "[lights][emitters][envmap]"
 
 TEST_CASE("samples of an environment map follow its density", "[lights][emitters][envmap]") {
     constexpr int width = 16, height = 9, samples = 400000;
-    const LatLongMap map(sky_picture(width, height));
+    const EnvironmentPicture map(sky_picture(width, height));
     // Every cell between pixels is cut into 2 x 2 bins, within which the density is constant.
     constexpr int bins_x = 2 * width, bins_y = 2 * (height - 1);
     std::vector<int> counts(bins_x * bins_y);
@@ -111,7 +111,7 @@ TEST_CASE("samples of an environment map follow its density", "[lights][emitters
 TEST_CASE("the integral of an environment map is exact", "[lights][emitters][envmap]") {
     for (const auto& [width, height] : {std::pair{16, 9}, {1, 1}, {2, 1}, {1, 2}, {3, 2}, {5, 40}}) {
         INFO(width << " x " << height);
-        const LatLongMap map(sky_picture(width, height));
+        const EnvironmentPicture map(sky_picture(width, height));
         glm::dvec3 sum(0.0);
         constexpr int n = 480;
         for (int y = 0; y < n; ++y)
@@ -129,7 +129,7 @@ TEST_CASE("no lit direction has density zero", "[lights][emitters][envmap]") {
     picture.pixels[12 * 3 + 11] = Rgb(0, 0, 1e-3f);  // next to the seam
     picture.pixels[2] = Rgb(1e-6f, 0, 0);            // at the pole
     picture.pixels[12 * 5 + 5] = Rgb(1e4f, 0, 0);
-    const LatLongMap map(picture);
+    const EnvironmentPicture map(picture);
     Rng rng(23);
     int lit = 0;
     for (int i = 0; i < 200000; ++i) {
@@ -146,7 +146,7 @@ TEST_CASE("one hot pixel is found", "[lights][emitters][envmap]") {
     for (Rgb& c : picture.pixels) c = Rgb(1e-3f);
     picture.pixels[64 * 12 + 40] = Rgb(1e6f, 1e5f, 1e4f);
     const auto light = make_environment_map(picture);
-    const LatLongMap map(picture);
+    const EnvironmentPicture map(picture);
     MeanRgb mean;
     Rng rng(29);
     double largest = 0.0;
@@ -178,7 +178,7 @@ TEST_CASE("extreme environment maps", "[lights][emitters][envmap]") {
         const float pdf = sky->pdf_direct(Vec3(0.0f), d, nullptr);
         CHECK((std::isfinite(pdf) && pdf > 0.0f));
     }
-    const LatLongMap sky(sky_picture());
+    const EnvironmentPicture sky(sky_picture());
     for (const float x : {0.0f, one_minus_epsilon})
         for (const float y : {0.0f, one_minus_epsilon}) {
             const auto s = sky.sample(Vec2(x, y));

@@ -49,7 +49,7 @@ March march(const Scene& scene, const Ray& ray, int steps, float offset, const U
     const InScattering in(scene, *scene.emitters()[0], {steps, rule, offset, 1.0f}, {clear, nullptr});
     MarchScratch scratch;
     const MarchedRay ray_light = in.march(ray, scene.medium_state_at(ray.origin, nullptr), scratch);
-    return {Vec3d(ray_light.radiance), Vec3d(ray_light.transmittance), scratch.steps, scratch.clear};
+    return {Vec3d(ray_light.radiance), Vec3d(ray_light.transmittance), scratch.steps, scratch.unoccluded};
 }
 
 double difference(const Vec3d& a, const Vec3d& b) {
@@ -165,7 +165,7 @@ TEST_CASE("Rays without end are integrated", "[in_scattering_exact]") {
     MarchScratch scratch;
     const Ray ray{Vec3(0.0f), Vec3(0, 0, 1)};
     const MarchedRay exact = in.march(ray, scene->camera_medium_state(), scratch);
-    CHECK(scratch.clear == 1);
+    CHECK(scratch.unoccluded == 1);
     CHECK(scratch.walk.rays.occlusion == 0);
     const InScattering many(*scene, *scene->emitters()[0], {1 << 16, MarchRule::equiangular, 0.5f, 1.0f});
     CHECK(exact.radiance.x ==
