@@ -64,7 +64,7 @@ void path_against_bare_rays(benchmark::State& state) {
     path.pass();
     log.close();
     take_turns(
-        state, 1.7, double(log.rays.size()), [&] { return path.pass(); },
+        state, 1.6, double(log.rays.size()), [&] { return path.pass(); },
         [&] { return trace_bare(log.rays); });
     state.counters["rays"] = double(log.rays.size());
 }

@@ -31,7 +31,7 @@ sys.path[0] = str(HERE / "witness")
 WITNESS_SET = {"cornell_diffuse": 64, "cornell_glossy": 96, "rough_dielectric": 64, "environment": 64, "fog": 96,
                "chromatic_fog": 96, "camera_in_fog": 96, "smoke": 64, "everything_else": 64,
                "window": 96}
-LEFT_OUT_OF_QUICK = ("environment", "chromatic_fog", "everything_else")
+LEFT_OUT_OF_QUICK = ("environment", "chromatic_fog", "everything_else", "window")
 
 
 def arguments():
