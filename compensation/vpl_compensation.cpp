@@ -5,7 +5,7 @@ namespace mote::compensation {
 using namespace core;
 using lights::GatherContext, lights::TileLight, lights::VplRange, lights::WeightedVpl;
 
-namespace {
+namespace detail {
 
 constexpr std::size_t width = lights::ReceiverLanes::width;
 using Lanes = std::array<bool, width>;
@@ -61,27 +61,27 @@ class TileWalk {
     WalkContext& context_;
 };
 
-}  // namespace
+}  // namespace detail
 
 template <bool Media>
 TileLight compensation_from_vpls(const VplCompensation& request, CompensatedTile& receivers,
                                  VplCompensationScratch& scratch, const GatherContext& gather,
                                  WalkContext& context) {
     TileLight sum{};
-    Lanes to_all{}, to_one{};
+    detail::Lanes to_all{}, to_one{};
     bool any_to_one = false;
-    for (std::size_t i = 0; i < width; ++i) {
+    for (std::size_t i = 0; i < detail::width; ++i) {
         const CompensatedReceiver& r = receivers[i];
         const bool all = request.strategy == Strategy::one_to_n || r.path.vertex.on_surface();
         to_all[i] = all && r.max_vpl_depth > 1, to_one[i] = !all && r.max_vpl_depth > 1;
         any_to_one |= to_one[i];
     }
-    TileWalk<Media> walk(request, receivers, scratch, gather, context);
+    detail::TileWalk<Media> walk(request, receivers, scratch, gather, context);
     walk.run(to_all, request.range, sum);
     if (!any_to_one) return sum;
-    const std::size_t end = std::min(request.range.end, request.vpls.lights.size());
-    for (std::size_t j = request.range.first; j < end; j += request.range.stride)
-        walk.run(to_one, VplRange::one(j), sum);
+    request.range.for_each(request.vpls.lights.size(), [&](const WeightedVpl& light) {
+        walk.run(to_one, VplRange::one(light.index), sum);
+    });
     return sum;
 }
 

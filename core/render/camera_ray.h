@@ -1,8 +1,8 @@
 // The ray with which the eye path of a pixel starts in a pass: the first four numbers of its sampler choose
 // the place on the film, through the pixel's filter, and the place on the lens.
 //
-// Eye paths of integrators begin with the same draws (integrators/eye_path/eye_ray.h), so whoever needs the
-// ray once more finds the very same one here.
+// Eye paths of integrators begin here (integrators/eye_path/eye_ray.h), so whoever needs the ray once more
+// finds the very same one.
 #pragma once
 
 #include "core/math/sampler.h"
@@ -16,12 +16,29 @@ inline std::uint64_t pixel_key(const RenderOptions& options, int x, int y) {
     return std::uint64_t(y) * std::uint64_t(options.width) + std::uint64_t(x);
 }
 
-inline Ray camera_ray(const Camera& camera, const RenderOptions& options, const PassContext& pass, int x,
-                      int y) {
-    Sampler sampler(options.sampler, options.seed, pass.index, pixel_key(options, x, y));
+/// The numbers of a pixel in a pass.
+inline Sampler pixel_sampler(const RenderOptions& options, const PassContext& pass, int x, int y) {
+    return Sampler(options.sampler, options.seed, pass.index, pixel_key(options, x, y));
+}
+
+struct CameraRay {
+    Ray ray;
+    Vec2 film;  ///< its place in the picture [pixels]
+};
+
+/// Draws from `sampler`, of which nothing has been used. `lens`: a point on the lens that all rays of a pass
+/// share; null: every ray has its own.
+inline CameraRay camera_ray(const Camera& camera, const PassContext& pass, int x, int y, Sampler& sampler,
+                            const Vec2* lens = nullptr) {
     const Vec2 offset = pass.filter.sample_offset(sampler.next_2d());
     const Vec2 film = Vec2(float(x) + 0.5f, float(y) + 0.5f) + offset;
-    return camera.sample_ray(film, sampler.next_2d());
+    return {camera.sample_ray(film, lens ? *lens : sampler.next_2d()), film};
+}
+
+inline Ray camera_ray(const Camera& camera, const RenderOptions& options, const PassContext& pass, int x,
+                      int y) {
+    Sampler sampler = pixel_sampler(options, pass, x, y);
+    return camera_ray(camera, pass, x, y, sampler).ray;
 }
 
 }  // namespace mote::core

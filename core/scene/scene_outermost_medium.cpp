@@ -75,8 +75,7 @@ void Scene::find_outermost_medium() {
     for (const auto& shape : parts_.shapes) {
         if (!shape->emitter || !shape->emitter->medium) continue;
         const ShapeSample s = shape->sample_area({0.37f, 0.61f});
-        const MediumState here =
-            medium_state_near(offset_origin(s.position, s.normal, s.error, s.normal), nullptr, shape.get());
+        const MediumState here = area_light_state(*shape->emitter, *shape, s.position, s.normal);
         add(shape->emitter->medium, here, "a light", shape->emitter->medium_where);
     }
     for (const Boundary& b : boundaries_)

@@ -61,8 +61,8 @@ class EyePath {
         return lights::sample_light<Media>(scene_, vertex_, weights_, state_, choices_.x, sampler_.next_2d(),
                                            context, how);
     }
-    /// A path that would leave the vertex by a mirror or through glass ends.
-    void end_at_delta(bool ends = true) { ends_at_delta_ = ends; }
+    /// Whether a path that would leave the vertex by a mirror or through glass ends.
+    void end_at_delta(bool ends) { ends_at_delta_ = ends; }
     void scale(float factor) { weights_.throughput *= factor; }
 
     const core::Ray& ray() const { return ray_; }
@@ -70,9 +70,7 @@ class EyePath {
     core::PathWeights& weights() { return weights_; }
     core::Sampler& sampler() { return sampler_; }
     /// The weight of light that reaches the path's end.
-    core::Rgb throughput() const {
-        return weights_.throughput / lights::channel_average<Media>(weights_.unidirectional);
-    }
+    core::Rgb throughput() const { return lights::throughput_of<Media>(weights_); }
     int depth() const { return depth_; }              ///< edges so far
     int scatterings() const { return scatterings_; }  ///< without those at mirrors and glass before the first
     float first_cosine() const { return first_cosine_; }  ///< C* of the first, towards the next vertex

@@ -16,11 +16,9 @@ struct EyeRay {
 /// `lens`: a point on the lens that all rays of a pass share; null: every ray has its own.
 inline EyeRay make_eye_ray(const core::Scene& scene, const core::RenderOptions& options,
                            const core::PassContext& pass, int x, int y, const core::Vec2* lens = nullptr) {
-    core::Sampler sampler(options.sampler, options.seed, pass.index, core::pixel_key(options, x, y));
+    core::Sampler sampler = core::pixel_sampler(options, pass, x, y);
     core::Rng rng = sampler.make_rng();
-    const core::Vec2 offset = pass.filter.sample_offset(sampler.next_2d());
-    const core::Vec2 film = core::Vec2(float(x) + 0.5f, float(y) + 0.5f) + offset;
-    const core::Ray ray = scene.camera().sample_ray(film, lens ? *lens : sampler.next_2d());
+    const auto [ray, film] = core::camera_ray(scene.camera(), pass, x, y, sampler, lens);
     return {ray, film, sampler, rng};
 }
 

@@ -15,23 +15,20 @@ TransportSum trace_path(const Scene& scene, const PathSettings& settings, const 
     const bool lit_along = Media && settings.equiangular && !settings.equiangular->empty();
     const auto light_along = [&](const EyeLeg& leg) {
         if (!lit_along || path.depth() == settings.limits.max_depth) return;
-        const Rgb throughput =
-            leg.before.throughput / lights::channel_average<Media>(leg.before.unidirectional);
         sum[path.layer_along()] +=
-            throughput * settings.equiangular->scattered_along(scene, leg.ray, leg.event.surface_distance,
-                                                               leg.start, path.sampler().next_2d(), context);
+            lights::throughput_of<Media>(leg.before) *
+            settings.equiangular->scattered_along(scene, leg.ray, leg.event.surface_distance, leg.start,
+                                                  path.sampler().next_2d(), context);
     };
     while (path.advance(context, sum, light_along)) {
         const ScatteringVertex& vertex = path.vertex();
-        if (bounded && path.scatterings() == 1) {
+        const bool vpl_edge = bounded && path.scatterings() == 1;
+        path.end_at_delta(vpl_edge);
+        if (vpl_edge)
             // min(G*, b)/G* of the edge between the first connectable vertex and this one, where no VPL
             // stands on a delta surface: what goes on from there is not part of the bounded transport.
             path.scale(compensation::bounded_share(path.first_cosine() * vertex.geometric_cosine(vertex.wo),
                                                    path.leg_length(), settings.bound));
-            path.end_at_delta();
-        } else {
-            path.end_at_delta(false);
-        }
         if (vertex.connectable()) sum[path.layer_of_connection()] += path.sample_light(context, {lit_along});
     }
     return sum;

@@ -58,8 +58,7 @@ class PhotonEyePath {
     }
 
     void add_beam(TransportSum& sum, const EyeLeg& leg, int depth) {
-        const core::Rgb throughput =
-            leg.before.throughput / lights::channel_average<Media>(leg.before.unidirectional);
+        const core::Rgb throughput = lights::throughput_of<Media>(leg.before);
         const auto light = maps_.volume.radiance(leg.ray, leg.event.surface_distance, leg.start,
                                                  photon_depth(depth), context_, scratch_.hits);
         sum[Transport::single_scattering] += throughput * light.single;

@@ -50,9 +50,7 @@ bool VplShadowMaps::add_light(const VplSet& vpls, float bound, std::span<const R
     for (std::size_t j = 0; j < vpls.lights.size(); ++j) {
         const lights::VplViews views = lights::views_of(vpls, j, settings_.size);
         for (int side = 0; side < views.count; ++side) {
-            // The second view looks to the other side of the surface.
-            const Vec3 normal = vpls.lights[j].normal;
-            batch.push_back({j, views.view[std::size_t(side)], side == 0 ? normal : -normal});
+            batch.push_back({j, views.view[std::size_t(side)]});
             if (batch.size() < maps_.size()) continue;
             if (cancelled) return false;
             finish_batch();
@@ -65,7 +63,7 @@ bool VplShadowMaps::add_light(const VplSet& vpls, float bound, std::span<const R
 void VplShadowMaps::build(const VplSet& vpls, std::span<const Entry> batch) {
     const Stopwatch stopwatch(build_seconds_);
     tbb::parallel_for(std::size_t(0), batch.size(), [&](std::size_t i) {
-        const MediumState state = vpls.state_towards(batch[i].vpl, batch[i].side);
+        const MediumState state = vpls.state_towards(batch[i].vpl, batch[i].view.frame.n);
         maps_[i].build(scene_, batch[i].view, state, settings_.map);
     });
     for (std::size_t i = 0; i < batch.size(); ++i) rays_.add(maps_[i].rays());

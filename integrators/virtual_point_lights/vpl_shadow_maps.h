@@ -32,7 +32,6 @@ class VplShadowMaps {
     struct Entry {
         std::size_t vpl;
         lights::ShadowMapView view;
-        core::Vec3 side;  ///< of the surface that it looks from; zero in a medium
     };
     void build(const lights::VplSet& vpls, std::span<const Entry> batch);
     void gather(const lights::VplSet& vpls, float bound, std::span<const Entry> batch,

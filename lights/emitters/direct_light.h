@@ -18,6 +18,12 @@ inline float channel_average(const core::Rgb& pdfs) {
     return pdfs.x;
 }
 
+/// The weight of light that reaches the end of a path with these weights.
+template <bool Media>
+inline core::Rgb throughput_of(const core::PathWeights& weights) {
+    return weights.throughput / channel_average<Media>(weights.unidirectional);
+}
+
 /// How lights are sampled.
 struct LightSampling {
     /// Point and spot lights do not count at a vertex in a medium: they were sampled along the ray that led
