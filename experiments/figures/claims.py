@@ -7,6 +7,8 @@ when one that is said to differ holds after all.
 
 
 class Claims:
+    checked = []  # of this run: claim, measured, 'holds' or 'does not hold'
+
     def __init__(self):
         self._wrong = 0
         self._differing = 0
@@ -16,6 +18,7 @@ class Claims:
         self._count += 1
         self._wrong += bool(holds) == (differs is not None)
         self._differing += not holds
+        self.checked.append([claim, measured, "holds" if holds else "does not hold"])
         print(f"{'holds         ' if holds else 'DOES NOT HOLD '} {claim}: {measured}")
         if differs:
             print(f"                {'said to differ, but holds' if holds else 'why: ' + differs}")

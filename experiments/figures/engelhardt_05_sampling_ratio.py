@@ -20,9 +20,10 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from claims import Claims
+from origin import ROOT, Origin
+from renders import finish
 
 NAME = Path(__file__).stem
-ROOT = Path(__file__).resolve().parent.parent.parent
 MAPS = {"cube": "cube", "paraboloid": "two paraboloids", "sphere": "sphere", "latitude_longitude": "latitude-longitude",
         "octahedral": "octahedral, planar", "octahedral_perspective": "octahedral, perspective"}
 # All maps use about as many texels as a square of n * n: their shorter edge, over n.
@@ -208,10 +209,13 @@ def main():
         tilted = Extremes(program.texels("octahedral_perspective", edge, up=up))
         tilts.append((np.degrees(np.arctan(up / 2 ** 0.5)), tilted.contrast))
     options.output.mkdir(parents=True, exist_ok=True)
-    write_csv(options.output / f"{NAME}.csv", sizes, texels, extremes)
-    draw(program, sizes, texels, 100 if options.quick else 240, options.output / f"{NAME}.png")
+    output = options.output / (NAME + ("_quick" if options.quick else ""))
+    write_csv(output.with_suffix(".csv"), sizes, texels, extremes)
+    draw(program, sizes, texels, 100 if options.quick else 240, output.with_suffix(".png"))
     circle = Extremes(program.texels("cube", sizes["cube"], great_circles()[1][AXES]))
-    return check(extremes, circle, tilts)
+    code = check(extremes, circle, tilts)
+    finish(Origin(__file__, options.quick), output)
+    return code
 
 
 if __name__ == "__main__":

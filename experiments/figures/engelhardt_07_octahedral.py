@@ -21,10 +21,11 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from claims import Claims
+from origin import ROOT, Origin
+from renders import finish
 
 NAME = Path(__file__).stem
 FOLDER = Path(__file__).resolve().parent
-ROOT = FOLDER.parent.parent
 # Table 7.1, frames per second: planar square (S-Split), planar rectangle (XZ-Split), cube.
 PAPER = {"square": 16, "rectangle": 34, "cube": 250}
 PAPER_BUILD_MS = 3.3  # Fig. 7.6: a table of 512 * 512 on a GeForce 8800 GTX
@@ -101,7 +102,8 @@ def main():
     build_ms = 1e3 * reflected["build_seconds"][0]
 
     options.output.mkdir(parents=True, exist_ok=True)
-    with open(options.output / f"{NAME}.csv", "w", newline="", encoding="utf-8") as file:
+    output = options.output / (NAME + ("_quick" if options.quick else ""))
+    with open(output.with_suffix(".csv"), "w", newline="", encoding="utf-8") as file:
         table = csv.writer(file)
         table.writerow(["layout", "texels", "directions_ms", "ms", "paper_frames_per_second"])
         for l in layouts:
@@ -111,8 +113,10 @@ def main():
         for x, r in zip(reach, views):
             table.writerow([x, f"{1e6 * r['box_seconds'][0]:.3g}", f"{1e6 * r['cone_seconds'][0]:.4g}",
                             f"{relative_error(r):.4g}", f"{build_ms:.4g}"])
-    draw(views, pixels, options.output / f"{NAME}.png")
-    return check(layouts, views, build_ms)
+    draw(views, pixels, output.with_suffix(".png"))
+    code = check(layouts, views, build_ms)
+    finish(Origin(__file__, options.quick), output)
+    return code
 
 
 if __name__ == "__main__":

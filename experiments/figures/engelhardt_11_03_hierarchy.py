@@ -19,6 +19,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 from claims import Claims
 from occluders import sculpture
+from origin import table_of
 from renders import main, write_csv
 
 SCENES = Path(__file__).resolve().parent / "scenes"
@@ -90,8 +91,9 @@ KEYS = ["direct", "vpls", "wide", "automatic"]
 
 def read(path):
     """The numbers of the last run."""
-    with open(path, newline="", encoding="utf-8") as file:
-        rows = [[row[0], *map(float, row[1:])] for row in list(csv.reader(file))[1:]]
+    table = [row for row in csv.reader(table_of(path).splitlines())]
+    end = [row[0] for row in table].index("claim")
+    rows = [[row[0], *map(float, row[1:])] for row in table[1:end]]
     return {row[0]: {"samples": row[1:1 + len(LEVELS)], **dict(zip(KEYS, row[1 + len(LEVELS):]))} for row in rows}
 
 

@@ -14,9 +14,10 @@ import time
 from pathlib import Path
 
 import numpy as np
+from claims import Claims
 from exr import read_exr
+from origin import ROOT, Origin
 
-ROOT = Path(__file__).resolve().parent.parent.parent
 # What stands for the layer multiple_scattering of volpath: light that scatters in a medium last, and elsewhere before.
 BOUNDED, RECOVERED = "multiple_scattering_bounded", "compensation_volume"
 
@@ -49,7 +50,8 @@ class Picture:
 
 
 class Mote:
-    def __init__(self, options, name):
+    def __init__(self, options, name, origin):
+        self.origin = origin
         self.program = options.bin / "mote"
         self.folder = options.output / name
         self.redraw = options.redraw
@@ -61,8 +63,8 @@ class Mote:
         """`scene` is a name in scenes/ or a path; `settings` go to -D, but for `integrator`, which is a type. 0 threads:
         one for every core. `auxiliary`: with what `mote ssbc` reads."""
         path = self.folder / f"{name}_{seed}.exr"
+        scene = scene if isinstance(scene, Path) else ROOT / "scenes" / f"{scene}.xml"
         if not (self.redraw and path.is_file()):
-            scene = scene if isinstance(scene, Path) else ROOT / "scenes" / f"{scene}.xml"
             command = [self.program, "render", scene, "-o", path, "--seed", str(seed), "--quiet",
                        "--stats", path.with_suffix(".json")]
             command += ["--passes", str(passes), "--threads", str(threads)] + ["--auxiliary"] * auxiliary
@@ -71,7 +73,9 @@ class Mote:
             before = children_cpu()
             subprocess.run(command, check=True)
             path.with_suffix(".cpu").write_text(f"{children_cpu() - before:.3f}\n")
-        return Picture(path)
+        picture = Picture(path)
+        self.origin.add(name, scene, settings, passes, seed, picture.statistics)
+        return picture
 
     def ssbc(self, source, name, *options):
         """`mote ssbc` on an EXR file: the file it wrote, what it said, and the processor seconds of the whole command."""
@@ -124,11 +128,22 @@ def show_difference(axes, difference, scale, title=None):
 
 
 def write_csv(path, header, rows):
+    """A table; the claims that were checked follow it when the script ends."""
     with open(path, "w", newline="", encoding="utf-8") as file:
         table = csv.writer(file)
         table.writerow(header)
         for row in rows:
             table.writerow([f"{x:.5g}" if isinstance(x, float) else x for x in row])
+
+
+def finish(origin, output):
+    """The claims under the table, and where all of it comes from in table and picture. `output` lacks its suffix."""
+    table, picture = (output.with_name(output.name + suffix) for suffix in (".csv", ".png"))
+    if not table.is_file():
+        return
+    with open(table, "a", newline="", encoding="utf-8") as file:
+        csv.writer(file).writerows([["claim", "measured", "holds"], *Claims.checked])
+    origin.stamp(picture, table)
 
 
 def main(script, documentation, figure):
@@ -140,13 +155,17 @@ def main(script, documentation, figure):
     parser.add_argument("--bin", type=Path, default=ROOT / "build" / "release" / "bin", help="folder of mote")
     options = parser.parse_args()
     name = Path(script).stem
+    origin = Origin(script, options.quick)
     try:
-        mote = Mote(options, name + ("_quick" if options.quick else ""))
+        mote = Mote(options, name + ("_quick" if options.quick else ""), origin)
         subprocess.run([ROOT / "scenes" / "generate", options.bin], stdout=subprocess.DEVNULL, check=True)
     except (FileNotFoundError, subprocess.CalledProcessError) as error:
         print(error, file=sys.stderr)
         return 2
     begin = time.monotonic()
-    code = figure(mote, options.quick, options.output / name)
+    # Beside a full run, a quick one leaves its pictures alone.
+    output = options.output / (name + ("_quick" if options.quick else ""))
+    code = figure(mote, options.quick, output)
+    finish(origin, output)
     print(f"{time.monotonic() - begin:.0f} s")
     return code
