@@ -49,24 +49,25 @@ void MeanExtinction::fill_finest(Level& level) const {
     level.values.resize(std::size_t(count_of(level.size)) * std::size_t(channels_));
     // About one sample a voxel, two along the edge of a cell at least.
     const int along = std::max(2, int(std::ceil(level.cell / medium_.traits().voxel_size)));
-    const float share = 1.0f / float(along * along * along);
+    const double share = 1.0 / double(along * along * along);
     tbb::parallel_for(0, level.size.z, [&](int z) {
         for (int y = 0; y < level.size.y; ++y)
             for (int x = 0; x < level.size.x; ++x) {
-                Rgb sum(0.0f);
+                Vec3d sum(0.0);
                 for (int s = 0; s < along * along * along; ++s) {
                     const Vec3 within =
                         (Vec3(float(s % along), float(s / along % along), float(s / (along * along))) +
                          0.5f) /
                         float(along);
                     const Vec3 p = box_.lower + level.cell * (Vec3(float(x), float(y), float(z)) + within);
-                    if (box_.contains(p)) sum += medium_.coefficients(p).sigma_t;  // cells may stick out
+                    if (box_.contains(p))
+                        sum += Vec3d(medium_.coefficients(p).sigma_t);  // cells may stick out
                 }
                 const std::size_t i = (std::size_t(z) * std::size_t(level.size.y) + std::size_t(y)) *
                                           std::size_t(level.size.x) +
                                       std::size_t(x);
                 for (int c = 0; c < channels_; ++c)
-                    level.values[i * std::size_t(channels_) + std::size_t(c)] = sum[c] * share;
+                    level.values[i * std::size_t(channels_) + std::size_t(c)] = float(sum[c] * share);
             }
     });
 }
@@ -91,9 +92,10 @@ MeanExtinction::Level MeanExtinction::coarser(const Level& fine) const {
             for (int x = 0; x < level.size.x; ++x) {
                 Rgb sum(0.0f);
                 for (int corner = 0; corner < 8; ++corner)
-                    sum += value(
-                        fine, 2 * glm::ivec3(x, y, z) + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2));
-                for (int c = 0; c < channels_; ++c) level.values[i++] = sum[c] / 8.0f;
+                    // Eighths of each, since eight of the largest values have no sum.
+                    sum += 0.125f * value(fine, 2 * glm::ivec3(x, y, z) +
+                                                    glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2));
+                for (int c = 0; c < channels_; ++c) level.values[i++] = sum[c];
             }
     return level;
 }

@@ -5,8 +5,12 @@
 // is the same in every channel it cancels from all ratios of densities, and PathWeights changes at tentative
 // collisions only (Woodcock et al. 1965; Miller et al. 2019; pbrt-v4, section 14.2).
 //
+// Where a cell's bounds are dense and far apart the ray goes from voxel to voxel instead
+// (regular_tracking.h).
+//
 // Grid must provide: Value (float: grey, or Rgb), world_to_index, cursor() with lookup(index position),
-// majorants, description; and, where the medium ends before the grid's values do, box (a WorldBox).
+// trilinear between integers, majorants, description; and, where the medium ends before the grid's values do,
+// box (a WorldBox).
 #pragma once
 
 #include <fmt/format.h>
@@ -16,6 +20,7 @@
 #include "core/math/transform.h"
 #include "media/heterogeneous_medium.h"
 #include "media/majorant_grid.h"
+#include "media/regular_tracking.h"
 #include "media/tracking_random.h"
 
 namespace mote::media {
@@ -24,10 +29,16 @@ namespace detail {
 
 inline double channel(double v, int) { return v; }
 inline double channel(const core::Vec3d& v, int c) { return v[c]; }
+inline void clear_channel(double& v, int) { v = 0.0; }
+inline void clear_channel(core::Vec3d& v, int c) { v[c] = 0.0; }
 inline double widen(float v) { return v; }
 inline core::Vec3d widen(const core::Rgb& v) { return core::Vec3d(v); }
 inline double largest(double v) { return v; }
 inline double largest(const core::Vec3d& v) { return std::fmax(v.x, std::fmax(v.y, v.z)); }
+inline double smallest(float v) { return v; }
+inline double smallest(const core::Rgb& v) { return std::fmin(v.x, std::fmin(v.y, v.z)); }
+inline double exp_minus(double v) { return std::exp(-v); }
+inline core::Vec3d exp_minus(const core::Vec3d& v) { return glm::exp(-v); }
 inline core::Rgb exp_minus_rgb(double v) { return core::Rgb(float(std::exp(-v))); }
 inline core::Rgb exp_minus_rgb(const core::Vec3d& v) {
     return {float(std::exp(-v.x)), float(std::exp(-v.y)), float(std::exp(-v.z))};
@@ -77,7 +88,10 @@ class TrackedMedium final : public HeterogeneousMedium {
                              ? TransmittanceEstimator::residual_ratio_tracking
                              : TransmittanceEstimator::ratio_tracking;
         majorant_ = float(detail::largest(grid_.majorants.total().upper) * double(parts_.scale));
-        if (majorant_ != 0.0f) voxel_size_ = find_voxel_size();
+        if (majorant_ == 0.0f) return;
+        voxel_size_ = find_voxel_size();
+        if (parts_.tracking.majorants == Majorants::local)
+            regular_from_ = detail::regular_depth_per_voxel / (double(voxel_size_) * double(parts_.scale));
     }
 
     core::MediumTraits traits() const override;
@@ -101,10 +115,23 @@ class TrackedMedium final : public HeterogeneousMedium {
     /// Walks the Poisson process with rate `rate_of(range)` along the ray: `at_collision(range, rate, t,
     /// density) -> bool` (false stops) for every tentative collision, `at_piece(range, length)` for every
     /// piece that was passed. Rates and densities are in the grid's own unit; the scale is applied to
-    /// lengths. At the step limit the walk ends: the t up to which it came.
-    template <typename RateOf, typename AtPiece, typename AtCollision>
+    /// lengths. At the step limit the walk ends: the t up to which it came. Pieces that are better tracked
+    /// regularly go to `at_voxels(voxels, t0, t1) -> bool` instead.
+    template <typename RateOf, typename AtPiece, typename AtCollision, typename AtVoxels>
     std::optional<double> track(const core::Ray& ray, core::Rng& rng, core::TrackingCounters& counters,
-                                RateOf&& rate_of, AtPiece&& at_piece, AtCollision&& at_collision) const;
+                                RateOf&& rate_of, AtPiece&& at_piece, AtCollision&& at_collision,
+                                AtVoxels&& at_voxels) const;
+
+    /// The voxels along a ray, for regular tracking; counts lookups.
+    class Voxels;
+    bool far_apart(const Range& range) const {
+        return detail::regular_contrast * detail::smallest(range.lower) < detail::largest(range.upper) &&
+               &range != &grid_.majorants.outside();
+    }
+    /// Regular tracking of sample_collision(): true when the path passes.
+    bool pass_voxels(const Voxels& voxels, double t0, double t1, const core::Ray& ray,
+                     core::PathWeights& weights, core::Rgb& emitted, core::Rng& rng,
+                     std::optional<float>& found) const;
 
     /// The transmittance from where a walk was given up to the end, by marching; 1 where none was. An
     /// estimate stopped there and multiplied by it keeps its mean, but for marching's tolerance.
@@ -134,6 +161,9 @@ class TrackedMedium final : public HeterogeneousMedium {
 
     Grid grid_;
     float majorant_ = 0.0f;
+    /// From this rate on a cell may be tracked regularly. The same wherever a ray ends, so that two
+    /// techniques agree.
+    double regular_from_ = core::infinity;
     double certain_share_ = 0.0;  ///< of the majorants: a sum over all cells, taken once
 };
 

@@ -7,10 +7,58 @@
 namespace mote::media {
 
 template <typename Grid>
-template <typename RateOf, typename AtPiece, typename AtCollision>
+class TrackedMedium<Grid>::Voxels {
+  public:
+    Voxels(const TrackedMedium& medium, const core::Vec3d& origin, const core::Vec3d& direction,
+           core::TrackingCounters& counters)
+        : scale_(medium.parts_.scale), cursor_(medium.grid_.cursor()), counters_(counters) {
+        const MajorantGrid<Value>& cells = medium.grid_.majorants;
+        ray_ = {origin, direction, core::Vec3d(cells.lower()),
+                glm::max(glm::ivec3(cells.upper() - cells.lower()), glm::ivec3(1))};
+    }
+    Wide density(double t) const {
+        ++counters_.lookups;
+        return detail::widen(cursor_.lookup(ray_.origin + t * ray_.direction));
+    }
+    /// The optical depth between two places in one voxel.
+    Wide depth_within(double from, double to) const {
+        return detail::integral_within_voxel(counted(), ray_, from, to) * scale_;
+    }
+    Wide depth(double t0, double t1) const {
+        Wide sum(0.0);
+        for_each(t0, t1, [&](double, double, const Wide& depth) {
+            sum += depth;
+            return true;
+        });
+        return sum;
+    }
+    /// Calls visit(from, to, optical depth) -> bool, voxel by voxel.
+    template <typename Visit>
+    void for_each(double t0, double t1, Visit&& visit) const {
+        detail::for_each_voxel(counted(), ray_, t0, t1, [&](double from, double to, const Wide& integral) {
+            return visit(from, to, integral * scale_);
+        });
+    }
+
+  private:
+    auto counted() const {
+        return [this](const core::Vec3d& p) {
+            ++counters_.lookups;
+            return detail::widen(cursor_.lookup(p));
+        };
+    }
+    double scale_;
+    mutable decltype(std::declval<Grid>().cursor()) cursor_;  ///< may remember where it was
+    core::TrackingCounters& counters_;
+    detail::VoxelRay ray_;
+};
+
+template <typename Grid>
+template <typename RateOf, typename AtPiece, typename AtCollision, typename AtVoxels>
 std::optional<double> TrackedMedium<Grid>::track(const core::Ray& ray, core::Rng& rng,
                                                  core::TrackingCounters& counters, RateOf&& rate_of,
-                                                 AtPiece&& at_piece, AtCollision&& at_collision) const {
+                                                 AtPiece&& at_piece, AtCollision&& at_collision,
+                                                 AtVoxels&& at_voxels) const {
     const core::Vec3d origin = index_origin(ray), direction = index_direction(ray);
     const double scale = parts_.scale;
     auto cursor = grid_.cursor();
@@ -18,8 +66,14 @@ std::optional<double> TrackedMedium<Grid>::track(const core::Ray& ray, core::Rng
         sample_optical_depth(rng);  // majorant optical depth left until the next tentative collision
     std::uint64_t steps = 0;
     std::optional<double> given_up;
+    double uneven_from = 0.0, uneven_to = 0.0;  // a piece for regular tracking, outside of the fast loop
     const auto visit = [&](const Range& range, double t0, double t1) __attribute__((always_inline)) {
         const double length = t1 - t0, rate = rate_of(range), rate_per_metre = rate * scale;
+        if (rate > regular_from_) [[unlikely]]
+            if (far_apart(range)) {
+                uneven_from = t0, uneven_to = t1;
+                return false;
+            }
         if (!(rate_per_metre > 0.0)) {
             at_piece(range, length);
             return true;
@@ -45,7 +99,18 @@ std::optional<double> TrackedMedium<Grid>::track(const core::Ray& ray, core::Rng
             depth = sample_optical_depth(rng);
         }
     };
-    if (double t0, t1; clip(ray, t0, t1)) grid_.majorants.walk(origin, direction, t0, t1, visit);
+    const auto voxel_by_voxel = [&]() __attribute__((noinline, cold)) {
+        return at_voxels(Voxels(*this, index_origin(ray), index_direction(ray), counters), uneven_from,
+                         uneven_to);
+    };
+    double begin, end;
+    for (bool more = clip(ray, begin, end); more;) {
+        grid_.majorants.walk(origin, direction, begin, end, visit);
+        if (!(uneven_from < uneven_to)) break;
+        // The walk goes on behind the piece with the same `depth`: the exponential has no memory.
+        more = voxel_by_voxel();
+        begin = uneven_to, uneven_from = uneven_to;
+    }
     counters.lookups += steps, counters.collisions += steps;
     if (given_up) ++counters.fallbacks;
     return given_up;
@@ -97,11 +162,75 @@ std::optional<float> TrackedMedium<Grid>::sample_collision(const core::Ray& ray,
         weights.light *= float(majorant / (majorant - real));
         return true;
     };
+    const auto at_voxels = [&](const Voxels& voxels, double t0, double t1) {
+        return pass_voxels(voxels, t0, t1, ray, weights, emitted, rng, found);
+    };
     const auto given_up = track(
         ray, rng, counters, [](const Range& r) { return detail::largest(r.upper); },
-        [](const Range&, double) {}, at_collision);
+        [](const Range&, double) {}, at_collision, at_voxels);
     if (given_up) weights.throughput = core::Rgb(0.0f);
     return found;
+}
+
+template <typename Grid>
+bool TrackedMedium<Grid>::pass_voxels(const Voxels& voxels, double t0, double t1, const core::Ray& ray,
+                                      core::PathWeights& weights, core::Rgb& emitted, core::Rng& rng,
+                                      std::optional<float>& found) const {
+    const int hero = weights.hero;
+    double left = sample_optical_depth(rng);  // of the hero, until its next collision
+    // Ratios of densities between the channels, exact where the exponentials of one channel alone overflow.
+    const auto weigh = [&](const Wide& ratio) {
+        if constexpr (chromatic) {
+            const core::Rgb bounded(glm::min(ratio, Wide(1e30)));
+            weights.throughput *= bounded, weights.unidirectional *= bounded;
+        }
+    };
+    // The walk passes by the chance exp(-tau_h), which light sampling does not need.
+    const auto pass = [&](const Wide& depth, double of_hero) {
+        weigh(detail::exp_minus(depth - Wide(of_hero)));
+        weights.light *= float(std::exp(of_hero));
+    };
+    voxels.for_each(t0, t1, [&](double from, double to, const Wide& depth) {
+        const double of_hero = detail::channel(depth, hero);
+        if (of_hero <= left) {
+            left -= of_hero;
+            pass(depth, of_hero);
+            return true;
+        }
+        std::array<double, 4> along;
+        for (std::size_t i = 0; i < along.size(); ++i)
+            along[i] = detail::channel(voxels.density(from + double(i) / 3.0 * (to - from)), hero);
+        const double t = from + detail::place_of_share(along, left / of_hero) * (to - from);
+        Wide before(left);
+        if constexpr (chromatic) before = voxels.depth_within(from, t), before[hero] = left;
+        Wide density = voxels.density(t);
+        if (!(detail::channel(density, hero) > 0.0)) density = depth;  // rounding: as its mean over the voxel
+        const double real = detail::channel(density, hero);
+        const core::Vec3 p = ray.at(float(t));
+        const core::Rgb albedo = albedo_at(p);
+        if (const core::Rgb source =
+                emissive_ ? (core::Rgb(1.0f) - albedo) * parts_.emission.at(p) : core::Rgb(0.0f);
+            !core::is_black(source)) {
+            // A real collision is a sample of density sigma_t T of the source sigma_a L_e, the mean over the
+            // heroes; against light sampling it is weighed as tentative collisions are, without sigma_t.
+            const core::PathWeights here = weights;
+            pass(before, left);
+            core::Rgb pdfs = weights.unidirectional;
+            if (emitter_ && !core::is_black(weights.light))
+                pdfs += weights.light *
+                        emitter_->light_over_walk(weights.vertex, p, parts_.scale * core::Rgb(density));
+            const core::Rgb of_walk = weights.unidirectional,
+                            extinction(glm::min(density / real, Wide(1e30)));
+            emitted += weights.throughput * extinction * source / core::average(of_walk * extinction) *
+                       (core::average(of_walk) / core::average(pdfs));
+            weights = here;
+        }
+        weigh(detail::exp_minus(before - Wide(left)) * density / real);
+        weights.throughput *= albedo;
+        found = std::fmin(float(t), std::fmin(ray.t_max, std::numeric_limits<float>::max()));
+        return false;
+    });
+    return !found;
 }
 
 template <typename Grid>
@@ -120,9 +249,14 @@ void TrackedMedium<Grid>::connect(const core::Ray& ray, core::PathWeights& weigh
         passed *= factor, estimate *= factor;
         return detail::russian_roulette(estimate, rng);
     };
+    const auto at_voxels = [&](const Voxels& voxels, double t0, double t1) {
+        const Wide factor = detail::exp_minus(voxels.depth(t0, t1));
+        passed *= factor, estimate *= factor;
+        return detail::russian_roulette(estimate, rng);
+    };
     const auto given_up = track(
         ray, rng, counters, [](const Range& r) { return detail::largest(r.upper); },
-        [](const Range&, double) {}, at_collision);
+        [](const Range&, double) {}, at_collision, at_voxels);
     const core::Rgb rest = rest_by_marching(ray, given_up, counters);
     weights.throughput *= core::Rgb(estimate) * rest;
     weights.unidirectional *= core::Rgb(passed) * rest;
@@ -161,9 +295,16 @@ core::Rgb TrackedMedium<Grid>::by_delta_tracking(const core::Ray& ray, core::Rng
         }
         return detail::largest(passes) > 0.0;
     };
+    const auto at_voxels = [&](const Voxels& voxels, double t0, double t1) {
+        const double reach = sample_optical_depth(rng);  // T = P(reach > tau)
+        const Wide depth = voxels.depth(t0, t1);
+        for (int c = 0; c < (chromatic ? 3 : 1); ++c)
+            if (reach <= detail::channel(depth, c)) detail::clear_channel(passes, c);
+        return detail::largest(passes) > 0.0;
+    };
     const auto given_up = track(
         ray, rng, counters, [](const Range& r) { return detail::largest(r.upper); },
-        [](const Range&, double) {}, at_collision);
+        [](const Range&, double) {}, at_collision, at_voxels);
     return core::Rgb(passes) * rest_by_marching(ray, given_up, counters);
 }
 
@@ -176,9 +317,13 @@ core::Rgb TrackedMedium<Grid>::by_ratio_tracking(const core::Ray& ray, core::Rng
         estimate *= Wide(1.0) - glm::min(density, Wide(majorant)) / majorant;
         return detail::russian_roulette(estimate, rng);
     };
+    const auto at_voxels = [&](const Voxels& voxels, double t0, double t1) {
+        estimate *= detail::exp_minus(voxels.depth(t0, t1));
+        return detail::russian_roulette(estimate, rng);
+    };
     const auto given_up = track(
         ray, rng, counters, [](const Range& r) { return detail::largest(r.upper); },
-        [](const Range&, double) {}, at_collision);
+        [](const Range&, double) {}, at_collision, at_voxels);
     return core::Rgb(estimate) * rest_by_marching(ray, given_up, counters);
 }
 
@@ -207,6 +352,10 @@ core::Rgb TrackedMedium<Grid>::by_marching(const core::Ray& ray, core::TrackingC
         if (detail::largest(upper - lower) == 0.0) {
             if (detail::largest(upper) > 0.0) depth += upper * length;
             return std::isfinite(detail::largest(depth));
+        }
+        if (detail::largest(upper - lower) > regular_from_ && far_apart(range)) {
+            depth += Voxels(*this, origin, direction, counters).depth(t0, t1) / double(parts_.scale);
+            return true;
         }
         std::uint64_t n = std::uint64_t(std::clamp(std::ceil(length * voxels_per_metre), 1.0, 2187.0));
         const auto at = [&](double place) {
@@ -253,7 +402,11 @@ core::Rgb TrackedMedium<Grid>::by_residual_tracking(const core::Ray& ray, core::
         estimate *= Wide(1.0) - residual / rate;
         return detail::russian_roulette(estimate, rng);
     };
-    const auto given_up = track(ray, rng, counters, rate_of, at_piece, at_collision);
+    const auto at_voxels = [&](const Voxels& voxels, double t0, double t1) {
+        sure_depth += voxels.depth(t0, t1);
+        return true;
+    };
+    const auto given_up = track(ray, rng, counters, rate_of, at_piece, at_collision, at_voxels);
     if (detail::largest(estimate) == 0.0) return core::Rgb(0.0f);
     return core::Rgb(estimate) * detail::exp_minus_rgb(sure_depth) *
            rest_by_marching(ray, given_up, counters);

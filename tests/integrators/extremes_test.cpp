@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "core/render/render_driver.h"
 #include "media/vol_file.h"
 #include "tests/integrators/test_scenes.h"
 #include "tests/media/test_media.h"
@@ -114,6 +115,46 @@ TEST_CASE("grids without density, of one voxel, and of steps render finite pictu
                 CHECK(render.non_finite == 0);
                 if (albedo == 0.0) CHECK(render.whole[render.layer("single_scattering")][1].mean == 0.0);
             }
+}
+
+TEST_CASE("one voxel of 1e37 among 0.1 costs no method more than what rays cross",
+          "[media][extremes][regular]") {
+    const TemporaryFolder folder;
+    const std::string light =
+        R"(<emitter type="point"><point name="position" x="-0.9" y="0.7" z="-0.8"/></emitter>)";
+    const std::string maps =
+        R"(<visibility type="shadow_map"><integer name="size" value="16"/></visibility>)";
+    const std::string light_maps =
+        R"(<visibility type="shadow_map"><integer name="light_size" value="16"/></visibility>)";
+    const auto of = [](const std::string& type, const std::string& content) {
+        return "<integrator type=\"" + type + "\">" + content + "</integrator>";
+    };
+    const std::string paths = R"(<integer name="paths" value="16"/>)";
+    std::uint64_t least = 0;
+    for (const float hot : {1e3f, 1e37f}) {
+        const auto scene =
+            scene_from(scene_of(light + camera("0.1, 0.2, -4", "0, 0, 0") +
+                                cube_of(grid_medium(folder.file("hot.vol"), hot_grid(1, hot), 0.9))),
+                       8);
+        std::uint64_t lookups = 0;
+        for (const std::string& integrator :
+             {volpath, equiangular, vpl, unbounded_vpl, photons, of("mote_vpl", paths + maps),
+              of("mote_single_scattering", ""), of("mote_single_scattering", light_maps),
+              of("mote_epipolar", ""), of("mote_epipolar", light_maps)}) {
+            INFO(integrator << ", " << hot);
+            core::RenderRequest request;
+            request.stop.passes = 4;
+            const auto statistics = core::render(*scene, *integrator_from(integrator), request).statistics;
+            CHECK(statistics.non_finite_samples == 0);
+            CHECK(statistics.lookups.at("step_limit_fallbacks") == 0);
+            lookups += statistics.lookups.at("density");
+        }
+        if (least == 0) least = lookups;
+        CHECK(lookups < 2 * least);
+    }
+    check_furnace(cube_of(grid_medium(folder.file("hot.vol"), hot_grid(1, 1e37f), 1.0)) +
+                      camera("0, 0.1, -4", "0, 0, 0"),
+                  "furnace of hot voxels", 10);
 }
 
 TEST_CASE("a grid without density is no medium", "[media][extremes]") {

@@ -6,6 +6,7 @@
 #include <ctime>
 #include <iostream>
 
+#include "media/mean_extinction.h"
 #include "media/vdb_volume.h"
 #include "tests/media/test_media.h"
 #include "tests/media/vdb_test_files.h"
@@ -173,6 +174,83 @@ TEST_CASE("past a density a million times larger", "[media][extremes]") {
                 CHECK(std::log(m->transmittance_by(estimator, through_thin, rng, counters).x) ==
                       Approx(-tau).epsilon(0.01));
             }
+        }
+    }
+}
+
+TEST_CASE("one voxel of up to 1e37 among 0.1 costs what the ray crosses", "[media][extremes][regular]") {
+    const int trials = 2000;
+    for (const float hot : {1e3f, 1e5f, 1e6f, 1e20f, 1e37f}) {
+        const auto m = tests::medium_of(tests::hot_grid(1, hot), parts_with(1.0f, Majorants::local));
+        // Past the cells' dense voxels, through the same cells; and into one of these voxels.
+        const Ray beside{Vec3(0.01f, 0.65f, 0.65f), Vec3(1, 0, 0), 0.0f, 0.98f};
+        const Ray into{Vec3(0.01f, 8.5f / 16.0f, 8.5f / 16.0f), Vec3(1, 0, 0), 0.0f, 0.98f};
+        for (const auto estimator : estimators) {
+            INFO(media::name_of(estimator) << " past a voxel of " << hot);
+            core::TrackingCounters counters;
+            CHECK(agrees(*m, estimator, beside, 0.1 * double(beside.t_max), trials, counters));
+            if (hot > 1e4f) CHECK(agrees(*m, estimator, into, 1e3, trials, counters));
+            CHECK(counters.fallbacks == 0);
+            // 16 voxels to a ray, at most four lookups each, or as many tentative collisions before a cell is
+            // dense enough for that.
+            CHECK(counters.lookups < 2u * 300u * std::uint64_t(trials));
+        }
+        core::Rng rng(1);
+        core::TrackingCounters counters;
+        for (int i = 0; i < trials; ++i)
+            for (const Ray& ray : {beside, into}) {
+                core::PathWeights weights;
+                Rgb emitted(0.0f);
+                m->sample_collision(ray, weights, emitted, rng, counters);
+                m->connect(ray, weights, rng, counters);
+                REQUIRE((core::is_finite(weights.throughput) && core::is_finite(weights.unidirectional)));
+            }
+        CHECK(counters.fallbacks == 0);
+        CHECK(counters.lookups < 4u * 300u * std::uint64_t(trials));
+    }
+}
+
+TEST_CASE("regular tracking keeps every mean: grey, in colours, and with emission",
+          "[media][extremes][regular]") {
+    const Rgb glow(1.0f, 2.0f, 3.0f);
+    for (const int channels : {1, 3})
+        for (const float albedo : {0.0f, 0.8f}) {
+            auto parts = tests::medium_parts(Rgb(albedo));
+            parts.emission.radiance = std::make_shared<media::ConstantVolume>(glow);
+            const auto m = tests::medium_of(tests::hot_grid(channels, 1e4f), parts);
+            const Vec3d tau = tests::quadrature_depth(*m, tests::past_hot, tests::past_hot.t_max, 40000);
+            const auto e = tests::spectral_estimates(*m, tests::past_hot, 100000, 9);
+            INFO(channels << " channels, albedo " << albedo << ", optical depth " << tau.x << " " << tau.y);
+            if (albedo > 0.0f) {
+                CHECK(tests::worst_sigmas(e, tau, Rgb(albedo), 1e-4) < 4.5);
+                CHECK(tests::worst_sigmas(e, 1.05 * tau, Rgb(albedo), 1e-4) > 4.5);
+            }
+            for (int c = 0; c < 3; ++c) {
+                const double exact = (1.0 - double(albedo)) * double(glow[c]) * -std::expm1(-tau[c]);
+                CHECK(e.emitted[std::size_t(c)].sigmas_from(exact, 1e-4) < 4.5);
+                CHECK(e.emitted[std::size_t(c)].sigmas_from(1.05 * exact, 1e-4) > 4.5);
+            }
+        }
+}
+
+TEST_CASE("marching, shares of the way and mean extinction stay finite beside 1e37",
+          "[media][extremes][regular]") {
+    for (const int channels : {1, 3}) {
+        const auto m = tests::medium_of(tests::hot_grid(channels, 1e37f), parts_with(1.0f, Majorants::local));
+        core::TrackingCounters counters;
+        std::array<Vec3d, 8> depths;
+        m->optical_depths_along(tests::past_hot, 1.0f / 16.0f, depths, counters);
+        for (const Vec3d& d : depths) CHECK((std::isfinite(d.x) && std::isfinite(d.y) && std::isfinite(d.z)));
+        CHECK(std::is_sorted(depths.begin(), depths.end(), [](auto& a, auto& b) { return a.x < b.x; }));
+    }
+    for (const float hot : {1e37f, 3e38f}) {
+        const auto m = tests::medium_of(tests::hot_grid(1, hot), parts_with(1.0f, Majorants::local));
+        const media::MeanExtinction mean(*m, m->bounds());
+        for (const float radius : {0.0f, 0.03f, 0.2f, 10.0f}) {
+            INFO(hot << ", radius " << radius);
+            CHECK(core::is_finite(mean.mean(Vec3(3.5f, 8.5f, 8.5f) / 16.0f, radius)));
+            if (radius < 1.0f) CHECK(mean.mean(Vec3(3.5f, 8.5f, 8.5f) / 16.0f, radius).x > 1e-6f * hot);
+            if (radius < 0.1f) CHECK(mean.mean(Vec3(0.9f), radius).x == Approx(0.1f).epsilon(0.01));
         }
     }
 }

@@ -42,6 +42,19 @@ inline media::VolFile random_grid(const glm::ivec3& n, int channels, std::uint64
     });
 }
 
+/// 16^3 voxels of 0.1 with three voxels of `hot` in a row along x, each in a channel of its own where there
+/// are three.
+inline media::VolFile hot_grid(int channels, float hot) {
+    return vol_grid(glm::ivec3(16), channels, [=](int x, int y, int z) {
+        core::Rgb value(0.1f);
+        if (x % 4 == 3 && x < 15 && y == 8 && z == 8) value[channels == 1 ? 0 : x / 4] = hot;
+        return value;
+    });
+}
+/// Past these voxels, at 0.97 of the distance at which they end in y and in z: 9e-4 of each is met.
+inline const core::Ray past_hot{core::Vec3(0.01f, 9.47f / 16.0f, 9.47f / 16.0f), core::Vec3(1, 0, 0), 0.0f,
+                                0.98f};
+
 inline std::shared_ptr<media::HeterogeneousMedium> medium_of(media::VolFile file, media::MediumParts parts,
                                                              const core::Transform& to_world = {}) {
     return media::GridVolume(std::move(file), to_world, false, "test").make_medium(std::move(parts));
