@@ -4,11 +4,16 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <functional>
+#include <limits>
 #include <new>
 
+#include "apps/number_options.h"
 #include "apps/ssbc_command.h"
 #include "apps/subcommands.h"
 #include "apps/trade/trade_command.h"
@@ -43,20 +48,21 @@ void add_scene_options(CLI::App& command, SceneArguments& arguments) {
 void add_render(CLI::App& app, RenderArguments& a, std::function<int()>& action) {
     CLI::App& command = *app.add_subcommand("render", "Render a scene into a layered EXR and a PNG preview");
     add_scene_options(command, a.scene);
-    command.add_option("-o,--output", a.output, "The EXR file to write (default: the scene's name)");
+    command.add_option("-o,--output", a.output,
+                       "The EXR file to write, or the PNG beside it (default: the scene's name)");
     command
         .add_option("--passes", a.passes, "Stop after this many passes (default: the scene's sample_count)")
         ->check(CLI::Range(std::uint32_t(1), std::uint32_t(1) << 30));
-    command.add_option("--time", a.seconds, "Stop after this many seconds")->check(CLI::PositiveNumber);
+    command.add_option("--time", a.seconds, "Stop after this many seconds")->check(number_above_0());
     command.add_option("--noise", a.noise, "Stop at this relative noise, such as 0.02")
-        ->check(CLI::PositiveNumber);
+        ->check(number_above_0());
     command.add_option("--seed", a.seed, "Another seed gives another, independent picture")
-        ->check(CLI::NonNegativeNumber);
+        ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()));
     command.add_option("-t,--threads", a.threads, "Number of threads (default: one for every core)")
-        ->check(CLI::Range(0, 4096));
+        ->check(whole_number(0, 4096));
     command.add_flag("--resume", a.resume, "Continue from the checkpoint of an interrupted render");
     command.add_option("--checkpoint-every", a.checkpoint_every, "Seconds between checkpoints (default: 60)")
-        ->check(CLI::NonNegativeNumber);
+        ->check(number_from_0());
     command.add_option("--stats", a.stats, "Write statistics to this JSON file");
     command.add_flag("--half", a.half, "Write float16 instead of float32");
     command.add_flag("--auxiliary", a.auxiliary,
@@ -86,8 +92,36 @@ void add_export(CLI::App& app, ExportArguments& a, std::function<int()>& action)
     command
         .add_option("--max-grid", a.max_grid_megabytes,
                     "Refuse dense grids of more than this many megabytes (default: 2000)")
-        ->check(CLI::Range(1, 1'000'000));
+        ->check(whole_number(1, 1'000'000));
     command.callback([&a, &action] { action = [&a] { return export_command(a); }; });
+}
+
+// What was meant by a command or an option that is not there, else what CLI11 says.
+std::string usage_message(const CLI::App& app, int argc, char** argv, const CLI::ParseError& error) {
+    if (argc < 2) return error.what();
+    const std::string first = argv[1];
+    std::vector<std::string> names;
+    const CLI::App* command = nullptr;
+    for (const CLI::App* c : app.get_subcommands({})) {
+        names.push_back(c->get_name());
+        if (c->get_name() == first) command = c;
+    }
+    if (!command)
+        return first.starts_with('-')
+                   ? error.what()
+                   : "there is no command '" + core::printable(first) + "'" + core::suggestion(first, names);
+    std::vector<std::string> options;
+    for (const CLI::Option* option : command->get_options())
+        for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+    for (int i = 2; i < argc && std::string(argv[i]) != "--"; ++i) {
+        const std::string word = std::string(argv[i]).substr(0, std::string(argv[i]).find('='));
+        if (!word.starts_with("--") || std::find(options.begin(), options.end(), word) != options.end())
+            continue;
+        const std::string near = core::nearest_name(word, options);
+        return "'mote " + first + "' has no option '" + core::printable(word) + "'" +
+               (near.empty() ? "" : " (did you mean '" + near + "'?)");
+    }
+    return error.what();
 }
 
 int parse_and_run(int argc, char** argv) {
@@ -117,7 +151,7 @@ int parse_and_run(int argc, char** argv) {
     convert_app.add_option("IN", convert.input, "EXR, PNG, JPEG, HDR, PNM, PFM, BMP or TGA")->required();
     convert_app.add_option("OUT", convert.output, "A file that ends in .exr or .png")->required();
     convert_app.add_option("--exposure", convert.exposure, "Brighten by this many stops")
-        ->check(CLI::Range(-100.0, 100.0));
+        ->check(number_between(-100.0, 100.0));
     convert_app.add_option("--layer", convert.layer, "This layer of an EXR instead of the beauty");
     convert_app.add_flag("--half", convert.half, "Write float16 instead of float32");
     convert_app.callback([&] { action = [&] { return convert_command(convert); }; });
@@ -143,9 +177,13 @@ int parse_and_run(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == int(CLI::ExitCodes::Success))
             return app.exit(error);  // --help, --version
-        throw UsageError(error.what());
+        throw UsageError(usage_message(app, argc, argv, error));
     }
-    return action();
+    const int code = action();
+    // A full disk under a pipe is noticed here at the latest.
+    if (std::fflush(stdout) != 0 || std::ferror(stdout))
+        throw core::InputError(std::string("the standard output cannot be written: ") + std::strerror(errno));
+    return code;
 }
 
 // An exception that no thread caught, or a second one while the first is on its way.

@@ -1,14 +1,14 @@
 // mote compare: a picture against its reference, every number with its definition.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "apps/command.h"
 #include "apps/number_or_null.h"
+#include "apps/output_files.h"
 #include "apps/picture_file.h"
+#include "apps/reference_metadata.h"
 #include "apps/subcommands.h"
 #include "core/image/error_map.h"
 #include "core/image/metrics.h"
@@ -24,22 +24,6 @@ using nlohmann::json;
 const char* const non_finite_definition =
     "pixels with a NaN or an infinity in a channel; none is left out, values that depend on one are NaN";
 const char* const mean_definition = "per channel R, G, B, and over all of them";
-
-/// Numbers of a matrix, or nothing when the text is anything else.
-std::vector<double> numbers(const std::string& text) {
-    std::istringstream stream(text);
-    std::vector<double> values;
-    for (double v; stream >> v;) values.push_back(v);
-    return stream.eof() ? values : std::vector<double>{};
-}
-
-bool same_camera(const std::string& a, const std::string& b) {
-    const std::vector<double> x = numbers(a), y = numbers(b);
-    if (x.size() != y.size() || x.empty()) return a == b;
-    for (std::size_t i = 0; i < x.size(); ++i)
-        if (!(std::fabs(x[i] - y[i]) <= 1e-5 * (1.0 + std::fabs(y[i])))) return false;
-    return true;
-}
 
 /// What the metadata says against the comparison. The hash covers the settings too, so it can tell something
 /// about the scene only where the integrator is the same.
@@ -126,6 +110,9 @@ void print_text(const CompareArguments& arguments, const core::Bitmap& size, con
 int compare_command(const CompareArguments& arguments) {
     if (!arguments.map.empty() && extension_of(arguments.map) != ".png")
         throw UsageError("the map '" + core::printable(arguments.map) + "' does not end in .png");
+    check_outputs(
+        std::vector<NamedFile>{{"the map", arguments.map}},
+        std::vector<NamedFile>{{"the picture", arguments.image}, {"the reference", arguments.reference}});
     const PictureFile image = read_picture(arguments.image, arguments.layer),
                       reference = read_picture(arguments.reference, arguments.layer);
     const core::Bitmap &a = image.bitmap, &r = reference.bitmap;

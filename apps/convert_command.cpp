@@ -1,7 +1,9 @@
 // mote convert: pictures to EXR or PNG.
 #include <cmath>
+#include <cstdio>
 
 #include "apps/command.h"
+#include "apps/output_files.h"
 #include "apps/picture_file.h"
 #include "apps/subcommands.h"
 #include "core/image/image_file.h"
@@ -16,6 +18,8 @@ int convert_command(const ConvertArguments& arguments) {
     const std::string kind = extension_of(arguments.output);
     if (kind != ".exr" && kind != ".png")
         throw UsageError("'" + core::printable(arguments.output) + "' ends in neither .exr nor .png");
+    check_outputs(std::vector<NamedFile>{{"the result", arguments.output}},
+                  std::vector<NamedFile>{{"the picture that is converted,", arguments.input}});
     const Bitmap bitmap = read_picture(arguments.input, arguments.layer).bitmap;
     if (kind == ".png") {
         core::write_png(arguments.output, bitmap.width, bitmap.height, bitmap.pixels, arguments.exposure);
@@ -26,7 +30,8 @@ int convert_command(const ConvertArguments& arguments) {
     std::vector<core::Rgb> pixels = bitmap.pixels;
     for (core::Rgb& p : pixels) p *= std::exp2(arguments.exposure);
     image.add_rgb("", pixels);
-    core::write_exr(arguments.output, image, arguments.half);
+    if (const std::uint64_t clamped = core::write_exr(arguments.output, image, arguments.half))
+        std::fputs(("mote: warning: " + clamped_text(clamped) + "\n").c_str(), stderr);
     return exit_ok;
 }
 

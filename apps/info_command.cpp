@@ -140,6 +140,7 @@ void describe_vol(const std::string& path) {
 int info_command(const std::string& path) {
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored)) throw core::InputError("there is no such file", {path, 0});
+    require_input(path);
     const std::string extension = extension_of(path);
     if (extension == ".xml")
         describe_scene(path);

@@ -6,11 +6,20 @@
 #include <filesystem>
 #include <fstream>
 
+#include "core/image/whole_file.h"
 #include "core/objects/error.h"
 
 namespace mote::apps {
 
 using core::ImageChannels, core::InputError;
+
+void require_input(const std::string& path) {
+    try {
+        core::require_file(path);
+    } catch (const InputError& error) {
+        throw InputError(error.what(), {path, 0});
+    }
+}
 
 std::string extension_of(const std::string& path) {
     std::string extension = std::filesystem::path(path).extension().string();
@@ -38,7 +47,14 @@ std::vector<std::string> layers_of(const ImageChannels& image) {
 
 }  // namespace
 
+std::string clamped_text(std::uint64_t values) {
+    return std::to_string(values) +
+           " values above 65504, the largest that float16 holds, were written as 65504 (without --half they "
+           "are kept)";
+}
+
 PictureFile read_picture(const std::string& path, const std::string& layer) {
+    require_input(path);
     if (!is_exr(path)) {
         PictureFile picture{core::read_bitmap(path, false), {}};
         if (!layer.empty()) throw InputError("only EXR files have layers", {path, 0});

@@ -1,6 +1,7 @@
 // Reads any picture that a command line names: a layer of an EXR, or a bitmap.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
 
@@ -13,8 +14,14 @@ struct PictureFile {
     std::map<std::string, std::string> metadata;  ///< of an EXR; empty otherwise
 };
 
+/// Throws InputError for a folder, a pipe or a device where a file is needed.
+void require_input(const std::string& path);
+
 /// The extension in lower case, ".exr".
 std::string extension_of(const std::string& path);
+
+/// How --half is reported that could not hold so many values.
+std::string clamped_text(std::uint64_t values);
 
 /// `layer`: "" is the beauty. Throws InputError naming the file, with the nearest layer there is.
 PictureFile read_picture(const std::string& path, const std::string& layer);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "core/render/render_driver.h"
 
@@ -15,6 +16,14 @@ namespace {
 using core::Rgb;
 
 double average(const Rgb& c) { return (double(c.x) + double(c.y) + double(c.z)) / 3.0; }
+
+/// Numbers of a matrix, or nothing when the text is anything else.
+std::vector<double> numbers(const std::string& text) {
+    std::istringstream stream(text);
+    std::vector<double> values;
+    for (double v; stream >> v;) values.push_back(v);
+    return stream.eof() ? values : std::vector<double>{};
+}
 
 }  // namespace
 
@@ -49,6 +58,14 @@ std::string world_to_camera(const core::Camera& camera) {
         for (int row = 0; row < 4; ++row)
             text += fmt::format("{}{:.9g}", text.empty() ? "" : " ", m[column][row]);
     return text;
+}
+
+bool same_camera(const std::string& a, const std::string& b) {
+    const std::vector<double> x = numbers(a), y = numbers(b);
+    if (x.size() != y.size() || x.empty()) return a == b;
+    for (std::size_t i = 0; i < x.size(); ++i)
+        if (!(std::fabs(x[i] - y[i]) <= 1e-5 * (1.0 + std::fabs(y[i])))) return false;
+    return true;
 }
 
 std::string scene_content(const core::Scene& scene, std::vector<std::string> defines) {

@@ -21,6 +21,9 @@ double relative_error_of_mean(const core::Film& film);
 /// worldToCamera of OpenEXR, 16 numbers: a left-handed camera space, matrices acting on row vectors.
 std::string world_to_camera(const core::Camera& camera);
 
+/// Two such texts, apart from rounding to float.
+bool same_camera(const std::string& a, const std::string& b);
+
 /// Hash of the scene's files and the definitions that change them: equal whatever integrator renders it.
 std::string scene_content(const core::Scene& scene, std::vector<std::string> defines);
 

@@ -12,6 +12,8 @@
 #include "apps/auxiliary_channels.h"
 #include "apps/command.h"
 #include "apps/interruption.h"
+#include "apps/output_files.h"
+#include "apps/picture_file.h"
 #include "apps/progress_line.h"
 #include "apps/reference_metadata.h"
 #include "apps/render_report.h"
@@ -42,10 +44,24 @@ OutputFiles output_files(const RenderArguments& arguments) {
     std::string picture = arguments.output;
     if (picture.empty())
         picture = fs::path(arguments.scene.scene).filename().replace_extension(".exr").string();
-    if (fs::path(picture).extension() != ".exr")
+    const std::string extension = extension_of(picture);
+    if (extension != ".exr" && extension != ".png")
         throw UsageError("the output '" + core::printable(picture) +
-                         "' does not end in .exr (a PNG preview is written beside it)");
+                         "' ends in neither .exr nor .png (the picture is written as EXR, with a PNG preview "
+                         "beside it)");
+    if (extension == ".png") {  // whoever names the preview gets it, and the picture beside it
+        const std::string exr = fs::path(picture).replace_extension(".exr").string();
+        return {exr, picture, exr + ".checkpoint"};
+    }
     return {picture, fs::path(picture).replace_extension(".png").string(), picture + ".checkpoint"};
+}
+
+void check_identities(const OutputFiles& files, const RenderArguments& arguments, const core::Scene& scene) {
+    const NamedFile outputs[] = {{"the picture", files.picture},
+                                 {"the preview", files.preview},
+                                 {"the statistics", arguments.stats},
+                                 {"the checkpoint", files.checkpoint}};
+    check_outputs(outputs, scene_inputs(scene.parts().input_files));
 }
 
 // Hours of rendering must not end with the discovery that the folder does not exist.
@@ -62,8 +78,7 @@ void check_writable(const std::string& path) {
 
 void warn_about_scene(const core::Scene& scene, const core::Plan& plan) {
     for (const std::string& warning : scene.parts().warnings) note("warning: " + warning);
-    for (const core::PlanEntry& e : plan.missing)
-        note("warning: " + plan.integrator + " leaves out " + e.topic + ": " + e.reason);
+    for (const std::string& line : plan.warnings()) note(line);
 }
 
 // What changes the picture besides the contents of files.
@@ -74,11 +89,25 @@ std::string hash_of(const core::Scene& scene, const core::Integrator& integrator
     return core::content_hash(scene, settings);
 }
 
-void write_outputs(const OutputFiles& files, const RenderReport& report, const RenderArguments& arguments) {
+// Values that are right and do not fit into the file.
+void warn_of_range(const core::ImageChannels& image, std::uint64_t clamped,
+                   std::vector<std::string>& warnings) {
+    if (const std::uint64_t infinite = core::infinite_variances(image))
+        warnings.push_back(
+            fmt::format("the variance of {} pixels is too large for a float and written as "
+                        "infinity: lights in larger units would keep it",
+                        infinite));
+    if (clamped > 0) warnings.push_back(clamped_text(clamped));
+}
+
+void write_outputs(const OutputFiles& files, const RenderReport& report, const RenderArguments& arguments,
+                   std::vector<std::string>& warnings) {
     core::ImageChannels image = core::film_image(report.result.film);
     image.metadata = picture_metadata(report);
     if (arguments.auxiliary) add_center_channels(image, report.scene);
-    core::write_exr(files.picture, image, arguments.half || report.scene.film().half);
+    const std::uint64_t clamped =
+        core::write_exr(files.picture, image, arguments.half || report.scene.film().half);
+    warn_of_range(image, clamped, warnings);
     core::write_png(files.preview, image.width, image.height, image.rgb(""));
 }
 
@@ -118,6 +147,7 @@ int render_command(const RenderArguments& arguments) {
     const core::Plan plan = integrator.plan(*scene, core::find_requirements(*scene));
     for (const std::string& path : {files.picture, files.preview}) check_writable(path);
     if (!arguments.stats.empty()) check_writable(arguments.stats);
+    check_identities(files, arguments, *scene);
 
     core::RenderRequest request;
     request.seed = arguments.seed;
@@ -166,7 +196,7 @@ int render_command(const RenderArguments& arguments) {
                             arguments.seed,
                             threads,
                             arguments.command_line};
-        write_outputs(files, report, arguments);
+        write_outputs(files, report, arguments, result.statistics.warnings);
         result.statistics.seconds["write"] = seconds_since(write_start);
         if (!arguments.stats.empty()) {
             const std::string json = statistics_json(report);

@@ -20,7 +20,7 @@ using nlohmann::json;
 json entries_json(const std::vector<core::PlanEntry>& entries) {
     json list = json::array();
     for (const core::PlanEntry& e : entries)
-        list.push_back({{"topic", e.topic}, {"choice", e.choice}, {"reason", e.reason}});
+        list.push_back({{"topic", e.topic}, {"choice", e.choice}, {"reason", e.reason}, {"cure", e.cure}});
     return list;
 }
 

@@ -8,6 +8,10 @@
 #include <cstdio>
 
 #include "apps/command.h"
+#include "apps/number_options.h"
+#include "apps/output_files.h"
+#include "apps/picture_file.h"
+#include "apps/reference_metadata.h"
 #include "core/image/image_file.h"
 #include "core/objects/error.h"
 #include "core/scene/scene.h"
@@ -44,6 +48,28 @@ void take_out(ImageChannels& image) {
     }
 }
 
+/// The scene with a film of the picture's size: a picture may have been rendered with another than the file
+/// says.
+SceneArguments with_film_of(const ImageChannels& image, SceneArguments scene) {
+    const std::string size[] = {fmt::format("film.width={}", image.width),
+                                fmt::format("film.height={}", image.height)};
+    scene.defines.insert(scene.defines.begin(), std::begin(size), std::end(size));
+    return scene;
+}
+
+void check_scene(const ImageChannels& image, const core::Scene& scene, const SsbcArguments& a) {
+    const NamedFile output{"the result", a.output};
+    check_outputs(std::span(&output, 1), scene_inputs(scene.parts().input_files));
+    if (scene.film().width != image.width || scene.film().height != image.height)
+        throw InputError(fmt::format("the scene's film has {} x {} pixels, the picture {} x {}",
+                                     scene.film().width, scene.film().height, image.width, image.height));
+    const auto camera = image.metadata.find("worldToCamera");
+    if (camera != image.metadata.end() && !same_camera(camera->second, world_to_camera(scene.camera())))
+        std::fputs(
+            "mote: warning: the scene's camera is not the one that the picture names (worldToCamera)\n",
+            stderr);
+}
+
 SsbcPicture read(ImageChannels& image, const SsbcArguments& a) {
     if (a.replace)
         take_out(image);
@@ -57,11 +83,8 @@ SsbcPicture read(ImageChannels& image, const SsbcArguments& a) {
         if (a.scene.scene.empty()) return read_ssbc_picture(image, a.channels);
         SsbcPicture picture = read_light(image, a.channels);
         const core::Registry registry = make_registry();
-        const auto scene = load(a.scene, registry);
-        if (scene->film().width != image.width || scene->film().height != image.height)
-            throw InputError(fmt::format("the scene's film has {} x {} pixels, the picture {} x {}",
-                                         scene->film().width, scene->film().height, image.width,
-                                         image.height));
+        const auto scene = load(with_film_of(image, a.scene), registry);
+        check_scene(image, *scene, a);
         const auto buffers =
             screenspace::make_g_buffers(*scene, scene->camera(), image.width, image.height, a.layers);
         picture.surfaces = ssbc_surfaces(buffers[0]);
@@ -110,6 +133,9 @@ void report(const SsbcPicture& picture, const SsbcResult& result, float bound, d
 }
 
 int ssbc_command(const SsbcArguments& a) {
+    const NamedFile output{"the result", a.output};
+    check_outputs(std::span(&output, 1),
+                  std::vector<NamedFile>{{"the picture", a.input}, {"the scene", a.scene.scene}});
     ImageChannels image = core::read_exr(a.input);
     const float bound = bound_of(image, a);
     const SsbcPicture picture = read(image, a);
@@ -123,7 +149,8 @@ int ssbc_command(const SsbcArguments& a) {
         image.metadata.erase(written_anyway);
     image.metadata["ssbc"] = fmt::format("bound {:.9g}, steps {}", bound, settings.steps);
     if (a.layers > 1) image.metadata["ssbc"] += fmt::format(", layers {}", a.layers);
-    core::write_exr(a.output, image, a.half);
+    if (const std::uint64_t clamped = core::write_exr(a.output, image, a.half))
+        std::fputs(("mote: warning: " + clamped_text(clamped) + "\n").c_str(), stderr);
     report(picture, result, bound, seconds);
     return exit_ok;
 }
@@ -138,9 +165,9 @@ void add_ssbc(CLI::App& app, SsbcArguments& a, std::function<int()>& action) {
         ->required();
     command.add_option("-o,--output", a.output, "The EXR file to write")->required();
     command.add_option("--bound", a.bound, "The bound in 1/m^2 (default: as the picture says)")
-        ->check(CLI::PositiveNumber);
+        ->check(number_above_0());
     command.add_option("--steps", s.steps, "How often light is carried on (default: 2)")
-        ->check(CLI::Range(1, 100));
+        ->check(whole_number(1, 100));
     command.add_option("--scene", a.scene.scene,
                        "Take surfaces and camera from this scene, not from channels");
     command.add_option("-D,--define", a.scene.defines, "Set a $parameter of that scene (repeatable)")
@@ -151,7 +178,7 @@ void add_ssbc(CLI::App& app, SsbcArguments& a, std::function<int()>& action) {
     command
         .add_option("--layers", a.layers,
                     "Surfaces along each ray: with --scene, for pictures that hold hidden light (default: 1)")
-        ->check(CLI::Range(1, 16));
+        ->check(whole_number(1, 16));
     command.add_flag("--replace", a.replace, "Take out the compensation that the picture holds");
     command
         .add_option("--light", a.channels.light,
@@ -164,21 +191,21 @@ void add_ssbc(CLI::App& app, SsbcArguments& a, std::function<int()>& action) {
     command.add_option("--albedo", a.channels.reflectance,
                        "The layer of diffuse reflectance (default: that of Center, DiffuseAlbedo or Albedo)");
     command.add_option("--levels", s.refinement.levels, "Levels of the pyramid that are summed (default: 6)")
-        ->check(CLI::Range(1, 32));
+        ->check(whole_number(1, 32));
     command
         .add_option("--angle", s.refinement.projected_angle,
                     "Refine what appears larger, in sr (default: 0.08)")
-        ->check(CLI::NonNegativeNumber);
+        ->check(number_from_0());
     command
         .add_option("--discontinuity-angle", s.refinement.discontinuity_projected_angle,
                     "The same where surfaces meet (default: 0.04)")
-        ->check(CLI::NonNegativeNumber);
+        ->check(number_from_0());
     command.add_flag("--flat", a.flat, "Sum over all pixels: exact, and slow");
     command.add_flag("--half-resolution", s.half_resolution, "Gather at one pixel of four");
     command
         .add_option("--blur", s.blur,
                     "Standard deviation of an edge-preserving blur, in pixels (default: none)")
-        ->check(CLI::Range(0.0, 100.0));
+        ->check(number_between(0.0, 100.0));
     command.add_flag("--half", a.half, "Write float16 instead of float32");
     command.callback([&a, &action] { action = [&a] { return ssbc_command(a); }; });
 }

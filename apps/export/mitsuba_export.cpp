@@ -96,7 +96,7 @@ MitsubaExport export_to_mitsuba(core::SceneDocument document, const core::Regist
     const core::Scene scene(core::build_scene(document, registry, file));
     const core::IdTable ids = core::collect_ids(document.scene);
     MitsubaExport result;
-    result.scene = document.scene;
+    result.scene = document.scene, result.inputs = scene.parts().input_files;
     const ExportContext context{document, registry, scene, ids, max_grid_bytes, result};
     const std::string integrator = export_integrator(result.scene, context);
     for (Element& e : result.scene.children) {

@@ -22,6 +22,7 @@ struct MitsubaExport {
     std::map<std::string, std::string> copies;     ///< name in the folder -> file to copy
     std::map<std::string, media::VolFile> grids;   ///< name in the folder -> grid to write
     std::map<std::string, core::MeshData> meshes;  ///< name in the folder -> mesh to write as PLY
+    std::vector<std::string> inputs;               ///< files that the scene was read from
 };
 
 /// `file` stands in messages. Throws InputError for a scene that mote would not render, and for a grid whose
@@ -30,7 +31,7 @@ MitsubaExport export_to_mitsuba(core::SceneDocument document, const core::Regist
                                 const std::string& file, std::uint64_t max_grid_bytes);
 
 /// Writes scene.xml, dropped.txt and all other files into `folder`, which is made. Throws InputError for what
-/// cannot be written.
+/// cannot be written, and before it writes anything where a file of the scene would be replaced.
 void write_export(const MitsubaExport& result, const std::string& folder);
 
 }  // namespace mote::apps

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "apps/export/mitsuba_export.h"
+#include "apps/output_files.h"
 #include "core/image/image_file.h"
 
 namespace mote::apps {
@@ -89,10 +90,24 @@ void copy_file(const std::string& from, const fs::path& to) {
     if (error) throw core::InputError("cannot be copied: " + error.message(), {from, 0});
 }
 
+void check_files(const MitsubaExport& result, const fs::path& root) {
+    std::vector<NamedFile> outputs;
+    const auto add = [&](const std::string& name) {
+        outputs.push_back({"'" + name + "' of the export", (root / name).string()});
+    };
+    add("scene.xml"), add("dropped.txt");
+    for (const auto& [name, source] : result.copies)
+        if (!same_file(source, (root / name).string())) add(name);  // else it stays as it is
+    for (const auto& [name, grid] : result.grids) add(name);
+    for (const auto& [name, mesh] : result.meshes) add(name);
+    check_outputs(outputs, scene_inputs(result.inputs));
+}
+
 }  // namespace
 
 void write_export(const MitsubaExport& result, const std::string& folder) {
     const fs::path root(folder);
+    check_files(result, root);
     make_folder(root);
     const auto place = [&](const std::string& name) {
         make_folder((root / name).parent_path());

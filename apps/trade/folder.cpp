@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <set>
 
+#include "apps/trade/json_lines.h"
 #include "core/image/image_file.h"
 #include "core/image/whole_file.h"
 #include "core/objects/error.h"
@@ -52,11 +53,15 @@ std::string Folder::read(const std::string& name) const {
 }
 
 void Folder::load() {
+    const std::string text = read("trade.json");
+    const auto damaged = [&] { return InputError("damaged: --fresh starts anew", {file("trade.json"), 0}); };
     try {
-        const json all = json::parse(read("trade.json"));
-        inputs_ = all.at("inputs"), facts_ = all.at("facts");
+        const JsonLines parsed(text, file("trade.json"));
+        inputs_ = parsed.root().at("inputs"), facts_ = parsed.root().at("facts");
     } catch (const json::exception&) {
-        throw InputError("damaged: --fresh starts anew", {file("trade.json"), 0});
+        throw damaged();
+    } catch (const InputError&) {
+        throw damaged();
     }
     if (has("trade.csv")) records_ = records_from_csv(read("trade.csv"), file("trade.csv"));
 }
@@ -89,7 +94,9 @@ void Folder::remove_earlier() {
     std::set<std::string> names = {"trade.json", "trade.csv",    "trade.svg",
                                    "trade.html", "summary.json", "reference.exr"};
     if (has("trade.json")) {
-        const json all = json::parse(read("trade.json"), nullptr, false);
+        const json all = json::parse(
+            read("trade.json"),
+            [](int depth, json::parse_event_t, json&) { return depth < int(max_json_depth); }, false);
         const json methods =
             all.is_object() ? all.value("/facts/methods"_json_pointer, json::array()) : json();
         for (const json& m : methods)

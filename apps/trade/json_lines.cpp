@@ -43,7 +43,11 @@ class CountingIterator {
 // The pointer to the value that comes next.
 class Position {
   public:
-    void open(bool array) { levels_.push_back({array, 0, ""}); }
+    /// Returns false where no methods file is nested as deep.
+    bool open(bool array) {
+        levels_.push_back({array, 0, ""});
+        return levels_.size() <= max_json_depth;
+    }
     void close() { levels_.pop_back(); }
     void key(const std::string& name) { levels_.back().name = name; }
     /// Counts an element of an array; returns false where the value has a key and is known already.
@@ -86,7 +90,10 @@ JsonLines::JsonLines(const std::string& text, std::string path) : path_(std::mov
             return true;
         }
         if (position.element()) lines_[position.pointer()] = line;
-        if (event != Event::value) position.open(event == Event::array_start);
+        if (event != Event::value && !position.open(event == Event::array_start))
+            throw core::InputError(
+                "lists and objects are nested more than " + std::to_string(max_json_depth) + " deep",
+                {path_, line});
         return true;
     };
     try {

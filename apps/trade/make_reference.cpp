@@ -10,6 +10,7 @@
 
 #include "apps/command.h"
 #include "apps/interruption.h"
+#include "apps/output_files.h"
 #include "apps/progress_line.h"
 #include "apps/reference_metadata.h"
 #include "apps/render_report.h"
@@ -34,6 +35,13 @@ void check_output(const std::string& path) {
     std::error_code ignored;
     if (!folder.empty() && !fs::is_directory(folder, ignored))
         throw core::InputError("cannot be written: there is no folder '" + folder.string() + "'", {path, 0});
+}
+
+std::vector<NamedFile> outputs_of(const TradeArguments& arguments) {
+    const std::string& path = arguments.make_reference;
+    return {{"the reference", path},
+            {"its preview", fs::path(path).replace_extension(".png").string()},
+            {"its checkpoint", path + ".checkpoint"}};
 }
 
 std::string verdict(double error, double resolve) {
@@ -105,6 +113,7 @@ int make_reference(const TradeArguments& arguments) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
     const core::Registry registry = make_registry();
     const auto scene = load({arguments.scene.scene, "", arguments.scene.defines}, registry);
+    check_outputs(outputs_of(arguments), scene_inputs(scene->parts().input_files));
     const std::string content = scene_content(*scene, arguments.scene.defines);
     if (!arguments.fresh &&
         is_good_reference(arguments.make_reference, *scene, content, {arguments.resolve, false, false})) {
@@ -123,8 +132,7 @@ int make_reference(const TradeArguments& arguments) {
     core::RenderRequest request = make_request(arguments, *scene, type);
     if (!arguments.quiet) {
         for (const std::string& warning : warnings) note("warning: " + warning);
-        for (const core::PlanEntry& e : plan.missing)
-            note("warning: " + type + " leaves out " + e.topic + ": " + e.reason);
+        for (const std::string& line : plan.warnings()) note(line);
     }
 
     const Interruption interruption;

@@ -10,6 +10,8 @@
 #include <filesystem>
 
 #include "apps/command.h"
+#include "apps/number_options.h"
+#include "apps/output_files.h"
 #include "apps/reference_metadata.h"
 #include "apps/render_report.h"
 #include "apps/trade/draw.h"
@@ -127,15 +129,38 @@ void keep_reference(const Folder& folder, const Reference& reference) {
     core::write_exr(folder.file("reference.exr"), image);
 }
 
-void warn(const TradeArguments& a, const Plan& plan, std::vector<std::string> warnings) {
+void warn(const TradeArguments& a, const Plan& plan, const std::vector<std::string>& warnings) {
+    std::vector<std::string> lines;
+    for (const std::string& warning : warnings) lines.push_back("warning: " + warning);
     const core::Requirements requirements = core::find_requirements(plan.scene);
     for (const Method& m : plan.methods)
-        for (const core::PlanEntry& e : m.integrator->plan(plan.scene, requirements).missing)
-            warnings.push_back(m.name + " leaves out " + e.topic + ": " + e.reason);
+        for (const std::string& line : m.integrator->plan(plan.scene, requirements).warnings())
+            lines.push_back(m.name + ": " + line);
     if (!plan.reference.error)
-        warnings.push_back("the reference is taken for exact: its own error is not known");
+        lines.emplace_back("warning: the reference is taken for exact: its own error is not known");
     if (!a.quiet)
-        for (const std::string& warning : warnings) note("warning: " + warning);
+        for (const std::string& line : lines) note(line);
+}
+
+/// What a measurement writes under fixed names, or under those of its methods.
+std::vector<NamedFile> outputs_of(const TradeArguments& a, const MethodsFile& file) {
+    std::vector<NamedFile> outputs;
+    const auto add = [&](const std::string& name) {
+        outputs.push_back({"'" + core::printable(name) + "' of the trade",
+                           (std::filesystem::path(a.output) / name).string()});
+    };
+    for (const char* name :
+         {"trade.json", "trade.csv", "trade.svg", "trade.html", "summary.json", "reference.exr"})
+        add(name);
+    for (const Method& m : file.methods) add(m.slug + ".exr");
+    return outputs;
+}
+
+std::vector<NamedFile> inputs_of(const TradeArguments& a, const core::Scene& scene) {
+    std::vector<NamedFile> inputs = scene_inputs(scene.parts().input_files);
+    inputs.push_back({"the methods file", a.methods});
+    inputs.push_back({"the reference", a.reference});
+    return inputs;
 }
 
 int finish(const Folder& folder, int page_width) {
@@ -176,6 +201,7 @@ int measure(const TradeArguments& a) {
                     threads,
                     render_command,
                     a.checkpoint_every};
+    check_outputs(outputs_of(a, file), inputs_of(a, *scene));
     Folder folder(a.output);
     folder.open(identity_of(a, plan), a.fresh);
     keep_reference(folder, reference);
@@ -225,25 +251,25 @@ void add_trade(CLI::App& app, TradeArguments& a, std::function<int()>& action) {
         ->allow_extra_args(false)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     command.add_option("--resolve", a.resolve, "The smallest error that must be judged (default: 0.01)")
-        ->check(CLI::PositiveNumber);
+        ->check(number_above_0());
     command.add_option("--time", a.seconds, "Seconds for every method and seed, or for the reference")
-        ->check(CLI::PositiveNumber);
+        ->check(number_above_0());
     command.add_option("--passes", a.passes, "Passes for every method and seed, or for the reference")
-        ->check(CLI::Range(std::uint32_t(1), std::uint32_t(1) << 30));
+        ->check(whole_number(1, std::uint64_t(1) << 30));
     command.add_option("--seeds", a.seeds, "Repetitions, each with a seed of its own")
-        ->check(CLI::Range(1u, 10000u));
+        ->check(whole_number(1, 10000));
     command.add_option("-D,--define", a.scene.defines, "As for render (repeatable)")
         ->type_name("NAME=VALUE")
         ->expected(1)
         ->allow_extra_args(false)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     command.add_option("-t,--threads", a.threads, "Number of threads (default: one for every core)")
-        ->check(CLI::Range(0, 4096));
+        ->check(whole_number(0, 4096));
     command
         .add_option("--page-width", a.page_width, "Largest width of the pictures in the page (default: 320)")
-        ->check(CLI::Range(8, 8192));
+        ->check(whole_number(8, 8192));
     command.add_option("--checkpoint-every", a.checkpoint_every, "Seconds between checkpoints (default: 60)")
-        ->check(CLI::NonNegativeNumber);
+        ->check(number_from_0());
     command.add_flag("--fresh", a.fresh, "Start anew instead of continuing");
     command.add_flag("--trust-reference", a.trust_reference,
                      "Believe what the reference does not say of itself");

@@ -20,11 +20,13 @@
 #include "core/assets/mesh_file.h"
 #include "core/geometry/mesh_edits.h"
 #include "core/geometry/polygon_triangulation.h"
+#include "core/image/whole_file.h"
 
 namespace mote::core {
 namespace {
 
 constexpr int time_limit_seconds = 60;
+constexpr std::size_t max_message = 200;          // assimp may quote much of a file
 constexpr rlim_t memory_limit = rlim_t(4) << 30;  // bytes, beyond what the process has mapped already
 
 Transform transform_of(const aiMatrix4x4& m) {
@@ -211,13 +213,14 @@ class Child {
 
 MeshFile read_with_assimp(const std::string& path, bool flip_v) {
     try {
+        require_file(path);
         Child child(path, flip_v);
         Header header;
         child.read_all(&header, sizeof(header));
         if (header.message > 0) {
             std::string message(std::min<std::uint64_t>(header.message, 1000), ' ');
             child.read_all(message.data(), message.size());
-            throw InputError(message);
+            throw InputError(printable(message, max_message));
         }
         MeshFile file;
         child.read_vector(file.data.positions, header.positions);

@@ -16,6 +16,7 @@
 
 #include "core/image/image_file.h"
 #include "core/image/metadata_stripping.h"
+#include "core/image/quiet_stderr.h"
 #include "core/image/srgb.h"
 #include "core/image/whole_file.h"
 #include "core/objects/error.h"
@@ -72,14 +73,20 @@ std::vector<Rgb> to_rgb(const std::vector<float>& values, int channels) {
 
 Bitmap decode(const std::string& kind, std::vector<std::byte> bytes, std::size_t file_size, bool raw,
               std::size_t max_pixels) {
+    const QuietStderr quiet;
     const auto input = OIIO::ImageInput::create(kind);
     if (!input) throw InputError("OpenImageIO has no reader for " + kind + " files");
     OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
     OIIO::ImageSpec config, spec;
     config.attribute("oiio:UnassociatedAlpha", 1);  // colours as they are stored
     if (!input->set_ioproxy(&memory)) throw InputError("OpenImageIO reads " + kind + " from files alone");
-    if (!input->open("picture." + kind, spec, config))
-        throw InputError("damaged picture: " + printable(input->geterror()));
+    // OpenImageIO knows that libpng failed; why, libpng has printed.
+    const auto damaged = [&] {
+        const std::string printed = quiet.last_line(), told = printable(input->geterror());
+        return InputError("damaged picture: " + told +
+                          (printed.empty() ? "" : (told.empty() ? "" : " ") + ("(" + printed + ")")));
+    };
+    if (!input->open("picture." + kind, spec, config)) throw damaged();
     check_size(spec.width, spec.height, std::int64_t(spec.pixel_bytes()), file_size, max_pixels);
 
     Bitmap bitmap;
@@ -88,7 +95,7 @@ Bitmap decode(const std::string& kind, std::vector<std::byte> bytes, std::size_t
     std::vector<float> values(count * std::size_t(spec.nchannels), 0.0f);
     if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, values.data()) ||
         input->has_error())
-        throw InputError("damaged picture: " + printable(input->geterror()));
+        throw damaged();
     bitmap.pixels = to_rgb(values, spec.nchannels);
     if (spec.format == OIIO::TypeDesc::UINT8 && !raw)
         for (Rgb& p : bitmap.pixels) p = {decode_srgb(p.x), decode_srgb(p.y), decode_srgb(p.z)};

@@ -9,6 +9,7 @@
 #include <set>
 #include <vector>
 
+#include "core/image/whole_file.h"
 #include "core/objects/error.h"
 
 namespace mote::core {
@@ -47,7 +48,13 @@ constexpr std::int64_t always_allowed_bytes = std::int64_t(64) << 20;
 // A file of which every read is checked against its end.
 class Walker {
   public:
-    explicit Walker(const std::string& path) : path_(path), file_(path, std::ios::binary | std::ios::ate) {
+    explicit Walker(const std::string& path) : path_(path) {
+        try {
+            require_file(path);
+        } catch (const InputError& error) {
+            fail(error.what());
+        }
+        file_.open(path, std::ios::binary | std::ios::ate);
         if (!file_) fail(std::string("cannot be opened: ") + std::strerror(errno));
         size_ = std::int64_t(file_.tellg());
         file_.seekg(0);

@@ -44,10 +44,11 @@ class MemoryStream final : public Imf::OStream {
 // Distances and positions need more than eleven bits.
 bool needs_float(const std::string& name) { return name == "Depth.Z" || name.rfind("P.", 0) == 0; }
 
+constexpr float largest_half = 65504.0f;
+
 // A finite value too large for a half becomes the largest half: infinity would be a lie.
 half to_half(float value) {
-    constexpr float largest = 65504.0f;
-    return half(std::isfinite(value) ? std::clamp(value, -largest, largest) : value);
+    return half(std::isfinite(value) ? std::clamp(value, -largest_half, largest_half) : value);
 }
 
 // 16 numbers, row by row, in OpenEXR's convention of row vectors.
@@ -73,11 +74,12 @@ Imf::Header make_header(const ImageChannels& image, bool use_half) {
     return header;
 }
 
-void encode(MemoryStream& stream, const ImageChannels& image, bool use_half) {
+std::uint64_t encode(MemoryStream& stream, const ImageChannels& image, bool use_half) {
     const Imf::Header header = make_header(image, use_half);
     const auto width = std::size_t(image.width), pixels = width * std::size_t(image.height);
     std::vector<std::vector<half>> halves;
     halves.reserve(image.names.size());
+    std::uint64_t clamped = 0;
     Imf::FrameBuffer frame;
     for (std::size_t i = 0; i < image.names.size(); ++i) {
         const std::vector<float>& plane = image.channels[i];
@@ -85,6 +87,9 @@ void encode(MemoryStream& stream, const ImageChannels& image, bool use_half) {
         if (header.channels().findChannel(image.names[i])->type == Imf::HALF) {
             std::vector<half>& h = halves.emplace_back(pixels);
             std::transform(plane.begin(), plane.end(), h.begin(), to_half);
+            clamped += std::uint64_t(std::count_if(plane.begin(), plane.end(), [](float v) {
+                return std::isfinite(v) && std::fabs(v) > largest_half;
+            }));
             frame.insert(image.names[i], Imf::Slice(Imf::HALF, reinterpret_cast<char*>(h.data()),
                                                     sizeof(half), sizeof(half) * width));
         } else {
@@ -97,20 +102,23 @@ void encode(MemoryStream& stream, const ImageChannels& image, bool use_half) {
     Imf::OutputFile file(stream, header, threads);
     file.setFrameBuffer(frame);
     file.writePixels(image.height);
+    return clamped;
 }
 
 }  // namespace
 
-void write_exr(const std::string& path, const ImageChannels& image, bool half) {
+std::uint64_t write_exr(const std::string& path, const ImageChannels& image, bool half) {
     if (image.width < 1 || image.height < 1 || image.names.size() != image.channels.size())
         throw std::invalid_argument("a picture without pixels, or with nameless channels");
     MemoryStream stream;
+    std::uint64_t clamped = 0;
     try {
-        encode(stream, image, half);
+        clamped = encode(stream, image, half);
     } catch (const Iex::BaseExc& error) {
         throw InputError(std::string("cannot be written: ") + printable(error.what()), {path, 0});
     }
     write_file_atomically(path, stream.bytes());
+    return clamped;
 }
 
 }  // namespace mote::core

@@ -51,4 +51,10 @@ ImageChannels film_image(const Film& film) {
     return image;
 }
 
+std::uint64_t infinite_variances(const ImageChannels& image) {
+    const std::vector<Rgb> variance = image.rgb("Variance");
+    return std::uint64_t(
+        std::count_if(variance.begin(), variance.end(), [](const Rgb& v) { return !is_finite(v); }));
+}
+
 }  // namespace mote::core

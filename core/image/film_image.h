@@ -12,4 +12,7 @@ namespace mote::core {
 /// the film keeps.
 ImageChannels film_image(const Film& film);
 
+/// Pixels whose variance was too large for a float, so that the picture says infinity.
+std::uint64_t infinite_variances(const ImageChannels& image);
+
 }  // namespace mote::core

@@ -27,8 +27,9 @@ struct ImageChannels {
 };
 
 /// Writes beside the final name and renames, so that no crash leaves half a file. float32 unless `half`.
-/// Throws InputError when the file cannot be written.
-void write_exr(const std::string& path, const ImageChannels& image, bool half = false);
+/// Returns how many finite values were too large for a half and became the largest one. Throws InputError
+/// when the file cannot be written.
+std::uint64_t write_exr(const std::string& path, const ImageChannels& image, bool half = false);
 /// Reads a scan-line or tiled OpenEXR. Throws InputError naming the file for anything damaged or too large.
 ImageChannels read_exr(const std::string& path);
 

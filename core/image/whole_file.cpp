@@ -10,9 +10,16 @@
 
 namespace mote::core {
 
-std::vector<std::byte> read_whole_file(const std::string& path) {
+void require_file(const std::string& path) {
     std::error_code ignored;
-    if (std::filesystem::is_directory(path, ignored)) throw InputError("is a folder");
+    const std::filesystem::file_status status = std::filesystem::status(path, ignored);
+    if (std::filesystem::is_directory(status)) throw InputError("is a folder");
+    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+        throw InputError("is a pipe or a device, not a file");
+}
+
+std::vector<std::byte> read_whole_file(const std::string& path) {
+    require_file(path);
     std::ifstream file(path, std::ios::binary | std::ios::ate);
     if (!file) throw InputError(std::string("cannot be opened: ") + std::strerror(errno));
     const std::streamoff size = file.tellg();

@@ -45,6 +45,7 @@ class BitmapTexture final : public Texture {
     float maximum() const override { return maximum_; }
     float minimum() const override { return minimum_; }
     bool constant() const override { return constant_; }
+    std::string file() const override { return parameters_.name; }
 
   private:
     const Rgb& texel(int x, int y) const {

@@ -24,6 +24,10 @@ class CheckerboardTexture final : public Texture {
     Rgb mean() const override { return 0.5f * (color0_->mean() + color1_->mean()); }
     float maximum() const override { return std::max(color0_->maximum(), color1_->maximum()); }
     float minimum() const override { return std::min(color0_->minimum(), color1_->minimum()); }
+    std::string file() const override {
+        const auto other = color0_->file().empty() || color1_->maximum() > color0_->maximum();
+        return (other ? color1_ : color0_)->file();
+    }
     bool constant() const override {
         return color0_->constant() && color1_->constant() && color0_->mean() == color1_->mean();
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "core/math/vec.h"
 #include "core/objects/object.h"
@@ -16,6 +17,8 @@ class Texture : public Object {
     /// Largest channel value anywhere: used to check that reflectances stay in [0, 1].
     virtual float maximum() const = 0;
     virtual float minimum() const = 0;
+    /// The file it came from, for messages; "" where there is none.
+    virtual std::string file() const { return ""; }
     /// Same colour everywhere.
     virtual bool constant() const { return false; }
 };

@@ -38,7 +38,9 @@ std::shared_ptr<Texture> reflectance_texture(const Properties& p, const std::str
         1e-5f;  // conversions of file formats may miss 1 by a few units in the last place
     const float lower = nested->minimum(), upper = nested->maximum();
     if (!(lower >= 0.0f && upper <= 1.0f + rounding))
-        throw InputError("the texture of '" + name + "' has values from " + std::to_string(lower) + " to " +
+        throw InputError("the texture " +
+                             (nested->file().empty() ? "" : "'" + printable(nested->file(), 300) + "' ") +
+                             "of '" + name + "' has values from " + std::to_string(lower) + " to " +
                              std::to_string(upper) + " but they must lie between 0 and 1",
                          p.where_of(name));
     return nested;

@@ -23,6 +23,7 @@ void append_table(std::string& text, const std::string& title, const std::vector
     for (const PlanEntry& e : entries) {
         std::string line = "  " + padded(e.topic, topic_width) + "  " + padded(e.choice, choice_width);
         if (!e.reason.empty()) line += "  " + e.reason;
+        if (!e.cure.empty()) line += "; " + e.cure + " brings it back";
         line.erase(line.find_last_not_of(' ') + 1);
         text += line + "\n";
     }
@@ -31,13 +32,34 @@ void append_table(std::string& text, const std::string& title, const std::vector
 }  // namespace
 
 void Plan::run(std::string topic, std::string choice, std::string reason) {
-    runs.push_back({std::move(topic), std::move(choice), std::move(reason)});
+    runs.push_back({std::move(topic), std::move(choice), std::move(reason), ""});
 }
 void Plan::leave_out(std::string topic, std::string choice, std::string reason) {
-    left_out.push_back({std::move(topic), std::move(choice), std::move(reason)});
+    left_out.push_back({std::move(topic), std::move(choice), std::move(reason), ""});
 }
-void Plan::miss(std::string topic, std::string choice, std::string reason) {
-    missing.push_back({std::move(topic), std::move(choice), std::move(reason)});
+void Plan::miss(std::string topic, std::string choice, std::string reason, std::string cure) {
+    missing.push_back({std::move(topic), std::move(choice), std::move(reason), std::move(cure)});
+}
+
+std::vector<std::string> Plan::warnings() const {
+    std::vector<std::string> lines;
+    std::vector<std::pair<std::string, std::string>> by_choice;  // topic; what is left out, and its switch
+    for (const PlanEntry& e : missing) {
+        if (e.cure.empty()) {
+            lines.push_back("warning: " + integrator + " leaves out " + e.topic + ": " + e.reason);
+            continue;
+        }
+        const auto known = std::find_if(by_choice.begin(), by_choice.end(),
+                                        [&](const auto& entry) { return entry.first == e.topic; });
+        const std::string text = e.choice + " (-D " + e.cure + " brings it back)";
+        if (known == by_choice.end())
+            by_choice.emplace_back(e.topic, text);
+        else
+            known->second += "; " + text;
+    }
+    for (const auto& [topic, text] : by_choice)
+        lines.push_back("note: " + topic + " as it is set leaves out: " + text);
+    return lines;
 }
 
 std::string Plan::to_text() const {

@@ -10,6 +10,7 @@ struct PlanEntry {
     std::string topic;   ///< "transmittance", "bound", "light per VPL"
     std::string choice;  ///< "analytic"
     std::string reason;  ///< "every medium is homogeneous"
+    std::string cure;    ///< of what is missing by choice: "integrator.compensation.depth=-1"; "" where none
 };
 
 struct Plan {
@@ -20,7 +21,10 @@ struct Plan {
 
     void run(std::string topic, std::string choice, std::string reason);
     void leave_out(std::string topic, std::string choice, std::string reason);
-    void miss(std::string topic, std::string choice, std::string reason);
+    void miss(std::string topic, std::string choice, std::string reason, std::string cure = "");
+    /// What to tell whoever renders: a warning for each thing that this integrator cannot compute, and one
+    /// line with the switches of a topic for what it leaves out by choice.
+    std::vector<std::string> warnings() const;
     /// A table for people.
     std::string to_text() const;
 };

@@ -18,17 +18,22 @@ std::string how(const CompensationSettings& s) {
     return fmt::format("{}{}, {}", s.exact() ? "exact, " : "approximate, ", s.strategy_name(), depth);
 }
 
+const char* const all_steps = "integrator.compensation.depth=-1";
+const char* const all_receivers = "integrator.compensation.receivers=all";
+
 /// Simplifications, each with what it does to the mean.
 void plan_simplifications(Plan& plan, const CompensationSettings& s) {
     if (s.depth >= 0)
         plan.miss("compensation", fmt::format("what needs more than {} step(s)", s.depth),
-                  "the recursion is cut off (Engelhardt 2013, Sec. 10.2.1)");
+                  "the recursion is cut off (Engelhardt 2013, Sec. 10.2.1)", all_steps);
     if (!s.local_visibility)
         plan.miss("compensation", "surfaces near points in media, as reflectors and as obstacles",
-                  "local_visibility is false (Engelhardt 2013, Sec. 10.2.4)");
+                  "local_visibility is false (Engelhardt 2013, Sec. 10.2.4)",
+                  "integrator.compensation.local_visibility=true");
     if (s.transmittance == LocalTransmittance::mean)
         plan.miss("compensation", "variation of the extinction inside the bounding region",
-                  "the transmittance is that of the mean extinction (Engelhardt 2013, Sec. 10.2.2)");
+                  "the transmittance is that of the mean extinction (Engelhardt 2013, Sec. 10.2.2)",
+                  "integrator.compensation.transmittance=exact");
 }
 
 /// Do any two of: surfaces, media, lie within `radius`? Judged by the boxes of surfaces and media.
@@ -103,15 +108,18 @@ void plan_compensation(Plan& plan, const Scene& scene, const Requirements& r, co
     if (!r.any_media()) {
         plan.leave_out("compensation in media", "volume vertices, mean extinction", "there are no media");
         if (!s.surfaces)
-            plan.miss("compensation", "everything", "only media are asked for, and there are none");
+            plan.miss("compensation", "everything", "only media are asked for, and there are none",
+                      all_receivers);
         if (s.depth >= 0)
             plan.miss("compensation", fmt::format("what needs more than {} step(s)", s.depth),
-                      "the recursion is cut off (Engelhardt 2013, Sec. 10.2.1)");
+                      "the recursion is cut off (Engelhardt 2013, Sec. 10.2.1)", all_steps);
         return;
     }
     plan_simplifications(plan, s);
-    if (!s.surfaces) plan.miss("compensation", "of light first scattered by surfaces", "receivers: media");
-    if (!s.media) plan.miss("compensation", "of light first scattered in media", "receivers: surfaces");
+    if (!s.surfaces)
+        plan.miss("compensation", "of light first scattered by surfaces", "receivers: media", all_receivers);
+    if (!s.media)
+        plan.miss("compensation", "of light first scattered in media", "receivers: surfaces", all_receivers);
     if (!surface_within_reach(scene, radius))
         plan.leave_out("surfaces in the compensation of media", "never met",
                        fmt::format("no surface lies within {:.4g} m of a medium", radius));

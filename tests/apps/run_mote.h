@@ -32,8 +32,10 @@ inline void write_file(const std::string& path, const std::string& text) {
 /// A running command. Arguments are given as they are, without a shell.
 class MoteProcess {
   public:
-    MoteProcess(const TemporaryFolder& folder, std::vector<std::string> arguments)
-        : out_(folder.file("stdout.txt")), err_(folder.file("stderr.txt")) {
+    /// `out`: where its output goes, "" for a file in the folder.
+    MoteProcess(const TemporaryFolder& folder, std::vector<std::string> arguments,
+                const std::string& out = "")
+        : out_(out.empty() ? folder.file("stdout.txt") : out), err_(folder.file("stderr.txt")) {
         arguments.insert(arguments.begin(), MOTE_BINARY_DIR "/mote");
         std::vector<char*> argv;
         for (std::string& a : arguments) argv.push_back(a.data());
@@ -61,7 +63,8 @@ class MoteProcess {
     RunResult wait() {
         if (!ended_) ::waitpid(id_, &status_, 0);
         ended_ = true;
-        return {WIFEXITED(status_) ? WEXITSTATUS(status_) : -1, read_file(out_), read_file(err_)};
+        const bool kept = std::filesystem::is_regular_file(out_);  // /dev/full is read without end
+        return {WIFEXITED(status_) ? WEXITSTATUS(status_) : -1, kept ? read_file(out_) : "", read_file(err_)};
     }
 
   private:

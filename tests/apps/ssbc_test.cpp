@@ -104,14 +104,20 @@ TEST_CASE("ssbc takes surfaces from the scene that a picture shows", "[command][
     REQUIRE(run_mote(folder, {"ssbc", "aux.exr", "-o", "out.exr", "--position", "P", "--normal", "N"})
                 .exit_code == 0);
     CHECK(total(read_exr(folder.file("out.exr")).rgb("compensation_surface")) < 0.9 * total(from_scene));
-    write_file(
-        folder.file("small.xml"),
-        R"(<scene version="3.0.0"><shape type="sphere"/><emitter type="constant"/><sensor type="perspective">
-        <film type="hdrfilm"><integer name="width" value="8"/><integer name="height" value="8"/></film></sensor></scene>)");
-    const RunResult size =
-        run_mote(folder, {"ssbc", "in.exr", "-o", "o.exr", "--scene", "small.xml", "--bound", "4"});
-    CHECK(size.exit_code == 1);
-    CHECK(contains(size.err, "the scene's film has 8 x 8 pixels, the picture 32 x 24"));
+    // The film is as large as the picture, whatever the scene says; another camera is noticed.
+    const RunResult size = run_mote(
+        folder, {"render", "scene.xml", "-o", "in.exr", "--passes", "2", "-D", "film.width=24", "--quiet"});
+    REQUIRE(size.exit_code == 0);
+    const RunResult other = run_mote(folder, {"ssbc", "in.exr", "-o", "out.exr", "--scene", "scene.xml"});
+    INFO(other.err);
+    CHECK(other.exit_code == 0);
+    CHECK(other.err.empty());
+    CHECK(read_exr(folder.file("out.exr")).width == 24);
+    std::string moved = read_file(folder.file("scene.xml"));
+    moved.replace(moved.find("0, 2, 5"), 7, "0, 2, 6");
+    write_file(folder.file("moved.xml"), moved);
+    CHECK(contains(run_mote(folder, {"ssbc", "in.exr", "-o", "out.exr", "--scene", "moved.xml"}).err,
+                   "the scene's camera is not the one that the picture names"));
 }
 
 TEST_CASE("ssbc takes hidden light from a picture, and does its compensation again",

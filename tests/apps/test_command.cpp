@@ -94,7 +94,7 @@ TEST_CASE("Wrong usage ends with 2 and one line", "[command]") {
     check_error(run_mote(folder, {"render", "scene.xml", "--threads", "-2"}), 2, "--threads");
     check_error(run_mote(folder, {"render", "scene.xml", "--seed", "-2"}), 2, "--seed");
     check_error(run_mote(folder, {"render", "scene.xml", "-D", "size"}), 2, "name=value");
-    check_error(run_mote(folder, {"render", "scene.xml", "-o", "a.png"}), 2, ".exr");
+    check_error(run_mote(folder, {"render", "scene.xml", "-o", "a.gif"}), 2, ".exr");
     check_error(run_mote(folder, {"convert", "a.exr", "b.gif"}), 2, "b.gif");
     CHECK_FALSE(folder.has("scene.exr"));
 }
