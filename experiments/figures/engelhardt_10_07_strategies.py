@@ -57,7 +57,7 @@ def error_of(picture, reference):
     return np.mean(difference ** 2) ** 0.5 / luminance(reference.multiple()).mean()
 
 
-def noise_of_a_pass(pictures):
+def spread_of_a_pass(pictures):
     """Of what compensation brings back: the standard deviation over seeds, for one pass, relative to the mean."""
     values = np.stack([luminance(p[RECOVERED]) for p in pictures])
     return (values.var(axis=0, ddof=1).mean() * pictures[0].passes) ** 0.5 / values.mean()
@@ -76,9 +76,9 @@ def check(rmse, pictures):
                  mean["N-to-1"][0] < 0.9 * mean["1-to-N"][0],
                  "with one eye path a pass, where it ends makes most of the noise of both, and N-to-1 takes longer a pass: "
                  "here one vertex joined to all VPLs costs a twentieth of the pass, vertices for each a fifth")
-    noise = {name: noise_of_a_pass(pictures[name]) for name in ("N-to-1", "1-to-N")}
+    spread = {name: spread_of_a_pass(pictures[name]) for name in ("N-to-1", "1-to-N")}
     claims.check("N-to-1 has less noise than 1-to-N, pass by pass, in what compensation brings back",
-                 ", ".join(f"{name} {100 * x:.0f} %" for name, x in noise.items()), noise["N-to-1"] < noise["1-to-N"])
+                 ", ".join(f"{name} {100 * x:.0f} %" for name, x in spread.items()), spread["N-to-1"] < spread["1-to-N"])
     return claims.exit_code()
 
 

@@ -1,12 +1,12 @@
 #!/usr/bin/python3
-"""How many virtual point lights does a medium need? Bias and noise of bounded VPLs and their compensations.
+"""How many virtual point lights does a medium need? Bias and spread of bounded VPLs and their compensations.
 
 The last section of Engelhardt 2013, ch. 10, leaves the question open. A closed room with black walls full of a homogeneous medium is
 rendered for optical depths, albedos and mean cosines; the bound is the automatic one, light paths / R^2, so the bounding
 radius is r = R / sqrt(paths). For bounded VPLs, approximate compensation of one and two steps (the defaults), and exact
 compensation the study measures the light that scatters more than once, the last time in the medium:
   bias    signed, of the picture's mean, against volpath: with its standard error over seeds
-  noise   of one pass, rms over pixels, relative to the mean
+  spread  of passes: rms over pixels of their standard deviation, relative to the mean
 and holds the light that is lost against beta^(k+1) / beta_all for k steps: beta is the integral of
 sigma_s e^(-sigma_t t) (1 - b t^2) from 0 to r, one application of the residual transport to light that is the same all
 around, and beta_all = albedo (1 - e^(-sigma_t D)) the same without a bound along the mean chord D (expected_loss.h).
@@ -34,12 +34,12 @@ def media(quick):
 
 
 def measure(mote, name, settings, reference, passes, seeds):
-    """Bias and its standard error; noise of one pass."""
+    """Bias and its standard error; spread of passes."""
     pictures = [mote.render(SCENE, name, settings, passes, seed=s).multiple().mean(axis=2) for s in range(1, seeds + 1)]
     scale = reference[0]
     bias, error = mean_and_error([p.mean() / scale - 1 for p in pictures])
-    noise = (np.var(pictures, axis=0, ddof=1).mean() * passes) ** 0.5 / scale
-    return bias, (error ** 2 + (reference[1] / scale) ** 2) ** 0.5, noise
+    spread = (np.var(pictures, axis=0, ddof=1).mean() * passes) ** 0.5 / scale
+    return bias, (error ** 2 + (reference[1] / scale) ** 2) ** 0.5, spread
 
 
 def study(mote, quick):
@@ -57,7 +57,7 @@ def study(mote, quick):
                 result = measure(mote, f"{tag}_n{paths}_{method.replace(' ', '_')}", {**medium, "paths": paths, **settings},
                                  reference, max(1, budget // paths), seeds)
                 rows.append([depth, albedo, g, paths, beta, method, *map(float, result)])
-                print("depth {:g} albedo {:g} g {:g} paths {} beta {:.3f} {}: bias {:+.2%} +- {:.2%}, noise {:.0%}".format(*rows[-1]),
+                print("depth {:g} albedo {:g} g {:g} paths {} beta {:.3f} {}: bias {:+.2%} +- {:.2%}, spread {:.0%}".format(*rows[-1]),
                       flush=True)
     return rows
 
@@ -92,7 +92,7 @@ def draw(rows, path):
     left.set_xlabel("expected: beta^(k+1) / beta_all [%]")
     left.set_ylabel("light lost [%]")
     right.set_xlabel("optical depth of the room")
-    right.set_ylabel("noise of one pass [%]")
+    right.set_ylabel("spread of passes [%]")
     right.set_xscale("log")
     right.set_yscale("log")
     right.legend()
@@ -105,7 +105,7 @@ def draw(rows, path):
 
 def run(mote, quick, output):
     rows = study(mote, quick)
-    write_csv(output.with_suffix(".csv"), ["optical_depth", "albedo", "g", "paths", "beta", "method", "bias", "error", "noise"], rows)
+    write_csv(output.with_suffix(".csv"), ["optical_depth", "albedo", "g", "paths", "beta", "method", "bias", "error", "spread"], rows)
     draw(rows, output.with_suffix(".png"))
     claims = Claims()
     z = np.abs(column(rows, "exact", 6)) / column(rows, "exact", 7)

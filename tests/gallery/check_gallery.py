@@ -1,0 +1,190 @@
+#!/usr/bin/env python3
+"""Is every picture of the gallery the full run of the script beside it, and does the text say what its table says?
+
+For each picture of docs/gallery in a page of docs: it names its script, which the section names too; its run was full; its commit is one
+of this repository, without changes; its table lies beside it, with the same origin, and is the one that it was drawn with
+(experiments/figures/origin.py). Each section ends with a comment of lines such as
+
+    1.58 ± 0.02 % = bunny; taken_by_the_bound; standard_error
+    22.2 ± 0.3 % = claim: clamping darkens
+
+The words before '=' stand in the section or in its row of the first table. Behind it: the first cells of a row of the CSV
+file and the columns with the numbers, which must be those of the text as it rounds them; or the beginning of a claim, whose
+measured value holds these numbers in this order. A picture that was not made anew since pictures carry their origin says
+'Recorded: afterwards', and its section says so in the words NOT_ANEW.
+
+    tests/gallery/check_gallery.py ROOT
+"""
+import csv
+import hashlib
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent / "experiments" / "figures"))
+from origin import csv_text, png_text, table_of
+
+NOT_ANEW = "not made anew since pictures say where they come from"
+NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?")
+
+
+def sections(text):
+    """By picture: the text of its section, and where it begins."""
+    found = {}
+    for part in re.split(r"^#{2,3} ", text, flags=re.MULTILINE)[1:]:
+        picture = re.search(r"!\[[^\]]*\]\(gallery/(\w+)\.png\)", part)
+        if picture:
+            found[picture.group(1)] = part
+    return found
+
+
+def rows_of_first_table(text, name):
+    """The rows that link to the section, and those below that continue them."""
+    rows, inside = [], False
+    for line in text.split("\n"):
+        if line.startswith("| ["):
+            inside = line.startswith(f"| [{name}]")
+        elif not line.startswith("| |"):
+            inside = False
+        if inside:
+            rows.append(line)
+    return "\n".join(rows)
+
+
+def shown(number, value, percent):
+    """Is `value` what the text shows as `number`, with so many digits?"""
+    digits = len(number.partition(".")[2])
+    value = 100 * value if percent else value
+    return abs(value - float(number)) <= 0.5 * 10 ** -digits * (1 + 1e-6)
+
+
+class Table:
+    """Of a CSV file: rows below their headers, and claims."""
+
+    def __init__(self, path):
+        self.rows, self.claims, header = [], [], None
+        for row in csv.reader(table_of(path).splitlines()):
+            if row[:2] == ["claim", "measured"]:
+                header = None
+            elif header is None and not self.rows:
+                header = row
+            elif header is None:
+                self.claims.append(row)
+            elif len(row) == len(header) and not any(is_number(cell) for cell in row[1:]) and is_header(row):
+                header = row  # a second table
+            else:
+                self.rows.append((header, row))
+
+    def values(self, key, columns):
+        for header, row in self.rows:
+            if row[:len(key)] == key and all(c in header for c in columns):
+                return [float(row[header.index(c)]) for c in columns]
+        raise KeyError(f"no row {', '.join(key)} with {', '.join(columns)}")
+
+    def measured(self, beginning):
+        for row in self.claims:
+            if row[0].startswith(beginning):
+                return row[1]
+        raise KeyError(f"no claim '{beginning}'")
+
+
+def is_number(cell):
+    try:
+        float(cell)
+        return True
+    except ValueError:
+        return False
+
+
+def is_header(row):
+    return all(re.fullmatch(r"\w+", cell) for cell in row)
+
+
+def check_number(line, visible, table):
+    said, _, source = (part.strip() for part in line.partition(" = "))
+    if said not in visible:
+        return f"'{said}' is not in the text"
+    numbers, percent = NUMBER.findall(said.replace("−", "-")), "%" in said
+    try:
+        if source.startswith("claim: "):
+            measured = table.measured(source[len("claim: "):])
+            there = [float(n) for n in NUMBER.findall(measured)]
+            at = 0
+            for number in numbers:
+                while at < len(there) and not shown(number, there[at], False):
+                    at += 1
+                if at == len(there):
+                    return f"'{said}': the claim measured {measured}"
+                at += 1
+            return None
+        key, *columns = (part.strip() for part in source.split(";"))
+        values = table.values([k.strip() for k in key.split("/")], columns)
+    except KeyError as error:
+        return f"'{said}': {error.args[0]}"
+    if len(values) != len(numbers):
+        return f"'{said}': {len(numbers)} numbers, {len(values)} columns"
+    for number, value in zip(numbers, values):
+        if not shown(number, value, percent):
+            return f"'{said}': the table has {value:.6g}"
+    return None
+
+
+def is_commit(root, commit):
+    """Of this repository; where there is none, or only its end, nobody can tell."""
+    git = lambda *words: subprocess.run(["git", *words], cwd=root, capture_output=True, text=True, check=False)
+    if git("rev-parse", "--is-shallow-repository").stdout.strip() != "false":
+        return True
+    return git("cat-file", "-e", f"{commit}^{{commit}}").returncode == 0
+
+
+def check_picture(root, name, section, first_rows):
+    picture, table = (root / "docs" / "gallery" / f"{name}{suffix}" for suffix in (".png", ".csv"))
+    if not picture.is_file():
+        return ["there is no such picture"]
+    text = png_text(picture)
+    missing = [key for key in ("Script", "Run", "Commit") if key not in text]
+    if missing:
+        return [f"the picture does not say: {', '.join(missing)}"]
+    offences = []
+    if not (root / text["Script"]).is_file() or text["Script"] not in section:
+        offences.append(f"made by {text['Script']}, which the section does not name")
+    if text["Run"] != "full":
+        offences.append(f"the run was {text['Run']}")
+    for commit in [text["Commit"], *text.get("Program", "").split()]:
+        if commit.endswith("+") or not is_commit(root, commit):
+            offences.append(f"commit {commit} is none of this repository")
+    if text.get("Recorded") == "afterwards":
+        return offences + ([] if NOT_ANEW in " ".join(section.split()) else [f"the section does not say: {NOT_ANEW}"])
+    if not table.is_file():
+        return offences + ["no table lies beside it"]
+    if csv_text(table) != text:
+        offences.append("picture and table do not come from one run")
+    if hashlib.sha256(table_of(table).encode()).hexdigest()[:16] != text.get("Table"):
+        offences.append("the table is not the one that was written with the picture")
+    comments = re.findall(r"<!--(.*?)-->", section, flags=re.DOTALL)
+    lines = [line.strip() for comment in comments for line in comment.split("\n") if " = " in line]
+    if not lines:
+        offences.append("no number of the text is compared with the table")
+    visible = " ".join(re.sub(r"<!--.*?-->", "", section + first_rows, flags=re.DOTALL).replace("**", "").split())
+    numbers = Table(table)
+    return offences + [o for o in (check_number(line, visible, numbers) for line in lines) if o]
+
+
+def check(root):
+    offences, seen = [], set()
+    for page in sorted((root / "docs").glob("*.md")):
+        text = page.read_text(encoding="utf-8")
+        for name, section in sections(text).items():
+            seen.add(name)
+            offences += [f"{name}: {o}" for o in check_picture(root, name, section, rows_of_first_table(text, name))]
+    for path in sorted((root / "docs" / "gallery").glob("*.png")):
+        if path.stem not in seen:
+            offences.append(f"{path.stem}: no page shows it")
+    return offences
+
+
+if __name__ == "__main__":
+    found = check(Path(sys.argv[1]))
+    print("\n".join(found) if found else "every picture is a full run, and the text says what its table says")
+    sys.exit(1 if found else 0)
