@@ -1,6 +1,7 @@
 // Texture "bitmap": a picture over the unit square, bilinear or nearest, repeated, mirrored or clamped.
 #include <algorithm>
 
+#include "core/materials/pictured_texture.h"
 #include "core/materials/textures.h"
 #include "core/materials/uv_transform.h"
 #include "core/objects/error.h"
@@ -18,7 +19,7 @@ float wrap_coordinate(double x, TextureWrap wrap) {
     return float(t > 1.0 ? 2.0 - t : t);
 }
 
-class BitmapTexture final : public Texture {
+class BitmapTexture final : public Texture, public PicturedTexture {
   public:
     BitmapTexture(Bitmap bitmap, const BitmapTextureParameters& parameters)
         : bitmap_(std::move(bitmap)), parameters_(parameters), to_uv_(parameters.to_uv) {
@@ -28,7 +29,7 @@ class BitmapTexture final : public Texture {
         summarise();
     }
 
-    Rgb eval(const Vec2& uv) const override {
+    Rgb eval(const TextureCoordinates& uv) const override {
         const glm::dvec2 p = to_uv_(uv);
         const float u = wrap_coordinate(p.x, parameters_.wrap), v = wrap_coordinate(p.y, parameters_.wrap);
         if (parameters_.filter == TextureFilter::nearest)
@@ -41,13 +42,34 @@ class BitmapTexture final : public Texture {
         return (1.0f - fy) * ((1.0f - fx) * texel(i0, j0) + fx * texel(i1, j0)) +
                fy * ((1.0f - fx) * texel(i0, j1) + fx * texel(i1, j1));
     }
+    /// Of the bilinear patch; nearest texels are flat.
+    Vec2 scalar_gradient(const TextureCoordinates& uv) const override {
+        if (parameters_.filter == TextureFilter::nearest) return {0.0f, 0.0f};
+        const glm::dvec2 p = to_uv_(uv);
+        const float x = wrap_coordinate(p.x, parameters_.wrap) * float(bitmap_.width) - 0.5f,
+                    y = wrap_coordinate(p.y, parameters_.wrap) * float(bitmap_.height) - 0.5f;
+        const float x0 = std::floor(x), y0 = std::floor(y), fx = x - x0, fy = y - y0;
+        const int i0 = neighbour(int(x0), bitmap_.width), i1 = neighbour(int(x0) + 1, bitmap_.width);
+        const int j0 = neighbour(int(y0), bitmap_.height), j1 = neighbour(int(y0) + 1, bitmap_.height);
+        const float h00 = luminance(texel(i0, j0)), h10 = luminance(texel(i1, j0)),
+                    h01 = luminance(texel(i0, j1)), h11 = luminance(texel(i1, j1));
+        const glm::dvec2 slope((1.0f - fy) * (h10 - h00) + fy * (h11 - h01),
+                               (1.0f - fx) * (h01 - h00) + fx * (h11 - h10));
+        return Vec2(to_uv_.gradient(slope * glm::dvec2(bitmap_.width, bitmap_.height) *
+                                    glm::dvec2(reflected(p.x), reflected(p.y))));
+    }
     Rgb mean() const override { return mean_; }
     float maximum() const override { return maximum_; }
     float minimum() const override { return minimum_; }
+    glm::ivec2 resolution() const override { return {bitmap_.width, bitmap_.height}; }
     bool constant() const override { return constant_; }
     std::string file() const override { return parameters_.name; }
 
   private:
+    /// -1 where mirroring turns the picture over.
+    double reflected(double x) const {
+        return parameters_.wrap == TextureWrap::mirror && x - 2.0 * std::floor(0.5 * x) > 1.0 ? -1.0 : 1.0;
+    }
     const Rgb& texel(int x, int y) const {
         return bitmap_.pixels[std::size_t(y) * std::size_t(bitmap_.width) + std::size_t(x)];
     }

@@ -6,6 +6,7 @@
 
 #include <optional>
 
+#include "core/materials/texture_coordinates.h"
 #include "core/math/vec.h"
 #include "core/objects/object.h"
 
@@ -26,10 +27,14 @@ struct BsdfTraits {
     bool delta = false;         ///< has a part that only sample() can produce
     bool transmissive = false;  ///< lets light through
     bool null = false;     ///< the surface is invisible: light passes straight (a boundary between media)
-    bool pane = false;     ///< delta; a part of the light passes straight on: see straight_passage()
+    bool pane = false;     ///< a part of the light passes straight on: see straight_passage()
+    bool tints = false;    ///< a pane, and what passes it straight on changes its colour
     bool diffuse = false;  ///< exactly Lambertian reflection: diffuse_reflectance() says all
     bool textured = false;
     bool anisotropic = false;  ///< looks different when turned about the normal
+
+    /// Light goes straight on, all of it or a part: such a surface stops no connection.
+    bool passes_straight() const { return null || pane; }
 };
 
 struct BsdfSample {
@@ -43,14 +48,18 @@ struct BsdfSample {
 
 /// Light that passes a pane straight on, unbent: connections pass it, and it counts as no scattering.
 struct StraightPassage {
-    float probability;  ///< that sample() lets a path pass
-    Rgb weight;         ///< of a path that was let pass
-    Rgb transmittance() const { return probability * weight; }
+    float stops = 1.0f;  ///< probability that sample() scatters a path: where u_lobe is below this
+    Rgb weight{0.0f};    ///< of a path that was let pass
+    float probability() const { return 1.0f - stops; }
+    Rgb transmittance() const { return probability() * weight; }
 };
 
 /// Where on the surface: textures are looked up here.
 struct BsdfPoint {
-    Vec2 uv{0, 0};
+    TextureCoordinates uv;
+    // In the local frame, for BSDFs that bend it; zero where they are not known, and nothing is bent then.
+    Vec3 dp_du{0.0f}, dp_dv{0.0f};  ///< derivatives of the position by the texture coordinates [m]
+    Vec3 geometric_normal{0.0f, 0.0f, 1.0f};
 };
 
 class Bsdf : public Object {
@@ -74,12 +83,12 @@ class Bsdf : public Object {
     virtual std::optional<BsdfSample> sample(const BsdfPoint& p, const Vec3& wo, float u_lobe, const Vec2& u,
                                              TransportMode mode) const = 0;
 
-    /// Of a pane seen from wo's side; the same from both sides.
-    virtual StraightPassage straight_passage(const BsdfPoint&, const Vec3& /*wo*/) const {
-        return {0.0f, Rgb(0.0f)};
-    }
+    /// Of a pane seen from wo's side; the same from both sides. What eval() and pdf_solid_angle() say holds
+    /// for the whole pane; a path that it stopped by chance has both divided by StraightPassage::stops.
+    virtual StraightPassage straight_passage(const BsdfPoint&, const Vec3& /*wo*/) const { return {}; }
 
-    /// Reflectance of a purely Lambertian BSDF seen from wo's side; nothing when it is anything else.
+    /// Reflectance of a purely Lambertian BSDF seen from wo's side; nothing when it is anything else. What a
+    /// pane lets pass straight on does not count.
     virtual std::optional<Rgb> diffuse_reflectance(const BsdfPoint&, const Vec3& /*wo*/) const {
         return std::nullopt;
     }

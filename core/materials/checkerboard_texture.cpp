@@ -15,13 +15,16 @@ class CheckerboardTexture final : public Texture {
                         const Transform& to_uv)
         : color0_(std::move(color0)), color1_(std::move(color1)), to_uv_(to_uv) {}
 
-    Rgb eval(const Vec2& uv) const override {
-        const glm::dvec2 p = to_uv_(uv);
-        const bool u = p.x - std::floor(p.x) > 0.5, v = p.y - std::floor(p.y) > 0.5;
-        return (u == v ? color0_ : color1_)->eval(uv);
+    Rgb eval(const TextureCoordinates& uv) const override { return (even(uv) ? color0_ : color1_)->eval(uv); }
+    /// The other way round, as in Mitsuba 3.9 (docs/witness.md): color1 is the number at the origin.
+    float scalar(const TextureCoordinates& uv) const override {
+        return (even(uv) ? color1_ : color0_)->scalar(uv);
     }
     /// Of a whole number of squares.
     Rgb mean() const override { return 0.5f * (color0_->mean() + color1_->mean()); }
+    Rgb mean_over(const SurfaceAttributes& a) const override {
+        return 0.5f * (color0_->mean_over(a) + color1_->mean_over(a));
+    }
     float maximum() const override { return std::max(color0_->maximum(), color1_->maximum()); }
     float minimum() const override { return std::min(color0_->minimum(), color1_->minimum()); }
     std::string file() const override {
@@ -33,6 +36,13 @@ class CheckerboardTexture final : public Texture {
     }
 
   private:
+    /// In a square of the colour at the origin.
+    bool even(const Vec2& uv) const {
+        const glm::dvec2 p = to_uv_(uv);
+        const bool u = p.x - std::floor(p.x) > 0.5, v = p.y - std::floor(p.y) > 0.5;
+        return u == v;
+    }
+
     std::shared_ptr<Texture> color0_, color1_;
     UvTransform to_uv_;
 };

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <vector>
 
+#include "core/materials/conductor_table.h"
 #include "core/objects/properties.h"
 
 namespace mote::core {
@@ -24,34 +25,6 @@ constexpr NamedIndex dielectrics[] = {
     {"pyrex", 1.47f},      {"acrylic glass", 1.49f},     {"polypropylene", 1.49f},
     {"bk7", 1.5046f},      {"sodium chloride", 1.544f},  {"amber", 1.55f},
     {"pet", 1.575f},       {"diamond", 2.419f},
-};
-
-struct NamedConductor {
-    const char* name;
-    ComplexIndex index;
-};
-
-// Measured spectra (mostly Palik, Handbook of Optical Constants) averaged to linear sRGB: the values
-// published with the Tungsten renderer, rounded. Mitsuba's come from the same spectra.
-const NamedConductor conductors[] = {
-    {"none", {{0.0f, 0.0f, 0.0f}, {1.0f, 1.0f, 1.0f}}},
-    {"Ag", {{0.15526f, 0.11672f, 0.13838f}, {4.82834f, 3.12225f, 2.14695f}}},
-    {"Al", {{1.65746f, 0.88037f, 0.52123f}, {9.22387f, 6.26952f, 4.83700f}}},
-    {"Au", {{0.14312f, 0.37496f, 1.44248f}, {3.98316f, 2.38572f, 1.60322f}}},
-    {"Be", {{4.18506f, 3.18506f, 2.78409f}, {3.83544f, 3.01013f, 2.86901f}}},
-    {"Cr", {{4.36968f, 2.91670f, 1.65470f}, {5.20643f, 4.23136f, 3.75495f}}},
-    {"Cu", {{0.20044f, 0.92403f, 1.10221f}, {3.91295f, 2.45285f, 2.14219f}}},
-    {"Hg", {{2.39893f, 1.44003f, 0.90955f}, {6.32763f, 4.37194f, 3.42179f}}},
-    {"Ir", {{3.08641f, 2.08219f, 1.61789f}, {5.59215f, 4.06718f, 3.26726f}}},
-    {"K", {{0.06405f, 0.04641f, 0.03818f}, {2.10422f, 1.34894f, 0.91321f}}},
-    {"Li", {{0.26579f, 0.19561f, 0.22092f}, {3.54017f, 2.31113f, 1.66859f}}},
-    {"Mo", {{4.48370f, 3.52546f, 2.77608f}, {4.11113f, 3.42087f, 3.15060f}}},
-    {"Nb", {{3.42014f, 2.79019f, 2.39559f}, {3.44138f, 2.73764f, 2.57991f}}},
-    {"Rh", {{2.58580f, 1.86019f, 1.55443f}, {6.78229f, 4.70295f, 3.97609f}}},
-    {"Ta", {{2.06258f, 2.39309f, 2.62807f}, {2.40805f, 1.74137f, 1.94704f}}},
-    {"TiN", {{1.64847f, 1.15045f, 1.37978f}, {3.36846f, 1.94349f, 1.10201f}}},
-    {"VN", {{2.86560f, 2.11918f, 1.94008f}, {3.03233f, 2.05611f, 1.61629f}}},
-    {"W", {{4.37070f, 3.30030f, 2.99827f}, {3.50068f, 2.60487f, 2.27319f}}},
 };
 
 template <typename Table>
@@ -80,9 +53,16 @@ std::optional<float> dielectric_index(std::string_view name) {
 }
 
 std::optional<ComplexIndex> conductor_index(std::string_view name) {
-    for (const NamedConductor& entry : conductors)
-        if (name == entry.name) return entry.index;
-    return std::nullopt;
+    const auto known = [&](const NamedConductor& entry) {
+        const std::string_view stem = entry.name;
+        return name == stem ||
+               (entry.palik && name.starts_with(stem) && name.substr(stem.size()) == "_palik");
+    };
+    const auto table = conductor_table();
+    const auto found = std::find_if(table.begin(), table.end(), known);
+    if (found == table.end()) return std::nullopt;
+    const auto rgb = [](const float(&c)[3]) { return Rgb(c[0], c[1], c[2]); };
+    return ComplexIndex{rgb(found->eta), rgb(found->k)};
 }
 
 float dielectric_index_parameter(const Properties& p, const std::string& name,
@@ -99,7 +79,7 @@ float dielectric_index_parameter(const Properties& p, const std::string& name,
 ComplexIndex conductor_parameters(const Properties& p) {
     const std::string material = p.get_string("material", "none");
     const auto named = conductor_index(material);
-    if (!named) unknown(p, "material", material, names_of(conductors));
+    if (!named) unknown(p, "material", material, names_of(conductor_table()));
     const bool explicit_index = p.has("eta") || p.has("k");
     if (explicit_index && material != "none")
         throw InputError("give either 'material' or 'eta' and 'k', not both", p.where_of("material"));

@@ -1,4 +1,5 @@
-// Indices of refraction by name: dielectrics (Hecht, Optics; around 589 nm) and metals (RGB eta + i k).
+// Indices of refraction by name: dielectrics (Hecht, Optics; around 589 nm) and conductors (RGB
+// eta + i k).
 #pragma once
 
 #include <optional>
@@ -18,7 +19,7 @@ struct ComplexIndex {
     Rgb eta{0.0f}, k{1.0f};  ///< the default reflects everything
 };
 
-/// Index of a named metal ("Cu", "Au", ...; "none" is the perfect mirror), or nothing.
+/// Index of a named conductor ("Cu", "a-C", ...; "none" is the perfect mirror), or nothing.
 std::optional<ComplexIndex> conductor_index(std::string_view name);
 
 /// The parameter `name` as a number or as the name of a dielectric. Throws InputError for unknown names and

@@ -75,7 +75,7 @@ inline Vec3 half_vector(const Vec3& a, const Vec3& b) {
 }
 
 class Properties;
-/// Reads distribution, alpha or alpha_u and alpha_v. Throws InputError when they contradict each other.
-Microfacet microfacet_parameters(const Properties& properties, bool allow_anisotropic = true);
+/// Reads distribution and alpha, a number: for surfaces that have one roughness everywhere.
+Microfacet microfacet_parameters(const Properties& properties);
 
 }  // namespace mote::core

@@ -18,6 +18,9 @@ class Null final : public Bsdf {
         s.delta = s.transmitted = true;
         return s;
     }
+    StraightPassage straight_passage(const BsdfPoint&, const Vec3&) const override {
+        return {0.0f, Rgb(1.0f)};
+    }
     Rgb albedo(const BsdfPoint&, const Vec3&) const override { return Rgb(1.0f); }
 };
 

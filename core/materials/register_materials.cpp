@@ -14,9 +14,15 @@ void register_materials(Registry& registry) {
     register_plastic(registry);
     register_rough_plastic(registry);
     register_phong(registry);
+    register_principled(registry);
     register_null(registry);
     register_twosided(registry);
+    register_blend(registry);
+    register_mask(registry);
+    register_normal_map(registry);
+    register_bump_map(registry);
     register_checkerboard_texture(registry);
+    register_mesh_attribute_texture(registry);
 }
 
 }  // namespace mote::core

@@ -12,37 +12,40 @@ namespace {
 
 class RoughConductor final : public Bsdf {
   public:
-    RoughConductor(const ConductorParameters& p, const Microfacet& microfacet)
-        : index_(p.index), microfacet_(microfacet), specular_(p.specular_reflectance) {}
+    RoughConductor(const ConductorParameters& p, const Roughness& roughness)
+        : index_(p.index), roughness_(roughness), specular_(p.specular_reflectance) {}
 
     BsdfTraits traits() const override {
         return {.smooth = true,
-                .textured = specular_.textured(),
-                .anisotropic = microfacet_.alpha_u() != microfacet_.alpha_v()};
+                .textured = specular_.textured() || roughness_.textured(),
+                .anisotropic = roughness_.anisotropic()};
     }
 
     /// Walter 2007, Eq. 20, with G = G1(wo) G1(wi).
     Rgb eval(const BsdfPoint& p, const Vec3& wo, const Vec3& wi, TransportMode) const override {
         if (!(wo.z > 0.0f && wi.z > 0.0f)) return Rgb(0.0f);
         const Vec3 m = half_vector(wo, wi);
-        const float d = microfacet_.density(m);
+        const Microfacet facets = roughness_.at(p.uv);
+        const float d = facets.density(m);
         if (d == 0.0f) return Rgb(0.0f);
-        const float value = d / (4.0f * microfacet_.projected_area(wo) * microfacet_.projected_area(wi));
+        const float value = d / (4.0f * facets.projected_area(wo) * facets.projected_area(wi));
         return specular_.eval(p.uv) * fresnel(wo, m) * value;
     }
     /// Walter 2007, Eq. 38 with the Jacobian of Eq. 14, for visible normals: <wo, m> D / A(wo) / (4 <wo, m>).
-    float pdf_solid_angle(const BsdfPoint&, const Vec3& wo, const Vec3& wi, TransportMode) const override {
+    float pdf_solid_angle(const BsdfPoint& p, const Vec3& wo, const Vec3& wi, TransportMode) const override {
         if (!(wo.z > 0.0f && wi.z > 0.0f)) return 0.0f;
-        return microfacet_.density(half_vector(wo, wi)) / (4.0f * microfacet_.projected_area(wo));
+        const Microfacet facets = roughness_.at(p.uv);
+        return facets.density(half_vector(wo, wi)) / (4.0f * facets.projected_area(wo));
     }
     std::optional<BsdfSample> sample(const BsdfPoint& p, const Vec3& wo, float, const Vec2& u,
                                      TransportMode mode) const override {
         if (!(wo.z > 0.0f)) return std::nullopt;
-        const Vec3 m = microfacet_.sample_visible(wo, u);
+        const Microfacet facets = roughness_.at(p.uv);
+        const Vec3 m = facets.sample_visible(wo, u);
         const Vec3 wi = 2.0f * glm::dot(wo, m) * m - wo;
         if (!(wi.z > 0.0f)) return std::nullopt;  // would meet the surface again: lost
         const float pdf = pdf_solid_angle(p, wo, wi, mode);
-        const Rgb weight = specular_.eval(p.uv) * fresnel(wo, m) * microfacet_.masking(wi);
+        const Rgb weight = specular_.eval(p.uv) * fresnel(wo, m) * facets.masking(wi);
         if (!(pdf > 0.0f) || is_black(weight)) return std::nullopt;
         return BsdfSample{.wi = wi, .weight = weight, .pdf_solid_angle = pdf};
     }
@@ -57,22 +60,23 @@ class RoughConductor final : public Bsdf {
     }
 
     ComplexIndex index_;
-    Microfacet microfacet_;
+    Roughness roughness_;
     TextureSlot specular_;
 };
 
 }  // namespace
 
 std::shared_ptr<Bsdf> make_rough_conductor(const ConductorParameters& parameters,
-                                           const Microfacet& microfacet) {
-    return std::make_shared<RoughConductor>(parameters, microfacet);
+                                           const Roughness& roughness) {
+    return std::make_shared<RoughConductor>(parameters, roughness);
 }
 
 void register_rough_conductor(Registry& registry) {
     Manual manual{Category::bsdf,
                   "roughconductor",
                   "A rough metal: mirror-like facets whose slopes spread the reflection.",
-                  {{"material", "string", "none", "name of a metal (Cu, Au, Ag, Al, ...); none: a mirror"},
+                  {{"material", "string", "none",
+                    "name of a conductor (Cu, Au, a-C, ...: all of Mitsuba's); none: a mirror"},
                    {"eta", "rgb", "0", "real part of the index of refraction, instead of material"},
                    {"k", "rgb", "1", "imaginary part (absorption)"},
                    {"specular_reflectance", "texture", "1", "factor on the reflection, 0 to 1"}},
@@ -86,7 +90,7 @@ void register_rough_conductor(Registry& registry) {
     registry.add(std::move(manual), [](const Properties& p) -> std::shared_ptr<Object> {
         return make_rough_conductor(
             {conductor_parameters(p), reflectance_texture(p, "specular_reflectance", Rgb(1.0f))},
-            microfacet_parameters(p));
+            roughness_parameters(p));
     });
 }
 

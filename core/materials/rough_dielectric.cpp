@@ -1,11 +1,7 @@
 // BSDF "roughdielectric": reflection and refraction by a transparent microsurface (Walter 2007), single
 // scattering.
-//
-// With n_o, n_i the indices on the sides of wo and wi, and h = n_o wo + n_i wi, the refracting facet has the
-// normal m = +-h/|h|, and the Jacobian of Walter's Eq. 17 is n_i^2 |wi.m| / |h|^2. Computing |h| in double
-// precision avoids the cancellation in (n_o wo.m + n_i wi.m)^2 when the indices are close.
 #include "core/materials/bsdfs.h"
-#include "core/materials/fresnel.h"
+#include "core/materials/dielectric_facet.h"
 #include "core/materials/microfacet_manual.h"
 #include "core/materials/register_materials.h"
 #include "core/materials/texture_slot.h"
@@ -18,9 +14,9 @@ namespace {
 
 class RoughDielectric final : public Bsdf {
   public:
-    RoughDielectric(const DielectricParameters& p, const Microfacet& microfacet)
+    RoughDielectric(const DielectricParameters& p, const Roughness& roughness)
         : eta_(p.int_ior / p.ext_ior),
-          microfacet_(microfacet),
+          roughness_(roughness),
           reflectance_(p.specular_reflectance),
           transmittance_(p.specular_transmittance) {
         if (!(std::fabs(eta_ - 1.0f) > 1e-4f))
@@ -30,14 +26,15 @@ class RoughDielectric final : public Bsdf {
     BsdfTraits traits() const override {
         return {.smooth = true,
                 .transmissive = true,
-                .textured = reflectance_.textured() || transmittance_.textured(),
-                .anisotropic = microfacet_.alpha_u() != microfacet_.alpha_v()};
+                .textured = reflectance_.textured() || transmittance_.textured() || roughness_.textured(),
+                .anisotropic = roughness_.anisotropic()};
     }
 
     Rgb eval(const BsdfPoint& p, const Vec3& wo, const Vec3& wi, TransportMode mode) const override {
-        const Facet f = facet(wo, wi);
+        const Microfacet facets = roughness_.at(p.uv);
+        const DielectricFacet f = dielectric_facet(facets, eta_, wo, wi);
         if (f.density == 0.0f) return Rgb(0.0f);
-        const float area = microfacet_.projected_area(wo) * microfacet_.projected_area(wi);
+        const float area = facets.projected_area(wo) * facets.projected_area(wi);
         // Walter 2007, Eqs. 20 and 21 with G / (cos cos) = 1 / area; Eq. 21 is for radiance.
         if (!f.transmitted) return reflectance_.eval(p.uv) * (f.reflectance * f.density / (4.0f * area));
         const float scale = mode == TransportMode::radiance ? 1.0f / sqr(f.eta) : 1.0f;
@@ -46,10 +43,11 @@ class RoughDielectric final : public Bsdf {
     }
 
     /// Walter 2007, Eq. 38 with the Jacobians of Eqs. 14 and 17, for visible normals.
-    float pdf_solid_angle(const BsdfPoint&, const Vec3& wo, const Vec3& wi, TransportMode) const override {
-        const Facet f = facet(wo, wi);
+    float pdf_solid_angle(const BsdfPoint& p, const Vec3& wo, const Vec3& wi, TransportMode) const override {
+        const Microfacet facets = roughness_.at(p.uv);
+        const DielectricFacet f = dielectric_facet(facets, eta_, wo, wi);
         if (f.density == 0.0f) return 0.0f;
-        const float area = microfacet_.projected_area(wo);
+        const float area = facets.projected_area(wo);
         if (!f.transmitted) return f.reflectance * f.density / (4.0f * area);
         return (1.0f - f.reflectance) * f.density * f.jacobian * f.cos_o / area;
     }
@@ -58,7 +56,8 @@ class RoughDielectric final : public Bsdf {
                                      TransportMode mode) const override {
         if (wo.z == 0.0f) return std::nullopt;
         const float side = wo.z > 0.0f ? 1.0f : -1.0f, eta = side > 0.0f ? eta_ : 1.0f / eta_;
-        const Vec3 m = side * microfacet_.sample_visible(side * wo, u);  // on wo's side
+        const Microfacet facets = roughness_.at(p.uv);
+        const Vec3 m = side * facets.sample_visible(side * wo, u);  // on wo's side
         const float cos_o = std::fmin(glm::dot(wo, m), 1.0f);
         if (!(cos_o > 0.0f)) return std::nullopt;
         const auto fresnel = fresnel_dielectric(cos_o, eta);
@@ -69,7 +68,7 @@ class RoughDielectric final : public Bsdf {
             s.transmitted = true, s.eta = eta;
         }
         if ((s.wi.z * side > 0.0f) == s.transmitted || s.wi.z == 0.0f) return std::nullopt;  // masked: lost
-        s.weight *= microfacet_.masking(s.wi);
+        s.weight *= facets.masking(s.wi);
         s.pdf_solid_angle = pdf_solid_angle(p, wo, s.wi, mode);
         if (!(s.pdf_solid_angle > 0.0f) || is_black(s.weight)) return std::nullopt;
         return s;
@@ -83,48 +82,16 @@ class RoughDielectric final : public Bsdf {
     }
 
   private:
-    /// The facet that takes light from wi to wo.
-    struct Facet {
-        float density = 0.0f;  ///< D(m); 0 when there is no such facet
-        float cos_o = 0.0f;    ///< dot(wo, m), m on wo's side
-        float reflectance = 0.0f;
-        float jacobian = 0.0f;  ///< solid angle of m over that of wi, refraction only
-        float eta = 1.0f;       ///< wi's side over wo's side
-        bool transmitted = false;
-    };
-
-    Facet facet(const Vec3& wo, const Vec3& wi) const {
-        Facet f;
-        if (wo.z == 0.0f || wi.z == 0.0f) return f;
-        f.transmitted = (wo.z > 0.0f) != (wi.z > 0.0f);
-        const double eta = wo.z > 0.0f ? double(eta_) : 1.0 / double(eta_);
-        const double along = f.transmitted ? eta : 1.0;
-        f.eta = float(along);
-        const Vec3d h = Vec3d(wo) + along * Vec3d(wi);
-        const double length = glm::length(h);
-        if (!(length > 0.0)) return f;
-        Vec3d m = h / length;
-        if ((m.z > 0.0) != (wo.z > 0.0f)) m = -m;
-        const double cos_o = glm::dot(Vec3d(wo), m), cos_i = glm::dot(Vec3d(wi), m);
-        // Both directions must see the facet from the side on which they see the surface.
-        if (!(cos_o > 0.0) || !(f.transmitted ? cos_i < 0.0 : cos_i > 0.0)) return f;
-        f.cos_o = float(cos_o);
-        f.reflectance = float(fresnel_dielectric(std::fmin(cos_o, 1.0), eta).reflectance);
-        f.jacobian = float(along * along * -cos_i / (length * length));
-        f.density = microfacet_.density(wo.z > 0.0f ? Vec3(m) : Vec3(-m));
-        return f;
-    }
-
     float eta_;  ///< inside over outside
-    Microfacet microfacet_;
+    Roughness roughness_;
     TextureSlot reflectance_, transmittance_;
 };
 
 }  // namespace
 
 std::shared_ptr<Bsdf> make_rough_dielectric(const DielectricParameters& parameters,
-                                            const Microfacet& microfacet) {
-    return std::make_shared<RoughDielectric>(parameters, microfacet);
+                                            const Roughness& roughness) {
+    return std::make_shared<RoughDielectric>(parameters, roughness);
 }
 
 void register_rough_dielectric(Registry& registry) {
@@ -147,7 +114,7 @@ void register_rough_dielectric(Registry& registry) {
         const DielectricParameters parameters = dielectric_parameters(p);
         if (!(std::fabs(parameters.int_ior / parameters.ext_ior - 1.0f) > 1e-4f))
             throw InputError("'int_ior' and 'ext_ior' of a roughdielectric must differ", p.where);
-        return make_rough_dielectric(parameters, microfacet_parameters(p));
+        return make_rough_dielectric(parameters, roughness_parameters(p));
     });
 }
 

@@ -1,9 +1,9 @@
 // BSDF "roughplastic": a diffuse base under a rough dielectric coating.
 //
 // As "plastic", with transmittances of the rough coating from tables, and the coating's own reflection a
-// glossy lobe (Walter 2007).
-#include <algorithm>
-
+// glossy lobe (Walter 2007). Light that meets a second facet of the coating is lost, as in Mitsuba: a rough
+// white plastic is grey. With `conserve_energy` it enters where it came from outside, and stays inside where
+// it came from there: white plastic is white.
 #include "core/materials/bsdfs.h"
 #include "core/materials/fresnel.h"
 #include "core/materials/microfacet_manual.h"
@@ -23,14 +23,13 @@ class RoughPlastic final : public Bsdf {
         : eta_(p.int_ior / p.ext_ior),
           inv_eta2_(1.0f / sqr(eta_)),
           microfacet_(microfacet.kind(), microfacet.alpha_u()),
-          transmittance_(microfacet_, eta_),
+          transmittance_(microfacet_, eta_, p.conserve_energy ? LostLight::transmitted : LostLight::absorbed),
+          // What does not leave is kept, and by reciprocity T(mu) / eta^2 is what leaves.
+          internal_(p.conserve_energy ? 1.0f - inv_eta2_ * transmittance_.mean()
+                                      : rough_internal_reflectance(microfacet_, eta_)),
           nonlinear_(p.nonlinear),
           diffuse_(p.diffuse_reflectance, Rgb(0.5f)),
           specular_(p.specular_reflectance) {
-        // What single scattering loses between facets counts as transmitted here. From inside a medium of
-        // smaller index that could add up to more light than came in: the bound excludes it.
-        internal_ =
-            std::min(rough_internal_reflectance(microfacet_, eta_), 1.0f - inv_eta2_ * transmittance_.mean());
         const float d = average(diffuse_.mean()), s = average(specular_.mean());
         specular_weight_ = d + s > 0.0f ? s / (d + s) : 0.5f;
     }
@@ -94,7 +93,7 @@ class RoughPlastic final : public Bsdf {
     float eta_, inv_eta2_;
     Microfacet microfacet_;
     RoughTransmittance transmittance_;
-    float internal_ = 0.0f, specular_weight_ = 0.5f;
+    float internal_, specular_weight_ = 0.5f;
     bool nonlinear_;
     TextureSlot diffuse_, specular_;
 };
@@ -114,7 +113,10 @@ void register_rough_plastic(Registry& registry) {
          {"ext_ior", "float", "air", "index of refraction outside: number or name"},
          {"diffuse_reflectance", "texture", "0.5", "reflectance of the base, 0 to 1"},
          {"specular_reflectance", "texture", "1", "factor on the coating's reflection, 0 to 1"},
-         {"nonlinear", "boolean", "false", "let multiple scattering inside shift the colour"}},
+         {"nonlinear", "boolean", "false", "let multiple scattering inside shift the colour"},
+         {"conserve_energy", "boolean", "false",
+          "keep the light that facets of the coating send to each other, which is lost otherwise; not in "
+          "Mitsuba"}},
         R"(<bsdf type="roughplastic">
     <string name="distribution" value="beckmann"/>
     <float name="int_ior" value="1.61"/>
@@ -123,7 +125,9 @@ void register_rough_plastic(Registry& registry) {
 </bsdf>)"};
     append_microfacet_parameters(manual, false);
     registry.add(std::move(manual), [](const Properties& p) -> std::shared_ptr<Object> {
-        return make_rough_plastic(plastic_parameters(p), microfacet_parameters(p, false));
+        PlasticParameters parameters = plastic_parameters(p);
+        parameters.conserve_energy = p.get_bool("conserve_energy", false);
+        return make_rough_plastic(parameters, microfacet_parameters(p));
     });
 }
 

@@ -1,4 +1,6 @@
 // Constant textures, and textures as parameters: an rgb, a float or a nested texture.
+#include <fmt/format.h>
+
 #include "core/materials/textures.h"
 #include "core/objects/properties.h"
 
@@ -8,7 +10,11 @@ namespace {
 class ConstantTexture final : public Texture {
   public:
     explicit ConstantTexture(const Rgb& value) : value_(value) {}
-    Rgb eval(const Vec2&) const override { return value_; }
+    Rgb eval(const TextureCoordinates&) const override { return value_; }
+    /// The mean of the channels as in Mitsuba, not the luminance; a grey one's exactly.
+    float scalar(const TextureCoordinates&) const override {
+        return value_.x == value_.y && value_.y == value_.z ? value_.x : average(value_);
+    }
     Rgb mean() const override { return value_; }
     float maximum() const override { return max_component(value_); }
     float minimum() const override { return min_component(value_); }
@@ -17,6 +23,21 @@ class ConstantTexture final : public Texture {
   private:
     Rgb value_;
 };
+
+/// Throws InputError where `texture`, the parameter `name`, has values outside.
+void require_range(const Texture& texture, const Properties& p, const std::string& name, float lower,
+                   float upper) {
+    constexpr float rounding =
+        1e-5f;  // conversions of file formats may miss 1 by a few units in the last place
+    const float least = texture.minimum(), most = texture.maximum();
+    if (least >= lower && most <= upper + rounding) return;
+    const std::string file = texture.file().empty() ? "" : "'" + printable(texture.file(), 300) + "' ";
+    throw InputError(
+        fmt::format("the texture {}of '{}' has values from {:f} to {:f} but they must lie between "
+                    "{:g} and {:g}",
+                    file, name, least, most, lower, upper),
+        p.where_of(name));
+}
 
 }  // namespace
 
@@ -34,15 +55,15 @@ std::shared_ptr<Texture> reflectance_texture(const Properties& p, const std::str
                                              const Rgb& default_value) {
     auto nested = p.child<Texture>(name);
     if (!nested) return make_constant_texture(p.get_rgb_in(name, default_value, 0.0f, 1.0f));
-    constexpr float rounding =
-        1e-5f;  // conversions of file formats may miss 1 by a few units in the last place
-    const float lower = nested->minimum(), upper = nested->maximum();
-    if (!(lower >= 0.0f && upper <= 1.0f + rounding))
-        throw InputError("the texture " +
-                             (nested->file().empty() ? "" : "'" + printable(nested->file(), 300) + "' ") +
-                             "of '" + name + "' has values from " + std::to_string(lower) + " to " +
-                             std::to_string(upper) + " but they must lie between 0 and 1",
-                         p.where_of(name));
+    require_range(*nested, p, name, 0.0f, 1.0f);
+    return nested;
+}
+
+std::shared_ptr<Texture> scalar_texture(const Properties& p, const std::string& name, float default_value,
+                                        float lower, float upper) {
+    auto nested = p.child<Texture>(name);
+    if (!nested) return make_constant_texture(p.get_rgb_in(name, Rgb(default_value), lower, upper));
+    require_range(*nested, p, name, lower, upper);
     return nested;
 }
 

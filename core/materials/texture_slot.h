@@ -15,7 +15,7 @@ class TextureSlot {
           constant_(!texture_ || texture_->constant()),
           value_(!texture_ ? value : (constant_ ? texture_->eval({0.0f, 0.0f}) : Rgb(0.0f))) {}
 
-    Rgb eval(const Vec2& uv) const { return constant_ ? value_ : texture_->eval(uv); }
+    Rgb eval(const TextureCoordinates& uv) const { return constant_ ? value_ : texture_->eval(uv); }
     bool textured() const { return !constant_; }
     Rgb mean() const { return constant_ ? value_ : texture_->mean(); }
     /// Largest channel anywhere.
@@ -25,6 +25,26 @@ class TextureSlot {
     std::shared_ptr<const Texture> texture_;
     bool constant_;
     Rgb value_;
+};
+
+/// The same for one number: Texture::scalar().
+class ScalarSlot {
+  public:
+    /// A null texture stands for the constant `value`.
+    explicit ScalarSlot(std::shared_ptr<const Texture> texture, float value = 0.0f)
+        : texture_(std::move(texture)),
+          constant_(!texture_ || texture_->constant()),
+          value_(texture_ && constant_ ? texture_->scalar({0.0f, 0.0f}) : value) {}
+
+    float eval(const TextureCoordinates& uv) const { return constant_ ? value_ : texture_->scalar(uv); }
+    bool textured() const { return !constant_; }
+    /// Zero everywhere.
+    bool zero() const { return constant_ && value_ == 0.0f; }
+
+  private:
+    std::shared_ptr<const Texture> texture_;
+    bool constant_;
+    float value_;
 };
 
 }  // namespace mote::core

@@ -39,5 +39,8 @@ std::shared_ptr<Texture> texture_or_constant(const Properties& properties, const
 /// The same, and throws InputError (file, line) where a value lies outside [0, 1].
 std::shared_ptr<Texture> reflectance_texture(const Properties& properties, const std::string& name,
                                              const Rgb& default_value);
+/// The same for one number (Texture::scalar), with limits of its own.
+std::shared_ptr<Texture> scalar_texture(const Properties& properties, const std::string& name,
+                                        float default_value, float lower, float upper);
 
 }  // namespace mote::core

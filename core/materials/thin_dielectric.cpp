@@ -17,9 +17,11 @@ class ThinDielectric final : public Bsdf {
           transmittance_(p.specular_transmittance) {}
 
     BsdfTraits traits() const override {
+        const Rgb passes = transmittance_.mean();
         return {.delta = true,
                 .transmissive = true,
                 .pane = true,
+                .tints = transmittance_.textured() || passes.x != passes.y || passes.y != passes.z,
                 .textured = reflectance_.textured() || transmittance_.textured()};
     }
     Rgb eval(const BsdfPoint&, const Vec3&, const Vec3&, TransportMode) const override { return Rgb(0.0f); }
@@ -40,8 +42,8 @@ class ThinDielectric final : public Bsdf {
         return s;
     }
     StraightPassage straight_passage(const BsdfPoint& p, const Vec3& wo) const override {
-        if (wo.z == 0.0f) return {0.0f, Rgb(0.0f)};
-        return {1.0f - reflected_share(wo), transmittance_.eval(p.uv)};
+        if (wo.z == 0.0f) return {};
+        return {reflected_share(wo), transmittance_.eval(p.uv)};
     }
     Rgb albedo(const BsdfPoint& p, const Vec3& wo) const override {
         const float r = reflected_share(wo);

@@ -19,16 +19,15 @@ class TwoSided final : public Bsdf {
         for (const BsdfPtr& side : {front_, back_})
             if (side->traits().transmissive)
                 throw InputError("a twosided BSDF cannot hold one that transmits light");
+        const BsdfTraits f = front_->traits(), b = back_->traits();
+        traits_ = {.smooth = f.smooth || b.smooth,
+                   .delta = f.delta || b.delta,
+                   .diffuse = f.diffuse && b.diffuse,
+                   .textured = f.textured || b.textured,
+                   .anisotropic = f.anisotropic || b.anisotropic};
     }
 
-    BsdfTraits traits() const override {
-        const BsdfTraits f = front_->traits(), b = back_->traits();
-        return {.smooth = f.smooth || b.smooth,
-                .delta = f.delta || b.delta,
-                .diffuse = f.diffuse && b.diffuse,
-                .textured = f.textured || b.textured,
-                .anisotropic = f.anisotropic || b.anisotropic};
-    }
+    BsdfTraits traits() const override { return traits_; }  // found once: sides may be nested deep
     Rgb eval(const BsdfPoint& p, const Vec3& wo, const Vec3& wi, TransportMode mode) const override {
         if (wo.z > 0.0f) return front_->eval(p, wo, wi, mode);
         return back_->eval(p, mirrored(wo), mirrored(wi), mode);
@@ -54,6 +53,7 @@ class TwoSided final : public Bsdf {
 
   private:
     BsdfPtr front_, back_;
+    BsdfTraits traits_;
 };
 
 std::shared_ptr<Object> create_twosided(const Properties& p) {

@@ -15,6 +15,8 @@ class UvTransform {
 
     /// Double precision, so that many repetitions keep their texels.
     glm::dvec2 operator()(const Vec2& uv) const { return linear_ * glm::dvec2(uv) + offset_; }
+    /// Derivatives by u and v, from those by the transformed coordinates.
+    glm::dvec2 gradient(const glm::dvec2& transformed) const { return glm::transpose(linear_) * transformed; }
 
   private:
     glm::dmat2 linear_{1.0};

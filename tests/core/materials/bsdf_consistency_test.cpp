@@ -63,7 +63,8 @@ TEST_CASE("light and eye see the same BSDF", "[materials]") {
     for (const BsdfCase& c : smooth_cases()) {
         core::Rng rng(2);
         // A half vector of a narrow lobe carries rounding that differs between the two orders.
-        const float tolerance = c.narrow > 0.0f && c.narrow < 1e-3f ? 1e-2f : 1e-4f;
+        // So does 1 - F next to the critical angle, where it is a square root: that of 6e-8 is 2.4e-4.
+        const float tolerance = c.narrow > 0.0f && c.narrow < 1e-3f ? 1e-2f : c.index < 1.0f ? 1e-3f : 1e-4f;
         int compared = 0;
         for (int i = 0; i < 4000; ++i) {
             const Vec3 wo = random_direction(rng);
@@ -76,7 +77,9 @@ TEST_CASE("light and eye see the same BSDF", "[materials]") {
             // Radiance over squared index is what is reciprocal (Veach 1997, Eq. 5.13).
             const float n_o = wo.z > 0.0f ? 1.0f : c.index, n_i = wi.z > 0.0f ? 1.0f : c.index;
             compared += there.x > 0.0f;
-            if (near(there / (n_o * n_o), back / (n_i * n_i), tolerance) && near(there, power, tolerance))
+            const bool one_way = c.bent || !c.reciprocal;
+            if ((one_way || near(there / (n_o * n_o), back / (n_i * n_i), tolerance)) &&
+                near(there, power, tolerance))
                 continue;
             CAPTURE(c.name, i, wo.x, wo.y, wo.z, wi.x, wi.y, wi.z, there.x, back.x, power.x);
             FAIL("not reciprocal");
@@ -104,10 +107,12 @@ TEST_CASE("everything stays finite and non-negative, wherever one looks", "[mate
         core::Rng rng(3);
         // Weights stay bounded by construction: by the squared index of radiance, by (n + 2) / (n + 1) of
         // phong, and by the choice between two lobes.
-        const float largest = 2.0f * std::fmax(1.3f, core::sqr(std::fmax(c.index, 1.0f / c.index)));
+        const float bounded =
+            c.heavy ? core::infinity : 2.0f * std::fmax(1.3f, core::sqr(std::fmax(c.index, 1.0f / c.index)));
         for (int i = 0; i < 20000; ++i) {
             const Vec3 wo = awkward_direction(rng), wi = awkward_direction(rng);
             const TransportMode mode = modes[i % 2];
+            const float largest = c.bent && mode == TransportMode::power ? core::infinity : bounded;
             const float edges[] = {0.0f, core::one_minus_epsilon, rng.next_float()};
             const auto edge = [&] { return edges[rng.next_u32() % 3]; };
             const Rgb f = c.bsdf->eval(point, wo, wi, mode), albedo = c.bsdf->albedo(point, wo);
@@ -128,7 +133,7 @@ TEST_CASE("everything stays finite and non-negative, wherever one looks", "[mate
 
 TEST_CASE("opaque one-sided BSDFs are black from behind", "[materials]") {
     for (const BsdfCase& c : all_cases()) {
-        if (c.bsdf->traits().transmissive || c.name.starts_with("twosided")) continue;
+        if (c.bsdf->traits().transmissive || c.name.find("twosided") != std::string::npos) continue;
         core::Rng rng(4);
         for (int i = 0; i < 200; ++i) {
             Vec3 wo = random_direction(rng);
@@ -160,9 +165,10 @@ TEST_CASE("traits say what eval and sample do", "[materials]") {
         CHECK(traits.smooth == smooth);
         CHECK(traits.delta == delta);
         CHECK(traits.transmissive == transmitted);
-        CHECK(traits.diffuse == (c.bsdf->diffuse_reflectance(point, {0.0f, 0.6f, 0.8f}).has_value() &&
-                                 c.bsdf->diffuse_reflectance(point, {0.0f, 0.6f, -0.8f}).has_value()));
-        CHECK(traits.null == (c.name == "null"));
+        if (!traits.pane)
+            CHECK(traits.diffuse == (c.bsdf->diffuse_reflectance(point, {0.0f, 0.6f, 0.8f}).has_value() &&
+                                     c.bsdf->diffuse_reflectance(point, {0.0f, 0.6f, -0.8f}).has_value()));
+        CHECK(traits.null == c.name.ends_with("null"));
     }
 }
 

@@ -31,6 +31,7 @@ Chi2Options options_of(const BsdfCase& c, const Vec3& wo, std::size_t view, Tran
         options.cap = std::min(2.0, 8.0 * double(c.narrow) * double(c.narrow));
         options.subdivisions = 3;  // seen at grazing angles, the lobe is a thin blade across the cells
     }
+    if (c.bent) options.subdivisions = 2;  // light below the horizon of one normal is cut off within cells
     return options;
 }
 

@@ -105,4 +105,11 @@ TEST_CASE("materials by name", "[materials][fresnel]") {
     CHECK((c.x > c.y && c.y > c.z && g.x > g.y && g.y > g.z));  // reddish, yellowish
     CHECK(min_component(fresnel_conductor(1.0f, silver->eta, silver->k)) > 0.85f);
     CHECK_FALSE(conductor_index("cu"));
+    // Amorphous carbon, and names that end in "_palik" where Mitsuba has them: sometimes a second
+    // measurement.
+    REQUIRE((conductor_index("a-C") && conductor_index("d-C_palik") && conductor_index("Na_palik")));
+    CHECK(conductor_index("Be_palik")->eta == conductor_index("Be")->eta);
+    CHECK(conductor_index("Cu_palik")->eta != copper->eta);
+    for (const char* unknown : {"Ag_palik", "a-C_palik", "Na", "_palik", "", "A-C"})
+        CHECK_FALSE(conductor_index(unknown));
 }

@@ -112,10 +112,34 @@ TEST_CASE("a smooth limit of the rough tables", "[materials][microfacet]") {
     for (const float mu : {1.0f, 0.8f, 0.5f, 0.2f})
         CHECK(rough_reflectance(smooth, 1.5f, mu) ==
               Approx(double(fresnel_dielectric(mu, 1.5f).reflectance)).epsilon(1e-3));
+    // The sum over 64 equidistant cosines is 63/64 of the integral by the trapezoidal rule, and R(1) / 64 too
+    // much.
+    const double normal = double(fresnel_dielectric(1.0f, 1.5f).reflectance);
     CHECK(double(rough_internal_reflectance(smooth, 1.5f)) ==
-          Approx(fresnel_diffuse_reflectance(1.0 / 1.5)).epsilon(5e-3));
-    CHECK(1.0 - double(RoughTransmittance(smooth, 1.5f).mean()) ==
-          Approx(fresnel_diffuse_reflectance(1.5)).epsilon(2e-2));
+          Approx(fresnel_diffuse_reflectance(1.0 / 1.5) * 63.0 / 64.0 + normal / 64.0).epsilon(5e-3));
+    for (const LostLight lost : {LostLight::absorbed, LostLight::transmitted})
+        CHECK(1.0 - double(RoughTransmittance(smooth, 1.5f, lost).mean()) ==
+              Approx(fresnel_diffuse_reflectance(1.5)).epsilon(2e-2));
+}
+
+TEST_CASE("light that meets a second facet is lost, or transmitted", "[materials][microfacet]") {
+    for (const MicrofacetKind kind : {MicrofacetKind::beckmann, MicrofacetKind::ggx})
+        for (const float alpha : {0.1f, 0.4f, 1.0f}) {
+            const Microfacet facets(kind, alpha);
+            const RoughTransmittance absorbed(facets, 1.5f, LostLight::absorbed),
+                transmitted(facets, 1.5f, LostLight::transmitted);
+            for (const float mu : {1.0f, 0.8f, 0.5f, 0.2f, 0.05f}) {
+                const double r = rough_reflectance(facets, 1.5f, mu),
+                             t = rough_transmittance(facets, 1.5f, mu);
+                CAPTURE(int(kind), alpha, mu, r, t);
+                CHECK((r > 0.0 && t > 0.0 && r + t <= 1.0 + 1e-6));
+                CHECK(double(absorbed(mu)) == Approx(t).epsilon(5e-3));
+                if (mu > 0.1f) CHECK(double(transmitted(mu)) == Approx(1.0 - r).epsilon(5e-3));
+            }
+            // Refraction is reciprocal: T(1/eta) eta^2 = T(eta), both under uniform light.
+            const RoughTransmittance inside(facets, 1.0f / 1.5f, LostLight::absorbed);
+            CHECK(double(inside.mean()) * 2.25 == Approx(double(absorbed.mean())).epsilon(0.02));
+        }
 }
 
 TEST_CASE("smaller roughness than single precision resolves is raised", "[materials][microfacet]") {

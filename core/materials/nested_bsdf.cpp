@@ -1,0 +1,39 @@
+#include "core/materials/nested_bsdf.h"
+
+#include <fmt/format.h>
+
+#include "core/objects/error.h"
+#include "core/objects/properties.h"
+
+namespace mote::core {
+
+std::vector<BsdfPtr> nested_bsdfs(const Properties& p, std::size_t count) {
+    std::vector<BsdfPtr> nested;
+    const std::string wanted = count == 1 ? "one nested BSDF" : fmt::format("{} nested BSDFs", count);
+    for (const Properties::Child& c : p.children) {
+        auto bsdf = std::dynamic_pointer_cast<const Bsdf>(c.object);
+        if (!bsdf) continue;
+        if (nested.size() == count) throw InputError(p.type + " holds " + wanted + ", not more", c.where);
+        nested.push_back(std::move(bsdf));
+    }
+    if (nested.size() < count) throw InputError(p.type + " needs " + wanted, p.where);
+    return nested;
+}
+
+StraightPassage mixed_passage(const StraightPassage& a, const StraightPassage& b, float share_of_b) {
+    StraightPassage both;
+    both.stops = (1.0f - share_of_b) * a.stops + share_of_b * b.stops;
+    const float passes = both.probability();
+    if (!(passes > 0.0f)) return both;
+    both.weight = ((1.0f - share_of_b) * a.transmittance() + share_of_b * b.transmittance()) / passes;
+    return both;
+}
+
+std::optional<BsdfSample> straight_sample(const StraightPassage& passage, const Vec3& wo) {
+    if (is_black(passage.weight)) return std::nullopt;
+    BsdfSample s{.wi = -wo, .weight = passage.weight, .pdf_solid_angle = 0.0f};
+    s.delta = s.transmitted = true;
+    return s;
+}
+
+}  // namespace mote::core
