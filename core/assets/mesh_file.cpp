@@ -18,8 +18,9 @@ std::string format_of(const std::string& path) {
     return extension.empty() ? "" : extension.substr(1);
 }
 
-MeshFile read_mesh_file(const std::string& format, const std::string& path, bool flip_v) {
-    if (format != "obj" && format != "ply") return read_with_assimp(path, flip_v);
+MeshFile read_mesh_file(const std::string& format, const std::string& path, bool flip_v,
+                        std::int64_t shape_index) {
+    if (format != "obj" && format != "ply" && format != "serialized") return read_with_assimp(path, flip_v);
     std::string text;
     try {
         const std::vector<std::byte> bytes = read_whole_file(path);
@@ -27,6 +28,7 @@ MeshFile read_mesh_file(const std::string& format, const std::string& path, bool
     } catch (const InputError& error) {
         throw InputError(error.what(), {path, 0});
     }
+    if (format == "serialized") return read_serialized(text, path, shape_index);
     return format == "obj" ? read_obj(std::move(text), path, flip_v) : read_ply(text, path, flip_v);
 }
 
@@ -50,8 +52,9 @@ void repair(MeshData& data, std::vector<std::string>& notes) {
 }  // namespace
 
 MeshData load_mesh_as(const std::string& format, const std::string& path, bool face_normals, bool flip_v,
-                      std::vector<std::string>& notes) {
-    MeshFile file = read_mesh_file(format.empty() ? format_of(path) : format, path, flip_v);
+                      std::vector<std::string>& notes, std::int64_t shape_index) {
+    MeshFile file = read_mesh_file(format.empty() ? format_of(path) : format, path, flip_v, shape_index);
+    notes.insert(notes.end(), file.notes.begin(), file.notes.end());
     MeshData& data = file.data;
     check_mesh(data, {path, 0});
     if (!has_area(data)) throw InputError("the mesh has no triangle with an area", {path, 0});

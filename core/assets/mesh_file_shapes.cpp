@@ -1,4 +1,4 @@
-// Shapes "obj", "ply" and "mesh": triangle meshes from files.
+// Shapes "obj", "ply", "serialized" and "mesh": triangle meshes from files.
 #include "core/assets/mesh_file.h"
 #include "core/assets/register_assets.h"
 #include "core/geometry/mesh_edits.h"
@@ -14,7 +14,9 @@ std::shared_ptr<Object> make_mesh(const Properties& p, const std::string& format
     if (!to_world.valid())
         throw InputError("the transform is singular or not finite", p.where_of("to_world"));
     std::vector<std::string> notes;
-    MeshData data = load_mesh_as(format, path, face_normals, p.get_bool("flip_tex_coords", flip_v), notes);
+    const std::int64_t index = p.get_int_in("shape_index", 0, 0, 0xffffffff);
+    MeshData data =
+        load_mesh_as(format, path, face_normals, p.get_bool("flip_tex_coords", flip_v), notes, index);
     transform_mesh(data, to_world);
     if (p.get_bool("flip_normals", false)) flip_orientation(data);
     try {
@@ -58,6 +60,18 @@ void register_mesh_files(Registry& registry) {
     <string name="filename" value="meshes/cube.ply"/>
 </shape>)"),
                  [](const Properties& p) { return make_mesh(p, "ply", false); });
+    Manual serialized = mesh_manual(
+        "serialized",
+        "Triangle mesh from a file in Mitsuba's compressed format, version 3 or 4; smooth normals are "
+        "computed "
+        "when it has none. Colours of vertices are its attribute 'vertex_color' (Mitsuba 3 skips them).",
+        "false", R"(<shape type="serialized">
+    <string name="filename" value="meshes/cubes.serialized"/>
+    <integer name="shape_index" value="1"/>
+</shape>)");
+    serialized.parameters[2] = {"shape_index", "integer", "0", "which of the file's meshes, from 0"};
+    registry.add(std::move(serialized),
+                 [](const Properties& p) { return make_mesh(p, "serialized", false); });
     registry.add(mesh_manual("mesh",
                              "Triangle mesh from any file that assimp reads (3ds, stl, off, gltf, ...), all "
                              "its parts in one shape. Mitsuba does not know this type.",

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "core/assets/mesh_file.h"
+#include "core/assets/ply_attributes.h"
 #include "core/assets/text_scanner.h"
 #include "core/geometry/polygon_triangulation.h"
 
@@ -14,6 +15,7 @@ namespace {
 
 enum class Number { i8, u8, i16, u16, i32, u32, f32, f64 };
 constexpr std::size_t number_size[] = {1, 1, 2, 2, 4, 4, 4, 8};
+constexpr double largest_number[] = {127, 255, 32767, 65535, 2147483647, 4294967295, 0, 0};  // of integers
 
 struct Property {
     std::string name;
@@ -158,15 +160,16 @@ class PlyReader {
         if (!present[x] || !present[y] || !present[z]) fail("the vertices have no x, y and z");
         has_normals_ = present[nx] && present[ny] && present[nz];
         has_uvs_ = present[u] && present[v];
+        std::vector<int> slot;
+        for (const Property& p : element.properties) slot.push_back(p.count ? slots : slot_of(p.name));
+        const auto attributes =
+            find_attributes(element, "vertex_", [&](std::size_t i) { return slot[i] == slots; });
+        std::vector<double> row(element.properties.size());
         for (std::uint64_t i = 0; i < element.count; ++i) {
             double values[slots + 1] = {};
-            for (const Property& p : element.properties) {
-                if (p.count) {
-                    skip(p);
-                } else {
-                    values[slot_of(p.name)] = number(p.type);
-                }
-            }
+            read_row(element, row);
+            for (std::size_t k = 0; k < row.size(); ++k) values[slot[k]] = row[k];
+            add_attributes(attributes, row, vertex_attributes_);
             file_.data.positions.emplace_back(float(values[x]), float(values[y]), float(values[z]));
             if (has_normals_)
                 file_.data.normals.emplace_back(float(values[nx]), float(values[ny]), float(values[nz]));
@@ -176,16 +179,60 @@ class PlyReader {
     }
 
     void read_faces(const Element& element) {
-        for (std::uint64_t i = 0; i < element.count; ++i)
-            for (const Property& p : element.properties) {
-                if (!p.count || (p.name != "vertex_index" && p.name != "vertex_indices")) {
+        if (!corner_counts_.empty()) fail("two face elements in one PLY file");
+        const auto attributes = find_attributes(element, "face_", [](std::size_t) { return true; });
+        std::vector<double> row(element.properties.size());
+        for (std::uint64_t i = 0; i < element.count; ++i) {
+            for (std::size_t k = 0; k < row.size(); ++k) {
+                const Property& p = element.properties[k];
+                if (!p.count)
+                    row[k] = number(p.type);
+                else if (p.name == "vertex_index" || p.name == "vertex_indices")
+                    read_corners(p, i);
+                else
                     skip(p);
-                    continue;
-                }
-                const std::size_t count = list_length(p);
-                corner_counts_.push_back(std::uint32_t(count));
-                for (std::size_t k = 0; k < count; ++k) corners_.push_back(vertex_index(number(p.type), i));
             }
+            if (corner_counts_.size() < i + 1) corner_counts_.push_back(0);
+            if (corner_counts_.size() > i + 1)
+                fail("face " + std::to_string(i) + " has two lists of vertices");
+            add_attributes(attributes, row, face_attributes_);
+        }
+    }
+    void read_corners(const Property& p, std::uint64_t face) {
+        const std::size_t count = list_length(p);
+        corner_counts_.push_back(std::uint32_t(count));
+        for (std::size_t k = 0; k < count; ++k) corners_.push_back(vertex_index(number(p.type), face));
+    }
+
+    /// One value for every property; those of lists are left as they are.
+    void read_row(const Element& element, std::vector<double>& row) {
+        for (std::size_t k = 0; k < row.size(); ++k) {
+            const Property& p = element.properties[k];
+            if (p.count)
+                skip(p);
+            else
+                row[k] = number(p.type);
+        }
+    }
+
+    template <typename IsFree>
+    static std::vector<PlyAttribute> find_attributes(const Element& element, const std::string& prefix,
+                                                     const IsFree& is_free) {
+        std::vector<PlyColumn> columns;
+        for (std::size_t i = 0; i < element.properties.size(); ++i) {
+            const Property& p = element.properties[i];
+            columns.push_back({p.name, largest_number[std::size_t(p.type)], !p.count && is_free(i)});
+        }
+        return find_ply_attributes(columns, prefix);
+    }
+    static void add_attributes(const std::vector<PlyAttribute>& attributes, const std::vector<double>& row,
+                               std::vector<MeshAttribute>& to) {
+        if (to.size() < attributes.size())
+            for (const PlyAttribute& a : attributes) to.push_back({a.name, a.name.starts_with("face_"), {}});
+        for (std::size_t i = 0; i < attributes.size(); ++i) {
+            const auto& [x, y, z] = attributes[i].columns;
+            to[i].values.push_back(Rgb(attributes[i].factor * Vec3d(row[x], row[y], row[z])));
+        }
     }
 
     std::uint32_t vertex_index(double value, std::uint64_t face) const {
@@ -198,6 +245,8 @@ class PlyReader {
     void triangulate() {
         const std::span<const std::uint32_t> all(corners_);
         std::size_t begin = 0;
+        std::vector<MeshAttribute> of_triangles;
+        for (const MeshAttribute& a : face_attributes_) of_triangles.push_back({a.name, true, {}});
         for (std::size_t face = 0; face < corner_counts_.size(); ++face) {
             const auto polygon = all.subspan(begin, corner_counts_[face]);
             begin += polygon.size();
@@ -207,7 +256,11 @@ class PlyReader {
                          " of " + std::to_string(file_.data.positions.size()));
             if (polygon.size() < 3) ++file_.other_dropped;
             triangulate_polygon(polygon, file_.data.positions, file_.data.triangles);
+            for (std::size_t i = 0; i < of_triangles.size(); ++i)
+                of_triangles[i].values.resize(file_.data.triangles.size(), face_attributes_[i].values[face]);
         }
+        file_.data.attributes = std::move(vertex_attributes_);
+        for (MeshAttribute& a : of_triangles) file_.data.attributes.push_back(std::move(a));
     }
 
     std::size_t remaining() const { return ascii_ ? scanner_.remaining() : rest_.size(); }
@@ -268,6 +321,7 @@ class PlyReader {
     TextScanner scanner_;    // ASCII data
     std::vector<Element> elements_;
     std::vector<std::uint32_t> corner_counts_, corners_;
+    std::vector<MeshAttribute> vertex_attributes_, face_attributes_;
     MeshFile file_;
 };
 

@@ -34,13 +34,14 @@ class AnalyticShape : public Shape {
     std::size_t primitive_count() const override { return 1; }
 };
 
-/// Sphere: centre and radius before the transform, which must be a similarity. flip_normals turns the outside
-/// in. All three throw InputError for a transform, a radius or an axis that they cannot take.
+/// Sphere: centre and radius before the transform, which should be a similarity (see notes). flip_normals
+/// turns the outside in. All three throw InputError for a transform, a radius or an axis that they cannot
+/// take.
 std::shared_ptr<AnalyticShape> make_sphere(const Vec3d& center, double radius, const Transform& to_world,
                                            bool flip_normals);
 /// Unit disk in the xy plane facing +z, under any affine transform.
 std::shared_ptr<AnalyticShape> make_disk(const Transform& to_world, bool flip_normals);
-/// Open cylinder of the given radius from p0 to p1; the transform must be a similarity. Normals point
+/// Open cylinder of the given radius from p0 to p1 before the transform, any affine one. Normals point
 /// outwards.
 std::shared_ptr<AnalyticShape> make_cylinder(const Vec3d& p0, const Vec3d& p1, double radius,
                                              const Transform& to_world, bool flip_normals);

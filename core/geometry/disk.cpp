@@ -41,8 +41,12 @@ class Disk final : public AnalyticShape {
     void fill_hit(const Vec3& origin, const Vec3& direction, float t, SurfaceHit& hit) const override {
         const Vec3d p = Vec3d(origin) + double(t) * Vec3d(direction) - center_;
         const double x = glm::dot(p, x_dual_), y = glm::dot(p, y_dual_);
-        const Vec3d from_center = x * x_axis_ + y * y_axis_;  // u is the radius
-        fill_quadric_hit(center_ + from_center, normal_, from_center, texture_coordinates(x, y), *this, hit);
+        const Vec3d from_center = x * x_axis_ + y * y_axis_;
+        const double r = std::hypot(x, y);  // u is the radius, and v the angle in turns
+        const Vec3d outwards = r > 0.0 ? from_center / r : x_axis_;
+        const Vec3d around = 2.0 * std::numbers::pi * (x * y_axis_ - y * x_axis_);
+        fill_quadric_hit(center_ + from_center, normal_, {outwards, around}, texture_coordinates(x, y), *this,
+                         hit);
         hit.t = t;
     }
     Bounds3 bounds() const override {

@@ -29,6 +29,7 @@ using Geometry = std::unique_ptr<RTCGeometryTy, Releaser<rtcReleaseGeometry>>;
 struct RawHit {
     float t, u, v;
     unsigned geometry, primitive;
+    unsigned instance;  ///< RTC_INVALID_GEOMETRY_ID where the geometry is none of an instance
 };
 
 /// The hits along a ray in the order in which Embree finds them; takes memory only for more than a few.

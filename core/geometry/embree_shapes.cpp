@@ -1,6 +1,8 @@
 // The callbacks work for any packet width N: Embree calls them with 1, 4, 8 or 16 lanes, or a stream.
 #include "core/geometry/embree_shapes.h"
 
+#include <stdexcept>
+
 namespace mote::core::embree {
 namespace {
 
@@ -25,7 +27,9 @@ void intersect_shape(const RTCIntersectFunctionNArguments* arguments) {
     const unsigned n = arguments->N;
     RTCRayN* ray = RTCRayHitN_RayN(arguments->rayhit, n);
     RTCHitN* hit = RTCRayHitN_HitN(arguments->rayhit, n);
-    auto* collected = reinterpret_cast<Query*>(arguments->context)->collected;
+    auto* query = reinterpret_cast<Query*>(arguments->context);
+    auto* collected = query->collected;
+    const unsigned instance = query->base.instID[0];
     for (unsigned lane = 0; lane < n; ++lane) {
         if (arguments->valid[lane] == 0) continue;
         const Vec3 origin = origin_of(ray, n, lane), direction = direction_of(ray, n, lane);
@@ -35,12 +39,12 @@ void intersect_shape(const RTCIntersectFunctionNArguments* arguments) {
             const LineHits hits = shape.line_hits(origin, direction);
             for (int i = 0; i < hits.count; ++i)
                 if (const auto t = float(hits.t[std::size_t(i)]); t > t_min && t < t_max)
-                    collected->push_back({t, 0.0f, 0.0f, arguments->geomID, arguments->primID});
+                    collected->push_back({t, 0.0f, 0.0f, arguments->geomID, arguments->primID, instance});
         } else if (const auto t = shape.intersect(origin, direction, t_min, t_max)) {
             t_max = *t;
             RTCHitN_geomID(hit, n, lane) = arguments->geomID;
             RTCHitN_primID(hit, n, lane) = arguments->primID;
-            RTCHitN_instID(hit, n, lane, 0) = RTC_INVALID_GEOMETRY_ID;
+            RTCHitN_instID(hit, n, lane, 0) = instance;
             RTCHitN_u(hit, n, lane) = RTCHitN_v(hit, n, lane) = 0.0f;
             // The normal is computed in fill_hit; Embree only wants it to be set.
             RTCHitN_Ng_x(hit, n, lane) = RTCHitN_Ng_y(hit, n, lane) = 0.0f;
@@ -62,9 +66,7 @@ void occlude_shape(const RTCOccludedFunctionNArguments* arguments) {
     }
 }
 
-}  // namespace
-
-Geometry make_geometry(RTCDevice device, const TriangleMesh& mesh) {
+Geometry make_mesh_geometry(RTCDevice device, const TriangleMesh& mesh) {
     Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
     const MeshData& data = mesh.data();
     rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
@@ -75,7 +77,7 @@ Geometry make_geometry(RTCDevice device, const TriangleMesh& mesh) {
     return geometry;
 }
 
-Geometry make_geometry(RTCDevice device, const AnalyticShape& shape) {
+Geometry make_analytic_geometry(RTCDevice device, const AnalyticShape& shape) {
     Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER));
     rtcSetGeometryUserPrimitiveCount(geometry.get(), 1);
     rtcSetGeometryUserData(geometry.get(), const_cast<AnalyticShape*>(&shape));
@@ -86,6 +88,59 @@ Geometry make_geometry(RTCDevice device, const AnalyticShape& shape) {
     return geometry;
 }
 
+/// Some builds of Embree meet curves from inside, Mitsuba's does not: filter that lets such hits pass.
+void pass_from_inside(const RTCFilterFunctionNArguments* arguments) {
+    const unsigned n = arguments->N;
+    for (unsigned lane = 0; lane < n; ++lane) {
+        if (arguments->valid[lane] == 0) continue;
+        const Vec3 direction = direction_of(arguments->ray, n, lane);
+        const Vec3 normal(RTCHitN_Ng_x(arguments->hit, n, lane), RTCHitN_Ng_y(arguments->hit, n, lane),
+                          RTCHitN_Ng_z(arguments->hit, n, lane));
+        if (glm::dot(direction, normal) > 0.0f) arguments->valid[lane] = 0;
+    }
+}
+
+Geometry make_curve_geometry(RTCDevice device, const Curves& curves) {
+    const CurveData& data = curves.data();
+    Geometry geometry(rtcNewGeometry(device, data.basis == CurveBasis::linear
+                                                 ? RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE
+                                                 : RTC_GEOMETRY_TYPE_ROUND_BSPLINE_CURVE));
+    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
+                               data.points.data(), 0, sizeof(data.points[0]), data.points.size());
+    rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT,
+                               data.segments.data(), 0, sizeof(data.segments[0]), data.segments.size());
+    rtcSetGeometryIntersectFilterFunction(geometry.get(), pass_from_inside);
+    rtcSetGeometryOccludedFilterFunction(geometry.get(), pass_from_inside);
+    rtcCommitGeometry(geometry.get());
+    return geometry;
+}
+
+}  // namespace
+
+TracedShape::TracedShape(const Shape& shape)
+    : shape_(&shape),
+      mesh_(dynamic_cast<const TriangleMesh*>(&shape)),
+      analytic_(dynamic_cast<const AnalyticShape*>(&shape)),
+      curves_(dynamic_cast<const Curves*>(&shape)) {
+    if (!mesh_ && !analytic_ && !curves_) throw std::logic_error("a shape of an unknown kind");
+}
+
+Geometry TracedShape::make_geometry(RTCDevice device) const {
+    return mesh_       ? make_mesh_geometry(device, *mesh_)
+           : analytic_ ? make_analytic_geometry(device, *analytic_)
+                       : make_curve_geometry(device, *curves_);
+}
+
+void TracedShape::fill_hit(const Vec3& origin, const Vec3& direction, const RawHit& raw,
+                           SurfaceHit& hit) const {
+    if (mesh_)
+        mesh_->fill_hit(raw.primitive, raw.u, raw.v, hit);
+    else if (analytic_)
+        analytic_->fill_hit(origin, direction, raw.t, hit);
+    else
+        curves_->fill_hit(raw.primitive, raw.u, Vec3d(origin) + double(raw.t) * Vec3d(direction), hit);
+}
+
 void collect_hits(const RTCFilterFunctionNArguments* arguments) {
     auto& collected = *reinterpret_cast<Query*>(arguments->context)->collected;
     const unsigned n = arguments->N;
@@ -93,7 +148,8 @@ void collect_hits(const RTCFilterFunctionNArguments* arguments) {
         if (arguments->valid[lane] == 0) continue;
         collected.push_back({RTCRayN_tfar(arguments->ray, n, lane), RTCHitN_u(arguments->hit, n, lane),
                              RTCHitN_v(arguments->hit, n, lane), RTCHitN_geomID(arguments->hit, n, lane),
-                             RTCHitN_primID(arguments->hit, n, lane)});
+                             RTCHitN_primID(arguments->hit, n, lane),
+                             RTCHitN_instID(arguments->hit, n, lane, 0)});
         arguments->valid[lane] = 0;
     }
 }

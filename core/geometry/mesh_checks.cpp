@@ -59,6 +59,11 @@ void check_mesh(const MeshData& data, const SourceLocation& where) {
         throw InputError("the mesh has not as many normals as positions", where);
     if (!data.uvs.empty() && data.uvs.size() != data.positions.size())
         throw InputError("the mesh has not as many texture coordinates as positions", where);
+    for (const MeshAttribute& a : data.attributes)
+        if (a.values.size() != (a.of_faces ? data.triangles.size() : data.positions.size()))
+            throw InputError("attribute '" + printable(a.name) + "' has not a value for each " +
+                                 (a.of_faces ? "triangle" : "vertex"),
+                             where);
 }
 
 bool has_area(const MeshData& data) {
@@ -67,7 +72,19 @@ bool has_area(const MeshData& data) {
 }
 
 std::size_t drop_degenerate_triangles(MeshData& data) {
-    return std::erase_if(data.triangles, [&](const auto& triangle) { return degenerate(data, triangle); });
+    const std::size_t all = data.triangles.size();
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < all; ++i) {
+        if (degenerate(data, data.triangles[i])) continue;
+        data.triangles[kept] = data.triangles[i];
+        for (MeshAttribute& a : data.attributes)
+            if (a.of_faces) a.values[kept] = a.values[i];
+        ++kept;
+    }
+    data.triangles.resize(kept);
+    for (MeshAttribute& a : data.attributes)
+        if (a.of_faces) a.values.resize(kept);
+    return all - kept;
 }
 
 bool is_closed(const MeshData& data) {

@@ -5,7 +5,7 @@
 
 namespace mote::core {
 
-double similarity_scale(const Transform& to_world, const char* shape) {
+std::optional<double> similarity_scale(const Transform& to_world) {
     const glm::dmat3 m(to_world.matrix);
     const double x = glm::length(m[0]), y = glm::length(m[1]), z = glm::length(m[2]);
     const double scale = std::cbrt(x * y * z);
@@ -16,21 +16,21 @@ double similarity_scale(const Transform& to_world, const char* shape) {
     const double shear =
         std::fmax(std::fabs(glm::dot(m[0], m[1])),
                   std::fmax(std::fabs(glm::dot(m[0], m[2])), std::fabs(glm::dot(m[1], m[2]))));
-    if (!to_world.valid())
-        throw InputError(std::string("the transform of a ") + shape + " is singular or not finite");
-    if (!uniform || !(shear <= tolerance * scale))
-        throw InputError(std::string("the transform of a ") + shape +
-                         " may only rotate, translate, mirror and scale uniformly");
+    if (!uniform || !(shear <= tolerance * scale)) return std::nullopt;
     return scale;
 }
 
-void fill_quadric_hit(const Vec3d& position, const Vec3d& normal, const Vec3d& dp_du, const Vec2& uv,
-                      const Shape& shape, SurfaceHit& hit) {
+void fill_quadric_hit(const Vec3d& position, const Vec3d& normal, const Derivatives& derivatives,
+                      const Vec2& uv, const Shape& shape, SurfaceHit& hit) {
     hit.position = Vec3(position);
     hit.geometric_normal = Vec3(normal);
     hit.error = quantization_error(hit.position, hit.geometric_normal);
-    hit.shading =
-        shape.tangent_matters ? Frame(hit.geometric_normal, Vec3(dp_du)) : Frame(hit.geometric_normal);
+    if (shape.tangent_matters) {
+        hit.dp_du = Vec3(derivatives.dp_du), hit.dp_dv = Vec3(derivatives.dp_dv);
+        hit.shading = Frame(hit.geometric_normal, hit.dp_du);
+    } else {
+        hit.shading = Frame(hit.geometric_normal);
+    }
     hit.uv = uv;
     hit.shape = &shape;
     hit.primitive = 0;

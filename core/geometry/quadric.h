@@ -30,14 +30,16 @@ LineHits intersect_round(const Vec& f, const Vec& d, double r) {
     return hits;
 }
 
-/// The uniform scale of a similarity (rotation, uniform scale, translation, mirroring). Throws InputError for
-/// anything else; `shape` names the shape in the message.
-double similarity_scale(const Transform& to_world, const char* shape);
+/// The uniform scale of a similarity (rotation, uniform scale, translation, mirroring), or nothing.
+std::optional<double> similarity_scale(const Transform& to_world);
 
-/// Rounds a point of a quadric to single precision and fills everything of a hit but t. `dp_du` is the
-/// direction in which u rises, of any length.
-void fill_quadric_hit(const Vec3d& position, const Vec3d& normal, const Vec3d& dp_du, const Vec2& uv,
-                      const Shape& shape, SurfaceHit& hit);
+/// How a point moves with its texture coordinates [m].
+struct Derivatives {
+    Vec3d dp_du{0.0}, dp_dv{0.0};
+};
+/// Rounds a point of a quadric to single precision and fills everything of a hit but t.
+void fill_quadric_hit(const Vec3d& position, const Vec3d& normal, const Derivatives& derivatives,
+                      const Vec2& uv, const Shape& shape, SurfaceHit& hit);
 ShapeSample quadric_sample(const Vec3d& position, const Vec3d& normal, const Vec2& uv, double pdf_area);
 
 /// Angle of (x, y) around the origin in turns, in [0, 1), as Mitsuba maps it to u.

@@ -5,11 +5,19 @@
 namespace mote::core {
 namespace {
 
-constexpr const char* similarity = "rotation, uniform scale, translation and mirroring only";
+constexpr const char* similarity =
+    "rotation, uniform scale, translation and mirroring; under others it stays a sphere, with a warning: its "
+    "radius is scaled as x is, as in Mitsuba";
+
+double radius_of(const Properties& p) {
+    const double radius = p.get_float("radius", 1.0);
+    if (!(radius > 0.0)) throw InputError("'radius' must be above 0", p.where_of("radius"));
+    return radius;
+}
 
 std::shared_ptr<Object> sphere(const Properties& p) {
     return at_element(p, [&] {
-        return make_sphere(p.get_vec3("center", Vec3d(0.0)), p.get_float("radius", 1.0), p.get_transform(),
+        return make_sphere(p.get_vec3("center", Vec3d(0.0)), radius_of(p), p.get_transform(),
                            p.get_bool("flip_normals", false));
     });
 }
@@ -21,8 +29,7 @@ std::shared_ptr<Object> disk(const Properties& p) {
 std::shared_ptr<Object> cylinder(const Properties& p) {
     return at_element(p, [&] {
         return make_cylinder(p.get_vec3("p0", Vec3d(0.0)), p.get_vec3("p1", Vec3d(0.0, 0.0, 1.0)),
-                             p.get_float("radius", 1.0), p.get_transform(),
-                             p.get_bool("flip_normals", false));
+                             radius_of(p), p.get_transform(), p.get_bool("flip_normals", false));
     });
 }
 
@@ -58,7 +65,7 @@ void register_quadrics(Registry& registry) {
                    {"p1", "point", "0, 0, 1", "centre of the other end, before the transform [m]"},
                    {"radius", "float", "1", "radius, before the transform [m]"},
                    flip_normals_parameter(),
-                   to_world_parameter(similarity)},
+                   to_world_parameter("any affine transform")},
                   R"(<shape type="cylinder">
     <point name="p1" x="0" y="2" z="0"/>
     <float name="radius" value="0.1"/>

@@ -1,16 +1,10 @@
-// Two Embree scenes, one for surfaces and one for boundaries, and the queries on them.
+// The queries on Embree's two scenes, one for surfaces and one for boundaries.
 #include "core/geometry/ray_tracer.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cstddef>
-#include <cstring>
-#include <mutex>
-#include <new>
-#include <stdexcept>
 
-#include "core/geometry/embree_shapes.h"
-#include "core/materials/bsdf.h"
+#include "core/geometry/embree_scenes.h"
 
 namespace mote::core {
 namespace {
@@ -67,89 +61,29 @@ RTCRayHit embree_ray_hit(const Ray& ray) {
     return query;
 }
 
-bool count_memory(void* user_pointer, ssize_t bytes, bool) {
-    static_cast<std::atomic<std::int64_t>*>(user_pointer)->fetch_add(bytes, std::memory_order_relaxed);
-    return true;
-}
-
-bool is_pane(const Shape& shape) { return shape.bsdf && shape.bsdf->traits().pane; }
-bool is_boundary(const Shape& shape) { return is_pane(shape) || (shape.bsdf && shape.bsdf->traits().null); }
-
 }  // namespace
 
 struct RayTracer::Implementation {
-    struct Entry {
-        const Shape* shape;
-        const TriangleMesh* mesh;       // or null
-        const AnalyticShape* analytic;  // or null
-    };
-    std::atomic<std::int64_t> memory{0};  // outlives the device
-    embree::Device device;
-    embree::Scene scenes[2];
-    std::vector<Entry> entries;  // by Embree's geometry number
-    std::size_t boundaries = 0, panes = 0, surface_primitives = 0;
+    embree::ShapeScenes scenes;
     bool use_streams = false;
-    Bounds3 bounds;
-
-    void check(const char* step) const {
-        const RTCError error = rtcGetDeviceError(device.get());
-        if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
-        if (error != RTC_ERROR_NONE)
-            throw std::runtime_error(std::string("Embree: ") + step + " failed with error " +
-                                     std::to_string(int(error)));
-    }
-    RTCScene scene(Group group) const { return scenes[int(group)].get(); }
-    void open() {
-        device.reset(rtcNewDevice(nullptr));
-        if (!device) throw std::runtime_error("Embree: no device");
-        rtcSetDeviceMemoryMonitorFunction(device.get(), count_memory, &memory);
-        for (auto& s : scenes) {
-            s.reset(rtcNewScene(device.get()));
-            rtcSetSceneFlags(s.get(), RTCSceneFlags(RTC_SCENE_FLAG_ROBUST | embree::filter_scene_flag));
-        }
-        check("opening");
-    }
-    void attach(const Shape& shape) {
-        const Entry entry{&shape, dynamic_cast<const TriangleMesh*>(&shape),
-                          dynamic_cast<const AnalyticShape*>(&shape)};
-        if (!entry.mesh && !entry.analytic) throw std::logic_error("a shape of an unknown kind");
-        const auto geometry = entry.mesh ? embree::make_geometry(device.get(), *entry.mesh)
-                                         : embree::make_geometry(device.get(), *entry.analytic);
-        const Group group = is_boundary(shape) ? Group::boundaries : Group::surfaces;
-        boundaries += group == Group::boundaries, panes += is_pane(shape);
-        if (group == Group::surfaces) surface_primitives += shape.primitive_count();
-        rtcAttachGeometryByID(scene(group), geometry.get(), unsigned(entries.size()));
-        entries.push_back(entry);
-        bounds.extend(shape.bounds());
-    }
-    SurfaceHit hit(const Ray& ray, const embree::RawHit& raw) const {
-        SurfaceHit hit;
-        const Entry& entry = entries[raw.geometry];
-        if (entry.mesh) {
-            entry.mesh->fill_hit(raw.primitive, raw.u, raw.v, hit);
-        } else {
-            entry.analytic->fill_hit(ray.origin, ray.direction, raw.t, hit);
-        }
-        hit.t = raw.t;
-        return hit;
+    RTCScene scene(Group group) const {
+        return group == Group::surfaces ? scenes.surfaces() : scenes.boundaries();
     }
 };
 
 RayTracer::RayTracer(std::span<const std::shared_ptr<Shape>> shapes)
     : impl_(std::make_unique<Implementation>()) {
-    impl_->open();
-    for (const auto& shape : shapes) impl_->attach(*shape);
-    for (auto& scene : impl_->scenes) rtcCommitScene(scene.get());
-    impl_->check("building");
-    impl_->use_streams = embree::has_streams && impl_->surface_primitives > 8000;
+    for (const auto& shape : shapes) impl_->scenes.attach(*shape);
+    impl_->scenes.build();
+    impl_->use_streams = embree::has_streams && impl_->scenes.surface_primitives() > 8000;
 }
 
 RayTracer::~RayTracer() = default;
 
-bool RayTracer::has_boundaries() const { return impl_->boundaries > 0; }
-bool RayTracer::has_panes() const { return impl_->panes > 0; }
-Bounds3 RayTracer::bounds() const { return impl_->bounds; }
-std::size_t RayTracer::memory_bytes() const { return std::size_t(std::max<std::int64_t>(0, impl_->memory)); }
+bool RayTracer::has_boundaries() const { return impl_->scenes.boundary_count() > 0; }
+bool RayTracer::has_panes() const { return impl_->scenes.pane_count() > 0; }
+Bounds3 RayTracer::bounds() const { return impl_->scenes.bounds(); }
+std::size_t RayTracer::memory_bytes() const { return impl_->scenes.memory_bytes(); }
 
 std::optional<SurfaceHit> RayTracer::closest(const Ray& ray, Group group) const {
     if (!traceable(ray)) return std::nullopt;
@@ -157,7 +91,8 @@ std::optional<SurfaceHit> RayTracer::closest(const Ray& ray, Group group) const 
     RTCRayHit r = embree_ray_hit(ray);
     embree::intersect(impl_->scene(group), query, r);
     if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-    return impl_->hit(ray, {r.ray.tfar, r.hit.u, r.hit.v, r.hit.geomID, r.hit.primID});
+    return impl_->scenes.hit(ray,
+                             {r.ray.tfar, r.hit.u, r.hit.v, r.hit.geomID, r.hit.primID, r.hit.instID[0]});
 }
 
 bool RayTracer::occluded(const Ray& ray) const {
@@ -221,7 +156,8 @@ void RayTracer::visit_hits(const Ray& ray, Group group, Visitor visitor, const v
 
     // Embree may offer a triangle more than once; a quadric's two hits differ in t.
     const auto key = [&](const embree::RawHit& h) {
-        return std::tuple(h.geometry, h.primitive, impl_->entries[h.geometry].mesh ? 0.0f : h.t);
+        return std::tuple(h.instance, h.geometry, h.primitive,
+                          impl_->scenes.shape_of(h).once_per_primitive() ? 0.0f : h.t);
     };
     const auto raw = found.all();
     std::sort(raw.begin(), raw.end(), [&](auto& a, auto& b) { return key(a) < key(b); });
@@ -229,7 +165,7 @@ void RayTracer::visit_hits(const Ray& ray, Group group, Visitor visitor, const v
     // Hits at one distance stay in the order of their keys.
     std::sort(raw.begin(), end, [&](auto& a, auto& b) { return a.t != b.t ? a.t < b.t : key(a) < key(b); });
     for (auto h = raw.begin(); h != end; ++h)
-        if (!visitor(visit, impl_->hit(ray, *h))) return;
+        if (!visitor(visit, impl_->scenes.hit(ray, *h))) return;
 }
 
 }  // namespace mote::core

@@ -13,6 +13,7 @@ Parameter flip_normals_parameter() { return {"flip_normals", "boolean", "false",
 void register_geometry(Registry& registry) {
     register_primitives(registry);
     register_quadrics(registry);
+    register_instances(registry);
 }
 
 }  // namespace mote::core

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/materials/texture_coordinates.h"
 #include "core/math/bounds.h"
 #include "core/math/frame.h"
 #include "core/objects/error.h"
@@ -24,8 +25,10 @@ struct SurfaceHit {
     Vec3 position{0, 0, 0};
     Vec3 geometric_normal{0, 0, 1};  ///< unit; the side it points to is the shape's outside
     Frame shading;                   ///< n is the interpolated normal, on the geometric normal's side
-    Vec2 uv{0, 0};
+    TextureCoordinates uv;
     const Shape* shape = nullptr;
+    /// Derivatives of the position by the texture coordinates [m]; only where Shape::tangent_matters.
+    Vec3 dp_du{0.0f}, dp_dv{0.0f};
     std::uint32_t primitive = 0;  ///< triangle index; 0 for analytic shapes
     float error = 0.0f;  ///< how far along the normal rounding can put `position` off the surface [m]
 };
@@ -34,7 +37,7 @@ struct SurfaceHit {
 struct ShapeSample {
     Vec3 position;
     Vec3 normal;  ///< geometric, unit
-    Vec2 uv;
+    TextureCoordinates uv;
     float pdf_area;  ///< [1/m^2]
     float error = 0.0f;
 };
@@ -49,7 +52,8 @@ class Shape : public Object {
         false;  ///< interior or exterior was named (vacuum counts when the other is named)
     /// Such a boundary with a border, as a window of a room: it parts the outside of all closed shapes.
     bool parts_the_outside = false;
-    /// The BSDF is anisotropic: the shading frame's s then follows dp/du. Otherwise any frame will do.
+    /// The BSDF is anisotropic: the shading frame's s then follows dp/du, and hits have both derivatives.
+    /// Otherwise any frame will do.
     bool tangent_matters = false;
     std::uint32_t index = 0;         ///< position in Scene::shapes
     std::vector<std::string> notes;  ///< what was repaired at load, e.g. "12 degenerate triangles dropped"
@@ -67,6 +71,8 @@ class Shape : public Object {
     /// True when the surface has no border, so that inside and outside are defined.
     virtual bool closed() const = 0;
     virtual std::size_t primitive_count() const = 0;
+    /// Values that the shape carries for its vertices or faces, or null.
+    virtual const SurfaceAttributes* attributes() const { return nullptr; }
 };
 
 /// The origin for a ray leaving `position` in `direction`, moved off the surface to the direction's side far

@@ -8,6 +8,7 @@ namespace mote::core {
 
 void register_primitives(Registry& registry);  // rectangle, cube
 void register_quadrics(Registry& registry);    // sphere, disk, cylinder
+void register_instances(Registry& registry);   // shapegroup, instance
 
 /// The rows of the manual pages that many shapes share.
 Parameter to_world_parameter(const std::string& description);

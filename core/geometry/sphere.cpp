@@ -9,15 +9,27 @@
 namespace mote::core {
 namespace {
 
+/// What a transform does to a sphere's radius. Mitsuba's spheres stay spheres under any transform: where it
+/// stretches unevenly, their radius grows as lengths along x do.
+double radius_factor(const Transform& to_world) {
+    if (!to_world.valid()) throw InputError("the transform of a sphere is singular or not finite");
+    const auto uniform = similarity_scale(to_world);
+    return uniform ? *uniform : glm::length(to_world.vector({1, 0, 0}));
+}
+
 class Sphere final : public AnalyticShape {
   public:
     Sphere(const Vec3d& center, double radius, const Transform& to_world, bool flip_normals)
         : center_(to_world.point(center)),
-          radius_(radius * similarity_scale(to_world, "sphere")),
-          to_local_(glm::inverse(glm::dmat3(to_world.matrix)) * similarity_scale(to_world, "sphere")),
+          radius_(radius * radius_factor(to_world)),
+          to_local_(glm::inverse(glm::dmat3(to_world.matrix)) * radius_factor(to_world)),
           outside_(flip_normals ? -1.0 : 1.0) {
         if (!(radius_ > 1e-18) || !(radius_ + glm::length(center_) < 1e18))
             throw InputError("the sphere's radius must be positive, and the sphere within 1e18");
+        if (!similarity_scale(to_world))
+            notes.push_back(
+                "the transform does not scale uniformly; as in Mitsuba it stays a sphere, whose radius is "
+                "scaled as x is");
     }
 
     LineHits line_hits(const Vec3& origin, const Vec3& direction) const override {
@@ -25,8 +37,9 @@ class Sphere final : public AnalyticShape {
     }
     void fill_hit(const Vec3& origin, const Vec3& direction, float t, SurfaceHit& hit) const override {
         const Vec3d n = glm::normalize(Vec3d(origin) + double(t) * Vec3d(direction) - center_);
-        fill_quadric_hit(center_ + radius_ * n, outside_ * n, tangent_matters ? around(n) : Vec3d(0.0),
-                         texture_coordinates(n), *this, hit);
+        fill_quadric_hit(center_ + radius_ * n, outside_ * n,
+                         tangent_matters ? derivatives(n) : Derivatives{}, texture_coordinates(n), *this,
+                         hit);
         hit.t = t;
     }
     Bounds3 bounds() const override { return outward_bounds(center_, Vec3d(radius_)); }
@@ -48,14 +61,18 @@ class Sphere final : public AnalyticShape {
         return sin2 < 1.0 ? sin2 / (1.0 + std::sqrt(1.0 - sin2)) : -1.0;
     }
     Vec2 texture_coordinates(const Vec3d& n) const {
-        const Vec3d local = to_local_ * n;
+        const Vec3d local = glm::normalize(to_local_ * n);
         const double z = std::fmin(1.0, std::fmax(-1.0, local.z));
         return {turns(local.x, local.y), float(std::acos(z)) * inv_pi};
     }
-    /// The direction in which u rises: about the sphere's own z axis.
-    Vec3d around(const Vec3d& n) const {
+    /// u goes about the sphere's own z axis, v from its top to its bottom.
+    Derivatives derivatives(const Vec3d& n) const {
         const Vec3d local = to_local_ * n;
-        return glm::transpose(to_local_) * Vec3d(-local.y, local.x, 0.0);
+        const double from_axis = std::hypot(local.x, local.y);
+        const glm::dvec2 outwards = from_axis > 0.0 ? glm::dvec2(local) / from_axis : glm::dvec2(1.0, 0.0);
+        const glm::dmat3 to_world = radius_ * std::numbers::pi * glm::transpose(to_local_);
+        return {to_world * (2.0 * Vec3d(-local.y, local.x, 0.0)),
+                to_world * Vec3d(local.z * outwards, -from_axis)};
     }
     ShapeSample sample_at(const Vec3d& n, double pdf_area) const {
         return quadric_sample(center_ + radius_ * n, outside_ * n, texture_coordinates(n), pdf_area);

@@ -77,7 +77,8 @@ void TriangleMesh::fill_hit(std::uint32_t primitive, float u, float v, SurfaceHi
     hit.geometric_normal = corners.normal();
     hit.error = corners.error(hit.position, hit.geometric_normal);
     const Vec3 n = shading_normal(primitive, u, v, hit.geometric_normal);
-    hit.shading = tangent_matters ? Frame(n, tangent(primitive)) : Frame(n);
+    if (tangent_matters) fill_derivatives(primitive, hit);
+    hit.shading = tangent_matters ? Frame(n, hit.dp_du) : Frame(n);
     hit.uv = texture_coordinates(primitive, u, v);
     hit.shape = this;
     hit.primitive = primitive;
@@ -95,20 +96,31 @@ Vec3 TriangleMesh::shading_normal(std::uint32_t primitive, float u, float v, con
     return glm::dot(unit, geometric) < 0.0f ? -unit : unit;
 }
 
-Vec3 TriangleMesh::tangent(std::uint32_t primitive) const {
-    if (data_.uvs.empty()) return Vec3(0.0f);
-    const auto& [a, b, c] = data_.triangles[primitive];
-    const Vec2 uv1 = data_.uvs[b] - data_.uvs[a], uv2 = data_.uvs[c] - data_.uvs[a];
+void TriangleMesh::fill_derivatives(std::uint32_t primitive, SurfaceHit& hit) const {
     const Corners corners(corners_[primitive]);
-    // Of p = p0 + b1 e1 + b2 e2 and uv = uv0 + b1 uv1 + b2 uv2; of any length, so that no division is needed.
-    const float orientation = uv1.x * uv2.y - uv1.y * uv2.x;
-    return std::copysign(1.0f, orientation) * (uv2.y * Vec3(corners.e1) - uv1.y * Vec3(corners.e2));
+    hit.dp_du = Vec3(corners.e1), hit.dp_dv = Vec3(corners.e2);  // by barycentric coordinates
+    if (data_.uvs.empty()) return;
+    const Frame any(hit.geometric_normal);
+    hit.dp_du = any.s, hit.dp_dv = any.t;
+    const auto& [a, b, c] = data_.triangles[primitive];
+    const glm::dvec2 uv0(data_.uvs[a]), uv1 = glm::dvec2(data_.uvs[b]) - uv0,
+                                        uv2 = glm::dvec2(data_.uvs[c]) - uv0;
+    // Of p = p0 + b1 e1 + b2 e2 and uv = uv0 + b1 uv1 + b2 uv2.
+    const double determinant = uv1.x * uv2.y - uv1.y * uv2.x;
+    const Vec3 dp_du((uv2.y * corners.e1 - uv1.y * corners.e2) / determinant);
+    const Vec3 dp_dv((uv1.x * corners.e2 - uv2.x * corners.e1) / determinant);
+    if (is_finite(dp_du) && is_finite(dp_dv)) hit.dp_du = dp_du, hit.dp_dv = dp_dv;
 }
 
-Vec2 TriangleMesh::texture_coordinates(std::uint32_t primitive, float u, float v) const {
-    if (data_.uvs.empty()) return {u, v};
-    const auto& corner = data_.triangles[primitive];
-    return (1.0f - u - v) * data_.uvs[corner[0]] + u * data_.uvs[corner[1]] + v * data_.uvs[corner[2]];
+TextureCoordinates TriangleMesh::texture_coordinates(std::uint32_t primitive, float u, float v) const {
+    TextureCoordinates result(u, v);
+    if (!data_.uvs.empty()) {
+        const auto& corner = data_.triangles[primitive];
+        result = (1.0f - u - v) * data_.uvs[corner[0]] + u * data_.uvs[corner[1]] + v * data_.uvs[corner[2]];
+    }
+    if (!data_.attributes.empty())
+        result.attributes = this, result.primitive = primitive, result.barycentric = {u, v};
+    return result;
 }
 
 ShapeSample TriangleMesh::sample_area(const Vec2& u) const {

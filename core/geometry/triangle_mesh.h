@@ -9,14 +9,22 @@
 
 namespace mote::core {
 
+/// Values of vertices or faces beyond what a mesh is made of, see SurfaceAttributes.
+struct MeshAttribute {
+    std::string name;  ///< begins with "vertex_" or "face_"
+    bool of_faces = false;
+    std::vector<Rgb> values;  ///< one a vertex or triangle; three times the same where there is one number
+};
+
 struct MeshData {
     std::vector<Vec3> positions;
     std::vector<Vec3> normals;  ///< per vertex, or empty: geometric normals are used
     std::vector<Vec2> uvs;      ///< per vertex, or empty: barycentric coordinates are used
     std::vector<std::array<std::uint32_t, 3>> triangles;
+    std::vector<MeshAttribute> attributes = {};
 };
 
-class TriangleMesh final : public Shape {
+class TriangleMesh final : public Shape, private SurfaceAttributes {
   public:
     /// Takes the data as it is (world space). Throws InputError for an index out of range, a position that is
     /// not finite or beyond 1e18, or no triangle left; triangles without area are dropped and counted in
@@ -32,12 +40,20 @@ class TriangleMesh final : public Shape {
     ShapeSample sample_area(const Vec2& u) const override;
     bool closed() const override { return closed_; }
     std::size_t primitive_count() const override { return data_.triangles.size(); }
+    const SurfaceAttributes* attributes() const override { return data_.attributes.empty() ? nullptr : this; }
 
   private:
     Vec3 shading_normal(std::uint32_t primitive, float u, float v, const Vec3& geometric) const;
-    /// The direction of dp/du, of any length; zero without texture coordinates.
-    Vec3 tangent(std::uint32_t primitive) const;
-    Vec2 texture_coordinates(std::uint32_t primitive, float u, float v) const;
+    /// dp/du and dp/dv; across the geometric normal where the texture coordinates do not tell.
+    void fill_derivatives(std::uint32_t primitive, SurfaceHit& hit) const;
+    TextureCoordinates texture_coordinates(std::uint32_t primitive, float u, float v) const;
+
+    bool has_attribute(std::string_view name) const override { return find_attribute(name) != nullptr; }
+    Rgb attribute(std::string_view name, std::uint32_t primitive, const Vec2& barycentric) const override;
+    Rgb attribute_mean(std::string_view name) const override;
+    Vec2 attribute_range(std::string_view name) const override;
+    const MeshAttribute* find_attribute(std::string_view name) const;
+    Rgb attribute_at(const MeshAttribute& attribute, std::uint32_t primitive, const Vec2& b) const;
 
     MeshData data_;
     Bounds3 bounds_;

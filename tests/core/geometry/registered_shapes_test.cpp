@@ -32,7 +32,8 @@ TEST_CASE("the shapes of the scene language", "[geometry][registry]") {
     Registry registry;
     register_geometry(registry), register_assets(registry);
     CHECK(registry.types(Category::shape) ==
-          std::vector<std::string>{"cube", "cylinder", "disk", "mesh", "obj", "ply", "rectangle", "sphere"});
+          std::vector<std::string>{"bsplinecurve", "cube", "cylinder", "disk", "instance", "linearcurve",
+                                   "mesh", "obj", "ply", "rectangle", "serialized", "shapegroup", "sphere"});
     CHECK(make("rectangle", {})->area() == Approx(4.0));
     CHECK(make("cube", {{"to_world", scaling(1, 2, 3)}})->area() == Approx(8.0 * 11.0));
     const auto sphere =
@@ -45,8 +46,8 @@ TEST_CASE("the shapes of the scene language", "[geometry][registry]") {
 }
 
 TEST_CASE("bad shapes are refused where they stand", "[geometry][registry]") {
-    CHECK_THROWS_WITH(make("sphere", {{"radius", -1.0}}), Contains("scene.xml:12"));
-    CHECK_THROWS_WITH(make("sphere", {{"to_world", scaling(1, 2, 1)}}), Contains("scale uniformly"));
+    CHECK_THROWS_WITH(make("sphere", {{"radius", -1.0}}), Contains("scene.xml:13"));
+    CHECK_THROWS_WITH(make("sphere", {{"to_world", scaling(1, 0, 1)}}), Contains("singular"));
     CHECK_THROWS_WITH(make("cube", {{"to_world", scaling(1, 0, 1)}}), Contains("singular"));
     CHECK_THROWS_WITH(make("obj", {}), Contains("filename"));
     CHECK_THROWS_WITH(make("ply", {{"filename", std::string("/nowhere.ply")}}), Contains("nowhere.ply"));

@@ -54,6 +54,45 @@ TEST_CASE("the tangent follows u where the BSDF is anisotropic", "[geometry][tan
     }
 }
 
+TEST_CASE("hits say how far texture coordinates reach", "[geometry][tangents]") {
+    // Steps of 1e-3 m along dp/du and dp/dv change the coordinates as the derivatives say, to 2 % of the
+    // step.
+    for (const char* type : {"sphere", "disk", "rectangle", "cube", "cylinder"}) {
+        const auto scene = scene_of(std::string("type=\"") + type + "\">" + turned, anisotropic);
+        Rng rng(4);
+        int compared = 0;
+        for (int i = 0; i < 300; ++i) {
+            const Vec3 d = square_to_sphere({rng.next_float(), rng.next_float()});
+            const auto first = scene->rays().closest(ray(4.0f * d + Vec3(0.1f, 0.2f, -0.1f), -d));
+            if (!first) continue;
+            const Vec3 above = 0.05f * first->geometric_normal;
+            const Vec3 start =
+                first->position + (glm::dot(d, first->geometric_normal) > 0.0f ? above : -above);
+            for (const bool by_u : {true, false}) {
+                const Vec3 derivative = by_u ? first->dp_du : first->dp_dv;
+                const float h = 1e-3f / glm::length(derivative);
+                const auto second =
+                    scene->rays().closest(ray(start + h * derivative, first->position - start));
+                if (!second || second->primitive != first->primitive) continue;
+                const Vec2 change = (second->uv - first->uv) / h, expected = by_u ? Vec2(1, 0) : Vec2(0, 1);
+                // Not across the seam, nor where polar coordinates crowd.
+                if (std::fabs(change.x * h) > 0.5f || std::fabs(change.y * h) > 0.5f) continue;
+                if (glm::length(first->dp_du) < 0.2f || glm::length(first->dp_dv) < 0.2f) continue;
+                CAPTURE(type, by_u, change.x, change.y);
+                CHECK(glm::distance(change, expected) < 0.02f);
+                ++compared;
+            }
+        }
+        CHECK(compared > 50);
+    }
+    // Without texture coordinates they are barycentric, and the edges are the derivatives, as in Mitsuba 3.9.
+    TriangleMesh mesh({{{0, 0, 0}, {3, 0, 0}, {1, 2, 0}}, {}, {}, {{{0, 1, 2}}}});
+    mesh.tangent_matters = true;
+    SurfaceHit hit;
+    mesh.fill_hit(0, 0.2f, 0.3f, hit);
+    CHECK((hit.dp_du == Vec3(3, 0, 0) && hit.dp_dv == Vec3(1, 2, 0)));
+}
+
 TEST_CASE("a frame around a tangent", "[geometry][tangents]") {
     const Vec3 n = glm::normalize(Vec3(1, 2, 3));
     const Frame frame(n, {5, 0, 1});

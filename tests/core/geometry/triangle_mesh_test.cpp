@@ -94,6 +94,24 @@ TEST_CASE("transforms keep the outside out, mirrored or not", "[geometry][mesh]"
     }
 }
 
+// Stretched unevenly, a normal does not turn with the surface's vectors.
+TEST_CASE("given normals stay at right angles to the surface under every transform", "[geometry][mesh]") {
+    const Transform transforms[] = {scaling(1, 4, 0.5), scaling(-1, 1, 3), scaling(-2, -3, -0.5),
+                                    translation(5, 6, 7) * rotation(200, {0, 1, 1}) * scaling(1, -2, 3)};
+    for (const Transform& t : transforms) {
+        MeshData data = one_triangle({0, 0, 0}, {1, 0, 0.5f}, {0.2f, 1, -0.3f});
+        SurfaceHit hit;
+        TriangleMesh(data).fill_hit(0, 0.3f, 0.3f, hit);
+        data.normals.assign(3, hit.geometric_normal);
+        transform_mesh(data, t);
+        TriangleMesh(data).fill_hit(0, 0.3f, 0.3f, hit);
+        for (const Vec3& n : data.normals) {
+            CHECK(glm::length(n) == Approx(1.0f));
+            CHECK(std::fabs(glm::dot(n, hit.geometric_normal)) == Approx(1.0f).epsilon(1e-5));
+        }
+    }
+}
+
 TEST_CASE("shading normals follow the vertices on the face's side", "[geometry][mesh]") {
     MeshData data = one_triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
     data.normals = {glm::normalize(Vec3(-1, 0, 1)), glm::normalize(Vec3(1, 0, 1)), {0, 0, 1}};

@@ -1,0 +1,120 @@
+// Attaches shapes to Embree's scenes; finds its hits' shapes again.
+#include "core/geometry/embree_scenes.h"
+
+#include <new>
+#include <stdexcept>
+
+#include "core/materials/bsdf.h"
+
+namespace mote::core::embree {
+namespace {
+
+bool count_memory(void* user_pointer, ssize_t bytes, bool) {
+    static_cast<std::atomic<std::int64_t>*>(user_pointer)->fetch_add(bytes, std::memory_order_relaxed);
+    return true;
+}
+
+bool is_pane(const Shape& shape) { return shape.bsdf && shape.bsdf->traits().pane; }
+bool is_boundary(const Shape& shape) { return shape.bsdf && shape.bsdf->traits().passes_straight(); }
+
+}  // namespace
+
+ShapeScenes::ShapeScenes() : device_(rtcNewDevice(nullptr)) {
+    if (!device_) throw std::runtime_error("Embree: no device");
+    rtcSetDeviceMemoryMonitorFunction(device_.get(), count_memory, &memory_);
+    for (auto& s : scenes_) s = new_scene();
+    check("opening");
+}
+
+void ShapeScenes::check(const char* step) const {
+    const RTCError error = rtcGetDeviceError(device_.get());
+    if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+    if (error != RTC_ERROR_NONE)
+        throw std::runtime_error(std::string("Embree: ") + step + " failed with error " +
+                                 std::to_string(int(error)));
+}
+
+Scene ShapeScenes::new_scene() const {
+    Scene scene(rtcNewScene(device_.get()));
+    rtcSetSceneFlags(scene.get(), RTCSceneFlags(RTC_SCENE_FLAG_ROBUST | filter_scene_flag));
+    return scene;
+}
+
+void ShapeScenes::attach(const Shape& shape) {
+    boundaries_ += is_boundary(shape), panes_ += is_pane(shape);
+    if (!is_boundary(shape)) surface_primitives_ += shape.primitive_count();
+    bounds_.extend(shape.bounds());
+    if (const auto* instanced = dynamic_cast<const InstancedShape*>(&shape)) {
+        attach_instanced(*instanced);
+        return;
+    }
+    Entry entry{TracedShape(shape), nullptr, {}};
+    attach_geometry(scenes_[is_boundary(shape)].get(), *entry.shape, entries_.size());
+    entries_.push_back(std::move(entry));
+}
+
+void ShapeScenes::build() {
+    for (const Entry& entry : entries_)
+        for (const InstancedShape* placed : entry.placed)
+            if (!placed) throw std::logic_error("a shape of an instance is missing");
+    for (auto& scene : scenes_) rtcCommitScene(scene.get());
+    check("building");
+}
+
+void ShapeScenes::attach_geometry(RTCScene to, const TracedShape& shape, std::size_t number) const {
+    rtcAttachGeometryByID(to, shape.make_geometry(device_.get()).get(), unsigned(number));
+}
+
+void ShapeScenes::attach_instanced(const InstancedShape& shape) {
+    const Placement& placement = shape.placement();
+    const auto [at, fresh] = instances_.emplace(&placement, entries_.size());
+    if (fresh) {
+        const SharedScenes& group = shared_scenes(placement.group());
+        for (std::size_t i = 0; i < 2; ++i)
+            if (group.members[i] > 0) attach_instance(scenes_[i].get(), group.scenes[i].get(), placement);
+        entries_.push_back({std::nullopt, &group, {}});
+        entries_.back().placed.resize(group.shapes.size());
+    }
+    entries_[at->second].placed[shape.member()] = &shape;
+}
+
+void ShapeScenes::attach_instance(RTCScene to, RTCScene instanced, const Placement& placement) const {
+    const Geometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE));
+    const glm::mat4 matrix(placement.to_world().matrix);
+    rtcSetGeometryInstancedScene(geometry.get(), instanced);
+    rtcSetGeometryTransform(geometry.get(), 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &matrix[0][0]);
+    rtcCommitGeometry(geometry.get());
+    rtcAttachGeometryByID(to, geometry.get(), unsigned(entries_.size()));
+}
+
+const ShapeScenes::SharedScenes& ShapeScenes::shared_scenes(const ShapeGroup& group) {
+    const auto [at, fresh] = shared_.try_emplace(&group);
+    SharedScenes& result = at->second;
+    if (!fresh) return result;
+    for (auto& s : result.scenes) s = new_scene();
+    for (const auto& shape : group.shapes) {
+        const std::size_t i = is_boundary(*shape);
+        result.shapes.emplace_back(*shape);
+        attach_geometry(result.scenes[i].get(), result.shapes.back(), result.shapes.size() - 1);
+        ++result.members[i];
+    }
+    for (auto& s : result.scenes) rtcCommitScene(s.get());
+    return result;
+}
+
+SurfaceHit ShapeScenes::hit(const Ray& ray, const RawHit& raw) const {
+    SurfaceHit hit;
+    if (raw.instance == RTC_INVALID_GEOMETRY_ID) {
+        shape_of(raw).fill_hit(ray.origin, ray.direction, raw, hit);
+    } else {
+        const InstancedShape& placed = *entries_[raw.instance].placed[raw.geometry];
+        const Placement& place = placed.placement();
+        shape_of(raw).fill_hit(Vec3(place.local_point(Vec3d(ray.origin))),
+                               Vec3(place.local_vector(Vec3d(ray.direction))), raw, hit);
+        placed.to_world(hit);
+    }
+    hit.t = raw.t;
+    return hit;
+}
+
+}  // namespace mote::core::embree

@@ -1,0 +1,70 @@
+// The shapes of a scene as Embree traces them: two scenes, and for every group of instanced shapes two more
+// that its instances share.
+#pragma once
+
+#include <atomic>
+#include <map>
+
+#include "core/geometry/embree_shapes.h"
+#include "core/geometry/instances.h"
+
+namespace mote::core::embree {
+
+class ShapeScenes {
+  public:
+    ShapeScenes();
+    ShapeScenes(const ShapeScenes&) = delete;
+    ShapeScenes& operator=(const ShapeScenes&) = delete;
+
+    /// Keeps a pointer to the shape, which must outlive this.
+    void attach(const Shape& shape);
+    /// After the last shape. Throws std::logic_error when shapes of an instance are missing.
+    void build();
+
+    RTCScene surfaces() const { return scenes_[0].get(); }
+    RTCScene boundaries() const { return scenes_[1].get(); }
+    std::size_t boundary_count() const { return boundaries_; }
+    std::size_t pane_count() const { return panes_; }  ///< among the boundaries
+    std::size_t surface_primitives() const { return surface_primitives_; }
+    std::size_t memory_bytes() const { return std::size_t(std::max<std::int64_t>(0, memory_)); }
+    Bounds3 bounds() const { return bounds_; }
+
+    /// The shape that was hit, as Embree traces it: of an instanced shape the original.
+    const TracedShape& shape_of(const RawHit& raw) const {
+        if (raw.instance == RTC_INVALID_GEOMETRY_ID) return *entries_[raw.geometry].shape;
+        return entries_[raw.instance].shared->shapes[raw.geometry];
+    }
+    SurfaceHit hit(const Ray& ray, const RawHit& raw) const;
+
+  private:
+    /// What all instances of a group share. Geometries are numbered as the group's shapes are.
+    struct SharedScenes {
+        Scene scenes[2];
+        std::size_t members[2] = {0, 0};
+        std::vector<TracedShape> shapes;
+    };
+    /// A geometry at the top: a shape, or an instance of shapes.
+    struct Entry {
+        std::optional<TracedShape> shape;
+        const SharedScenes* shared = nullptr;
+        std::vector<const InstancedShape*> placed;  // by their number in the group
+    };
+
+    Scene new_scene() const;
+    void attach_geometry(RTCScene to, const TracedShape& shape, std::size_t number) const;
+    void attach_instanced(const InstancedShape& shape);
+    void attach_instance(RTCScene to, RTCScene instanced, const Placement& placement) const;
+    const SharedScenes& shared_scenes(const ShapeGroup& group);
+    void check(const char* step) const;
+
+    std::atomic<std::int64_t> memory_{0};  // outlives the device
+    Device device_;
+    Scene scenes_[2];
+    std::vector<Entry> entries_;  // by Embree's geometry number at the top
+    std::map<const ShapeGroup*, SharedScenes> shared_;
+    std::map<const Placement*, std::size_t> instances_;  // their entries
+    std::size_t boundaries_ = 0, panes_ = 0, surface_primitives_ = 0;
+    Bounds3 bounds_;
+};
+
+}  // namespace mote::core::embree
