@@ -123,9 +123,12 @@ void set_by_path(Element& root, const std::string& path, const std::string& valu
     set_parameter(*element, words.back(), value, registry, where);
 }
 
-void SceneDefines::apply_paths(Element& scene, const Registry& registry) const {
-    for (const auto& [path, value] : paths_)
-        set_by_path(scene, path, value, registry, {"-D " + path + "=" + value, 0});
+void SceneDefines::apply_paths(Element& scene, const Registry& registry, Faults& faults) const {
+    for (const auto& [path, value] : paths_) try {
+            set_by_path(scene, path, value, registry, {"-D " + path + "=" + value, 0});
+        } catch (const InputError& error) {
+            faults.add(nullptr, error);
+        }
 }
 
 }  // namespace mote::core

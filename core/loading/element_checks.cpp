@@ -48,47 +48,70 @@ void check_value(const Element& e, const Manual& manual) {
                          e.where);
 }
 
-void check_object(Element& e, const Registry& registry, std::vector<std::string>& warnings);
+void check_reference(const Element& e) {
+    e.check_attributes({"id", "name"});
+    e.require("id");
+    if (!e.children.empty()) throw InputError("<ref> holds no other elements", e.children.front().where);
+}
 
-void check_children(Element& e, const Manual& manual, const Registry& registry,
-                    std::vector<std::string>& warnings) {
-    drop_foreign_parameters(e, manual, warnings);
-    std::set<std::string> names;
-    for (Element& c : e.children) {
-        if (const std::string* name = c.find("name"); name && !names.insert(*name).second)
-            throw InputError("'" + printable(*name) + "' is given twice", c.where);
-        if (is_value_tag(c.tag)) {
-            check_value(c, manual);
-        } else if (c.tag == "ref") {
-            c.check_attributes({"id", "name"});
-            c.require("id");
-            if (!c.children.empty())
-                throw InputError("<ref> holds no other elements", c.children.front().where);
-        } else if (find_category(c.tag)) {
-            check_object(c, registry, warnings);
-        } else {
-            unknown_element(c);
+/// One run over the scene; what it finds goes to `faults`.
+struct Checker {
+    const Registry& registry;
+    std::vector<std::string>& warnings;
+    Faults& faults;
+
+    void check_object(Element& e) {
+        const Manual* manual = registry.find(*find_category(e.tag), e.get("type"));
+        if (manual) drop_foreign_parameters(e, *manual, warnings);
+        if (take_up(e))
+            faults.attempt(e, [&] {
+                e.check_attributes({"type", "id", "name"});
+                require_manual(e, registry);
+            });
+        std::set<std::string> names;
+        for (Element& c : e.children) {
+            if (find_category(c.tag)) check_object(c);
+            if (faults.has(c) || !take_up(c)) continue;
+            faults.attempt(c, [&] {
+                if (const std::string* name = c.find("name"); name && !names.insert(*name).second)
+                    throw InputError("'" + printable(*name) + "' is given twice", c.where);
+                if (manual) check_child(c, *manual);
+            });
         }
+    }
+    /// What reading found. Returns whether it found nothing.
+    bool take_up(const Element& e) {
+        if (e.fault && !faults.has(e)) faults.add(&e, *e.fault);
+        return !e.fault;
+    }
+};
+
+/// What is neither an object nor known directly in <scene>.
+void check_at_top(const Element& e) {
+    if (e.tag == "alias") {
+        e.check_attributes({"id", "as"});
+        e.require("id"), e.require("as");
+    } else if (e.tag == "ref") {
+        throw InputError("a <ref> directly in <scene> has no effect", e.where);
+    } else if (is_value_tag(e.tag)) {
+        throw InputError("<" + e.tag + "> belongs into an object, not directly into <scene>", e.where);
+    } else {
+        unknown_element(e);
     }
 }
 
-void check_object(Element& e, const Registry& registry, std::vector<std::string>& warnings) {
-    e.check_attributes({"type", "id", "name"});
-    check_children(e, require_manual(e, registry), registry, warnings);
-}
-
-void collect(const Element& parent, IdTable& ids) {
+void collect(const Element& parent, IdTable& ids, Faults& faults) {
     for (const Element& e : parent.children) {
         if (!find_category(e.tag)) continue;
         if (const std::string* id = e.find("id")) {
             const auto [it, fresh] = ids.emplace(*id, &e);
             if (!fresh)
-                throw InputError("id '" + printable(*id) + "' is taken already by line " +
-                                     std::to_string(it->second->where.line) + " of " +
-                                     printable(it->second->where.file),
-                                 e.where);
+                faults.add(&e, InputError("id '" + printable(*id) + "' is taken already by line " +
+                                              std::to_string(it->second->where.line) + " of " +
+                                              printable(it->second->where.file),
+                                          e.where));
         }
-        collect(e, ids);
+        collect(e, ids, faults);
     }
 }
 
@@ -113,12 +136,13 @@ void check_nested(const Manual& parent, const Element& written, const Element& c
 }
 
 void check_references_below(const Element& e, const Manual* manual, const IdTable& ids,
-                            const Registry& registry) {
+                            const Registry& registry, Faults& faults) {
     for (const Element& c : e.children) {
-        if (c.tag != "ref" && !find_category(c.tag)) continue;
-        const Element& object = resolve(c, ids);
-        if (manual) check_nested(*manual, c, object);
-        if (c.tag != "ref") check_references_below(c, &require_manual(c, registry), ids, registry);
+        const auto category = find_category(c.tag);
+        if (c.tag != "ref" && !category) continue;
+        if (manual && !faults.has(c)) faults.attempt(c, [&] { check_nested(*manual, c, resolve(c, ids)); });
+        if (category)
+            check_references_below(c, registry.find(*category, c.get("type")), ids, registry, faults);
     }
 }
 
@@ -144,33 +168,45 @@ const Parameter& require_parameter(const Manual& manual, const std::string& name
                      where);
 }
 
-void check_elements(Element& scene, const Registry& registry, std::vector<std::string>& warnings) {
-    scene.check_attributes({"version"});
+void check_child(const Element& child, const Manual& manual) {
+    if (is_value_tag(child.tag))
+        check_value(child, manual);
+    else if (child.tag == "ref")
+        check_reference(child);
+    else if (!find_category(child.tag))
+        unknown_element(child);
+}
+
+void check_elements(Element& scene, const Registry& registry, std::vector<std::string>& warnings,
+                    Faults& faults) {
+    Checker checker{registry, warnings, faults};
+    if (checker.take_up(scene)) faults.attempt(scene, [&] { scene.check_attributes({"version"}); });
     for (Element& e : scene.children) {
-        if (find_category(e.tag)) {
-            check_object(e, registry, warnings);
-        } else if (e.tag == "alias") {
-            e.check_attributes({"id", "as"});
-            e.require("id"), e.require("as");
-        } else if (e.tag == "ref") {
-            throw InputError("a <ref> directly in <scene> has no effect", e.where);
-        } else if (is_value_tag(e.tag)) {
-            throw InputError("<" + e.tag + "> belongs into an object, not directly into <scene>", e.where);
-        } else {
-            unknown_element(e);
-        }
+        if (find_category(e.tag))
+            checker.check_object(e);
+        else if (checker.take_up(e))
+            faults.attempt(e, [&] { check_at_top(e); });
     }
 }
 
-IdTable collect_ids(const Element& scene) {
+IdTable collect_ids(const Element& scene, Faults& faults) {
     IdTable ids;
-    collect(scene, ids);
+    collect(scene, ids, faults);
     for (const Element& e : scene.children) {
-        if (e.tag != "alias") continue;
-        const Element& target = resolve(e, ids);
-        if (!ids.emplace(e.require("as"), &target).second)
-            throw InputError("id '" + printable(e.require("as")) + "' is taken already", e.where);
+        if (e.tag != "alias" || faults.has(e)) continue;
+        faults.attempt(e, [&] {
+            const Element& target = resolve(e, ids);
+            if (!ids.emplace(e.require("as"), &target).second)
+                throw InputError("id '" + printable(e.require("as")) + "' is taken already", e.where);
+        });
     }
+    return ids;
+}
+
+IdTable collect_ids(const Element& scene) {
+    Faults faults;
+    IdTable ids = collect_ids(scene, faults);
+    faults.throw_all({});
     return ids;
 }
 
@@ -183,8 +219,8 @@ const Element& resolve(const Element& child, const IdTable& ids) {
     throw InputError("nothing has the id '" + printable(id) + "'" + suggestion(id, known), child.where);
 }
 
-void check_references(const Element& scene, const IdTable& ids, const Registry& registry) {
-    check_references_below(scene, nullptr, ids, registry);
+void check_references(const Element& scene, const IdTable& ids, const Registry& registry, Faults& faults) {
+    check_references_below(scene, nullptr, ids, registry, faults);
 }
 
 const std::vector<Category>& common_children(Category category) {
@@ -213,9 +249,12 @@ std::string parameter_for_child(const Manual& manual, Category child, const std:
         if (p.name == name) return name;
         fitting.push_back(p.name);
     }
-    // Textures and volumes are values and always named; other objects are found by what they are.
-    if (child == Category::texture || child == Category::volume || fitting.size() != 1) return "";
-    return fitting.front();
+    if (fitting.size() != 1) return "";
+    // Textures and volumes are values and named, but where the parameter is just called "texture"; other
+    // objects are found by what they are, and so is the volume of a texture.
+    const bool is_value =
+        child == Category::texture || (child == Category::volume && manual.category != Category::texture);
+    return is_value && fitting.front() != wanted ? "" : fitting.front();
 }
 
 }  // namespace mote::core

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/loading/faults.h"
 #include "core/loading/scene_element.h"
 #include "core/objects/registry.h"
 
@@ -16,20 +17,25 @@ const Manual& require_manual(const Element& element, const Registry& registry);
 const Parameter& require_parameter(const Manual& manual, const std::string& name,
                                    const SourceLocation& where);
 
-/// Checks tags, attributes, types, parameter names and the kinds of values in the whole scene. Parameters
-/// that are known but have no effect here are removed with a warning.
-void check_elements(Element& scene, const Registry& registry, std::vector<std::string>& warnings);
+/// Checks tags, attributes, types, parameter names and the kinds of values in the whole scene, and takes up
+/// what reading found. Parameters that are known but have no effect here are removed with a warning.
+void check_elements(Element& scene, const Registry& registry, std::vector<std::string>& warnings,
+                    Faults& faults);
+/// One value, reference or object below an element with this manual page. Throws InputError.
+void check_child(const Element& child, const Manual& manual);
 
 /// The elements with an id, <alias> included. Pointers into `scene`.
 using IdTable = std::map<std::string, const Element*>;
-/// Throws InputError when an id is given twice.
+/// An id that is given twice is a fault; the first holds.
+IdTable collect_ids(const Element& scene, Faults& faults);
+/// The same; throws InputError instead.
 IdTable collect_ids(const Element& scene);
 /// The element that a nested object stands for: itself, or what a <ref> names. Throws InputError for an
 /// unknown id, with the nearest one.
 const Element& resolve(const Element& child, const IdTable& ids);
 
 /// Checks that nested objects and references are of a category that their parent takes.
-void check_references(const Element& scene, const IdTable& ids, const Registry& registry);
+void check_references(const Element& scene, const IdTable& ids, const Registry& registry, Faults& faults);
 
 /// Objects that every type of a category takes besides those of its manual page (a shape: bsdf, emitter,
 /// medium).

@@ -15,7 +15,14 @@ struct NoEffect {
 };
 
 constexpr NoEffect no_effect[] = {
-    {Category::integrator, "hide_emitters", "false"},
+    {Category::integrator, "emitter_samples"},
+    {Category::integrator, "bsdf_samples"},
+    {Category::integrator, "shading_samples"},
+    {Category::integrator, "use_spectral_mis"},
+    {Category::integrator, "use_nee"},
+    {Category::integrator, "version"},               // of lajolla: which of its estimators of one picture
+    {Category::integrator, "sample_num", "", true},  // of Rainbow: the sampler's sample_count counts
+    {Category::integrator, "delta", "", true},       // of Rainbow: samples between two pictures
     {Category::integrator, "strict_normals", "", true},
     {Category::integrator, "timeout"},
     {Category::integrator, "samples_per_pass"},
@@ -51,8 +58,10 @@ constexpr NoEffect no_effect[] = {
     {Category::medium, "method", "", true},
     {Category::bsdf, "sample_visible"},
     {Category::bsdf, "ext_eta", "1", true},
+    {Category::shape, "subdiv", "", true},  // of a sphere: how finely to tessellate; ours is exact
     {Category::shape, "max_smooth_angle", "0", true},
     {Category::shape, "collapse", "false", true},
+    {Category::shape, "subdiv", "", true},  // of Rainbow: triangles of a sphere, which is exact here
 };
 
 struct Replacement {
@@ -93,13 +102,15 @@ bool same_value(const std::string& a, const std::string& b) {
 void drop_foreign_parameters(Element& e, const Manual& manual, std::vector<std::string>& warnings) {
     std::string dropped;
     int count = 0;
-    std::erase_if(e.children, [&](const Element& c) {
-        if (known(manual, c.get("name"))) return false;
+    std::erase_if(e.children, [&](Element& c) {
+        if (c.fault || known(manual, c.get("name"))) return false;
         const NoEffect* entry = find_no_effect(c, manual.category);
         if (!entry) return false;
         if (*entry->harmless && !same_value(c.get("value"), entry->harmless))
-            throw InputError("'" + c.get("name") + "' is not supported unless it is " + entry->harmless,
-                             c.where);
+            return c.guard([&] {
+                throw InputError("'" + c.get("name") + "' is not supported unless it is " + entry->harmless,
+                                 c.where);
+            });
         dropped += (count++ == 0 ? "'" : ", '") + c.get("name") + "'";
         return true;
     });
@@ -108,6 +119,18 @@ void drop_foreign_parameters(Element& e, const Manual& manual, std::vector<std::
                                           (count == 1 ? "' has" : "' have") + " no effect here",
                                       e.where)
                                .what());
+}
+
+void drop_foreign_elements(Element& scene, std::vector<std::string>& warnings) {
+    // Of Rainbow: final picture or preview; and what its author switched off.
+    for (const auto& [tag, meaning] : {std::pair("mode", "a mode of another renderer has no effect"),
+                                       std::pair("hide", "a hidden element is left out")})
+        std::erase_if(scene.children, [&](const Element& e) {
+            if (e.tag != tag) return false;
+            warnings.push_back(InputError("<" + e.tag + ">: " + meaning, e.where).what());
+            return true;
+        });
+    for (Element& e : scene.children) drop_foreign_elements(e, warnings);
 }
 
 void replace_foreign_types(Element& scene, const Registry& registry, std::vector<std::string>& warnings) {
@@ -123,6 +146,12 @@ void replace_foreign_types(Element& scene, const Registry& registry, std::vector
             break;
         }
     }
+}
+
+std::string replacement_of(Category category, const std::string& type) {
+    for (const Replacement& r : replacements)
+        if (r.category == category && r.from == type) return r.to;
+    return "";
 }
 
 }  // namespace mote::core

@@ -52,11 +52,13 @@ std::shared_ptr<Integrator> make_integrator(const Registry& registry, const Scen
     Element root;
     root.tag = "scene", root.where = where;
     root.children.push_back(element);
-    check_elements(root, registry, warnings);
-    const IdTable ids = collect_ids(root);
-    check_references(root, ids, registry);
-    ObjectMaker maker(registry, ids, {});
+    Faults faults;
+    check_elements(root, registry, warnings, faults);
+    const IdTable ids = collect_ids(root, faults);
+    check_references(root, ids, registry, faults);
+    ObjectMaker maker(registry, ids, {}, faults);
     auto integrator = maker.make_as<Integrator>(root.children.front());
+    faults.throw_all({});
     warnings.insert(warnings.end(), maker.warnings.begin(), maker.warnings.end());
     return integrator;
 }

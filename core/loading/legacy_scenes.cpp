@@ -2,6 +2,7 @@
 // the old meaning is translated here as well.
 #include <cctype>
 
+#include "core/image/srgb.h"
 #include "core/loading/foreign_names.h"
 #include "core/loading/scene_values.h"
 #include "core/objects/registry.h"
@@ -71,26 +72,26 @@ void upgrade_texture(Element& e, std::vector<std::string>& warnings) {
     e.children.push_back(transform);
 }
 
-/// Direct light is paths of depth 2.
-void upgrade_direct(Element& e, std::vector<std::string>& warnings) {
-    for (const char* name : {"emitter_samples", "bsdf_samples", "shading_samples"}) remove(e, name);
-    e.set("type", "path");
-    e.children.push_back(e.make_value("integer", "max_depth", "2"));
-    warnings.push_back(
-        InputError("integrator 'direct' is replaced by 'path' of max_depth 2", e.where).what());
+/// <srgb> holds display values: "#b03020", or numbers of 0 to 1.
+void upgrade_srgb(Element& e) {
+    e.tag = "rgb";
+    if (e.require("value").starts_with('#')) return;
+    std::string text;
+    for (const double v : parse_numbers(e.require("value"), e.where))
+        text += (text.empty() ? "" : " ") + number_to_text(double(decode_srgb(float(v))));
+    e.set("value", text);
 }
 
 void upgrade_element(Element& e, std::vector<std::string>& warnings) {
     if (e.tag == "lookAt") e.tag = "lookat";
-    if (e.tag == "srgb")
-        throw InputError("<srgb> is not supported; write the linear colour as <rgb>", e.where);
+    if (e.tag == "srgb") e.guard([&] { upgrade_srgb(e); });
     if (const std::string* name = e.find("name")) e.set("name", snake_case(*name));
     for (Element& c : e.children)
         if (c.legacy) upgrade_element(c, warnings);
     const std::string type = e.get("type");
     if (e.tag == "medium" && type == "heterogeneous") rename(e, "density", "sigma_t");
-    if (e.tag == "texture") upgrade_texture(e, warnings);
-    if (e.tag == "integrator" && type == "direct") upgrade_direct(e, warnings);
+    if (e.tag == "bsdf" && type == "diffuse") rename(e, "diffuse_reflectance", "reflectance");
+    if (e.tag == "texture") e.guard([&] { upgrade_texture(e, warnings); });
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <set>
 
+#include "core/geometry/instances.h"
 #include "core/loading/object_maker.h"
 #include "core/render/integrator.h"
 
@@ -18,46 +19,71 @@ std::vector<std::string> unique(const std::vector<std::string>& texts) {
     return result;
 }
 
-/// Area lights that no shape took up.
-void check_area_lights(const std::vector<std::pair<std::shared_ptr<Emitter>, SourceLocation>>& lights,
-                       const Scene::Parts& parts) {
-    std::set<const Emitter*> taken;
-    for (const auto& shape : parts.shapes) taken.insert(shape->emitter.get());
-    for (const auto& [light, where] : lights)
-        if (light->traits().kind == EmitterKind::area && !taken.count(light.get()))
-            throw InputError("an area light must be nested in a shape", where);
-}
-
-}  // namespace
-
-Scene::Parts build_scene(const SceneDocument& document, const Registry& registry, const std::string& file) {
-    const IdTable ids = collect_ids(document.scene);
-    check_references(document.scene, ids, registry);
-    ObjectMaker maker(registry, ids, document.search_paths);
+/// Puts what stands directly in <scene> into its place.
+struct Builder {
+    ObjectMaker maker;
+    Faults& faults;
     Scene::Parts parts;
-    parts.file = file;
-    std::vector<std::pair<std::shared_ptr<Emitter>, SourceLocation>> lights;
-    for (const Element& e : document.scene.children) {
-        if (e.tag == "alias") continue;
+    std::vector<std::pair<std::shared_ptr<Emitter>, const Element*>> lights;
+
+    void add(const Element& e) {
         if (e.tag == "shape") {
-            parts.shapes.push_back(maker.make_as<Shape>(e));
-            if (parts.shapes.back()->emitter) parts.emitters.push_back(parts.shapes.back()->emitter);
+            add_shapes(e);
         } else if (e.tag == "emitter") {
-            lights.emplace_back(maker.make_as<Emitter>(e), e.where);
-            if (lights.back().first->traits().kind != EmitterKind::area)
-                parts.emitters.push_back(lights.back().first);
+            auto light = maker.make_as<Emitter>(e);
+            if (!light) return;
+            lights.emplace_back(light, &e);
+            if (light->traits().kind != EmitterKind::area) parts.emitters.push_back(std::move(light));
         } else if (e.tag == "sensor") {
-            if (parts.camera) throw InputError("the scene has more than one sensor", e.where);
-            parts.camera = maker.make_as<Camera>(e);
+            if (once(e, bool(parts.camera))) parts.camera = maker.make_as<Camera>(e);
         } else if (e.tag == "integrator") {
-            if (parts.integrator) throw InputError("the scene has more than one integrator", e.where);
+            if (!once(e, bool(parts.integrator))) return;
             parts.integrator = maker.make_as<Integrator>(e);
             parts.integrator_element = std::make_shared<const Element>(e);
-        } else {
+        } else if (find_category(e.tag)) {
             maker.make(e);  // checked even when nothing refers to it
         }
     }
-    check_area_lights(lights, parts);
+    /// A shape, or those that an instance places; a group alone is not seen.
+    void add_shapes(const Element& e) {
+        const std::shared_ptr<Object> object = maker.make(e);
+        if (!object) return;
+        if (auto shape = std::dynamic_pointer_cast<Shape>(object)) {
+            parts.shapes.push_back(shape);
+            if (shape->emitter) parts.emitters.push_back(shape->emitter);
+        } else if (const auto instance = std::dynamic_pointer_cast<Instance>(object)) {
+            parts.shapes.insert(parts.shapes.end(), instance->shapes.begin(), instance->shapes.end());
+        } else if (!std::dynamic_pointer_cast<ShapeGroup>(object)) {
+            faults.add(&e, InputError("<shape> is an object of the wrong kind", e.where));
+        }
+    }
+    bool once(const Element& e, bool taken) {
+        if (taken) faults.add(&e, InputError("the scene has more than one " + e.tag, e.where));
+        return !taken;
+    }
+    /// Area lights that no shape took up.
+    void check_area_lights() {
+        if (!faults.empty()) return;  // the shape may be one that could not be made
+        std::set<const Emitter*> taken;
+        for (const auto& shape : parts.shapes) taken.insert(shape->emitter.get());
+        for (const auto& [light, element] : lights)
+            if (light->traits().kind == EmitterKind::area && !taken.count(light.get()))
+                faults.add(element, InputError("an area light must be nested in a shape", element->where));
+    }
+};
+
+}  // namespace
+
+Scene::Parts build_scene(const SceneDocument& document, const Registry& registry, const std::string& file,
+                         Faults& faults) {
+    const IdTable ids = collect_ids(document.scene, faults);
+    check_references(document.scene, ids, registry, faults);
+    Builder builder{ObjectMaker(registry, ids, document.search_paths, faults), faults, {}, {}};
+    for (const Element& e : document.scene.children) builder.add(e);
+    builder.check_area_lights();
+    const ObjectMaker& maker = builder.maker;
+    Scene::Parts parts = std::move(builder.parts);
+    parts.file = file;
     parts.media = maker.media;
     parts.film = maker.film;
     parts.input_files = document.files;
@@ -66,6 +92,13 @@ Scene::Parts build_scene(const SceneDocument& document, const Registry& registry
     parts.warnings = document.warnings;
     parts.warnings.insert(parts.warnings.end(), maker.warnings.begin(), maker.warnings.end());
     parts.warnings = unique(parts.warnings);
+    return parts;
+}
+
+Scene::Parts build_scene(const SceneDocument& document, const Registry& registry, const std::string& file) {
+    Faults faults;
+    Scene::Parts parts = build_scene(document, registry, file, faults);
+    faults.throw_all(document.files);
     return parts;
 }
 

@@ -7,7 +7,11 @@
 
 namespace mote::core {
 
-/// `file` stands in messages and in Parts::file. Throws InputError for everything that is wrong with a file.
+/// `file` stands in messages and in Parts::file. What is wrong goes to `faults`; the parts are whole where
+/// nothing is.
+Scene::Parts build_scene(const SceneDocument& document, const Registry& registry, const std::string& file,
+                         Faults& faults);
+/// The same; throws SceneErrors.
 Scene::Parts build_scene(const SceneDocument& document, const Registry& registry, const std::string& file);
 
 }  // namespace mote::core

@@ -3,6 +3,8 @@
 
 #include <cctype>
 
+#include "core/loading/faults.h"
+
 namespace mote::core {
 namespace {
 
@@ -53,14 +55,14 @@ void SceneDefines::set_default(const std::string& name, const std::string& value
     parameters_.emplace(name, Entry{value, false, false});
 }
 
-void SceneDefines::check_all_used() const {
+void SceneDefines::check_all_used(Faults& faults) const {
     for (const auto& [name, entry] : parameters_) {
         if (!entry.from_command_line || entry.used) continue;
         std::vector<std::string> known;
         for (const auto& [key, other] : parameters_)
             if (!other.from_command_line || other.used) known.push_back(key);
-        throw InputError("-D " + printable(name) + ": the scene does not use $" + printable(name) +
-                         suggestion(name, known));
+        faults.add(nullptr, InputError("-D " + printable(name) + ": the scene does not use $" +
+                                       printable(name) + suggestion(name, known)));
     }
 }
 

@@ -12,6 +12,7 @@
 
 namespace mote::core {
 
+class Faults;
 class Registry;
 
 class SceneDefines {
@@ -22,11 +23,11 @@ class SceneDefines {
     std::string substitute(const std::string& text, const SourceLocation& where);
     /// <default>: sets the parameter unless it has a value already.
     void set_default(const std::string& name, const std::string& value);
-    /// Applies the paths to the elements of the scene. Throws InputError when a path fits no element,
-    /// several, or names a parameter that the element's type does not have.
-    void apply_paths(Element& scene, const Registry& registry) const;
-    /// Throws InputError for a -D that no $parameter used, with the nearest known name.
-    void check_all_used() const;
+    /// Applies the paths to the elements of the scene. It is a fault when a path fits no element, several, or
+    /// names a parameter that the element's type does not have.
+    void apply_paths(Element& scene, const Registry& registry, Faults& faults) const;
+    /// A -D that no $parameter used is a fault, with the nearest known name.
+    void check_all_used(Faults& faults) const;
 
   private:
     struct Entry {
@@ -37,7 +38,7 @@ class SceneDefines {
     std::vector<std::pair<std::string, std::string>> paths_;
 };
 
-/// Sets one value below `root`, as -D does with the same path. Throws as apply_paths.
+/// Sets one value below `root`, as -D does with the same path. Throws InputError.
 void set_by_path(Element& root, const std::string& path, const std::string& value, const Registry& registry,
                  const SourceLocation& where);
 

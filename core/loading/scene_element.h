@@ -1,6 +1,7 @@
 // One element of a scene file as text: tag, attributes, children, and where it stands.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -15,9 +16,21 @@ struct Element {
     std::vector<std::pair<std::string, std::string>> attributes;
     std::vector<Element> children;
     SourceLocation where;
-    std::string folder;   ///< of the file it stands in
-    bool legacy = false;  ///< from a file of version < 2: camelCase names, old spellings
+    std::string folder;                       ///< of the file it stands in
+    bool legacy = false;                      ///< from a file of version < 2: camelCase names, old spellings
+    std::shared_ptr<const InputError> fault;  ///< what reading found wrong with it; reported later (faults.h)
 
+    /// Runs f; the InputError that it may throw becomes the element's fault, unless it has one already.
+    template <typename F>
+    bool guard(F&& f) {
+        try {
+            f();
+            return true;
+        } catch (const InputError& error) {
+            if (!fault) fault = std::make_shared<const InputError>(error);
+            return false;
+        }
+    }
     /// The value of an attribute, or null.
     const std::string* find(std::string_view name) const;
     /// The value of an attribute, or "".

@@ -1,6 +1,8 @@
 // Writes the reference of the scene language from the registry, so that page and program cannot disagree.
 #include "core/loading/scene_format.h"
 
+#include "core/loading/mitsuba_features.h"
+
 namespace mote::core {
 namespace {
 
@@ -8,8 +10,10 @@ constexpr const char* introduction = R"(# The scene format
 
 A scene is an XML file in a subset of Mitsuba 3's language: the same elements, parameters, defaults and
 conventions, so that one file can be given to both renderers. An element, type or parameter that is not on this
-page is an error with file, line and the nearest known name; nothing is skipped in silence. A parameter of
-Mitsuba that changes nothing here gives a warning.
+page is an error with file, line and the nearest known name; nothing is skipped in silence, and all errors of a
+scene are told at once. A parameter of Mitsuba that changes nothing here gives a warning. With `--lenient` what is
+wrong or unknown is left out or approximated instead, and listed in the log, the statistics and the picture's
+metadata (`approximations`). With `--integrator` whatever is wrong with the file's own integrator is a warning.
 
 ```xml
 <scene version="3.0.0">
@@ -43,7 +47,7 @@ Mitsuba that changes nothing here gives a warning.
 | `<integer name="…" value="3"/>` | a whole number |
 | `<float name="…" value="0.5"/>` | a number; an integer will do as well |
 | `<string name="…" value="…"/>` | text, file names |
-| `<rgb name="…" value="0.2, 0.4, 0.8"/>` | linear RGB, three numbers or one for grey |
+| `<rgb name="…" value="0.2, 0.4, 0.8"/>` | linear RGB, three numbers or one for grey; `#b03020` is a display colour (sRGB), decoded; Mitsuba 3.9.1 refuses that |
 | `<spectrum name="…" value="400:0.1, 700:0.8"/>` | a table of wavelength [nm] and value, converted to RGB: a reflectance under daylight (D65), or light as it is; a single number is grey |
 | `<point name="…" x="1" y="2" z="3"/>`, `<vector …/>` | also `value="1, 2, 3"` |
 | `<transform name="…">…</transform>` | see below |
@@ -87,13 +91,18 @@ in the file it is defined; `name` on the reference says what it is used for, as 
 
 Where `<scene version="…">` is below 2, names in camelCase are converted (`toWorld` is `to_world`, `intIOR` is
 `int_ior`), `lookAt` is `lookat`, textures' `uscale` and `uoffset` become `to_uv`, `ldrfilm` becomes `hdrfilm`,
-`direct` becomes `path` of depth 2, samplers become `sobol`, and a shape with a medium but no BSDF is the bare
-boundary of that medium.
+samplers become `sobol`, `<srgb>` is decoded, `diffuseReflectance` of a diffuse BSDF is its `reflectance`, and a
+shape with a medium but no BSDF is the bare boundary of that medium.
+
+Of renderers that read this language with additions: `<mode>` and `<hide>` (Rainbow: final picture or preview, and
+what its author switched off) are left out with a note, and so are `sampleNum` and `delta` of integrators (Rainbow:
+`sample_count` or `--passes` say how many samples), `version` (lajolla: which of its estimators of one picture) and
+`subdiv` of spheres.
 
 ## What is ours
 
 Types and parameters that Mitsuba does not know: volumes of type `vdbvolume`; the parameters `Le`, `Lescale`,
-`temperature`, `temperature_scale` and `temperature_offset` of media that emit; the sampler `sobol`; integrators
+`temperature`, `temperature_scale` and `temperature_offset` of media that emit; `scale` of area lights; the sampler `sobol`; integrators
 whose type begins with `mote_`. A file shared by both renderers holds none of them; the integrator can be chosen
 on the command line.
 )";
@@ -153,7 +162,7 @@ std::string page(const Manual& manual) {
 }  // namespace
 
 std::string scene_format_markdown(const Registry& registry) {
-    std::string text = introduction;
+    std::string text = introduction + mitsuba_features_markdown(registry);
     for (int c = 0; c < category_count; ++c) {
         const auto category = Category(c);
         const std::vector<std::string> types = registry.types(category);

@@ -4,7 +4,9 @@
 #include <algorithm>
 
 #include "core/loading/element_checks.h"
+#include "core/loading/foreign_integrators.h"
 #include "core/loading/foreign_names.h"
+#include "core/loading/lenient_scene.h"
 #include "core/loading/scene_builder.h"
 #include "core/loading/scene_defines.h"
 #include "core/loading/scene_values.h"
@@ -12,29 +14,15 @@
 namespace mote::core {
 namespace {
 
-/// The type that the command line asks for, with the parameters of the file that this type knows.
-void replace_integrator(Element& scene, const std::string& type, const Registry& registry) {
-    Element* element = scene.child_with_tag("integrator");
-    if (!element) {
-        Element fresh;
-        fresh.tag = "integrator";
-        fresh.where = scene.where, fresh.folder = scene.folder;
-        scene.children.push_back(fresh);
-        element = &scene.children.back();
-    }
-    element->set("type", type);
-    if (!registry.find(Category::integrator, type)) element->where = {"--integrator " + printable(type), 0};
-    const Manual& manual = require_manual(*element, registry);
-    std::erase_if(element->children, [&](const Element& c) { return !has_place_for(manual, c); });
-}
-
 /// Sensors without film or sampler get the default ones, so that -D film.width always has an aim.
 void complete_sensors(Element& scene) {
     for (std::size_t i = 0; i < scene.children.size(); ++i) {
         if (scene.children[i].tag != "sensor") continue;
-        const IdTable ids = collect_ids(scene);  // holds pointers: anew for every change
+        Faults later;                                   // checked again, and reported then
+        const IdTable ids = collect_ids(scene, later);  // holds pointers: anew for every change
         std::vector<std::string> tags;
-        for (const Element& c : scene.children[i].children) tags.push_back(resolve(c, ids).tag);
+        for (const Element& c : scene.children[i].children)
+            later.attempt(c, [&] { tags.push_back(resolve(c, ids).tag); });
         for (const auto& [tag, type] : {std::pair("film", "hdrfilm"), std::pair("sampler", "sobol")}) {
             if (std::find(tags.begin(), tags.end(), tag) != tags.end()) continue;
             Element e;
@@ -45,16 +33,44 @@ void complete_sensors(Element& scene) {
     }
 }
 
+/// Elements in today's words, with every -D applied. What is wrong with the command line goes to `faults`.
 void prepare(SceneDocument& document, SceneDefines& defines, const Registry& registry,
-             const LoadOptions& options) {
+             const LoadOptions& options, Faults& faults) {
     Element& scene = document.scene;
     upgrade_legacy(scene, document.warnings);
+    drop_foreign_elements(scene, document.warnings);
     replace_foreign_types(scene, registry, document.warnings);
-    if (!options.integrator.empty()) replace_integrator(scene, options.integrator, registry);
+    replace_foreign_integrators(document, registry);
+    if (!options.integrator.empty()) override_integrator(document, options.integrator, registry);
     complete_sensors(scene);
-    defines.check_all_used();
-    defines.apply_paths(scene, registry);
-    check_elements(scene, registry, document.warnings);
+    defines.check_all_used(faults);
+    defines.apply_paths(scene, registry, faults);
+}
+
+constexpr int max_rounds = 100;  // of leniency; each mends what the one before brought to light
+
+/// Checks the elements and makes the parts of them. Throws SceneErrors; with leniency only where mending does
+/// not help.
+Scene::Parts make_parts(SceneDocument& document, const Registry& registry, const std::string& file,
+                        bool lenient, const Faults& of_command) {
+    for (int round = 0;; ++round) {
+        Faults faults = of_command;
+        check_elements(document.scene, registry, document.warnings, faults);
+        Scene::Parts parts = build_scene(document, registry, file, faults);
+        if (faults.empty()) return parts;
+        if (!lenient || !of_command.empty() || round == max_rounds) faults.throw_all(document.files);
+        for (const std::string& note : remedy(document.scene, faults, registry))
+            document.approximations.push_back(note);
+    }
+}
+
+std::unique_ptr<Scene> make_scene(SceneDocument document, SceneDefines& defines, const Registry& registry,
+                                  const LoadOptions& options, const std::string& file) {
+    Faults faults;
+    prepare(document, defines, registry, options, faults);
+    auto scene = std::make_unique<Scene>(make_parts(document, registry, file, options.lenient, faults));
+    if (options.report) *options.report = {document.approximations, document.features};
+    return scene;
 }
 
 }  // namespace
@@ -63,22 +79,29 @@ SceneDocument load_scene_elements(const std::string& path, const Registry& regis
                                   const LoadOptions& options) {
     SceneDefines defines(options.defines);
     SceneDocument document = read_scene_file(path, defines);
-    prepare(document, defines, registry, options);
+    Faults faults;
+    prepare(document, defines, registry, options, faults);
+    if (options.lenient) {
+        make_parts(document, registry, path, true, faults);
+        return document;
+    }
+    check_elements(document.scene, registry, document.warnings, faults);
+    check_references(document.scene, collect_ids(document.scene, faults), registry, faults);
+    faults.throw_all(document.files);
     return document;
 }
 
 std::unique_ptr<Scene> load_scene(const std::string& path, const Registry& registry,
                                   const LoadOptions& options) {
-    return std::make_unique<Scene>(build_scene(load_scene_elements(path, registry, options), registry, path));
+    SceneDefines defines(options.defines);
+    return make_scene(read_scene_file(path, defines), defines, registry, options, path);
 }
 
 std::unique_ptr<Scene> load_scene_from_string(const std::string& xml, const std::string& folder,
                                               const Registry& registry, const LoadOptions& options,
                                               const std::string& name) {
     SceneDefines defines(options.defines);
-    SceneDocument document = read_scene_text(xml, folder, name, defines);
-    prepare(document, defines, registry, options);
-    return std::make_unique<Scene>(build_scene(document, registry, name));
+    return make_scene(read_scene_text(xml, folder, name, defines), defines, registry, options, name);
 }
 
 }  // namespace mote::core

@@ -3,7 +3,7 @@
 // Three steps, each in a file of its own: xml_reader (text -> elements with file and line; include, default,
 // $parameters, camelCase of version 0.x), element checks against the registry's manual pages, and
 // scene_builder (elements -> objects, references, scene). Every fault is an InputError with file, line and
-// the nearest known name.
+// the nearest known name; all those of a scene come together as SceneErrors (faults.h).
 #pragma once
 
 #include <memory>
@@ -18,12 +18,22 @@
 
 namespace mote::core {
 
+/// What loading did besides.
+struct LoadReport {
+    std::vector<std::string> approximations;  ///< what leniency left out or replaced, and why
+    std::vector<std::string> features;        ///< layers of the first hit that the file asks for
+};
+
 struct LoadOptions {
     /// -D name=value: `name` is a $parameter of the file, or a path such as "integrator.paths" or
     /// "film.width". One that nothing used is an error.
     std::vector<std::pair<std::string, std::string>> defines;
-    /// Replaces the type of the file's integrator; its parameters are kept where the new type knows them.
+    /// Replaces the type of the file's integrator; its parameters are kept where the new type knows them, and
+    /// whatever is wrong with them is a warning.
     std::string integrator;
+    /// What is wrong with the file is left out or approximated, as LoadReport::approximations says.
+    bool lenient = false;
+    LoadReport* report = nullptr;  ///< filled where it is not null
 };
 
 std::unique_ptr<Scene> load_scene(const std::string& path, const Registry& registry,

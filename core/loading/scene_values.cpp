@@ -2,7 +2,9 @@
 #include "core/loading/scene_values.h"
 
 #include <algorithm>
+#include <charconv>
 
+#include "core/image/srgb.h"
 #include "core/loading/spectrum.h"
 
 namespace mote::core {
@@ -17,7 +19,20 @@ bool parse_boolean(const Element& e) {
 
 std::int64_t parse_integer(const Element& e) { return parse_integer_text(e.require("value"), e.where); }
 
+/// "#b03020" as on the web: six hexadecimal digits of sRGB. Mitsuba 0.x read it so; 3.9.1 refuses it.
+Rgb parse_hexadecimal(const std::string& text, const SourceLocation& where) {
+    unsigned bits = 0;
+    const char* const end = text.data() + text.size();
+    const auto [last, error] = std::from_chars(text.data() + 1, end, bits, 16);
+    if (text.size() != 7 || error != std::errc() || last != end)
+        throw InputError("'" + printable(text, 40) + "' is no colour such as #b03020", where);
+    const auto channel = [&](unsigned shift) { return decode_srgb(float((bits >> shift) & 255u) / 255.0f); };
+    return {channel(16), channel(8), channel(0)};
+}
+
 Rgb parse_rgb(const Element& e) {
+    if (const std::string& text = e.require("value"); text.starts_with('#'))
+        return parse_hexadecimal(text, e.where);
     const std::vector<double> v = parse_numbers(e.require("value"), e.where);
     if (v.size() == 1) return Rgb(float(v[0]));
     if (v.size() == 3) return {float(v[0]), float(v[1]), float(v[2])};

@@ -133,38 +133,58 @@ class Reader {
         if (depth > max_element_depth) throw InputError("elements are nested more than 64 deep", e.where);
         if (++elements_ > max_elements) throw InputError("more than 4 million elements", e.where);
         for (const pugi::xml_attribute attribute : node.attributes()) {
-            if (e.find(attribute.name()))
-                throw InputError("attribute '" + printable(attribute.name()) + "' is given twice", e.where);
-            e.attributes.emplace_back(attribute.name(), defines_.substitute(attribute.value(), e.where));
+            e.guard([&] {
+                if (e.find(attribute.name()))
+                    throw InputError("attribute '" + printable(attribute.name()) + "' is given twice",
+                                     e.where);
+                e.attributes.emplace_back(attribute.name(), attribute.value());
+                e.attributes.back().second = defines_.substitute(attribute.value(), e.where);
+            });
         }
         for (const pugi::xml_node child : node.children()) {
-            if (child.type() != pugi::node_element)
-                throw InputError(
-                    "text inside <" + printable(e.tag) + ">: '" + printable(child.value(), 40) + "'",
-                    source.at(child.offset_debug()));
-            add_child(e, read_element(child, source, depth + 1), depth);
+            if (child.type() == pugi::node_element)
+                add_child(e, read_element(child, source, depth + 1), depth);
+            else
+                e.children.push_back(stray_text(e, child.value(), source.at(child.offset_debug())));
         }
         return e;
     }
 
-    /// Handles the elements that speak to the reader itself; everything else becomes a child.
+    /// Words between elements: a fault that stands where they stand.
+    static Element stray_text(const Element& parent, const char* text, const SourceLocation& where) {
+        Element e;
+        e.where = where, e.folder = parent.folder;
+        e.fault = std::make_shared<const InputError>(
+            "text inside <" + printable(parent.tag) + ">: '" + printable(text, 40) + "'", where);
+        return e;
+    }
+
+    /// Handles the elements that speak to the reader itself; everything else, and what is wrong with these,
+    /// becomes a child.
     void add_child(Element& parent, Element child, int depth) {
-        if (child.tag != "default" && child.tag != "include" && child.tag != "path") {
+        const bool ours = child.tag == "default" || child.tag == "include" || child.tag == "path";
+        std::string included;
+        if (ours && !child.fault) child.guard([&] { obey(child, depth, included); });
+        if (!ours || child.fault)
             parent.children.push_back(std::move(child));
-            return;
-        }
-        if (!child.children.empty())
-            throw InputError("<" + child.tag + "> holds no other elements", child.children.front().where);
-        if (depth > 0) throw InputError("<" + child.tag + "> belongs directly into <scene>", child.where);
-        if (child.tag == "default") {
-            child.check_attributes({"name", "value"});
-            defines_.set_default(child.require("name"), child.require("value"));
-        } else if (child.tag == "path") {
-            child.check_attributes({"value"});
-            add_search_path(child);
+        else if (!included.empty())
+            include(parent, child, included);
+    }
+
+    /// Does what the element asks for; the file of an <include> is left to the caller.
+    void obey(const Element& e, int depth, std::string& included) {
+        if (!e.children.empty())
+            throw InputError("<" + e.tag + "> holds no other elements", e.children.front().where);
+        if (depth > 0) throw InputError("<" + e.tag + "> belongs directly into <scene>", e.where);
+        if (e.tag == "default") {
+            e.check_attributes({"name", "value"});
+            defines_.set_default(e.require("name"), e.require("value"));
+        } else if (e.tag == "path") {
+            e.check_attributes({"value"});
+            add_search_path(e);
         } else {
-            child.check_attributes({"filename"});
-            include(parent, child);
+            e.check_attributes({"filename"});
+            included = check_included(e);
         }
     }
 
@@ -187,21 +207,32 @@ class Reader {
         return beside.string();
     }
 
-    void include(Element& parent, const Element& e) {
+    /// The path of the file to be included. Throws InputError where it cannot be.
+    std::string check_included(const Element& e) {
         const std::string path = find_included(e);
-        const std::string key = canonical(path);
-        if (std::find(open_.begin(), open_.end(), key) != open_.end())
+        std::error_code error;
+        if (!fs::is_regular_file(path, error)) read_text(path, e.where);  // says what is wrong
+        if (std::find(open_.begin(), open_.end(), canonical(path)) != open_.end())
             throw InputError("'" + printable(path, 300) + "' includes itself", e.where);
         if (open_.size() >= max_include_depth)
             throw InputError("includes are nested more than 16 deep", e.where);
         if (++files_read_ > max_files) throw InputError("more than 1000 files are included", e.where);
-        open_.push_back(key);
+        return path;
+    }
+
+    /// Malformed XML ends all reading.
+    void include(Element& parent, const Element& e, const std::string& path) {
+        open_.push_back(canonical(path));
+        document_.files.push_back(path);
         SourceText source(read_text(path, e.where), path, fs::path(path).parent_path().string());
         Element included = read_root(source);
-        document_.files.push_back(path);
         open_.pop_back();
         if (included.tag == "scene") {
-            included.check_attributes({"version"});
+            included.guard([&] { included.check_attributes({"version"}); });
+            if (included.fault) {
+                parent.children.push_back(e);
+                parent.children.back().fault = included.fault;
+            }
             for (Element& c : included.children) parent.children.push_back(std::move(c));
         } else {
             parent.children.push_back(std::move(included));

@@ -14,10 +14,13 @@ struct SceneDocument {
     std::vector<std::string> files;         ///< every XML file read
     std::vector<std::string> search_paths;  ///< the scene's folder, then those of <path>
     std::vector<std::string> warnings;
+    std::vector<std::string> features;        ///< layers of the first hit that the scene asks for
+    std::vector<std::string> approximations;  ///< what leniency left out or replaced
 };
 
-/// Throws InputError with file and line for a file that cannot be read, malformed XML, a cycle of includes,
-/// or more than the limits: 64 MB a file, 64 elements deep, 16 includes deep, 1000 files, 4 million elements.
+/// Throws InputError with file and line for a file that cannot be read, malformed XML, or more than the
+/// limits: 64 MB a file, 64 elements deep, 4 million elements. All else that is wrong (a name that nothing
+/// defines, a cycle of includes, more than 16 includes deep or 1000 files) is the fault of its element.
 SceneDocument read_scene_file(const std::string& path, SceneDefines& defines);
 SceneDocument read_scene_text(const std::string& xml, const std::string& folder, const std::string& name,
                               SceneDefines& defines);

@@ -27,10 +27,20 @@ TEST_CASE("camelCase of version 0.x is converted, and only there", "[scene][lega
     CHECK(integrator_of(*scene).get_int("depth_of_things", 0) == 6);
     CHECK(warned(*scene, "test.xml:2: 'strict_normals' of integrator 'fake' has no effect here"));
     CHECK(load_error(scene_xml(body)) ==
-          "test.xml:2: integrator 'fake' has no parameter 'maxDepth' (did you mean 'max_depth'?)");
-    CHECK(load_error(scene_xml("<integrator type='fake'>\n<integer name='sampleNum' value='1'/></integrator>",
+          "test.xml:2: integrator 'fake' has no parameter 'maxDepth' (did you mean 'max_depth'?) (and 2 more "
+          "errors)");
+    CHECK(load_error(scene_xml("<integrator type='fake'>\n<integer name='sampleSum' value='1'/></integrator>",
                                "0.5.0"))
-              .starts_with("test.xml:3: integrator 'fake' has no parameter 'sample_num'"));
+              .starts_with("test.xml:3: integrator 'fake' has no parameter 'sample_sum'"));
+}
+
+TEST_CASE("A sphere of version 0.x may say how finely it was to be tessellated", "[scene][legacy]") {
+    const auto scene = load_legacy("<shape type='sphere'><integer name='subdiv' value='200'/></shape>");
+    CHECK(scene->shapes()[0]->area() == Approx(12.566371));
+    REQUIRE_FALSE(scene->parts().warnings.empty());
+    CHECK(scene->parts().warnings[0].find("'subdiv'") != std::string::npos);
+    CHECK_THROWS(
+        load(scene_xml("<shape type='sphere'><integer name='subdiv' value='200'/></shape>", "3.0.0")));
 }
 
 TEST_CASE("Old spellings", "[scene][legacy]") {
@@ -59,14 +69,30 @@ TEST_CASE("Old spellings", "[scene][legacy]") {
 
 TEST_CASE("What would change the picture is refused, not dropped", "[scene][legacy]") {
     const auto error = [](const std::string& value) {
-        return load_error(scene_xml("<integrator type='fake'>\n<boolean name='hide_emitters' value='" +
-                                    value + "'/></integrator>"));
+        return load_error(scene_xml(
+            "<bsdf type='dielectric'>\n<float name='extEta' value='" + value + "'/></bsdf>", "0.5.0"));
     };
-    CHECK(error("true") == "test.xml:3: 'hide_emitters' is not supported unless it is false");
-    CHECK(error("false") == "");
-    CHECK(load_error(scene_xml("<bsdf type='diffuse'>\n<srgb name='reflectance' value='#ffffff'/></bsdf>",
-                               "0.5.0")) ==
-          "test.xml:3: <srgb> is not supported; write the linear colour as <rgb>");
+    CHECK(error("1.5") == "test.xml:3: 'ext_eta' is not supported unless it is 1");
+    CHECK(error("1.0") == "");
+}
+
+TEST_CASE("Colours as on the web are display values", "[scene][legacy]") {
+    // IEC 61966-2-1: ((v + 0.055) / 1.055)^2.4 of 0xb0 / 255, and v / 12.92 of 0x05 / 255.
+    const auto scene =
+        load_legacy(R"(<integrator type="fake"><rgb name="colour" value="#b00510"/></integrator>)");
+    const Rgb colour = integrator_of(*scene).get_rgb("colour", Rgb(0.0f));
+    CHECK(colour.x == Approx(0.434154).epsilon(1e-5));
+    CHECK(colour.y == Approx(5.0 / 255.0 / 12.92).epsilon(1e-5));
+    CHECK(colour.z == Approx(0.00518152).epsilon(1e-4));
+    const auto srgb = load_legacy(
+        R"(<integrator type="fake"><srgb name="colour" value="0.5, 0.0392157, 1"/></integrator>)");
+    const Rgb decoded = integrator_of(*srgb).get_rgb("colour", Rgb(0.0f));
+    CHECK(decoded.x == Approx(0.2140411).epsilon(1e-5));
+    CHECK(decoded.z == Approx(1.0));
+    for (const char* wrong : {"#b0302", "#b030200", "#b0302g", "#", "b03020"})
+        CHECK(contains(load_error(scene_xml("<integrator type='fake'>\n<rgb name='colour' value='" +
+                                            std::string(wrong) + "'/></integrator>")),
+                       "test.xml:3: '"));
 }
 
 TEST_CASE("Matching functions have the known white points", "[scene][spectrum]") {

@@ -245,6 +245,21 @@ TEST_CASE("A lamp in a box of smoke tells nothing about the world outside", "[sc
     CHECK(sigma_at(*fog, {3, 0, 0}) == 2);
 }
 
+// Where open walls part the outside, a lamp says what it stands in by its exterior; what it is filled with is
+// not that.
+TEST_CASE("An area light begins outside of its shape", "[scene][media]") {
+    const auto scene = scene_with_media(
+        "<shape type='rectangle'><transform name='to_world'><translate z='-3'/></transform><bsdf "
+        "type='null'/>" +
+        outside("a") +
+        "</shape><shape type='sphere'><float name='radius' value='.1'/>"
+        "<emitter type='area'/>" +
+        outside("a") + inside("b") + "</shape>");
+    const auto& lamp = *scene->shapes()[1]->emitter;
+    const auto sample = lamp.sample_emission({0.2f, 0.6f}, {0.5f, 0.5f});
+    CHECK(sigma(scene->emitter_medium_state(lamp, *sample)) == 1);
+}
+
 TEST_CASE("Lights that reach through a boundary are looked at point by point", "[scene][media]") {
     const auto scene = scene_with_media(
         box("1", inside("a")) +

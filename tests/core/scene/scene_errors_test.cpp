@@ -47,7 +47,7 @@ TEST_CASE("Unknown names are refused with the nearest known one", "[scene][error
     CHECK(error_of("<shape/>") == "test.xml:2: <shape> needs the attribute 'type'");
     CHECK(error_of("<bsdf type='diffuse' id='wood'/><shape type='sphere'>\n<ref id='wod'/></shape>") ==
           "test.xml:3: nothing has the id 'wod' (did you mean 'wood'?)");
-    CHECK(error_of("<mode type='final'/>").starts_with("test.xml:2: unknown element <mode>"));
+    CHECK(error_of("<moode type='final'/>").starts_with("test.xml:2: unknown element <moode>"));
     CHECK(parameter_error("<floot name='bound' value='1'/>") ==
           "test.xml:3: unknown element <floot> (did you mean 'float'?)");
     CHECK(parameter_error("<float value='1'/>") == "test.xml:3: <float> needs the attribute 'name'");

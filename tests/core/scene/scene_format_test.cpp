@@ -52,8 +52,8 @@ std::string scene_around(const Manual& manual) {
 TEST_CASE("Every type that a scene may hold survives linking", "[scene][registry]") {
     const std::vector<std::pair<Category, std::vector<std::string>>> expected = {
         {Category::bsdf,
-         {"conductor", "dielectric", "diffuse", "null", "phong", "plastic", "roughconductor",
-          "roughdielectric", "roughplastic", "thindielectric", "twosided"}},
+         {"conductor", "dielectric", "diffuse", "null", "phong", "plastic", "principled", "principledthin",
+          "roughconductor", "roughdielectric", "roughplastic", "thindielectric", "twosided"}},
         {Category::texture, {"bitmap", "checkerboard"}},
         {Category::shape, {"cube", "cylinder", "disk", "obj", "ply", "rectangle", "sphere"}},
         {Category::emitter, {"area", "constant", "directional", "envmap", "point", "spot"}},

@@ -152,11 +152,12 @@ TEST_CASE("Includes are relative to their file, nest, and are hashed", "[scene][
     CHECK(scene->parts().input_files.size() == 3);
     CHECK(scene->parts().file == main);
 
-    folder.write("parts/deeper.xml", "<scene version='3.0.0'>\n<include filename='../main.xml'/></scene>");
+    const std::string sound =
+        "<scene version='3.0.0'><default name='n' value='1'/><bsdf type='diffuse' id='white'/>";
+    folder.write("parts/deeper.xml", sound + "\n<include filename='../main.xml'/></scene>");
     CHECK(contains(file_error(main), "deeper.xml:2: "));
     CHECK(contains(file_error(main), "includes itself"));
-    folder.write("parts/deeper.xml",
-                 "<scene version='3.0.0'><default name='n' value='1'/>\n\n<bsdf type='difuse'/></scene>");
+    folder.write("parts/deeper.xml", sound + "\n\n<bsdf type='difuse'/></scene>");
     CHECK(contains(file_error(main), "deeper.xml:3: unknown bsdf type 'difuse' (did you mean 'diffuse'?)"));
     folder.write("parts/deeper.xml", "");
     CHECK(contains(file_error(main), "deeper.xml:1: malformed XML"));
@@ -204,4 +205,18 @@ TEST_CASE("Default BSDFs", "[scene][syntax]") {
     CHECK(scene->media().size() == 1);
     CHECK_FALSE(scene->shapes()[1]->has_medium_boundary);
     CHECK(scene->shapes()[2]->has_medium_boundary);
+}
+
+TEST_CASE("a path on the command line means an element's name before a type of that word",
+          "[scene][syntax]") {
+    const std::string xml = scene_xml(
+        "<shape type='sphere'><bsdf type='twosided'><bsdf type='diffuse' name='front'/>"
+        "<bsdf type='roughconductor' name='diffuse'/></bsdf></shape>");
+    LoadOptions options;
+    options.defines = {{"diffuse.alpha", "0.3"}};
+    CHECK(load_error(xml, options) == "");
+    options.defines = {{"diffuse.reflectance", "0.3"}};
+    CHECK(contains(load_error(xml, options), "reflectance"));
+    options.defines = {{"front.reflectance", "0.3"}};
+    CHECK(load_error(xml, options) == "");
 }

@@ -1,0 +1,29 @@
+// The wish to stop, passed down to whatever takes long: a flag that a signal or a clock sets.
+//
+// Loops that can end early return; what lies deeper throws Cancelled, which unwinds through parallel loops
+// and is caught where a pass is run. What was half done is thrown away. A look costs one load.
+#pragma once
+
+#include <atomic>
+
+namespace mote::core {
+
+/// Thrown where work was asked to stop. No std::exception: it is nobody's error.
+struct Cancelled {};
+
+class CancelToken {
+  public:
+    CancelToken() = default;  ///< never
+    /// The flag must outlive the token.
+    CancelToken(const std::atomic<bool>& flag) : flag_(&flag) {}  // NOLINT: a flag is a token
+
+    bool requested() const { return flag_ && flag_->load(std::memory_order_relaxed); }
+    void check() const {
+        if (requested()) throw Cancelled();
+    }
+
+  private:
+    const std::atomic<bool>* flag_ = nullptr;
+};
+
+}  // namespace mote::core
