@@ -14,6 +14,7 @@
 #include <optional>
 #include <string_view>
 
+#include "core/image/bmp_preflight.h"
 #include "core/image/image_file.h"
 #include "core/image/metadata_stripping.h"
 #include "core/image/quiet_stderr.h"
@@ -79,6 +80,9 @@ Bitmap decode(const std::string& kind, std::vector<std::byte> bytes, std::size_t
     OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
     OIIO::ImageSpec config, spec;
     config.attribute("oiio:UnassociatedAlpha", 1);  // colours as they are stored
+    // Three channels of every BMP with a palette: of runs with a grey one, versions of OpenImageIO before 2.4
+    // write three where they made room for one.
+    config.attribute("bmp:monochrome_detect", 0);
     if (!input->set_ioproxy(&memory)) throw InputError("OpenImageIO reads " + kind + " from files alone");
     // OpenImageIO knows that libpng failed; why, libpng has printed.
     const auto damaged = [&] {
@@ -144,6 +148,10 @@ Bitmap read(const std::string& path, bool raw, std::size_t max_pixels) {
         StrippedImage stripped = kind == "png" ? strip_png(bytes) : strip_jpeg(bytes);
         check_size(stripped.width, stripped.height, stripped.channels, file_size, max_pixels);
         bytes = std::move(stripped.bytes);
+    }
+    if (kind == "bmp") {
+        const BmpSummary bmp = check_bmp(bytes);
+        check_size(bmp.width, bmp.height, bmp.bits == 32 ? 4 : 3, file_size, max_pixels);
     }
     return decode(*kind, std::move(bytes), file_size, raw, max_pixels);
 }

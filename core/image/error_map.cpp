@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/image/metrics.h"
+#include "core/image/relative_error.h"
 #include "core/image/srgb.h"
 
 namespace mote::core {
@@ -37,13 +37,19 @@ std::vector<Rgb> error_map(std::span<const Rgb> image, std::span<const Rgb> refe
     if (!(scale.lowest > 0.0 && scale.lowest < scale.highest))
         throw std::invalid_argument("the scale of an error map needs 0 < lowest < highest");
     const double decades = std::log(scale.highest / scale.lowest);
+    std::vector<Rgb> finite(reference.begin(), reference.end());
+    for (Rgb& r : finite)
+        if (!is_finite(r)) r = Rgb(0.0f);
+    const RelativeWeights weights = relative_weights(finite);
     std::vector<Rgb> map(image.size());
     for (std::size_t i = 0; i < map.size(); ++i) {
         if (!is_finite(image[i]) || !is_finite(reference[i])) {
             map[i] = Rgb(1.0f, 0.0f, 1.0f);
             continue;
         }
-        const double error = std::sqrt(relative_squared_error(image[i], reference[i]));
+        const double square = mean_square(glm::dvec3(image[i]) - glm::dvec3(reference[i]));
+        const double relative = weights.norm > 0.0 ? weights.weight[i] * square : infinity;
+        const double error = square > 0.0 ? std::sqrt(relative) : 0.0;
         map[i] = colour(std::clamp(std::log(error / scale.lowest) / decades, 0.0, 1.0));
     }
     return map;

@@ -1,9 +1,9 @@
 // Where a picture differs from its reference, in false colours.
 //
-// Shown is the square root of relative_squared_error(), on a logarithmic scale: what relmse is made of. The
-// colours are those of viridis (matplotlib, in the public domain): lightness rises evenly with the error, so
-// they keep their order in grey and for most who see colours differently. Pixels that are not finite are
-// magenta, which viridis has not.
+// Shown is |d| sqrt(w) with the weights of relative_error.h, on a logarithmic scale: what the error is made
+// of. The colours are those of viridis (matplotlib, in the public domain): lightness rises evenly with the
+// error, so they keep their order in grey and for most who see colours differently. Pixels that are not
+// finite are magenta, which viridis has not.
 #pragma once
 
 #include <span>
@@ -17,11 +17,10 @@ struct ErrorScale {
     double lowest = 1e-3, highest = 1.0;  ///< relative errors at the two ends; beyond them the ends' colours
 };
 inline constexpr const char* error_map_definition =
-    "square root of the mean over channels of d^2 / (r^2 + 0.01), logarithmic, dark violet to yellow; "
-    "magenta "
-    "where a value is not finite";
+    "|d| / sqrt(|r|^2 + (m / 10)^2), logarithmic, dark violet to yellow; magenta where a value is not finite";
 
-/// Linear RGB for write_png(), pixel by pixel. Throws std::invalid_argument for pictures of different sizes
+/// Linear RGB for write_png(), pixel by pixel; where the reference is black all over, every error is large.
+/// Throws std::invalid_argument for pictures of different sizes
 /// or a scale without 0 < lowest < highest.
 std::vector<Rgb> error_map(std::span<const Rgb> image, std::span<const Rgb> reference,
                            const ErrorScale& scale = {});

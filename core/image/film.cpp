@@ -17,8 +17,6 @@ namespace {
 
 constexpr std::size_t grain = 4096;  // pixels a task: large enough to hide the scheduling
 
-double luminance_of(const double c[3]) { return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; }
-
 // Variance of a mean of n values from their sum and sum of squares: (sum of squares / n - mean^2) / (n - 1).
 // Rounding can leave a tiny negative number where all values are equal.
 double variance_from_sums(double sum, double squares, double n) {
@@ -57,11 +55,13 @@ Film::Film(int width, int height, std::vector<Layer> layers, bool all_squares)
       layers_(std::move(layers)),
       all_squares_(all_squares),
       beauty_squares_(width > 0 && height > 0 ? 3 * pixels() : 0),
-      luminance_squares_(width > 0 && height > 0 ? pixels() : 0) {
+      block_squares_(width > 0 && height > 0 ? pixels() : 0) {
     if (width < 1 || height < 1) throw std::invalid_argument("a film needs at least one pixel");
     sums_.assign(layers_.size(), Sums(3 * pixels()));
-    for (const Layer& layer : layers_)
+    for (const Layer& layer : layers_) {
         layer_squares_.emplace_back(all_squares_ || layer.squares ? 3 * pixels() : 0);
+        if (!layer.auxiliary) beauty_layers_.push_back(std::size_t(&layer - layers_.data()));
+    }
     replaced_means_.resize(layers_.size());
     find_where();
 }
@@ -96,8 +96,16 @@ void Film::add_pixel(const PassImage& image, std::size_t pixel) {
         }
     }
     for (int c = 0; c < 3; ++c) beauty_squares_.block[3 * pixel + std::size_t(c)] += beauty[c] * beauty[c];
-    const double y = luminance_of(beauty);
-    luminance_squares_.block[pixel] += y * y;
+}
+
+void Film::add_block_squares() {
+    for_each_pixel(pixels(), [&](std::size_t p) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            double sum = 0.0;
+            for (const std::size_t layer : beauty_layers_) sum += sums_[layer].block[3 * p + c];
+            block_squares_.total[p] += sum * sum / 3.0;
+        }
+    });
 }
 
 void Film::add_pass(const PassImage& image) {
@@ -120,10 +128,10 @@ void Film::add_pass(const PassImage& image) {
         std::plus<>());
 
     if (++passes_ % block_size != 0) return;
+    add_block_squares();
     for (auto& sums : sums_) sums.close_block();
     for (auto& squares : layer_squares_) squares.close_block();
     beauty_squares_.close_block();
-    luminance_squares_.close_block();
 }
 
 std::vector<Rgb> Film::mean(std::size_t layer) const {
@@ -139,16 +147,9 @@ std::vector<Rgb> Film::mean(std::size_t layer) const {
     return result;
 }
 
-std::vector<std::size_t> Film::beauty_layers() const {
-    std::vector<std::size_t> indices;
-    for (std::size_t layer = 0; layer < layers_.size(); ++layer)
-        if (!layers_[layer].auxiliary) indices.push_back(layer);
-    return indices;
-}
-
 std::vector<Rgb> Film::beauty() const {
     std::vector<Rgb> result(pixels(), Rgb(0.0f));
-    for (const std::size_t layer : beauty_layers()) {
+    for (const std::size_t layer : beauty_layers_) {
         const std::vector<Rgb> part = mean(layer);
         for_each_pixel(pixels(), [&](std::size_t p) { result[p] += part[p]; });
     }
@@ -170,7 +171,7 @@ std::vector<Rgb> Film::variance_of_mean(std::span<const std::size_t> layers, con
 }
 
 std::vector<Rgb> Film::beauty_variance_of_mean() const {
-    return variance_of_mean(beauty_layers(), beauty_squares_);
+    return variance_of_mean(beauty_layers_, beauty_squares_);
 }
 
 std::vector<Rgb> Film::layer_variance_of_mean(std::size_t layer) const {
@@ -181,37 +182,6 @@ std::vector<Rgb> Film::layer_variance_of_mean(std::size_t layer) const {
 void Film::set_mean(std::size_t layer, std::span<const Rgb> values) {
     if (values.size() != pixels()) throw std::invalid_argument("the layer does not fit the film");
     replaced_means_.at(layer).assign(values.begin(), values.end());
-}
-
-Film::Mean Film::beauty_luminance(std::size_t pixel) const {
-    double sum[3] = {0.0, 0.0, 0.0};
-    for (std::size_t layer = 0; layer < layers_.size(); ++layer) {
-        if (layers_[layer].auxiliary) continue;
-        for (std::size_t c = 0; c < 3; ++c) sum[c] += sums_[layer].at(3 * pixel + c);
-    }
-    const double y = luminance_of(sum);
-    return {y / passes_, variance_from_sums(y, luminance_squares_.at(pixel), passes_)};
-}
-
-double Film::relative_noise() const {
-    if (passes_ < 2) return std::numeric_limits<double>::infinity();
-    // Split at fixed places, so that the number of threads cannot change the sum and with it the last pass.
-    const Mean sum = tbb::parallel_deterministic_reduce(
-        tbb::blocked_range<std::size_t>(0, pixels(), grain), Mean{0.0, 0.0},
-        [&](const auto& range, Mean partial) {
-            for (std::size_t p = range.begin(); p < range.end(); ++p) {
-                const Mean y = beauty_luminance(p);
-                partial.value += y.value, partial.variance_of_mean += y.variance_of_mean;
-            }
-            return partial;
-        },
-        [](const Mean& a, const Mean& b) {
-            return Mean{a.value + b.value, a.variance_of_mean + b.variance_of_mean};
-        });
-    const double mean = sum.value, variance = sum.variance_of_mean;
-    const auto n = double(pixels());
-    if (mean == 0.0) return variance == 0.0 ? 0.0 : std::numeric_limits<double>::infinity();
-    return std::sqrt(variance / n) / std::fabs(mean / n);
 }
 
 }  // namespace mote::core

@@ -48,9 +48,9 @@ class Film {
     /// Replaces what mean() returns for a layer, for post-processes (Estimator::finish). The sums, and with
     /// them the variances, the noise and the serialised film, stay those of the passes.
     void set_mean(std::size_t layer, std::span<const Rgb> values);
-    /// Relative noise: RMS over pixels of the standard error of the beauty's luminance, over its mean
-    /// luminance.
-    double relative_noise() const;
+    /// The noise of the beauty, Eq. (4) of core/image/relative_error.h: the error that the passes so far are
+    /// expected to have left. Infinity for n < 2.
+    double noise() const;
 
     /// The bits of the film, for checkpoints: sums, counts, block state, and a checksum.
     std::vector<std::byte> serialize() const;
@@ -66,16 +66,14 @@ class Film {
         double at(std::size_t i) const { return total[i] + block[i]; }
         void close_block();
     };
-    struct Mean {
-        double value, variance_of_mean;
-    };
     void add_pixel(const PassImage& image, std::size_t pixel);
-    Mean beauty_luminance(std::size_t pixel) const;
+    void add_block_squares();
+    /// Of the mean over complete blocks, averaged over channels, from the spread of the blocks' sums.
+    double block_variance_of_mean(std::size_t pixel) const;
     std::vector<Rgb> variance_of_mean(std::span<const std::size_t> layers, const Sums& squares) const;
     /// How many passes the mean of a layer is over, for a pixel.
     double passes_of(std::size_t layer, std::size_t pixel) const;
     void find_where();
-    std::vector<std::size_t> beauty_layers() const;
     std::vector<const Sums*> all_sums() const;
     std::size_t serialized_size(std::uint32_t passes) const;
 
@@ -84,11 +82,12 @@ class Film {
     bool all_squares_;
     std::uint32_t passes_ = 0;
     std::uint64_t non_finite_ = 0;
-    std::vector<Sums> sums_;                        ///< one per layer, three channels
-    Sums beauty_squares_;                           ///< three channels
-    Sums luminance_squares_;                        ///< of the beauty, one channel
-    std::vector<Sums> layer_squares_;               ///< one per layer, empty where not kept
-    std::vector<std::size_t> where_;                ///< index of Layer::where, or that of no layer
+    std::vector<Sums> sums_;                  ///< one per layer, three channels
+    Sums beauty_squares_;                     ///< three channels
+    Sums block_squares_;                      ///< of sums over a block of the beauty, mean over channels
+    std::vector<Sums> layer_squares_;         ///< one per layer, empty where not kept
+    std::vector<std::size_t> beauty_layers_;  ///< those that are not auxiliary, in order
+    std::vector<std::size_t> where_;          ///< index of Layer::where, or that of no layer
     std::vector<std::vector<Rgb>> replaced_means_;  ///< per layer; empty unless set_mean() was called
 };
 

@@ -17,7 +17,7 @@ namespace {
 
 struct Header {
     std::array<char, 8> magic = {'m', 'o', 't', 'e', 'f', 'i', 'l', 'm'};
-    std::uint32_t version = 1;
+    std::uint32_t version = 2;
     std::uint32_t width = 0, height = 0, layers = 0, all_squares = 0, passes = 0;
     std::uint64_t non_finite = 0;
 };
@@ -31,6 +31,7 @@ class Writer {
   public:
     explicit Writer(std::size_t size) : bytes_(size) {}
     void write(const void* data, std::size_t size) {
+        if (size == 0) return;  // data may be null then, which memcpy() forbids
         std::memcpy(bytes_.data() + position_, data, size);
         position_ += size;
     }
@@ -49,7 +50,7 @@ std::vector<const Film::Sums*> Film::all_sums() const {
     for (const Sums& sums : sums_) all.push_back(&sums);
     for (const Sums& sums : layer_squares_) all.push_back(&sums);
     all.push_back(&beauty_squares_);
-    all.push_back(&luminance_squares_);
+    all.push_back(&block_squares_);
     return all;
 }
 
@@ -103,7 +104,7 @@ void Film::deserialize(std::span<const std::byte> bytes) {
     const std::byte* from = bytes.data() + sizeof(header);
     const auto read = [&from](std::vector<double>& values, bool present) {
         const std::size_t size = present ? values.size() * sizeof(double) : 0;
-        if (present) std::memcpy(values.data(), from, size);
+        if (size > 0) std::memcpy(values.data(), from, size);
         if (!present) std::fill(values.begin(), values.end(), 0.0);
         from += size;
     };
@@ -113,7 +114,7 @@ void Film::deserialize(std::span<const std::byte> bytes) {
     for (Sums& sums : sums_) read_sums(sums);
     for (Sums& sums : layer_squares_) read_sums(sums);
     read_sums(beauty_squares_);
-    read_sums(luminance_squares_);
+    read_sums(block_squares_);
     passes_ = header.passes, non_finite_ = header.non_finite;
     for (auto& replaced : replaced_means_) replaced.clear();
 }

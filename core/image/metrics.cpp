@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "core/image/relative_error.h"
+
 namespace mote::core {
 
 namespace {
@@ -15,6 +17,20 @@ namespace {
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 constexpr MetricDefinition definitions[] = {
+    {"error",
+     "square root of sum w |d|^2 / sum w |r|^2, without the reference's own noise where that is known; |x|^2 "
+     "is "
+     "the "
+     "mean over channels, w = 1 / (|r|^2 + (m / 10)^2), m the median of |r| where it is not 0",
+     &ImageMetrics::error},
+    {"error_standard_error", "of error, from the noise of the reference",
+     &ImageMetrics::error_standard_error},
+    {"bias", "sum w <r, d> / sum w |r|^2, signed; never more than error", &ImageMetrics::bias},
+    {"bias_standard_error",
+     "of bias, from the noise of image and reference; too low where pixels share light paths",
+     &ImageMetrics::bias_standard_error},
+    {"noise", "square root of sum w v / sum w |r|^2, v the variance that the image says it has",
+     &ImageMetrics::noise},
     {"mse", "mean over pixels and channels of d^2", &ImageMetrics::mse},
     {"rmse", "square root of mse", &ImageMetrics::rmse},
     {"mae", "mean over pixels and channels of |d|", &ImageMetrics::mae},
@@ -25,12 +41,12 @@ constexpr MetricDefinition definitions[] = {
     {"relmse_trimmed", "relmse without the 0.1 % of the pixels (rounded down) where it is largest",
      &ImageMetrics::rel_mse_trimmed},
     {"mrse", "mean over pixels and channels of d^2 / (r + 0.01)^2, as in pbrt", &ImageMetrics::mrse},
-    {"bias", "mean of d / mean of r, over pixels and channels, signed", &ImageMetrics::bias},
-    {"bias_standard_error",
-     "of bias, from the spread of d over pixels as if they were independent and r exact; too low where "
-     "pixels "
-     "share light paths",
-     &ImageMetrics::bias_standard_error},
+    {"mean_difference", "mean of d / mean of r, over pixels and channels, signed",
+     &ImageMetrics::mean_difference},
+    {"mean_difference_standard_error",
+     "of mean_difference, from the spread of d over pixels as if they were independent and r exact; too low "
+     "where pixels share light paths",
+     &ImageMetrics::mean_difference_standard_error},
     {"ssim",
      "mean SSIM (Wang et al. 2004) of x / (1 + x), x = luminance / mean luminance of the reference, negative "
      "ones 0; 11 x 11 Gaussian windows inside the picture, sigma 1.5, K1 0.01, K2 0.03, L 1",
@@ -86,8 +102,20 @@ void add_errors(std::span<const Rgb> image, std::span<const Rgb> reference, Imag
     m.rel_mse_trimmed = trimmed_mean(std::move(relative));
 }
 
-// The bias and its error: the standard error of the mean of d, over the mean of r.
-void add_bias(std::span<const Rgb> image, std::span<const Rgb> reference, ImageMetrics& m) {
+void add_relative_error(std::span<const Rgb> image, std::span<const Rgb> reference, int width, int height,
+                        const KnownVariances& variances, ImageMetrics& m) {
+    const bool known = !variances.reference.empty();
+    const RelativeWeights weights =
+        known ? relative_weights(reference, variances.reference, width, height) : relative_weights(reference);
+    const RelativeError e = relative_error(image, reference, weights, variances.image, variances.reference);
+    m.error = e.error, m.bias = e.bias;
+    m.error_standard_error = known ? e.error_standard_error : not_a_number;
+    m.bias_standard_error = variances.image.empty() ? not_a_number : e.bias_standard_error;
+    m.noise = variances.image.empty() ? not_a_number : e.noise;
+}
+
+// The standard error of the mean of d, over the mean of r.
+void add_mean_difference(std::span<const Rgb> image, std::span<const Rgb> reference, ImageMetrics& m) {
     const double n = double(image.size()), mean = m.average_image - m.average_reference;
     double squares = 0.0;
     for (std::size_t i = 0; i < image.size(); ++i) {
@@ -95,8 +123,8 @@ void add_bias(std::span<const Rgb> image, std::span<const Rgb> reference, ImageM
         for (int c = 0; c < 3; ++c) d += (double(image[i][c]) - double(reference[i][c])) / 3.0;
         squares += (d - mean) * (d - mean);
     }
-    m.bias = mean / m.average_reference;
-    m.bias_standard_error =
+    m.mean_difference = mean / m.average_reference;
+    m.mean_difference_standard_error =
         n < 2.0 ? not_a_number : std::sqrt(squares / (n - 1.0) / n) / std::fabs(m.average_reference);
 }
 
@@ -130,19 +158,8 @@ double relative_squared_error(const Rgb& image, const Rgb& reference) {
     return sum / 3.0;
 }
 
-double relative_mse(std::span<const Rgb> image, std::span<const Rgb> reference) {
-    if (image.size() != reference.size() || image.empty())
-        throw std::invalid_argument("the pictures differ in size");
-    double sum = 0.0;
-    for (std::size_t i = 0; i < image.size(); ++i) {
-        if (!is_finite(image[i]) || !is_finite(reference[i])) return not_a_number;
-        sum += relative_squared_error(image[i], reference[i]);
-    }
-    return sum / double(image.size());
-}
-
-ImageMetrics compare_images(std::span<const Rgb> image, std::span<const Rgb> reference, int width,
-                            int height) {
+ImageMetrics compare_images(std::span<const Rgb> image, std::span<const Rgb> reference, int width, int height,
+                            const KnownVariances& variances) {
     const std::size_t pixels = width < 1 || height < 1 ? 0 : std::size_t(width) * std::size_t(height);
     if (pixels == 0 || image.size() != pixels || reference.size() != pixels)
         throw std::invalid_argument("the pictures differ in size");
@@ -156,7 +173,8 @@ ImageMetrics compare_images(std::span<const Rgb> image, std::span<const Rgb> ref
         return m;
     }
     add_errors(image, reference, m);
-    add_bias(image, reference, m);
+    add_relative_error(image, reference, width, height, variances, m);
+    add_mean_difference(image, reference, m);
     m.ssim = tone_mapped_ssim(image, reference, width, height);
     return m;
 }

@@ -1,5 +1,5 @@
 // Error metrics of a picture against a reference: each with one definition, in a table that both are printed
-// from.
+// from. The first of them is the error (relative_error.h); the others are what other programs call so.
 //
 // Nothing is masked. A NaN or an infinity in a picture makes every value that depends on it NaN (null in
 // JSON), and the counts of such pixels stand first. Sums are in double precision. d is image - reference, r
@@ -22,20 +22,25 @@ struct ImageMetrics {
     double average_image = 0.0, average_reference = 0.0;   ///< over pixels and channels
     double mse = 0.0, rmse = 0.0, mae = 0.0, mape = 0.0, smape = 0.0;
     double rel_mse = 0.0, rel_mse_trimmed = 0.0, mrse = 0.0;
-    /// Signed and relative; the error takes pixels for independent, which those of one render need not be.
-    double bias = 0.0, bias_standard_error = 0.0;
+    /// Of relative_error.h; standard errors and noise are NaN where the variance that they need is not known.
+    double error = 0.0, error_standard_error = 0.0, bias = 0.0, bias_standard_error = 0.0, noise = 0.0;
+    /// Signed and relative; its error takes pixels for independent, which those of one render need not be.
+    double mean_difference = 0.0, mean_difference_standard_error = 0.0;
     double ssim = 0.0;
 
     double non_finite_share() const { return pixels == 0 ? 0.0 : double(non_finite_either) / double(pixels); }
 };
 
+/// Variances of the means of both pictures, pixel by pixel; empty where they are not known.
+struct KnownVariances {
+    std::span<const Rgb> image, reference;
+};
+
 /// Both pictures row by row, width * height pixels. Throws std::invalid_argument when a size does not fit or
 /// is zero.
-ImageMetrics compare_images(std::span<const Rgb> image, std::span<const Rgb> reference, int width,
-                            int height);
+ImageMetrics compare_images(std::span<const Rgb> image, std::span<const Rgb> reference, int width, int height,
+                            const KnownVariances& variances = {});
 
-/// ImageMetrics::rel_mse alone. NaN when a pixel of either picture is not finite.
-double relative_mse(std::span<const Rgb> image, std::span<const Rgb> reference);
 /// What rel_mse is the mean of: the mean over channels of d^2 / (r^2 + 0.01) at one pixel.
 double relative_squared_error(const Rgb& image, const Rgb& reference);
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -37,8 +38,18 @@ class PassImage {
     requires std::is_enum_v<Name> Rgb& at(Name layer, int x, int y) { return at(std::size_t(layer), x, y); }
     void clear();
 
+    /// Pixels whose light is complete, one byte each, should the pass end early: a tile writes its own.
+    void finish(int x, int y) {
+        if (!finishes_late_) finished_[std::size_t(y) * std::size_t(width_) + std::size_t(x)] = 1;
+    }
+    /// No pixel is complete before all are: finish() has no effect until clear().
+    void finish_late() { finishes_late_ = true; }
+    std::span<const std::uint8_t> finished() const { return finished_; }
+
   private:
     int width_, height_;
+    bool finishes_late_ = false;
+    std::vector<std::uint8_t> finished_;
     std::vector<std::vector<Rgb>> planes_;
 };
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/image/image_file.h"
+#include "core/image/png_text.h"
 #include "core/objects/error.h"
 
 namespace mote::core {
@@ -21,9 +21,31 @@ std::uint8_t encode_srgb(float linear) {
     return std::uint8_t(std::lround(255.0f * s));
 }
 
+// Encoded in memory: the writer of PNG files does not notice a full disk, write_file_atomically() does.
+std::vector<std::byte> encode(int width, int height, std::span<const std::uint8_t> rgb, bool srgb,
+                              const std::map<std::string, std::string>& text) {
+    const auto output = OIIO::ImageOutput::create("png");
+    if (!output) throw InputError("cannot be written: OpenImageIO has no PNG writer");
+    OIIO::Filesystem::IOVecOutput memory;
+    OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
+    if (srgb) spec.attribute("oiio:ColorSpace", "sRGB");
+    for (const auto& [key, value] : text) spec.attribute(key, value);
+    spec.attribute("png:compressionLevel", 3);  // a tenth larger than the best, several times faster
+    if (!output->set_ioproxy(&memory) || !output->open("preview.png", spec) ||
+        !output->write_image(OIIO::TypeDesc::UINT8, rgb.data()) || !output->close())
+        throw InputError("cannot be written: " + printable(output->geterror()));
+    const auto bytes = std::as_bytes(std::span(memory.buffer()));
+    return {bytes.begin(), bytes.end()};
+}
+
 }  // namespace
 
 void write_png(const std::string& path, int width, int height, std::span<const Rgb> pixels, float exposure) {
+    write_png(path, width, height, pixels, exposure, {});
+}
+
+void write_png(const std::string& path, int width, int height, std::span<const Rgb> pixels, float exposure,
+               const std::map<std::string, std::string>& text) {
     if (width < 1 || height < 1 || pixels.size() != std::size_t(width) * std::size_t(height))
         throw std::invalid_argument("the pixels do not fit the picture");
     const float scale = std::exp2(exposure);
@@ -35,7 +57,7 @@ void write_png(const std::string& path, int width, int height, std::span<const R
 
     std::vector<std::byte> file;
     try {
-        file = encode_png(width, height, bytes, true);
+        file = encode(width, height, bytes, true, text);
     } catch (const InputError& error) {
         throw InputError(error.what(), {path, 0});
     }
@@ -45,18 +67,7 @@ void write_png(const std::string& path, int width, int height, std::span<const R
 std::vector<std::byte> encode_png(int width, int height, std::span<const std::uint8_t> rgb, bool srgb) {
     if (width < 1 || height < 1 || rgb.size() != 3 * std::size_t(width) * std::size_t(height))
         throw std::invalid_argument("the bytes do not fit the picture");
-    // Encoded in memory: the writer of PNG files does not notice a full disk, write_file_atomically() does.
-    const auto output = OIIO::ImageOutput::create("png");
-    if (!output) throw InputError("cannot be written: OpenImageIO has no PNG writer");
-    OIIO::Filesystem::IOVecOutput memory;
-    OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
-    if (srgb) spec.attribute("oiio:ColorSpace", "sRGB");
-    spec.attribute("png:compressionLevel", 3);  // a tenth larger than the best, several times faster
-    if (!output->set_ioproxy(&memory) || !output->open("preview.png", spec) ||
-        !output->write_image(OIIO::TypeDesc::UINT8, rgb.data()) || !output->close())
-        throw InputError("cannot be written: " + printable(output->geterror()));
-    const auto bytes = std::as_bytes(std::span(memory.buffer()));
-    return {bytes.begin(), bytes.end()};
+    return encode(width, height, rgb, srgb, {});
 }
 
 }  // namespace mote::core

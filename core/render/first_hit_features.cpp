@@ -1,7 +1,7 @@
 #include "core/render/first_hit_features.h"
 
-#include "core/materials/bsdf.h"
 #include "core/render/camera_ray.h"
+#include "core/scene/media_along.h"
 #include "core/scene/scene.h"
 
 namespace mote::core {
@@ -17,7 +17,30 @@ Layer feature_layer(std::string name, std::string description, std::string where
 
 Rgb albedo(const FirstHit& first) {
     const SurfaceHit& hit = first.hit;
-    return hit.shape->bsdf->albedo(BsdfPoint{hit.uv}, hit.shading.to_local(first.to_viewer()));
+    const Rgb all = hit.shape->bsdf->albedo(bsdf_point(hit), hit.shading.to_local(first.to_viewer()));
+    if (!is_pane(hit)) return all;
+    return (all - passage_through(hit, first.ray.direction).transmittance()) / first.stop_chance;
+}
+
+/// The first surface that stops the ray; of panes those that can be seen themselves, by chance.
+struct Stop {
+    std::optional<SurfaceHit> hit;
+    float chance = 1.0f;
+};
+
+Stop first_stop(const Scene& scene, const Ray& ray, Rng& rng) {
+    Stop stop{scene.first_hit(ray)};
+    if (!scene.has_panes()) return stop;
+    Ray before = ray;
+    if (stop.hit) before.t_max = stop.hit->t;
+    scene.for_each_boundary(before, [&](const SurfaceHit& hit) {
+        if (!is_pane(hit) || !hit.shape->bsdf->traits().smooth) return true;
+        const StraightPassage passage = passage_through(hit, ray.direction);
+        if (rng.next_float() < passage.probability()) return true;
+        stop = {hit, passage.stops};
+        return false;
+    });
+    return stop;
 }
 
 Rgb transmittance(const FirstHit& first) {
@@ -62,10 +85,10 @@ bool FirstHitPass::fill(const PassContext& context, PassImage& image) {
 
 void FirstHitPass::fill_pixel(const PassContext& context, PassImage& image, int x, int y) const {
     const Ray ray = camera_ray(scene_.camera(), options_, context, x, y);
-    const auto hit = scene_.rays().closest(ray);
-    if (!hit) return;
     Rng rng(hash_keys(options_.seed, context.index, pixel_key(options_, x, y), feature_stream));
-    const FirstHit first{scene_, ray, *hit, rng};
+    const Stop stop = first_stop(scene_, ray, rng);
+    if (!stop.hit) return;
+    const FirstHit first{scene_, ray, *stop.hit, stop.chance, rng};
     for (std::size_t k = 0; k < features_.size(); ++k)
         image.at(first_layer_ + k, x, y) = features_[k].value(first);
 }

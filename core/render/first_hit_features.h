@@ -1,5 +1,6 @@
 // What the eye rays of a render meet first, as layers of its film: positions, normals, depth, albedo, and how
-// much of it comes through the media before it.
+// much of it comes through the media before it. A mask is met by chance, as eye paths meet it; thin glass is
+// looked through.
 //
 // The rays are those of the picture itself: every pass draws its place on the film and on the lens from the
 // same keys as the eye paths do, so features are filtered as the picture is, blurred as the lens blurs it,
@@ -23,7 +24,8 @@ struct FirstHit {
     const Scene& scene;
     const Ray& ray;
     const SurfaceHit& hit;
-    Rng& rng;  ///< for estimates
+    float stop_chance;  ///< of a mask that stopped the ray there; 1 for all other surfaces
+    Rng& rng;           ///< for estimates
 
     Vec3 to_viewer() const { return -ray.direction; }
     /// A normal of the hit, turned to the viewer.

@@ -20,6 +20,7 @@
 #include "core/image/tiles.h"
 #include "core/math/sampler.h"
 #include "core/math/vec.h"
+#include "core/objects/cancellation.h"
 #include "core/objects/object.h"
 #include "core/render/plan.h"
 #include "core/render/statistics.h"
@@ -34,6 +35,7 @@ struct RenderOptions {
     std::uint64_t seed = 0;
     int width = 0, height = 0;
     SamplerKind sampler = SamplerKind::sobol;
+    CancelToken cancelled = {};  ///< prepare() and finish() may throw Cancelled when it asks for it
 };
 
 /// Where within pixel (x, y) a sample falls so that its plain mean is the filtered picture (filter importance
@@ -53,13 +55,14 @@ class PixelFilter {
 struct PassContext {
     std::uint32_t index;  ///< which pass
     const PixelFilter& filter;
-    const std::atomic<bool>& cancelled;  ///< poll between tiles; a cancelled pass is thrown away
+    const std::atomic<bool>& cancelled;  ///< a cancelled pass returns false or throws Cancelled
 };
 
 class Estimator {
   public:
     virtual ~Estimator() = default;
-    /// Fills the layers with one independent estimate. Returns false when it was cancelled half-way.
+    /// Fills the layers with one independent estimate, and calls image.finish() for every pixel whose light
+    /// is complete. Returns false, or throws Cancelled, when it was cancelled half-way.
     virtual bool pass(const PassContext& context, PassImage& image) = 0;
     /// Post-processes on the mean, after the last pass.
     virtual void finish(Film& /*film*/) {}

@@ -1,9 +1,11 @@
 // From a scene's film to an estimator, and from an estimator to passes.
 #include "core/render/pass_runner.h"
 
+#include <algorithm>
 #include <chrono>
 #include <stdexcept>
 
+#include "core/objects/cancellation.h"
 #include "core/objects/error.h"
 #include "core/render/render_driver.h"
 #include "core/scene/scene.h"
@@ -23,15 +25,15 @@ std::unique_ptr<PixelFilter> filter_of(const FilmSettings& film) {
     return make_pixel_filter(film.filter, film.filter_radius, film.filter_stddev);
 }
 
-RenderOptions render_options(const Scene& scene, std::uint64_t seed) {
+RenderOptions render_options(const Scene& scene, std::uint64_t seed, CancelToken cancelled = {}) {
     const FilmSettings& film = scene.film();
-    return {seed, film.width, film.height, sampler_kind(film.sampler)};
+    return {seed, film.width, film.height, sampler_kind(film.sampler), cancelled};
 }
 
 std::unique_ptr<Estimator> timed_prepare(const Scene& scene, const Integrator& integrator, std::uint64_t seed,
-                                         double& seconds) {
+                                         CancelToken cancelled, double& seconds) {
     const auto start = std::chrono::steady_clock::now();
-    auto estimator = integrator.prepare(scene, render_options(scene, seed));
+    auto estimator = integrator.prepare(scene, render_options(scene, seed, cancelled));
     seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return estimator;
 }
@@ -46,10 +48,10 @@ std::vector<Layer> film_layers(const Scene& scene, const Integrator& integrator,
 }
 
 PassRunner::PassRunner(const Scene& scene, const Integrator& integrator, std::uint64_t seed, Film& film,
-                       std::vector<HitFeature> features)
+                       std::vector<HitFeature> features, CancelToken cancelled)
     : film_(film),
       filter_(filter_of(scene.film())),
-      estimator_(timed_prepare(scene, integrator, seed, build_seconds_)),
+      estimator_(timed_prepare(scene, integrator, seed, cancelled, build_seconds_)),
       image_(film.width(), film.height(), film.layers().size()) {
     if (features.size() > film.layers().size())
         throw std::invalid_argument("the film has no layers for the features");
@@ -61,13 +63,32 @@ PassRunner::PassRunner(const Scene& scene, const Integrator& integrator, std::ui
 bool PassRunner::run_pass(const std::atomic<bool>& cancelled) {
     image_.clear();
     const PassContext context{film_.pass_count(), *filter_, cancelled};
-    if (!estimator_->pass(context, image_) || (features_ && !features_->fill(context, image_))) {
+    const auto ends = [&] {
+        try {
+            return estimator_->pass(context, image_) && (!features_ || features_->fill(context, image_));
+        } catch (const Cancelled&) {
+            return false;
+        }
+    };
+    if (!ends()) {
         if (!cancelled.load(std::memory_order_relaxed))
             throw std::logic_error("a pass ended early without being cancelled");
         return false;
     }
     film_.add_pass(image_);
     return true;
+}
+
+std::vector<std::uint8_t> PassRunner::add_part() {
+    const std::vector<std::uint8_t> finished(image_.finished().begin(), image_.finished().end());
+    const auto done = std::size_t(std::count(finished.begin(), finished.end(), std::uint8_t(1)));
+    if (features_ || done == 0 || film_.pass_count() > 0) return {};
+    for (std::size_t layer = 0; layer < image_.layers();
+         ++layer)  // what an unfinished pixel has is no estimate
+        for (std::size_t pixel = 0; pixel < finished.size(); ++pixel)
+            if (!finished[pixel]) image_.layer(layer)[pixel] = Rgb(0.0f);
+    film_.add_pass(image_);
+    return finished;
 }
 
 void PassRunner::add_statistics(Statistics& statistics) const {

@@ -21,12 +21,16 @@ class PassRunner {
   public:
     /// Calls Integrator::prepare(). `film` has the size of the scene's film and the layers of film_layers();
     /// it may hold the first passes already. Scene and film must outlive the runner. Throws InputError for an
-    /// unknown filter or sampler.
+    /// unknown filter or sampler, and Cancelled.
     PassRunner(const Scene& scene, const Integrator& integrator, std::uint64_t seed, Film& film,
-               std::vector<HitFeature> features = {});
+               std::vector<HitFeature> features = {}, CancelToken cancelled = {});
 
     /// Adds the film's next pass. Returns false, with the film unchanged, when it was cancelled.
     bool run_pass(const std::atomic<bool>& cancelled);
+    /// After a cancelled pass, to an empty film: adds the pixels that were finished, as a pass that is zero
+    /// elsewhere, and says which they are. Empty, with the film unchanged, where there are none, or features
+    /// besides.
+    std::vector<std::uint8_t> add_part();
     /// The pass that was added last.
     const PassImage& last_pass() const { return image_; }
     Estimator& estimator() { return *estimator_; }

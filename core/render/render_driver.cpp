@@ -2,9 +2,11 @@
 #include "core/render/render_driver.h"
 
 #include <chrono>
+#include <new>
 #include <stdexcept>
 
 #include "core/objects/error.h"
+#include "core/objects/memory_error.h"
 #include "core/render/checkpoint.h"
 #include "core/render/pass_runner.h"
 #include "core/render/stop_clock.h"
@@ -25,50 +27,84 @@ class PassLoop {
     PassLoop(const RenderRequest& request, const StopRule& stop, PassRunner& runner, RenderResult& result)
         : request_(request), stop_(stop), runner_(runner), result_(result) {
         state_.passes = result.film.pass_count();
+        state_.seconds_before = request.seconds_before + runner.build_seconds();
     }
 
     void run() {
-        refresh_noise();
-        while (!must_stop(stop_, state_)) {
-            if (interrupted() || !runner_.run_pass(cancelled_flag())) break;
-            after_pass();
+        with_memory_for("the passes", [&] { run_passes(); });
+        finish_run();
+    }
+    /// Also once more where the end of the render was interrupted.
+    void write_checkpoint_now() {
+        if (request_.checkpoint_path.empty() || result_.film.pass_count() == 0) return;
+        if (!result_.finished_pixels.empty()) return;  // to continue is to begin anew
+        const Clock::time_point begin = Clock::now();
+        checkpoint_time_ = begin;
+        try {
+            write_checkpoint(request_.checkpoint_path, {request_.content_hash, request_.seed}, result_.film);
+            result_.checkpoint_problem.clear();
+        } catch (const InputError& error) {  // a full disk may have room again in a minute
+            result_.checkpoint_problem = std::string("no checkpoint: ") + error.what();
+        } catch (const std::bad_alloc&) {
+            result_.checkpoint_problem =
+                "no checkpoint '" + printable(request_.checkpoint_path) + "': no memory for it";
         }
-        state_.seconds = seconds_since(start_);
-        // A render that was complete before the key was pressed is not an interrupted one.
-        result_.interrupted = interrupted() && !must_stop(stop_, state_);
-        if (result_.interrupted || request_.checkpoint_at_end) write_checkpoint_now();
-        result_.statistics.seconds["render"] = state_.seconds;
-        result_.statistics.values["noise"] = result_.film.relative_noise();
+        if (!result_.checkpoint_problem.empty() && request_.checkpoint_failed)
+            request_.checkpoint_failed(result_.checkpoint_problem);
+        checkpoint_time_ = Clock::now();
+        result_.statistics.seconds["checkpoints"] += seconds_since(begin);
     }
 
   private:
+    void run_passes() {
+        if (!stop_.noise || noise_is_due(state_.passes)) refresh_noise();
+        while (!is_done()) {
+            if (interrupted()) break;
+            if (!runner_.run_pass(cancelled_flag())) {
+                if (request_.keep_part_of_first_pass) result_.finished_pixels = runner_.add_part();
+                break;
+            }
+            after_pass();
+        }
+    }
+    void finish_run() {
+        state_.seconds = seconds_since(start_);
+        // A render that was complete before the key was pressed is not an interrupted one.
+        const bool in_time = !request_.time_is_over || !request_.time_is_over->load();
+        result_.interrupted = interrupted() && in_time && !is_done();
+        if (result_.interrupted || request_.checkpoint_at_end) write_checkpoint_now();
+        result_.statistics.seconds["render"] = state_.seconds;
+        if (!result_.checkpoint_problem.empty())
+            result_.statistics.warnings.push_back(result_.checkpoint_problem);
+        result_.statistics.values["noise"] = result_.film.noise();
+    }
+
     const std::atomic<bool>& cancelled_flag() const {
         return request_.interrupted ? *request_.interrupted : never_;
     }
     bool interrupted() const { return cancelled_flag().load(std::memory_order_relaxed); }
 
+    bool is_done() const {
+        return must_stop(stop_, state_) || (request_.enough && state_.passes >= noise_rule_from &&
+                                            noise_is_due(state_.passes) && request_.enough(result_.film));
+    }
     void after_pass() {
         ++state_.passes_of_this_run;
         state_.passes = result_.film.pass_count();
         state_.seconds = seconds_since(start_);
-        // The rule must not depend on the clock, so it looks at every pass; for the eye twice a second will
-        // do.
-        if (stop_.noise || seconds_since(noise_time_) > 0.5 || state_.passes <= 2) refresh_noise();
+        // The rule must not depend on the clock; for the eye twice a second will do, and a twentieth of the
+        // time.
+        const bool for_the_eye = seconds_since(noise_time_) > std::max(0.5, 20.0 * noise_seconds_);
+        if (stop_.noise ? noise_is_due(state_.passes) : for_the_eye || state_.passes == 2) refresh_noise();
         if (request_.progress)
             request_.progress({state_.passes, state_.passes_of_this_run, stop_.passes, state_.seconds,
                                seconds_left(stop_, state_), state_.noise});
         if (seconds_since(checkpoint_time_) >= request_.checkpoint_every_seconds) write_checkpoint_now();
     }
     void refresh_noise() {
-        state_.noise = request_.noise ? request_.noise(result_.film) : result_.film.relative_noise();
-        noise_time_ = Clock::now();
-    }
-    void write_checkpoint_now() {
-        if (request_.checkpoint_path.empty() || result_.film.pass_count() == 0) return;
         const Clock::time_point begin = Clock::now();
-        write_checkpoint(request_.checkpoint_path, {request_.content_hash, request_.seed}, result_.film);
-        checkpoint_time_ = Clock::now();
-        result_.statistics.seconds["checkpoints"] += seconds_since(begin);
+        state_.noise = result_.film.noise();
+        noise_seconds_ = seconds_since(begin), noise_time_ = Clock::now();
     }
 
     const RenderRequest& request_;
@@ -76,10 +112,19 @@ class PassLoop {
     PassRunner& runner_;
     RenderResult& result_;
     const std::atomic<bool> never_{false};
-    RenderState state_;
+    RenderState state_{.noise = infinity};
+    double noise_seconds_ = 0.0;  ///< that looking at the noise took the last time
     const Clock::time_point start_ = Clock::now();
     Clock::time_point noise_time_ = start_, checkpoint_time_ = start_;
 };
+
+/// Sums in double precision, twice; the pass in single.
+double film_bytes(const FilmSettings& film, std::span<const Layer> layers, bool all_squares) {
+    double planes = 4.0 / 3.0;  // of the beauty's squares
+    for (const Layer& layer : layers) planes += all_squares || layer.squares ? 2.0 : 1.0;
+    const double pixels = double(film.width) * double(film.height);
+    return pixels * (planes * 3.0 * 2.0 * sizeof(double) + double(layers.size()) * sizeof(Rgb));
+}
 
 void resume(const RenderRequest& request, RenderResult& result) {
     if (request.checkpoint_path.empty()) throw std::logic_error("resuming needs the path of a checkpoint");
@@ -95,25 +140,47 @@ void resume(const RenderRequest& request, RenderResult& result) {
 RenderResult render(const Scene& scene, const Integrator& integrator, const RenderRequest& request) {
     const FilmSettings& settings = scene.film();
     StopRule stop = request.stop;
-    if (!stop.passes && !stop.seconds && !stop.noise) stop.passes = std::uint32_t(settings.sample_count);
-    RenderResult result{Film(settings.width, settings.height,
-                             film_layers(scene, integrator, request.features), request.all_squares),
-                        {},
-                        false,
-                        0};
+    if (!stop.passes && !stop.seconds && !stop.noise && !request.enough)
+        stop.passes = std::uint32_t(settings.sample_count);
+    const std::vector<Layer> layers = film_layers(scene, integrator, request.features);
+    const double bytes = film_bytes(settings, layers, request.all_squares);
+    const std::string film_of = "a film of " + std::to_string(settings.width) + " x " +
+                                std::to_string(settings.height) + " pixels and " +
+                                std::to_string(layers.size()) + " layers" + memory_text(bytes);
+    RenderResult result = with_memory_for(film_of, [&] {
+        return RenderResult{Film(settings.width, settings.height, layers, request.all_squares), {}, false, 0};
+    });
     if (request.resume) resume(request, result);  // before the work of prepare(): it may be refused
 
-    PassRunner runner(scene, integrator, request.seed, result.film, request.features);
-    result.statistics.seconds["build"] = runner.build_seconds();
+    const CancelToken token = request.interrupted ? CancelToken(*request.interrupted) : CancelToken();
+    std::optional<PassRunner> runner;
+    try {
+        with_memory_for("what '" + integrator.type() + "' builds before its passes", [&] {
+            runner.emplace(scene, integrator, request.seed, result.film, request.features, token);
+        });
+    } catch (const Cancelled&) {
+        result.interrupted = true;
+        return result;
+    }
+    result.statistics.seconds["build"] = runner->build_seconds();
+    if (request.building_is_over) request.building_is_over();
 
-    PassLoop(request, stop, runner, result).run();
+    PassLoop loop(request, stop, *runner, result);
+    loop.run();
+    if (request.passes_are_over) request.passes_are_over();
 
-    if (!result.interrupted && result.film.pass_count() > 0) {
+    if (!result.interrupted && result.film.pass_count() > 0 && result.finished_pixels.empty()) {
         const Clock::time_point finish_start = Clock::now();
-        runner.estimator().finish(result.film);
+        try {
+            with_memory_for("what '" + integrator.type() + "' does after its passes",
+                            [&] { runner->estimator().finish(result.film); });
+        } catch (const Cancelled&) {
+            result.interrupted = true;
+            loop.write_checkpoint_now();
+        }
         result.statistics.seconds["finish"] = seconds_since(finish_start);
     }
-    runner.add_statistics(result.statistics);
+    runner->add_statistics(result.statistics);
     result.statistics.non_finite_samples += result.film.non_finite();
     return result;
 }

@@ -18,16 +18,16 @@ namespace mote::core {
 /// passes.
 struct StopRule {
     std::optional<std::uint32_t> passes;  ///< this many in all, those of a checkpoint included
-    std::optional<double> seconds;        ///< wall time of this run's passes: ends as near to it as whole
-                                          ///< passes allow, after one at least
-    std::optional<double> noise;          ///< RenderRequest::noise, looked at from 8 passes on
+    std::optional<double> seconds;  ///< wall time from RenderRequest::seconds_before on: ends as near to it
+                                    ///< as whole passes allow, after one at least
+    std::optional<double> noise;    ///< Film::noise(), looked at from 8 passes on
 };
 
 struct RenderProgress {
     std::uint32_t passes, passes_of_this_run;  ///< the first holds those of a checkpoint too
     std::optional<std::uint32_t> passes_wanted;
     double seconds, seconds_left;  ///< seconds_left < 0: unknown
-    double noise;                  ///< infinity before two passes; refreshed twice a second
+    double noise;  ///< Film::noise(); infinity before two passes; refreshed twice a second at most
 };
 
 struct RenderRequest {
@@ -39,10 +39,18 @@ struct RenderRequest {
     bool resume = false;            ///< continue from checkpoint_path; from the start where there is none
     std::string content_hash;       ///< of the scene, its files and the options that change the picture
     bool all_squares = false;
-    std::vector<HitFeature> features;          ///< become layers of the film, behind those of the integrator
-    std::function<double(const Film&)> noise;  ///< the measure of the noise; empty: Film::relative_noise()
-    std::function<void(const RenderProgress&)> progress;  ///< called after every pass; may be empty
-    const std::atomic<bool>* interrupted = nullptr;       ///< set by Ctrl-C
+    std::vector<HitFeature> features;         ///< become layers of the film, behind those of the integrator
+    std::function<bool(const Film&)> enough;  ///< a rule of the caller's, asked where the noise rule looks
+    std::function<void(const RenderProgress&)> progress;        ///< called after every pass; may be empty
+    std::function<void(const std::string&)> checkpoint_failed;  ///< told at once; it is tried again later
+    std::function<void()> building_is_over;           ///< called before the first pass; may be empty
+    std::function<void()> passes_are_over;            ///< called before Estimator::finish; may be empty
+    const std::atomic<bool>* interrupted = nullptr;   ///< set by Ctrl-C, and when the time is over
+    const std::atomic<bool>* time_is_over = nullptr;  ///< set before `interrupted`: it was not Ctrl-C
+    /// Wall time that the command took before: what stop.seconds is for begins there.
+    double seconds_before = 0.0;
+    /// Where no pass becomes complete: the pixels of the first that did (RenderResult::finished_pixels).
+    bool keep_part_of_first_pass = false;
 };
 
 struct RenderResult {
@@ -50,11 +58,15 @@ struct RenderResult {
     Statistics statistics;
     bool interrupted = false;
     std::uint32_t resumed_at = 0;  ///< pass index the checkpoint held
+    /// Not empty: the film holds a part of one pass, the pixels with a 1, and zeros elsewhere.
+    std::vector<std::uint8_t> finished_pixels = {};
+    std::string checkpoint_problem = "";  ///< why the last checkpoint could not be written
 };
 
 /// Renders until a stop rule holds. When interrupted, the running pass is dropped and everything before it
 /// kept; Estimator::finish is then not called. Throws InputError when a checkpoint does not belong to this
-/// render, is damaged, or cannot be written (the one before it stays intact).
+/// render or is damaged. One that cannot be written is a warning and another try later: the one before it
+/// stays intact.
 RenderResult render(const Scene& scene, const Integrator& integrator, const RenderRequest& request);
 
 /// The filter of a film as a distribution of offsets. Throws InputError for an unknown name.

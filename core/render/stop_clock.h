@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "core/render/render_driver.h"
@@ -12,16 +13,25 @@ namespace mote::core {
 struct RenderState {
     std::uint32_t passes = 0, passes_of_this_run = 0;
     double seconds = 0.0, noise = 0.0;
+    double seconds_before = 0.0;  ///< of loading and building: they count for the time, not for the speed
     double seconds_per_pass() const { return passes_of_this_run > 0 ? seconds / passes_of_this_run : 0.0; }
 };
 
 inline constexpr std::uint32_t noise_rule_from = 8;  ///< fewer passes say too little about their spread
 
+inline constexpr double most_seconds_late = 1.0;  ///< what a pass may take beyond the wanted time
+/// The noise rule looks at every pass, later at every 16th of a power of two: looking takes time, and what it
+/// sees falls slowly. Which passes must depend on nothing else, or an interruption would change the picture.
+inline bool noise_is_due(std::uint32_t passes) {
+    return passes % std::max(1u, std::bit_floor(passes) / 16) == 0;
+}
+
 inline bool must_stop(const StopRule& rule, const RenderState& state) {
     if (rule.passes && state.passes >= *rule.passes) return true;
-    // One more pass would end farther from the wanted time than none.
+    // One more pass would end farther from the wanted time than none, or more than a second behind it.
+    const double pass = state.seconds_per_pass(), late = std::min(0.5 * pass, most_seconds_late);
     if (rule.seconds && state.passes_of_this_run > 0 &&
-        state.seconds + 0.5 * state.seconds_per_pass() >= *rule.seconds)
+        state.seconds_before + state.seconds + pass - late >= *rule.seconds)
         return true;
     return rule.noise && state.passes >= noise_rule_from && state.noise <= *rule.noise;
 }
@@ -32,7 +42,8 @@ inline double seconds_left(const StopRule& rule, const RenderState& state) {
     const double per_pass = state.seconds_per_pass();
     if (rule.passes && per_pass > 0.0)
         left = std::min(left, per_pass * (*rule.passes - std::min(state.passes, *rule.passes)));
-    if (rule.seconds) left = std::min(left, std::max(0.0, *rule.seconds - state.seconds));
+    if (rule.seconds)
+        left = std::min(left, std::max(0.0, *rule.seconds - state.seconds_before - state.seconds));
     if (rule.noise && std::isfinite(state.noise) && per_pass > 0.0) {
         // The noise falls as 1 / sqrt(passes).
         const double ratio = state.noise / *rule.noise;

@@ -3,24 +3,24 @@
 
 #include <optional>
 
-#include "core/materials/bsdf.h"
+#include "core/geometry/bsdf_point.h"
 #include "core/scene/ray_queries.h"
 
 namespace mote::core {
 
 /// What a ray meets where it crosses a pane.
 inline StraightPassage passage_through(const SurfaceHit& pane, const Vec3& direction) {
-    return pane.shape->bsdf->straight_passage({pane.uv}, pane.shading.to_local(-direction));
+    return pane.shape->bsdf->straight_passage(bsdf_point(pane), pane.shading.to_local(-direction));
 }
 inline bool is_pane(const SurfaceHit& boundary) {
     return boundary.shape->bsdf && boundary.shape->bsdf->traits().pane;
 }
 
-/// A path that goes this way passes the pane by chance (ray_walk.cpp), a connection always. Returns false where
-/// nothing passes.
+/// A path that goes this way passes the pane by chance (ray_walk.cpp), a connection always. Returns false
+/// where nothing passes.
 inline bool connect_through(const StraightPassage& pane, PathWeights& weights) {
     weights.throughput *= pane.transmittance();
-    weights.unidirectional *= pane.probability;
+    weights.unidirectional *= pane.probability();
     return !is_black(weights.throughput);
 }
 /// RayQueries::connect() for methods that do not see media: panes alone.

@@ -1,8 +1,9 @@
 // What algorithms ask of a scene: the first surface on a ray, whether a segment is free, and which media lie
 // along it and what they let through. Scene is one implementation; another renderer's scene can be another.
 //
-// Surfaces and boundaries are apart: a boundary separates media or is a pane, and light passes it straight. Calls are by
-// ray or by batches of packets, so that the indirection does not count. All are safe from many threads.
+// Surfaces and boundaries are apart: a boundary separates media or is a pane, and light passes it straight.
+// Calls are by ray or by batches of packets, so that the indirection does not count. All are safe from many
+// threads.
 #pragma once
 
 #include <memory>

@@ -17,18 +17,17 @@ std::optional<float> cross_segment(const MediumState& state, const Ray& ray, flo
 
 /// A path passes a pane by chance. Light that was looked for through it, with certainty, could have been
 /// found this way with that chance: what `light` compares.
-bool passes(const SurfaceHit& pane, const Vec3& direction, PathWeights& weights, Rng& rng) {
-    const StraightPassage passage = passage_through(pane, direction);
-    if (!(rng.next_float() < passage.probability)) return false;
-    weights.throughput *= passage.weight;
-    weights.light /= passage.probability;
+bool passes(const StraightPassage& pane, PathWeights& weights, Rng& rng) {
+    if (!(rng.next_float() < pane.probability())) return false;
+    weights.throughput *= pane.weight;
+    weights.light /= pane.probability();
     return true;
 }
 
-WalkEvent reflected_at(const SurfaceHit& pane, float surface_distance) {
+WalkEvent reflected_at(const SurfaceHit& pane, float stop_chance, float surface_distance) {
     WalkEvent event;
     event.kind = WalkEvent::Kind::surface, event.hit = pane, event.distance = pane.t;
-    event.surface_distance = surface_distance, event.reflected = true;
+    event.surface_distance = surface_distance, event.reflected = true, event.stop_chance = stop_chance;
     return event;
 }
 
@@ -44,6 +43,7 @@ WalkEvent collision_at(float t, const Medium* medium, float surface_distance) {
 template <bool Media>
 WalkEvent walk(const RayQueries& scene, const Ray& ray, MediumState& state, PathWeights& weights,
                Rgb& emitted, WalkContext& context) {
+    context.cancelled.check();
     ++context.rays.closest;
     const auto hit = scene.first_hit(ray);
     const float t_end = hit ? hit->t : ray.t_max;
@@ -58,8 +58,10 @@ WalkEvent walk(const RayQueries& scene, const Ray& ray, MediumState& state, Path
             if constexpr (Media)
                 if (const auto c = cross_segment(state, ray, t, boundary.t, weights, emitted, context))
                     return collision_at(*c, state.current(), t_end);
-            if (is_pane(boundary) && !passes(boundary, ray.direction, weights, context.rng))
-                return reflected_at(boundary, t_end);
+            if (is_pane(boundary))
+                if (const StraightPassage pane = passage_through(boundary, ray.direction);
+                    !passes(pane, weights, context.rng))
+                    return reflected_at(boundary, pane.stops, t_end);
             if constexpr (Media) state.cross(*boundary.shape, boundary.geometric_normal, ray.direction);
             t = boundary.t;
         }

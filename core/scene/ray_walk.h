@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/geometry/ray_counters.h"
+#include "core/objects/cancellation.h"
 #include "core/scene/ray_queries.h"
 
 namespace mote::core {
@@ -20,6 +21,7 @@ struct WalkContext {
     RayCounters rays;
     TrackingCounters tracking;
     std::vector<SurfaceHit> boundary_hits;  ///< up to the first surface on the last ray; reused between rays
+    CancelToken cancelled;                  ///< walk() looks at it, and throws
 };
 
 /// The channel that drives the distances of a path, drawn once a path (PathWeights::hero).
@@ -33,12 +35,13 @@ struct WalkEvent {
                                         ///< Panes are passed
     SurfaceHit hit;                     ///< surface only
     bool reflected = false;             ///< by the pane `hit`, which the path did not pass
+    float stop_chance = 1.0f;           ///< of that pane: StraightPassage::stops; 1 for all else
     const Medium* medium = nullptr;     ///< collision only
 };
 
-/// Advances along `ray` and updates `state` (media at the end), `weights` (see Medium::sample_collision) and
-/// `emitted` (emission of media met on the way). `Media` = false compiles the media away: state and emitted
-/// are left alone, weights where there are no panes.
+/// Throws Cancelled when the context asks for it. Advances along `ray` and updates `state` (media at the
+/// end), `weights` (see Medium::sample_collision) and `emitted` (emission of media met on the way). `Media` =
+/// false compiles the media away: state and emitted are left alone, weights where there are no panes.
 template <bool Media>
 WalkEvent walk(const RayQueries& scene, const Ray& ray, MediumState& state, PathWeights& weights,
                Rgb& emitted, WalkContext& context);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "core/geometry/instances.h"
 #include "core/geometry/triangle_mesh.h"
 #include "core/scene/scene.h"
 
@@ -13,7 +14,8 @@ namespace {
 void count_shapes(const Scene& scene, Requirements& r) {
     for (const auto& shape : scene.shapes()) {
         ++r.shapes;
-        if (dynamic_cast<const TriangleMesh*>(shape.get()))
+        const auto* instanced = dynamic_cast<const InstancedShape*>(shape.get());
+        if (dynamic_cast<const TriangleMesh*>(instanced ? &instanced->original() : shape.get()))
             r.triangles += shape->primitive_count();
         else
             ++r.analytic_shapes;

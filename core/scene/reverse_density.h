@@ -13,7 +13,8 @@ inline float reverse_pdf_solid_angle(const ScatteringVertex& vertex, const Vec3&
     if (vertex.phase) return vertex.phase->pdf_solid_angle(wi, vertex.wo);
     const Frame& frame = vertex.hit.shading;
     return vertex.bsdf->pdf_solid_angle(vertex.bsdf_point(), frame.to_local(wi), frame.to_local(vertex.wo),
-                                        opposite(mode));
+                                        opposite(mode)) /
+           vertex.stop_chance;
 }
 
 }  // namespace mote::core

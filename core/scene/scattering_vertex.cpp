@@ -15,7 +15,7 @@ bool sides_agree(const SurfaceHit& hit, const Vec3& wo, const Vec3& wi) {
 Rgb ScatteringVertex::eval(const Vec3& wi, TransportMode mode) const {
     if (phase) return phase->eval(wo, wi);
     if (!sides_agree(hit, wo, wi)) return Rgb(0.0f);
-    return bsdf->eval(bsdf_point(), hit.shading.to_local(wo), hit.shading.to_local(wi), mode);
+    return bsdf->eval(bsdf_point(), hit.shading.to_local(wo), hit.shading.to_local(wi), mode) / stop_chance;
 }
 
 Rgb ScatteringVertex::eval_cos(const Vec3& wi, TransportMode mode) const {
@@ -24,7 +24,8 @@ Rgb ScatteringVertex::eval_cos(const Vec3& wi, TransportMode mode) const {
 
 float ScatteringVertex::pdf_solid_angle(const Vec3& wi, TransportMode mode) const {
     if (phase) return phase->pdf_solid_angle(wo, wi);
-    return bsdf->pdf_solid_angle(bsdf_point(), hit.shading.to_local(wo), hit.shading.to_local(wi), mode);
+    return bsdf->pdf_solid_angle(bsdf_point(), hit.shading.to_local(wo), hit.shading.to_local(wi), mode) /
+           stop_chance;
 }
 
 std::optional<ScatterSample> ScatteringVertex::sample(float u_lobe, const Vec2& u, TransportMode mode) const {
@@ -32,12 +33,18 @@ std::optional<ScatterSample> ScatteringVertex::sample(float u_lobe, const Vec2& 
         const PhaseSample s = phase->sample(wo, u);
         return ScatterSample{s.wi, s.weight, s.pdf_solid_angle};
     }
-    // The chance to be reflected was taken by the walk (ray_walk.cpp): the first lobe is the reflection.
-    const auto s = bsdf->sample(bsdf_point(), hit.shading.to_local(wo), reflected ? 0.0f : u_lobe, u, mode);
+    // The chance to pass a pane was taken by the walk (ray_walk.cpp): what scatters lies below stop_chance.
+    const auto s = bsdf->sample(bsdf_point(), hit.shading.to_local(wo), u_lobe * stop_chance, u, mode);
     if (!s || is_black(s->weight)) return std::nullopt;
     const Vec3 wi = glm::normalize(hit.shading.to_world(s->wi));
     if (!sides_agree(hit, wo, wi)) return std::nullopt;
-    return ScatterSample{wi, s->weight, s->pdf_solid_angle, s->eta, s->delta, s->transmitted};
+    return ScatterSample{wi, s->weight, s->pdf_solid_angle / stop_chance, s->eta, s->delta, s->transmitted};
+}
+
+std::optional<Rgb> ScatteringVertex::diffuse_reflectance() const {
+    auto reflectance = bsdf->diffuse_reflectance(bsdf_point(), hit.shading.to_local(wo));
+    if (reflectance) *reflectance /= stop_chance;
+    return reflectance;
 }
 
 MediumState ScatteringVertex::state_towards(const MediumState& state, const Vec3& direction) const {
@@ -55,7 +62,7 @@ ScatteringVertex make_vertex(const WalkEvent& event, const Ray& ray) {
     v.wo = -ray.direction;
     if (event.kind == WalkEvent::Kind::surface) {
         v.position = event.hit.position, v.hit = event.hit, v.bsdf = event.hit.shape->bsdf.get();
-        v.reflected = event.reflected;
+        v.stop_chance = event.stop_chance;
     } else {
         v.position = ray.at(event.distance), v.phase = &event.medium->phase();
     }

@@ -7,7 +7,7 @@
 
 #include <optional>
 
-#include "core/materials/bsdf.h"
+#include "core/geometry/bsdf_point.h"
 #include "core/math/sampler.h"
 #include "core/scene/medium_state.h"
 #include "core/scene/ray_walk.h"
@@ -28,10 +28,12 @@ struct ScatteringVertex {
     const Bsdf* bsdf = nullptr;            ///< surface
     const PhaseFunction* phase = nullptr;  ///< medium
     SurfaceHit hit;                        ///< surface only
-    bool reflected = false;                ///< by a pane: what passes it is not part of what it scatters
+    /// Of a pane that stopped the path here by chance (StraightPassage::stops); 1 on all other surfaces. What
+    /// passes the pane is no part of what the vertex scatters, and the rest counts by this chance.
+    float stop_chance = 1.0f;
 
     bool on_surface() const { return bsdf != nullptr; }
-    BsdfPoint bsdf_point() const { return {hit.uv}; }
+    BsdfPoint bsdf_point() const { return core::bsdf_point(hit); }
 
     /// f*(wo, wi) [1/sr], without cosine. Zero where shading and geometric normal disagree on the side, so
     /// that no light leaks through smooth-shaded surfaces.
@@ -41,6 +43,9 @@ struct ScatteringVertex {
     /// Density of sample() choosing wi, per solid angle.
     float pdf_solid_angle(const Vec3& wi, TransportMode mode) const;
     std::optional<ScatterSample> sample(float u_lobe, const Vec2& u, TransportMode mode) const;
+
+    /// On a surface: its reflectance where it is Lambertian and nothing else, seen from wo's side.
+    std::optional<Rgb> diffuse_reflectance() const;
 
     /// Has a part that can be connected to a light.
     bool connectable() const { return phase || bsdf->traits().smooth; }

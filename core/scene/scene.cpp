@@ -89,11 +89,8 @@ bool Scene::has_boundaries() const { return rays_->has_boundaries(); }
 
 bool Scene::has_panes() const { return rays_->has_panes(); }
 bool Scene::has_coloured_panes() const {
-    return std::any_of(parts_.shapes.begin(), parts_.shapes.end(), [](const auto& shape) {
-        if (!shape->bsdf->traits().pane) return false;
-        const Rgb passes = shape->bsdf->straight_passage({}, Vec3(0, 0, 1)).weight;
-        return shape->bsdf->traits().textured || passes.x != passes.y || passes.y != passes.z;
-    });
+    return std::any_of(parts_.shapes.begin(), parts_.shapes.end(),
+                       [](const auto& shape) { return shape->bsdf->traits().tints; });
 }
 void Scene::visit_boundaries(const Ray& ray, BoundaryVisitor visitor, const void* visit) const {
     rays_->for_each_hit(ray, RayTracer::Group::boundaries,

@@ -183,7 +183,7 @@ const Medium* Scene::outside_medium(const MediumState& inside, ProbeRays& probes
             }
             if (shape.closed() && hit.shape != excluded)
                 state.cross(shape, hit.geometric_normal, probes.direction(i));
-            blocked = blocked || !(shape.bsdf->traits().null || shape.bsdf->traits().pane);
+            blocked = blocked || !shape.bsdf->traits().passes_straight();
         }
     }
     if (seen.t < infinity) return seen.medium;

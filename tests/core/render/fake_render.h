@@ -87,12 +87,14 @@ inline std::unique_ptr<core::Scene> fake_scene(int width = 37, int height = 21,
 
 /// What a test may do before each pass: count, interrupt, throw.
 using BeforePass = std::function<void(std::uint32_t index)>;
+/// And at each pixel, before it is finished.
+using AtPixel = std::function<void(int x, int y)>;
 
 /// Noise in two layers of the beauty and one auxiliary layer, from Sampler and the pixel filter.
 class FakeEstimator final : public core::Estimator {
   public:
-    FakeEstimator(core::RenderOptions options, BeforePass before)
-        : options_(options), before_(std::move(before)) {}
+    FakeEstimator(core::RenderOptions options, BeforePass before, AtPixel at_pixel = {})
+        : options_(options), before_(std::move(before)), at_pixel_(std::move(at_pixel)) {}
 
     bool pass(const core::PassContext& context, core::PassImage& image) override {
         if (before_) before_(context.index);
@@ -106,6 +108,8 @@ class FakeEstimator final : public core::Estimator {
                         image.at(0, x, y) = core::Rgb(0.5f + sampler.next_1d());
                         image.at(1, x, y) = core::Rgb(sampler.next_1d(), 0.25f, offset.x * offset.x);
                         image.at(2, x, y) = core::Rgb(offset.x, offset.y, 0.0f);
+                        if (at_pixel_) at_pixel_(x, y);
+                        image.finish(x, y);
                     }
             });
     }
@@ -116,12 +120,14 @@ class FakeEstimator final : public core::Estimator {
   private:
     core::RenderOptions options_;
     BeforePass before_;
+    AtPixel at_pixel_;
 };
 
 class CountingIntegrator final : public core::Integrator {
   public:
     explicit CountingIntegrator(BeforePass before = {}, std::string second_layer = "indirect")
         : before_(std::move(before)), second_layer_(std::move(second_layer)) {}
+    AtPixel at_pixel;
     std::string type() const override { return "fake"; }
     std::vector<core::Layer> layers(const core::Scene&) const override {
         return {{"direct", "", false}, {second_layer_, "", false}, {"N", "", true}};
@@ -129,7 +135,7 @@ class CountingIntegrator final : public core::Integrator {
     core::Plan plan(const core::Scene&, const core::Requirements&) const override { return {}; }
     std::unique_ptr<core::Estimator> prepare(const core::Scene&,
                                              const core::RenderOptions& options) const override {
-        return std::make_unique<FakeEstimator>(options, before_);
+        return std::make_unique<FakeEstimator>(options, before_, at_pixel);
     }
 
   private:

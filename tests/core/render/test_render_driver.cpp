@@ -79,11 +79,11 @@ TEST_CASE("The noise rule stops where the noise is below it, whatever the number
     // Uniform noise of half-width 0.5 and mean near 1.4: 1/sqrt(12 n) / 1.4 < 0.05 from n of about 18.
     request.stop.noise = 0.05;
     const RenderResult result = render(*scene, CountingIntegrator(), request);
-    CHECK(result.film.relative_noise() <= 0.05);
+    CHECK(result.film.noise() <= 0.05);
     CHECK(result.film.pass_count() > noise_rule_from);
     RenderRequest one_less = request_for(result.film.pass_count() - 1);
     one_less.seed = 0;
-    CHECK(render(*scene, CountingIntegrator(), one_less).film.relative_noise() > 0.05);
+    CHECK(render(*scene, CountingIntegrator(), one_less).film.noise() > 0.05);
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
     CHECK(render(*scene, CountingIntegrator(), request).film.pass_count() == result.film.pass_count());
 }
@@ -99,6 +99,14 @@ TEST_CASE("Stop rules", "[driver]") {
     CHECK_FALSE(must_stop({{}, {}, 0.09}, s));
     CHECK(must_stop({100, 4.0, 0.01}, s));                   // the first that holds
     CHECK_FALSE(must_stop({{}, 0.001, {}}, RenderState{}));  // one pass at least
+    s.seconds_before = 0.5;                                  // of loading and building
+    CHECK(must_stop({{}, 4.9, {}}, s));
+    CHECK_FALSE(must_stop({{}, 5.1, {}}, s));
+    s.seconds_before = 0.0,
+    s.seconds = 40.0;  // long passes: another one would end at 50 s, a second late at most
+    CHECK(must_stop({{}, 48.9, {}}, s));
+    CHECK_FALSE(must_stop({{}, 49.1, {}}, s));
+    s.seconds = 4.0;
     s.passes = 7;
     CHECK_FALSE(must_stop({{}, {}, 0.5}, s));  // too few to know the noise
 
@@ -144,6 +152,70 @@ TEST_CASE("An interrupted render drops the running pass and keeps the rest", "[d
     CHECK(cut.film.mean(0)[0] != Rgb(7.0f));  // finish() was not called
     CHECK(bits(cut) == bits(render(*scene, CountingIntegrator(), request_for(19))));
     CHECK(folder.size() == 1);
+}
+
+TEST_CASE("Of a first pass that is cut off, finished pixels are kept, and the others are marked",
+          "[driver][checkpoint]") {
+    const TemporaryFolder folder;
+    const auto scene = fake_scene();
+    std::atomic<bool> stop{false};
+    CountingIntegrator cut_off;
+    cut_off.at_pixel = [&](int x, int y) {  // within a tile, deep inside
+        if (x < 20 || y != 10) return;
+        stop = true;
+        throw Cancelled();
+    };
+    RenderRequest request = request_for(3, folder.file("c"));
+    request.interrupted = &stop;
+    CHECK(render(*scene, cut_off, request).film.pass_count() == 0);  // only whole passes, unless asked
+
+    stop = false, request.keep_part_of_first_pass = true;
+    const RenderResult part = render(*scene, cut_off, request),
+                       whole = render(*scene, CountingIntegrator(), request_for(1));
+    CHECK(part.interrupted);
+    CHECK(folder.size() == 0);  // no checkpoint: to resume is to begin
+    REQUIRE(part.finished_pixels.size() == part.film.pixels());
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < part.film.pixels(); ++i)
+        for (std::size_t layer = 1; layer < 3; ++layer) {  // of layer 0 finish() changes the mean
+            kept += part.finished_pixels[i];
+            CHECK(part.film.mean(layer)[i] ==
+                  (part.finished_pixels[i] ? whole.film.mean(layer)[i] : Rgb(0.0f)));
+        }
+    CHECK(kept > 0);
+    CHECK(kept < 2 * part.film.pixels());
+
+    // The time is no interruption. In later passes what is complete is the picture.
+    std::atomic<bool> over{true};
+    stop = false, request.time_is_over = &over;
+    CHECK_FALSE(render(*scene, cut_off, request).interrupted);
+    std::uint32_t pass = 0;
+    CountingIntegrator later([&](std::uint32_t index) { pass = index; });
+    later.at_pixel = [&](int x, int) {
+        if (pass == 2 && x == 20) stop = true;
+    };
+    stop = false, over = false;
+    const RenderResult two = render(*scene, later, request);
+    CHECK(two.finished_pixels.empty());
+    CHECK(bits(two) == bits(render(*scene, CountingIntegrator(), request_for(2))));
+}
+
+TEST_CASE("Work that was asked to stop while building ends the render", "[driver]") {
+    class Slow final : public Integrator {
+      public:
+        std::string type() const override { return "slow"; }
+        std::vector<Layer> layers(const Scene&) const override { return {{"direct", "", false}}; }
+        Plan plan(const Scene&, const Requirements&) const override { return {}; }
+        std::unique_ptr<Estimator> prepare(const Scene&, const RenderOptions& options) const override {
+            for (;;) options.cancelled.check();
+        }
+    };
+    const std::atomic<bool> stop{true};
+    RenderRequest request = request_for(1);
+    request.interrupted = &stop;
+    const RenderResult result = render(*fake_scene(), Slow(), request);
+    CHECK(result.interrupted);
+    CHECK(result.film.pass_count() == 0);
 }
 
 TEST_CASE("Interrupted and resumed gives the bits of one run", "[driver][checkpoint]") {
@@ -249,12 +321,29 @@ TEST_CASE("Every damage to a checkpoint is refused", "[driver][checkpoint]") {
     CHECK(render(*scene, CountingIntegrator(), request).resumed_at == 5);
 }
 
-TEST_CASE("A checkpoint that cannot be written is an error", "[driver][checkpoint]") {
+TEST_CASE("A checkpoint that cannot be written is a warning and another try", "[driver][checkpoint]") {
     const TemporaryFolder folder;
     const auto scene = fake_scene();
     write_text(folder.file("plain"), "file");
-    CHECK_THROWS_AS(render(*scene, CountingIntegrator(), request_for(2, folder.file("plain/c"))), InputError);
-    CHECK_THROWS_AS(render(*scene, CountingIntegrator(), request_for(2, "/dev/full")), InputError);
+    for (const std::string& path : {folder.file("plain/c"), std::string("/dev/full")}) {
+        const RenderResult result = render(*scene, CountingIntegrator(), request_for(2, path));
+        CHECK(result.film.pass_count() == 2);
+        REQUIRE(result.statistics.warnings.size() == 1);
+        CHECK(result.statistics.warnings[0].find(path) != std::string::npos);
+    }
+    // There is room again after the second pass.
+    int failed = 0;
+    RenderRequest request = request_for(4, folder.file("later/c"));
+    request.checkpoint_every_seconds = 0.0;
+    request.checkpoint_failed = [&](const std::string&) { ++failed; };
+    const CountingIntegrator makes_room([&](std::uint32_t index) {
+        if (index == 2) std::filesystem::create_directory(folder.file("later"));
+    });
+    CHECK(render(*scene, makes_room, request).statistics.warnings.empty());
+    CHECK(failed == 2);
+    RenderRequest more = request_for(4, folder.file("later/c"));
+    more.resume = true;
+    CHECK(render(*scene, CountingIntegrator(), more).resumed_at == 4);
 }
 
 TEST_CASE("Exceptions of a tile reach the caller", "[driver]") {
