@@ -7,6 +7,7 @@ namespace mote::lights {
 void register_lights(core::Registry& registry) {
     register_point(registry);
     register_spot(registry);
+    register_projector(registry);
     register_directional(registry);
     register_area(registry);
     register_constant(registry);

@@ -41,7 +41,7 @@ void limit_resources(std::uint64_t memory, long seconds) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_CPU, rlim_t(seconds));
-#if !defined(__SANITIZE_ADDRESS__)  // whose shadow memory alone exceeds any limit
+#if !defined(MOTE_SANITIZED)  // whose shadow memory alone exceeds any limit
     limit(RLIMIT_AS, rlim_t(memory));
 #else
     (void)memory;

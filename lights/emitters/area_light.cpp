@@ -14,8 +14,10 @@ using namespace core;
 
 class AreaLight final : public Emitter {
   public:
-    AreaLight(const Rgb& radiance, std::shared_ptr<Texture> texture, SourceLocation where = {})
-        : radiance_(radiance), texture_(std::move(texture)), where_(std::move(where)) {}
+    /// `scale` multiplies the texture.
+    AreaLight(const Rgb& radiance, std::shared_ptr<Texture> texture, SourceLocation where = {},
+              float scale = 1.0f)
+        : radiance_(radiance), scale_(scale), texture_(std::move(texture)), where_(std::move(where)) {}
 
     EmitterTraits traits() const override {
         return {.kind = EmitterKind::area, .textured = texture_ && !texture_->constant()};
@@ -74,33 +76,44 @@ class AreaLight final : public Emitter {
     }
     Rgb power() const override {
         if (!shape_) return Rgb(0.0f);
-        return (texture_ ? texture_->mean() : radiance_) * (pi * shape_->area());
+        const SurfaceAttributes* attributes = shape_->attributes();
+        const Rgb mean = !texture_    ? radiance_
+                         : attributes ? scale_ * texture_->mean_over(*attributes)
+                                      : scale_ * texture_->mean();
+        return mean * (pi * shape_->area());
     }
 
   private:
-    Rgb emitted(const Vec2& uv) const { return texture_ ? texture_->eval(uv) : radiance_; }
+    Rgb emitted(const TextureCoordinates& uv) const {
+        return texture_ ? scale_ * texture_->eval(uv) : radiance_;
+    }
 
     Rgb radiance_;
+    float scale_;
     std::shared_ptr<Texture> texture_;  ///< takes the place of radiance_ where there is one
     SourceLocation where_;
     const Shape* shape_ = nullptr;
 };
 
-std::shared_ptr<Texture> checked_texture(std::shared_ptr<Texture> texture, const SourceLocation& where) {
-    checked_brightness(Rgb(texture->minimum()), "radiance", where);
-    checked_brightness(Rgb(texture->maximum()), "radiance", where);
+std::shared_ptr<Texture> checked_texture(std::shared_ptr<Texture> texture, const SourceLocation& where,
+                                         float scale = 1.0f) {
+    checked_brightness(scale * Rgb(texture->minimum()), "radiance", where);
+    checked_brightness(scale * Rgb(texture->maximum()), "radiance", where);
     return texture;
 }
 
 std::shared_ptr<Object> create(const Properties& properties) {
+    const auto scale = float(properties.get_float_in("scale", 1.0, 0.0, double(brightest)));
     if (auto texture = properties.child<Texture>("radiance")) {
-        if (!(texture->maximum() > 0.0f))
+        if (!(scale * texture->maximum() > 0.0f))
             properties.warn("'radiance' is a black texture: this light emits nothing");
         return std::make_shared<AreaLight>(
-            Rgb(0.0f), checked_texture(std::move(texture), properties.where_of("radiance")),
-            properties.where);
+            Rgb(0.0f), checked_texture(std::move(texture), properties.where_of("radiance"), scale),
+            properties.where, scale);
     }
-    return std::make_shared<AreaLight>(read_brightness(properties, "radiance"), nullptr, properties.where);
+    const Rgb radiance = scale * read_brightness(properties, "radiance");
+    return std::make_shared<AreaLight>(checked_brightness(radiance, "radiance", properties.where_of("scale")),
+                                       nullptr, properties.where);
 }
 
 }  // namespace
@@ -116,7 +129,8 @@ void register_area(Registry& registry) {
     registry.add({Category::emitter,
                   "area",
                   "Makes the shape around it emit from its front side, where the normal points to.",
-                  {{"radiance", "texture", "1", "emitted radiance [W/(m^2 sr)], a colour or a texture"}},
+                  {{"radiance", "texture", "1", "emitted radiance [W/(m^2 sr)], a colour or a texture"},
+                   {"scale", "float", "1", "multiplies the radiance (not known to Mitsuba)"}},
                   R"(<emitter type="area">
     <rgb name="radiance" value="18, 14, 7"/>
 </emitter>)"},

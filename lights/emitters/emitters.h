@@ -31,6 +31,17 @@ struct SpotSettings {
 };
 std::shared_ptr<core::Emitter> make_spot_light(const SpotSettings& settings);
 
+/// A picture thrown along +z of to_world (which must not scale): on a surface that faces the projector at
+/// distance 1 it gives the irradiance pi times `scale` times `irradiance` [W/m^2]. Null: white.
+struct ProjectorSettings {
+    core::Transform to_world{};
+    std::shared_ptr<core::Texture> irradiance{};
+    float scale = 1.0f;
+    double tan_half_fov_x =
+        0.5;  ///< half the picture's width at distance 1; the height follows from its aspect
+};
+std::shared_ptr<core::Emitter> make_projector_light(const ProjectorSettings& settings);
+
 /// Parallel light; `irradiance` [W/m^2] is what a surface facing the light receives.
 std::shared_ptr<core::Emitter> make_directional_light(const core::Vec3d& direction,
                                                       const core::Rgb& irradiance);
@@ -52,6 +63,7 @@ std::shared_ptr<core::Emitter> make_environment_map(core::Bitmap picture,
 // Called by register_lights(); each is defined beside its light.
 void register_point(core::Registry& registry);
 void register_spot(core::Registry& registry);
+void register_projector(core::Registry& registry);
 void register_directional(core::Registry& registry);
 void register_area(core::Registry& registry);
 void register_constant(core::Registry& registry);

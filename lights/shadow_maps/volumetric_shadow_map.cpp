@@ -42,7 +42,8 @@ bool needs_chromatic_maps(const RayQueries& scene) {
 }
 
 void VolumetricShadowMap::build(const RayQueries& scene, const ShadowMapView& view,
-                                const MediumState& at_light, const ShadowMapSettings& settings) {
+                                const MediumState& at_light, const ShadowMapSettings& settings,
+                                CancelToken cancelled) {
     const bool chromatic = needs_chromatic_maps(scene);
     settings.check(view.size, chromatic);
     view_ = view, settings_ = settings, channels_ = chromatic ? 3 : 1;
@@ -53,6 +54,7 @@ void VolumetricShadowMap::build(const RayQueries& scene, const ShadowMapView& vi
         [&] { return ShadowMapBuilder(scene, *this, at_light); });
     tbb::parallel_for(0, view.size, [&](int j) {
         ShadowMapBuilder& builder = builders.local();
+        cancelled.check();
         for (int i = 0; i < view.size; ++i)
             builder.fill(j * view.size + i, record(std::size_t(j + 1) * row + std::size_t(i + 1)));
     });

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "core/geometry/ray_counters.h"
+#include "core/objects/cancellation.h"
 #include "core/scene/ray_queries.h"
 #include "lights/shadow_maps/shadow_map_cells.h"
 
@@ -55,9 +56,9 @@ class VolumetricShadowMap {
   public:
     /// Traces and marches all texels in parallel; takes memory only when it grows. `at_light` holds the media
     /// at the light (parallel light: outside). Throws InputError when the map would be larger than
-    /// settings.max_bytes.
+    /// settings.max_bytes, and core::Cancelled.
     void build(const core::RayQueries& scene, const ShadowMapView& view, const core::MediumState& at_light,
-               const ShadowMapSettings& settings);
+               const ShadowMapSettings& settings, core::CancelToken cancelled = {});
 
     /// From the light to the points, interpolated between the four texels around each; 0 where the map does
     /// not reach. Points within about a texel behind a surface count as on it. Many packets in one call hide

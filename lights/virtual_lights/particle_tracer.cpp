@@ -16,12 +16,14 @@ constexpr std::uint32_t light_path_stream =
     0x56504cu;  // keeps light paths apart from pixels of the same index
 
 VplSet trace_chunk(const LitScene& scene, const LightPathSettings& settings, std::uint32_t begin,
-                   std::uint32_t end, std::uint64_t seed, std::uint32_t pass, SamplerKind kind) {
+                   std::uint32_t end, std::uint64_t seed, std::uint32_t pass, SamplerKind kind,
+                   CancelToken cancelled) {
     VplSet set;
     for (std::uint32_t path = begin; path < end; ++path) {
         // The paths of one pass form one low-discrepancy set; every pass has a scramble of its own.
         Sampler sampler(kind, seed, path, pass, light_path_stream);
         WalkContext context;
+        context.cancelled = cancelled;
         context.rng = Rng(hash_keys(seed, pass, path, light_path_stream));
         const auto leave_vpl = [&](const ScatteringVertex& vertex, const Rgb& alpha, int depth,
                                    const MediumState& state) {
@@ -52,12 +54,12 @@ void append(VplSet& to, VplSet&& from) {
 }  // namespace
 
 VplSet trace_light_paths(const LitScene& scene, const LightPathSettings& settings, std::uint64_t seed,
-                         std::uint32_t pass, SamplerKind sampler) {
+                         std::uint32_t pass, SamplerKind sampler, CancelToken cancelled) {
     const std::uint32_t chunks = (settings.paths + chunk_size - 1) / chunk_size;
     std::vector<VplSet> parts(chunks);
     tbb::parallel_for(std::uint32_t(0), chunks, [&](std::uint32_t c) {
         const std::uint32_t begin = c * chunk_size, end = std::min(begin + chunk_size, settings.paths);
-        parts[c] = trace_chunk(scene, settings, begin, end, seed, pass, sampler);
+        parts[c] = trace_chunk(scene, settings, begin, end, seed, pass, sampler, cancelled);
     });
     VplSet set;
     for (VplSet& part : parts) append(set, std::move(part));

@@ -10,8 +10,8 @@
 namespace mote::lights {
 
 /// Traces one set of light paths in parallel. (seed, pass, path index) determines every path; the order of
-/// the VPLs does not depend on threads.
+/// the VPLs does not depend on threads. Throws core::Cancelled.
 VplSet trace_light_paths(const core::LitScene& scene, const LightPathSettings& settings, std::uint64_t seed,
-                         std::uint32_t pass, core::SamplerKind sampler);
+                         std::uint32_t pass, core::SamplerKind sampler, core::CancelToken cancelled = {});
 
 }  // namespace mote::lights

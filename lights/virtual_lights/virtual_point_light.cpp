@@ -40,8 +40,7 @@ void append_vpl(VplSet& set, const ScatteringVertex& vertex, const Rgb& alpha, s
         vpl.normal = front ? vertex.hit.geometric_normal : -vertex.hit.geometric_normal;
         vpl.shading_normal = front ? vertex.hit.shading.n : -vertex.hit.shading.n;
         vpl.position = offset_origin(vertex.hit, vpl.normal);
-        const auto reflectance =
-            vertex.bsdf->diffuse_reflectance(vertex.bsdf_point(), vertex.hit.shading.to_local(vertex.wo));
+        const auto reflectance = vertex.diffuse_reflectance();
         plain = reflectance.has_value();
         if (plain) {
             // The light must also arrive above the shading normal, or a diffuse surface reflects nothing.

@@ -21,6 +21,7 @@ std::uint64_t count_rays(std::span<const ShadowPacket> packets) {
 }  // namespace
 
 void TracedVisibility::operator()(std::span<ShadowPacket> packets, std::span<LaneLight> light) {
+    context_.cancelled.check();
     context_.rays.occlusion += count_rays(packets);
     context_.scene.find_occluded(packets);
     const bool attenuates = context_.scene.attenuates();
@@ -39,6 +40,7 @@ void TracedVisibility::operator()(std::span<ShadowPacket> packets, std::span<Lan
 void TracedVisibility::attenuate(const ShadowPacket& packet, LaneLight& light) {
     for (int i = 0; i < width; ++i) {
         if (packet.occluded(i)) continue;
+        context_.cancelled.check();
         const Vec3 from(packet.origin_x[i], packet.origin_y[i], packet.origin_z[i]);
         const Vec3 to = from + Vec3(packet.direction_x[i], packet.direction_y[i], packet.direction_z[i]);
         const ScatteringVertex* v = tile_.directional[i];

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/geometry/ray_counters.h"
+#include "core/objects/cancellation.h"
 #include "core/scene/ray_queries.h"
 #include "lights/virtual_lights/vpl_contributions.h"
 
@@ -56,6 +57,7 @@ struct GatherContext {
     GatherScratch& scratch;
     core::RayCounters& rays;
     core::TrackingCounters& tracking;
+    core::CancelToken cancelled = {};  ///< thrown at, a batch at a time
 };
 
 /// V* by shadow rays, all of a batch in one call, times an estimate of the transmittance where the scene

@@ -22,8 +22,7 @@ void ReceiverTile::set(int lane, const ScatteringVertex& vertex, const Rgb& thro
         ng = front ? vertex.hit.geometric_normal : -vertex.hit.geometric_normal;
         ns = front ? vertex.hit.shading.n : -vertex.hit.shading.n;
         position = offset_origin(vertex.hit, ng);
-        const auto reflectance =
-            vertex.bsdf->diffuse_reflectance(vertex.bsdf_point(), vertex.hit.shading.to_local(vertex.wo));
+        const auto reflectance = vertex.diffuse_reflectance();
         if (!reflectance)
             directional[lane] = &vertex;
         else if (glm::dot(ns, vertex.wo) > 0.0f)

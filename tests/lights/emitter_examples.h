@@ -20,7 +20,7 @@ class FunctionTexture final : public Texture {
   public:
     FunctionTexture(std::function<Rgb(const Vec2&)> f, const Rgb& mean, float minimum, float maximum)
         : f_(std::move(f)), mean_(mean), minimum_(minimum), maximum_(maximum) {}
-    Rgb eval(const Vec2& uv) const override { return f_(uv); }
+    Rgb eval(const core::TextureCoordinates& uv) const override { return f_(uv); }
     Rgb mean() const override { return mean_; }
     float maximum() const override { return maximum_; }
     float minimum() const override { return minimum_; }
@@ -82,6 +82,10 @@ inline std::vector<LightExample> light_examples() {
     spot.intensity = Rgb(5, 4, 3);
     SpotSettings textured = spot;
     textured.texture = gradient_texture();
+    ProjectorSettings projector;
+    projector.to_world = spot.to_world, projector.scale = 2.0f, projector.tan_half_fov_x = 0.3;
+    ProjectorSettings pictured = projector;
+    pictured.irradiance = gradient_texture();
     const auto turned = Transform(glm::rotate(glm::dmat4(1.0), 0.7, glm::normalize(Vec3d(1, 2, 3))));
     const auto small = [](const Transform& t) {
         return t * Transform(glm::scale(glm::dmat4(1.0), Vec3d(0.5)));
@@ -90,6 +94,8 @@ inline std::vector<LightExample> light_examples() {
         {"point", make_point_light({0.5, 0.2, 2.0}, Rgb(3, 2, 1)), nullptr},
         {"spot", make_spot_light(spot), nullptr},
         {"textured spot", make_spot_light(textured), nullptr},
+        {"projector", make_projector_light(projector), nullptr},
+        {"textured projector", make_projector_light(pictured), nullptr},
         {"directional", make_directional_light({0.3, 0.2, -1.0}, Rgb(3, 2, 1)), nullptr},
         {"constant", make_constant_light(Rgb(3, 2, 1)), nullptr},
         {"envmap", make_environment_map(sky_picture(), turned, 1.5f), nullptr},

@@ -45,7 +45,8 @@ bool refused_at_line(const Made& made) { return made.error.find("scene.xml:7") !
 TEST_CASE("every light has a manual page that its factory follows", "[lights][emitters][input]") {
     Registry registry;
     mote::lights::register_lights(registry);
-    const std::vector<std::string> expected{"area", "constant", "directional", "envmap", "point", "spot"};
+    const std::vector<std::string> expected{"area",  "constant",  "directional", "envmap",
+                                            "point", "projector", "spot"};
     CHECK(registry.types(Category::emitter) == expected);
     for (const auto* manual : registry.manuals()) {
         INFO(manual->type);
@@ -90,11 +91,9 @@ TEST_CASE("positions and directions come either way", "[lights][emitters][input]
 
 TEST_CASE("brightness that is negative or not finite is refused at its line", "[lights][emitters][input]") {
     const float nan = std::numeric_limits<float>::quiet_NaN();
-    const std::pair<const char*, const char*> parameters[] = {{"point", "intensity"},
-                                                              {"spot", "intensity"},
-                                                              {"directional", "irradiance"},
-                                                              {"area", "radiance"},
-                                                              {"constant", "radiance"}};
+    const std::pair<const char*, const char*> parameters[] = {
+        {"point", "intensity"}, {"spot", "intensity"},       {"directional", "irradiance"},
+        {"area", "radiance"},   {"projector", "irradiance"}, {"constant", "radiance"}};
     for (const auto& [type, name] : parameters) {
         INFO(type);
         for (const Rgb& bad : {Rgb(-1, 1, 1), Rgb(1, -1e-6f, 1), Rgb(1, 1, nan), Rgb(infinity), Rgb(2e30f)})
@@ -108,6 +107,15 @@ TEST_CASE("brightness that is negative or not finite is refused at its line", "[
     }
 }
 
+TEST_CASE("a projector of scale zero is warned about once", "[lights][emitters][input]") {
+    const Made black = make("projector", {{"scale", 0.0}});
+    REQUIRE(black.light);
+    REQUIRE(black.warnings.size() == 1);
+    CHECK(black.warnings[0].find("'scale' is zero") != std::string::npos);
+    CHECK_FALSE(black.light->sample_emission(Vec2(0.5f), Vec2(0.5f)));
+    CHECK(make("projector").warnings.empty());
+}
+
 TEST_CASE("textures of lights are checked", "[lights][emitters][input]") {
     const auto texture = [](float minimum, float maximum) {
         return std::make_shared<FunctionTexture>([](const Vec2&) { return Rgb(0.5f); }, Rgb(0.5f), minimum,
@@ -116,7 +124,8 @@ TEST_CASE("textures of lights are checked", "[lights][emitters][input]") {
     const auto with = [&](const char* type, const char* name, float minimum, float maximum) {
         return make(type, {}, {{name, Category::texture, texture(minimum, maximum), line7}});
     };
-    for (const auto& [type, name] : {std::pair{"spot", "texture"}, {"area", "radiance"}}) {
+    for (const auto& [type, name] :
+         {std::pair{"spot", "texture"}, {"area", "radiance"}, {"projector", "irradiance"}}) {
         INFO(type);
         CHECK(with(type, name, 0.0f, 1.0f).light);
         CHECK_FALSE(with(type, name, -0.1f, 1.0f).light);

@@ -1,9 +1,11 @@
 // Particle tracing and gathering, each against something that does not share its code.
 #include <tbb/global_control.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
 
+#include "core/math/warp.h"
 #include "lights/virtual_lights/particle_tracer.h"
 #include "lights/virtual_lights/vpl_gather.h"
 #include "tests/lights/closed_box.h"
@@ -16,36 +18,48 @@ using namespace mote::tests;
 
 namespace {
 
-lights::LightPathSettings paths(std::uint32_t n) {
+lights::LightPathSettings paths(std::uint32_t n, int rr_depth = 5) {
     lights::LightPathSettings s;
-    s.paths = n;
+    s.paths = n, s.rr_depth = rr_depth;
     return s;
 }
 
 }  // namespace
 
 // Every particle in a closed box arrives somewhere: the power at the first vertices is the power of the
-// light, and every diffuse bounce keeps the albedo's share of it in the mean.
+// light, and every diffuse bounce keeps the albedo's share of it in the mean, with roulette from the second
+// vertex on, from the fourth, or never.
 TEST_CASE("the VPLs of each depth carry the light's power times albedo^depth", "[vpl][particles]") {
     const auto scene = scene_from(closed_box(diffuse, ""));
     const double power = 4.0 * std::acos(-1.0) * 2.0;  // red
-    std::vector<double> sum(4, 0.0), squares(4, 0.0);
+    constexpr std::size_t depths = 6;
     const int sets = 64;
-    for (int s = 0; s < sets; ++s) {
-        const auto set =
-            lights::trace_light_paths(*scene, paths(256), 5, std::uint32_t(s), SamplerKind::independent);
-        CHECK(set.paths == 256);
-        std::vector<double> set_sum(4, 0.0);
-        // I_j = albedo / pi * alpha / paths on a diffuse surface.
-        for (const auto& vpl : set.lights)
-            if (vpl.depth <= 4) set_sum[vpl.depth - 1] += double(vpl.intensity.x) * std::acos(-1.0) / 0.5;
-        for (std::size_t d = 0; d < 4; ++d) sum[d] += set_sum[d], squares[d] += set_sum[d] * set_sum[d];
-    }
-    for (std::size_t d = 0; d < 4; ++d) {
-        const double mean = sum[d] / sets, variance = (squares[d] / sets - mean * mean) / (sets - 1);
-        INFO("depth " << d + 1 << ": " << mean << " +- " << std::sqrt(variance));
-        // 4 sigma; depth 1 has no variance at all.
-        CHECK(std::fabs(mean - power * std::pow(0.5, double(d))) < 4.0 * std::sqrt(variance) + 1e-4 * power);
+    for (const int rr_depth : {1, 3, 1000}) {
+        std::array<double, depths> sum{}, squares{};
+        std::size_t vpls = 0;
+        auto settings = paths(256, rr_depth);
+        settings.max_vertices = int(depths);
+        for (int s = 0; s < sets; ++s) {
+            const auto set =
+                lights::trace_light_paths(*scene, settings, 5, std::uint32_t(s), SamplerKind::independent);
+            CHECK(set.paths == 256);
+            vpls += set.lights.size();
+            std::array<double, depths> set_sum{};
+            // I_j = albedo / pi * alpha / paths on a diffuse surface.
+            for (const auto& vpl : set.lights)
+                set_sum[vpl.depth - 1] += double(vpl.intensity.x) * std::acos(-1.0) / 0.5;
+            for (std::size_t d = 0; d < depths; ++d)
+                sum[d] += set_sum[d], squares[d] += set_sum[d] * set_sum[d];
+        }
+        CHECK((vpls < sets * 256 * depths) == (rr_depth < int(depths)));  // roulette ended some
+        for (std::size_t d = 0; d < depths; ++d) {
+            const double mean = sum[d] / sets, variance = (squares[d] / sets - mean * mean) / (sets - 1);
+            INFO("roulette from " << rr_depth << ", depth " << d + 1 << ": " << mean << " +- "
+                                  << std::sqrt(variance));
+            // 4 sigma; without roulette there is no variance at all.
+            CHECK(std::fabs(mean - power * std::pow(0.5, double(d))) <
+                  4.0 * std::sqrt(variance) + 1e-4 * power);
+        }
     }
 }
 
@@ -61,6 +75,30 @@ TEST_CASE("light paths are the same bits on one thread and on two", "[vpl][deter
     REQUIRE(!one.details.empty());
     CHECK(std::memcmp(one.lights.data(), two.lights.data(), one.lights.size() * sizeof one.lights[0]) == 0);
     CHECK(one.rays.closest == two.rays.closest);
+}
+
+// Light of power alpha that arrives along wo leaves a diffuse surface with a shading normal as albedo / pi
+// alpha times |wo.ns| / |wo.ng| (Veach 1997, Sec. 5.3): what a plain VPL keeps is what its vertex would say.
+TEST_CASE("a VPL on a surface with a shading normal has the light's end of the adjoint correction", "[vpl]") {
+    const auto scene = scene_from(closed_box(diffuse, ""));
+    Rng rng(4);
+    for (int i = 0; i < 100; ++i) {
+        ScatteringVertex v;
+        v.hit.shape = scene->shapes().front().get(), v.bsdf = v.hit.shape->bsdf.get();
+        v.hit.geometric_normal = Vec3(0, 0, 1);
+        v.hit.shading = Frame(glm::normalize(Vec3(0.4f * rng.next_float(), 0.4f * rng.next_float(), 1.0f)));
+        v.wo = square_to_cosine_hemisphere(rng.next_vec2());
+        const float cos_ns = glm::dot(v.wo, v.hit.shading.n), cos_ng = v.wo.z;
+        lights::VplSet set;
+        lights::append_vpl(set, v, Rgb(1, 2, 3), 1, 0);
+        REQUIRE(set.lights.size() == (cos_ns > 0.0f ? 1u : 0u));
+        if (cos_ns <= 0.0f) continue;
+        const Rgb expected = 0.5f * inv_pi * (cos_ns / cos_ng) * Rgb(1, 2, 3);
+        for (int c = 0; c < 3; ++c) CHECK(set.lights[0].intensity[c] == Approx(expected[c]).epsilon(1e-4));
+        // In all directions above it, this is the power that a detailed vertex would send.
+        const lights::VplDetail detail{v};
+        CHECK((detail.eval(v.wo) * Rgb(1, 2, 3)).y == Approx(expected.y).epsilon(1e-4));
+    }
 }
 
 // The gather of a tile against a plain loop over VPLs and receivers, written from Eqs. 10.4 and 10.5.

@@ -153,3 +153,31 @@ TEST_CASE("particles of a glowing medium start by its density of points, in all 
     }
     CHECK(glow.light->pdf_emission(Vec3(0.5f, 1.1f, 0.5f), {}, {}).pdf_area == 0.0f);
 }
+
+// Two techniques find a point y of the medium: a direction of density p_w that a walk collides in, and a
+// point drawn of density p_V. The weights add up to one only where both sides count per length of the ray
+// with the same c(y).
+TEST_CASE("light sampling and walks into a glowing medium weigh each other by the same density",
+          "[media][emission]") {
+    const Glow glow;
+    constexpr float chance = 0.3f;
+    glow.light->set_direct_probability(chance);
+    core::Rng rng(12);
+    for (int i = 0; i < 200; ++i) {
+        const Vec3 from = 3.0f * Vec3(rng.next_float(), rng.next_float(), rng.next_float()) - 1.0f;
+        const auto s = glow.light->sample_direct(from, rng.next_vec2());
+        REQUIRE(s);
+        const Vec3 y = from + s->distance * s->wi;
+        const Rgb sigma_t = glow.medium->coefficients(y).sigma_t;
+        // Of light sampling over that of directions of density 1/sr, as direct_light.cpp and a walk ask for
+        // it.
+        const float by_light = chance * s->pdf_solid_angle / s->line_density;
+        const float by_walk = glow.light->light_over_walk(from, y, sigma_t);
+        // The point is rebuilt from its direction: some ulps of the distance, and of the extinction that
+        // varies there.
+        CHECK(by_light == Approx(by_walk).epsilon(1e-3));
+        // The point's density is per volume: with d^2 it is one per solid angle and length.
+        const float p_v = glow.light->pdf_emission(y, {}, {}).pdf_area;
+        CHECK(s->pdf_solid_angle == Approx(p_v * s->distance * s->distance).epsilon(1e-3));
+    }
+}
