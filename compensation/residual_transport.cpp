@@ -16,6 +16,48 @@ namespace {
 /// nearly zero where there is extinction on one side, and every point must have a chance.
 constexpr float least_optical_depth = 0.1f;
 
+/// Where a path along the ray stops at the latest: at the first surface, or by chance at a pane before it.
+struct Stop {
+    std::optional<SurfaceHit> hit;
+    bool by_pane = false;
+    float chance = 1.0f;  ///< StraightPassage::stops of that pane
+};
+
+Stop first_stop(const RayQueries& scene, const Ray& ray, WalkContext& context) {
+    ++context.rays.closest;
+    Stop stop{scene.first_hit(ray)};
+    if (!scene.has_panes()) return stop;
+    Ray before = ray;
+    if (stop.hit) before.t_max = stop.hit->t;
+    ++context.rays.boundary;
+    scene.for_each_boundary(before, [&](const SurfaceHit& hit) {
+        if (!is_pane(hit)) return true;
+        const StraightPassage passage = passage_through(hit, ray.direction);
+        if (context.rng.next_float() < passage.probability()) return true;
+        stop = {hit, true, passage.stops};
+        return false;
+    });
+    return stop;
+}
+
+/// What a path brings along that passed the panes on its way by chance, with the media between them.
+Rgb transmittance_past_panes(const RayQueries& scene, const Ray& ray, const MediumState& state, bool media,
+                             WalkContext& context) {
+    Rgb product(1.0f);
+    const auto part = [&](float t0, float t1, const MediumState& here) {
+        const Medium* medium = here.current();
+        if (media && medium && t0 < t1)
+            product *=
+                medium->transmittance(Ray{ray.origin, ray.direction, t0, t1}, context.rng, context.tracking);
+        return !is_black(product);
+    };
+    for_each_part(scene, ray, state, part, [&](const SurfaceHit& hit) {
+        product *= passage_through(hit, ray.direction).weight;
+        return !is_black(product);
+    });
+    return product;
+}
+
 /// The media at the end of `ray`, which starts in `state`.
 MediumState state_at_end(const RayQueries& scene, const Ray& ray, const MediumState& state,
                          WalkContext& context) {
@@ -122,11 +164,8 @@ bool ResidualTransport::place_by_free_path(ResidualPath& path, const Ray& ray, W
 
 bool ResidualTransport::place_in_mean_medium(ResidualPath& path, const Ray& ray, WalkContext& context) const {
     const bool look = settings_.local_visibility || path.vertex.on_surface();
-    std::optional<SurfaceHit> hit;
-    if (look) {
-        ++context.rays.closest;
-        hit = scene_.first_hit(ray);
-    }
+    const Stop stop = look ? first_stop(scene_, ray, context) : Stop{};
+    const std::optional<SurfaceHit>& hit = stop.hit;
     if (!path.mean_known) find_mean_extinction(path);
     if (!path.mean_extinction && !hit) return false;
     const Rgb mean = path.mean_extinction.value_or(Rgb(0.0f));
@@ -143,6 +182,7 @@ bool ResidualTransport::place_in_mean_medium(ResidualPath& path, const Ray& ray,
     event.distance = p.distance;
     if (p.at_surface) {
         event.kind = WalkEvent::Kind::surface, event.hit = *hit;
+        event.reflected = stop.by_pane, event.stop_chance = stop.chance;
     } else {
         event.kind = WalkEvent::Kind::collision, event.medium = path.state.current();
         if (!event.medium || !may_hold(*event.medium, z)) return false;
@@ -150,9 +190,12 @@ bool ResidualTransport::place_in_mean_medium(ResidualPath& path, const Ray& ray,
     }
     path.vertex = make_vertex(event, ray);
     // The mean: Sec. 10.2.2, tau = exp(-mean |y - z|).
-    const Rgb transmittance = settings_.transmittance == LocalTransmittance::mean
-                                  ? exponential(mean * p.distance)
-                                  : scene_.transmittance(ray.origin, z, start, context.rng, context.tracking);
+    const bool exact = settings_.transmittance == LocalTransmittance::exact;
+    Rgb transmittance = exact ? Rgb(1.0f) : exponential(mean * p.distance);
+    if (look && scene_.has_panes())
+        transmittance *= transmittance_past_panes(scene_, part, start, exact, context);
+    else if (exact)
+        transmittance = scene_.transmittance(ray.origin, z, start, context.rng, context.tracking);
     path.weights.throughput *= transmittance / p.density;  // tau(y,z) / p(t) of Eq. 10.11
     return true;
 }

@@ -17,9 +17,7 @@ namespace {
 /// Shadow rays stop this much short of their end, so that rounding cannot hit the light's own surface.
 constexpr float shadow_fraction = 0.9999f;
 
-bool is_glossy(const ScatteringVertex& v) {
-    return !v.bsdf->diffuse_reflectance(v.bsdf_point(), v.hit.shading.to_local(v.wo)).has_value();
-}
+bool is_glossy(const ScatteringVertex& v) { return !v.diffuse_reflectance().has_value(); }
 
 bool reflects_only(const ScatteringVertex& v) { return !v.bsdf->traits().transmissive; }
 bool reflects_only(const SphericalLight& light) {

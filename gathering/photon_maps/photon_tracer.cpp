@@ -44,8 +44,8 @@ struct Chunk {
 
 class ChunkTracer {
   public:
-    ChunkTracer(const LitScene& scene, const PhotonSettings& settings, int halvings)
-        : scene_(scene), settings_(settings), halvings_(halvings) {}
+    ChunkTracer(const LitScene& scene, const PhotonSettings& settings, int halvings, CancelToken cancelled)
+        : scene_(scene), settings_(settings), halvings_(halvings), cancelled_(cancelled) {}
 
     template <bool Media>
     Chunk trace(std::uint32_t begin, std::uint32_t end, std::uint64_t seed, std::uint32_t pass,
@@ -55,6 +55,7 @@ class ChunkTracer {
             // The paths of one pass form one low-discrepancy set; every pass has a scramble of its own.
             Sampler sampler(kind, seed, path, pass, photon_stream);
             WalkContext context;
+            context.cancelled = cancelled_;
             const std::uint64_t key = hash_keys(seed, pass, path, photon_stream);
             context.rng = Rng(key);
             lights::follow_light_path<Media>(scene_, settings_.paths, sampler, context,
@@ -74,7 +75,9 @@ class ChunkTracer {
         if (depth < first || is_black(alpha) || !v.connectable()) return;
         ++chunk.met;
         if (!is_kept(key, std::uint32_t(depth), halvings_)) return;
-        Photon photon{v.position, encode_direction(v.wo), alpha, 0, std::uint16_t(std::min(depth, 65535))};
+        // A mask stops photons and eye paths each by chance, and is there once: one chance is taken back.
+        Photon photon{v.position, encode_direction(v.wo), alpha / v.stop_chance, 0,
+                      std::uint16_t(std::min(depth, 65535))};
         photon.normal_or_medium =
             surface ? encode_normal(v.hit.geometric_normal) : medium_index(scene_, v.phase);
         chunk.kept.push_back({photon, key, std::uint32_t(depth), surface});
@@ -83,6 +86,7 @@ class ChunkTracer {
     const LitScene& scene_;
     const PhotonSettings& settings_;
     int halvings_;
+    CancelToken cancelled_;
 };
 
 void thin(std::vector<Candidate>& photons, int halvings) {
@@ -106,7 +110,7 @@ PhotonSet split(std::vector<Candidate>&& candidates, int halvings) {
 }  // namespace
 
 PhotonSet trace_photons(const LitScene& scene, const PhotonSettings& settings, std::uint64_t seed,
-                        std::uint32_t pass, SamplerKind sampler) {
+                        std::uint32_t pass, SamplerKind sampler, CancelToken cancelled) {
     std::vector<Candidate> kept;
     std::uint64_t met = 0;
     int halvings = 0;
@@ -115,7 +119,7 @@ PhotonSet trace_photons(const LitScene& scene, const PhotonSettings& settings, s
     const std::uint32_t paths = settings.paths.paths;
     for (std::uint32_t first = 0; first < paths; first += std::min(batch_size, paths - first)) {
         const std::uint32_t last = first + std::min(batch_size, paths - first);
-        const ChunkTracer tracer(scene, settings, halvings);
+        const ChunkTracer tracer(scene, settings, halvings, cancelled);
         std::vector<Chunk> chunks((last - first + chunk_size - 1) / chunk_size);
         tbb::parallel_for(std::uint32_t(0), std::uint32_t(chunks.size()), [&](std::uint32_t c) {
             const std::uint32_t begin = first + c * chunk_size, end = std::min(begin + chunk_size, last);

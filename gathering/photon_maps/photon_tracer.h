@@ -28,8 +28,8 @@ struct PhotonSet {
 };
 
 /// Traces in parallel. (seed, pass, path index) determines every path; the order of the photons does not
-/// depend on threads.
+/// depend on threads. Throws core::Cancelled.
 PhotonSet trace_photons(const core::LitScene& scene, const PhotonSettings& settings, std::uint64_t seed,
-                        std::uint32_t pass, core::SamplerKind sampler);
+                        std::uint32_t pass, core::SamplerKind sampler, core::CancelToken cancelled = {});
 
 }  // namespace mote::gathering

@@ -71,6 +71,8 @@ class EyePath {
     core::Sampler& sampler() { return sampler_; }
     /// The weight of light that reaches the path's end.
     core::Rgb throughput() const { return lights::throughput_of<Media>(weights_); }
+    /// The length of hidden lights' part of the first leg, which ray() no longer holds [m].
+    float passed() const { return passed_; }
     int depth() const { return depth_; }              ///< edges so far
     int scatterings() const { return scatterings_; }  ///< without those at mirrors and glass before the first
     float first_cosine() const { return first_cosine_; }  ///< C* of the first, towards the next vertex
@@ -87,6 +89,9 @@ class EyePath {
 
   private:
     bool scatter(core::WalkContext& context);
+    /// Lights that the camera does not see: the first leg goes on behind them.
+    bool hides_lights() const { return limits_.hide_emitters && depth_ == 1; }
+    void pass_light(const core::WalkEvent& event);
 
     const core::Scene& scene_;
     EyePathLimits limits_;
@@ -100,7 +105,7 @@ class EyePath {
     bool connected_ = false;  ///< could next-event estimation at `previous_` have found what comes?
     bool surface_first_ = true, ends_at_delta_ = false;
     int depth_ = 0, scatterings_ = 0;
-    float eta_ = 1.0f, first_cosine_ = 1.0f, leg_length_ = 0.0f;
+    float eta_ = 1.0f, first_cosine_ = 1.0f, leg_length_ = 0.0f, passed_ = 0.0f;
 };
 
 template <bool Media>
@@ -109,20 +114,36 @@ bool EyePath<Media>::advance_by(Walker&& walker, core::WalkContext& context, Tra
                                 const OnLeg& on_leg) {
     if (depth_ > 0 && !scatter(context)) return false;
     ++depth_;
-    const core::MediumState start = state_;
-    const core::PathWeights before = weights_;
-    core::Rgb emitted(0.0f);
-    const core::WalkEvent event = walker(emitted, context);
     core::Rgb& found = sum[layer_of_emission()];
-    if constexpr (Media) found += emitted;
-    found += lights::found_light<Media>(scene_, event, ray_, weights_, connected_ ? &previous_ : nullptr);
-    on_leg(EyeLeg{ray_, event, start, before});
+    core::WalkEvent event;
+    const auto go = [&] {
+        const core::MediumState start = state_;
+        const core::PathWeights before = weights_;
+        core::Rgb emitted(0.0f);
+        event = walker(emitted, context);
+        if constexpr (Media) found += emitted;
+        on_leg(EyeLeg{ray_, event, start, before});
+    };
+    go();
+    while (hides_lights() && event.kind == core::WalkEvent::Kind::surface && event.hit.shape->emitter)
+        pass_light(event), go();
+    if (!(hides_lights() && event.kind == core::WalkEvent::Kind::escaped))
+        found += lights::found_light<Media>(scene_, event, ray_, weights_, connected_ ? &previous_ : nullptr);
     if (event.kind == core::WalkEvent::Kind::escaped || depth_ == limits_.max_depth ||
         scatterings_ == limits_.max_scatterings || core::is_black(weights_.throughput))
         return false;
     vertex_ = make_vertex(event, ray_), leg_length_ = event.distance;
     choices_ = sampler_.next_2d();
     return true;
+}
+
+template <bool Media>
+void EyePath<Media>::pass_light(const core::WalkEvent& event) {
+    const core::ScatteringVertex light = make_vertex(event, ray_);
+    const core::Vec3 direction = ray_.direction;
+    if constexpr (Media) state_ = light.state_towards(state_, direction);
+    ray_ = {light.ray_origin(direction), direction, 0.0f, ray_.t_max - event.distance};
+    passed_ += event.distance;
 }
 
 /// Leaves the vertex. Returns false where the path ends instead.

@@ -4,9 +4,10 @@
 namespace mote::integrators {
 
 struct EyePathLimits {
-    int max_depth = -1;        ///< edges of a path: 1 emission only, 2 direct light; -1 no limit
-    int rr_depth = 5;          ///< Russian roulette from this depth on
-    int max_scatterings = -1;  ///< but at mirrors and glass; -1 no limit
+    int max_depth = -1;          ///< edges of a path: 1 emission only, 2 direct light; -1 no limit
+    int rr_depth = 5;            ///< Russian roulette from this depth on
+    int max_scatterings = -1;    ///< but at mirrors and glass; -1 no limit
+    bool hide_emitters = false;  ///< eye rays pass area lights and do not see the environment
 };
 
 }  // namespace mote::integrators

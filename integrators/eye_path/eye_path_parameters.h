@@ -7,9 +7,11 @@
 
 namespace mote::integrators {
 
-/// max_depth and rr_depth of a scene file, checked. Throws InputError.
+/// max_depth, rr_depth and hide_emitters of a scene file, checked. Throws InputError.
 EyePathLimits read_eye_path_limits(const core::Properties& properties);
 /// Their rows in a manual page.
 std::vector<core::Parameter> eye_path_parameters();
+/// The last of them alone.
+core::Parameter hide_emitters_parameter();
 
 }  // namespace mote::integrators

@@ -21,6 +21,7 @@ std::vector<core::Layer> suffixed_transport_layers(bool media, const std::string
 
 void store(const TransportSum& sum, core::PassImage& image, int x, int y, bool media) {
     for (std::size_t i = 0; i < transport_layer_count(media); ++i) image.at(i, x, y) = sum.light[i];
+    image.finish(x, y);
 }
 
 }  // namespace mote::integrators

@@ -43,7 +43,7 @@ std::vector<core::Layer> transport_layers(bool media, bool bounded);
 /// The same with any suffix on the names of those layers, for methods that change them in another way.
 std::vector<core::Layer> suffixed_transport_layers(bool media, const std::string& suffix);
 
-/// Adds `sum` to pixel (x, y) of the first layers of the image.
+/// Writes `sum` to pixel (x, y) of the first layers of the image, and says that the pixel is finished.
 void store(const TransportSum& sum, core::PassImage& image, int x, int y, bool media);
 
 }  // namespace mote::integrators

@@ -21,6 +21,7 @@ class PathEstimator final : public Estimator {
         return for_each_tile(options_.width, options_.height, tile_size, context.cancelled,
                              [&](int x0, int y0, int x1, int y1) {
                                  WalkContext walk;
+                                 walk.cancelled = context.cancelled;
                                  for (int y = y0; y < y1; ++y)
                                      for (int x = x0; x < x1; ++x) render_pixel(context, image, x, y, walk);
                                  counters_.add(walk.rays, walk.tracking);

@@ -45,10 +45,11 @@ class PhotonMapEstimator final : public Estimator {
 
     bool pass(const PassContext& context, PassImage& image) override {
         if (context.cancelled) return false;
-        const PhotonMaps maps = make_maps(context.index);
+        const PhotonMaps maps = make_maps(context.index, context.cancelled);
         return for_each_tile(options_.width, options_.height, tile_size, context.cancelled,
                              [&](int x0, int y0, int x1, int y1) {
                                  WalkContext walk;
+                                 walk.cancelled = context.cancelled;
                                  PhotonScratch scratch;
                                  PhotonEyePath<Media> path(scene_, settings_.eye, maps, walk, scratch);
                                  for (int y = y0; y < y1; ++y)
@@ -75,9 +76,9 @@ class PhotonMapEstimator final : public Estimator {
   private:
     static constexpr int tile_size = 16;
 
-    PhotonMaps make_maps(std::uint32_t pass) {
-        gathering::PhotonSet set =
-            gathering::trace_photons(scene_, settings_.photons(), options_.seed, pass, options_.sampler);
+    PhotonMaps make_maps(std::uint32_t pass, CancelToken cancelled) {
+        gathering::PhotonSet set = gathering::trace_photons(scene_, settings_.photons(), options_.seed, pass,
+                                                            options_.sampler, cancelled);
         counters_.add(set.rays, set.tracking);
         paths_ += settings_.paths, met_ += set.met;
         on_surfaces_ += set.surface.size(), in_media_ += set.volume.size();

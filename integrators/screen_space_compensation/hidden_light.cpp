@@ -74,6 +74,7 @@ void HiddenLight::gather(const PassContext& context, const lights::VplSet& vpls,
     const double begin = thread_cpu_seconds();
     const std::int32_t vpl_depth = max_depth_ < 0 ? std::numeric_limits<std::int32_t>::max() : max_depth_ - 2;
     WalkContext walk, boundaries;  // the latter keeps those of the pixel's ray
+    walk.cancelled = boundaries.cancelled = context.cancelled;
     const auto scratch = std::make_unique<lights::GatherScratch>();
     const auto tile = std::make_unique<lights::ReceiverTile>();
     PixelRay along(scene_, layers_, boundaries);
@@ -99,8 +100,8 @@ void HiddenLight::gather(const PassContext& context, const lights::VplSet& vpls,
             tile->set(int(i), vertices[i].vertex, Rgb(1.0f), vertices[i].state, Rng(walk.rng.next_u32()),
                       vpl_depth);
         }
-        const auto indirect = lights::gather({scene_, *scratch, walk.rays, walk.tracking}, vpls, some,
-                                             lights::BoundedGeometry{bound_}, *tile);
+        const auto indirect = lights::gather({scene_, *scratch, walk.rays, walk.tracking, walk.cancelled},
+                                             vpls, some, lights::BoundedGeometry{bound_}, *tile);
         for (std::size_t i = 0; i < count; ++i)
             image.layer(first_layer + points[i].side)[points[i].pixel] =
                 light[i] + float(share_) * indirect[i];

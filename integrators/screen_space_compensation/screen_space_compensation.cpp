@@ -46,7 +46,8 @@ std::vector<Layer> ScreenSpaceSettings::film_layers() const {
 }
 
 ScreenSpaceCost add_screen_space_compensation(const Scene& scene, const ScreenSpaceSettings& settings,
-                                              float bound, const ScreenSpaceLayers& layers, Film& film) {
+                                              float bound, const ScreenSpaceLayers& layers,
+                                              CancelToken cancelled, Film& film) {
     const auto begin = std::chrono::steady_clock::now();
     const double cpu_begin = process_cpu_seconds();
     const auto buffers =
@@ -60,6 +61,8 @@ ScreenSpaceCost add_screen_space_compensation(const Scene& scene, const ScreenSp
     for (auto& side : screenspace::hidden_sides(buffers))
         hidden.push_back({std::move(side), film.mean(layers.hidden + hidden.size())});
     screenspace::SsbcSettings ssbc = settings.ssbc;
+    cancelled.check();
+    ssbc.refinement.cancelled = cancelled;
     const screenspace::TracedVisibility traced(scene);
     ssbc.bound = bound, ssbc.visibility = settings.visibility ? &traced : nullptr;
     const screenspace::SsbcResult result =

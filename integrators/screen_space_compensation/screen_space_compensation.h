@@ -51,7 +51,8 @@ struct ScreenSpaceLayers {
 
 /// `bound` is b [1/m^2].
 ScreenSpaceCost add_screen_space_compensation(const core::Scene& scene, const ScreenSpaceSettings& settings,
-                                              float bound, const ScreenSpaceLayers& layers, core::Film& film);
+                                              float bound, const ScreenSpaceLayers& layers,
+                                              core::CancelToken cancelled, core::Film& film);
 
 void plan_screen_space(core::Plan& plan, const core::Requirements& requirements,
                        const ScreenSpaceSettings& settings);

@@ -51,6 +51,7 @@ bool InterpolatedScattering::upsample(const PassContext& context, const PassNumb
             std::uint64_t filled = 0, candidates = 0;
             for (int y = y0; y < y1; ++y)
                 for (int x = x0; x < x1; ++x) {
+                    CancelToken(context.cancelled).check();
                     const EyePoint& point =
                         points_[std::size_t(y) * std::size_t(options_.width) + std::size_t(x)];
                     const RayEnd end =
@@ -91,14 +92,16 @@ auto InterpolatedScattering::share_rays(const PassContext& context, const PassNu
     std::vector<Lines> all;
     std::vector<EpipolarPicture*> pictures;
     std::vector<const InScattering*> with_lines;
+    const CancelToken cancelled = context.cancelled;
     for (const InScattering& light : lights) {
+        cancelled.check();
         const InScatteringRays source(scene_, light, numbers.lens);
         all.push_back(find_lines(numbers, light, source, loop_of(context)));
         counters_.add(source.rays(), source.tracking());
         if (all.back()) pictures.push_back(all.back().get()), with_lines.push_back(&light);
     }
     const SharedEyeRays rays(scene_, with_lines, settings_.march.voxels, numbers.lens);
-    const std::size_t shared = march_crossings(pictures, rays, loop_of(context));
+    const std::size_t shared = march_crossings(pictures, rays, loop_of(context), cancelled);
     std::size_t bytes = shared * crossing_bytes + points_.capacity() * sizeof(EyePoint);
     for (const EpipolarPicture* picture : pictures) bytes += picture->counts().bytes;
     counts_.shared += shared, counts_.bytes = std::max(counts_.bytes, bytes);
@@ -110,6 +113,7 @@ auto InterpolatedScattering::share_rays(const PassContext& context, const PassNu
 
 bool InterpolatedScattering::scatter(const PassContext& context, const PassNumbers& numbers,
                                      const InScattering& light, Lines lines, PassImage& image) {
+    CancelToken(context.cancelled).check();
     const InScatteringRays source(scene_, light, numbers.lens);
     const auto loop = loop_of(context);
     const bool epipolar = settings_.sampling == ScatteringSampling::epipolar;

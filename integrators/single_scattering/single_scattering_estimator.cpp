@@ -67,12 +67,14 @@ void SingleScatteringEstimator<Media>::render_eye(const PassContext& context, co
             Ray lit = eye.ray;
             const RayEnd end = lit_end(light, eye.ray, first);
             if (end.dark()) continue;
+            scratch.walk.cancelled.check();
             lit.t_max = end.distance;
             path.sum[Transport::single_scattering] += light.march(lit, state, scratch).radiance;
             if (settings_.show_samples) image.at(ScatteringLayer::marched_rays, x, y) += Rgb(1.0f);
         }
         image.at(ScatteringLayer::single_scattering, x, y) = path.sum[Transport::single_scattering];
     }
+    if (!Media || settings_.sampling == ScatteringSampling::full || lights.empty()) image.finish(x, y);
     image.at(ScatteringLayer::emission, x, y) = path.sum[Transport::emission],
                                            image.at(ScatteringLayer::direct, x, y) =
                                                path.sum[Transport::direct];
@@ -93,6 +95,7 @@ bool SingleScatteringEstimator<Media>::pass(const PassContext& context, PassImag
     const bool eyes = for_each_tile(options_.width, options_.height, tile_size, context.cancelled,
                                     [&](int x0, int y0, int x1, int y1) {
                                         MarchScratch scratch;
+                                        scratch.walk.cancelled = context.cancelled;
                                         for (int y = y0; y < y1; ++y)
                                             for (int x = x0; x < x1; ++x)
                                                 render_eye(context, numbers, lights, image, x, y, scratch);

@@ -1,6 +1,7 @@
 // Settings, layers and plan entries that `mote_single_scattering` and `mote_epipolar` share.
 #include <fmt/format.h>
 
+#include "integrators/eye_path/eye_path_parameters.h"
 #include "integrators/register_parts.h"
 #include "integrators/single_scattering/single_scattering_estimator.h"
 
@@ -20,6 +21,7 @@ ScatteringSettings read_scattering_settings(const Properties& p) {
     s.march.voxels = float(p.get_float_in("voxels", 1.0, 1e-3, 1e6));
     s.line.depth_tolerance = float(p.get_float_in("depth_tolerance", 0.02, 0.0, 1e6));
     s.eye.limits.max_depth = 1 + int(p.get_int_in("max_depth", 32, 1, 1 << 20));
+    s.eye.limits.hide_emitters = p.get_bool("hide_emitters", false);
     s.show_samples = p.get_bool("show_samples", false);
     return s;
 }
@@ -40,7 +42,8 @@ std::vector<Parameter> scattering_parameters() {
         {"depth_tolerance", "float", "0.02",
          "share by which distances to one surface may differ between neighbouring rays"},
         {"show_samples", "boolean", "false", "adds a layer MarchedRays: rays marched in every pixel, a pass"},
-        {"max_depth", "integer", "32", "longest eye path through mirrors and glass, in rays"}};
+        {"max_depth", "integer", "32", "longest eye path through mirrors and glass, in rays"},
+        hide_emitters_parameter()};
 }
 
 std::vector<Layer> single_scattering_layers(bool media, const ScatteringSettings& settings) {

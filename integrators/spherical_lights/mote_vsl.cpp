@@ -38,8 +38,9 @@ struct SphereSet {
     std::vector<float> radii;
 
     SphereSet(const Scene& scene, const VslSettings& settings, const RenderOptions& options,
-              std::uint32_t pass)
-        : vpls(lights::trace_light_paths(scene, settings.light_paths(), options.seed, pass, options.sampler)),
+              std::uint32_t pass, CancelToken cancelled)
+        : vpls(lights::trace_light_paths(scene, settings.light_paths(), options.seed, pass, options.sampler,
+                                         cancelled)),
           radii(compensation::sphere_radii(vpls, settings.gather.neighbours, settings.gather.radius_scale)) {}
     std::size_t memory_bytes() const { return vpls.memory_bytes() + radii.size() * sizeof(float); }
 };
@@ -51,7 +52,7 @@ class VslEstimator final : public Estimator {
 
     bool pass(const PassContext& context, PassImage& image) override {
         if (context.cancelled) return false;
-        const SphereSet spheres(scene_, settings_, options_, context.index);
+        const SphereSet spheres(scene_, settings_, options_, context.index, context.cancelled);
         counters_.add(spheres.vpls.rays, spheres.vpls.tracking);
         vpls_ += spheres.radii.size(), paths_ += spheres.vpls.paths;
         bytes_ = std::max(bytes_, spheres.memory_bytes());
@@ -59,6 +60,7 @@ class VslEstimator final : public Estimator {
         return for_each_tile(options_.width, options_.height, 16, context.cancelled,
                              [&](int x0, int y0, int x1, int y1) {
                                  WalkContext walk;
+                                 walk.cancelled = context.cancelled;
                                  for (int y = y0; y < y1; ++y)
                                      for (int x = x0; x < x1; ++x) {
                                          if (context.cancelled) return;  // a tile of many VSLs takes long

@@ -49,7 +49,8 @@ class TileCompensation {
         const compensation::VplCompensation request{*transport_, settings_.strategy, settings_.depth, vpls_,
                                                     range};
         const auto light = compensation::compensation_from_vpls<Media>(
-            request, receivers_, scratch_, {scene_, gather_scratch_, walk_.rays, walk_.tracking}, walk_);
+            request, receivers_, scratch_,
+            {scene_, gather_scratch_, walk_.rays, walk_.tracking, walk_.cancelled}, walk_);
         for (std::size_t i = 0; i < sum.size(); ++i) {
             sum[i] += vpl_scale * light[i];
             receivers_[i].max_vpl_depth = 0;

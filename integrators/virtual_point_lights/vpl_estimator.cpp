@@ -33,15 +33,16 @@ class VplEstimator final : public Estimator {
         if (!settings_.screen_space || !std::isfinite(bound_)) return;
         constexpr std::size_t reflected[] = {std::size_t(Transport::direct),
                                              std::size_t(Transport::indirect)};
-        ssbc_cost_ =
-            add_screen_space_compensation(scene_, *settings_.screen_space, bound_,
-                                          {reflected, first_compensation_layer, first_hidden_layer}, film);
+        ssbc_cost_ = add_screen_space_compensation(scene_, *settings_.screen_space, bound_,
+                                                   {reflected, first_compensation_layer, first_hidden_layer},
+                                                   options_.cancelled, film);
     }
 
     bool pass(const PassContext& context, PassImage& image) override {
         if (context.cancelled) return false;
-        const lights::VplSet vpls = lights::trace_light_paths(scene_, settings_.light_paths(), options_.seed,
-                                                              context.index, options_.sampler);
+        const lights::VplSet vpls =
+            lights::trace_light_paths(scene_, settings_.light_paths(), options_.seed, context.index,
+                                      options_.sampler, context.cancelled);
         counters_.add(vpls.rays, vpls.tracking);
         vpls_ += vpls.lights.size(), paths_ += vpls.paths;
         bytes_ = std::max(bytes_, vpls.memory_bytes());
@@ -52,6 +53,7 @@ class VplEstimator final : public Estimator {
             const std::size_t index = std::size_t(y0 / tile_size * columns + x0 / tile_size);
             render_tile(context, image, vpls, maps_ ? &stores[index] : nullptr, x0, y0, x1, y1);
         };
+        if (maps_ || hidden_) image.finish_late();
         if (!for_each_tile(options_.width, options_.height, tile_size, context.cancelled, tile)) return false;
         if (hidden_ && !hidden_->template pass<Media>(context, vpls, first_hidden_layer, image)) return false;
         return !maps_ || maps_->add_light(vpls, bound_, stores, context.cancelled, image);
@@ -87,6 +89,7 @@ class VplEstimator final : public Estimator {
     void render_tile(const PassContext& context, PassImage& image, const lights::VplSet& vpls,
                      lights::ReceiverStore* store, int x0, int y0, int x1, int y1) {
         WalkContext walk;
+        walk.cancelled = context.cancelled;
         const auto scratch = std::make_unique<lights::GatherScratch>();
         const auto tile = std::make_unique<EyeTile<Media>>(
             scene_, settings_, bound_, vpls, transport_ ? &*transport_ : nullptr, *scratch, walk,

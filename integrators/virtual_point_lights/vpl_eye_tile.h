@@ -90,8 +90,8 @@ class EyeTile {
                 maps_.receivers->add(receivers_, maps_.column, maps_.row, range, vpl_scale * maps_.scale);
             else
                 // The sum over VPLs of Eqs. 10.4 and 10.5, with min(G*, b).
-                light = lights::gather({scene_, scratch_, walk_.rays, walk_.tracking}, vpls_, range,
-                                       lights::BoundedGeometry{bound_}, receivers_);
+                light = lights::gather({scene_, scratch_, walk_.rays, walk_.tracking, walk_.cancelled}, vpls_,
+                                       range, lights::BoundedGeometry{bound_}, receivers_);
             const auto compensated = compensation_.run(range, vpl_scale);
             for (int i = 0; i < lights::ReceiverTile::width; ++i) {
                 Lane& lane = lanes_[std::size_t(i)];

@@ -43,8 +43,8 @@ bool VplShadowMaps::add_light(const VplSet& vpls, float bound, std::span<const R
     receiver_bytes_ = std::max(receiver_bytes_, bytes);
     std::vector<Entry> batch;
     const auto finish_batch = [&] {
-        build(vpls, batch);
-        gather(vpls, bound, batch, stores, image);
+        build(vpls, batch, cancelled);
+        gather(vpls, bound, batch, stores, cancelled, image);
         batch.clear();
     };
     for (std::size_t j = 0; j < vpls.lights.size(); ++j) {
@@ -60,23 +60,24 @@ bool VplShadowMaps::add_light(const VplSet& vpls, float bound, std::span<const R
     return !cancelled;
 }
 
-void VplShadowMaps::build(const VplSet& vpls, std::span<const Entry> batch) {
+void VplShadowMaps::build(const VplSet& vpls, std::span<const Entry> batch, CancelToken cancelled) {
     const Stopwatch stopwatch(build_seconds_);
     tbb::parallel_for(std::size_t(0), batch.size(), [&](std::size_t i) {
         const MediumState state = vpls.state_towards(batch[i].vpl, batch[i].view.frame.n);
-        maps_[i].build(scene_, batch[i].view, state, settings_.map);
+        maps_[i].build(scene_, batch[i].view, state, settings_.map, cancelled);
     });
     for (std::size_t i = 0; i < batch.size(); ++i) rays_.add(maps_[i].rays());
     built_ += batch.size();
 }
 
 void VplShadowMaps::gather(const VplSet& vpls, float bound, std::span<const Entry> batch,
-                           std::span<const ReceiverStore> stores, PassImage& image) {
+                           std::span<const ReceiverStore> stores, CancelToken cancelled, PassImage& image) {
     const Stopwatch stopwatch(gather_seconds_);
     std::vector<MappedVpl> mapped;
     for (std::size_t i = 0; i < batch.size(); ++i) mapped.push_back({batch[i].vpl, &maps_[i]});
     tbb::enumerable_thread_specific<ShadowMapGather> gathers;
     tbb::parallel_for(std::size_t(0), stores.size(), [&](std::size_t s) {
+        cancelled.check();
         constexpr int side = 4;
         gathers.local().run(
             stores[s], vpls, lights::BoundedGeometry{bound}, mapped,

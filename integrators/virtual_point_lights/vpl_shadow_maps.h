@@ -33,9 +33,10 @@ class VplShadowMaps {
         std::size_t vpl;
         lights::ShadowMapView view;
     };
-    void build(const lights::VplSet& vpls, std::span<const Entry> batch);
+    void build(const lights::VplSet& vpls, std::span<const Entry> batch, core::CancelToken cancelled);
     void gather(const lights::VplSet& vpls, float bound, std::span<const Entry> batch,
-                std::span<const lights::ReceiverStore> stores, core::PassImage& image);
+                std::span<const lights::ReceiverStore> stores, core::CancelToken cancelled,
+                core::PassImage& image);
 
     const core::Scene& scene_;
     VisibilitySettings settings_;

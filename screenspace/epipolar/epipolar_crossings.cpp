@@ -86,7 +86,8 @@ std::optional<Meeting> meet(const EpipolarLine& a, const EpipolarLine& b) {
     return m;
 }
 
-std::vector<Crossing> choose_crossings(std::span<EpipolarPicture* const> lights) {
+std::vector<Crossing> choose_crossings(std::span<EpipolarPicture* const> lights,
+                                       core::CancelToken cancelled) {
     std::vector<Taken> taken(lights.size());
     for (std::size_t l = 0; l < lights.size(); ++l) {
         if (lights[l]->sampled().empty()) return {};  // cancelled
@@ -100,6 +101,7 @@ std::vector<Crossing> choose_crossings(std::span<EpipolarPicture* const> lights)
             for (int place = 0; place < int(taken[l][line].size()); ++place)
                 // The lights that are still to come, in turn.
                 for (std::uint32_t k = 0; k < n - l - 1 && !taken[l][line][std::size_t(place)]; ++k) {
+                    cancelled.check();
                     const std::uint32_t o = l + 1 + (std::uint32_t(place) + line + k) % (n - l - 1);
                     const auto choice = best_crossing(lights, l, o, line, place, taken[o]);
                     if (!choice) continue;
@@ -111,8 +113,8 @@ std::vector<Crossing> choose_crossings(std::span<EpipolarPicture* const> lights)
 }
 
 std::size_t march_crossings(std::span<EpipolarPicture* const> lights, const SharedRaySource& source,
-                            const EpipolarPicture::Loop& loop) {
-    const std::vector<Crossing> crossings = choose_crossings(lights);
+                            const EpipolarPicture::Loop& loop, core::CancelToken cancelled) {
+    const std::vector<Crossing> crossings = choose_crossings(lights, cancelled);
     std::vector<std::optional<Result>> results(crossings.size());
     constexpr std::size_t chunk = 64;
     loop(int((crossings.size() + chunk - 1) / chunk), [&](int c) {

@@ -9,6 +9,7 @@
 // marched.
 #pragma once
 
+#include "core/objects/cancellation.h"
 #include "screenspace/epipolar/epipolar_picture.h"
 
 namespace mote::screenspace {
@@ -34,7 +35,8 @@ constexpr std::size_t crossing_bytes = 176;  ///< of memory at most
 
 /// Lines that have been searched for edges, and not been marched. One crossing at most for every place of a
 /// line's spread samples, lit by both lights, the closest to both places first come.
-std::vector<Crossing> choose_crossings(std::span<EpipolarPicture* const> lights);
+std::vector<Crossing> choose_crossings(std::span<EpipolarPicture* const> lights,
+                                       core::CancelToken cancelled = {});
 
 /// Work of one thread: an eye ray and what two lights scatter into it. Lights are counted as in
 /// Crossing::Side.
@@ -54,6 +56,6 @@ class SharedRaySource {
 
 /// Marches the chosen crossings whose ends continue both lines, and adds them there. Returns how many.
 std::size_t march_crossings(std::span<EpipolarPicture* const> lights, const SharedRaySource& source,
-                            const EpipolarPicture::Loop& loop);
+                            const EpipolarPicture::Loop& loop, core::CancelToken cancelled = {});
 
 }  // namespace mote::screenspace

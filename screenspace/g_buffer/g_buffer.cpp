@@ -5,8 +5,8 @@
 #include <span>
 #include <stdexcept>
 
+#include "core/geometry/bsdf_point.h"
 #include "core/image/tiles.h"
-#include "core/materials/bsdf.h"
 #include "core/scene/camera.h"
 #include "core/scene/ray_queries.h"
 
@@ -33,8 +33,8 @@ void enter(GBuffer& buffer, std::size_t i, const SurfaceHit& hit, const Vec3& wo
     buffer.shape[i] = hit.shape, buffer.uv[i] = hit.uv;
     if (!hit.shape->bsdf) return;
     const Vec3 local = hit.shading.to_local(wo);
-    buffer.reflectance[i] = hit.shape->bsdf->albedo(BsdfPoint{hit.uv}, local);
-    buffer.reflectance_behind[i] = hit.shape->bsdf->albedo(BsdfPoint{hit.uv}, -local);
+    buffer.reflectance[i] = hit.shape->bsdf->albedo(bsdf_point(hit), local);
+    buffer.reflectance_behind[i] = hit.shape->bsdf->albedo(bsdf_point(hit), -local);
 }
 
 void fill_pixel(std::span<GBuffer> buffers, const RayQueries& scene, const Camera& camera, int x, int y,

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/materials/texture_coordinates.h"
 #include "core/math/ray.h"
 #include "core/math/vec.h"
 
@@ -32,9 +33,9 @@ struct GBuffer {
     std::vector<core::Rgb> reflectance_behind;  ///< the same of its other side, seen along the ray
     std::vector<float> solid_angle;  ///< of the pixel [sr]; set for misses too; 0 for parallel projections
     std::vector<std::uint8_t> hit;   ///< 1 where there is a surface
-    std::vector<std::uint8_t> emissive;     ///< 1 where that surface is a light
-    std::vector<const core::Shape*> shape;  ///< with its BSDF; null where there is none or it is not known
-    std::vector<core::Vec2> uv;             ///< texture coordinates of the surface
+    std::vector<std::uint8_t> emissive;        ///< 1 where that surface is a light
+    std::vector<const core::Shape*> shape;     ///< with its BSDF; null where there is none or it is not known
+    std::vector<core::TextureCoordinates> uv;  ///< texture coordinates of the surface
 
     GBuffer() = default;
     /// All misses. Throws std::invalid_argument unless both sizes are positive.

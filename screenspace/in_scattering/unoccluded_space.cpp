@@ -19,9 +19,7 @@ constexpr std::uint32_t whole = ~std::uint32_t(0);
 constexpr double rounding = 1e-6;
 
 /// Null BSDFs and panes, as RayTracer groups them.
-bool passes_straight(const Shape& shape) {
-    return shape.bsdf && (shape.bsdf->traits().null || shape.bsdf->traits().pane);
-}
+bool passes_straight(const Shape& shape) { return shape.bsdf && shape.bsdf->traits().passes_straight(); }
 
 double largest_of(const Vec3d& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 

@@ -198,9 +198,10 @@ PacketSums<double> flat_sums(const ResidualSum& sum, const RefinementRules& rule
 /// the order does not matter.
 template <class SumsOf>
 SumCounts for_packets(std::span<const SsbcReceiver> receivers, std::span<Rgb> irradiance,
-                      const SumsOf& sums_of) {
+                      core::CancelToken cancelled, const SumsOf& sums_of) {
     const std::size_t packets = (receivers.size() + packet_size - 1) / packet_size;
     const auto one = [&](std::size_t first) {
+        cancelled.check();
         const std::size_t n = std::min(packet_size, receivers.size() - first);
         SumCounts counts;
         const ReceiverPacket packet = make_packet(receivers.subspan(first, n));
@@ -227,16 +228,18 @@ void SumCounts::operator+=(const SumCounts& other) {
 
 SumCounts ResidualSum::flat(const RefinementRules& rules, std::span<const SsbcReceiver> receivers,
                             std::span<Rgb> irradiance) const {
-    return for_packets(receivers, irradiance, [&](const ReceiverPacket& packet, SumCounts& counts) {
-        return flat_sums(*this, rules, packet, counts);
-    });
+    return for_packets(receivers, irradiance, rules.cancelled,
+                       [&](const ReceiverPacket& packet, SumCounts& counts) {
+                           return flat_sums(*this, rules, packet, counts);
+                       });
 }
 
 SumCounts ResidualSum::hierarchical(const RefinementRules& rules, std::span<const SsbcReceiver> receivers,
                                     std::span<Rgb> irradiance) const {
-    return for_packets(receivers, irradiance, [&](const ReceiverPacket& packet, SumCounts& counts) {
-        return Traversal(*this, rules, packet).run(counts);
-    });
+    return for_packets(receivers, irradiance, rules.cancelled,
+                       [&](const ReceiverPacket& packet, SumCounts& counts) {
+                           return Traversal(*this, rules, packet).run(counts);
+                       });
 }
 
 }  // namespace mote::screenspace

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <span>
 
+#include "core/objects/cancellation.h"
 #include "screenspace/g_buffer/mip_pyramid.h"
 #include "screenspace/ssbc/ssbc_residual.h"
 
@@ -23,6 +24,7 @@ struct RefinementRules {
     /// How large a node appears: at most, by its bounds, or as the paper has it, by its mean position and
     /// normal. The mean of two walls that meet faces neither, and what lies beside the receiver is missed.
     enum class Estimate : std::uint8_t { at_most, at_mean } estimate = Estimate::at_most;
+    core::CancelToken cancelled = {};  ///< thrown at
 };
 
 struct SumCounts {

@@ -137,6 +137,14 @@ TEST_CASE("bounded VPLs and exact compensation equal volpath: fog", "[compensati
     forward_scattering.check(unbiased_abc("1-to-1-homogeneous"));
 }
 
+TEST_CASE("bounded VPLs and compensation equal volpath: masks and normal maps",
+          "[compensation][equality][mask][normalmap]") {
+    Proof(leafy_box(""), 4.0).check(exact);
+    const Proof foggy(leafy_box(fog("0.8, 1.0, 1.3", "")), 4.0);
+    foggy.check(exact);
+    foggy.check(unbiased_abc("1-to-1-homogeneous"));
+}
+
 TEST_CASE("bounded VPLs and exact compensation equal volpath: closed box, fog up to the walls",
           "[compensation][equality]") {
     // The camera inside, a lamp under the ceiling, fog that begins where the walls are.

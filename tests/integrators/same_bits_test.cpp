@@ -197,13 +197,16 @@ Bits resumed(const Scene& scene, const Integrator& integrator, int threads) {
 
 constexpr int edge = 20;  ///< of the picture: four tiles
 
-/// The box with three kinds of lights.
+/// The box with three kinds of lights, and a card with holes and bent normals.
 std::unique_ptr<Scene> lit_box(const std::string& medium) {
     std::string xml = box(mixed, medium);
     xml.insert(xml.find("<sensor"), R"(<emitter type="point"><point name="position" x="0.5" y="0.3" z="0.6"/>
             <rgb name="intensity" value="1, 2, 3"/></emitter>
         <emitter type="spot"><transform name="to_world"><lookat origin="-0.5, 0.8, 0.8" target="0, -0.5, 0" up="0, 0, 1"/>
-            </transform><rgb name="intensity" value="3, 2, 1"/></emitter>)");
+            </transform><rgb name="intensity" value="3, 2, 1"/></emitter>
+        <shape type="rectangle"><transform name="to_world"><scale value="0.4"/><rotate x="1" angle="-60"/></transform>
+            <bsdf type="mask"><texture type="checkerboard" name="opacity"/>)" +
+                                        bent(mixed) + "</bsdf></shape>");
     return scene_from(xml, edge);
 }
 

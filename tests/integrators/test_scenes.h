@@ -50,6 +50,34 @@ inline const std::string mixed =
     R"(<bsdf type="twosided"><bsdf type="roughplastic"><float name="alpha" value="0.3"/>
     <rgb name="diffuse_reflectance" value="0.5, 0.4, 0.3"/></bsdf></bsdf>)";
 
+/// Two normals in squares, bent one way and the other, over `nested`.
+inline std::string bent(const std::string& nested) {
+    return R"(<bsdf type="normalmap"><texture type="checkerboard" name="normalmap"><rgb name="color0" value="0.68, 0.45, 0.95"/>
+        <rgb name="color1" value="0.4, 0.7, 0.9"/><transform name="to_uv"><scale x="2" y="3"/></transform></texture>)" +
+           nested + "</bsdf>";
+}
+
+/// The box with bent normals on its walls, a card with holes below the lamp, and a ball half of which is
+/// there.
+inline std::string leafy_box(const std::string& medium) {
+    std::string xml =
+        box(R"(<bsdf type="twosided">)" +
+                bent(R"(<bsdf type="diffuse"><rgb name="reflectance" value="0.6, 0.5, 0.4"/></bsdf>)") +
+                "</bsdf>",
+            medium);
+    xml.insert(xml.find("<sensor"),
+               R"(<shape type="rectangle"><transform name="to_world"><scale x="0.6" y="0.5"/>
+        <rotate x="1" angle="-70"/><translate y="0.3"/></transform><bsdf type="mask">
+        <texture type="checkerboard" name="opacity"><float name="color0" value="0.1"/><float name="color1" value="0.9"/>
+        <transform name="to_uv"><scale x="3" y="2"/></transform></texture><bsdf type="twosided"><bsdf type="diffuse">
+        <rgb name="reflectance" value="0.3, 0.7, 0.2"/></bsdf></bsdf></bsdf></shape>
+        <shape type="sphere"><float name="radius" value="0.3"/><point name="center" x="-0.45" y="-0.5" z="0.2"/>
+        <bsdf type="mask"><float name="opacity" value="0.5"/>)" +
+                   bent(R"(<bsdf type="roughplastic"><float name="alpha" value="0.3"/></bsdf>)") +
+                   "</bsdf></shape>");
+    return xml;
+}
+
 inline std::string fog(const std::string& sigma_t, const std::string& phase) {
     return fmt::format(R"(<medium type="homogeneous" name="interior"><rgb name="sigma_t" value="{}"/>
         <rgb name="albedo" value="0.9, 0.8, 0.7"/>{}</medium>)",

@@ -70,6 +70,17 @@ std::string coarse_sphere() {
 TEST_CASE("bounded VPLs equal bounded paths: diffuse", "[vpl][equality]") {
     check_bounded(box(grey, ""), false, 4.0);
 }
+TEST_CASE("bounded VPLs equal bounded paths: max_depth counts the whole path", "[vpl][equality]") {
+    const std::string three = R"(<integer name="max_depth" value="3"/>)";
+    check_layers(box(grey, ""), three + R"(<float name="vpl_bound" value="4"/>)",
+                 three + R"(<float name="bound" value="4"/>)", {"direct", "indirect_bounded"});
+    const auto two = render_statistics(
+        *scene_from(box(grey, ""), 8),
+        *integrator_from(R"(<integrator type="mote_vpl"><integer name="max_depth" value="2"/></integrator>)"),
+        {4, 4, 23});
+    CHECK(two.whole[two.layer("direct")][0].mean > 0.0);
+    CHECK(two.whole[two.layer("indirect_bounded")][0].mean == 0.0);
+}
 TEST_CASE("bounded VPLs equal bounded paths: glossy", "[vpl][equality]") {
     check_bounded(box(glossy, ""), false, 4.0);
     check_bounded(box(mixed, ""), false, 4.0);
@@ -84,6 +95,28 @@ TEST_CASE("bounded VPLs equal bounded paths: heterogeneous medium", "[vpl][equal
     const std::string path = (std::filesystem::temp_directory_path() / "mote_vpl_equality.vol").string();
     check_bounded(box(grey, smoke_medium(path)), true, 4.0);
     std::filesystem::remove(path);
+}
+
+TEST_CASE("bounded VPLs equal bounded paths: masks and normal maps", "[vpl][equality][mask][normalmap]") {
+    // Four edges, panes that are passed not counted: short paths leave time for more of them.
+    const std::string four = R"(<integer name="max_depth" value="4"/>)";
+    const std::string bounded_paths = four + R"(<float name="vpl_bound" value="4"/>)",
+                      bounded_vpls = four + R"(<float name="bound" value="4"/>)";
+    check_layers(leafy_box(""), bounded_paths, bounded_vpls, {"direct", "indirect_bounded", "beauty"}, 4000,
+                 16000);
+    check_layers(leafy_box(fog("0.8, 1.0, 1.3", "")), bounded_paths, bounded_vpls,
+                 {"direct", "indirect_bounded", "beauty", "single_scattering", "multiple_scattering_bounded"},
+                 4000, 24000);
+}
+
+// A ball of ground glass with fog in it: its surface scatters, and a connection goes through the fog or
+// beside it by the side that it leaves to.
+TEST_CASE("bounded VPLs equal bounded paths: fog behind ground glass", "[vpl][equality][media]") {
+    std::string xml = box(grey, "");
+    xml.insert(xml.find("<sensor"), R"(<shape type="sphere"><point name="center" x="-0.2" y="0" z="0.4"/>
+        <float name="radius" value="0.6"/><bsdf type="roughdielectric"><float name="alpha" value="0.5"/></bsdf>)" +
+                                        fog("3, 2, 1.5", "") + "</shape>");
+    check_bounded(xml, false, 4.0);  // no layer begins in the fog: whoever looks, sees the glass first
 }
 
 // Interpolated normals need the adjoint correction where light is traced from the light (Veach 1997,
