@@ -3,6 +3,7 @@
 #
 #   tools/install_packages.sh          install what is missing (with sudo when not root)
 #   tools/install_packages.sh --list   print the names and end
+#   tools/install_packages.sh --fuzz   also what the long campaign of tools/fuzz/run is built with
 #   MOTE_SKIP_PACKAGES=1               believe that everything is there, on systems without dpkg
 set -euo pipefail
 
@@ -10,7 +11,8 @@ packages=(
   g++ cmake ninja-build ccache                        # the build
   libembree-dev                                       # ray tracing
   libopenvdb-dev libnanovdb-dev                       # smoke and clouds
-  libblosc-dev libboost-iostreams-dev zlib1g-dev      # what OpenVDB's CMake module asks for
+  zlib1g-dev                                          # Mitsuba's serialized meshes
+  libblosc-dev libboost-iostreams-dev                 # what OpenVDB's CMake module asks for, and zlib
   libopenexr-dev libimath-dev python3-imath           # EXR; Imath's CMake config names a Python library
   libopenimageio-dev openimageio-tools                # textures and PNG; its CMake config names its tools
   libassimp-dev                                       # mesh files
@@ -21,6 +23,9 @@ packages=(
   glmark2-data                                        # a real bunny and horse
 )
 
+if [[ "${1:-}" == --fuzz ]]; then
+  packages+=(clang-14 libclang-rt-14-dev)
+fi
 if [[ "${1:-}" == --list ]]; then
   printf '%s\n' "${packages[@]}"
   exit 0

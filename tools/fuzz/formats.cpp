@@ -1,0 +1,216 @@
+// The readers, each called as the commands call it.
+#include "tools/fuzz/formats.h"
+
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+
+#include "apps/reference_metadata.h"
+#include "apps/trade/methods_file.h"
+#include "apps/trade/record.h"
+#include "apps/trade/reference.h"
+#include "core/geometry/triangle_mesh.h"
+#include "core/image/image_file.h"
+#include "core/image/whole_file.h"
+#include "core/loading/scene_loader.h"
+#include "core/objects/error.h"
+#include "core/objects/properties.h"
+#include "core/objects/registry.h"
+#include "core/render/checkpoint.h"
+#include "core/render/integrator.h"
+#include "lights/register_lights.h"
+#include "media/register_media.h"
+#include "media/vdb_grid.h"
+#include "media/vol_file.h"
+#include "tools/fuzz/seeds.h"
+
+namespace mote::fuzz {
+
+namespace {
+
+// Integrators read numbers and words as every object does; these stand for all of them, so that the harness
+// links no renderer.
+class NoIntegrator final : public core::Integrator {
+  public:
+    std::string type() const override { return "path"; }
+    std::vector<core::Layer> layers(const core::Scene&) const override { return {}; }
+    core::Plan plan(const core::Scene&, const core::Requirements&) const override { return {}; }
+    std::unique_ptr<core::Estimator> prepare(const core::Scene&, const core::RenderOptions&) const override {
+        return nullptr;
+    }
+};
+
+std::shared_ptr<const core::Registry> make_registry() {
+    auto registry = std::make_shared<core::Registry>();
+    core::register_core(*registry);
+    media::register_media(*registry);
+    lights::register_lights(*registry);
+    for (const char* type : {"path", "volpath"})
+        registry->add({core::Category::integrator,
+                       type,
+                       "",
+                       {{"max_depth", "integer", "-1", ""},
+                        {"rr_depth", "integer", "5", ""},
+                        {"hide_emitters", "boolean", "false", ""},
+                        {"clamp", "float", "0", ""},
+                        {"tint", "rgb", "1", ""},
+                        {"mode", "string", "", ""}},
+                       ""},
+                      [](const core::Properties& p) {
+                          p.get_int("max_depth", -1), p.get_float("clamp", 0.0), p.get_string("mode", "");
+                          p.get_bool("hide_emitters", false), p.get_rgb("tint", core::Rgb(1.0f));
+                          return std::make_shared<NoIntegrator>();
+                      });
+    return registry;
+}
+
+const char* const small_scene = R"(<scene version="3.0.0"><shape type="sphere"/><emitter type="constant"/>
+ <sensor type="perspective"><film type="hdrfilm"><integer name="width" value="4"/><integer name="height" value="3"/>
+ </film></sensor></scene>)";
+
+std::string text_of(const std::string& path) {
+    const std::vector<std::byte> bytes = core::read_whole_file(path);
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+void read_mesh(const std::string& path) {
+    std::vector<std::string> notes;
+    const core::TriangleMesh mesh(core::load_mesh(path, false, path.ends_with(".obj"), notes));
+    if (std::isnan(mesh.area())) throw std::logic_error("the area of a mesh is NaN");
+}
+
+void read_picture(const std::string& path) {
+    const core::Bitmap bitmap = core::read_bitmap(path, false);
+    if (bitmap.pixels.size() != std::size_t(bitmap.width) * std::size_t(bitmap.height))
+        throw std::logic_error("a picture with other pixels than its size says");
+}
+
+void read_checkpoint(const std::string& path) {
+    core::Film film = small_film();
+    core::read_checkpoint(path, {checkpoint_hash, 7}, film);
+    film.beauty(), film.beauty_variance_of_mean(), film.noise();
+}
+
+void read_vdb(const std::string& path) {
+    media::VdbLoadOptions options;
+    options.clamp_negative = true, options.time_limit = 4.0;
+    options.memory_limit = std::uint64_t(768) << 20;  // a page takes its time, and files here are small
+    std::string name = "density";
+    if (const auto grids = media::list_vdb_grids(path, options); !grids.empty()) name = grids.front().name;
+    const auto grid = media::load_vdb_grid(path, name, options);
+    std::vector<core::Vec3d> places = {core::Vec3d(0.0), core::Vec3d(1.5, 2.5, 3.5),
+                                       core::Vec3d(-1e9, 0.0, 1e9)};
+    std::vector<float> values(places.size());
+    media::lookup_density(*grid, places, values);
+}
+
+Format mesh(const std::string& name, const std::string& extension, const std::vector<std::string>& exported) {
+    return {name, extension, "assimp", read_mesh, [exported] { return exported_cubes(exported); }, {}};
+}
+
+Format picture(const std::string& name, const std::string& extension) {
+    return {name, extension, "OpenImageIO", read_picture, [extension] { return bitmap_seeds(extension); },
+            {}};
+}
+
+Format textual(Format format) {
+    format.text = true;
+    return format;
+}
+
+}  // namespace
+
+std::vector<Format> formats() {
+    const auto registry = make_registry();
+    const std::shared_ptr<const core::Scene> scene =
+        core::load_scene_from_string(small_scene, ".", *registry);
+    const std::string camera = apps::world_to_camera(scene->camera());
+    const auto pictures = [camera] { return exr_seeds(camera); };
+
+    std::vector<Format> all;
+    all.push_back(textual({"scene",
+                           ".xml",
+                           "mote",
+                           [registry](const std::string& path) { core::load_scene(path, *registry); },
+                           scene_seeds,
+                           {}}));
+    all.push_back(textual({"obj", ".obj", "mote", read_mesh, obj_seeds, {}}));
+    all.push_back(textual({"ply", ".ply", "mote", read_mesh, ply_seeds, {}}));
+    all.push_back({"vol",
+                   ".vol",
+                   "mote",
+                   [](const std::string& path) { media::read_vol_file(path, true); },
+                   vol_seeds,
+                   {}});
+    all.push_back({"checkpoint", ".checkpoint", "mote", read_checkpoint, checkpoint_seeds, forge_checkpoint});
+    all.push_back(textual({"methods",
+                           ".json",
+                           "mote",
+                           [registry, scene](const std::string& path) {
+                               std::vector<std::string> warnings;
+                               apps::trade::read_methods_file(path, *registry, *scene, warnings);
+                           },
+                           methods_seeds,
+                           {}}));
+    all.push_back(
+        textual({"trade records",
+                 ".csv",
+                 "mote",
+                 [](const std::string& path) { apps::trade::records_from_csv(text_of(path), path); },
+                 record_seeds,
+                 {}}));
+    Format metadata{"EXR metadata",
+                    ".exr",
+                    "mote",
+                    [scene](const std::string& path) {
+                        apps::trade::load_reference(path, *scene, "0123456789abcdef", {});
+                    },
+                    pictures,
+                    {}};
+    metadata.head = 2048;
+    all.push_back(metadata);
+    all.push_back({"exr", ".exr", "OpenEXR", read_picture, pictures, {}});
+    all.push_back(picture("png", ".png"));
+    all.back().forge = forge_png;
+    all.push_back(picture("jpeg", ".jpg"));
+    all.push_back(picture("hdr", ".hdr"));
+    all.push_back(picture("pnm", ".ppm"));
+    all.push_back({"pfm", ".pfm", "OpenImageIO", read_picture, pfm_seeds, {}});
+    all.push_back(picture("bmp", ".bmp"));
+    all.push_back(picture("tga", ".tga"));
+    all.push_back({"vdb", ".vdb", "OpenVDB", read_vdb, [] { return std::vector<Bytes>(); }, {}});
+    all.push_back(Format{"stl", ".stl", "assimp", read_mesh, stl_seeds, {}});
+    all.push_back(mesh("glb", ".glb", {"glb2"}));
+    all.push_back(textual({"gltf", ".gltf", "assimp", read_mesh, gltf_seeds, {}}));
+    all.push_back(textual(mesh("dae", ".dae", {"collada"})));
+    all.push_back(mesh("3ds", ".3ds", {"3ds"}));
+    all.push_back(mesh("fbx", ".fbx", {"fbxa"}));
+    all.push_back(textual({"off", ".off", "assimp", read_mesh, off_seeds, {}}));
+    return all;
+}
+
+const Format& find_format(const std::vector<Format>& all, const std::string& name) {
+    std::string known;
+    for (const Format& format : all) {
+        if (format.name == name) return format;
+        known += " '" + format.name + "'";
+    }
+    throw std::invalid_argument("no format '" + name + "'; there are" + known);
+}
+
+Outcome try_file(const Format& format, const std::string& path, std::string& message) {
+    try {
+        format.read(path);
+        return Outcome::read;
+    } catch (const core::InputError& error) {
+        message = error.what();
+        return Outcome::refused;
+    } catch (const std::exception& error) {
+        message = error.what();
+    } catch (...) {
+        message = "something that is no std::exception was thrown";
+    }
+    return Outcome::defect;
+}
+
+}  // namespace mote::fuzz

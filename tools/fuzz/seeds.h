@@ -1,0 +1,39 @@
+// Small sound files of every format.
+#pragma once
+
+#include "core/image/film.h"
+#include "core/scene/scene.h"
+#include "tools/fuzz/formats.h"
+
+namespace mote::fuzz {
+
+Bytes bytes_of(const std::string& text);
+Bytes bytes_of_file(const std::string& path);
+
+std::vector<Bytes> scene_seeds();
+std::vector<Bytes> obj_seeds();
+std::vector<Bytes> ply_seeds();
+std::vector<Bytes> vol_seeds();
+std::vector<Bytes> methods_seeds();
+std::vector<Bytes> record_seeds();
+std::vector<Bytes> checkpoint_seeds();
+/// `world_to_camera`: 16 numbers.
+std::vector<Bytes> exr_seeds(const std::string& world_to_camera);
+/// A gradient as OpenImageIO writes it: "png", "jpeg", ...
+std::vector<Bytes> bitmap_seeds(const std::string& extension);
+/// A cube as assimp writes it: format "stlb", extension ".stl".
+std::vector<Bytes> exported_cubes(const std::vector<std::string>& formats);
+std::vector<Bytes> off_seeds();
+std::vector<Bytes> stl_seeds();
+std::vector<Bytes> gltf_seeds();
+std::vector<Bytes> pfm_seeds();
+
+/// What the checkpoints among the seeds belong to.
+core::Film small_film();
+inline const char* const checkpoint_hash = "0123456789abcdef";
+
+/// Makes the two checksums of a checkpoint, and those of the chunks of a PNG, fit again.
+void forge_checkpoint(Bytes& bytes);
+void forge_png(Bytes& bytes);
+
+}  // namespace mote::fuzz
