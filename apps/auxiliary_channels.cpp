@@ -1,6 +1,8 @@
 #include "apps/auxiliary_channels.h"
 
-#include "core/materials/bsdf.h"
+#include <algorithm>
+
+#include "core/geometry/bsdf_point.h"
 #include "core/scene/scene.h"
 #include "screenspace/g_buffer/g_buffer.h"
 #include "screenspace/ssbc/ssbc_surfaces.h"
@@ -11,7 +13,7 @@ namespace {
 
 core::Rgb diffuse_albedo(const core::FirstHit& first) {
     const core::SurfaceHit& hit = first.hit;
-    return screenspace::diffuse_reflectance(*hit.shape->bsdf, core::BsdfPoint{hit.uv},
+    return screenspace::diffuse_reflectance(*hit.shape->bsdf, core::bsdf_point(hit),
                                             hit.shading.to_local(first.to_viewer()));
 }
 
@@ -32,8 +34,19 @@ std::vector<core::HitFeature> auxiliary_features(const core::Scene& scene) {
     return features;
 }
 
+std::vector<core::HitFeature> features_by_name(const core::Scene& scene, std::span<const std::string> asked) {
+    if (asked.empty()) return {};
+    std::vector<core::HitFeature> features = auxiliary_features(scene);
+    std::erase_if(features, [&](const core::HitFeature& f) {  // means over hits need the share of hits
+        return f.layer.name != core::coverage_layer &&
+               std::find(asked.begin(), asked.end(), f.layer.name) == asked.end();
+    });
+    return features;
+}
+
 void add_center_channels(core::ImageChannels& image, const core::Scene& scene) {
-    const screenspace::GBuffer g = screenspace::make_g_buffer(scene, scene.camera(), image.width, image.height);
+    const screenspace::GBuffer g =
+        screenspace::make_g_buffer(scene, scene.camera(), image.width, image.height);
     add_vectors(image, "Center.P", g.position);
     add_vectors(image, "Center.N", g.geometric_normal);
     image.add_rgb("Center.DiffuseAlbedo", screenspace::ssbc_surfaces(g).reflectance);

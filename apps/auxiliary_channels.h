@@ -2,6 +2,9 @@
 // `mote ssbc`.
 #pragma once
 
+#include <span>
+#include <string>
+
 #include "core/image/image_file.h"
 #include "core/render/first_hit_features.h"
 
@@ -9,6 +12,10 @@ namespace mote::apps {
 
 /// core::first_hit_features(), and DiffuseAlbedo: what the BSDF reflects to all sides alike.
 std::vector<core::HitFeature> auxiliary_features(const core::Scene& scene);
+
+/// Those of them with these names (which a scene file asks for by an integrator `aov`), and Coverage; none
+/// for none.
+std::vector<core::HitFeature> features_by_name(const core::Scene& scene, std::span<const std::string> asked);
 
 /// Adds Center.P, Center.N (geometric, turned to the viewer) and Center.DiffuseAlbedo: what the rays through
 /// the middle of the pixels and of the lens hit, zero where that is nothing. The picture must have the size

@@ -13,11 +13,14 @@
 #include <limits>
 #include <new>
 
+#include "apps/interruption.h"
 #include "apps/number_options.h"
 #include "apps/ssbc_command.h"
 #include "apps/subcommands.h"
 #include "apps/trade/trade_command.h"
+#include "core/loading/faults.h"
 #include "core/objects/error.h"
+#include "core/objects/memory_error.h"
 
 namespace mote::apps {
 
@@ -32,8 +35,22 @@ void print_error(const std::string& message) {
     std::fputs((line + "\n").c_str(), stderr);
 }
 
+constexpr std::size_t max_printed_errors = 20;
+
+void print_errors(const core::SceneErrors& errors) {
+    const std::size_t n = errors.all().size(), printed = n > max_printed_errors ? max_printed_errors : n;
+    for (std::size_t i = 0; i < printed; ++i) print_error(errors.all()[i].what());
+    if (printed < n) print_error("... and " + std::to_string(n - printed) + " more errors");
+}
+
+void add_lenient(CLI::App& command, bool& lenient) {
+    command.add_flag("--lenient", lenient,
+                     "Leave out or approximate what is wrong or unknown in the scene, and say what");
+}
+
 void add_scene_options(CLI::App& command, SceneArguments& arguments) {
     command.add_option("SCENE", arguments.scene, "The scene file")->required();
+    add_lenient(command, arguments.lenient);
     command.add_option("--integrator", arguments.integrator, "Render with this type instead of the scene's")
         ->type_name("TYPE");
     command
@@ -53,8 +70,9 @@ void add_render(CLI::App& app, RenderArguments& a, std::function<int()>& action)
     command
         .add_option("--passes", a.passes, "Stop after this many passes (default: the scene's sample_count)")
         ->check(CLI::Range(std::uint32_t(1), std::uint32_t(1) << 30));
-    command.add_option("--time", a.seconds, "Stop after this many seconds")->check(number_above_0());
-    command.add_option("--noise", a.noise, "Stop at this relative noise, such as 0.02")
+    command.add_option("--time", a.seconds, "Stop after this many seconds, loading and building included")
+        ->check(number_above_0());
+    command.add_option("--noise", a.noise, "Stop when the noise is this, such as 0.02 (see docs/testing.md)")
         ->check(number_above_0());
     command.add_option("--seed", a.seed, "Another seed gives another, independent picture")
         ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()));
@@ -64,6 +82,9 @@ void add_render(CLI::App& app, RenderArguments& a, std::function<int()>& action)
     command.add_option("--checkpoint-every", a.checkpoint_every, "Seconds between checkpoints (default: 60)")
         ->check(number_from_0());
     command.add_option("--stats", a.stats, "Write statistics to this JSON file");
+    command
+        .add_option("--exposure", a.exposure, "Brighten the preview by this many stops (default: it adapts)")
+        ->check(CLI::Range(-100.0, 100.0));
     command.add_flag("--half", a.half, "Write float16 instead of float32");
     command.add_flag("--auxiliary", a.auxiliary,
                      "Also write what is seen: positions, normals, depth, albedo, with variances");
@@ -76,8 +97,15 @@ void add_compare(CLI::App& app, CompareArguments& a, std::function<int()>& actio
     CLI::App& command = *app.add_subcommand("compare", "Measure the error of a picture against a reference");
     command.add_option("IMAGE", a.image, "The picture")->required();
     command.add_option("REFERENCE", a.reference, "The picture that is taken for right")->required();
-    command.add_option("--layer", a.layer, "Compare this layer of two EXR files instead of the beauty");
+    command.add_option(
+        "--layer", a.layer,
+        "Compare this layer of two EXR files instead of the beauty, or A:B, layers of different names");
     command.add_option("--map", a.map, "Write a picture of the relative error to this PNG file");
+    command
+        .add_option("--difference", a.difference,
+                    "Write image, reference and their difference, amplified, side by side into a PNG file")
+        ->type_name("xFACTOR");
+    command.add_option("-o,--output", a.output, "Of --difference (default: IMAGE_difference.png)");
     command.add_flag("--json", a.json, "Print JSON");
     command.callback([&a, &action] { action = [&a] { return compare_command(a); }; });
 }
@@ -140,10 +168,11 @@ int parse_and_run(int argc, char** argv) {
     add_scene_options(plan_app, plan);
     plan_app.callback([&] { action = [&] { return plan_command(plan); }; });
 
-    std::string info;
+    InfoArguments info;
     CLI::App& info_app =
         *app.add_subcommand("info", "Describe a scene, mesh, picture or volume in a few lines");
-    info_app.add_option("FILE", info, "The file")->required();
+    info_app.add_option("FILE", info.file, "The file")->required();
+    add_lenient(info_app, info.lenient);
     info_app.callback([&] { action = [&] { return info_command(info); }; });
 
     ConvertArguments convert;
@@ -197,14 +226,21 @@ int parse_and_run(int argc, char** argv) {
 
 int run_command(int argc, char** argv) {
     std::set_terminate(terminate_quietly);
+    ignore_file_size_signal();
     try {
         return parse_and_run(argc, argv);
     } catch (const UsageError& error) {
         print_error(std::string(error.what()) + " (see 'mote --help')");
         return exit_usage;
+    } catch (const core::SceneErrors& errors) {
+        print_errors(errors);
+        return exit_input;
     } catch (const core::InputError& error) {
         print_error(error.what());
         return exit_input;
+    } catch (const core::OutOfMemory& error) {
+        print_error(std::string("there is not enough memory for ") + error.what());
+        return exit_internal;
     } catch (const std::bad_alloc&) {
         print_error("there is not enough memory for this");
         return exit_internal;

@@ -1,10 +1,13 @@
 // mote compare: a picture against its reference, every number with its definition.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "apps/command.h"
+#include "apps/difference_picture.h"
 #include "apps/number_or_null.h"
 #include "apps/output_files.h"
 #include "apps/picture_file.h"
@@ -53,6 +56,33 @@ json mean_json(const std::array<double, 3>& rgb, double average) {
             {"definition", mean_definition}};
 }
 
+std::string percent(double value) {
+    return std::isfinite(value) ? fmt::format("{:.3g} %", 100.0 * value) : "unknown";
+}
+
+/// The error, what of it is bias, and what of it the image's own noise explains.
+std::string headline(const ImageMetrics& m) {
+    std::string text = "error      " + percent(m.error);
+    if (std::isfinite(m.error_standard_error)) text += " +- " + percent(m.error_standard_error);
+    text += fmt::format(", bias {}{}", m.bias > 0.0 ? "+" : "", percent(m.bias));
+    if (std::isfinite(m.bias_standard_error)) text += " +- " + percent(m.bias_standard_error);
+    if (std::isfinite(m.noise)) text += ", noise of the image " + percent(m.noise);
+    return text + "\n";
+}
+
+/// Where a file is to be written: the difference's name, or none.
+std::string difference_file(const CompareArguments& a) {
+    if (a.difference.empty()) {
+        if (!a.output.empty()) throw UsageError("-o is for --difference");
+        return "";
+    }
+    const std::string path =
+        a.output.empty() ? std::filesystem::path(a.image).stem().string() + "_difference.png" : a.output;
+    if (extension_of(path) != ".png")
+        throw UsageError("the difference '" + core::printable(path) + "' does not end in .png");
+    return path;
+}
+
 void print_json(const CompareArguments& arguments, const core::Bitmap& size, const ImageMetrics& m,
                 const std::vector<std::string>& warnings) {
     nlohmann::ordered_json j;
@@ -76,6 +106,7 @@ void print_json(const CompareArguments& arguments, const core::Bitmap& size, con
                     {"lowest", core::ErrorScale().lowest},
                     {"highest", core::ErrorScale().highest},
                     {"definition", core::error_map_definition}};
+    if (!arguments.difference.empty()) j["difference"]["file"] = difference_file(arguments);
     j["warnings"] = warnings;
     std::fputs((j.dump(2, ' ', false, json::error_handler_t::replace) + "\n").c_str(), stdout);
 }
@@ -84,11 +115,12 @@ std::string mean_text(const std::array<double, 3>& rgb, double average) {
     return fmt::format("{:.6g} {:.6g} {:.6g}, average {:.6g}", rgb[0], rgb[1], rgb[2], average);
 }
 
-void print_text(const CompareArguments& arguments, const core::Bitmap& size, const ImageMetrics& m) {
+void print_text(const CompareArguments& arguments, const core::Bitmap& size, const ImageMetrics& m,
+                const std::string& difference) {
     std::string text = fmt::format("image      {}\nreference  {}\n", core::printable(arguments.image, 400),
                                    core::printable(arguments.reference, 400));
     if (!arguments.layer.empty()) text += fmt::format("layer      {}\n", core::printable(arguments.layer));
-    text += fmt::format("pixels     {} x {}\n\n", size.width, size.height);
+    text += fmt::format("pixels     {} x {}\n\n", size.width, size.height) + headline(m);
     text += fmt::format("non-finite {:.3g} % of the pixels ({} in the image, {} in the reference): {}\n",
                         100.0 * m.non_finite_share(), m.non_finite_image, m.non_finite_reference,
                         non_finite_definition);
@@ -102,6 +134,7 @@ void print_text(const CompareArguments& arguments, const core::Bitmap& size, con
         text +=
             fmt::format("\nmap        {}: from {:g} to {:g}, {}\n", core::printable(arguments.map, 400),
                         core::ErrorScale().lowest, core::ErrorScale().highest, core::error_map_definition);
+    text += difference;
     std::fputs(text.c_str(), stdout);
 }
 
@@ -110,23 +143,34 @@ void print_text(const CompareArguments& arguments, const core::Bitmap& size, con
 int compare_command(const CompareArguments& arguments) {
     if (!arguments.map.empty() && extension_of(arguments.map) != ".png")
         throw UsageError("the map '" + core::printable(arguments.map) + "' does not end in .png");
+    const std::string difference_path = difference_file(arguments);
+    const double factor = arguments.difference.empty() ? 1.0 : amplification(arguments.difference);
     check_outputs(
-        std::vector<NamedFile>{{"the map", arguments.map}},
+        std::vector<NamedFile>{{"the map", arguments.map}, {"the difference", difference_path}},
         std::vector<NamedFile>{{"the picture", arguments.image}, {"the reference", arguments.reference}});
-    const PictureFile image = read_picture(arguments.image, arguments.layer),
-                      reference = read_picture(arguments.reference, arguments.layer);
+    const std::size_t colon = arguments.layer.find(':');
+    const std::string layer = arguments.layer.substr(0, colon);
+    const PictureFile image = read_picture(arguments.image, layer),
+                      reference = read_picture(arguments.reference, colon == std::string::npos
+                                                                        ? layer
+                                                                        : arguments.layer.substr(colon + 1));
     const core::Bitmap &a = image.bitmap, &r = reference.bitmap;
     check_sizes(a, r, arguments);
     const std::vector<std::string> warnings = doubts(image, reference);
     for (const std::string& warning : warnings)
         std::fputs(("mote: warning: " + warning + "\n").c_str(), stderr);
-    const ImageMetrics metrics = core::compare_images(a.pixels, r.pixels, a.width, a.height);
+    const ImageMetrics metrics =
+        core::compare_images(a.pixels, r.pixels, a.width, a.height, {image.variance, reference.variance});
     if (!arguments.map.empty())
         core::write_png(arguments.map, a.width, a.height, core::error_map(a.pixels, r.pixels));
+    std::string difference;
+    if (!difference_path.empty())
+        difference = fmt::format("\ndifference {}: {}\n", core::printable(difference_path, 400),
+                                 write_difference(difference_path, a, r, factor));
     if (arguments.json)
         print_json(arguments, a, metrics, warnings);
     else
-        print_text(arguments, a, metrics);
+        print_text(arguments, a, metrics, difference);
     return exit_ok;
 }
 

@@ -8,6 +8,7 @@
 
 #include "apps/command.h"
 #include "apps/picture_file.h"
+#include "apps/placement_notes.h"
 #include "apps/subcommands.h"
 #include "core/geometry/triangle_mesh.h"
 #include "core/image/exr_preflight.h"
@@ -50,9 +51,10 @@ std::string range_text(std::span<const float> values) {
     return text;
 }
 
-void describe_scene(const std::string& path) {
+void describe_scene(const std::string& path, bool lenient) {
     const core::Registry registry = make_registry();
-    const auto scene = load({path, "", {}}, registry);
+    core::LoadReport report;
+    const auto scene = load({path, "", {}, lenient}, registry, &report);
     const core::Requirements r = core::find_requirements(*scene);
     const core::FilmSettings& film = scene->film();
     line("scene {}", core::printable(path));
@@ -68,7 +70,9 @@ void describe_scene(const std::string& path) {
          r.media_heterogeneous);
     for (const std::string& description : r.media_descriptions) line("              {}", description);
     line("  files       {}", scene->parts().input_files.size());
+    for (const std::string& text : report.approximations) line("  lenient     {}", text);
     for (const std::string& warning : scene->parts().warnings) line("  warning     {}", warning);
+    for (const std::string& text : placement_notes(*scene)) line("  warning     {}", text);
 }
 
 void describe_mesh(const std::string& path, bool flip_v) {
@@ -112,6 +116,19 @@ void describe_bitmap(const std::string& path) {
     }
 }
 
+// From the outer faces of the first active voxels to those of the last, as the file places them [m].
+std::string world_box(const media::VdbGridInfo& g) {
+    core::Vec3d lower(double(core::infinity)), upper(-double(core::infinity));
+    for (int corner = 0; corner < 8; ++corner) {
+        core::Vec3d p;
+        for (int axis = 0; axis < 3; ++axis)
+            p[axis] = (corner >> axis) & 1 ? g.upper[axis] + 0.5 : g.lower[axis] - 0.5;
+        p = g.index_to_world.point(p);
+        lower = glm::min(lower, p), upper = glm::max(upper, p);
+    }
+    return triple(lower) + " to " + triple(upper);
+}
+
 void describe_vdb(const std::string& path) {
     const std::vector<media::VdbGridInfo> grids = media::list_vdb_grids(path);
     line("OpenVDB volume {}: {} grid{}", core::printable(path), grids.size(), grids.size() == 1 ? "" : "s");
@@ -121,6 +138,7 @@ void describe_vdb(const std::string& path) {
         line("    voxels    {} active, index box {} to {}", g.active_voxels, triple(g.lower),
              triple(g.upper));
         line("    size      {}{}", triple(g.voxel_size), g.linear ? "" : ", in a frustum");
+        if (g.linear && g.active_voxels > 0) line("    world     {}", world_box(g));
         for (const std::string& warning : g.warnings) line("    warning   {}", core::printable(warning, 400));
     }
 }
@@ -137,13 +155,14 @@ void describe_vol(const std::string& path) {
 
 }  // namespace
 
-int info_command(const std::string& path) {
+int info_command(const InfoArguments& arguments) {
+    const std::string& path = arguments.file;
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored)) throw core::InputError("there is no such file", {path, 0});
     require_input(path);
     const std::string extension = extension_of(path);
     if (extension == ".xml")
-        describe_scene(path);
+        describe_scene(path, arguments.lenient);
     else if (extension == ".vdb")
         describe_vdb(path);
     else if (extension == ".vol")

@@ -1,12 +1,15 @@
-// Ctrl-C and SIGTERM while a render runs: a flag that the render looks at.
+// Signals that end a render early, and the clock that does: a flag that the render looks at.
 #pragma once
 
 #include <atomic>
+#include <optional>
 
 namespace mote::apps {
 
-/// From construction to destruction the first signal sets flag() instead of ending the program. More signals
-/// within five seconds change nothing (shells and wrappers send several); later ones end it at once.
+/// From construction to destruction the first Ctrl-C, SIGTERM or SIGHUP sets flag() instead of ending the
+/// program, and so does the end of the time. The second signal ends it at once (shells and wrappers send
+/// several within a moment: those count as one). With SIGHUP the terminal is gone: writing to it must not end
+/// the program, either.
 class Interruption {
   public:
     Interruption();
@@ -14,8 +17,21 @@ class Interruption {
     Interruption(const Interruption&) = delete;
     Interruption& operator=(const Interruption&) = delete;
 
+    /// While there is nothing to be lost (`phase`: "loading the scene"), a signal or the end of the time ends
+    /// the program at once, with one line. `phase` must be a literal; null: from now on there is.
+    void end_at_once_while(const char* phase);
+    /// The end of the time, from now [s]; nothing: no more.
+    void set_alarm(std::optional<double> seconds);
+
+    /// Passes are over: no alarm any more, and flag() is set only if there was a signal.
+    void forget_time();
+
     const std::atomic<bool>& flag() const;
+    const std::atomic<bool>& time_is_over() const;
     int signal_number() const;  ///< 0 while there was none
 };
+
+/// A limit on the size of files (ulimit -f) is to be an error of the write, not the end of the program.
+void ignore_file_size_signal();
 
 }  // namespace mote::apps

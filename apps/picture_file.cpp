@@ -56,12 +56,14 @@ std::string clamped_text(std::uint64_t values) {
 PictureFile read_picture(const std::string& path, const std::string& layer) {
     require_input(path);
     if (!is_exr(path)) {
-        PictureFile picture{core::read_bitmap(path, false), {}};
+        PictureFile picture{core::read_bitmap(path, false), {}, {}};
         if (!layer.empty()) throw InputError("only EXR files have layers", {path, 0});
         return picture;
     }
     const ImageChannels image = core::read_exr(path);
-    PictureFile picture{{image.width, image.height, image.rgb(layer)}, image.metadata};
+    PictureFile picture{{image.width, image.height, image.rgb(layer)},
+                        image.rgb(layer.empty() ? "Variance" : "Variance." + layer),
+                        image.metadata};
     if (picture.bitmap.pixels.empty() && layer.empty())
         picture.bitmap = core::read_bitmap(path, false);  // grey, or with channels of other names
     if (picture.bitmap.pixels.empty())

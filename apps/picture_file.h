@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "core/image/image_file.h"
 
@@ -11,6 +12,7 @@ namespace mote::apps {
 
 struct PictureFile {
     core::Bitmap bitmap;
+    std::vector<core::Rgb> variance;  ///< of the mean, pixel by pixel; empty where it is not known
     std::map<std::string, std::string> metadata;  ///< of an EXR; empty otherwise
 };
 

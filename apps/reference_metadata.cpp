@@ -1,4 +1,4 @@
-// Standard errors from the variance that every film keeps.
+// Cameras and scenes as text.
 #include "apps/reference_metadata.h"
 
 #include <fmt/format.h>
@@ -13,10 +13,6 @@ namespace mote::apps {
 
 namespace {
 
-using core::Rgb;
-
-double average(const Rgb& c) { return (double(c.x) + double(c.y) + double(c.z)) / 3.0; }
-
 /// Numbers of a matrix, or nothing when the text is anything else.
 std::vector<double> numbers(const std::string& text) {
     std::istringstream stream(text);
@@ -26,27 +22,6 @@ std::vector<double> numbers(const std::string& text) {
 }
 
 }  // namespace
-
-double relative_standard_error(const core::Film& film) {
-    if (film.pass_count() < 2) return core::infinity;
-    const std::vector<Rgb> mean = film.beauty(), variance = film.beauty_variance_of_mean();
-    double sum = 0.0;
-    for (std::size_t p = 0; p < mean.size(); ++p)
-        for (int c = 0; c < 3; ++c) sum += double(variance[p][c]) / (double(mean[p][c]) * mean[p][c] + 0.01);
-    return std::sqrt(sum / (3.0 * double(mean.size())));
-}
-
-double relative_error_of_mean(const core::Film& film) {
-    if (film.pass_count() < 2) return core::infinity;
-    const std::vector<Rgb> mean = film.beauty(), variance = film.beauty_variance_of_mean();
-    double total = 0.0, squares = 0.0;
-    for (std::size_t p = 0; p < mean.size(); ++p) {
-        const double deviation = average(glm::sqrt(variance[p]));
-        total += average(mean[p]), squares += deviation * deviation;
-    }
-    if (total == 0.0) return squares == 0.0 ? 0.0 : core::infinity;
-    return std::sqrt(squares) / std::fabs(total);
-}
 
 std::string world_to_camera(const core::Camera& camera) {
     // OpenEXR has x to the right, y up, z forward; ours has x to the left. The transpose is written.

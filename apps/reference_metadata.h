@@ -1,22 +1,12 @@
-// What a picture says about itself so that others can be judged by it: of which scene and camera it is, and
-// how far it may be from the truth.
+// What a picture says about itself so that others can be judged by it: of which scene and camera it is.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "core/image/film.h"
 #include "core/scene/scene.h"
 
 namespace mote::apps {
-
-/// Root of the relMSE that the film's picture is expected to have: of variance / (mean^2 + 0.01), averaged
-/// over pixels and channels, so that it compares with the errors in core/image/metrics.h. Infinity for fewer
-/// than two passes.
-double relative_standard_error(const core::Film& film);
-/// Standard error of the picture's mean over that mean, with pixels independent and channels wholly
-/// dependent. Infinity for fewer than two passes.
-double relative_error_of_mean(const core::Film& film);
 
 /// worldToCamera of OpenEXR, 16 numbers: a left-handed camera space, matrices acting on row vectors.
 std::string world_to_camera(const core::Camera& camera);

@@ -14,14 +14,18 @@
 #include "apps/interruption.h"
 #include "apps/output_files.h"
 #include "apps/picture_file.h"
+#include "apps/preview.h"
 #include "apps/progress_line.h"
 #include "apps/reference_metadata.h"
 #include "apps/render_report.h"
 #include "apps/subcommands.h"
+#include "apps/usable_threads.h"
 #include "core/image/film_image.h"
 #include "core/image/image_file.h"
 #include "core/objects/error.h"
+#include "core/objects/memory_error.h"
 #include "core/render/render_driver.h"
+#include "core/render/stop_clock.h"
 
 namespace mote::apps {
 
@@ -76,8 +80,8 @@ void check_writable(const std::string& path) {
         throw core::InputError(std::string("cannot be written: ") + std::strerror(errno), {path, 0});
 }
 
-void warn_about_scene(const core::Scene& scene, const core::Plan& plan) {
-    for (const std::string& warning : scene.parts().warnings) note("warning: " + warning);
+void warn_about(const core::Scene& scene, const core::LoadReport& loaded, const core::Plan& plan) {
+    warn_about_scene(scene, loaded);
     for (const std::string& line : plan.warnings()) note(line);
 }
 
@@ -86,6 +90,7 @@ std::string hash_of(const core::Scene& scene, const core::Integrator& integrator
                     const SceneArguments& arguments) {
     std::vector<std::string> settings = {MOTE_VERSION, integrator.type(), arguments.integrator};
     settings.insert(settings.end(), arguments.defines.begin(), arguments.defines.end());
+    if (arguments.lenient) settings.emplace_back("--lenient");
     return core::content_hash(scene, settings);
 }
 
@@ -105,10 +110,16 @@ void write_outputs(const OutputFiles& files, const RenderReport& report, const R
     core::ImageChannels image = core::film_image(report.result.film);
     image.metadata = picture_metadata(report);
     if (arguments.auxiliary) add_center_channels(image, report.scene);
+    const std::span<const std::uint8_t> finished = report.result.finished_pixels;
+    if (!finished.empty())  // those that no pass reached are transparent
+        image.add("A", std::vector<float>(finished.begin(), finished.end()));
     const std::uint64_t clamped =
         core::write_exr(files.picture, image, arguments.half || report.scene.film().half);
     warn_of_range(image, clamped, warnings);
-    core::write_png(files.preview, image.width, image.height, image.rgb(""));
+    const std::string exposure = write_preview(files.preview, image, arguments.exposure, finished);
+    if (!arguments.quiet)
+        note(fmt::format("{}: exposure {}{}", core::printable(files.preview), exposure,
+                         arguments.exposure ? "" : " (--exposure fixes it)"));
 }
 
 void print_times(const core::Statistics& statistics) {
@@ -121,7 +132,17 @@ void print_times(const core::Statistics& statistics) {
 int report_interruption(const RenderArguments& arguments, const OutputFiles& files,
                         const core::RenderResult& result, int signal_number) {
     if (result.film.pass_count() == 0) {
-        note("interrupted before the first pass was complete: there is nothing to write");
+        note("interrupted before the first pixel was complete: there is nothing to write");
+    } else if (!result.finished_pixels.empty()) {
+        note(
+            fmt::format("interrupted in the first pass: {} holds {:.1f} % of its pixels, the others have "
+                        "alpha 0; there is "
+                        "nothing to resume",
+                        files.picture, 100.0 * finished_share(result)));
+    } else if (!result.checkpoint_problem.empty()) {
+        note(fmt::format(
+            "interrupted after {} passes: {} holds the picture so far, but it cannot be resumed ({})",
+            result.film.pass_count(), files.picture, result.checkpoint_problem));
     } else {
         std::vector<std::string> command = arguments.command_line;
         if (!arguments.resume) command.emplace_back("--resume");
@@ -136,13 +157,22 @@ int report_interruption(const RenderArguments& arguments, const OutputFiles& fil
 
 int render_command(const RenderArguments& arguments) {
     const OutputFiles files = output_files(arguments);
-    const int threads = arguments.threads > 0 ? arguments.threads : tbb::info::default_concurrency();
+    const Clock::time_point start = Clock::now();
+    Interruption interruption;
+    interruption.end_at_once_while("loading the scene");
+    if (arguments.seconds) interruption.set_alarm(*arguments.seconds + 2.0);
+    const int wanted = arguments.threads > 0 ? arguments.threads : tbb::info::default_concurrency();
+    const int threads = usable_threads(wanted);
+    if (threads < wanted && !arguments.quiet)
+        note(fmt::format("warning: the system grants {} thread{} instead of {}", threads,
+                         threads == 1 ? "" : "s", wanted));
     const tbb::global_control thread_limit(tbb::global_control::max_allowed_parallelism,
                                            std::size_t(threads));
 
-    const Clock::time_point load_start = Clock::now();
     const core::Registry registry = make_registry();
-    const auto scene = load(arguments.scene, registry);
+    core::LoadReport loaded;
+    const auto scene =
+        core::with_memory_for("loading the scene", [&] { return load(arguments.scene, registry, &loaded); });
     const core::Integrator& integrator = require_integrator(*scene, registry);
     const core::Plan plan = integrator.plan(*scene, core::find_requirements(*scene));
     for (const std::string& path : {files.picture, files.preview}) check_writable(path);
@@ -157,23 +187,37 @@ int render_command(const RenderArguments& arguments) {
     request.checkpoint_at_end = false;
     request.resume = arguments.resume;
     request.content_hash = hash_of(*scene, integrator, arguments.scene);
-    if (arguments.auxiliary) request.features = auxiliary_features(*scene);
-    const double load_seconds = seconds_since(load_start);
+    request.features =
+        arguments.auxiliary ? auxiliary_features(*scene) : features_by_name(*scene, loaded.features);
+    const double load_seconds = seconds_since(start);
+    interruption.end_at_once_while("building");
 
     if (!arguments.quiet) {
-        warn_about_scene(*scene, plan);
+        warn_about(*scene, loaded, plan);
         if (!arguments.resume && fs::exists(files.checkpoint))
             note(fmt::format("'{}' of an interrupted render is not used (--resume would continue it)",
                              core::printable(files.checkpoint)));
         if (arguments.verbose) std::fputs(plan.to_text().c_str(), stderr);
     }
 
-    const Interruption interruption;
     ProgressLine progress(
         fmt::format("mote: {}: {}, {} x {} pixels, {} thread{}", scene->parts().file, plan.integrator,
                     scene->film().width, scene->film().height, threads, threads == 1 ? "" : "s"),
         arguments.quiet);
-    request.interrupted = &interruption.flag();
+    request.interrupted = &interruption.flag(), request.time_is_over = &interruption.time_is_over();
+    request.seconds_before = load_seconds;
+    request.keep_part_of_first_pass = true;
+    request.building_is_over = [&] {
+        // A pass may end a second late (stop_clock.h); what takes longer is cut off.
+        if (arguments.seconds)
+            interruption.set_alarm(
+                std::max(0.5, *arguments.seconds + core::most_seconds_late - seconds_since(start)));
+        interruption.end_at_once_while(nullptr);
+    };
+    request.passes_are_over = [&] { interruption.forget_time(); };
+    request.checkpoint_failed = [&](const std::string& why) {
+        if (!arguments.quiet) note("warning: " + why + "; it is tried again");
+    };
     request.progress = [&progress](const core::RenderProgress& p) { progress.update(p); };
     core::RenderResult result = [&] {
         try {
@@ -186,6 +230,8 @@ int render_command(const RenderArguments& arguments) {
     progress.end();
     result.statistics.seconds["load"] = load_seconds;
 
+    if (result.film.pass_count() == 0 && !result.interrupted)
+        throw core::InputError("--time is over before the first pixel was complete: there is no picture");
     if (result.film.pass_count() > 0) {
         const Clock::time_point write_start = Clock::now();
         RenderReport report{*scene,
@@ -195,8 +241,10 @@ int render_command(const RenderArguments& arguments) {
                             scene_content(*scene, arguments.scene.defines),
                             arguments.seed,
                             threads,
-                            arguments.command_line};
-        write_outputs(files, report, arguments, result.statistics.warnings);
+                            arguments.command_line,
+                            loaded.approximations};
+        core::with_memory_for("writing the picture",
+                              [&] { write_outputs(files, report, arguments, result.statistics.warnings); });
         result.statistics.seconds["write"] = seconds_since(write_start);
         if (!arguments.stats.empty()) {
             const std::string json = statistics_json(report);
@@ -212,6 +260,10 @@ int render_command(const RenderArguments& arguments) {
             fmt::format("WARNING: {} pixel samples were NaN or infinite and count as black; please report "
                         "this scene",
                         result.statistics.non_finite_samples));
+    if (!result.interrupted && !result.finished_pixels.empty())
+        note(fmt::format(
+            "--time is over in the first pass: {} holds {:.1f} % of its pixels, the others have alpha 0",
+            files.picture, 100.0 * finished_share(result)));
     if (result.interrupted)
         return report_interruption(arguments, files, result, interruption.signal_number());
 

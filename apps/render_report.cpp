@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -56,6 +57,11 @@ std::size_t peak_memory_bytes() {
     return std::size_t(usage.ru_maxrss) * 1024;
 }
 
+double finished_share(const core::RenderResult& result) {
+    const auto& pixels = result.finished_pixels;
+    return pixels.empty() ? 1.0 : double(std::count(pixels.begin(), pixels.end(), 1)) / double(pixels.size());
+}
+
 std::string git_hash() { return MOTE_GIT_HASH; }
 
 std::map<std::string, std::string> picture_metadata(const RenderReport& r) {
@@ -70,15 +76,20 @@ std::map<std::string, std::string> picture_metadata(const RenderReport& r) {
         {"sceneContent", r.scene_content},
         {"commandLine", quoted(r.command_line)},
         {"worldToCamera", world_to_camera(r.scene.camera())}};
-    const double error = relative_standard_error(r.result.film),
-                 mean_error = relative_error_of_mean(r.result.film);
+    const double noise = r.result.film.noise();
+    if (!r.result.finished_pixels.empty()) {
+        metadata["passes"] = "0";
+        metadata["partOfFirstPass"] =
+            fmt::format("{:.6f} of the pixels; those that are missing have A = 0", finished_share(r.result));
+    }
     const auto& values = r.result.statistics.values;
     if (const auto bound = values.find("bound"); bound != values.end())
         metadata["bound"] = fmt::format("{:.9g}", bound->second);  // mote ssbc asks for it
-    if (std::isfinite(error)) metadata["relativeError"] = fmt::format("{:.6g}", error);
-    if (std::isfinite(mean_error)) metadata["meanError"] = fmt::format("{:.6g}", mean_error);
+    if (std::isfinite(noise)) metadata["noise"] = fmt::format("{:.6g}", noise);
     for (const core::PlanEntry& e : r.plan.missing)
         metadata["leavesOut"] += (metadata["leavesOut"].empty() ? "" : ", ") + e.topic;
+    for (const std::string& text : r.approximations)
+        metadata["approximations"] += (metadata["approximations"].empty() ? "" : "\n") + text;
     return metadata;
 }
 
@@ -105,7 +116,8 @@ std::string statistics_json(const RenderReport& r) {
     j["height"] = r.result.film.height();
     j["seed"] = r.seed;
     j["threads"] = r.threads;
-    j["passes"] = r.result.film.pass_count();
+    j["passes"] = r.result.finished_pixels.empty() ? r.result.film.pass_count() : 0;
+    if (!r.result.finished_pixels.empty()) j["part_of_first_pass"] = finished_share(r.result);
     j["resumed_at"] = r.result.resumed_at;
     j["interrupted"] = r.result.interrupted;
     j["seconds"] = s.seconds;
@@ -115,8 +127,9 @@ std::string statistics_json(const RenderReport& r) {
     if (const auto vpls = s.values.find("vpls"); vpls != s.values.end()) j["vpls"] = vpls->second;
     j["values"] = values;
     j["peak_memory_bytes"] = peak_memory_bytes();
-    j["noise"] = number_or_null(r.result.film.relative_noise());
+    j["noise"] = number_or_null(r.result.film.noise());
     j["warnings"] = warnings;
+    j["approximations"] = r.approximations;
     j["non_finite_samples"] = s.non_finite_samples;
     j["clamped_samples"] = s.clamped_samples;
     // File names need not be UTF-8.

@@ -20,6 +20,7 @@ struct RenderReport {
     std::uint64_t seed;
     int threads;
     std::vector<std::string> command_line;
+    std::vector<std::string> approximations = {};  ///< what leniency left out or replaced
 };
 
 /// The command line as a shell would take it.
@@ -27,6 +28,8 @@ std::string quoted(const std::vector<std::string>& command_line);
 /// Largest resident size of this process so far.
 std::size_t peak_memory_bytes();
 std::string git_hash();
+/// Of the first pass, where it is a part (RenderResult::finished_pixels); else 1.
+double finished_share(const core::RenderResult& result);
 
 std::map<std::string, std::string> picture_metadata(const RenderReport& report);
 std::string statistics_json(const RenderReport& report);

@@ -1,4 +1,7 @@
 // From the command line to a loaded scene.
+#include <cstdio>
+
+#include "apps/placement_notes.h"
 #include "apps/subcommands.h"
 #include "core/loading/scene_loader.h"
 #include "core/objects/error.h"
@@ -7,6 +10,12 @@
 #include "media/register_media.h"
 
 namespace mote::apps {
+
+namespace {
+
+void warn(const std::string& text) { std::fputs(("mote: " + text + "\n").c_str(), stderr); }
+
+}  // namespace
 
 core::Registry make_registry() {
     core::Registry registry;
@@ -20,6 +29,7 @@ core::Registry make_registry() {
 core::LoadOptions load_options(const SceneArguments& arguments) {
     core::LoadOptions options;
     options.integrator = arguments.integrator;
+    options.lenient = arguments.lenient;
     for (const std::string& define : arguments.defines) {
         const auto equals = define.find('=');
         if (equals == std::string::npos || equals == 0)
@@ -29,8 +39,17 @@ core::LoadOptions load_options(const SceneArguments& arguments) {
     return options;
 }
 
-std::unique_ptr<core::Scene> load(const SceneArguments& arguments, const core::Registry& registry) {
-    return core::load_scene(arguments.scene, registry, load_options(arguments));
+std::unique_ptr<core::Scene> load(const SceneArguments& arguments, const core::Registry& registry,
+                                  core::LoadReport* report) {
+    core::LoadOptions options = load_options(arguments);
+    options.report = report;
+    return core::load_scene(arguments.scene, registry, options);
+}
+
+void warn_about_scene(const core::Scene& scene, const core::LoadReport& report) {
+    for (const std::string& text : report.approximations) warn("--lenient: " + text);
+    for (const std::string& text : scene.parts().warnings) warn("warning: " + text);
+    for (const std::string& text : placement_notes(scene)) warn("warning: " + text);
 }
 
 const core::Integrator& require_integrator(const core::Scene& scene, const core::Registry& registry) {

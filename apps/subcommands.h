@@ -27,6 +27,12 @@ struct SceneArguments {
     std::string scene;
     std::string integrator;
     std::vector<std::string> defines;  ///< "name=value"
+    bool lenient = false;
+};
+
+struct InfoArguments {
+    std::string file;
+    bool lenient = false;  ///< of a scene
 };
 
 struct RenderArguments {
@@ -38,6 +44,7 @@ struct RenderArguments {
     int threads = 0;  ///< 0: one for every core
     bool resume = false, quiet = false, verbose = false, half = false, auxiliary = false;
     double checkpoint_every = 60.0;
+    std::optional<float> exposure;  ///< of the preview [stops]; none: it adapts
     std::string stats;
     std::vector<std::string> command_line;
 };
@@ -49,8 +56,11 @@ struct ConvertArguments {
 };
 
 struct CompareArguments {
-    std::string image, reference, layer;
-    std::string map;  ///< "": none
+    std::string image, reference;
+    std::string layer;       ///< of both, or "A:B", that of the image and that of the reference
+    std::string map;         ///< "": none
+    std::string difference;  ///< "x4": how much differences are amplified; "": none
+    std::string output;      ///< of the difference; "": IMAGE_difference.png in the current folder
     bool json = false;
 };
 
@@ -65,13 +75,17 @@ core::Registry make_registry();
 core::LoadOptions load_options(const SceneArguments& arguments);
 /// Loads the scene with everything that the command line changes. Throws InputError, or UsageError for a
 /// malformed definition.
-std::unique_ptr<core::Scene> load(const SceneArguments& arguments, const core::Registry& registry);
+std::unique_ptr<core::Scene> load(const SceneArguments& arguments, const core::Registry& registry,
+                                  core::LoadReport* report = nullptr);
 /// The integrator to run. Throws InputError when the scene names none.
 const core::Integrator& require_integrator(const core::Scene& scene, const core::Registry& registry);
 
+/// What --lenient left out or approximated and everything else worth a warning, a line each on stderr.
+void warn_about_scene(const core::Scene& scene, const core::LoadReport& report);
+
 int render_command(const RenderArguments& arguments);
 int plan_command(const SceneArguments& arguments);
-int info_command(const std::string& path);
+int info_command(const InfoArguments& arguments);
 int convert_command(const ConvertArguments& arguments);
 int compare_command(const CompareArguments& arguments);
 int export_command(const ExportArguments& arguments);

@@ -13,18 +13,6 @@ using core::Element;
 
 namespace {
 
-/// Names of metals as the numbers that we compute with: the tables differ in the fourth digit.
-void export_metal(Element& bsdf, const ExportContext& context) {
-    const Element* material = bsdf.child("material");
-    if (!material || material->get("value") == "none") return;
-    const auto index = core::conductor_index(material->get("value"));
-    if (!index) return;  // refused when the scene was built
-    context.note(*material, "material '" + material->get("value") + "' is written as its eta and k");
-    remove_child(bsdf, "material");
-    set_child(bsdf, make_rgb(bsdf, "eta", index->eta));
-    set_child(bsdf, make_rgb(bsdf, "k", index->k));
-}
-
 void export_index(Element& bsdf, const std::string& name) {
     const Element* value = bsdf.child(name);
     if (!value || value->tag != "string") return;
@@ -45,12 +33,22 @@ void replace_phong(Element& bsdf, const ExportContext& context) {
     set_child(bsdf, bsdf.make_value("float", "alpha", fmt::format("{}", alpha)));
 }
 
+/// A parameter of ours that Mitsuba would refuse.
+void drop_conservation(Element& bsdf, const ExportContext& context) {
+    const Element* conserves = bsdf.child("conserve_energy");
+    if (!conserves) return;
+    if (conserves->get("value") == "true")
+        context.note(*conserves,
+                     "'conserve_energy' is left out: light that facets send to each other is lost there");
+    remove_child(bsdf, "conserve_energy");
+}
+
 }  // namespace
 
 void export_bsdf(Element& bsdf, const ExportContext& context) {
     const std::string type = bsdf.get("type");
-    if (type == "conductor" || type == "roughconductor") export_metal(bsdf, context);
     if (type == "phong") replace_phong(bsdf, context);
+    if (type == "roughplastic") drop_conservation(bsdf, context);
     export_index(bsdf, "int_ior");
     export_index(bsdf, "ext_ior");
 }

@@ -49,7 +49,10 @@ core::Transform transform_of(core::Element& object, const std::string& name);
 /// Returns the type of the integrator that the exported scene names.
 std::string export_integrator(core::Element& scene, const ExportContext& context);
 void export_sensor(core::Element& sensor, const ExportContext& context);
-void export_shape(core::Element& element, const core::Shape& shape, const ExportContext& context);
+/// `placed`: the shape itself, or as an instance places it.
+void export_shape(core::Element& element, const core::Shape& shape, const core::Shape& placed,
+                  const ExportContext& context);
+void export_emitter(core::Element& emitter, const ExportContext& context);
 void export_bsdf(core::Element& bsdf, const ExportContext& context);
 void export_medium(core::Element& medium, const ExportContext& context);
 

@@ -174,6 +174,7 @@ std::optional<Rgb> constant_of(Element& medium, const std::string& name, float d
     if (!value) return Rgb(default_value);
     if (core::is_value_tag(value->tag)) return colour_of(*value, false);
     if (value->get("type") != "constvolume") return std::nullopt;
+    if (name == "sigma_t" && value->child("to_world")) return std::nullopt;  // it ends there as well
     return coefficient(*value, "value", 1.0f);
 }
 

@@ -57,7 +57,7 @@ std::string export_integrator(Element& scene, const ExportContext& context) {
     integrator->set("type", theirs);
     std::erase_if(integrator->children, [&](const Element& c) {
         const std::string name = c.get("name");
-        if (name == "max_depth" || name == "rr_depth") return false;
+        if (name == "max_depth" || name == "rr_depth" || name == "hide_emitters") return false;
         context.note(c, "'" + name + "' of integrator '" + ours + "' was dropped");
         return true;
     });

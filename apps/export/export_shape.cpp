@@ -14,17 +14,21 @@ namespace {
 /// A transform that mirrors turns Mitsuba's meshes and spheres inside out; ours keep the outside out.
 bool mirrored(Element& shape) { return transform_of(shape, "to_world").determinant() < 0.0; }
 
-/// Replaces the shape by a PLY file of its triangles in the world.
+/// Replaces the shape by a PLY file of its triangles in the world. So are meshes with attributes, for Mitsuba
+/// takes colours that are integers as they are, and skips those of serialized files.
 void write_mesh(Element& shape, const core::TriangleMesh& mesh, const ExportContext& context) {
     const std::string type = shape.get("type");
     const Element* file = shape.child("filename");
     const std::string stem = file ? std::filesystem::path(file->get("value")).stem().string() : type;
     const std::string name = context.free_name("meshes", stem, ".ply");
     context.result.meshes[name] = mesh.data();
-    context.note(shape, "shape '" + type + "' " + (type == "mesh" ? "" : "under a mirroring transform ") +
-                            "became " + name);
+    const std::string reason = !mesh.data().attributes.empty() ? "with attributes "
+                               : type == "mesh"                ? ""
+                                                               : "under a mirroring transform ";
+    context.note(shape, "shape '" + type + "' " + reason + "became " + name);
     shape.set("type", "ply");
-    for (const char* gone : {"filename", "face_normals", "flip_tex_coords", "flip_normals", "to_world"})
+    for (const char* gone :
+         {"filename", "face_normals", "flip_tex_coords", "shape_index", "flip_normals", "to_world"})
         remove_child(shape, gone);
     shape.children.push_back(shape.make_value("string", "filename", name));
     if (mesh.data().normals.empty())
@@ -82,11 +86,12 @@ void write_exterior(Element& element, const core::Shape& shape, const ExportCont
 
 }  // namespace
 
-void export_shape(Element& element, const core::Shape& shape, const ExportContext& context) {
+void export_shape(Element& element, const core::Shape& shape, const core::Shape& placed,
+                  const ExportContext& context) {
     write_default_bsdf(element, shape, context);
-    write_exterior(element, shape, context);
+    write_exterior(element, placed, context);
     const auto* mesh = dynamic_cast<const core::TriangleMesh*>(&shape);
-    if (mesh && (element.get("type") == "mesh" || mirrored(element)))
+    if (mesh && (element.get("type") == "mesh" || mirrored(element) || !mesh->data().attributes.empty()))
         write_mesh(element, *mesh, context);
     else if (element.child("filename"))
         context.copy_file(element, "meshes");

@@ -2,8 +2,11 @@
 #include "apps/export/mitsuba_export.h"
 
 #include <algorithm>
+#include <map>
+#include <set>
 
 #include "apps/export/export_context.h"
+#include "core/geometry/instances.h"
 #include "core/loading/scene_builder.h"
 #include "core/loading/scene_values.h"
 #include "core/materials/bsdf.h"
@@ -43,13 +46,32 @@ void resolve_aliases(Element& parent, const core::IdTable& ids) {
     }
 }
 
-/// Ids by name instead of aliases, and all media in front.
+/// Moves the groups that instances hold to the front, with ids: Mitsuba knows them by reference only.
+void collect_groups(Element& scene, const core::IdTable& ids) {
+    std::vector<Element> groups;
+    for (Element& e : scene.children) {
+        if (e.tag != "shape" || e.get("type") != "instance") continue;
+        for (Element& c : e.children) {
+            if (c.tag != "shape") continue;
+            std::string id = c.get("id");
+            for (int i = int(groups.size()) + 1; id.empty(); ++i)
+                if (const std::string free = "group_" + std::to_string(i); !ids.count(free)) id = free;
+            c.set("id", id), c.erase("name");
+            groups.push_back(c);
+            c = make_reference(e, "", id), c.erase("name");
+        }
+    }
+    scene.children.insert(scene.children.begin(), groups.begin(), groups.end());
+}
+
+/// Ids by name instead of aliases, and all media and groups in front.
 void normalise(Element& scene) {
     const core::IdTable ids = core::collect_ids(scene);
     resolve_aliases(scene, ids);
     std::vector<Element> media;
     collect_media(scene, true, ids, media);
     std::erase_if(scene.children, [](const Element& c) { return c.tag == "alias"; });
+    collect_groups(scene, ids);
     scene.children.insert(scene.children.begin(), media.begin(), media.end());
     scene.set("version", "3.0.0");
 }
@@ -67,7 +89,7 @@ void export_parts(Element& object, const ExportContext& context) {
         if (is_object(c)) export_parts(c, context);
     if (object.tag == "bsdf") export_bsdf(object, context);
     if (object.tag == "texture" && object.child("filename")) context.copy_file(object, "textures");
-    if (object.tag == "emitter" && object.child("filename")) context.copy_file(object, "textures");
+    if (object.tag == "emitter") export_emitter(object, context);
 }
 
 /// Mitsuba's `path` stops its shadow rays at the bare boundaries of media, which ours does not see.
@@ -77,15 +99,60 @@ bool is_bare_boundary(const Element& e, const core::Shape& shape, const ExportCo
     return true;
 }
 
-void export_shapes(Element& scene, const std::string& integrator, const ExportContext& context) {
-    std::size_t index = 0;
-    std::erase_if(scene.children, [&](Element& e) {
-        if (e.tag != "shape") return false;
-        const core::Shape& shape = *context.scene.shapes()[index++];
+bool is_group(const Element& e) { return e.tag == "shape" && e.get("type") == "shapegroup"; }
+bool is_member(const Element& e) { return e.tag == "shape" || e.tag == "ref"; }
+
+/// The shapes of a group; `placed` are those of one of its instances.
+void export_group(Element& group, std::span<const std::shared_ptr<core::Shape>> placed,
+                  const std::string& integrator, const ExportContext& context) {
+    std::size_t member = 0;
+    std::erase_if(group.children, [&](Element& e) {
+        if (!is_member(e)) return false;
+        const auto& shape = dynamic_cast<const core::InstancedShape&>(*placed[member++]);
+        if (e.tag == "ref") return false;  // it stands elsewhere, and is exported there
         if (integrator == "path" && is_bare_boundary(e, shape, context)) return true;
-        export_shape(e, shape, context);
+        export_shape(e, shape.original(), shape, context);
         return false;
     });
+}
+
+void export_shapes(Element& scene, const std::string& integrator, const ExportContext& context) {
+    struct Group {
+        Element* element;
+        std::size_t size;  // before bare boundaries are dropped
+    };
+    std::map<std::string, Group> groups;
+    std::set<const Element*> placed, dropped;
+    for (Element& e : scene.children)
+        if (is_group(e))
+            groups[e.get("id")] = {
+                &e, std::size_t(std::count_if(e.children.begin(), e.children.end(), is_member))};
+    auto shapes = context.scene.shapes();  // those that are left
+    for (Element& e : scene.children) {
+        if (e.tag != "shape" || is_group(e)) continue;
+        if (e.get("type") == "instance") {
+            const auto reference = std::find_if(e.children.begin(), e.children.end(), is_member);
+            const auto group = groups.find(reference->get("id"));
+            if (group == groups.end())
+                throw core::InputError("a shapegroup within another object cannot be exported", e.where);
+            const auto& [element, size] = group->second;
+            if (placed.insert(element).second)
+                export_group(*element, shapes.first(size), integrator, context);
+            shapes = shapes.subspan(size);
+            continue;
+        }
+        if (integrator == "path" && is_bare_boundary(e, *shapes.front(), context))
+            dropped.insert(&e);
+        else
+            export_shape(e, *shapes.front(), *shapes.front(), context);
+        shapes = shapes.subspan(1);
+    }
+    for (const auto& [id, group] : groups) {
+        if (placed.count(group.element)) continue;
+        context.note(*group.element, "a shapegroup without an instance was dropped");
+        dropped.insert(group.element);
+    }
+    std::erase_if(scene.children, [&](const Element& e) { return dropped.count(&e) > 0; });
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "apps/render_report.h"
 #include "core/image/image_file.h"
 #include "core/image/metrics.h"
+#include "core/image/relative_error.h"
 #include "core/image/whole_file.h"
 #include "core/objects/error.h"
 #include "core/render/cpu_clock.h"
@@ -61,8 +62,9 @@ Tally read_tally(const std::string& path, std::uint32_t passes) {
     throw core::InputError("damaged: the trade cannot be continued, --fresh starts anew", {path, 0});
 }
 
-// The film's rule: a pixel that is not finite in some layer adds nothing.
-double mean_brightness(const core::PassImage& image, const core::Film& film) {
+// The bias of one pass, Eq. (3) of core/image/relative_error.h, plus 1. The film's rule: a pixel that is not
+// finite in some layer adds nothing.
+double projection(const core::PassImage& image, const core::Film& film, const Reference& reference) {
     double total = 0.0;
     for (std::size_t p = 0; p < film.pixels(); ++p) {
         Rgb sum(0.0f);
@@ -71,20 +73,23 @@ double mean_brightness(const core::PassImage& image, const core::Film& film) {
             finite = finite && core::is_finite(image.layer(layer)[p]);
             if (!film.layers()[layer].auxiliary) sum += image.layer(layer)[p];
         }
-        if (finite) total += (double(sum.x) + double(sum.y) + double(sum.z)) / 3.0;
+        const glm::dvec3 r(reference.pixels[p]);
+        if (finite) total += reference.weights.weight[p] * glm::dot(r, glm::dvec3(sum)) / 3.0;
     }
-    return total / double(film.pixels());
+    return total / reference.weights.norm;
 }
 
 }  // namespace
 
 Contestant::Contestant(const core::Scene& scene, const Method& method, std::uint64_t seed,
-                       std::string checkpoint, const std::string& content_hash)
+                       const Reference& reference, std::string checkpoint, const std::string& content_hash)
     : method_(method),
+      reference_(reference),
       seed_(seed),
       checkpoint_(std::move(checkpoint)),
       key_{content_hash + " " + method.type + " " + method.settings_text(), seed},
-      film_(scene.film().width, scene.film().height, method.integrator->layers(scene)) {
+      film_(scene.film().width, scene.film().height, method.integrator->layers(scene)),
+      floor_(reference.floor()) {
     restore();
     const Clocks clocks;
     runner_ = std::make_unique<core::PassRunner>(scene, *method.integrator, seed, film_);
@@ -109,7 +114,7 @@ bool Contestant::run_pass(const std::atomic<bool>& cancelled) {
 }
 
 void Contestant::add_to_spread(const core::PassImage& image) {
-    const double value = mean_brightness(image, film_), before = value - tally_.mean;
+    const double value = projection(image, film_, reference_), before = value - tally_.mean;
     tally_.mean += before / tally_.passes;
     tally_.squares += before * (value - tally_.mean);
 }
@@ -122,23 +127,25 @@ core::Film Contestant::finished(double& wall, double& cpu) const {
     return picture;
 }
 
-Record Contestant::judge(const core::Film& picture, double finish_wall, double finish_cpu,
-                         const Reference& reference) const {
+Record Contestant::judge(const core::Film& picture, double finish_wall, double finish_cpu) const {
     const std::vector<Rgb> beauty = picture.beauty();
     const core::ImageMetrics m =
-        core::compare_images(beauty, reference.pixels, film_.width(), film_.height());
+        core::compare_images(beauty, reference_.pixels, film_.width(), film_.height());
+    const core::RelativeError e =
+        core::relative_error(beauty, reference_.pixels, reference_.weights, {}, reference_.variance);
     Record r;
     r.method = method_.name, r.integrator = method_.type, r.settings = method_.settings_text();
     r.seed = seed_, r.passes = tally_.passes;
     r.wall = tally_.seconds() + finish_wall, r.cpu = tally_.build_cpu + tally_.cpu + finish_cpu;
     r.build = tally_.build_wall;
-    r.relmse = m.rel_mse, r.relmse_trimmed = m.rel_mse_trimmed, r.error = std::sqrt(m.rel_mse);
-    r.bias = m.bias;
+    r.relmse = m.rel_mse, r.relmse_trimmed = m.rel_mse_trimmed;
+    r.error = e.error, r.bias = e.bias;
+    if (reference_.noise) r.error_se = e.error_standard_error;
     const double n = tally_.passes;
-    if (n >= 2.0) r.bias_se = std::sqrt(tally_.squares / (n - 1.0) / n) / m.average_reference;
+    if (n >= 2.0) r.bias_se = std::sqrt(tally_.squares / (n - 1.0) / n);
     r.non_finite = film_.non_finite();
     r.peak_memory_mb = double(peak_memory_bytes()) * 1e-6;
-    r.below_reference = r.error < reference.floor();
+    r.below_reference = r.error < floor_;
     return r;
 }
 

@@ -17,13 +17,13 @@ struct Limits {
     std::optional<std::uint32_t> passes;
 };
 
-/// Seconds of wall and processor time, and the spread of the passes' mean brightness: all that a film does
+/// Seconds of wall and processor time, and the spread of the passes' biases: all that a film does
 /// not hold and that must survive an interrupt.
 struct Tally {
     std::uint32_t passes = 0;
     double build_wall = 0.0, build_cpu = 0.0;
     double wall = 0.0, cpu = 0.0;      ///< passes alone
-    double mean = 0.0, squares = 0.0;  ///< of the passes' picture means (Welford 1962)
+    double mean = 0.0, squares = 0.0;  ///< of the passes' biases, plus 1 (Welford 1962)
     double seconds() const { return build_wall + wall; }
 };
 
@@ -31,8 +31,9 @@ class Contestant {
   public:
     /// Continues from the checkpoint files at `checkpoint` (a path without extension) where they are there,
     /// and calls prepare(). Throws InputError for a damaged checkpoint.
-    Contestant(const core::Scene& scene, const Method& method, std::uint64_t seed, std::string checkpoint,
-               const std::string& content_hash);
+    /// `reference`, which must outlive it, judges it.
+    Contestant(const core::Scene& scene, const Method& method, std::uint64_t seed, const Reference& reference,
+               std::string checkpoint, const std::string& content_hash);
 
     const Method& method() const { return method_; }
     std::uint64_t seed() const { return seed_; }
@@ -43,8 +44,7 @@ class Contestant {
     /// The picture as a user would get it now: a copy of the film after Estimator::finish.
     core::Film finished(double& wall, double& cpu) const;
     /// Holds a finished picture against the reference.
-    Record judge(const core::Film& picture, double finish_wall, double finish_cpu,
-                 const Reference& reference) const;
+    Record judge(const core::Film& picture, double finish_wall, double finish_cpu) const;
     core::Statistics statistics() const;
 
     /// Writes the checkpoint, unless nothing has changed since the last one.
@@ -56,10 +56,12 @@ class Contestant {
     void add_to_spread(const core::PassImage& image);
 
     const Method& method_;
+    const Reference& reference_;
     std::uint64_t seed_;
     std::string checkpoint_;
     core::CheckpointKey key_;
     core::Film film_;
+    double floor_;  ///< of the reference
     Tally tally_, saved_;
     std::unique_ptr<core::PassRunner> runner_;
 };

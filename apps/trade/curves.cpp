@@ -21,6 +21,7 @@ double mean_of(const std::vector<const Record*>& records, double Record::*member
 CurvePoint point_of(const std::vector<const Record*>& records, double floor) {
     CurvePoint p;
     p.wall = mean_of(records, &Record::wall), p.error = mean_of(records, &Record::error);
+    p.error_se = mean_of(records, &Record::error_se);
     p.lowest = std::numeric_limits<double>::infinity(), p.highest = 0.0;
     for (const Record* r : records) {
         p.passes += double(r->passes) / double(records.size());
@@ -119,9 +120,9 @@ void mark_pareto_front(std::vector<Curve>& curves) {
                                                           [&](const CurvePoint* o) { return beats(*o, *p); });
 }
 
-bool bias_is_significant(const Curve& curve, double reference_mean_error) {
+bool bias_is_significant(const Curve& curve, double reference_bias_error) {
     // Unknown standard errors are NaN, and no comparison with NaN holds.
-    return std::fabs(curve.bias) > 3.0 * std::hypot(curve.bias_se, reference_mean_error);
+    return std::fabs(curve.bias) > 3.0 * std::hypot(curve.bias_se, reference_bias_error);
 }
 
 }  // namespace mote::apps::trade

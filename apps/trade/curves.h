@@ -14,6 +14,7 @@ namespace mote::apps::trade {
 struct CurvePoint {
     double passes = 0.0, wall = 0.0;                  ///< means over seeds
     double error = 0.0, lowest = 0.0, highest = 0.0;  ///< mean and range over seeds
+    double error_se = unknown;  ///< mean over seeds: they share the reference, whose noise it comes from
     bool below_reference = false;
     bool on_front = false;
 };
@@ -33,8 +34,9 @@ struct Curve {
     bool peer = false;  ///< another renderer, from a *.peer.csv
 
     double error() const { return points.empty() ? unknown : points.back().error; }
-    /// relMSE times seconds: an unbiased method keeps it, whatever time it is given.
-    double inefficiency() const { return relmse * wall; }
+    double error_se() const { return points.empty() ? unknown : points.back().error_se; }
+    /// The error squared times seconds: an unbiased method keeps it, whatever time it is given.
+    double inefficiency() const { return error() * error() * wall; }
 };
 
 /// One curve a method, in the order of their first records. `floor`: errors below are not judged.
@@ -47,14 +49,11 @@ void mark_pareto_front(std::vector<Curve>& curves);
 /// What is known of the reference.
 struct Judge {
     double floor = 0.0;       ///< errors below are not judged
-    double mean_error = 0.0;  ///< standard error of its mean brightness, relative
-    /// A relative bias of b means an error of at least this times |b|: mean(r) / sqrt(mean(r^2) + 0.01), by
-    /// the inequality of Cauchy and Schwarz.
-    double error_per_bias = 0.0;
+    double bias_error = 0.0;  ///< what its noise adds to the standard error of every bias
 };
 
-/// Bias of more than three standard errors, those of the reference's mean included.
-bool bias_is_significant(const Curve& curve, double reference_mean_error);
+/// Bias of more than three standard errors, those of the reference included.
+bool bias_is_significant(const Curve& curve, double reference_bias_error);
 
 struct Reach {
     enum class Kind {

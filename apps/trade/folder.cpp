@@ -91,8 +91,8 @@ void Folder::open_existing() {
 }
 
 void Folder::remove_earlier() {
-    std::set<std::string> names = {"trade.json", "trade.csv",    "trade.svg",
-                                   "trade.html", "summary.json", "reference.exr"};
+    std::set<std::string> names = {"trade.json",   "trade.csv",     "trade.svg", "trade.html",
+                                   "summary.json", "reference.exr", "trade.txt"};
     if (has("trade.json")) {
         const json all = json::parse(
             read("trade.json"),

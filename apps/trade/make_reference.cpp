@@ -1,5 +1,4 @@
-// A reference is an ordinary render that ends when its own standard error is a tenth of the smallest error to
-// be judged by it.
+// A reference is an ordinary render that ends when it tells the smallest error to be judged by it from none.
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
@@ -11,6 +10,7 @@
 #include "apps/command.h"
 #include "apps/interruption.h"
 #include "apps/output_files.h"
+#include "apps/preview.h"
 #include "apps/progress_line.h"
 #include "apps/reference_metadata.h"
 #include "apps/render_report.h"
@@ -44,12 +44,11 @@ std::vector<NamedFile> outputs_of(const TradeArguments& arguments) {
             {"its checkpoint", path + ".checkpoint"}};
 }
 
-std::string verdict(double error, double resolve) {
-    if (!std::isfinite(error)) return "one pass says nothing about its own error";
+std::string verdict(double noise, double smallest, double resolve) {
+    if (!std::isfinite(noise)) return "one pass says nothing about its own noise";
     return fmt::format(
-        "standard error {:.3g} %: it judges errors down to {:.3g} %{}", 100.0 * error,
-        100.0 * errors_to_judge * error,
-        errors_to_judge * error <= resolve
+        "noise {:.3g} %: it judges errors down to {:.3g} %{}", 100.0 * noise, 100.0 * smallest,
+        smallest <= resolve
             ? ""
             : fmt::format(", not the {:.3g} % asked for; the same command renders on", 100.0 * resolve));
 }
@@ -85,8 +84,9 @@ core::RenderRequest make_request(const TradeArguments& arguments, const core::Sc
     if (arguments.fresh) fs::remove(request.checkpoint_path, ignored);
     request.resume = fs::exists(request.checkpoint_path, ignored);
     request.checkpoint_every_seconds = arguments.checkpoint_every;
-    request.noise = relative_standard_error;
-    request.stop.noise = arguments.resolve / errors_to_judge;
+    request.enough = [resolve = arguments.resolve](const core::Film& film) {
+        return smallest_error(film) <= resolve;
+    };
     request.stop.seconds = arguments.seconds;
     request.stop.passes = arguments.passes;
     return request;
@@ -112,19 +112,22 @@ int make_reference(const TradeArguments& arguments) {
     const int threads = arguments.threads > 0 ? arguments.threads : tbb::info::default_concurrency();
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
     const core::Registry registry = make_registry();
-    const auto scene = load({arguments.scene.scene, "", arguments.scene.defines}, registry);
+    core::LoadReport loaded;
+    const auto scene = load({arguments.scene.scene, "", arguments.scene.defines, arguments.scene.lenient},
+                            registry, &loaded);
     check_outputs(outputs_of(arguments), scene_inputs(scene->parts().input_files));
     const std::string content = scene_content(*scene, arguments.scene.defines);
     if (!arguments.fresh &&
         is_good_reference(arguments.make_reference, *scene, content, {arguments.resolve, false, false})) {
         if (!arguments.quiet)
             note(arguments.make_reference + " resolves this already (--fresh makes it anew)");
-        std::fputs((arguments.make_reference + "\n").c_str(), stdout);
+        if (arguments.announce) std::fputs((arguments.make_reference + "\n").c_str(), stdout);
         return exit_ok;
     }
     std::string type = arguments.scene.integrator;
     if (type.empty()) type = scene->has_media() ? "volpath" : "path";
     std::vector<std::string> warnings = scene->parts().warnings;
+    warnings.insert(warnings.end(), loaded.approximations.begin(), loaded.approximations.end());
     const auto integrator =
         core::make_integrator(registry, *scene, type, settings_of(arguments, registry, type),
                               {"--integrator " + type, 0}, warnings);
@@ -137,33 +140,33 @@ int make_reference(const TradeArguments& arguments) {
 
     const Interruption interruption;
     request.interrupted = &interruption.flag();
-    ProgressLine progress(fmt::format("mote: reference of {} by {} to a standard error of {:.3g} %",
-                                      scene->parts().file, type, 100.0 * *request.stop.noise),
+    ProgressLine progress(fmt::format("mote: reference of {} by {} that judges errors down to {:.3g} %",
+                                      scene->parts().file, type, 100.0 * arguments.resolve),
                           arguments.quiet);
     const core::RenderResult result = render_with_progress(*scene, *integrator, request, progress);
     if (result.film.pass_count() == 0) {
         note("interrupted before the first pass was complete: there is nothing to write");
         return 128 + interruption.signal_number();
     }
-    const double error = relative_standard_error(result.film);
+    const double smallest = smallest_error(result.film);
     core::ImageChannels image = core::film_image(result.film);
     image.metadata = picture_metadata(
         {*scene, plan, result, request.content_hash, content, request.seed, threads, arguments.command_line});
     core::write_exr(arguments.make_reference, image);
-    core::write_png(fs::path(arguments.make_reference).replace_extension(".png").string(), image.width,
-                    image.height, image.rgb(""));
+    write_preview(fs::path(arguments.make_reference).replace_extension(".png").string(), image);
     if (result.statistics.non_finite_samples > 0)
         note(fmt::format("WARNING: {} pixel samples were NaN or infinite and count as black",
                          result.statistics.non_finite_samples));
     if (!arguments.quiet)
-        note(fmt::format("{} passes, {}", result.film.pass_count(), verdict(error, arguments.resolve)));
+        note(fmt::format("{} passes, {}", result.film.pass_count(),
+                         verdict(result.film.noise(), smallest, arguments.resolve)));
     if (result.interrupted) {
         note("interrupted: the same command continues");
         return 128 + interruption.signal_number();
     }
     std::error_code ignored;
-    if (errors_to_judge * error <= arguments.resolve) fs::remove(request.checkpoint_path, ignored);
-    std::fputs((arguments.make_reference + "\n").c_str(), stdout);
+    if (smallest <= arguments.resolve) fs::remove(request.checkpoint_path, ignored);
+    if (arguments.announce) std::fputs((arguments.make_reference + "\n").c_str(), stdout);
     return exit_ok;
 }
 

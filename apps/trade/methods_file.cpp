@@ -102,10 +102,8 @@ class Reader {
         Method m;
         m.name = text(pointer, "name"), m.type = text(pointer, "integrator");
         name_file(m, pointer);
-        if (source.contains("settings")) m.settings = object(pointer + "/settings");
         std::vector<core::IntegratorSetting> settings;
-        for (const auto& [key, value] : m.settings.items())
-            settings.push_back(setting(m, key, value, file_.where(pointer + "/settings/" + key)));
+        if (source.contains("settings")) add_settings(m, pointer + "/settings", "", settings);
         try {
             m.integrator = core::make_integrator(registry_, scene_, m.type, settings,
                                                  file_.where(pointer + "/integrator"), warnings_);
@@ -122,6 +120,32 @@ class Reader {
         if (m.slug == "reference" || !slugs_.insert(m.slug).second)
             fail(pointer + "/name", "the name '" + printable(m.name) + "' gives the file name '" + m.slug +
                                         ".exr', which is taken: choose another");
+    }
+    /// "compensation": {"type": "approximate", "depth": 2} is what "compensation": "approximate" and
+    /// "compensation.depth": 2 are.
+    void add_settings(Method& m, const std::string& pointer, const std::string& prefix,
+                      std::vector<core::IntegratorSetting>& settings) const {
+        const json& values = object(pointer);
+        const auto add = [&](const std::string& name, const json& value, const std::string& where) {
+            if (m.settings.contains(name))
+                fail(where,
+                     "'" + printable(name) + "' of the method '" + printable(m.name) + "' is given twice");
+            m.settings[name] = value;
+            settings.push_back(setting(m, name, value, file_.where(where)));
+        };
+        // An object's type comes before its values.
+        if (!prefix.empty()) {
+            if (!values.contains("type")) fail(pointer, "'" + printable(prefix) + "' needs a 'type'");
+            add(prefix, values["type"], pointer + "/type");
+        }
+        for (const auto& [key, value] : values.items()) {
+            const std::string name = prefix.empty() ? key : prefix + "." + key;
+            if (!prefix.empty() && key == "type") continue;
+            if (value.is_object())
+                add_settings(m, pointer + "/" + key, name, settings);
+            else
+                add(name, value, pointer + "/" + key);
+        }
     }
     static core::IntegratorSetting setting(const Method& m, const std::string& key, const json& value,
                                            const core::SourceLocation& where) {
@@ -181,7 +205,12 @@ std::vector<std::string> Method::render_options() const {
 
 MethodsFile read_methods_file(const std::string& path, const core::Registry& registry,
                               const core::Scene& scene, std::vector<std::string>& warnings) {
-    const JsonLines file(read_text(path), path);
+    return read_methods(read_text(path), path, registry, scene, warnings);
+}
+
+MethodsFile read_methods(const std::string& text, const std::string& path, const core::Registry& registry,
+                         const core::Scene& scene, std::vector<std::string>& warnings) {
+    const JsonLines file(text, path);
     return Reader(file, registry, scene, warnings).read();
 }
 

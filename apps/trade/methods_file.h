@@ -16,6 +16,7 @@ namespace mote::apps::trade {
 struct Method {
     std::string name, slug;  ///< slug: the name as a file name
     std::string type;        ///< of the integrator
+    /// A nested object is its type and its values under dotted names: "compensation", "compensation.depth".
     nlohmann::json settings = nlohmann::json::object();
     std::shared_ptr<const core::Integrator> integrator;
 
@@ -39,5 +40,8 @@ std::string slug_of(const std::string& name);
 /// known word for whatever is unknown, repeated, missing or of the wrong kind.
 MethodsFile read_methods_file(const std::string& path, const core::Registry& registry,
                               const core::Scene& scene, std::vector<std::string>& warnings);
+/// The same from text; `path` stands in messages.
+MethodsFile read_methods(const std::string& text, const std::string& path, const core::Registry& registry,
+                         const core::Scene& scene, std::vector<std::string>& warnings);
 
 }  // namespace mote::apps::trade

@@ -34,13 +34,15 @@ std::string bias_cell(const Results& results, const Curve& c) {
     const std::string text =
         fmt::format("{:+.2f} &plusmn; {} %", 100.0 * c.bias,
                     std::isfinite(c.bias_se) ? fmt::format("{:.2f}", 100.0 * c.bias_se) : std::string("?"));
-    return bias_is_significant(c, results.judge.mean_error) ? cell(text, "biased") : cell(text);
+    return bias_is_significant(c, results.judge.bias_error) ? cell(text, "biased") : cell(text);
 }
 
 std::string error_cell(const Curve& c) {
     if (c.points.empty()) return cell("unknown");
     const CurvePoint& p = c.points.back();
     std::string text = fmt::format("{:.3g} %", 100.0 * p.error);
+    if (std::isfinite(p.error_se))
+        text = fmt::format("{:.3g} &plusmn; {:.1g} %", 100.0 * p.error, 100.0 * p.error_se);
     if (c.seeds > 1) text += fmt::format("<br>{:.3g} to {:.3g}", 100.0 * p.lowest, 100.0 * p.highest);
     return p.below_reference ? cell(text + "<br>below the reference", "guess") : cell(text);
 }
@@ -50,13 +52,13 @@ std::string row(const Results& results, std::size_t index) {
     std::string html = fmt::format("<tr><td><span class=\"swatch\" style=\"background:{}\"></span>{}</td>",
                                    curve_colour(index), escaped(c.method));
     html += cell(escaped(c.integrator + (c.settings.empty() ? "" : ": " + c.settings)), "text wrap");
-    html += cell(rounded_text(c.passes)) + seconds_cell(c.wall) + seconds_cell(c.cpu) + seconds_cell(c.build) +
-            error_cell(c) + bias_cell(results, c);
+    html += cell(rounded_text(c.passes)) + seconds_cell(c.wall) + seconds_cell(c.cpu) +
+            seconds_cell(c.build) + error_cell(c) + bias_cell(results, c);
     for (const Reach& r : results.reaches(c))
         html += cell(escaped(to_text(r, c)), r.kind == Reach::Kind::measured ? "wrap" : "wrap guess");
     const std::string front = results.front_text(c);
     html += cell(front.empty() ? "no" : front, "wrap") + cell(rounded_text(c.inefficiency())) +
-            cell(rounded_text(100.0 * std::sqrt(c.relmse_trimmed), " %")) +
+            cell(rounded_text(c.relmse)) + cell(rounded_text(c.relmse_trimmed)) +
             cell(rounded_text(c.peak_memory_mb)) + cell(fmt::format("{}", c.non_finite));
     return html + "</tr>\n";
 }
@@ -68,7 +70,8 @@ std::string table(const Results& results) {
         "<th>bias &plusmn; standard<br>error</th>";
     for (const double e : errors_of_interest) html += fmt::format("<th>time to<br>{:g} %</th>", 100.0 * e);
     html +=
-        "<th>on the<br>front</th><th>relMSE<br>&times; seconds</th><th>trimmed<br>error</th>"
+        "<th>on the<br>front</th><th>error&sup2;<br>&times; "
+        "seconds</th><th>relMSE</th><th>trimmed<br>relMSE</th>"
         "<th>peak MB</th><th>non-<br>finite</th></tr>\n";
     for (std::size_t i = 0; i < results.curves.size(); ++i) html += row(results, i);
     return html + "</table></div>\n";
@@ -130,17 +133,20 @@ std::string flip_book(const Results& results, const Folder& folder, int page_wid
         book.add(c.method, slug_of_method(results, c) + ".exr",
                  fmt::format("{} passes, {:.3g} s, error {:.3g} %", c.passes, c.wall, 100.0 * c.error()));
     if (book.data().at("pictures").empty()) return "";
-    return "<h2>Flip book</h2>\n<p>Keys 1 to 9 or the arrow keys flip; <b>e</b> shows the error. Pictures of "
-           "the "
-           "first seed at its end" +
+    return "<h2>Flip book</h2>\n<p>Keys 1 to 9 or the arrow keys flip, <b>+</b> and <b>-</b> zoom, <b>d</b> "
+           "shows or hides the difference to the reference beside the picture. Pictures of the first seed at "
+           "its "
+           "end" +
            fmt::format(", here {} x {} pixels.</p>\n", book.data().at("width").get<int>(),
                        book.data().at("height").get<int>()) +
            "<div id=\"book\"><div id=\"buttons\"></div>\n<div><label>exposure <input id=\"exposure\" "
            "type=\"range\" "
-           "min=\"-12\" max=\"12\" step=\"0.25\"></label> <span id=\"stops\"></span> <button "
-           "id=\"difference\">e  "
-           "error</button></div>\n<div id=\"caption\"></div>\n<canvas "
-           "id=\"view\"></canvas></div>\n<script>\nconst "
+           "min=\"-12\" max=\"12\" step=\"0.25\"></label> <span id=\"stops\"></span> "
+           "<label>difference &times; <input id=\"gain\" type=\"range\" min=\"0\" max=\"8\" step=\"1\" "
+           "value=\"2\"></label> <span id=\"factor\"></span> <button id=\"closer\">+</button><button "
+           "id=\"farther\">-</button> <button id=\"beside\">d difference</button></div>\n<div "
+           "id=\"caption\"></div>\n<div id=\"pair\"><canvas id=\"view\"></canvas><canvas "
+           "id=\"difference\"></canvas></div></div>\n<script>\nconst "
            "book = " +
            script_json(book.data()) + ";\n" + page_script() + "</script>\n";
 }
@@ -172,6 +178,7 @@ std::string commands(const Results& results, const Folder& folder) {
         lines.push_back("# " + m.at("name").get<std::string>());
         lines.push_back(method_command(m, folder, facts.at("seeds").at(0).get<std::uint64_t>()));
     }
+    lines.push_back("# by mote at the commit " + facts.value("git_hash", std::string("unknown")));
     std::string html =
         "<h2>Commands</h2>\n<p>The methods' pictures with the same bits, for the first seed:</p>\n<pre>";
     for (const std::string& line : lines) html += escaped(line) + "\n";
@@ -191,10 +198,12 @@ std::string introduction(const Results& results) {
         f.at("seeds").size() == 1 ? "" : "s");
     if (results.judge.floor > 0.0)
         text += fmt::format(
-            "<p>The reference ({}) has a standard error of {:.2g} % and judges errors down to {:.2g} "
-            "%.</p>\n",
+            "<p>The reference ({}) has a noise of {:.2g} %, which is subtracted from the errors pixel by "
+            "pixel; "
+            "what remains judges errors down to {:.2g} %. The standard error after &plusmn; is that of the "
+            "subtraction.</p>\n",
             escaped(f.at("reference").value("integrator", std::string("unknown origin"))),
-            10.0 * results.judge.floor, 100.0 * results.judge.floor);
+            100.0 * f.at("reference").value("noise", 0.0), 100.0 * results.judge.floor);
     else
         text += "<p><b>How exact the reference is, is not known.</b></p>\n";
     if (const std::string inherited = f.value("inherited", std::string()); !inherited.empty())

@@ -23,8 +23,9 @@ dt { font-weight: bold; } dd { margin: 0 0 8px 20px; }
 #book button { font: inherit; margin: 0 4px 6px 0; padding: 3px 10px; border: 1px solid #999; background: #fff;
                border-radius: 4px; cursor: pointer; }
 #book button.on { background: #222; color: #fff; border-color: #222; }
-#book canvas { image-rendering: pixelated; display: block; background: #000; max-width: 100%; }
-#book input { vertical-align: middle; width: 260px; }
+#pair { display: flex; flex-wrap: wrap; gap: 6px; overflow: auto; max-height: 90vh; }
+#pair canvas { image-rendering: pixelated; display: block; background: #000; flex: none; }
+#book input { vertical-align: middle; width: 180px; }
 #caption { color: #444; margin: 6px 0; min-height: 1.4em; }
 )CSS";
 }
@@ -32,10 +33,11 @@ dt { font-weight: bold; } dd { margin: 0 0 8px 20px; }
 const char* page_script() {
     return R"JS(
 "use strict";
-const canvas = document.getElementById("view"), slider = document.getElementById("exposure");
+const canvas = document.getElementById("view"), beside = document.getElementById("difference");
+const slider = document.getElementById("exposure"), gain = document.getElementById("gain");
 const caption = document.getElementById("caption"), buttons = document.getElementById("buttons");
-const view = canvas.getContext("2d");
-let current = 0, difference = false;
+const view = canvas.getContext("2d"), differences = beside.getContext("2d");
+let current = 0, zoom = 1, difference = true;
 
 // Upper half: mantissas; lower half: exponents.
 function decode(image, width, height) {
@@ -65,30 +67,31 @@ function luminance(values, p) {
 function draw() {
     const picture = book.pictures[current], reference = book.pictures[0].values, values = picture.values;
     if (!values || !reference) return;
-    const stops = Number(slider.value), out = view.createImageData(book.width, book.height);
-    const scale = Math.pow(2, stops), gain = Math.pow(2, stops - book.exposure);
+    const stops = Number(slider.value), scale = Math.pow(2, stops), factor = Math.pow(2, Number(gain.value));
+    const out = view.createImageData(book.width, book.height);
+    const amplified = differences.createImageData(book.width, book.height);
     for (let p = 0; p < book.width * book.height; ++p) {
-        if (difference) {
-            const r = luminance(reference, p);
-            const d = gain * (luminance(values, p) - r) / Math.sqrt(r * r + 0.01);
-            const shade = 255 * Math.sqrt(Math.min(1, Math.abs(d)));
-            out.data[4 * p] = d > 0 ? shade : 0;
-            out.data[4 * p + 1] = shade * 0.35;
-            out.data[4 * p + 2] = d > 0 ? 0 : shade;
-        } else {
-            for (let c = 0; c < 3; ++c)
-                out.data[4 * p + c] = 255 * srgb(Math.min(1, values[3 * p + c] * scale)) + 0.5;
-        }
-        out.data[4 * p + 3] = 255;
+        for (let c = 0; c < 3; ++c)
+            out.data[4 * p + c] = 255 * srgb(Math.min(1, values[3 * p + c] * scale)) + 0.5;
+        const d = factor * scale * (luminance(values, p) - luminance(reference, p));
+        const shade = srgb(Math.min(1, Math.abs(d)));
+        amplified.data[4 * p] = d > 0 ? 255 * shade : 0;
+        amplified.data[4 * p + 1] = 90 * shade;
+        amplified.data[4 * p + 2] = d > 0 ? 0 : 255 * shade;
+        out.data[4 * p + 3] = amplified.data[4 * p + 3] = 255;
     }
     view.putImageData(out, 0, 0);
+    differences.putImageData(amplified, 0, 0);
+    for (const c of [canvas, beside]) c.style.width = book.width * zoom + "px";
+    beside.style.display = difference ? "block" : "none";
     caption.textContent = picture.name + (picture.note ? ": " + picture.note : "") +
-        (difference ? ". Relative error: red too bright, blue too dark, full colour at " +
-                      (100 / gain).toPrecision(3) + " %" : "");
+        (difference ? ". Beside it the difference to the reference, times " + factor +
+                      ": red too bright, blue too dark" : "");
     document.getElementById("stops").textContent = (stops > 0 ? "+" : "") + stops.toFixed(2) + " stops";
+    document.getElementById("factor").textContent = factor;
     for (let i = 0; i < buttons.children.length; ++i)
         buttons.children[i].className = i === current ? "on" : "";
-    document.getElementById("difference").className = difference ? "on" : "";
+    document.getElementById("beside").className = difference ? "on" : "";
 }
 
 function flip(index) {
@@ -102,6 +105,11 @@ function toggle() {
     draw();
 }
 
+function zoomBy(step) {
+    zoom = Math.min(32, Math.max(1, step > 0 ? zoom * 2 : Math.floor(zoom / 2)));
+    draw();
+}
+
 book.pictures.forEach((picture, i) => {
     const button = document.createElement("button");
     button.textContent = (i < 9 ? (i + 1) + "  " : "") + picture.name;
@@ -111,17 +119,22 @@ book.pictures.forEach((picture, i) => {
     image.onload = () => { picture.values = decode(image, book.width, book.height); draw(); };
     image.src = picture.source;
 });
-canvas.width = book.width; canvas.height = book.height;
-canvas.style.width = book.width * Math.max(1, Math.round(640 / book.width)) + "px";
+for (const c of [canvas, beside]) { c.width = book.width; c.height = book.height; }
+zoom = Math.max(1, Math.floor(640 / book.width));
 slider.value = book.exposure;
 slider.oninput = draw;
-document.getElementById("difference").onclick = toggle;
+gain.oninput = draw;
+document.getElementById("beside").onclick = toggle;
+document.getElementById("closer").onclick = () => zoomBy(1);
+document.getElementById("farther").onclick = () => zoomBy(-1);
 document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const number = Number(event.key);
     if (number >= 1 && number <= Math.min(9, book.pictures.length)) flip(number - 1);
-    else if (event.key === "e") toggle();
-    else if (event.target === slider) return;
+    else if (event.key === "d") toggle();
+    else if (event.key === "+") zoomBy(1);
+    else if (event.key === "-") zoomBy(-1);
+    else if (event.target === slider || event.target === gain) return;
     else if (event.key === "ArrowRight") flip(current + 1);
     else if (event.key === "ArrowLeft") flip(current - 1);
 });

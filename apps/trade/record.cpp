@@ -71,6 +71,7 @@ std::vector<Column> columns() {
             number_column("cpu_s", &Record::cpu),
             number_column("build_s", &Record::build),
             number_column("error", &Record::error),
+            number_column("error_se", &Record::error_se),
             number_column("relmse", &Record::relmse),
             number_column("relmse_trimmed", &Record::relmse_trimmed),
             number_column("bias", &Record::bias),
@@ -170,7 +171,6 @@ std::vector<Record> records_from_csv(const std::string& text, const std::string&
                 throw InputError(std::string(order[i].name) + ": " + error.what(), {path, row->line});
             }
         }
-        if (std::isnan(r.relmse)) r.relmse = r.error * r.error;
         if (!(r.wall > 0.0) || !std::isfinite(r.wall))
             throw InputError("wall_s must be above 0", {path, row->line});
         records.push_back(std::move(r));

@@ -16,16 +16,19 @@ struct Record {
     std::string method, integrator, settings;  ///< settings: "bounded=true paths=256"
     std::uint64_t seed = 0;
     std::uint32_t passes = 0;
-    double wall = 0.0;   ///< seconds for build, passes and one finish
-    double cpu = 0.0;    ///< the same in seconds of processor time, all threads together
-    double build = 0.0;  ///< the part of wall that was spent before the first pass
-    double error = unknown, relmse = unknown, relmse_trimmed = unknown;  ///< error = sqrt(relmse)
-    double bias = unknown;     ///< mean(image - reference) / mean(reference)
-    double bias_se = unknown;  ///< its standard error, from the spread of the passes' mean brightness
+    double wall = 0.0;          ///< seconds for build, passes and one finish
+    double cpu = 0.0;           ///< the same in seconds of processor time, all threads together
+    double build = 0.0;         ///< the part of wall that was spent before the first pass
+    double error = unknown;     ///< of core/image/relative_error.h, without the noise of the reference
+    double error_se = unknown;  ///< its standard error, from the noise of the reference
+    double relmse = unknown,
+           relmse_trimmed = unknown;  ///< what other programs give, see core/image/metrics.h
+    double bias = unknown;            ///< of core/image/relative_error.h
+    double bias_se = unknown;         ///< its standard error, from the spread of the passes' biases
     std::uint64_t non_finite = 0;
     double peak_memory_mb = 0.0;   ///< of the process so far, all methods alive
     bool final = false;            ///< the last of its method and seed
-    bool below_reference = false;  ///< less than ten standard errors of the reference
+    bool below_reference = false;  ///< less than the reference tells from none
 };
 
 /// RFC 4180, with a header row. Numbers read back as the same numbers; empty for unknown.

@@ -24,15 +24,28 @@ std::optional<double> number(const std::string& text) {
     return text.empty() || *end != '\0' || !(v >= 0.0) ? std::nullopt : std::optional(v);
 }
 
+/// Weights and noise, which need pixels that are finite.
+void weigh(Reference& r) {
+    if (r.variance.empty()) {
+        r.weights = core::relative_weights(r.pixels);
+        return;
+    }
+    r.weights = core::relative_weights(r.pixels, r.variance, r.image.width, r.image.height);
+    // Against itself: no error, but the noise that it says it has.
+    const core::RelativeError own = core::relative_error(r.pixels, r.pixels, r.weights, r.variance);
+    r.noise = own.noise, r.bias_error = own.bias_standard_error;
+}
+
 class Check {
   public:
-    Check(const std::string& path, const Reference& reference, const core::Scene& scene,
+    Check(const std::string& path, Reference& reference, const core::Scene& scene,
           const ReferenceRules& rules)
         : path_(path), reference_(reference), scene_(scene), rules_(rules) {}
 
     void run(const std::string& content) const {
         check_size();
         check_pixels();
+        weigh(reference_);
         check_camera();
         check_scene(content);
         check_completeness();
@@ -99,22 +112,23 @@ class Check {
                    "; --trust-reference uses it all the same");
     }
     void check_noise() const {
-        if (!reference_.error) {
+        if (!reference_.noise) {
             if (rules_.trust) return;
             refuse(
-                "how noisy it is, is not known (no relativeError): render one with 'mote trade "
+                "how noisy it is, is not known (it has no layer 'Variance'): render one with 'mote trade "
                 "--make-reference', or take it for exact with --trust-reference");
         }
         if (reference_.floor() <= rules_.resolve * (1.0 + 1e-6)) return;
-        refuse(fmt::format(
-            "it is too noisy: with a standard error of {:.3g} % it judges errors down to {:.3g} %, "
-            "not {:.3g} %; render it on with --make-reference, or ask for less with --resolve {:.3g}",
-            100.0 * *reference_.error, 100.0 * reference_.floor(), 100.0 * rules_.resolve,
-            reference_.floor() * 1.01));
+        refuse(
+            fmt::format("it is too noisy: with a noise of {:.3g} % it judges errors down to {:.3g} %, not "
+                        "{:.3g} %; render "
+                        "it on with --make-reference, or ask for less with --resolve {:.3g}",
+                        100.0 * *reference_.noise, 100.0 * reference_.floor(), 100.0 * rules_.resolve,
+                        reference_.floor() * 1.01));
     }
 
     const std::string& path_;
-    const Reference& reference_;
+    Reference& reference_;
     const core::Scene& scene_;
     const ReferenceRules& rules_;
 };
@@ -126,12 +140,19 @@ std::string Reference::metadata(const std::string& key) const {
     return it == image.metadata.end() ? "" : it->second;
 }
 
-double Reference::error_per_bias() const {
-    double sum = 0.0, squares = 0.0;
-    const double n = 3.0 * double(pixels.size());
-    for (const core::Rgb& p : pixels)
-        for (int c = 0; c < 3; ++c) sum += double(p[c]) / n, squares += double(p[c]) * p[c] / n;
-    return sum / std::sqrt(squares + 0.01);
+double smallest_error(std::span<const core::Rgb> variance, const core::RelativeWeights& weights) {
+    double squares = 0.0;
+    for (std::size_t p = 0; p < variance.size(); ++p) {
+        const double v = weights.weight[p] * core::mean_of_channels(variance[p]);
+        squares += 2.0 * v * v;
+    }
+    return weights.norm > 0.0 ? std::sqrt(2.0 * std::sqrt(squares) / weights.norm) : core::infinity;
+}
+
+double smallest_error(const core::Film& film) {
+    if (film.pass_count() < 2) return core::infinity;
+    const std::vector<core::Rgb> picture = film.beauty(), variance = film.beauty_variance_of_mean();
+    return smallest_error(variance, core::relative_weights(picture, variance, film.width(), film.height()));
 }
 
 Reference load_reference(const std::string& path, const core::Scene& scene, const std::string& content,
@@ -139,8 +160,7 @@ Reference load_reference(const std::string& path, const core::Scene& scene, cons
     Reference reference;
     reference.image = core::read_exr(path);
     reference.pixels = reference.image.rgb("");
-    reference.error = number(reference.metadata("relativeError"));
-    reference.mean_error = number(reference.metadata("meanError"));
+    reference.variance = reference.image.rgb("Variance");
     if (const auto seed = number(reference.metadata("seed"))) reference.seed = std::uint64_t(*seed);
     Check(path, reference, scene, rules).run(content);
     return reference;

@@ -1,28 +1,38 @@
 // The reference picture of a trade, and what it must be to judge others.
+//
+// Its own noise, known pixel by pixel, is subtracted from every error; how exactly that can be done is what
+// limits it: an error of 1 % is still seen by a reference with a noise of 4 %.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "core/image/film.h"
 #include "core/image/image_file.h"
+#include "core/image/relative_error.h"
 #include "core/scene/scene.h"
 
 namespace mote::apps::trade {
 
-/// A reference judges errors down to this many of its own standard errors.
-inline constexpr double errors_to_judge = 10.0;
+/// The smallest error that a picture with this variance tells from none: the root of two standard errors of
+/// the square of an error that is zero. `weights` are its own. Infinity where it is black.
+double smallest_error(std::span<const core::Rgb> variance, const core::RelativeWeights& weights);
+/// The same of a film. Infinity for fewer than two passes.
+double smallest_error(const core::Film& film);
 
 struct Reference {
     core::ImageChannels image;
-    std::vector<core::Rgb> pixels;     ///< the beauty
-    std::optional<double> error;       ///< its own standard error, as relative_standard_error() defines it
-    std::optional<double> mean_error;  ///< of its mean brightness, relative
+    std::vector<core::Rgb> pixels;    ///< the beauty
+    std::vector<core::Rgb> variance;  ///< of its mean, pixel by pixel; empty where it does not say
+    core::RelativeWeights weights;    ///< of relative_error.h
+    std::optional<double> noise;      ///< its own, where the variance is known
+    double bias_error = 0.0;          ///< what its noise adds to the standard error of every bias
     std::optional<std::uint64_t> seed;
 
     std::string metadata(const std::string& key) const;  ///< "" where there is none
-    double floor() const { return error ? errors_to_judge * *error : 0.0; }
-    double error_per_bias() const;  ///< see Judge in curves.h
+    /// The smallest error that it judges; 0 where its noise is not known.
+    double floor() const { return noise ? smallest_error(variance, weights) : 0.0; }
 };
 
 struct ReferenceRules {

@@ -93,8 +93,9 @@ class SeedRun {
             const Method& method = plan_.methods[i];
             if (folder_.is_complete(method.name, seed())) continue;
             if (cancelled_) return false;
-            running_[i] = std::make_unique<Contestant>(
-                plan_.scene, method, seed(), folder_.checkpoint(method.slug, seed()), plan_.content);
+            running_[i] =
+                std::make_unique<Contestant>(plan_.scene, method, seed(), plan_.reference,
+                                             folder_.checkpoint(method.slug, seed()), plan_.content);
             // What was measured after the checkpoint was lost with its film, and its seconds with it.
             folder_.drop_after(method.name, seed(), running_[i]->tally().passes);
         }
@@ -112,7 +113,7 @@ class SeedRun {
     void record(Contestant& c, bool done) {
         double wall = 0.0, cpu = 0.0;
         const core::Film picture = c.finished(wall, cpu);
-        Record r = c.judge(picture, wall, cpu, plan_.reference);
+        Record r = c.judge(picture, wall, cpu);
         r.final = done;
         errors_[std::size_t(&c.method() - plan_.methods.data())] = r.error;
         // The picture first: whoever finds the final record finds it too.

@@ -7,6 +7,7 @@
 
 #include "apps/trade/draw.h"
 #include "apps/trade/plot.h"
+#include "apps/trade/text_table.h"
 
 namespace mote::apps::trade {
 
@@ -40,6 +41,7 @@ json points_json(const Curve& curve) {
         points.push_back({{"passes", p.passes},
                           {"wall_s", p.wall},
                           {"error", p.error},
+                          {"error_se", number(p.error_se)},
                           {"error_lowest", p.lowest},
                           {"error_highest", p.highest},
                           {"below_reference", p.below_reference},
@@ -65,11 +67,12 @@ json method_json(const Results& results, const Curve& c) {
             {"cpu_s", number(c.cpu)},
             {"build_s", number(c.build)},
             {"error", number(c.error())},
+            {"error_se", number(c.error_se())},
             {"relmse", number(c.relmse)},
             {"relmse_trimmed", number(c.relmse_trimmed)},
             {"bias", number(c.bias)},
             {"bias_se", number(c.bias_se)},
-            {"bias_significant", bias_is_significant(c, results.judge.mean_error)},
+            {"bias_significant", bias_is_significant(c, results.judge.bias_error)},
             {"inefficiency", number(c.inefficiency())},
             {"non_finite", c.non_finite},
             {"peak_memory_mb", number(c.peak_memory_mb)},
@@ -109,7 +112,7 @@ Results collect(const Folder& folder) {
         const json& r = results.facts.at("reference");
         return r.contains(key) && r[key].is_number() ? r[key].get<double>() : 0.0;
     };
-    results.judge = {reference("floor"), reference("mean_error"), reference("error_per_bias")};
+    results.judge = {reference("floor"), reference("bias_error")};
     results.curves = make_curves(folder.records(), results.judge.floor);
     // Colours follow the methods file, whoever came first to an end.
     const json& methods = results.facts.at("methods");
@@ -135,26 +138,31 @@ Results collect(const Folder& folder) {
 json summary_json(const Results& results) {
     json methods = json::array();
     for (const Curve& c : results.curves) methods.push_back(method_json(results, c));
-    return {{"facts", results.facts},
-            {"complete", results.complete},
-            {"definitions",
-             {{"error", "square root of relMSE; in points the mean over seeds"},
-              {"relmse", "mean over pixels and channels of d^2 / (r^2 + 0.01), d = image - reference r"},
-              {"relmse_trimmed", "relMSE without the 0.1 % of pixels where it is largest"},
-              {"bias", "mean of d / mean of r, over pixels and channels, signed; mean over seeds"},
-              {"bias_se",
-               "standard error of bias from the spread of the passes' mean brightness; with four "
-               "seeds or more at least that from the spread of the seeds"},
-              {"bias_significant", "more than three standard errors, the reference's own among them"},
-              {"wall_s", "seconds of build, passes and one finish"},
-              {"cpu_s", "the same as seconds of all processors together"},
-              {"build_s", "the part of wall_s before the first pass"},
-              {"inefficiency", "relMSE times wall seconds"},
-              {"peak_memory_mb", "of the process so far, with all methods alive"},
-              {"time_to_reach",
-               "measured: where the curve falls below for good; extrapolated: error falls like "
-               "time^-1/2 from the last points; never: the bias stays"}}},
-            {"methods", methods}};
+    return {
+        {"facts", results.facts},
+        {"complete", results.complete},
+        {"definitions",
+         {{"error",
+           "square root of sum w |d|^2 / sum w |r|^2, without the reference's own noise; |x|^2 is the mean "
+           "over channels, d = image - reference r, w = 1 / (|r|^2 + (m / 10)^2), m the median of |r| where "
+           "it is not 0; in points the mean over seeds"},
+          {"error_se", "standard error of error from the noise of the reference, which all seeds share"},
+          {"relmse", "mean over pixels and channels of d^2 / (r^2 + 0.01), d = image - reference r"},
+          {"relmse_trimmed", "relMSE without the 0.1 % of pixels where it is largest"},
+          {"bias", "sum w <r, d> / sum w |r|^2, signed; mean over seeds; never more than error"},
+          {"bias_se",
+           "standard error of bias from the spread of the passes' biases; with four "
+           "seeds or more at least that from the spread of the seeds"},
+          {"bias_significant", "more than three standard errors, the reference's own among them"},
+          {"wall_s", "seconds of build, passes and one finish"},
+          {"cpu_s", "the same as seconds of all processors together"},
+          {"build_s", "the part of wall_s before the first pass"},
+          {"inefficiency", "error squared times wall seconds"},
+          {"peak_memory_mb", "of the process so far, with all methods alive"},
+          {"time_to_reach",
+           "measured: where the curve falls below for good; extrapolated: error falls like "
+           "time^-1/2 from the last points; never: the bias stays"}}},
+        {"methods", methods}};
 }
 
 void draw(const Folder& folder, int page_width) {
@@ -169,6 +177,7 @@ void draw(const Folder& folder, int page_width) {
         for (const json& s : summary.at("methods"))
             if (s.at("name") == m.at("name"))
                 folder.write(m.at("slug").get<std::string>() + ".json", text(s));
+    folder.write("trade.txt", text_table(results));
     folder.write("trade.html", page_html(results, folder, page_width));
 }
 

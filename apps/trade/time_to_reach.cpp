@@ -61,9 +61,9 @@ std::string seconds_text(double seconds) {
 
 Reach time_to_reach(const Curve& curve, double error, const Judge& judge) {
     using Kind = Reach::Kind;
-    const bool biased = bias_is_significant(curve, judge.mean_error);
-    if (biased && std::fabs(curve.bias) * judge.error_per_bias >= error)
-        return {Kind::never, unknown, unknown};
+    const bool biased = bias_is_significant(curve, judge.bias_error);
+    // An error is never below its bias.
+    if (biased && std::fabs(curve.bias) >= error) return {Kind::never, unknown, unknown};
     if (error < judge.floor * (1.0 - 1e-9)) return {Kind::below_reference, unknown, unknown};
     const std::vector<CurvePoint> points = judged_points(curve);
     // The first point from which on all are at the error or below.

@@ -14,6 +14,7 @@
 #include "apps/output_files.h"
 #include "apps/reference_metadata.h"
 #include "apps/render_report.h"
+#include "apps/trade/default_methods.h"
 #include "apps/trade/draw.h"
 #include "apps/trade/run.h"
 #include "core/image/checksum.h"
@@ -27,6 +28,9 @@ namespace {
 using nlohmann::json;
 using namespace trade;
 
+constexpr const char* automatic_reference = "automatic_reference.exr";
+constexpr double seconds_of_automatic_reference = 120.0;  ///< where passes are the limit
+
 void note(const std::string& text) { std::fputs(fmt::format("mote: {}\n", text).c_str(), stderr); }
 
 void check_usage(const TradeArguments& a) {
@@ -36,11 +40,8 @@ void check_usage(const TradeArguments& a) {
     if (a.redraw) return require(!a.output.empty(), "-o DIR");
     require(!a.scene.scene.empty(), "a SCENE");
     if (!a.make_reference.empty()) return;
-    require(!a.reference.empty(), "--reference REF.exr, or --make-reference REF.exr to render one");
-    require(!a.methods.empty(), "--methods FILE.json");
-    require(!a.output.empty(), "-o DIR");
     if (!a.scene.integrator.empty())
-        throw UsageError("--integrator is for --make-reference; the methods file names the others");
+        throw UsageError("--integrator is for --make-reference; the methods name theirs");
 }
 
 Limits limits_of(const TradeArguments& a, const MethodsFile& file) {
@@ -52,6 +53,24 @@ Limits limits_of(const TradeArguments& a, const MethodsFile& file) {
             "it says neither 'time' nor 'passes', nor does the command line (--time, --passes)",
             {a.methods, 0});
     return limits;
+}
+
+/// What the command line leaves open: the folder, and in it a reference of our own.
+TradeArguments with_defaults(TradeArguments a) {
+    if (a.output.empty()) a.output = std::filesystem::path(a.scene.scene).stem().string() + "_trade";
+    if (a.reference.empty()) a.reference = (std::filesystem::path(a.output) / automatic_reference).string();
+    return a;
+}
+
+/// Renders the reference that nobody gave, for as long as all methods together take at most, or goes on with
+/// it. Returns an exit code.
+int make_automatic_reference(const TradeArguments& a, const MethodsFile& file, const Limits& limits) {
+    std::filesystem::create_directories(a.output);
+    TradeArguments reference = a;
+    reference.make_reference = a.reference, reference.announce = false, reference.passes.reset();
+    const double shares = double(file.methods.size()) * a.seeds.value_or(file.seeds);
+    reference.seconds = limits.seconds ? shares * *limits.seconds : seconds_of_automatic_reference;
+    return make_reference(reference);
 }
 
 std::string pixels_hash(const Reference& reference) {
@@ -86,6 +105,7 @@ Identity identity_of(const TradeArguments& a, const Plan& plan) {
     json methods = json::array();
     for (const Method& m : plan.methods) methods.push_back({m.name, m.type, m.settings});
     identity.inputs = {{"mote", MOTE_VERSION},
+                       {"error", "relative_error.h"},  // records of another measure are not to be continued
                        {"scene", plan.content},
                        {"reference", pixels_hash(plan.reference)},
                        {"methods", methods},
@@ -107,10 +127,9 @@ Identity identity_of(const TradeArguments& a, const Plan& plan) {
                       {"methods", methods_json(plan)},
                       {"reference",
                        {{"file", a.reference},
-                        {"error", optional_json(r.error)},
-                        {"mean_error", optional_json(r.mean_error)},
+                        {"noise", optional_json(r.noise)},
+                        {"bias_error", r.bias_error},
                         {"floor", r.floor()},
-                        {"error_per_bias", r.error_per_bias()},
                         {"integrator", r.metadata("integrator")},
                         {"passes", r.metadata("passes")},
                         {"seconds", r.metadata("seconds")},
@@ -123,8 +142,9 @@ void keep_reference(const Folder& folder, const Reference& reference) {
     core::ImageChannels image;
     image.width = reference.image.width, image.height = reference.image.height;
     image.add_rgb("", reference.pixels);
-    for (const char* key : {"worldToCamera", "sceneContent", "relativeError", "meanError", "leavesOut",
-                            "integrator", "seed", "passes", "seconds", "software", "commandLine"})
+    if (!reference.variance.empty()) image.add_rgb("Variance", reference.variance);
+    for (const char* key : {"worldToCamera", "sceneContent", "noise", "leavesOut", "integrator", "seed",
+                            "passes", "seconds", "software", "commandLine"})
         if (const std::string value = reference.metadata(key); !value.empty()) image.metadata[key] = value;
     core::write_exr(folder.file("reference.exr"), image);
 }
@@ -136,8 +156,8 @@ void warn(const TradeArguments& a, const Plan& plan, const std::vector<std::stri
     for (const Method& m : plan.methods)
         for (const std::string& line : m.integrator->plan(plan.scene, requirements).warnings())
             lines.push_back(m.name + ": " + line);
-    if (!plan.reference.error)
-        lines.emplace_back("warning: the reference is taken for exact: its own error is not known");
+    if (!plan.reference.noise)
+        lines.emplace_back("warning: the reference is taken for exact: its own noise is not known");
     if (!a.quiet)
         for (const std::string& line : lines) note(line);
 }
@@ -150,7 +170,7 @@ std::vector<NamedFile> outputs_of(const TradeArguments& a, const MethodsFile& fi
                            (std::filesystem::path(a.output) / name).string()});
     };
     for (const char* name :
-         {"trade.json", "trade.csv", "trade.svg", "trade.html", "summary.json", "reference.exr"})
+         {"trade.json", "trade.csv", "trade.svg", "trade.txt", "trade.html", "summary.json", "reference.exr"})
         add(name);
     for (const Method& m : file.methods) add(m.slug + ".exr");
     return outputs;
@@ -163,9 +183,10 @@ std::vector<NamedFile> inputs_of(const TradeArguments& a, const core::Scene& sce
     return inputs;
 }
 
-int finish(const Folder& folder, int page_width) {
+int finish(const Folder& folder, int page_width, bool quiet) {
     draw(folder, page_width);
-    for (const char* name : {"trade.csv", "trade.svg", "summary.json", "trade.html"})
+    if (!quiet) std::fputs((folder.read("trade.txt") + "\n").c_str(), stdout);
+    for (const char* name : {"trade.csv", "trade.svg", "trade.txt", "summary.json", "trade.html"})
         std::fputs((folder.file(name) + "\n").c_str(), stdout);
     return exit_ok;
 }
@@ -176,26 +197,39 @@ int redraw(const TradeArguments& a) {
         throw core::InputError("there is no such folder", {a.output, 0});
     Folder folder(a.output);
     folder.open_existing();
-    return finish(folder, a.page_width);
+    return finish(folder, a.page_width, a.quiet);
 }
 
-int measure(const TradeArguments& a) {
+int measure(const TradeArguments& given) {
+    const bool automatic = given.reference.empty();
+    const TradeArguments a = with_defaults(given);
     const int threads = a.threads > 0 ? a.threads : tbb::info::default_concurrency();
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
     const core::Registry registry = make_registry();
-    const auto scene = load(a.scene, registry);
+    core::LoadReport loaded;
+    const auto scene = load(a.scene, registry, &loaded);
     std::vector<std::string> warnings = scene->parts().warnings;
-    const MethodsFile file = read_methods_file(a.methods, registry, *scene, warnings);
+    warnings.insert(warnings.end(), loaded.approximations.begin(), loaded.approximations.end());
+    const MethodsFile file = a.methods.empty()
+                                 ? read_methods(default_methods(core::find_requirements(*scene)),
+                                                "the default methods", registry, *scene, warnings)
+                                 : read_methods_file(a.methods, registry, *scene, warnings);
+    const Limits limits = limits_of(a, file);
     const std::string content = scene_content(*scene, a.scene.defines);
+    if (automatic && !is_good_reference(a.reference, *scene, content, {core::infinity, false, false}))
+        if (const int code = make_automatic_reference(a, file, limits); code != exit_ok) return code;
+    // One of our own says how noisy it is, and the page with it; one that was chosen must do what was asked
+    // for.
+    const double resolve = automatic ? core::infinity : a.resolve;
     const Reference reference =
-        load_reference(a.reference, *scene, content, {a.resolve, a.trust_reference, a.force_reference});
+        load_reference(a.reference, *scene, content, {resolve, a.trust_reference, a.force_reference});
     std::vector<std::string> render_command = {"mote", "render", a.scene.scene};
     for (const std::string& define : a.scene.defines)
         render_command.insert(render_command.end(), {"-D", define});
     const Plan plan{*scene,
                     file.methods,
                     reference,
-                    limits_of(a, file),
+                    limits,
                     seeds_beside(reference.seed, a.seeds.value_or(file.seeds)),
                     content,
                     threads,
@@ -224,7 +258,7 @@ int measure(const TradeArguments& a) {
     if (complete) {
         std::error_code ignored;
         std::filesystem::remove(folder.file("checkpoints"), ignored);  // unless something is in it
-        return finish(folder, a.page_width);
+        return finish(folder, a.page_width, a.quiet);
     }
     note("interrupted: the same command continues");
     return 128 + interruption.signal_number();
@@ -236,10 +270,16 @@ void add_trade(CLI::App& app, TradeArguments& a, std::function<int()>& action) {
     CLI::App& command =
         *app.add_subcommand("trade", "Measure error against time for several methods on a scene");
     command.add_option("SCENE", a.scene.scene, "The scene file");
-    command.add_option("--reference", a.reference, "The picture that is taken for right")->type_name("EXR");
-    command.add_option("--methods", a.methods, "Integrators and settings (see docs/guide.md)")
+    command
+        .add_option("--reference", a.reference,
+                    "The picture that is taken for right (default: one is rendered)")
+        ->type_name("EXR");
+    command
+        .add_option("--methods", a.methods,
+                    "Integrators and settings (see docs/guide.md; default: what suits the scene)")
         ->type_name("JSON");
-    command.add_option("-o,--output", a.output, "The folder to write")->type_name("DIR");
+    command.add_option("-o,--output", a.output, "The folder to write (default: SCENE_trade)")
+        ->type_name("DIR");
     CLI::Option* make =
         command.add_option("--make-reference", a.make_reference, "Render a reference instead");
     make->type_name("EXR");
@@ -266,7 +306,7 @@ void add_trade(CLI::App& app, TradeArguments& a, std::function<int()>& action) {
     command.add_option("-t,--threads", a.threads, "Number of threads (default: one for every core)")
         ->check(whole_number(0, 4096));
     command
-        .add_option("--page-width", a.page_width, "Largest width of the pictures in the page (default: 320)")
+        .add_option("--page-width", a.page_width, "Largest width of the pictures in the page (default: 640)")
         ->check(whole_number(8, 8192));
     command.add_option("--checkpoint-every", a.checkpoint_every, "Seconds between checkpoints (default: 60)")
         ->check(number_from_0());

@@ -21,7 +21,8 @@ struct TradeArguments {
     std::optional<double> seconds;
     std::optional<std::uint32_t> passes, seeds;
     double resolve = 0.01, checkpoint_every = 60.0;
-    int threads = 0, page_width = 320;
+    int threads = 0, page_width = 640;
+    bool announce = true;  ///< the reference that was made
     bool redraw = false, fresh = false, trust_reference = false, force_reference = false, quiet = false;
     std::vector<std::string> command_line;
 };

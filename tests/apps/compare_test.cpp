@@ -1,4 +1,6 @@
 // mote compare: the numbers, their definitions, and what it refuses.
+#include <fmt/format.h>
+
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -7,6 +9,7 @@
 #include "core/image/error_map.h"
 #include "core/image/image_file.h"
 #include "core/image/metrics.h"
+#include "core/math/random.h"
 #include "tests/apps/run_mote.h"
 #include "tests/support/catch.h"
 
@@ -69,10 +72,81 @@ TEST_CASE("compare prints every number with its definition", "[command][compare]
     const ImageMetrics exact = compare_images(folder.image, folder.reference, 16, 12);
     for (const MetricDefinition& d : metric_definitions()) {
         INFO(d.name);
-        CHECK(j.at("metrics").at(d.name).at("value").get<double>() == exact.*d.value);
+        const json& value = j.at("metrics").at(d.name).at("value");
+        if (std::isnan(exact.*d.value))
+            CHECK(value.is_null());  // the pictures do not say their variance
+        else
+            CHECK(value.get<double>() == exact.*d.value);
         CHECK(j.at("metrics").at(d.name).at("definition") == d.definition);
     }
     CHECK(j.at("metrics").at("bias").at("value").get<double>() == Approx(0.05).epsilon(1e-5));
+}
+
+TEST_CASE("compare begins with error, bias and what noise explains of it", "[command][compare]") {
+    Pictures folder;
+    CHECK(contains(folder.compare().out, "error      5 %, bias +5 %\n"));
+    // The reference has a noise of 4 %, the image one of 3 %, and both say so.
+    Rng rng(3);
+    Pixels variance(192, Rgb(0.0064f));
+    for (Rgb& p : folder.reference) p = Rgb(2.0f + 0.08f * (rng.next_float() > 0.5f ? 1.0f : -1.0f));
+    ImageChannels image;
+    image.width = 16, image.height = 12;
+    image.add_rgb("", folder.reference), image.add_rgb("Variance", variance);
+    write_exr(folder.file("r.exr"), image);
+    const json j = json::parse(folder.compare({"--json"}).out).at("metrics");
+    const double error = j.at("error").at("value"), error_se = j.at("error_standard_error").at("value");
+    CHECK(error_se > 0.002);
+    CHECK(std::abs(error - 0.05) < 4.0 * error_se);
+    CHECK(j.at("rmse").at("value").get<double>() > 2.0 * 0.06);  // the reference's noise is in there
+    CHECK(j.at("noise").at("value").is_null());
+    for (Rgb& v : variance) v = Rgb(0.0036f);
+    image = {};
+    image.width = 16, image.height = 12;
+    image.add_rgb("", folder.image), image.add_rgb("Variance", variance);
+    write_exr(folder.file("a.exr"), image);
+    const json both = json::parse(folder.compare({"--json"}).out).at("metrics");
+    const double noise = both.at("noise").at("value");
+    // Sum w v / sum w |r|^2 with pixels of 2 +- 0.08: not 3 % exactly, since dark ones have the larger
+    // weight.
+    CHECK(noise == Approx(0.03).epsilon(0.01));
+    CHECK(both.at("bias_standard_error").at("value").get<double>() > 0.0);
+    CHECK(contains(folder.compare().out, fmt::format(", noise of the image {:.3g} %\n", 100.0 * noise)));
+}
+
+TEST_CASE("compare shows differences amplified, side by side", "[command][compare]") {
+    const Pictures folder;
+    const RunResult r = folder.compare({"--difference", "x4"});
+    INFO(r.out << r.err);
+    REQUIRE(r.exit_code == 0);
+    CHECK(contains(r.out, "a_difference.png: image, reference, and their difference in luminance times 4"));
+    const Bitmap picture = read_bitmap(folder.file("a_difference.png"), false);
+    REQUIRE(picture.width == 3 * 16 + 2 * 4);
+    REQUIRE(picture.height == 12);
+    // The reference of 2 comes to lie at the key value 0.18, so 0.1 too bright, times 4, is 0.036 of red.
+    CHECK(picture.pixels[20].x == Approx(0.18).epsilon(0.02));
+    CHECK(picture.pixels[0].x == Approx(0.189).epsilon(0.02));
+    CHECK(picture.pixels[40].x == Approx(0.036).epsilon(0.05));
+    CHECK(picture.pixels[40].z == 0.0f);
+    REQUIRE(run_mote(folder, {"compare", "r.exr", "a.exr", "--difference", "8", "-o", "d.png"}).exit_code ==
+            0);
+    const Bitmap darker = read_bitmap(folder.file("d.png"), false);
+    CHECK(darker.pixels[40].x == 0.0f);
+    CHECK(darker.pixels[40].z > 0.05f);
+    CHECK(folder.compare({"--difference", "four"}).exit_code == 2);
+    CHECK(folder.compare({"--difference", "x-4"}).exit_code == 2);
+    CHECK(folder.compare({"--difference", "x4", "-o", "d.exr"}).exit_code == 2);
+    CHECK(folder.compare({"--difference", "x4", "-o", "m.png", "--map", "m.png"}).exit_code == 1);
+    CHECK(folder.compare({"-o", "d.png"}).exit_code == 2);
+}
+
+TEST_CASE("compare takes layers of different names", "[command][compare]") {
+    const Pictures folder;
+    const json j = json::parse(folder.compare({"--json", "--layer", "direct:"}).out);
+    CHECK(j.at("mean_image").at("average") == 0.5);
+    CHECK(j.at("mean_reference").at("average") == 2.0);
+    const RunResult missing = folder.compare({"--layer", "direct:indirect"});
+    CHECK(missing.exit_code == 1);
+    CHECK(contains(missing.err, "r.exr: there is no layer 'indirect'"));
 }
 
 TEST_CASE("compare takes a layer, and bitmaps", "[command][compare]") {

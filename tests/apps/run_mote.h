@@ -8,6 +8,7 @@
 
 #include <chrono>
 #include <fstream>
+#include <functional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -32,9 +33,9 @@ inline void write_file(const std::string& path, const std::string& text) {
 /// A running command. Arguments are given as they are, without a shell.
 class MoteProcess {
   public:
-    /// `out`: where its output goes, "" for a file in the folder.
+    /// `out`: where its output goes, "" for a file in the folder. `in_child` sets limits of the process.
     MoteProcess(const TemporaryFolder& folder, std::vector<std::string> arguments,
-                const std::string& out = "")
+                const std::string& out = "", const std::function<void()>& in_child = {})
         : out_(out.empty() ? folder.file("stdout.txt") : out), err_(folder.file("stderr.txt")) {
         arguments.insert(arguments.begin(), MOTE_BINARY_DIR "/mote");
         std::vector<char*> argv;
@@ -44,6 +45,7 @@ class MoteProcess {
         if (id_ == 0) {
             const bool ready = ::chdir(folder.path().c_str()) == 0 && redirect(out_, STDOUT_FILENO) &&
                                redirect(err_, STDERR_FILENO);
+            if (in_child) in_child();
             if (ready) ::execv(argv[0], argv.data());
             ::_exit(127);
         }
@@ -78,8 +80,9 @@ class MoteProcess {
     bool ended_ = false;
 };
 
-inline RunResult run_mote(const TemporaryFolder& folder, std::vector<std::string> arguments) {
-    return MoteProcess(folder, std::move(arguments)).wait();
+inline RunResult run_mote(const TemporaryFolder& folder, std::vector<std::string> arguments,
+                          const std::function<void()>& in_child = {}) {
+    return MoteProcess(folder, std::move(arguments), "", in_child).wait();
 }
 
 /// Waits until the file is there; false when the process ends before, or after a minute.

@@ -282,6 +282,48 @@ TEST_CASE("-D reaches objects that are nested in each other", "[command]") {
                    "no element 'medium'"));
 }
 
+TEST_CASE("The preview adapts, --exposure fixes it, and the PNG says which", "[command][exposure]") {
+    const SceneFolder folder;
+    const RunResult r = run_mote(folder, {"render", "scene.xml", "--passes", "2"});
+    REQUIRE(r.exit_code == 0);
+    // The log states the number that gives the same picture again.
+    const auto at = r.err.find("scene.png: exposure ");
+    REQUIRE(at != std::string::npos);
+    const std::string stops = r.err.substr(at + 20, r.err.find(' ', at + 20) - at - 20);
+    CHECK(contains(r.err, stops + " stops, adapted to the key value 0.18 (--exposure fixes it)"));
+    const std::string adapted = read_file(folder.file("scene.png"));
+    CHECK(contains(adapted, "Exposure"));
+    CHECK(contains(adapted, stops + " stops, adapted to the key value 0.18"));
+    const auto pixels = [&](const std::string& name) {
+        return mote::core::read_bitmap(folder.file(name), false).pixels;
+    };
+    const RunResult fixed =
+        run_mote(folder, {"render", "scene.xml", "--passes", "2", "-o", "f.exr", "--exposure", stops});
+    REQUIRE(fixed.exit_code == 0);
+    CHECK(contains(read_file(folder.file("f.png")), stops + " stops, fixed"));
+    CHECK(contains(fixed.err, stops + " stops, fixed"));
+    CHECK(pixels("f.png") == pixels("scene.png"));
+    REQUIRE(run_mote(folder, {"convert", "scene.exr", "a.png", "--exposure", stops}).exit_code == 0);
+    CHECK(pixels("a.png") == pixels("scene.png"));
+    REQUIRE(run_mote(folder, {"render", "scene.xml", "--passes", "2", "-o", "d.exr", "--exposure", "-8"})
+                .exit_code == 0);
+    CHECK(pixels("d.png") != pixels("scene.png"));
+}
+
+TEST_CASE("All that states the noise states the same", "[command][noise]") {
+    const SceneFolder folder;
+    const RunResult r = run_mote(folder, {"render", "scene.xml", "--noise", "0.1", "--stats", "s.json"});
+    INFO(r.err);
+    REQUIRE(r.exit_code == 0);
+    const double noise = nlohmann::json::parse(read_file(folder.file("s.json"))).at("noise");
+    CHECK(noise <= 0.1);
+    CHECK(noise > 0.05);
+    const auto image = mote::core::read_exr(folder.file("scene.exr"));
+    CHECK(std::stod(image.metadata.at("noise")) == Approx(noise).epsilon(1e-5));
+    for (const auto& [key, value] : image.metadata)
+        CHECK((key == "noise" || (!contains(key, "Error") && !contains(key, "oise"))));
+}
+
 TEST_CASE("convert takes exposure and layers into account", "[command]") {
     const SceneFolder folder;
     REQUIRE(run_mote(folder, {"render", "scene.xml", "--passes", "2"}).exit_code == 0);
@@ -289,8 +331,6 @@ TEST_CASE("convert takes exposure and layers into account", "[command]") {
     const auto before = mote::core::read_exr(folder.file("scene.exr")).rgb("");
     const auto after = mote::core::read_exr(folder.file("up.exr")).rgb("");
     for (std::size_t i = 0; i < before.size(); ++i) CHECK(after[i] == 2.0f * before[i]);
-    CHECK(run_mote(folder, {"convert", "scene.exr", "a.png"}).exit_code == 0);
-    CHECK(read_file(folder.file("a.png")) == read_file(folder.file("scene.png")));
     CHECK(contains(run_mote(folder, {"info", "scene.exr"}).out, "Variance.R"));
     check_error(run_mote(folder, {"convert", "scene.exr", "a.png", "--layer", "nothing"}), 1, "scene.exr");
 }

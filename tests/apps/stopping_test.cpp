@@ -1,0 +1,169 @@
+// How the command ends before its time: signals, --time within a pass, and limits of the system.
+//
+// What is timed are minutes of work that have to stop; the bounds are generous, for machines are busy.
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "core/image/image_file.h"
+#include "tests/apps/run_mote.h"
+#include "tests/support/catch.h"
+
+using namespace mote::tests;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double generous_seconds = 20.0;  // two are asked for, on a machine that does nothing else
+
+struct Folder : TemporaryFolder {
+    Folder() {
+        write_file(file("scene.xml"), R"(<scene version="3.0.0"><default name="size" value="64"/>
+            <sensor type="perspective"><film type="hdrfilm"><integer name="width" value="$size"/>
+            <integer name="height" value="$size"/></film><transform name="to_world">
+            <lookat origin="0, 0, 4" target="0, 0, 0" up="0, 1, 0"/></transform></sensor>
+            <shape type="sphere"><bsdf type="diffuse"/></shape>
+            <emitter type="constant"/></scene>)");
+    }
+    std::vector<std::string> render(std::vector<std::string> more) const {
+        std::vector<std::string> all = {"render", "scene.xml", "-o", "a.exr", "-t", "1"};
+        all.insert(all.end(), more.begin(), more.end());
+        return all;
+    }
+    bool has(const std::string& name) const { return fs::exists(file(name)); }
+};
+
+/// A pass of an hour, whose pixels are finished one after the other.
+const std::vector<std::string> long_pass = {"--integrator", "mote_vpl", "-D", "integrator.paths=100000",
+                                            "-D",           "size=1000"};
+std::vector<std::string> operator+(std::vector<std::string> a, const std::vector<std::string>& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+}
+
+double seconds_of(const std::function<void()>& work) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// A limit of the child's.
+std::function<void()> limited(int what, rlim_t limit) {
+    return [=] {
+        const rlimit both{limit, limit};
+        ::setrlimit(__rlimit_resource_t(what), &both);
+    };
+}
+
+}  // namespace
+
+TEST_CASE("--time ends within a pass, and says what it has of it", "[command][stopping]") {
+    const Folder folder;
+    RunResult r;
+    CHECK(seconds_of([&] {
+              r = run_mote(folder, folder.render(long_pass + std::vector<std::string>{"--time", "2"}));
+          }) < generous_seconds);
+    INFO(r.err);
+    if (r.exit_code == 1) {  // a machine so busy that no pixel came out: then it says so
+        CHECK(r.err.find("is over") != std::string::npos);
+        return;
+    }
+    REQUIRE(r.exit_code == 0);
+    CHECK(r.err.find("first pass") != std::string::npos);
+    CHECK_FALSE(folder.has("a.exr.checkpoint"));
+    const auto image = mote::core::read_exr(folder.file("a.exr"));
+    CHECK(image.metadata.at("passes") == "0");
+    CHECK(image.metadata.count("partOfFirstPass") == 1);
+    const auto alpha = std::find(image.names.begin(), image.names.end(), "A");
+    REQUIRE(alpha != image.names.end());
+    const auto& finished = image.channels[std::size_t(alpha - image.names.begin())];
+    const auto pixels = image.rgb("");
+    std::size_t missing = 0;
+    for (std::size_t i = 0; i < finished.size(); ++i) {
+        missing += finished[i] == 0.0f;
+        // Every eye ray meets the sphere or the sky.
+        CHECK((pixels[i].x > 0.0f) == (finished[i] == 1.0f));
+    }
+    CHECK(missing > 0);
+    CHECK(missing < finished.size());
+}
+
+TEST_CASE("Signals stop a pass that would take an hour", "[command][stopping]") {
+    for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+        const Folder folder;
+        RunResult r;
+        // A busy machine may take longer to start the program, which has no handler yet then: once more,
+        // later.
+        for (int wait = 500; r.exit_code == -1 && wait < 20000; wait *= 2) {
+            MoteProcess process(folder, folder.render(long_pass));
+            std::this_thread::sleep_for(std::chrono::milliseconds(wait));
+            process.send(number);
+            CHECK(seconds_of([&] { r = process.wait(); }) < generous_seconds);
+        }
+        INFO(r.err);
+        // The wait may or may not have been long enough to load the scene, or to finish a pixel.
+        CHECK(r.exit_code == 128 + number);
+        CHECK(r.err.find("interrupted") != std::string::npos);
+        CHECK_FALSE(folder.has("a.exr.checkpoint"));
+    }
+}
+
+TEST_CASE("A terminal that hangs up saves the picture and the checkpoint", "[command][stopping]") {
+    const Folder folder;
+    MoteProcess process(
+        folder, folder.render({"--integrator", "path", "--passes", "1000000", "--checkpoint-every", "0"}));
+    REQUIRE(wait_for_file(process, folder.file("a.exr.checkpoint")));
+    process.send(SIGHUP);
+    const RunResult r = process.wait();
+    INFO(r.err);
+    CHECK(r.exit_code == 128 + SIGHUP);
+    CHECK(folder.has("a.exr"));
+    CHECK(folder.has("a.png"));
+    CHECK(folder.has("a.exr.checkpoint"));
+}
+
+TEST_CASE("A limit on the size of files is an error, and leaves none", "[command][stopping]") {
+    const Folder folder;
+    const RunResult r = run_mote(folder, folder.render({"--integrator", "path", "--passes", "1", "--quiet"}),
+                                 limited(RLIMIT_FSIZE, 1000));
+    INFO(r.err);
+    CHECK(r.exit_code == 1);
+    CHECK(r.err.find("a.exr: cannot be written") != std::string::npos);
+    for (const auto& entry : fs::directory_iterator(folder.path()))
+        CHECK(entry.path().string().find(".part") == std::string::npos);
+    CHECK_FALSE(folder.has("a.exr"));
+}
+
+TEST_CASE("Where the system grants few threads, those do the work", "[command][stopping]") {
+    const Folder folder;
+    fs::permissions(folder.path(), fs::perms::all);
+    std::vector<std::string> arguments = folder.render({"--integrator", "path", "--passes", "1"});
+    arguments[5] = "4";
+    // Libraries start threads of their own before main(), and how many is theirs to know: more and more until
+    // the program says that it has two. The limit does not hold for root, who becomes nobody.
+    for (rlim_t limit = 1; limit < 64; ++limit) {
+        const RunResult r = run_mote(folder, arguments, [limit] {
+            limited(RLIMIT_NPROC, limit)();
+            if (::getuid() == 0 && (::setgid(65534) != 0 || ::setuid(65534) != 0)) ::_exit(126);
+        });
+        if (r.exit_code == 126 || r.exit_code == 127) break;
+        if (r.err.find("grants 2 threads instead of 4") == std::string::npos) continue;
+        INFO(r.err);
+        CHECK(r.exit_code == 0);
+        CHECK(folder.has("a.exr"));
+        return;
+    }
+    WARN("no limit leaves two threads here, or nobody may not run the program: not tested");
+}
+
+TEST_CASE("Too little memory names what it was for", "[command][stopping]") {
+    const Folder folder;
+    const RunResult r =
+        run_mote(folder, folder.render({"--integrator", "path", "-D", "size=16000", "--quiet"}),
+                 limited(RLIMIT_AS, rlim_t(4) << 30));
+    INFO(r.err);
+    CHECK(r.exit_code == 3);
+    CHECK(r.err.find("not enough memory for a film of 16000 x 16000 pixels") != std::string::npos);
+    CHECK(r.err.find("GB") != std::string::npos);
+}
