@@ -69,7 +69,7 @@ void add_render(CLI::App& app, RenderArguments& a, std::function<int()>& action)
                        "The EXR file to write, or the PNG beside it (default: the scene's name)");
     command
         .add_option("--passes", a.passes, "Stop after this many passes (default: the scene's sample_count)")
-        ->check(CLI::Range(std::uint32_t(1), std::uint32_t(1) << 30));
+        ->check(whole_number(1, std::uint64_t(1) << 30));
     command.add_option("--time", a.seconds, "Stop after this many seconds, loading and building included")
         ->check(number_above_0());
     command.add_option("--noise", a.noise, "Stop when the noise is this, such as 0.02 (see docs/testing.md)")
@@ -84,7 +84,7 @@ void add_render(CLI::App& app, RenderArguments& a, std::function<int()>& action)
     command.add_option("--stats", a.stats, "Write statistics to this JSON file");
     command
         .add_option("--exposure", a.exposure, "Brighten the preview by this many stops (default: it adapts)")
-        ->check(CLI::Range(-100.0, 100.0));
+        ->check(number_between(-100.0, 100.0));
     command.add_flag("--half", a.half, "Write float16 instead of float32");
     command.add_flag("--auxiliary", a.auxiliary,
                      "Also write what is seen: positions, normals, depth, albedo, with variances");

@@ -21,4 +21,16 @@ inline std::optional<core::DirectSample> connect_to_point(const core::Vec3& p, c
     return sample;
 }
 
+/// The same with the light's radiant intensity [W/sr], asked for the direction away from it. Nothing where it
+/// is black.
+template <typename Intensity>
+std::optional<core::DirectSample> connect_to_point(const core::Vec3& p, const core::Vec3& light,
+                                                   const Intensity& intensity) {
+    auto sample = connect_to_point(p, light);
+    if (!sample) return std::nullopt;
+    sample->weight *= intensity(-sample->wi);
+    if (core::is_black(sample->weight) || !core::is_finite(sample->weight)) return std::nullopt;
+    return sample;
+}
+
 }  // namespace mote::lights

@@ -21,11 +21,7 @@ class PointLight final : public Emitter {
     EmitterTraits traits() const override { return {.kind = EmitterKind::point, .delta_position = true}; }
 
     std::optional<DirectSample> sample_direct(const Vec3& p, const Vec2& /*u*/) const override {
-        auto sample = connect_to_point(p, position_);
-        if (!sample) return std::nullopt;
-        sample->weight *= intensity_;
-        if (is_black(sample->weight) || !is_finite(sample->weight)) return std::nullopt;
-        return sample;
+        return connect_to_point(p, position_, [&](const Vec3&) { return intensity_; });
     }
     float pdf_direct(const Vec3&, const Vec3&, const SurfaceHit*) const override { return 0.0f; }
 

@@ -50,11 +50,9 @@ class ProjectorLight final : public Emitter, public ConeLight {
     }
 
     std::optional<DirectSample> sample_direct(const Vec3& p, const Vec2& /*u*/) const override {
-        auto sample = connect_to_point(p, position_);
-        if (!sample) return std::nullopt;
-        sample->weight *= intensity(glm::transpose(world_from_local_) * -sample->wi);
-        if (is_black(sample->weight) || !is_finite(sample->weight)) return std::nullopt;
-        return sample;
+        return connect_to_point(p, position_, [&](const Vec3& away) {
+            return intensity(glm::transpose(world_from_local_) * away);
+        });
     }
     float pdf_direct(const Vec3&, const Vec3&, const SurfaceHit*) const override { return 0.0f; }
 
