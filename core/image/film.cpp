@@ -6,6 +6,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -50,20 +51,28 @@ void Film::Sums::close_block() {
 }
 
 Film::Film(int width, int height, std::vector<Layer> layers, bool all_squares)
-    : width_(width),
-      height_(height),
-      layers_(std::move(layers)),
-      all_squares_(all_squares),
-      beauty_squares_(width > 0 && height > 0 ? 3 * pixels() : 0),
-      block_squares_(width > 0 && height > 0 ? pixels() : 0) {
+    : width_(width), height_(height), layers_(std::move(layers)), all_squares_(all_squares) {
     if (width < 1 || height < 1) throw std::invalid_argument("a film needs at least one pixel");
     sums_.assign(layers_.size(), Sums(3 * pixels()));
-    for (const Layer& layer : layers_) {
+    for (const Layer& layer : layers_)
         layer_squares_.emplace_back(all_squares_ || layer.squares ? 3 * pixels() : 0);
-        if (!layer.auxiliary) beauty_layers_.push_back(std::size_t(&layer - layers_.data()));
-    }
     replaced_means_.resize(layers_.size());
+    find_parts();
     find_where();
+}
+
+void Film::find_parts() {
+    std::size_t count = 1;
+    for (const Layer& layer : layers_) count = std::max(count, layer.part + 1);
+    if (count > layers_.size() && count > 1) throw std::invalid_argument("a part without layers");
+    parts_.assign(count, Part(pixels()));
+    for (std::size_t i = 0; i < layers_.size(); ++i) {
+        Part& part = parts_[layers_[i].part];
+        part.layers.push_back(i);
+        if (!layers_[i].auxiliary) part.beauty_layers.push_back(i);
+    }
+    for (const Part& part : parts_)
+        if (part.layers.empty() && count > 1) throw std::invalid_argument("a part without layers");
 }
 
 void Film::find_where() {
@@ -72,21 +81,39 @@ void Film::find_where() {
         if (!index.emplace(layers_[i].name, i).second)
             throw std::invalid_argument("two layers are called '" + layers_[i].name + "'");
     for (const Layer& layer : layers_) {
-        if (!layer.where.empty() && !index.contains(layer.where))
+        if (!layer.where.empty() &&
+            (!index.contains(layer.where) || layers_[index[layer.where]].part != layer.part))
             throw std::invalid_argument("there is no layer '" + layer.where + "'");
         where_.push_back(layer.where.empty() ? layers_.size() : index[layer.where]);
     }
 }
 
-double Film::passes_of(std::size_t layer, std::size_t pixel) const {
-    const std::size_t where = where_[layer];
-    return where < layers_.size() ? sums_[where].at(3 * pixel) : double(passes_);
+std::uint32_t Film::pass_count() const {
+    std::uint32_t count = 0;
+    for (const Part& part : parts_) count += part.passes;
+    return count;
 }
 
-void Film::add_pixel(const PassImage& image, std::size_t pixel) {
+bool Film::has_passes(std::uint32_t passes) const {
+    return std::all_of(parts_.begin(), parts_.end(), [&](const Part& part) { return part.passes >= passes; });
+}
+
+double Film::passes_of(std::size_t layer, std::size_t pixel) const {
+    const std::size_t where = where_[layer];
+    return where < layers_.size() ? sums_[where].at(3 * pixel) : double(parts_[layers_[layer].part].passes);
+}
+
+double Film::beauty_sum(const Part& part, std::size_t i) const {
+    double sum = 0.0;
+    for (const std::size_t layer : part.beauty_layers) sum += sums_[layer].at(i);
+    return sum;
+}
+
+void Film::add_pixel(const PassImage& image, Part& part, std::size_t pixel) {
     double beauty[3] = {0.0, 0.0, 0.0};
-    for (std::size_t layer = 0; layer < layers_.size(); ++layer) {
-        const Rgb value = image.layer(layer)[pixel];
+    for (std::size_t of_image = 0; of_image < part.layers.size(); ++of_image) {
+        const std::size_t layer = part.layers[of_image];
+        const Rgb value = image.layer(of_image)[pixel];
         for (int c = 0; c < 3; ++c) {
             const double v = value[c];
             const std::size_t i = 3 * pixel + std::size_t(c);
@@ -95,21 +122,24 @@ void Film::add_pixel(const PassImage& image, std::size_t pixel) {
             if (!layers_[layer].auxiliary) beauty[c] += v;
         }
     }
-    for (int c = 0; c < 3; ++c) beauty_squares_.block[3 * pixel + std::size_t(c)] += beauty[c] * beauty[c];
+    for (int c = 0; c < 3; ++c) part.beauty_squares.block[3 * pixel + std::size_t(c)] += beauty[c] * beauty[c];
 }
 
-void Film::add_block_squares() {
+void Film::close_block(Part& part) {
     for_each_pixel(pixels(), [&](std::size_t p) {
         for (std::size_t c = 0; c < 3; ++c) {
             double sum = 0.0;
-            for (const std::size_t layer : beauty_layers_) sum += sums_[layer].block[3 * p + c];
-            block_squares_.total[p] += sum * sum / 3.0;
+            for (const std::size_t layer : part.beauty_layers) sum += sums_[layer].block[3 * p + c];
+            part.block_squares.total[p] += sum * sum / 3.0;
         }
     });
+    for (const std::size_t layer : part.layers) sums_[layer].close_block(), layer_squares_[layer].close_block();
+    part.beauty_squares.close_block();
 }
 
-void Film::add_pass(const PassImage& image) {
-    if (image.width() != width_ || image.height() != height_ || image.layers() != layers_.size())
+void Film::add_pass(const PassImage& image, std::size_t index, double work) {
+    Part& part = parts_.at(index);
+    if (image.width() != width_ || image.height() != height_ || image.layers() != part.layers.size())
         throw std::invalid_argument("the pass does not fit the film");
     for (auto& replaced : replaced_means_) replaced.clear();
 
@@ -119,25 +149,20 @@ void Film::add_pass(const PassImage& image) {
         [&](const auto& range, std::uint64_t dropped) {
             for (std::size_t pixel = range.begin(); pixel < range.end(); ++pixel) {
                 if (pixel_is_finite(image, pixel))
-                    add_pixel(image, pixel);
+                    add_pixel(image, part, pixel);
                 else
                     ++dropped;
             }
             return dropped;
         },
         std::plus<>());
-
-    if (++passes_ % block_size != 0) return;
-    add_block_squares();
-    for (auto& sums : sums_) sums.close_block();
-    for (auto& squares : layer_squares_) squares.close_block();
-    beauty_squares_.close_block();
+    part.work += work;
+    if (++part.passes % block_size == 0) close_block(part);
 }
 
 std::vector<Rgb> Film::mean(std::size_t layer) const {
     if (!replaced_means_.at(layer).empty()) return replaced_means_[layer];
     std::vector<Rgb> result(pixels(), Rgb(0.0f));
-    if (passes_ == 0) return result;
     const Sums& sums = sums_[layer];
     for_each_pixel(pixels(), [&](std::size_t p) {
         const double n = passes_of(layer, p);
@@ -149,7 +174,8 @@ std::vector<Rgb> Film::mean(std::size_t layer) const {
 
 std::vector<Rgb> Film::beauty() const {
     std::vector<Rgb> result(pixels(), Rgb(0.0f));
-    for (const std::size_t layer : beauty_layers_) {
+    for (std::size_t layer = 0; layer < layers_.size(); ++layer) {
+        if (layers_[layer].auxiliary) continue;
         const std::vector<Rgb> part = mean(layer);
         for_each_pixel(pixels(), [&](std::size_t p) { result[p] += part[p]; });
     }
@@ -158,20 +184,31 @@ std::vector<Rgb> Film::beauty() const {
 
 std::vector<Rgb> Film::variance_of_mean(std::span<const std::size_t> layers, const Sums& squares) const {
     std::vector<Rgb> result(pixels(), Rgb(0.0f));
+    if (layers.empty()) return result;
+    const double passes = parts_[layers_[layers.front()].part].passes;
     for_each_pixel(pixels(), [&](std::size_t p) {
         for (int c = 0; c < 3; ++c) {
             const std::size_t i = 3 * p + std::size_t(c);
             double sum = 0.0;
             for (const std::size_t layer : layers) sum += sums_[layer].at(i);
-            const double n = layers.size() == 1 ? passes_of(layers.front(), p) : double(passes_);
+            const double n = layers.size() == 1 ? passes_of(layers.front(), p) : passes;
             result[p][c] = float(variance_from_sums(sum, squares.at(i), n));
         }
     });
     return result;
 }
 
+std::vector<Rgb> Film::part_variance_of_mean(std::size_t part) const {
+    return variance_of_mean(parts_.at(part).beauty_layers, parts_.at(part).beauty_squares);
+}
+
 std::vector<Rgb> Film::beauty_variance_of_mean() const {
-    return variance_of_mean(beauty_layers_, beauty_squares_);
+    std::vector<Rgb> result = part_variance_of_mean(0);
+    for (std::size_t part = 1; part < parts_.size(); ++part) {
+        const std::vector<Rgb> more = part_variance_of_mean(part);
+        for_each_pixel(pixels(), [&](std::size_t p) { result[p] += more[p]; });
+    }
+    return result;
 }
 
 std::vector<Rgb> Film::layer_variance_of_mean(std::size_t layer) const {

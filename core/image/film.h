@@ -2,6 +2,10 @@
 //
 // Passes are summed in blocks of `block_size`, and blocks are added in index order, so that the bits of the
 // result depend on the pass count alone: not on interruptions, nor on which machine rendered which block.
+//
+// A picture may have several parts (Layer::part), each with passes of its own, as many as it needs: the mean
+// of a layer is its sum over the passes of its part, and the variance of the beauty the sum over its parts,
+// which are independent of each other.
 #pragma once
 
 #include <cstdint>
@@ -18,29 +22,41 @@ class Film {
     static constexpr std::uint32_t block_size = 16;
 
     /// `all_squares`: keep the sum of squares of every layer, not of the beauty and of those that ask for it.
-    /// Throws std::invalid_argument when two layers have one name, or a Layer::where names none.
+    /// Throws std::invalid_argument when two layers have one name, a Layer::where names none or one of another
+    /// part, or a part has no layer.
     Film(int width, int height, std::vector<Layer> layers, bool all_squares = false);
 
     int width() const { return width_; }
     int height() const { return height_; }
     std::size_t pixels() const { return std::size_t(width_) * std::size_t(height_); }
     std::span<const Layer> layers() const { return layers_; }
-    std::uint32_t pass_count() const { return passes_; }
+    std::size_t parts() const { return parts_.size(); }
+    std::uint32_t pass_count() const;  ///< of all parts together
+    std::uint32_t pass_count(std::size_t part) const { return parts_.at(part).passes; }
+    /// Has every part so many passes? A picture is complete with one.
+    bool has_passes(std::uint32_t passes) const;
+    /// The layers of a part, in order: those of the images of its passes.
+    std::span<const std::size_t> layers_of(std::size_t part) const { return parts_.at(part).layers; }
+    /// What the passes of a part cost in all (add_pass).
+    double work(std::size_t part) const { return parts_.at(part).work; }
     /// Pixels of passes that held a NaN or an infinity in some layer. Such a pixel adds zero to every layer;
     /// anything but 0 is a defect.
     std::uint64_t non_finite() const { return non_finite_; }
 
-    /// Adds the next pass. Must be called in index order. Undoes set_mean().
-    void add_pass(const PassImage& image);
+    /// Adds the next pass of a part. Must be called in index order. `work` is what it cost, in any unit: the
+    /// film keeps the sum. Undoes set_mean().
+    void add_pass(const PassImage& image, std::size_t part = 0, double work = 0.0);
 
     /// Mean over passes of one layer, as float. Over the passes of Layer::where, zero where there are none.
     std::vector<Rgb> mean(std::size_t layer) const;
     /// The beauty: the float sum of the float means of all layers that are not auxiliary, in order, so that
     /// whoever adds up the layers of a written file gets the same bits.
     std::vector<Rgb> beauty() const;
-    /// Variance of the beauty's mean per pixel and channel: (sum of squares / n - mean^2) / (n - 1). Zero for
-    /// n < 2.
+    /// Variance of the beauty's mean per pixel and channel: (sum of squares / n - mean^2) / (n - 1), added up
+    /// over parts. Zero for n < 2.
     std::vector<Rgb> beauty_variance_of_mean() const;
+    /// The share of a part in that.
+    std::vector<Rgb> part_variance_of_mean(std::size_t part) const;
     /// Does the film know the variance of a layer?
     bool has_squares(std::size_t layer) const { return !layer_squares_.at(layer).total.empty(); }
     /// The same for a layer, over the passes of Layer::where; needs has_squares(layer).
@@ -66,28 +82,42 @@ class Film {
         double at(std::size_t i) const { return total[i] + block[i]; }
         void close_block();
     };
-    void add_pixel(const PassImage& image, std::size_t pixel);
-    void add_block_squares();
+    struct Part {
+        std::uint32_t passes = 0;
+        double work = 0.0;
+        Sums beauty_squares;                     ///< three channels
+        Sums block_squares;                      ///< of sums over a block, mean over channels
+        std::vector<std::size_t> layers;         ///< in order
+        std::vector<std::size_t> beauty_layers;  ///< those that are not auxiliary, in order
+        explicit Part(std::size_t pixels) : beauty_squares(3 * pixels), block_squares(pixels) {}
+    };
+    void find_parts();
+    void find_where();
+    void add_pixel(const PassImage& image, Part& part, std::size_t pixel);
+    void close_block(Part& part);
+    /// The sum over the layers of the beauty that are in a part; of complete blocks alone, or with the open one.
+    double beauty_sum(const Part& part, std::size_t i) const;
     /// Of the mean over complete blocks, averaged over channels, from the spread of the blocks' sums.
-    double block_variance_of_mean(std::size_t pixel) const;
+    double block_variance_of_mean(const Part& part, std::size_t pixel) const;
+    /// The gain of blocks over independent passes, by which variances are too large (film_noise.cpp).
+    double gain_of_blocks(const Part& part, std::span<const Rgb> variance,
+                          std::span<const double> weights) const;
     std::vector<Rgb> variance_of_mean(std::span<const std::size_t> layers, const Sums& squares) const;
     /// How many passes the mean of a layer is over, for a pixel.
     double passes_of(std::size_t layer, std::size_t pixel) const;
-    void find_where();
-    std::vector<const Sums*> all_sums() const;
-    std::size_t serialized_size(std::uint32_t passes) const;
+    /// body(sums, part) in the order of a serialised film.
+    template <typename Self, typename Body>
+    static void for_each_sums(Self& film, const Body& body);
+    std::size_t serialized_size(std::span<const std::uint32_t> passes) const;
 
     int width_, height_;
     std::vector<Layer> layers_;
     bool all_squares_;
-    std::uint32_t passes_ = 0;
     std::uint64_t non_finite_ = 0;
-    std::vector<Sums> sums_;                  ///< one per layer, three channels
-    Sums beauty_squares_;                     ///< three channels
-    Sums block_squares_;                      ///< of sums over a block of the beauty, mean over channels
-    std::vector<Sums> layer_squares_;         ///< one per layer, empty where not kept
-    std::vector<std::size_t> beauty_layers_;  ///< those that are not auxiliary, in order
-    std::vector<std::size_t> where_;          ///< index of Layer::where, or that of no layer
+    std::vector<Part> parts_;
+    std::vector<Sums> sums_;                        ///< one per layer, three channels
+    std::vector<Sums> layer_squares_;               ///< one per layer, empty where not kept
+    std::vector<std::size_t> where_;                ///< index of Layer::where, or that of no layer
     std::vector<std::vector<Rgb>> replaced_means_;  ///< per layer; empty unless set_mean() was called
 };
 

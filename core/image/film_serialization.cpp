@@ -1,6 +1,7 @@
-// The bits of a film as bytes: header, sums, checksum. Little-endian, as every machine this runs on.
+// The bits of a film as bytes: header, a head for each part, sums, checksum. Little-endian, as every machine
+// this runs on.
 //
-// Before the first block is complete all totals are zero, and right after a block the open one is: zeros are
+// Before the first block of a part is complete all totals are zero, and right after a block the open one is: zeros are
 // not written, for a film takes hundreds of megabytes.
 #include <algorithm>
 #include <array>
@@ -17,11 +18,15 @@ namespace {
 
 struct Header {
     std::array<char, 8> magic = {'m', 'o', 't', 'e', 'f', 'i', 'l', 'm'};
-    std::uint32_t version = 2;
-    std::uint32_t width = 0, height = 0, layers = 0, all_squares = 0, passes = 0;
+    std::uint32_t version = 3;
+    std::uint32_t width = 0, height = 0, layers = 0, all_squares = 0, parts = 0;
     std::uint64_t non_finite = 0;
 };
 static_assert(sizeof(Header) == 40, "the header has no padding whose bytes could vary");
+struct PartHeader {
+    std::uint64_t passes = 0;
+    double work = 0.0;
+};
 
 bool has_totals(std::uint32_t passes) { return passes >= Film::block_size; }
 bool has_blocks(std::uint32_t passes) { return passes % Film::block_size != 0; }
@@ -45,19 +50,20 @@ class Writer {
 
 }  // namespace
 
-std::vector<const Film::Sums*> Film::all_sums() const {
-    std::vector<const Sums*> all;
-    for (const Sums& sums : sums_) all.push_back(&sums);
-    for (const Sums& sums : layer_squares_) all.push_back(&sums);
-    all.push_back(&beauty_squares_);
-    all.push_back(&block_squares_);
-    return all;
+template <typename Self, typename Body>
+void Film::for_each_sums(Self& film, const Body& body) {
+    for (std::size_t i = 0; i < film.layers_.size(); ++i) body(film.sums_[i], film.layers_[i].part);
+    for (std::size_t i = 0; i < film.layers_.size(); ++i) body(film.layer_squares_[i], film.layers_[i].part);
+    for (std::size_t i = 0; i < film.parts_.size(); ++i)
+        body(film.parts_[i].beauty_squares, i), body(film.parts_[i].block_squares, i);
 }
 
-std::size_t Film::serialized_size(std::uint32_t passes) const {
-    const std::size_t copies = (has_totals(passes) ? 1u : 0u) + (has_blocks(passes) ? 1u : 0u);
-    std::size_t size = sizeof(Header) + sizeof(std::uint64_t);
-    for (const Sums* sums : all_sums()) size += copies * sums->total.size() * sizeof(double);
+std::size_t Film::serialized_size(std::span<const std::uint32_t> passes) const {
+    std::size_t size = sizeof(Header) + parts_.size() * sizeof(PartHeader) + sizeof(std::uint64_t);
+    for_each_sums(*this, [&](const Sums& sums, std::size_t part) {
+        const std::size_t copies = (has_totals(passes[part]) ? 1u : 0u) + (has_blocks(passes[part]) ? 1u : 0u);
+        size += copies * sums.total.size() * sizeof(double);
+    });
     return size;
 }
 
@@ -65,15 +71,21 @@ std::vector<std::byte> Film::serialize() const {
     Header header;
     header.width = std::uint32_t(width_), header.height = std::uint32_t(height_);
     header.layers = std::uint32_t(layers_.size()), header.all_squares = all_squares_ ? 1 : 0;
-    header.passes = passes_, header.non_finite = non_finite_;
+    header.parts = std::uint32_t(parts_.size()), header.non_finite = non_finite_;
 
-    Writer writer(serialized_size(passes_));
+    std::vector<std::uint32_t> passes;
+    for (const Part& part : parts_) passes.push_back(part.passes);
+    Writer writer(serialized_size(passes));
     writer.write(&header, sizeof(header));
-    for (const Sums* sums : all_sums()) {
-        const std::size_t bytes = sums->total.size() * sizeof(double);
-        if (has_totals(passes_)) writer.write(sums->total.data(), bytes);
-        if (has_blocks(passes_)) writer.write(sums->block.data(), bytes);
+    for (const Part& part : parts_) {
+        const PartHeader head{part.passes, part.work};
+        writer.write(&head, sizeof(head));
     }
+    for_each_sums(*this, [&](const Sums& sums, std::size_t part) {
+        const std::size_t bytes = sums.total.size() * sizeof(double);
+        if (has_totals(passes[part])) writer.write(sums.total.data(), bytes);
+        if (has_blocks(passes[part])) writer.write(sums.block.data(), bytes);
+    });
     const std::uint64_t sum = checksum(writer.written());
     writer.write(&sum, sizeof(sum));
     return writer.take();
@@ -92,30 +104,36 @@ void Film::deserialize(std::span<const std::byte> bytes) {
         throw InputError("the film has " + std::to_string(header.width) + " x " +
                          std::to_string(header.height) + " pixels, not " + std::to_string(width_) + " x " +
                          std::to_string(height_));
-    if (header.layers != layers_.size() || (header.all_squares != 0) != all_squares_)
+    if (header.layers != layers_.size() || (header.all_squares != 0) != all_squares_ ||
+        header.parts != parts_.size())
         throw InputError("the film has other layers");
-    const std::size_t expected = serialized_size(header.passes);
+    const std::size_t heads = parts_.size() * sizeof(PartHeader);
+    if (bytes.size() < sizeof(Header) + heads + sizeof(std::uint64_t))
+        throw InputError("the film is damaged: its length is wrong");
+    std::vector<PartHeader> part_headers(parts_.size());
+    std::memcpy(part_headers.data(), bytes.data() + sizeof(header), heads);
+    std::vector<std::uint32_t> passes;
+    for (const PartHeader& head : part_headers) passes.push_back(std::uint32_t(head.passes));
+    const std::size_t expected = serialized_size(passes);
     if (bytes.size() != expected) throw InputError("the film is damaged: its length is wrong");
     std::uint64_t sum;
     std::memcpy(&sum, bytes.data() + expected - sizeof(sum), sizeof(sum));
     if (sum != checksum(bytes.first(expected - sizeof(sum))))
         throw InputError("the film is damaged: its checksum is wrong");
 
-    const std::byte* from = bytes.data() + sizeof(header);
+    const std::byte* from = bytes.data() + sizeof(header) + heads;
     const auto read = [&from](std::vector<double>& values, bool present) {
         const std::size_t size = present ? values.size() * sizeof(double) : 0;
         if (size > 0) std::memcpy(values.data(), from, size);
         if (!present) std::fill(values.begin(), values.end(), 0.0);
         from += size;
     };
-    const auto read_sums = [&](Sums& sums) {
-        read(sums.total, has_totals(header.passes)), read(sums.block, has_blocks(header.passes));
-    };
-    for (Sums& sums : sums_) read_sums(sums);
-    for (Sums& sums : layer_squares_) read_sums(sums);
-    read_sums(beauty_squares_);
-    read_sums(block_squares_);
-    passes_ = header.passes, non_finite_ = header.non_finite;
+    for_each_sums(*this, [&](Sums& sums, std::size_t part) {
+        read(sums.total, has_totals(passes[part])), read(sums.block, has_blocks(passes[part]));
+    });
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+        parts_[i].passes = passes[i], parts_[i].work = part_headers[i].work;
+    non_finite_ = header.non_finite;
     for (auto& replaced : replaced_means_) replaced.clear();
 }
 

@@ -19,6 +19,10 @@ struct Layer {
     bool squares = false;     ///< the film keeps the sum of squares, and with it the variance
     std::string where = "";   ///< name of a layer of zeros and ones: the mean is that of the passes where it
                               ///< is one (a position where nothing was hit is no position); "": of all
+    std::string cell = "";    ///< the part of the transport that it is a share of; "": the one of its name
+    std::size_t part = 0;     ///< of the picture: layers of one part have their passes together
+
+    const std::string& transport() const { return cell.empty() ? name : cell; }
 };
 
 /// The picture of one pass: one value per pixel and layer, row by row from the top. Zero at the start.
@@ -37,6 +41,8 @@ class PassImage {
     template <typename Name>
     requires std::is_enum_v<Name> Rgb& at(Name layer, int x, int y) { return at(std::size_t(layer), x, y); }
     void clear();
+    /// Exchanges a layer with one of another image of the same size.
+    void swap_layer(std::size_t i, PassImage& other, std::size_t j) { planes_.at(i).swap(other.planes_.at(j)); }
 
     /// Pixels whose light is complete, one byte each, should the pass end early: a tile writes its own.
     void finish(int x, int y) {

@@ -9,6 +9,7 @@
 // number of threads.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <functional>
 #include <memory>
@@ -36,6 +37,13 @@ struct RenderOptions {
     int width = 0, height = 0;
     SamplerKind sampler = SamplerKind::sobol;
     CancelToken cancelled = {};  ///< prepare() and finish() may throw Cancelled when it asks for it
+    /// The cells of the transport (Layer::transport) that are wanted; empty: all. The layers of the others may
+    /// hold anything, and nothing should be spent on them.
+    std::vector<std::string> cells = {};
+
+    bool wants(const std::string& cell) const {
+        return cells.empty() || std::find(cells.begin(), cells.end(), cell) != cells.end();
+    }
 };
 
 /// Where within pixel (x, y) a sample falls so that its plain mean is the filtered picture (filter importance
@@ -53,17 +61,20 @@ class PixelFilter {
 };
 
 struct PassContext {
-    std::uint32_t index;  ///< which pass
+    std::uint32_t index;  ///< which pass, of its part
     const PixelFilter& filter;
     const std::atomic<bool>& cancelled;  ///< a cancelled pass returns false or throws Cancelled
+    std::size_t part = 0;                ///< of the picture (Layer::part)
 };
 
 class Estimator {
   public:
     virtual ~Estimator() = default;
-    /// Fills the layers with one independent estimate, and calls image.finish() for every pixel whose light
-    /// is complete. Returns false, or throws Cancelled, when it was cancelled half-way.
+    /// Fills the layers of a part with one independent estimate, and calls image.finish() for every pixel whose
+    /// light is complete. Returns false, or throws Cancelled, when it was cancelled half-way.
     virtual bool pass(const PassContext& context, PassImage& image) = 0;
+    /// Which part has the next pass. Of the film alone, so that it is the same after an interruption.
+    virtual std::size_t next_part(const Film& /*film*/) const { return 0; }
     /// Post-processes on the mean, after the last pass.
     virtual void finish(Film& /*film*/) {}
     /// Adds this estimator's counters (rays, lookups, VPLs, ...).

@@ -7,6 +7,7 @@
 
 #include "core/objects/cancellation.h"
 #include "core/objects/error.h"
+#include "core/render/counted_work.h"
 #include "core/render/render_driver.h"
 #include "core/scene/scene.h"
 
@@ -51,21 +52,26 @@ PassRunner::PassRunner(const Scene& scene, const Integrator& integrator, std::ui
                        std::vector<HitFeature> features, CancelToken cancelled)
     : film_(film),
       filter_(filter_of(scene.film())),
-      estimator_(timed_prepare(scene, integrator, seed, cancelled, build_seconds_)),
-      image_(film.width(), film.height(), film.layers().size()) {
-    if (features.size() > film.layers().size())
+      estimator_(timed_prepare(scene, integrator, seed, cancelled, build_seconds_)) {
+    for (std::size_t part = 0; part < film.parts(); ++part)
+        images_.emplace_back(film.width(), film.height(), film.layers_of(part).size());
+    if (features.size() > images_.front().layers())
         throw std::invalid_argument("the film has no layers for the features");
-    const std::size_t first_layer = film.layers().size() - features.size();
+    const std::size_t first_layer = images_.front().layers() - features.size();
     if (!features.empty())
         features_.emplace(scene, render_options(scene, seed), std::move(features), first_layer);
 }
 
 bool PassRunner::run_pass(const std::atomic<bool>& cancelled) {
-    image_.clear();
-    const PassContext context{film_.pass_count(), *filter_, cancelled};
+    part_ = estimator_->next_part(film_);
+    PassImage& image = images_.at(part_);
+    image.clear();
+    const PassContext context{film_.pass_count(part_), *filter_, cancelled, part_};
+    const double work = counted_work();
     const auto ends = [&] {
         try {
-            return estimator_->pass(context, image_) && (!features_ || features_->fill(context, image_));
+            if (!estimator_->pass(context, image)) return false;
+            return !features_ || part_ > 0 || features_->fill(context, image);
         } catch (const Cancelled&) {
             return false;
         }
@@ -75,19 +81,27 @@ bool PassRunner::run_pass(const std::atomic<bool>& cancelled) {
             throw std::logic_error("a pass ended early without being cancelled");
         return false;
     }
-    film_.add_pass(image_);
+    film_.add_pass(image, part_, counted_work() - work);
     return true;
 }
 
+double PassRunner::counted_work() const {
+    if (film_.parts() == 1) return 0.0;
+    Statistics statistics;
+    estimator_->add_statistics(statistics);
+    return core::counted_work(statistics);
+}
+
 std::vector<std::uint8_t> PassRunner::add_part() {
-    const std::vector<std::uint8_t> finished(image_.finished().begin(), image_.finished().end());
+    PassImage& image = images_[part_];
+    const std::vector<std::uint8_t> finished(image.finished().begin(), image.finished().end());
     const auto done = std::size_t(std::count(finished.begin(), finished.end(), std::uint8_t(1)));
-    if (features_ || done == 0 || film_.pass_count() > 0) return {};
-    for (std::size_t layer = 0; layer < image_.layers();
+    if (features_ || images_.size() > 1 || done == 0 || film_.pass_count() > 0) return {};
+    for (std::size_t layer = 0; layer < image.layers();
          ++layer)  // what an unfinished pixel has is no estimate
         for (std::size_t pixel = 0; pixel < finished.size(); ++pixel)
-            if (!finished[pixel]) image_.layer(layer)[pixel] = Rgb(0.0f);
-    film_.add_pass(image_);
+            if (!finished[pixel]) image.layer(layer)[pixel] = Rgb(0.0f);
+    film_.add_pass(image);
     return finished;
 }
 

@@ -25,25 +25,31 @@ class PassRunner {
     PassRunner(const Scene& scene, const Integrator& integrator, std::uint64_t seed, Film& film,
                std::vector<HitFeature> features = {}, CancelToken cancelled = {});
 
-    /// Adds the film's next pass. Returns false, with the film unchanged, when it was cancelled.
+    /// Adds the film's next pass, of the part that the estimator wants. Returns false, with the film unchanged,
+    /// when it was cancelled.
     bool run_pass(const std::atomic<bool>& cancelled);
     /// After a cancelled pass, to an empty film: adds the pixels that were finished, as a pass that is zero
     /// elsewhere, and says which they are. Empty, with the film unchanged, where there are none, or features
     /// besides.
     std::vector<std::uint8_t> add_part();
-    /// The pass that was added last.
-    const PassImage& last_pass() const { return image_; }
+    /// The pass that was added last: the layers of last_part().
+    const PassImage& last_pass() const { return images_[part_]; }
+    std::size_t last_part() const { return part_; }
     Estimator& estimator() { return *estimator_; }
     void add_statistics(Statistics& statistics) const;       ///< of the estimator and of the features
     double build_seconds() const { return build_seconds_; }  ///< wall time of prepare()
 
   private:
+    /// So far; 0 where the film has one part, which nothing is compared with.
+    double counted_work() const;
+
     Film& film_;
     std::unique_ptr<PixelFilter> filter_;
     double build_seconds_ = 0.0;
     std::unique_ptr<Estimator> estimator_;
-    PassImage image_;
-    std::optional<FirstHitPass> features_;
+    std::vector<PassImage> images_;          ///< one a part
+    std::size_t part_ = 0;                   ///< that has had the last pass
+    std::optional<FirstHitPass> features_;  ///< in the passes of part 0
 };
 
 }  // namespace mote::core

@@ -85,6 +85,7 @@ class PassLoop {
     bool interrupted() const { return cancelled_flag().load(std::memory_order_relaxed); }
 
     bool is_done() const {
+        if (!result_.film.has_passes(1)) return false;
         return must_stop(stop_, state_) || (request_.enough && state_.passes >= noise_rule_from &&
                                             noise_is_due(state_.passes) && request_.enough(result_.film));
     }

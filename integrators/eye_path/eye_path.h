@@ -86,9 +86,13 @@ class EyePath {
         return transport_layer(scatterings_ + 1, scatterings_ > 0 && surface_first_);
     }
     Transport layer_of_emission() const { return transport_layer(scatterings_, surface_first_); }
+    /// Is light that is joined to the vertex wanted; light scattered along the leg?
+    bool wants_connection() const { return limits_.wanted[layer_of_connection()]; }
+    bool wants_along() const { return limits_.wanted[layer_along()]; }
 
   private:
     bool scatter(core::WalkContext& context);
+    bool wants_more() const;
     /// Lights that the camera does not see: the first leg goes on behind them.
     bool hides_lights() const { return limits_.hide_emitters && depth_ == 1; }
     void pass_light(const core::WalkEvent& event);
@@ -127,7 +131,8 @@ bool EyePath<Media>::advance_by(Walker&& walker, core::WalkContext& context, Tra
     go();
     while (hides_lights() && event.kind == core::WalkEvent::Kind::surface && event.hit.shape->emitter)
         pass_light(event), go();
-    if (!(hides_lights() && event.kind == core::WalkEvent::Kind::escaped))
+    const bool hidden = hides_lights() && event.kind == core::WalkEvent::Kind::escaped;
+    if (limits_.wanted[layer_of_emission()] && !hidden)
         found += lights::found_light<Media>(scene_, event, ray_, weights_, connected_ ? &previous_ : nullptr);
     if (event.kind == core::WalkEvent::Kind::escaped || depth_ == limits_.max_depth ||
         scatterings_ == limits_.max_scatterings || core::is_black(weights_.throughput))
@@ -146,9 +151,20 @@ void EyePath<Media>::pass_light(const core::WalkEvent& event) {
     passed_ += event.distance;
 }
 
+/// Can a path that leaves the vertex find light that is wanted? Behind mirrors and glass that come first
+/// there is all of it.
+template <bool Media>
+bool EyePath<Media>::wants_more() const {
+    if (scatterings_ == 0 && !vertex_.connectable()) return true;
+    const bool surface = scatterings_ == 0 ? vertex_.on_surface() : surface_first_;
+    if (limits_.wanted[transport_layer(scatterings_ + 1, surface)]) return true;  // lights that it hits
+    return scatterings_ + 1 != limits_.max_scatterings && limits_.wanted[transport_layer(2, surface)];
+}
+
 /// Leaves the vertex. Returns false where the path ends instead.
 template <bool Media>
 bool EyePath<Media>::scatter(core::WalkContext& context) {
+    if (!wants_more()) return false;
     if (depth_ >= limits_.rr_depth && !survives<Media>(weights_, eta_, depth_, context.rng.next_float()))
         return false;
     const auto next = vertex_.sample(choices_.y, sampler_.next_2d(), core::TransportMode::radiance);

@@ -1,5 +1,7 @@
-// How long an eye path may grow.
+// How long an eye path may grow, and what it is for.
 #pragma once
+
+#include "integrators/eye_path/transport_layers.h"
 
 namespace mote::integrators {
 
@@ -8,6 +10,7 @@ struct EyePathLimits {
     int rr_depth = 5;            ///< Russian roulette from this depth on
     int max_scatterings = -1;    ///< but at mirrors and glass; -1 no limit
     bool hide_emitters = false;  ///< eye rays pass area lights and do not see the environment
+    WantedTransport wanted{};    ///< paths end where nothing of it can come any more
 };
 
 }  // namespace mote::integrators

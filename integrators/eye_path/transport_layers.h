@@ -31,11 +31,21 @@ constexpr Transport transport_layer(int scatterings, bool surface_first) {
 /// How many of them a scene has: those of media come last.
 constexpr std::size_t transport_layer_count(bool media) { return media ? transport_count : 3; }
 
+/// The cells of the transport that a method is asked for (RenderOptions::cells).
+struct WantedTransport {
+    std::array<bool, transport_count> of{true, true, true, true, true};
+    bool operator[](Transport t) const { return of[std::size_t(t)]; }
+};
+WantedTransport wanted_transport(const core::RenderOptions& options);
+
 /// One estimate of a pixel, by layer.
 struct TransportSum {
     std::array<core::Rgb, transport_count> light{};
     core::Rgb& operator[](Transport t) { return light[std::size_t(t)]; }
 };
+
+/// "direct", "multiple_scattering": the name of a cell, and of the layer that holds all of it.
+const std::string& transport_name(Transport t);
 
 /// The layers in the order of Transport; the two of media are left out where there are none. `bounded`
 /// renames the layers that a bound on the geometry term darkens.

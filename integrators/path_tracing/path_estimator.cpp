@@ -15,7 +15,9 @@ template <bool Media>
 class PathEstimator final : public Estimator {
   public:
     PathEstimator(const Scene& scene, const RenderOptions& options, const PathSettings& settings)
-        : scene_(scene), options_(options), settings_(settings) {}
+        : scene_(scene), options_(options), settings_(settings) {
+        settings_.limits.wanted = wanted_transport(options);
+    }
 
     bool pass(const PassContext& context, PassImage& image) override {
         return for_each_tile(options_.width, options_.height, tile_size, context.cancelled,

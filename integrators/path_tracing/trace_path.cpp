@@ -14,7 +14,7 @@ TransportSum trace_path(const Scene& scene, const PathSettings& settings, const 
     const bool bounded = std::isfinite(settings.bound);
     const bool lit_along = Media && settings.equiangular && !settings.equiangular->empty();
     const auto light_along = [&](const EyeLeg& leg) {
-        if (!lit_along || path.depth() == settings.limits.max_depth) return;
+        if (!lit_along || !path.wants_along() || path.depth() == settings.limits.max_depth) return;
         sum[path.layer_along()] +=
             lights::throughput_of<Media>(leg.before) *
             settings.equiangular->scattered_along(scene, leg.ray, leg.event.surface_distance, leg.start,
@@ -29,7 +29,8 @@ TransportSum trace_path(const Scene& scene, const PathSettings& settings, const 
             // stands on a delta surface: what goes on from there is not part of the bounded transport.
             path.scale(compensation::bounded_share(path.first_cosine() * vertex.geometric_cosine(vertex.wo),
                                                    path.leg_length(), settings.bound));
-        if (vertex.connectable()) sum[path.layer_of_connection()] += path.sample_light(context, {lit_along});
+        if (vertex.connectable() && path.wants_connection())
+            sum[path.layer_of_connection()] += path.sample_light(context, {lit_along});
     }
     return sum;
 }

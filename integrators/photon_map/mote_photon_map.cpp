@@ -41,7 +41,9 @@ template <bool Media>
 class PhotonMapEstimator final : public Estimator {
   public:
     PhotonMapEstimator(const Scene& scene, const RenderOptions& options, const PhotonMapSettings& settings)
-        : scene_(scene), options_(options), settings_(settings) {}
+        : scene_(scene), options_(options), settings_(settings) {
+        settings_.eye.wanted = wanted_transport(options);
+    }
 
     bool pass(const PassContext& context, PassImage& image) override {
         if (context.cancelled) return false;

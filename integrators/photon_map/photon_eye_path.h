@@ -39,14 +39,14 @@ class PhotonEyePath {
         TransportSum sum;
         EyePath<Media> path(scene_, limits_, eye, context_);
         const auto add_beam = [&](const EyeLeg& leg) {
-            if (Media && path.scatterings() == 0) this->add_beam(sum, leg, path.depth());
+            if (Media && wants_beams() && path.scatterings() == 0) this->add_beam(sum, leg, path.depth());
         };
         while (path.advance(context_, sum, add_beam)) {
             const bool surface = path.vertex().on_surface();
             if (!surface && maps_.single_scattering) break;  // the beam has it all
             if (!path.vertex().connectable()) continue;
-            sum[path.layer_of_connection()] += path.sample_light(context_);
-            if (surface) add_density(sum, path);
+            if (path.wants_connection()) sum[path.layer_of_connection()] += path.sample_light(context_);
+            if (surface && limits_.wanted[Transport::indirect]) add_density(sum, path);
         }
         return sum;
     }
@@ -55,6 +55,11 @@ class PhotonEyePath {
     /// Photons deeper than this would make the path longer than max_depth.
     int photon_depth(int eye_depth) const {
         return limits_.max_depth < 0 ? std::numeric_limits<int>::max() : limits_.max_depth - eye_depth;
+    }
+
+    bool wants_beams() const {
+        return limits_.wanted[Transport::multiple_scattering] ||
+               (maps_.single_scattering && limits_.wanted[Transport::single_scattering]);
     }
 
     void add_beam(TransportSum& sum, const EyeLeg& leg, int depth) {

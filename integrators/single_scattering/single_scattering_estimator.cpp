@@ -17,6 +17,7 @@ class SingleScatteringEstimator final : public Estimator {
     SingleScatteringEstimator(const Scene& scene, const RenderOptions& options,
                               const ScatteringSettings& settings)
         : scene_(scene), options_(options), settings_(settings) {
+        settings_.eye.limits.wanted = wanted_transport(options);
         if (!Media) return;
         accelerations_.emplace(scene, settings.accelerations);
         settings_.eye.maps = accelerations_->maps();
@@ -86,7 +87,7 @@ bool SingleScatteringEstimator<Media>::pass(const PassContext& context, PassImag
     MarchSettings march = settings_.march;
     march.offset = numbers.march.x;
     std::vector<InScattering> lights;
-    if constexpr (Media)
+    if (Media && settings_.eye.limits.wanted[Transport::single_scattering])
         for (const Emitter* light : positional_lights(scene_))
             lights.emplace_back(scene_, *light, march, accelerations_->of(*light));
     const bool full = settings_.sampling == ScatteringSampling::full;

@@ -63,7 +63,8 @@ class MarchedLegs {
   private:
     /// Light scattered in media along the whole ray, through panes to the first surface.
     void add_in_scattering(const Ray& ray, bool first, const PathWeights& before, WalkContext& context) {
-        if (settings_.other_lights)
+        const bool wanted = settings_.limits.wanted[Transport::single_scattering];
+        if (settings_.other_lights && (wanted || settings_.limits.wanted[Transport::emission]))
             add_other_lights(scene_, settings_, ray, path_.state(), before, path_.sampler(), context,
                              found_.sum);
         if (first) return;
@@ -97,7 +98,8 @@ EyeLight trace_eye(const Scene& scene, const EyeSettings& settings, std::span<co
     MarchedLegs<Media> legs(scene, settings, positional, path, scratch, found);
     const auto nothing = [](const EyeLeg&) {};
     while (path.advance_by(legs, scratch.walk, found.sum, nothing))
-        if (path.vertex().connectable()) found.sum[Transport::direct] += path.sample_light(scratch.walk);
+        if (path.vertex().connectable() && path.wants_connection())
+            found.sum[Transport::direct] += path.sample_light(scratch.walk);
     return found;
 }
 

@@ -48,7 +48,9 @@ struct SphereSet {
 class VslEstimator final : public Estimator {
   public:
     VslEstimator(const Scene& scene, const RenderOptions& options, const VslSettings& settings)
-        : scene_(scene), options_(options), settings_(settings) {}
+        : scene_(scene), options_(options), settings_(settings) {
+        settings_.eye.wanted = wanted_transport(options);
+    }
 
     bool pass(const PassContext& context, PassImage& image) override {
         if (context.cancelled) return false;
@@ -86,7 +88,8 @@ class VslEstimator final : public Estimator {
         EyePath<false> path(scene_, settings_.eye, eye, walk);
         while (path.advance(walk, sum)) {
             if (!path.vertex().connectable()) continue;
-            sum[Transport::direct] += path.sample_light(walk);
+            if (path.wants_connection()) sum[Transport::direct] += path.sample_light(walk);
+            if (!settings_.eye.wanted[Transport::indirect]) continue;
             sum[Transport::indirect] +=
                 path.throughput() * gather(path.vertex(), path.depth(), spheres, walk);
         }

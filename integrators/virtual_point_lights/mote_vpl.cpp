@@ -50,9 +50,12 @@ class MoteVpl final : public Integrator {
         if (!settings_.compensates()) return layers;
         layers.push_back(
             {"compensation_surface", "what the bound took from light first scattered by a surface"});
-        if (scene.has_media())
+        layers.back().cell = transport_name(Transport::indirect);
+        if (scene.has_media()) {
             layers.push_back(
                 {"compensation_volume", "what the bound took from light first scattered in a medium"});
+            layers.back().cell = transport_name(Transport::multiple_scattering);
+        }
         if (settings_.screen_space)
             for (Layer& layer : settings_.screen_space->film_layers()) layers.push_back(std::move(layer));
         return layers;

@@ -21,6 +21,7 @@ class VplEstimator final : public Estimator {
           options_(options),
           settings_(settings),
           bound_(settings.bound_for(scene.rays().bounds())) {
+        settings_.eye.wanted = wanted_transport(options);
         if (settings_.compensation.enabled && std::isfinite(bound_))
             transport_.emplace(scene, bound_, settings_.compensation);
         if (settings_.screen_space && settings_.screen_space->layers > 1 && std::isfinite(bound_))

@@ -118,8 +118,11 @@ class EyeTile {
         EyePath<Media>& path = *lane.path;
         const bool at_vertex = path.advance(walk_, lane.sum.transport);
         if (at_vertex && path.vertex().connectable()) {
-            lane.sum.transport[path.layer_of_connection()] += path.sample_light(walk_, {false, maps_.lights});
-            add_receiver(lane, index);
+            if (path.wants_connection())
+                lane.sum.transport[path.layer_of_connection()] +=
+                    path.sample_light(walk_, {false, maps_.lights});
+            if (settings_.eye.wanted[transport_layer(2, path.vertex().on_surface())])
+                add_receiver(lane, index);
         }
         lane.rng = walk_.rng;
         return at_vertex;
