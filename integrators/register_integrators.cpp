@@ -11,6 +11,7 @@ void register_integrators(core::Registry& registry) {
     compensation::register_compensation(registry);
     register_screen_space_compensation(registry);
     register_visibility(registry);
+    register_mote_layers(registry);
     register_path(registry);
     register_volpath(registry);
     register_mote_vpl(registry);

@@ -2,12 +2,15 @@
 #pragma once
 
 #include "core/objects/registry.h"
+#include "core/render/integrator.h"
 #include "core/render/plan.h"
 #include "core/scene/requirements.h"
 #include "core/scene/scene.h"
+#include "integrators/eye_path/eye_path_limits.h"
 
 namespace mote::integrators {
 
+void register_mote_layers(core::Registry& registry);
 void register_path(core::Registry& registry);
 void register_volpath(core::Registry& registry);
 void register_mote_vpl(core::Registry& registry);
@@ -15,6 +18,12 @@ void register_mote_photon_map(core::Registry& registry);
 void register_mote_vsl(core::Registry& registry);
 void register_mote_single_scattering(core::Registry& registry);
 void register_mote_epipolar(core::Registry& registry);
+
+// What a scene's requirements choose (layers/layer_methods.h), with the settings of a scene file that names
+// nothing but these limits.
+std::shared_ptr<const core::Integrator> make_path(const EyePathLimits& limits);
+std::shared_ptr<const core::Integrator> make_volpath(const EyePathLimits& limits);
+std::shared_ptr<const core::Integrator> make_epipolar(const EyePathLimits& limits);
 
 /// Light that passes delta surfaces last, for integrators that can only hit lights.
 void plan_caustics(core::Plan& plan, const core::Scene& scene, const core::Requirements& requirements);

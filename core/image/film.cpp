@@ -122,7 +122,8 @@ void Film::add_pixel(const PassImage& image, Part& part, std::size_t pixel) {
             if (!layers_[layer].auxiliary) beauty[c] += v;
         }
     }
-    for (int c = 0; c < 3; ++c) part.beauty_squares.block[3 * pixel + std::size_t(c)] += beauty[c] * beauty[c];
+    for (int c = 0; c < 3; ++c)
+        part.beauty_squares.block[3 * pixel + std::size_t(c)] += beauty[c] * beauty[c];
 }
 
 void Film::close_block(Part& part) {
@@ -133,7 +134,8 @@ void Film::close_block(Part& part) {
             part.block_squares.total[p] += sum * sum / 3.0;
         }
     });
-    for (const std::size_t layer : part.layers) sums_[layer].close_block(), layer_squares_[layer].close_block();
+    for (const std::size_t layer : part.layers)
+        sums_[layer].close_block(), layer_squares_[layer].close_block();
     part.beauty_squares.close_block();
 }
 

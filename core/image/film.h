@@ -22,8 +22,8 @@ class Film {
     static constexpr std::uint32_t block_size = 16;
 
     /// `all_squares`: keep the sum of squares of every layer, not of the beauty and of those that ask for it.
-    /// Throws std::invalid_argument when two layers have one name, a Layer::where names none or one of another
-    /// part, or a part has no layer.
+    /// Throws std::invalid_argument when two layers have one name, a Layer::where names none or one of
+    /// another part, or a part has no layer.
     Film(int width, int height, std::vector<Layer> layers, bool all_squares = false);
 
     int width() const { return width_; }
@@ -95,7 +95,8 @@ class Film {
     void find_where();
     void add_pixel(const PassImage& image, Part& part, std::size_t pixel);
     void close_block(Part& part);
-    /// The sum over the layers of the beauty that are in a part; of complete blocks alone, or with the open one.
+    /// The sum over the layers of the beauty that are in a part; of complete blocks alone, or with the open
+    /// one.
     double beauty_sum(const Part& part, std::size_t i) const;
     /// Of the mean over complete blocks, averaged over channels, from the spread of the blocks' sums.
     double block_variance_of_mean(const Part& part, std::size_t pixel) const;

@@ -59,8 +59,7 @@ double Film::noise() const {
             for (const Part& part : parts_) mean += beauty_sum(part, 3 * p + c) / part.passes;
             picture[p][int(c)] = float(mean);
         }
-    const RelativeWeights weights =
-        relative_weights(picture, beauty_variance_of_mean(), width_, height_);
+    const RelativeWeights weights = relative_weights(picture, beauty_variance_of_mean(), width_, height_);
     if (!(weights.noise_norm > 0.0)) {
         const bool black =
             std::all_of(picture.begin(), picture.end(), [](const Rgb& c) { return c == Rgb(0.0f); });
@@ -70,7 +69,8 @@ double Film::noise() const {
     for (std::size_t i = 0; i < parts_.size(); ++i) {
         const std::vector<Rgb> variance = part_variance_of_mean(i);
         double of_passes = 0.0;
-        for (std::size_t p = 0; p < pixels(); ++p) of_passes += weights.weight[p] * mean_of_channels(variance[p]);
+        for (std::size_t p = 0; p < pixels(); ++p)
+            of_passes += weights.weight[p] * mean_of_channels(variance[p]);
         sum += gain_of_blocks(parts_[i], variance, weights.weight) * of_passes;
     }
     return std::sqrt(sum / weights.noise_norm);

@@ -1,8 +1,8 @@
 // The bits of a film as bytes: header, a head for each part, sums, checksum. Little-endian, as every machine
 // this runs on.
 //
-// Before the first block of a part is complete all totals are zero, and right after a block the open one is: zeros are
-// not written, for a film takes hundreds of megabytes.
+// Before the first block of a part is complete all totals are zero, and right after a block the open one is:
+// zeros are not written, for a film takes hundreds of megabytes.
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -61,7 +61,8 @@ void Film::for_each_sums(Self& film, const Body& body) {
 std::size_t Film::serialized_size(std::span<const std::uint32_t> passes) const {
     std::size_t size = sizeof(Header) + parts_.size() * sizeof(PartHeader) + sizeof(std::uint64_t);
     for_each_sums(*this, [&](const Sums& sums, std::size_t part) {
-        const std::size_t copies = (has_totals(passes[part]) ? 1u : 0u) + (has_blocks(passes[part]) ? 1u : 0u);
+        const std::size_t copies =
+            (has_totals(passes[part]) ? 1u : 0u) + (has_blocks(passes[part]) ? 1u : 0u);
         size += copies * sums.total.size() * sizeof(double);
     });
     return size;

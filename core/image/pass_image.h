@@ -42,7 +42,9 @@ class PassImage {
     requires std::is_enum_v<Name> Rgb& at(Name layer, int x, int y) { return at(std::size_t(layer), x, y); }
     void clear();
     /// Exchanges a layer with one of another image of the same size.
-    void swap_layer(std::size_t i, PassImage& other, std::size_t j) { planes_.at(i).swap(other.planes_.at(j)); }
+    void swap_layer(std::size_t i, PassImage& other, std::size_t j) {
+        planes_.at(i).swap(other.planes_.at(j));
+    }
 
     /// Pixels whose light is complete, one byte each, should the pass end early: a tile writes its own.
     void finish(int x, int y) {

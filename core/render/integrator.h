@@ -37,8 +37,8 @@ struct RenderOptions {
     int width = 0, height = 0;
     SamplerKind sampler = SamplerKind::sobol;
     CancelToken cancelled = {};  ///< prepare() and finish() may throw Cancelled when it asks for it
-    /// The cells of the transport (Layer::transport) that are wanted; empty: all. The layers of the others may
-    /// hold anything, and nothing should be spent on them.
+    /// The cells of the transport (Layer::transport) that are wanted; empty: all. The layers of the others
+    /// may hold anything, and nothing should be spent on them.
     std::vector<std::string> cells = {};
 
     bool wants(const std::string& cell) const {
@@ -70,8 +70,8 @@ struct PassContext {
 class Estimator {
   public:
     virtual ~Estimator() = default;
-    /// Fills the layers of a part with one independent estimate, and calls image.finish() for every pixel whose
-    /// light is complete. Returns false, or throws Cancelled, when it was cancelled half-way.
+    /// Fills the layers of a part with one independent estimate, and calls image.finish() for every pixel
+    /// whose light is complete. Returns false, or throws Cancelled, when it was cancelled half-way.
     virtual bool pass(const PassContext& context, PassImage& image) = 0;
     /// Which part has the next pass. Of the film alone, so that it is the same after an interruption.
     virtual std::size_t next_part(const Film& /*film*/) const { return 0; }
@@ -84,6 +84,8 @@ class Estimator {
 class Integrator : public Object {
   public:
     virtual std::string type() const = 0;
+    /// Does Estimator::finish() read and write layers of the film? Then it must be the film's only method.
+    virtual bool works_on_mean() const { return false; }
     /// The layers it fills, in order; those that are not auxiliary add up to the beauty.
     virtual std::vector<Layer> layers(const Scene& scene) const = 0;
     virtual Plan plan(const Scene& scene, const Requirements& requirements) const = 0;

@@ -25,8 +25,8 @@ class PassRunner {
     PassRunner(const Scene& scene, const Integrator& integrator, std::uint64_t seed, Film& film,
                std::vector<HitFeature> features = {}, CancelToken cancelled = {});
 
-    /// Adds the film's next pass, of the part that the estimator wants. Returns false, with the film unchanged,
-    /// when it was cancelled.
+    /// Adds the film's next pass, of the part that the estimator wants. Returns false, with the film
+    /// unchanged, when it was cancelled.
     bool run_pass(const std::atomic<bool>& cancelled);
     /// After a cancelled pass, to an empty film: adds the pixels that were finished, as a pass that is zero
     /// elsewhere, and says which they are. Empty, with the film unchanged, where there are none, or features
@@ -47,8 +47,8 @@ class PassRunner {
     std::unique_ptr<PixelFilter> filter_;
     double build_seconds_ = 0.0;
     std::unique_ptr<Estimator> estimator_;
-    std::vector<PassImage> images_;          ///< one a part
-    std::size_t part_ = 0;                   ///< that has had the last pass
+    std::vector<PassImage> images_;         ///< one a part
+    std::size_t part_ = 0;                  ///< that has had the last pass
     std::optional<FirstHitPass> features_;  ///< in the passes of part 0
 };
 

@@ -13,7 +13,7 @@ namespace {
 
 class Path final : public Integrator {
   public:
-    explicit Path(const Properties& properties) : settings_{read_eye_path_limits(properties)} {}
+    explicit Path(const EyePathLimits& limits) : settings_{limits} {}
 
     std::string type() const override { return "path"; }
     std::vector<Layer> layers(const Scene&) const override { return transport_layers(false, false); }
@@ -40,11 +40,15 @@ class Path final : public Integrator {
 
 }  // namespace
 
+std::shared_ptr<const Integrator> make_path(const EyePathLimits& limits) {
+    return std::make_shared<const Path>(limits);
+}
+
 void register_path(Registry& registry) {
     registry.add({Category::integrator, "path", "Unbiased path tracer for surfaces; media are not seen.",
                   eye_path_parameters(),
                   R"(<integrator type="path"><integer name="max_depth" value="8"/></integrator>)"},
-                 [](const Properties& p) { return std::make_shared<Path>(p); });
+                 [](const Properties& p) { return std::make_shared<Path>(read_eye_path_limits(p)); });
 }
 
 }  // namespace mote::integrators

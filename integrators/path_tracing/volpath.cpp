@@ -18,6 +18,7 @@ namespace {
 
 class Volpath final : public Integrator {
   public:
+    explicit Volpath(const EyePathLimits& limits) : settings_{limits} {}
     explicit Volpath(const Properties& properties) : settings_{read_eye_path_limits(properties)} {
         const double bound = properties.get_float("vpl_bound", 0.0);
         if (bound < 0.0) throw InputError("vpl_bound must not be negative", properties.where_of("vpl_bound"));
@@ -76,6 +77,10 @@ Plan Volpath::plan(const Scene& scene, const Requirements& requirements) const {
 }
 
 }  // namespace
+
+std::shared_ptr<const Integrator> make_volpath(const EyePathLimits& limits) {
+    return std::make_shared<const Volpath>(limits);
+}
 
 void register_volpath(Registry& registry) {
     auto parameters = eye_path_parameters();

@@ -75,6 +75,13 @@ Plan MoteEpipolar::plan(const Scene& scene, const Requirements& r) const {
 
 }  // namespace
 
+std::shared_ptr<const Integrator> make_epipolar(const EyePathLimits& limits) {
+    Properties properties;  // of a scene file that names nothing but these
+    if (limits.max_depth > 1) properties.values["max_depth"] = {std::int64_t(limits.max_depth - 1), {}};
+    properties.values["hide_emitters"] = {limits.hide_emitters, {}};
+    return std::make_shared<const MoteEpipolar>(properties);
+}
+
 void register_mote_epipolar(Registry& registry) {
     auto parameters = scattering_parameters();
     parameters.push_back(

@@ -64,8 +64,9 @@ std::vector<const Emitter*> positional_lights(const Scene& scene) {
 void plan_single_scattering(Plan& plan, const Scene& scene, const Requirements& r,
                             const ScatteringSettings& s) {
     plan.run("surfaces", "one eye path per pixel and pass", "direct light at full rate, by two techniques");
-    plan.miss("light scattered more than once", "indirect light and multiple scattering",
-              "this integrator stops after one scattering; volpath renders the rest");
+    if (r.wants("indirect") || r.wants("multiple_scattering"))
+        plan.miss("light scattered more than once", "indirect light and multiple scattering",
+                  "this integrator stops after one scattering; volpath renders the rest");
     plan_caustics(plan, scene, r);
     if (!r.any_media()) {
         plan_media(plan, r);

@@ -45,6 +45,7 @@ class MoteVpl final : public Integrator {
     }
 
     std::string type() const override { return "mote_vpl"; }
+    bool works_on_mean() const override { return settings_.screen_space.has_value(); }
     std::vector<Layer> layers(const Scene& scene) const override {
         auto layers = transport_layers(scene.has_media(), settings_.bounded);
         if (!settings_.compensates()) return layers;

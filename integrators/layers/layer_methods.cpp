@@ -1,0 +1,107 @@
+#include "integrators/layers/layer_methods.h"
+
+#include <algorithm>
+#include <map>
+
+#include "core/scene/scene.h"
+#include "integrators/register_parts.h"
+
+namespace mote::integrators {
+
+using namespace core;
+
+namespace {
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+std::vector<std::string> cells_that_it_can(const Scene& scene, const Integrator& integrator) {
+    std::vector<std::string> cells;
+    for (const Layer& layer : integrator.layers(scene))
+        if (!layer.auxiliary && !contains(cells, layer.transport())) cells.push_back(layer.transport());
+    return cells;
+}
+
+void check_name(const LayerMethod& method, const std::string& cell,
+                const std::vector<std::string>& possible) {
+    const std::vector<std::string> all = transport_cells(true);
+    if (!contains(all, cell))
+        throw InputError("'" + printable(cell) + "' is no cell of the transport" + suggestion(cell, all),
+                         method.where);
+    if (!contains(possible, cell))
+        throw InputError(method.integrator->type() + " cannot fill '" + cell + "' here", method.where);
+}
+
+/// More lights than this, marched one after the other, take longer than one that is drawn.
+constexpr std::size_t most_marched_lights = 16;
+
+std::size_t positional_light_count(const Scene& scene) {
+    return std::size_t(std::count_if(scene.emitters().begin(), scene.emitters().end(), [](const auto& light) {
+        return Scene::light_position(*light) && !is_black(light->power());
+    }));
+}
+
+}  // namespace
+
+std::vector<std::string> transport_cells(bool media) {
+    std::vector<std::string> cells;
+    for (std::size_t i = 0; i < transport_layer_count(media); ++i)
+        cells.push_back(transport_name(Transport(i)));
+    return cells;
+}
+
+std::vector<LayerMethod> choose_layer_methods(const Scene& scene, const Requirements& r,
+                                              const EyePathLimits& limits) {
+    if (!r.any_media())
+        return {{make_path(limits), {"emission", "direct"}, "one scattering: light and BSDF sampling"},
+                {make_path(limits),
+                 {"indirect"},
+                 "paths of pixels err independently of each other, which the filter takes"}};
+    std::vector<LayerMethod> methods;
+    const std::size_t lights = positional_light_count(scene);
+    const bool marched = r.media_scattering && lights > 0 && lights <= most_marched_lights &&
+                         (limits.max_depth < 0 || limits.max_depth > 1);
+    if (marched)
+        methods.push_back(
+            {make_epipolar(limits),
+             {"emission", "direct", "single_scattering"},
+             "lights with a position are marched along epipolar lines: nothing is left to chance"});
+    else
+        methods.push_back({make_volpath(limits),
+                           {"emission", "direct", "single_scattering"},
+                           lights > most_marched_lights ? "too many lights to march each of them"
+                                                        : "no light has a position to march to"});
+    methods.push_back({make_volpath(limits),
+                       {"indirect", "multiple_scattering"},
+                       "paths of pixels err independently of each other, which the filter takes"});
+    return methods;
+}
+
+std::vector<LayerMethod> with_cells(const Scene& scene, std::vector<LayerMethod> methods) {
+    std::map<std::string, const LayerMethod*> filled;
+    for (LayerMethod& method : methods) {
+        const std::vector<std::string> possible = cells_that_it_can(scene, *method.integrator);
+        for (const std::string& cell : method.cells) check_name(method, cell, possible);
+        if (method.cells.empty()) method.cells = possible;
+        for (const std::string& cell : method.cells) {
+            const auto [other, fresh] = filled.emplace(cell, &method);
+            if (!fresh)
+                throw InputError("two methods fill '" + cell + "': " + other->second->integrator->type() +
+                                     " and " + method.integrator->type() +
+                                     "; name the cells of each, such as name=\"direct, indirect\"",
+                                 method.where);
+        }
+    }
+    return methods;
+}
+
+std::vector<std::size_t> kept_layers(const Scene& scene, const LayerMethod& method) {
+    const std::vector<Layer> layers = method.integrator->layers(scene);
+    std::vector<std::size_t> kept;
+    for (std::size_t i = 0; i < layers.size(); ++i)
+        if (!layers[i].auxiliary && contains(method.cells, layers[i].transport())) kept.push_back(i);
+    return kept;
+}
+
+}  // namespace mote::integrators

@@ -1,0 +1,130 @@
+// `mote_layers`: each cell of the transport by the method that does it best.
+//
+// A picture is the sum of its layers, so each may come from a method of its own, with as many passes as it
+// needs. Nested integrators fill the cells that their names list; without any the scene's requirements
+// choose.
+#include <fmt/format.h>
+
+#include "integrators/eye_path/eye_path_parameters.h"
+#include "integrators/layers/layers_estimator.h"
+#include "integrators/register_parts.h"
+
+namespace mote::integrators {
+
+using namespace core;
+
+namespace {
+
+/// "direct, indirect" -> {"direct", "indirect"}
+std::vector<std::string> split_names(const std::string& text) {
+    std::vector<std::string> names;
+    std::string name;
+    for (const char c : text + ",") {
+        if (c != ',' && c != ' ')
+            name += c;
+        else if (!name.empty())
+            names.push_back(std::exchange(name, ""));
+    }
+    return names;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+    return text;
+}
+
+class MoteLayers final : public Integrator {
+  public:
+    explicit MoteLayers(const Properties& properties) : limits_(read_eye_path_limits(properties)) {
+        for (const Properties::Child& child : properties.children) {
+            const auto integrator = std::dynamic_pointer_cast<const Integrator>(child.object);
+            if (!integrator) continue;
+            if (integrator->works_on_mean())
+                throw InputError("screen-space compensation needs the whole picture: no part of mote_layers",
+                                 child.where);
+            asked_for_.push_back({integrator, split_names(child.name), "asked for", child.where});
+        }
+        if (asked_for_.empty()) return;
+        for (const std::string name : {"max_depth", "rr_depth", "hide_emitters"})
+            if (properties.has(name))
+                properties.warn(name + " has no effect: every nested integrator has its own");
+    }
+
+    std::string type() const override { return "mote_layers"; }
+    std::vector<Layer> layers(const Scene& scene) const override {
+        std::vector<Layer> layers;
+        const std::vector<LayerMethod> chosen = methods(scene);
+        for (std::size_t part = 0; part < chosen.size(); ++part)
+            for (const std::size_t i : kept_layers(scene, chosen[part])) {
+                layers.push_back(chosen[part].integrator->layers(scene)[i]);
+                layers.back().part = part;
+            }
+        return layers;
+    }
+    Plan plan(const Scene& scene, const Requirements& requirements) const override;
+    std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
+        return make_layers_estimator(scene, options, methods(scene));
+    }
+
+  private:
+    std::vector<LayerMethod> methods(const Scene& scene) const {
+        return with_cells(scene, asked_for_.empty()
+                                     ? choose_layer_methods(scene, find_requirements(scene), limits_)
+                                     : asked_for_);
+    }
+    EyePathLimits limits_;
+    std::vector<LayerMethod> asked_for_;
+};
+
+void add_entries(std::vector<PlanEntry>& all, const std::vector<PlanEntry>& more, const std::string& type) {
+    for (PlanEntry entry : more) {
+        entry.topic = type + ": " + entry.topic;
+        all.push_back(std::move(entry));
+    }
+}
+
+Plan MoteLayers::plan(const Scene& scene, const Requirements& requirements) const {
+    Plan plan;
+    plan.integrator = type();
+    std::vector<std::string> gaps = transport_cells(requirements.any_media());
+    const std::vector<LayerMethod> chosen = methods(scene);
+    for (const LayerMethod& method : chosen) {
+        plan.run(joined(method.cells), method.integrator->type(), method.reason);
+        for (const std::string& cell : method.cells) std::erase(gaps, cell);
+    }
+    plan.run("passes", fmt::format("shared out among {} methods", chosen.size()),
+             "to the one whose next pass takes the most error for its rays and lookups");
+    for (const std::string& cell : gaps)
+        plan.miss(cell, "no method fills it", "none of the nested integrators has it in its name");
+    for (const LayerMethod& method : chosen) {
+        Requirements wanted = requirements;
+        wanted.cells = method.cells;
+        const Plan own = method.integrator->plan(scene, wanted);
+        add_entries(plan.runs, own.runs, method.integrator->type());
+        add_entries(plan.missing, own.missing, method.integrator->type());
+    }
+    return plan;
+}
+
+}  // namespace
+
+void register_mote_layers(Registry& registry) {
+    auto parameters = eye_path_parameters();
+    parameters.push_back(
+        {"integrator", "integrator", "chosen by the scene",
+         "any number: each fills the cells that its name lists, of emission, direct, indirect, "
+         "single_scattering and multiple_scattering; without a name all that it can"});
+    registry.add(
+        {Category::integrator, "mote_layers",
+         "Each layer of the picture by the method that does it best, with as many passes as it needs: the "
+         "default where a scene names no integrator.",
+         parameters,
+         R"(<integrator type="mote_layers">
+    <integrator type="mote_epipolar" name="emission, direct, single_scattering"/>
+    <integrator type="volpath" name="indirect, multiple_scattering"/>
+</integrator>)"},
+        [](const Properties& p) { return std::make_shared<MoteLayers>(p); });
+}
+
+}  // namespace mote::integrators
