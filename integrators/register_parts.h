@@ -23,7 +23,10 @@ void register_mote_epipolar(core::Registry& registry);
 // nothing but these limits.
 std::shared_ptr<const core::Integrator> make_path(const EyePathLimits& limits);
 std::shared_ptr<const core::Integrator> make_volpath(const EyePathLimits& limits);
+/// Light of lights with a position, scattered once in media; light of all others, with all else that scatters
+/// at most once (lights = positional, other).
 std::shared_ptr<const core::Integrator> make_epipolar(const EyePathLimits& limits);
+std::shared_ptr<const core::Integrator> make_single_scattering(const EyePathLimits& limits);
 
 /// Light that passes delta surfaces last, for integrators that can only hit lights.
 void plan_caustics(core::Plan& plan, const core::Scene& scene, const core::Requirements& requirements);

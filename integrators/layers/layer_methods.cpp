@@ -1,10 +1,12 @@
 #include "integrators/layers/layer_methods.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 
 #include "core/scene/scene.h"
 #include "integrators/register_parts.h"
+#include "integrators/single_scattering/single_scattering_estimator.h"
 
 namespace mote::integrators {
 
@@ -12,7 +14,11 @@ using namespace core;
 
 namespace {
 
-bool contains(const std::vector<std::string>& names, const std::string& name) {
+/// The halves of single scattering, each of which a method may fill.
+const std::array<std::string, 2> halves{positional_scattering, other_scattering};
+
+template <typename Names>
+bool contains(const Names& names, const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
@@ -25,7 +31,8 @@ std::vector<std::string> cells_that_it_can(const Scene& scene, const Integrator&
 
 void check_name(const LayerMethod& method, const std::string& cell,
                 const std::vector<std::string>& possible) {
-    const std::vector<std::string> all = transport_cells(true);
+    std::vector<std::string> all = transport_cells(true);
+    all.insert(all.end(), halves.begin(), halves.end());
     if (!contains(all, cell))
         throw InputError("'" + printable(cell) + "' is no cell of the transport" + suggestion(cell, all),
                          method.where);
@@ -36,10 +43,12 @@ void check_name(const LayerMethod& method, const std::string& cell,
 /// More lights than this, marched one after the other, take longer than one that is drawn.
 constexpr std::size_t most_marched_lights = 16;
 
-std::size_t positional_light_count(const Scene& scene) {
-    return std::size_t(std::count_if(scene.emitters().begin(), scene.emitters().end(), [](const auto& light) {
-        return Scene::light_position(*light) && !is_black(light->power());
-    }));
+/// The cells that are filled where `cell` is: itself, and its halves or the whole.
+std::vector<std::string> overlapping(const std::string& cell) {
+    const std::string& whole = transport_name(Transport::single_scattering);
+    if (cell == whole) return {whole, halves[0], halves[1]};
+    if (contains(halves, cell)) return {cell, whole};
+    return {cell};
 }
 
 }  // namespace
@@ -59,15 +68,20 @@ std::vector<LayerMethod> choose_layer_methods(const Scene& scene, const Requirem
                  {"indirect"},
                  "paths of pixels err independently of each other, which the filter takes"}};
     std::vector<LayerMethod> methods;
-    const std::size_t lights = positional_light_count(scene);
+    const std::size_t lights = positional_lights(scene).size();
     const bool marched = r.media_scattering && lights > 0 && lights <= most_marched_lights &&
                          (limits.max_depth < 0 || limits.max_depth > 1);
-    if (marched)
+    if (marched) {
+        methods.push_back(
+            {make_single_scattering(limits),
+             {"emission", "direct", other_scattering},
+             "surfaces behind media whose transmittance is marched; one distance a ray for lights "
+             "without a position"});
         methods.push_back(
             {make_epipolar(limits),
-             {"emission", "direct", "single_scattering"},
-             "lights with a position are marched along epipolar lines: nothing is left to chance"});
-    else
+             {positional_scattering},
+             "lights with a position, marched along epipolar lines: nothing is left to chance"});
+    } else
         methods.push_back({make_volpath(limits),
                            {"emission", "direct", "single_scattering"},
                            lights > most_marched_lights ? "too many lights to march each of them"
@@ -84,16 +98,28 @@ std::vector<LayerMethod> with_cells(const Scene& scene, std::vector<LayerMethod>
         const std::vector<std::string> possible = cells_that_it_can(scene, *method.integrator);
         for (const std::string& cell : method.cells) check_name(method, cell, possible);
         if (method.cells.empty()) method.cells = possible;
-        for (const std::string& cell : method.cells) {
-            const auto [other, fresh] = filled.emplace(cell, &method);
-            if (!fresh)
-                throw InputError("two methods fill '" + cell + "': " + other->second->integrator->type() +
-                                     " and " + method.integrator->type() +
-                                     "; name the cells of each, such as name=\"direct, indirect\"",
-                                 method.where);
-        }
+        for (const std::string& cell : method.cells)
+            for (const std::string& same : overlapping(cell))
+                if (const auto other = filled.find(same); other != filled.end())
+                    throw InputError("two methods fill '" + cell + "': " + other->second->integrator->type() +
+                                         " and " + method.integrator->type() +
+                                         "; name the cells of each, such as name=\"direct, indirect\"",
+                                     method.where);
+        for (const std::string& cell : method.cells) filled.emplace(cell, &method);
     }
     return methods;
+}
+
+std::vector<std::string> unfilled_cells(bool media, const std::vector<LayerMethod>& methods) {
+    std::vector<std::string> filled;
+    for (const LayerMethod& method : methods)
+        filled.insert(filled.end(), method.cells.begin(), method.cells.end());
+    std::vector<std::string> gaps = transport_cells(media);
+    std::erase_if(gaps, [&](const std::string& cell) {
+        return contains(filled, cell) || (cell == transport_name(Transport::single_scattering) &&
+                                          contains(filled, halves[0]) && contains(filled, halves[1]));
+    });
+    return gaps;
 }
 
 std::vector<std::size_t> kept_layers(const Scene& scene, const LayerMethod& method) {

@@ -34,6 +34,9 @@ std::vector<LayerMethod> choose_layer_methods(const core::Scene& scene,
 /// a cell that no scene has or that the method cannot fill, and where two methods fill one cell.
 std::vector<LayerMethod> with_cells(const core::Scene& scene, std::vector<LayerMethod> methods);
 
+/// The cells of the scene that none of them fills.
+std::vector<std::string> unfilled_cells(bool media, const std::vector<LayerMethod>& methods);
+
 /// The layers of a method that belong to its cells: their index among all layers of the method. Layers that
 /// are no part of the beauty are left out.
 std::vector<std::size_t> kept_layers(const core::Scene& scene, const LayerMethod& method);

@@ -87,15 +87,12 @@ void add_entries(std::vector<PlanEntry>& all, const std::vector<PlanEntry>& more
 Plan MoteLayers::plan(const Scene& scene, const Requirements& requirements) const {
     Plan plan;
     plan.integrator = type();
-    std::vector<std::string> gaps = transport_cells(requirements.any_media());
     const std::vector<LayerMethod> chosen = methods(scene);
-    for (const LayerMethod& method : chosen) {
+    for (const LayerMethod& method : chosen)
         plan.run(joined(method.cells), method.integrator->type(), method.reason);
-        for (const std::string& cell : method.cells) std::erase(gaps, cell);
-    }
     plan.run("passes", fmt::format("shared out among {} methods", chosen.size()),
              "to the one whose next pass takes the most error for its rays and lookups");
-    for (const std::string& cell : gaps)
+    for (const std::string& cell : unfilled_cells(requirements.any_media(), chosen))
         plan.miss(cell, "no method fills it", "none of the nested integrators has it in its name");
     for (const LayerMethod& method : chosen) {
         Requirements wanted = requirements;

@@ -76,10 +76,7 @@ Plan MoteEpipolar::plan(const Scene& scene, const Requirements& r) const {
 }  // namespace
 
 std::shared_ptr<const Integrator> make_epipolar(const EyePathLimits& limits) {
-    Properties properties;  // of a scene file that names nothing but these
-    if (limits.max_depth > 1) properties.values["max_depth"] = {std::int64_t(limits.max_depth - 1), {}};
-    properties.values["hide_emitters"] = {limits.hide_emitters, {}};
-    return std::make_shared<const MoteEpipolar>(properties);
+    return std::make_shared<const MoteEpipolar>(scattering_properties(limits, "positional"));
 }
 
 void register_mote_epipolar(Registry& registry) {

@@ -48,6 +48,10 @@ class MoteSingleScattering final : public Integrator {
 
 }  // namespace
 
+std::shared_ptr<const Integrator> make_single_scattering(const EyePathLimits& limits) {
+    return std::make_shared<const MoteSingleScattering>(scattering_properties(limits, "other"));
+}
+
 void register_mote_single_scattering(Registry& registry) {
     auto parameters = scattering_parameters();
     parameters.push_back(

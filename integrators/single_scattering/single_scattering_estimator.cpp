@@ -18,14 +18,17 @@ class SingleScatteringEstimator final : public Estimator {
                               const ScatteringSettings& settings)
         : scene_(scene), options_(options), settings_(settings) {
         settings_.eye.limits.wanted = wanted_transport(options);
+        for (const auto& [lights, cell] : {std::pair(ScatteringLights::positional, positional_scattering),
+                                           std::pair(ScatteringLights::other, other_scattering)})
+            if (settings_.lights == lights)
+                settings_.eye.limits.wanted.of[std::size_t(Transport::single_scattering)] =
+                    options.wants(cell);
         if (!Media) return;
         accelerations_.emplace(scene, settings.accelerations);
         settings_.eye.maps = accelerations_->maps();
         settings_.eye.voxels = settings.march.voxels;
-        settings_.eye.other_lights = false;
-        for (const auto& light : scene.emitters())
-            settings_.eye.other_lights |= !light->traits().delta_position;
-        for (const auto& medium : scene.media()) settings_.eye.other_lights |= medium->traits().emissive;
+        settings_.eye.other_lights =
+            settings_.lights != ScatteringLights::positional && has_other_lights(scene);
     }
 
     bool pass(const PassContext& context, PassImage& image) override;
@@ -87,7 +90,8 @@ bool SingleScatteringEstimator<Media>::pass(const PassContext& context, PassImag
     MarchSettings march = settings_.march;
     march.offset = numbers.march.x;
     std::vector<InScattering> lights;
-    if (Media && settings_.eye.limits.wanted[Transport::single_scattering])
+    if (Media && settings_.eye.limits.wanted[Transport::single_scattering] &&
+        settings_.lights != ScatteringLights::other)
         for (const Emitter* light : positional_lights(scene_))
             lights.emplace_back(scene_, *light, march, accelerations_->of(*light));
     const bool full = settings_.sampling == ScatteringSampling::full;

@@ -17,7 +17,12 @@ namespace mote::integrators {
 
 enum class ScatteringSampling : std::uint8_t { full, sub_sampled, epipolar };
 
+/// Whose light scattered in media: that of lights with a position is marched and nearly free of noise, that
+/// of all others is drawn at one distance.
+enum class ScatteringLights : std::uint8_t { all, positional, other };
+
 struct ScatteringSettings {
+    ScatteringLights lights = ScatteringLights::all;
     EyeSettings eye;
     screenspace::MarchSettings march;
     AccelerationSettings accelerations;
@@ -33,6 +38,9 @@ std::unique_ptr<core::Estimator> make_single_scattering_estimator(const core::Sc
                                                                   const core::RenderOptions& options,
                                                                   const ScatteringSettings& settings);
 
+/// What a scene file says that names these limits alone, and whose light scatters in media.
+core::Properties scattering_properties(const EyePathLimits& limits, const std::string& lights);
+
 /// The settings that both integrators share, checked. Throws InputError.
 ScatteringSettings read_scattering_settings(const core::Properties& properties);
 /// Their rows in a manual page.
@@ -40,6 +48,10 @@ std::vector<core::Parameter> scattering_parameters();
 
 /// In the order of single_scattering_layers(); the last two only in media.
 enum class ScatteringLayer : std::uint8_t { emission, direct, single_scattering, marched_rays };
+
+/// The cells of the transport that the light of some lights alone is: both make up single_scattering.
+inline const std::string positional_scattering = "single_scattering_positional";
+inline const std::string other_scattering = "single_scattering_other";
 
 /// emission, direct, and where there are media single_scattering, and the marched rays when asked for.
 std::vector<core::Layer> single_scattering_layers(bool media, const ScatteringSettings& settings);
@@ -49,5 +61,7 @@ void plan_single_scattering(core::Plan& plan, const core::Scene& scene,
                             const core::Requirements& requirements, const ScatteringSettings& settings);
 /// Lights that are marched: those with a position, not black.
 std::vector<const core::Emitter*> positional_lights(const core::Scene& scene);
+/// Does anything else light the media?
+bool has_other_lights(const core::Scene& scene);
 
 }  // namespace mote::integrators

@@ -23,7 +23,19 @@ ScatteringSettings read_scattering_settings(const Properties& p) {
     s.eye.limits.max_depth = 1 + int(p.get_int_in("max_depth", 32, 1, 1 << 20));
     s.eye.limits.hide_emitters = p.get_bool("hide_emitters", false);
     s.show_samples = p.get_bool("show_samples", false);
+    const std::string lights = p.get_choice("lights", "all", {"all", "positional", "other"});
+    s.lights = lights == "positional" ? ScatteringLights::positional
+               : lights == "other"    ? ScatteringLights::other
+                                      : ScatteringLights::all;
     return s;
+}
+
+Properties scattering_properties(const EyePathLimits& limits, const std::string& lights) {
+    Properties properties;
+    if (limits.max_depth > 1) properties.values["max_depth"] = {std::int64_t(limits.max_depth - 1), {}};
+    properties.values["hide_emitters"] = {limits.hide_emitters, {}};
+    properties.values["lights"] = {lights, {}};
+    return properties;
 }
 
 std::vector<Parameter> scattering_parameters() {
@@ -42,6 +54,10 @@ std::vector<Parameter> scattering_parameters() {
         {"depth_tolerance", "float", "0.02",
          "share by which distances to one surface may differ between neighbouring rays"},
         {"show_samples", "boolean", "false", "adds a layer MarchedRays: rays marched in every pixel, a pass"},
+        {"lights", "string", "all",
+         "whose light scatters in media: all, positional (those that are marched), or other (all but those); "
+         "a "
+         "nested integrator of mote_layers may do either"},
         {"max_depth", "integer", "32", "longest eye path through mirrors and glass, in rays"},
         hide_emitters_parameter()};
 }
@@ -49,7 +65,13 @@ std::vector<Parameter> scattering_parameters() {
 std::vector<Layer> single_scattering_layers(bool media, const ScatteringSettings& settings) {
     std::vector<Layer> layers = {{"emission", "light sources seen directly or through mirrors and glass"},
                                  {"direct", "light scattered once, on a surface"}};
-    if (media) layers.push_back({"single_scattering", "light scattered once, in a medium"});
+    if (media) {
+        layers.push_back({transport_name(Transport::single_scattering), "light scattered once, in a medium"});
+        if (settings.lights == ScatteringLights::positional)
+            layers.back().name = layers.back().cell = positional_scattering;
+        if (settings.lights == ScatteringLights::other)
+            layers.back().name = layers.back().cell = other_scattering;
+    }
     if (media && settings.show_samples) layers.push_back({"MarchedRays", "rays marched in the pixel", true});
     return layers;
 }
@@ -59,6 +81,13 @@ std::vector<const Emitter*> positional_lights(const Scene& scene) {
     for (const auto& light : scene.emitters())
         if (Scene::light_position(*light) && !is_black(light->power())) lights.push_back(light.get());
     return lights;
+}
+
+bool has_other_lights(const Scene& scene) {
+    bool other = false;
+    for (const auto& light : scene.emitters()) other |= !light->traits().delta_position;
+    for (const auto& medium : scene.media()) other |= medium->traits().emissive;
+    return other;
 }
 
 void plan_single_scattering(Plan& plan, const Scene& scene, const Requirements& r,
@@ -81,8 +110,10 @@ void plan_single_scattering(Plan& plan, const Scene& scene, const Requirements& 
         plan.leave_out("single scattering", "nothing is marched", "no medium scatters");
         return;
     }
-    const std::size_t lights = positional_lights(scene).size();
-    if (lights > 0)
+    const std::size_t lights = s.lights == ScatteringLights::other ? 0 : positional_lights(scene).size();
+    if (s.lights == ScatteringLights::other)
+        plan.leave_out("marching", "no ray is marched", "lights is 'other'");
+    else if (lights > 0)
         plan.run("marching",
                  fmt::format("{} steps a ray, {}", s.march.steps,
                              s.march.rule == screenspace::MarchRule::uniform ? "of equal lengths"
@@ -91,7 +122,7 @@ void plan_single_scattering(Plan& plan, const Scene& scene, const Requirements& 
     else
         plan.leave_out("marching", "no ray is marched", "no light has a position");
     plan_scattering_accelerations(plan, scene, s.accelerations, s.march.steps);
-    if (scene.emitters().size() > lights || r.media_emissive)
+    if (s.lights != ScatteringLights::positional && has_other_lights(scene))
         plan.run("other lights and emission of media",
                  "one sampled distance per pixel and pass, at full rate", "they have no position");
 }
