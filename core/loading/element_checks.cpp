@@ -250,6 +250,8 @@ std::string parameter_for_child(const Manual& manual, Category child, const std:
         fitting.push_back(p.name);
     }
     if (fitting.size() != 1) return "";
+    // There may be several nested integrators, whose names say what each is for.
+    if (child == Category::integrator) return name.empty() ? fitting.front() : name;
     // Textures and volumes are values and named, but where the parameter is just called "texture"; other
     // objects are found by what they are, and so is the volume of a texture.
     const bool is_value =

@@ -77,8 +77,10 @@ std::vector<LayerMethod> choose_layer_methods(const Scene& scene, const Requirem
              {"emission", "direct", other_scattering},
              "surfaces behind media whose transmittance is marched; one distance a ray for lights "
              "without a position"});
+        // Lines end at the border of the picture: as many as there are pixels along half of it.
+        const int lines = std::clamp(scene.film().width + scene.film().height, 16, 1024);
         methods.push_back(
-            {make_epipolar(limits),
+            {make_epipolar(limits, lines),
              {positional_scattering},
              "lights with a position, marched along epipolar lines: nothing is left to chance"});
     } else

@@ -41,9 +41,13 @@ class MoteLayers final : public Integrator {
             const auto integrator = std::dynamic_pointer_cast<const Integrator>(child.object);
             if (!integrator) continue;
             if (integrator->works_on_mean())
-                throw InputError("screen-space compensation needs the whole picture: no part of mote_layers",
+                throw InputError(integrator->type() +
+                                     " works on the mean of its whole picture here, and cannot "
+                                     "fill a part of another",
                                  child.where);
-            asked_for_.push_back({integrator, split_names(child.name), "asked for", child.where});
+            const bool named = child.name != "integrator";  // the name of the parameter is as good as none
+            asked_for_.push_back(
+                {integrator, split_names(named ? child.name : ""), "asked for", child.where});
         }
         if (asked_for_.empty()) return;
         for (const std::string name : {"max_depth", "rr_depth", "hide_emitters"})
@@ -52,6 +56,7 @@ class MoteLayers final : public Integrator {
     }
 
     std::string type() const override { return "mote_layers"; }
+    bool works_on_mean() const override { return true; }
     std::vector<Layer> layers(const Scene& scene) const override {
         std::vector<Layer> layers;
         const std::vector<LayerMethod> chosen = methods(scene);

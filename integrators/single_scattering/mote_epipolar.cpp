@@ -75,8 +75,10 @@ Plan MoteEpipolar::plan(const Scene& scene, const Requirements& r) const {
 
 }  // namespace
 
-std::shared_ptr<const Integrator> make_epipolar(const EyePathLimits& limits) {
-    return std::make_shared<const MoteEpipolar>(scattering_properties(limits, "positional"));
+std::shared_ptr<const Integrator> make_epipolar(const EyePathLimits& limits, int lines) {
+    Properties properties = scattering_properties(limits, "positional");
+    properties.values["lines"] = {std::int64_t(lines), {}};
+    return std::make_shared<const MoteEpipolar>(properties);
 }
 
 void register_mote_epipolar(Registry& registry) {

@@ -30,6 +30,8 @@ const std::map<std::string, Words> words = {
     {"mote_photon_map.single_scattering", {"sampled", "photons"}},
     {"mote_vsl.visibility", {"sample", "light"}},
     {"mote_single_scattering.sampling", {"full", "sub_sampled"}},
+    {"mote_single_scattering.lights", {"all", "positional", "other"}},
+    {"mote_epipolar.lights", {"all", "positional", "other"}},
     {"mote_single_scattering.in_scattering", {"exact", "steps"}},
     {"mote_single_scattering.march", {"equiangular", "uniform"}},
     {"mote_epipolar.in_scattering", {"exact", "steps"}},

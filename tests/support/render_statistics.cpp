@@ -136,6 +136,21 @@ std::vector<Vec3d> sum_of(const PassImage& image, const RenderStatistics& names,
     return sum;
 }
 
+/// One pass of every part of the picture.
+void run_parts(Estimator& estimator, const std::vector<Layer>& layers, const PassContext& pass,
+               PassImage& image) {
+    std::size_t parts = 1;
+    for (const Layer& layer : layers) parts = std::max(parts, layer.part + 1);
+    for (std::size_t part = 0; part < parts; ++part) {
+        std::vector<std::size_t> of_part;
+        for (std::size_t i = 0; i < layers.size(); ++i)
+            if (layers[i].part == part) of_part.push_back(i);
+        PassImage own(image.width(), image.height(), of_part.size());
+        estimator.pass({pass.index, pass.filter, pass.cancelled, part}, own);
+        for (std::size_t i = 0; i < of_part.size(); ++i) image.swap_layer(of_part[i], own, i);
+    }
+}
+
 }  // namespace
 
 RenderStatistics render_statistics(const Scene& scene, const Integrator& integrator, const RenderSpec& spec) {
@@ -147,14 +162,16 @@ RenderStatistics render_statistics(const Scene& scene, const Integrator& integra
     for (const auto& [name, terms] : spec.sums) result.layers.push_back(name);
     result.layers.push_back("beauty");
 
-    const auto estimator = integrator.prepare(scene, {spec.seed, width, height, SamplerKind::independent});
+    RenderOptions options{spec.seed, width, height, SamplerKind::independent};
+    options.cells = spec.cells;
+    const auto estimator = integrator.prepare(scene, options);
     const auto filter = make_pixel_filter("box", 0.5f, 0.5f);
     const std::atomic<bool> cancelled{false};
     PassImage image(width, height, layers.size());
     BlockAccumulator blocks({width, height, spec.block}, result.layers.size());
     for (std::uint32_t pass = 0; pass < spec.passes; ++pass) {
         image.clear();
-        estimator->pass({pass, *filter, cancelled}, image);
+        run_parts(*estimator, layers, {pass, *filter, cancelled}, image);
         std::vector<Vec3d> beauty(std::size_t(width * height), Vec3d(0.0));
         for (std::size_t l = 0; l < layers.size(); ++l) {
             std::vector<Vec3d> pixels;

@@ -1,0 +1,206 @@
+// A picture of layers by several methods: each cell has the mean that one method gives all of them, nothing
+// is counted twice or left out without a word, and the schedule is a function of scene, seed and passes.
+#include <fmt/format.h>
+
+#include <set>
+
+#include "core/image/film.h"
+#include "core/render/render_driver.h"
+#include "integrators/layers/pass_schedule.h"
+#include "tests/integrators/test_scenes.h"
+#include "tests/support/catch.h"
+#include "tests/support/render_statistics.h"
+
+using namespace mote::core;
+using namespace mote::tests;
+
+namespace {
+
+const std::vector<std::string> cells{"emission", "direct", "indirect", "single_scattering",
+                                     "multiple_scattering"};
+
+/// The box with fog that a lamp and a point light shine into.
+std::unique_ptr<Scene> foggy_box() {
+    std::string xml = box(grey, fog("0.5, 0.6, 0.8", ""));
+    xml.insert(xml.find("<sensor"), R"(<emitter type="point"><point name="position" x="0.4" y="0.95" z="0.3"/>
+        <rgb name="intensity" value="0.6, 0.8, 1"/></emitter>)");
+    return scene_from(xml, 8);
+}
+
+std::shared_ptr<const Integrator> layers_of(const std::string& nested) {
+    return integrator_from("<integrator type='mote_layers'>" + nested + "</integrator>");
+}
+
+std::string child(const std::string& type, const std::string& names, const std::string& inside = "") {
+    return fmt::format("<integrator type='{}' name='{}'>{}</integrator>", type, names, inside);
+}
+
+void check_cell(const RenderStatistics& a, const std::string& of_a, const RenderStatistics& b,
+                const std::string& cell) {
+    INFO(cell);
+    const ZTest test = same_mean(a, of_a, b, cell);
+    INFO(test.report);
+    CHECK(test.passed);
+}
+
+}  // namespace
+
+TEST_CASE("children that are unbiased add up to volpath, layer by layer", "[mote_layers]") {
+    const auto scene = foggy_box();
+    const auto whole =
+        render_statistics(*scene, *integrator_from("<integrator type='volpath'/>"), {4, 4000, 1});
+    const auto parts = render_statistics(
+        *scene,
+        *layers_of(child("volpath", "emission, direct") +
+                   child("volpath", "single_scattering", "<boolean name='equiangular' value='true'/>") +
+                   child("volpath", "multiple_scattering indirect")),
+        {4, 4000, 2});
+    REQUIRE(parts.layers.size() == cells.size() + 1);
+    for (const std::string& cell : cells) check_cell(parts, cell, whole, cell);
+    check_cell(parts, "beauty", whole, "beauty");
+    for (const std::string cell :
+         {"direct", "indirect", "single_scattering", "multiple_scattering", "beauty"}) {
+        INFO(cell);  // an error of a tenth would be seen
+        CHECK_FALSE(same_mean(parts.scaled(1.1), cell, whole, cell, OnFailure::nothing).passed);
+    }
+}
+
+TEST_CASE("what the scene chooses adds up to volpath", "[mote_layers]") {
+    // Homogeneous fog: marching is exact but for its steps, far below the noise.
+    const auto scene = foggy_box();
+    const auto whole =
+        render_statistics(*scene, *integrator_from("<integrator type='volpath'/>"), {4, 1000, 1});
+    RenderSpec spec{4, 1000, 2};
+    spec.sums = {{"single_scattering", {"single_scattering_other", "single_scattering_positional"}}};
+    const auto parts = render_statistics(*scene, *layers_of(""), spec);
+    for (const std::string& cell : cells) check_cell(parts, cell, whole, cell);
+    CHECK_FALSE(
+        same_mean(parts, "single_scattering_other", whole, "single_scattering", OnFailure::nothing).passed);
+}
+
+TEST_CASE("a method that is asked for one cell gives it its own mean and traces fewer rays", "[mote_layers]") {
+    const auto foggy = foggy_box(), dry = scene_from(box(mixed, ""), 8);
+    for (const std::string& type : registry().types(Category::integrator)) {
+        if (type == "mote_layers") continue;
+        const bool media = type != "mote_vsl" && type != "path";
+        const Scene& scene = media ? *foggy : *dry;
+        std::string few;
+        if (type == "mote_vpl" || type == "mote_vsl") few = "<integer name='paths' value='4'/>";
+        if (type == "mote_epipolar")
+            few = "<integer name='lines' value='16'/><integer name='steps' value='8'/>";
+        if (type == "mote_single_scattering") few = "<integer name='steps' value='8'/>";
+        if (type == "mote_photon_map") few = "<integer name='photon_paths' value='50'/>";
+        const auto integrator = integrator_from("<integrator type='" + type + "'>" + few + "</integrator>");
+        const auto all = render_statistics(scene, *integrator, {8, 200, 1});
+        for (const Layer& layer : integrator->layers(scene)) {
+            INFO(type << ": " << layer.name);
+            RenderSpec spec{8, 200, 2};
+            spec.cells = {layer.transport()};
+            const auto alone = render_statistics(scene, *integrator, spec);
+            const ZTest test = same_mean(alone, layer.name, all, layer.name);
+            INFO(test.report);
+            CHECK(test.passed);
+        }
+    }
+}
+
+TEST_CASE("what a method is not asked for costs nothing", "[mote_layers]") {
+    const auto scene = foggy_box();
+    const auto work = [&](const std::string& xml, const std::vector<std::string>& wanted) {
+        RenderOptions options{1, 8, 8, SamplerKind::independent};
+        options.cells = wanted;
+        const auto integrator = integrator_from(xml);
+        const auto estimator = integrator->prepare(*scene, options);
+        const auto filter = make_pixel_filter("box", 0.5f, 0.5f);
+        const std::atomic<bool> never{false};
+        PassImage image(8, 8, integrator->layers(*scene).size());
+        for (std::uint32_t i = 0; i < 16; ++i) estimator->pass({i, *filter, never}, image);
+        Statistics s;
+        estimator->add_statistics(s);
+        return s.rays;
+    };
+    const std::string path = "<integrator type='volpath'/>", vpl = "<integrator type='mote_vpl'/>";
+    // Emission needs one ray through the fog and no connection at all.
+    CHECK(work(path, {"emission"})["occlusion"] == 0);
+    CHECK(work(path, {"emission"})["closest"] == 16 * 64);
+    // One connection a path at most, to the first vertex.
+    CHECK(work(path, {"direct", "single_scattering"})["occlusion"] <= 16 * 64);
+    CHECK(work(path, {"direct", "single_scattering"})["occlusion"] > 0);
+    // And none there, if that is what is not wanted.
+    const auto all = work(path, {}), more = work(path, {"indirect", "multiple_scattering"});
+    CHECK(all.at("occlusion") - more.at("occlusion") > 16 * 64 / 2);
+    // Virtual lights are not looked at for light of the primary ones.
+    CHECK(work(vpl, {"direct"})["occlusion"] <= 16 * 64);
+}
+
+TEST_CASE("two methods for one cell are an error, and a cell without any is missing", "[mote_layers]") {
+    const auto scene = foggy_box();
+    const auto prepare = [&](const std::string& nested) {
+        layers_of(nested)->prepare(*scene, {.seed = 1, .width = 8, .height = 8});
+    };
+    CHECK_THROWS_WITH(prepare(child("volpath", "") + child("path", "direct")),
+                      Catch::Contains("two methods fill 'direct': volpath and path"));
+    CHECK_THROWS_WITH(prepare(child("mote_epipolar", "single_scattering_positional",
+                                    "<string name='lights' value='positional'/>") +
+                              child("volpath", "single_scattering")),
+                      Catch::Contains("two methods fill 'single_scattering'"));
+    CHECK_THROWS_WITH(prepare(child("volpath", "dierct")), Catch::Contains("direct"));
+    CHECK_THROWS_WITH(prepare(child("path", "single_scattering")), Catch::Contains("cannot fill"));
+    CHECK_THROWS_WITH(prepare("<integrator type='mote_layers'/>"),
+                      Catch::Contains("cannot fill a part of another"));
+
+    const Plan plan =
+        layers_of(child("path", "emission, indirect") + child("mote_epipolar", "single_scattering_positional",
+                                                              "<string name='lights' value='positional'/>"))
+            ->plan(*scene, find_requirements(*scene));
+    std::set<std::string> missing;
+    for (const PlanEntry& entry : plan.missing) missing.insert(entry.topic);
+    CHECK(missing.contains("direct"));
+    CHECK(missing.contains("single_scattering"));  // half of it
+    CHECK(missing.contains("multiple_scattering"));
+    CHECK_FALSE(missing.contains("indirect"));
+    CHECK(layers_of("")->plan(*scene, find_requirements(*scene)).missing.empty());
+}
+
+TEST_CASE("passes go where they take the most error for their work", "[mote_layers]") {
+    // Two parts of known variance and work: n_i ~ s_i / sqrt(w_i).
+    const std::vector<Layer> layers{{"a", ""}, {"b", "", false, false, "", "", 1}};
+    Film film(16, 16, layers);
+    Rng rng(7);
+    const double spread[2] = {0.4, 0.1}, work[2] = {100.0, 400.0}, left[2] = {1.0, 1.0};
+    for (int i = 0; i < 900; ++i) {
+        const std::size_t part = mote::integrators::next_part(film, left);
+        PassImage image(16, 16, 1);
+        for (Rgb& pixel : image.layer(0)) pixel = Rgb(float(1.0 + spread[part] * (rng.next_float() - 0.5)));
+        film.add_pass(image, part, work[part]);
+    }
+    // 0.4 / sqrt(100) against 0.1 / sqrt(400): 8 to 1.
+    CHECK(double(film.pass_count(0)) / film.pass_count(1) == Approx(8.0).epsilon(0.05));
+    // A filter that leaves a 64th of the variance of part 0 turns it round: 1 to 1.
+    Film filtered(16, 16, layers);
+    const double share[2] = {1.0 / 64.0, 1.0};
+    for (int i = 0; i < 400; ++i) {
+        const std::size_t part = mote::integrators::next_part(filtered, share);
+        PassImage image(16, 16, 1);
+        for (Rgb& pixel : image.layer(0)) pixel = Rgb(float(1.0 + spread[part] * (rng.next_float() - 0.5)));
+        filtered.add_pass(image, part, work[part]);
+    }
+    CHECK(double(filtered.pass_count(0)) / filtered.pass_count(1) == Approx(1.0).epsilon(0.05));
+}
+
+TEST_CASE("a render of unequal parts ends with every part, and stops where it is told", "[mote_layers]") {
+    const auto scene = foggy_box();
+    RenderRequest request;
+    request.stop.passes = 1;
+    const RenderResult one = render(*scene, *layers_of(""), request);
+    CHECK(one.film.parts() == 3);
+    CHECK(one.film.has_passes(1));
+    CHECK(one.film.pass_count() == 3);
+    request.stop.passes = 60;
+    const RenderResult many = render(*scene, *layers_of(""), request);
+    CHECK(many.film.pass_count() == 60);
+    std::set<std::uint32_t> counts;
+    for (std::size_t part = 0; part < 3; ++part) counts.insert(many.film.pass_count(part));
+    CHECK(counts.size() > 1);
+    CHECK(std::isfinite(many.film.noise()));
+}
