@@ -219,7 +219,8 @@ std::vector<Rgb> Film::layer_variance_of_mean(std::size_t layer) const {
 }
 
 void Film::set_mean(std::size_t layer, std::span<const Rgb> values) {
-    if (values.size() != pixels()) throw std::invalid_argument("the layer does not fit the film");
+    if (!values.empty() && values.size() != pixels())
+        throw std::invalid_argument("the layer does not fit the film");
     replaced_means_.at(layer).assign(values.begin(), values.end());
 }
 

@@ -63,6 +63,7 @@ class Film {
     std::vector<Rgb> layer_variance_of_mean(std::size_t layer) const;
     /// Replaces what mean() returns for a layer, for post-processes (Estimator::finish). The sums, and with
     /// them the variances, the noise and the serialised film, stay those of the passes.
+    /// Without values it is the mean of the passes again.
     void set_mean(std::size_t layer, std::span<const Rgb> values);
     /// The noise of the beauty, Eq. (4) of core/image/relative_error.h: the error that the passes so far are
     /// expected to have left. Infinity for n < 2.

@@ -15,21 +15,23 @@ Layer feature_layer(std::string name, std::string description, std::string where
     return {std::move(name), std::move(description), true, true, std::move(where)};
 }
 
-Rgb albedo(const FirstHit& first) {
+Rgb transmittance(const FirstHit& first) {
+    TrackingCounters counters;
+    return first.scene.transmittance(first.ray.at(first.ray.t_min), first.hit.position,
+                                     first.scene.eye_medium_state(first.ray), first.rng, counters);
+}
+
+}  // namespace
+
+Rgb first_hit_albedo(const FirstHit& first) {
     const SurfaceHit& hit = first.hit;
     const Rgb all = hit.shape->bsdf->albedo(bsdf_point(hit), hit.shading.to_local(first.to_viewer()));
     if (!is_pane(hit)) return all;
     return (all - passage_through(hit, first.ray.direction).transmittance()) / first.stop_chance;
 }
 
-/// The first surface that stops the ray; of panes those that can be seen themselves, by chance.
-struct Stop {
-    std::optional<SurfaceHit> hit;
-    float chance = 1.0f;
-};
-
-Stop first_stop(const Scene& scene, const Ray& ray, Rng& rng) {
-    Stop stop{scene.first_hit(ray)};
+FirstStop first_stop(const Scene& scene, const Ray& ray, Rng& rng) {
+    FirstStop stop{scene.first_hit(ray)};
     if (!scene.has_panes()) return stop;
     Ray before = ray;
     if (stop.hit) before.t_max = stop.hit->t;
@@ -43,26 +45,19 @@ Stop first_stop(const Scene& scene, const Ray& ray, Rng& rng) {
     return stop;
 }
 
-Rgb transmittance(const FirstHit& first) {
-    TrackingCounters counters;
-    return first.scene.transmittance(first.ray.at(first.ray.t_min), first.hit.position,
-                                     first.scene.eye_medium_state(first.ray), first.rng, counters);
-}
-
-}  // namespace
-
 std::vector<HitFeature> first_hit_features(const Scene& scene) {
-    std::vector<HitFeature> features{{{coverage_layer, "share of rays that hit a surface", true},
-                                      [](const FirstHit&) { return Rgb(1.0f); }},
-                                     {feature_layer("P", "position of the first hit", coverage_layer),
-                                      [](const FirstHit& f) { return f.hit.position; }},
-                                     {feature_layer("N", "geometric normal, towards the viewer"),
-                                      [](const FirstHit& f) { return f.facing(f.hit.geometric_normal); }},
-                                     {feature_layer("Ns", "shading normal, towards the viewer"),
-                                      [](const FirstHit& f) { return f.facing(f.hit.shading.n); }},
-                                     {feature_layer("Depth", "distance along the ray", coverage_layer),
-                                      [](const FirstHit& f) { return Rgb(f.hit.t); }},
-                                     {feature_layer("Albedo", "of the BSDF, seen from the viewer"), albedo}};
+    std::vector<HitFeature> features{
+        {{coverage_layer, "share of rays that hit a surface", true},
+         [](const FirstHit&) { return Rgb(1.0f); }},
+        {feature_layer("P", "position of the first hit", coverage_layer),
+         [](const FirstHit& f) { return f.hit.position; }},
+        {feature_layer("N", "geometric normal, towards the viewer"),
+         [](const FirstHit& f) { return f.facing(f.hit.geometric_normal); }},
+        {feature_layer("Ns", "shading normal, towards the viewer"),
+         [](const FirstHit& f) { return f.facing(f.hit.shading.n); }},
+        {feature_layer("Depth", "distance along the ray", coverage_layer),
+         [](const FirstHit& f) { return Rgb(f.hit.t); }},
+        {feature_layer("Albedo", "of the BSDF, seen from the viewer"), first_hit_albedo}};
     if (scene.has_media())
         features.push_back(
             {feature_layer("Transmittance", "from the camera to the first hit", coverage_layer),
@@ -86,7 +81,7 @@ bool FirstHitPass::fill(const PassContext& context, PassImage& image) {
 void FirstHitPass::fill_pixel(const PassContext& context, PassImage& image, int x, int y) const {
     const Ray ray = camera_ray(scene_.camera(), options_, context, x, y);
     Rng rng(hash_keys(options_.seed, context.index, pixel_key(options_, x, y), feature_stream));
-    const Stop stop = first_stop(scene_, ray, rng);
+    const FirstStop stop = first_stop(scene_, ray, rng);
     if (!stop.hit) return;
     const FirstHit first{scene_, ray, *stop.hit, stop.chance, rng};
     for (std::size_t k = 0; k < features_.size(); ++k)

@@ -11,6 +11,7 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/geometry/shape.h"
@@ -39,6 +40,15 @@ struct HitFeature {
     /// Of a ray that hits a surface; the layer is zero for all others. Called from many threads at once.
     std::function<Rgb(const FirstHit&)> value;
 };
+
+/// The first surface that stops a ray; of panes those that can be seen themselves, by chance.
+struct FirstStop {
+    std::optional<SurfaceHit> hit;
+    float chance = 1.0f;  ///< of a mask that stopped it, see FirstHit
+};
+FirstStop first_stop(const Scene& scene, const Ray& ray, Rng& rng);
+/// Of the whole BSDF there, seen along the ray.
+Rgb first_hit_albedo(const FirstHit& first);
 
 /// The layer that says where there is anything: its mean is the share of rays that hit a surface.
 inline const std::string coverage_layer = "Coverage";

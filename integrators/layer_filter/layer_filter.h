@@ -1,0 +1,59 @@
+// Layers of a film filtered in image space (screenspace/layer_filter/layer_filter.h): for
+// Estimator::finish(), or for a preview, as often as one likes. The features of the view are found on first
+// use.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/image/film.h"
+#include "core/objects/properties.h"
+#include "core/objects/registry.h"
+#include "integrators/layer_filter/scene_features.h"
+#include "screenspace/layer_filter/layer_filter.h"
+
+namespace mote::integrators {
+
+struct LayerFilterParameters {
+    screenspace::LayerFilterSettings filter;
+    FeatureSettings features;
+};
+
+/// filter_levels, filter_confidence and filter_samples of a scene file, checked. Throws InputError.
+LayerFilterParameters read_layer_filter(const core::Properties& properties);
+/// Their rows in a manual page.
+std::vector<core::Parameter> layer_filter_parameters();
+
+class LayerFilter {
+  public:
+    struct Choice {
+        std::size_t layer;  ///< of the film, which must keep its squares
+        screenspace::LayerKind kind;
+    };
+
+    /// The scene must outlive this; size, seed, sampler and cancellation are those of the render.
+    LayerFilter(const core::Scene& scene, const core::RenderOptions& options,
+                const LayerFilterParameters& parameters);
+
+    /// Sets the means of these layers to the filtered ones. A film of fewer than two passes knows no variance
+    /// and stays as it is. Throws std::invalid_argument where a layer has no squares, and Cancelled.
+    void apply(core::Film& film, std::span<const Choice> layers);
+
+    /// What was left of the variance of a layer by the last apply(), mean over channels; in its order.
+    const std::vector<std::vector<float>>& variances() const { return variances_; }
+    double feature_seconds() const { return feature_seconds_; }  ///< wall time
+    double filter_seconds() const { return filter_seconds_; }    ///< of all calls
+
+  private:
+    void find_features();
+
+    const core::Scene& scene_;
+    core::RenderOptions options_;
+    LayerFilterParameters parameters_;
+    std::unique_ptr<screenspace::FilterFeatures> features_;
+    std::vector<std::vector<float>> variances_;
+    double feature_seconds_ = 0.0, filter_seconds_ = 0.0;
+};
+
+}  // namespace mote::integrators

@@ -1,0 +1,44 @@
+#include "screenspace/layer_filter/layer_filter.h"
+
+#include "screenspace/layer_filter/mixed_pixels.h"
+#include "screenspace/layer_filter/shrinkage.h"
+
+namespace mote::screenspace {
+
+using namespace core;
+
+namespace {
+
+/// The variance of what the probes have become.
+std::vector<float> variance_of(const FilterChannels& probes, const FilterChannels& change) {
+    std::vector<float> result(probes.planes[0].size());
+    constexpr float share = 1.0f / float(FilterChannels::probes);
+    for (std::size_t c = FilterChannels::colours; c < FilterChannels::count; ++c)
+        for (std::size_t i = 0; i < result.size(); ++i)
+            result[i] += share * sqr(probes.planes[c][i] + change.planes[c][i]);
+    return result;
+}
+
+}  // namespace
+
+FilteredLayer filter_layer(const FilterFeatures& features, const LayerToFilter& layer,
+                           const LayerFilterSettings& settings, CancelToken cancelled) {
+    const FilterPlanes planes(features, layer);
+    const FilterChannels channels = demodulated(features, planes, layer);
+    const FilterChannels change = shrink_details(planes, channels, settings, cancelled);
+    const std::vector<float> left = smoothed(planes, variance_of(channels, change), cancelled);
+    FilteredLayer result{{layer.mean.begin(), layer.mean.end()}, left};
+    for (std::size_t i = 0; i < features.pixels(); ++i) {
+        if (!(planes.weight[i] > 0.0f)) {
+            result.variance[i] = is_finite(layer.variance[i]) ? average(layer.variance[i]) : 0.0f;
+            continue;
+        }
+        const Rgb m = modulation(features, layer.kind, i);
+        result.mean[i] += m * Rgb(change.planes[0][i], change.planes[1][i], change.planes[2][i]);
+        result.variance[i] *= average(m * m);
+    }
+    if (layer.kind == LayerKind::surface) put_mixed_together(features, layer, planes, result, cancelled);
+    return result;
+}
+
+}  // namespace mote::screenspace

@@ -1,0 +1,113 @@
+#include "screenspace/layer_filter/shrinkage.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/math/random.h"
+#include "screenspace/layer_filter/level_kernel.h"
+
+namespace mote::screenspace {
+
+using namespace core;
+
+namespace {
+
+constexpr std::size_t colours = FilterChannels::colours, channel_count = FilterChannels::count;
+constexpr std::uint64_t probe_stream = 0x70726f6265ull;
+
+/// Calls body(y, x0, x1) for all pieces of rows, in parallel.
+template <typename Body>
+void for_each_piece(const FilterPlanes& p, CancelToken cancelled, const Body& body) {
+    tbb::parallel_for(0, p.height, [&](int y) {
+        if (cancelled.requested()) return;
+        for (int x = 0; x < p.width; x += LevelKernel::most_pixels)
+            body(y, x, std::min(p.width, x + LevelKernel::most_pixels));
+    });
+    cancelled.check();
+}
+
+/// What one level makes of the channels: the next, coarser ones, and the energies of the details between.
+struct Level {
+    FilterChannels coarse;
+    std::vector<float> energy, noise;  ///< mean over colours, over probes
+    explicit Level(std::size_t pixels) : coarse(pixels), energy(pixels), noise(pixels) {}
+};
+
+void take_apart(const FilterPlanes& p, int step, const FilterChannels& fine, Level& level,
+                CancelToken cancelled) {
+    for_each_piece(p, cancelled, [&](int y, int x0, int x1) {
+        LevelKernel kernel(p, step, y, x0, x1);
+        kernel.make_linear();
+        const std::size_t at = p.index(x0, y);
+        float* energies[2] = {level.energy.data() + at, level.noise.data() + at};
+        for (std::size_t c = 0; c < channel_count; ++c) {
+            float* next = level.coarse.planes[c].data() + at;
+            kernel.regress(fine.planes[c], next);
+            const float* now = fine.planes[c].data() + at;
+            const bool probe = c >= colours;
+            float* energy = energies[probe];
+            const float share = 1.0f / float(probe ? FilterChannels::probes : colours);
+            for (int i = 0; i < x1 - x0; ++i) energy[i] += share * sqr(now[i] - next[i]);
+        }
+    });
+}
+
+void add_shrunk(const FilterPlanes& p, int step, const FilterChannels& fine, const Level& level,
+                float confidence, FilterChannels& sum, CancelToken cancelled) {
+    for_each_piece(p, cancelled, [&](int y, int x0, int x1) {
+        const LevelKernel kernel(p, step, y, x0, x1);
+        float energy[LevelKernel::most_pixels], noise[LevelKernel::most_pixels];
+        kernel.average(level.energy, energy), kernel.average(level.noise, noise);
+        float change[LevelKernel::most_pixels];  // g - 1, Eq. (2)
+        for (int i = 0; i < x1 - x0; ++i)
+            change[i] = noise[i] > 0.0f
+                            ? -std::fmin(1.0f, confidence * noise[i] / std::fmax(energy[i], 1e-38f))
+                            : 0.0f;
+        const std::size_t at = p.index(x0, y);
+        for (std::size_t c = 0; c < channel_count; ++c) {
+            const float *now = fine.planes[c].data() + at, *next = level.coarse.planes[c].data() + at;
+            float* out = sum.planes[c].data() + at;
+            for (int i = 0; i < x1 - x0; ++i) out[i] += change[i] * (now[i] - next[i]);
+        }
+    });
+}
+
+}  // namespace
+
+FilterChannels demodulated(const FilterFeatures& f, const FilterPlanes& p, const LayerToFilter& layer) {
+    FilterChannels channels(f.pixels());
+    tbb::parallel_for(std::size_t(0), f.pixels(), [&](std::size_t i) {
+        if (!(p.weight[i] > 0.0f)) return;
+        const Rgb m = modulation(f, layer.kind, i), y = layer.mean[i] / m;
+        const float deviation = std::sqrt(std::fmax(0.0f, average(layer.variance[i] / (m * m))));
+        for (int c = 0; c < int(colours); ++c) channels.planes[std::size_t(c)][i] = y[c];
+        const std::uint64_t bits = hash_keys(probe_stream, i);
+        for (std::size_t c = colours; c < channel_count; ++c)
+            channels.planes[c][i] = bits >> (c + 7) & 1 ? deviation : -deviation;
+    });
+    return channels;
+}
+
+FilterChannels shrink_details(const FilterPlanes& p, FilterChannels channels,
+                              const LayerFilterSettings& settings, CancelToken cancelled) {
+    FilterChannels sum(p.weight.size());
+    for (int l = 0; l < settings.levels; ++l) {
+        Level level(p.weight.size());
+        take_apart(p, 1 << l, channels, level, cancelled);
+        add_shrunk(p, 1 << l, channels, level, settings.confidence, sum, cancelled);
+        channels = std::move(level.coarse);
+    }
+    return sum;
+}
+
+std::vector<float> smoothed(const FilterPlanes& p, const std::vector<float>& values, CancelToken cancelled) {
+    std::vector<float> result(values.size());
+    for_each_piece(p, cancelled, [&](int y, int x0, int x1) {
+        LevelKernel(p, 1, y, x0, x1).average(values, result.data() + p.index(x0, y));
+    });
+    return result;
+}
+
+}  // namespace mote::screenspace
