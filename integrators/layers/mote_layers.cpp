@@ -8,6 +8,7 @@
 #include "integrators/eye_path/eye_path_parameters.h"
 #include "integrators/layers/layers_estimator.h"
 #include "integrators/register_parts.h"
+#include "integrators/single_scattering/single_scattering_estimator.h"
 
 namespace mote::integrators {
 
@@ -34,9 +35,21 @@ std::string joined(const std::vector<std::string>& names) {
     return text;
 }
 
+/// Light that has come a long way is smooth but where surfaces and media are not, which the filter knows.
+std::optional<screenspace::LayerKind> filtered_kind(const Layer& layer) {
+    if (layer.auxiliary) return std::nullopt;
+    const std::string& cell = layer.transport();
+    if (cell == transport_name(Transport::indirect)) return screenspace::LayerKind::surface;
+    if (cell == transport_name(Transport::multiple_scattering) || cell == other_scattering)
+        return screenspace::LayerKind::volume;
+    return std::nullopt;
+}
+
 class MoteLayers final : public Integrator {
   public:
-    explicit MoteLayers(const Properties& properties) : limits_(read_eye_path_limits(properties)) {
+    explicit MoteLayers(const Properties& properties)
+        : limits_(read_eye_path_limits(properties)), filter_(read_layer_filter(properties)) {
+        filters_ = properties.get_bool("filter", true);
         for (const Properties::Child& child : properties.children) {
             const auto integrator = std::dynamic_pointer_cast<const Integrator>(child.object);
             if (!integrator) continue;
@@ -64,12 +77,17 @@ class MoteLayers final : public Integrator {
             for (const std::size_t i : kept_layers(scene, chosen[part])) {
                 layers.push_back(chosen[part].integrator->layers(scene)[i]);
                 layers.back().part = part;
+                if (filters_ && filtered_kind(layers.back())) layers.back().squares = true;
             }
         return layers;
     }
     Plan plan(const Scene& scene, const Requirements& requirements) const override;
     std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
-        return make_layers_estimator(scene, options, methods(scene));
+        FilterPlan filter{filter_, {}};
+        const std::vector<Layer> all = layers(scene);
+        for (std::size_t i = 0; filters_ && i < all.size(); ++i)
+            if (const auto kind = filtered_kind(all[i])) filter.layers.push_back({i, *kind});
+        return make_layers_estimator(scene, options, methods(scene), filter);
     }
 
   private:
@@ -79,6 +97,8 @@ class MoteLayers final : public Integrator {
                                      : asked_for_);
     }
     EyePathLimits limits_;
+    LayerFilterParameters filter_;
+    bool filters_ = true;
     std::vector<LayerMethod> asked_for_;
 };
 
@@ -97,6 +117,12 @@ Plan MoteLayers::plan(const Scene& scene, const Requirements& requirements) cons
         plan.run(joined(method.cells), method.integrator->type(), method.reason);
     plan.run("passes", fmt::format("shared out among {} methods", chosen.size()),
              "to the one whose next pass takes the most error for its rays and lookups");
+    std::vector<std::string> filtered;
+    for (const Layer& layer : layers(scene))
+        if (filters_ && filtered_kind(layer)) filtered.push_back(layer.name);
+    if (!filtered.empty())
+        plan.run("filter", joined(filtered) + " in image space",
+                 "biased by what it smoothes, less with every pass; filter=false leaves the noise");
     for (const std::string& cell : unfilled_cells(requirements.any_media(), chosen))
         plan.miss(cell, "no method fills it", "none of the nested integrators has it in its name");
     for (const LayerMethod& method : chosen) {
@@ -113,6 +139,11 @@ Plan MoteLayers::plan(const Scene& scene, const Requirements& requirements) cons
 
 void register_mote_layers(Registry& registry) {
     auto parameters = eye_path_parameters();
+    parameters.push_back(
+        {"filter", "boolean", "true",
+         "smooth indirect light and multiple scattering in image space, as far as noise explains "
+         "their detail"});
+    for (Parameter& p : layer_filter_parameters()) parameters.push_back(std::move(p));
     parameters.push_back(
         {"integrator", "integrator", "chosen by the scene",
          "any number: each fills the cells that its name lists, of emission, direct, indirect, "
