@@ -99,7 +99,8 @@ EyeLight trace_eye(const Scene& scene, const EyeSettings& settings, std::span<co
     const auto nothing = [](const EyeLeg&) {};
     while (path.advance_by(legs, scratch.walk, found.sum, nothing))
         if (path.vertex().connectable() && path.wants_connection())
-            found.sum[Transport::direct] += path.sample_light(scratch.walk);
+            found.sum[Transport::direct] +=
+                path.sample_light(scratch.walk, {.marched_voxels = settings.voxels});
     return found;
 }
 

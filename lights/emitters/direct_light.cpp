@@ -10,16 +10,37 @@ namespace {
 /// Shadow rays stop this much short of the light, whose own surface they would hit otherwise.
 constexpr float shadow_fraction = 0.9999f;
 
+/// What media and panes along the ray leave of the light, by marching. Returns whether anything is left.
+bool march_to_light(const LitScene& scene, const Ray& ray, const MediumState& state, float voxels,
+                    PathWeights& connection, WalkContext& context) {
+    const auto medium = [&](float t0, float t1, const MediumState& here) {
+        const Medium* m = here.current();
+        if (!m || !(t0 < t1)) return true;
+        const Vec3d depth =
+            m->optical_depth_along({ray.origin, ray.direction, t0, t1}, voxels, context.tracking);
+        connection.throughput *= Rgb(glm::exp(-depth));
+        return !is_black(connection.throughput);
+    };
+    const auto pane = [&](const SurfaceHit& hit) {
+        return connect_through(passage_through(hit, ray.direction), connection);
+    };
+    return for_each_part(scene, ray, state, medium, pane).has_value();
+}
+
 /// By a shadow ray and the transmittance along it. Returns whether the light is seen.
 template <bool Media>
 bool reaches_light(const LitScene& scene, const ScatteringVertex& vertex, const DirectSample& light,
-                   const MediumState& state, PathWeights& connection, WalkContext& context) {
+                   const MediumState& state, PathWeights& connection, WalkContext& context,
+                   const LightSampling& how) {
     Ray shadow{vertex.ray_origin(light.wi), light.wi};
     shadow.t_max = light.distance * (light.inside ? 1.0f : shadow_fraction);
     ++context.rays.occlusion;
     if (!scene.visible(shadow)) return false;
     if constexpr (Media) {
         connection.light = connection.unidirectional;
+        if (how.marched_voxels > 0.0f && light.delta)
+            return march_to_light(scene, shadow, vertex.state_towards(state, light.wi), how.marched_voxels,
+                                  connection, context);
         const Medium* there = scene.connect(shadow, vertex.state_towards(state, light.wi), connection,
                                             context.rng, context.tracking);
         return !light.inside || there == light.inside;
@@ -49,7 +70,7 @@ Rgb sample_light(const LitScene& scene, const ScatteringVertex& vertex, const Pa
     if (map) {
         connection.light = weights.unidirectional;
         connection.throughput *= map->transmittance(vertex.position);
-    } else if (!reaches_light<Media>(scene, vertex, *light, state, connection, context)) {
+    } else if (!reaches_light<Media>(scene, vertex, *light, state, connection, context, how)) {
         return Rgb(0.0f);
     }
     // f = throughput f* C* T L_e over the sum of both techniques' pdfs: the balance heuristic (Veach 1997,

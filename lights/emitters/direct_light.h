@@ -31,6 +31,9 @@ struct LightSampling {
     bool lit_along = false;
     /// At vertices in media, visibility and transmittance come from the map of the light where it has one.
     const LightShadowMaps* maps = nullptr;
+    /// Above 0: what media take from lights that no direction hits is marched, in steps of so many voxels:
+    /// without noise, biased by the step (Medium::optical_depth_along).
+    float marched_voxels = 0.0f;
 };
 
 /// Next-event estimation: the light at `vertex` from one light drawn by `u_light` (and a point on it by `u`),
