@@ -215,6 +215,12 @@ int render_command(const RenderArguments& arguments) {
         interruption.end_at_once_while(nullptr);
     };
     request.passes_are_over = [&] { interruption.forget_time(); };
+    request.preview = [&](const core::Film& film) {
+        core::ImageChannels image;
+        image.width = film.width(), image.height = film.height();
+        image.add_rgb("", film.beauty());
+        write_preview(files.preview, image, arguments.exposure);
+    };
     request.checkpoint_failed = [&](const std::string& why) {
         if (!arguments.quiet) note("warning: " + why + "; it is tried again");
     };

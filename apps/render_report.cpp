@@ -118,6 +118,13 @@ std::string statistics_json(const RenderReport& r) {
     j["threads"] = r.threads;
     j["passes"] = r.result.finished_pixels.empty() ? r.result.film.pass_count() : 0;
     if (!r.result.finished_pixels.empty()) j["part_of_first_pass"] = finished_share(r.result);
+    for (std::size_t part = 0; part < r.result.film.parts() && r.result.film.parts() > 1; ++part) {
+        const core::Film& film = r.result.film;
+        json layers = json::array();
+        for (const std::size_t i : film.layers_of(part)) layers.push_back(film.layers()[i].name);
+        j["parts"].push_back(
+            {{"layers", layers}, {"passes", film.pass_count(part)}, {"work", film.work(part)}});
+    }
     j["resumed_at"] = r.result.resumed_at;
     j["interrupted"] = r.result.interrupted;
     j["seconds"] = s.seconds;

@@ -28,7 +28,7 @@ core::Registry make_registry() {
 
 core::LoadOptions load_options(const SceneArguments& arguments) {
     core::LoadOptions options;
-    options.integrator = arguments.integrator;
+    options.integrator = arguments.integrator, options.default_integrator = "mote_layers";
     options.lenient = arguments.lenient;
     for (const std::string& define : arguments.defines) {
         const auto equals = define.find('=');

@@ -129,20 +129,10 @@ Faults faults_of(Element& alone, const Registry& registry) {
     return faults;
 }
 
-}  // namespace
-
-void replace_foreign_integrators(SceneDocument& document, const Registry& registry) {
-    for (Element& e : document.scene.children)
-        if (e.tag == "integrator" && !e.fault) replace(e, document, registry, 0);
-}
-
-void override_integrator(SceneDocument& document, const std::string& type, const Registry& registry) {
+/// The integrator becomes one of another type, with the parameters that it knows.
+void replace_type(SceneDocument& document, const std::string& type, const Registry& registry) {
     Element& element = own_integrator(document);
     const Manual* own = registry.find(Category::integrator, element.get("type"));
-    if (!own && element.find("type"))
-        warn(document,
-             "unknown integrator type '" + printable(element.get("type")) + "': --integrator takes its place",
-             element.where);
     element.set("type", type);
     if (!registry.find(Category::integrator, type)) element.where = {"--integrator " + printable(type), 0};
     const Manual& manual = require_manual(element, registry);
@@ -169,6 +159,37 @@ void override_integrator(SceneDocument& document, const std::string& type, const
         alone.children = {before};
     }
     element = alone.children.front();
+}
+
+}  // namespace
+
+void replace_foreign_integrators(SceneDocument& document, const Registry& registry) {
+    for (Element& e : document.scene.children)
+        if (e.tag == "integrator" && !e.fault) replace(e, document, registry, 0);
+}
+
+void complete_integrator(SceneDocument& document, const std::string& type, const Registry& registry) {
+    const Element* own = document.scene.child_with_tag("integrator");
+    if (!own) {
+        own_integrator(document).set("type", type);
+        return;
+    }
+    const std::string unknown = own->get("type");
+    if (unknown.empty() || own->fault || registry.find(Category::integrator, unknown)) return;
+    warn(document,
+         "unknown integrator type '" + printable(unknown) + "'" +
+             suggestion(unknown, registry.types(Category::integrator)) + ": " + type + " takes its place",
+         own->where);
+    replace_type(document, type, registry);
+}
+
+void override_integrator(SceneDocument& document, const std::string& type, const Registry& registry) {
+    const Element& element = own_integrator(document);
+    if (element.find("type") && !registry.find(Category::integrator, element.get("type")))
+        warn(document,
+             "unknown integrator type '" + printable(element.get("type")) + "': --integrator takes its place",
+             element.where);
+    replace_type(document, type, registry);
 }
 
 }  // namespace mote::core

@@ -41,7 +41,10 @@ void prepare(SceneDocument& document, SceneDefines& defines, const Registry& reg
     drop_foreign_elements(scene, document.warnings);
     replace_foreign_types(scene, registry, document.warnings);
     replace_foreign_integrators(document, registry);
-    if (!options.integrator.empty()) override_integrator(document, options.integrator, registry);
+    if (!options.integrator.empty())
+        override_integrator(document, options.integrator, registry);
+    else if (!options.default_integrator.empty())
+        complete_integrator(document, options.default_integrator, registry);
     complete_sensors(scene);
     defines.check_all_used(faults);
     defines.apply_paths(scene, registry, faults);

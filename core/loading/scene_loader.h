@@ -31,6 +31,9 @@ struct LoadOptions {
     /// Replaces the type of the file's integrator; its parameters are kept where the new type knows them, and
     /// whatever is wrong with them is a warning.
     std::string integrator;
+    /// Stands in where the file has no integrator, or one of a type that is not known (a warning); empty: the
+    /// scene has none then, or the type is an error.
+    std::string default_integrator = {};
     /// What is wrong with the file is left out or approximated, as LoadReport::approximations says.
     bool lenient = false;
     LoadReport* report = nullptr;  ///< filled where it is not null

@@ -101,6 +101,20 @@ class PassLoop {
             request_.progress({state_.passes, state_.passes_of_this_run, stop_.passes, state_.seconds,
                                seconds_left(stop_, state_), state_.noise});
         if (seconds_since(checkpoint_time_) >= request_.checkpoint_every_seconds) write_checkpoint_now();
+        show_preview();
+    }
+    /// Means that finish() replaces are those of the passes again after the next one.
+    void show_preview() {
+        if (!request_.preview || is_done() || !result_.film.has_passes(1)) return;
+        if (previews_ > 0 && seconds_since(preview_time_) < std::max(1.0, 20.0 * preview_seconds_)) return;
+        const Clock::time_point begin = Clock::now();
+        try {
+            runner_.estimator().finish(result_.film);
+            request_.preview(result_.film);
+        } catch (const Cancelled&) {
+        }
+        ++previews_, preview_time_ = Clock::now(), preview_seconds_ = seconds_since(begin);
+        result_.statistics.seconds["previews"] += preview_seconds_;
     }
     void refresh_noise() {
         const Clock::time_point begin = Clock::now();
@@ -114,6 +128,9 @@ class PassLoop {
     RenderResult& result_;
     const std::atomic<bool> never_{false};
     RenderState state_{.noise = infinity};
+    int previews_ = 0;
+    double preview_seconds_ = 0.0;  ///< that the last one took
+    Clock::time_point preview_time_ = Clock::now();
     double noise_seconds_ = 0.0;  ///< that looking at the noise took the last time
     const Clock::time_point start_ = Clock::now();
     Clock::time_point noise_time_ = start_, checkpoint_time_ = start_;
