@@ -27,7 +27,7 @@ LayerFilterParameters read_layer_filter(const Properties& p) {
 }
 
 std::vector<Parameter> layer_filter_parameters() {
-    return {{"filter_levels", "integer", "5",
+    return {{"filter_levels", "integer", "4",
              "levels of details that the filter takes apart: pixels up to 2^(levels + 1) away are averaged"},
             {"filter_confidence", "float", "2",
              "how many times the energy of noise a detail must have to be kept; 0 filters nothing"},

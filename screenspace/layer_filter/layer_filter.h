@@ -20,7 +20,7 @@
 namespace mote::screenspace {
 
 struct LayerFilterSettings {
-    int levels = 5;           ///< of details: the largest reach 2^(levels + 1) pixels
+    int levels = 4;           ///< of details: the largest reach 2^(levels + 1) pixels
     float confidence = 2.0f;  ///< k: how many times the energy of noise a detail must have to be seen at all
 };
 

@@ -22,6 +22,9 @@ struct Estimate {
 
 /// Neighbours farther away than this are asked only where there is none nearer [pixels].
 constexpr int near_reach = 2, far_reach = 4;
+/// Where no neighbour sees the surface, as of a wire, what others nearby see is taken, with this share of it
+/// as its standard deviation: next to much noise it says something, next to little nothing.
+constexpr float strangers_deviation = 0.5f;
 
 class MixedPixel {
   public:
@@ -35,7 +38,7 @@ class MixedPixel {
           x_(int(pixel % std::uint32_t(f.width))),
           y_(int(pixel / std::uint32_t(f.width))) {}
 
-    /// Eq. (4). Nothing where a sample finds nobody.
+    /// Eq. (4). Nothing where a sample finds nobody at all.
     std::optional<Estimate> put_together(std::span<const FeatureSample> samples) const {
         Rgb sum(0.0f), squares(0.0f);
         float variance = 0.0f;
@@ -80,17 +83,29 @@ class MixedPixel {
         return same_surface(off, footprint, glm::dot(s.shading_normal, f_.shading_normal[q]));
     }
 
-    std::optional<Estimate> light_of(const FeatureSample& s) const {
-        for (const int reach : {near_reach, far_reach})
-            if (const auto found = light_within(s, reach)) return found;
-        return std::nullopt;
+    /// Of another surface: one over the squared distance, in footprints.
+    float nearness(const FeatureSample& s, std::uint32_t q) const {
+        if (!(p_.weight[q] > 0.0f)) return 0.0f;
+        const Vec3 d = f_.position[q] - s.position;
+        return 1.0f / (1.0f + glm::dot(d, d) / std::fmax(sqr(f_.frame[pixel_].footprint), 1e-30f));
     }
 
-    std::optional<Estimate> light_within(const FeatureSample& s, int reach) const {
+    std::optional<Estimate> light_of(const FeatureSample& s) const {
+        const auto same = [&](std::uint32_t q) { return weight(s, q); };
+        for (const int reach : {near_reach, far_reach})
+            if (const auto found = light_within(reach, same)) return found;
+        auto strangers = light_within(far_reach, [&](std::uint32_t q) { return nearness(s, q); });
+        if (strangers)
+            strangers->variance += sqr(strangers_deviation) * average(strangers->mean * strangers->mean);
+        return strangers;
+    }
+
+    template <typename Weight>
+    std::optional<Estimate> light_within(int reach, const Weight& weight_of) const {
         float sum = 0.0f, noise = 0.0f;
         Rgb light(0.0f), squares(0.0f);
         for_each_neighbour(reach, [&](std::uint32_t q) {
-            const float w = weight(s, q);
+            const float w = weight_of(q);
             if (!(w > 0.0f)) return;
             const Rgb m = modulation(f_, layer_.kind, q), e = filtered_.mean[q] / m;
             sum += w, light += w * e, squares += w * e * e;
