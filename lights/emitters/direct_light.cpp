@@ -36,6 +36,7 @@ bool reaches_light(const LitScene& scene, const ScatteringVertex& vertex, const 
     shadow.t_max = light.distance * (light.inside ? 1.0f : shadow_fraction);
     ++context.rays.occlusion;
     if (!scene.visible(shadow)) return false;
+    if (light.delta) shadow.t_max = light.distance;  // there is no surface at its end
     if constexpr (Media) {
         connection.light = connection.unidirectional;
         if (how.marched_voxels > 0.0f && light.delta)
