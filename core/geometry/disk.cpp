@@ -52,6 +52,11 @@ class Disk final : public AnalyticShape {
     Bounds3 bounds() const override {
         return outward_bounds(center_, glm::sqrt(x_axis_ * x_axis_ + y_axis_ * y_axis_));
     }
+    DirectionCone normals() const override { return DirectionCone::of(Vec3(normal_)); }
+    float support(const Vec3& direction) const override {
+        const Vec3d d(direction), from_middle = center_ - Vec3d(bounds().center());
+        return float(glm::dot(d, from_middle) + std::hypot(glm::dot(d, x_axis_), glm::dot(d, y_axis_)));
+    }
     float area() const override { return float(area_); }
     bool closed() const override { return false; }
 

@@ -8,6 +8,7 @@
 
 #include "core/materials/texture_coordinates.h"
 #include "core/math/bounds.h"
+#include "core/math/direction_cone.h"
 #include "core/math/frame.h"
 #include "core/objects/error.h"
 #include "core/objects/object.h"
@@ -59,6 +60,13 @@ class Shape : public Object {
     std::vector<std::string> notes;  ///< what was repaired at load, e.g. "12 degenerate triangles dropped"
 
     virtual Bounds3 bounds() const = 0;
+    /// Holds all geometric normals.
+    virtual DirectionCone normals() const { return DirectionCone::all(); }
+    /// How far its points lie from bounds().center() in this direction (unit) at most [m]; by default those
+    /// of the box.
+    virtual float support(const Vec3& direction) const {
+        return 0.5f * glm::dot(glm::abs(direction), bounds().diagonal());
+    }
     virtual float area() const = 0;
     /// Uniform by area.
     virtual ShapeSample sample_area(const Vec2& u) const = 0;

@@ -84,6 +84,26 @@ void TriangleMesh::fill_hit(std::uint32_t primitive, float u, float v, SurfaceHi
     hit.primitive = primitive;
 }
 
+DirectionCone TriangleMesh::normals() const {
+    Vec3d sum(0.0);  // twice the area's vector; zero for closed meshes
+    for (const auto& corner : corners_) sum += Corners(corner).cross;
+    const double length = glm::length(sum);
+    if (!(length > 1e-3 * double(area_))) return DirectionCone::all();
+    const Vec3 axis(sum / length);
+    float least = 1.0f;
+    for (const auto& corner : corners_) least = std::min(least, glm::dot(axis, Corners(corner).normal()));
+    return {axis, AngleOf::cosine(least).in_radians()};
+}
+
+float TriangleMesh::support(const Vec3& direction) const {
+    const Vec3 center = bounds_.center();
+    float farthest = -infinity;
+    for (const auto& corners : data_.triangles)
+        for (const std::uint32_t corner : corners)
+            farthest = std::max(farthest, glm::dot(direction, data_.positions[corner] - center));
+    return farthest;
+}
+
 Vec3 TriangleMesh::shading_normal(std::uint32_t primitive, float u, float v, const Vec3& geometric) const {
     if (data_.normals.empty()) return geometric;
     const auto& corner = data_.triangles[primitive];

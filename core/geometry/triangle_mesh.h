@@ -36,6 +36,8 @@ class TriangleMesh final : public Shape, private SurfaceAttributes {
     void fill_hit(std::uint32_t primitive, float u, float v, SurfaceHit& hit) const;
 
     Bounds3 bounds() const override { return bounds_; }
+    DirectionCone normals() const override;
+    float support(const Vec3& direction) const override;
     float area() const override { return area_; }
     ShapeSample sample_area(const Vec2& u) const override;
     bool closed() const override { return closed_; }

@@ -7,6 +7,7 @@
 #include "core/math/vec.h"
 #include "core/objects/error.h"
 #include "core/objects/object.h"
+#include "core/scene/light_bounds.h"
 
 namespace mote::core {
 
@@ -98,7 +99,11 @@ class Emitter : public Object {
     /// Emitted power [W]; a good estimate is enough: it only steers how often the light is chosen.
     virtual Rgb power() const = 0;
 
-    /// The chance that Scene::choose_light() chooses this light, told once.
+    /// Where the light is and whereto it shines, for a light hierarchy. Nothing for lights without a place:
+    /// at infinity, in media.
+    virtual std::optional<LightBounds> bounds() const { return std::nullopt; }
+
+    /// The chance that Scene::choose_light() chooses this light, told once to lights without bounds().
     virtual void set_direct_probability(float /*probability*/) {}
 
     /// Area lights belong to a shape.

@@ -19,11 +19,11 @@ class LitScene : public RayQueries {
     /// The light at infinity with a picture, or null.
     virtual const Emitter* environment() const = 0;
 
-    /// Light for a receiver. A null emitter: there is none to choose. `remapped` is u, ready to be used
-    /// again.
-    virtual LightChoice choose_light(float u, float* remapped = nullptr) const = 0;
-    virtual float light_probability(const Emitter* emitter) const = 0;  ///< of choose_light()
-    /// Light for a particle.
+    /// Light for a receiver. A null emitter: there is none to choose.
+    virtual LightChoice choose_light(const LightReceiver& receiver, float u) const = 0;
+    /// Of choose_light(). Over all lights they add up to 1.
+    virtual float light_probability(const LightReceiver& receiver, const Emitter* emitter) const = 0;
+    /// Light for a particle. `remapped` is u, ready to be used again.
     virtual LightChoice choose_emitter_by_power(float u, float* remapped = nullptr) const = 0;
 
     /// Where a light without extent (point, spot) stands; nothing for all others.

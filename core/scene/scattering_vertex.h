@@ -9,6 +9,7 @@
 
 #include "core/geometry/bsdf_point.h"
 #include "core/math/sampler.h"
+#include "core/scene/light_bounds.h"
 #include "core/scene/medium_state.h"
 #include "core/scene/ray_walk.h"
 
@@ -49,6 +50,12 @@ struct ScatteringVertex {
 
     /// Has a part that can be connected to a light.
     bool connectable() const { return phase || bsdf->traits().smooth; }
+    /// For the choice of a light to connect to.
+    LightReceiver light_receiver() const {
+        if (!on_surface() || bsdf->traits().transmissive) return {position};
+        const Vec3& n = hit.geometric_normal;
+        return {position, glm::dot(n, wo) < 0.0f ? -n : n};
+    }
     /// Origin for a ray that leaves in `direction`.
     Vec3 ray_origin(const Vec3& direction) const {
         return on_surface() ? offset_origin(hit, direction) : position;

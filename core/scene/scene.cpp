@@ -1,23 +1,16 @@
-// A complete scene: checks, bounds and light tables. Media are in scene_media.cpp.
+// A complete scene: checks and bounds. Media are in scene_media.cpp, lights in scene_lights.cpp.
 #include "core/scene/scene.h"
 
 #include <algorithm>
 
 #include "core/objects/error.h"
+#include "core/scene/light_tree.h"
 
 namespace mote::core {
 namespace {
 
 bool any_emissive(const std::vector<std::shared_ptr<Medium>>& media) {
     return std::any_of(media.begin(), media.end(), [](const auto& m) { return m->traits().emissive; });
-}
-
-/// The power of a light in one number, never negative.
-float scalar_power(const Emitter& emitter, const std::string& file) {
-    const Rgb power = emitter.power();
-    if (!is_finite(power) || !(average(power) >= 0.0f))
-        throw InputError("a light has a power that is negative or not finite", {file, 0});
-    return average(power);
 }
 
 }  // namespace
@@ -122,51 +115,6 @@ void Scene::add_medium_lights() {
         if (auto light = medium->make_emitter(medium_extent(*medium)))
             parts_.emitters.push_back(std::move(light));
     }
-}
-
-void Scene::build_light_tables() {
-    std::vector<float> power;
-    double total = 0.0;
-    std::size_t lit = 0;
-    for (const auto& emitter : parts_.emitters) {
-        emitter_index_.emplace(emitter.get(), power.size());
-        if (emitter->traits().kind == EmitterKind::environment) environment_ = emitter.get();
-        power.push_back(scalar_power(*emitter, parts_.file));
-        total += double(power.back());
-        lit += power.back() > 0.0f;
-    }
-    if (lit == 0) std::fill(power.begin(), power.end(), 1.0f);  // all black: any choice is right
-    std::vector<float> relative, mixed;
-    for (std::size_t i = 0; i < power.size(); ++i) {
-        const float p = power[i];
-        relative.push_back(lit == 0 ? p : float(double(p) / total));
-        const float equal = p > 0.0f ? 1.0f / float(std::max<std::size_t>(lit, 1)) : 0.0f;
-        const bool direct = parts_.emitters[i]->traits().direct;
-        mixed.push_back(!direct ? 0.0f : lit == 0 ? 1.0f : 0.5f * relative.back() + 0.5f * equal);
-    }
-    direct_lights_ = Distribution1D(mixed);
-    for (const auto& emitter : parts_.emitters)
-        emitter->set_direct_probability(light_probability(emitter.get()));
-    particle_lights_ = Distribution1D(relative);
-}
-
-LightChoice Scene::choose_light(float u, float* remapped) const {
-    if (direct_lights_.empty()) return {nullptr, 0.0f};
-    const auto chosen = direct_lights_.sample_discrete(u);
-    if (remapped) *remapped = chosen.remapped;
-    return {parts_.emitters[chosen.index].get(), chosen.probability};
-}
-
-float Scene::light_probability(const Emitter* emitter) const {
-    const auto it = emitter_index_.find(emitter);
-    return it == emitter_index_.end() ? 0.0f : direct_lights_.probability(it->second);
-}
-
-LightChoice Scene::choose_emitter_by_power(float u, float* remapped) const {
-    if (particle_lights_.empty()) return {nullptr, 0.0f};
-    const auto chosen = particle_lights_.sample_discrete(u);
-    if (remapped) *remapped = chosen.remapped;
-    return {parts_.emitters[chosen.index].get(), chosen.probability};
 }
 
 }  // namespace mote::core

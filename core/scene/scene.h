@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "core/geometry/ray_tracer.h"
@@ -18,6 +19,7 @@
 namespace mote::core {
 
 class Integrator;
+class LightTree;
 class ProbeRays;
 struct Element;
 
@@ -74,9 +76,10 @@ class Scene final : public LitScene {
     Bounds3 bounds() const override { return bounds_; }
     const Emitter* environment() const override { return environment_; }
 
-    /// Half the chances follow power, half are equal, so that no light is starved.
-    LightChoice choose_light(float u, float* remapped = nullptr) const override;
-    float light_probability(const Emitter* emitter) const override;
+    /// By the light hierarchy; see scene_lights.cpp.
+    LightChoice choose_light(const LightReceiver& receiver, float u) const override;
+    float light_probability(const LightReceiver& receiver, const Emitter* emitter) const override;
+    const LightTree& light_tree() const { return *light_tree_; }
     /// Proportional to power.
     LightChoice choose_emitter_by_power(float u, float* remapped = nullptr) const override;
 
@@ -102,6 +105,7 @@ class Scene final : public LitScene {
     void find_bounds();
     void add_medium_lights();
     void build_light_tables();
+    float probability_of(std::size_t light, const LightReceiver& receiver) const;
     void find_boundaries();
     void find_outermost_medium();
     bool reaches_outside(const Shape& shape) const;
@@ -123,8 +127,12 @@ class Scene final : public LitScene {
     std::unique_ptr<RayTracer> rays_;
     Bounds3 bounds_;
     const Emitter* environment_ = nullptr;
+    /// Of each light without the hierarchy, and the hierarchy as the last entry; of particles.
     Distribution1D direct_lights_, particle_lights_;
-    std::map<const Emitter*, std::size_t> emitter_index_;
+    std::unique_ptr<const LightTree> light_tree_;
+    static constexpr std::uint32_t no_tree = 0xffffffffu;
+    std::vector<std::uint32_t> tree_lights_, tree_index_;  ///< light of the hierarchy to emitter, and back
+    std::unordered_map<const Emitter*, std::size_t> emitter_index_;
     const Medium* outermost_ = nullptr;
     MediumState camera_state_;
     bool eyes_differ_ = false;  ///< a boundary passes through where eye rays begin

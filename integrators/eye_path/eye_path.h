@@ -105,7 +105,7 @@ class EyePath {
     core::PathWeights weights_;
     core::ScatteringVertex vertex_;
     core::Vec2 choices_{0.0f};  ///< of the light, and of the lobe
-    core::Vec3 previous_{0.0f};
+    core::LightReceiver previous_;
     bool connected_ = false;  ///< could next-event estimation at `previous_` have found what comes?
     bool surface_first_ = true, ends_at_delta_ = false;
     int depth_ = 0, scatterings_ = 0;
@@ -178,7 +178,7 @@ bool EyePath<Media>::scatter(core::WalkContext& context) {
     if (core::is_black(weights_.throughput)) return false;
     if (Media && vertex_.on_surface()) state_ = vertex_.state_towards(state_, next->wi);
     eta_ *= next->eta;
-    connected_ = !next->delta, previous_ = vertex_.position;
+    connected_ = !next->delta, previous_ = vertex_.light_receiver();
     ray_ = core::Ray{vertex_.ray_origin(next->wi), next->wi};
     return true;
 }

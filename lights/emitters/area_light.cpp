@@ -74,6 +74,16 @@ class AreaLight final : public Emitter {
         if (!shape_ || !(shape_->area() > 0.0f)) return {};
         return {1.0f / shape_->area(), std::fmax(0.0f, glm::dot(normal, direction)) * inv_pi};
     }
+    std::optional<LightBounds> bounds() const override {
+        if (!shape_) return std::nullopt;
+        const DirectionCone normals = shape_->normals();
+        // A flat one sends L A along its normal, others less: a ball L A / 4.
+        const double flat = normals.angle < 0.5f * pi ? 1.0 : 0.25;
+        return LightBounds{.box = shape_->bounds(),
+                           .normals = normals,
+                           .back = normals.angle <= 1e-4f ? shape_->support(-normals.axis) : infinity,
+                           .intensity = flat * double(average(power())) * double(inv_pi)};
+    }
     Rgb power() const override {
         if (!shape_) return Rgb(0.0f);
         const SurfaceAttributes* attributes = shape_->attributes();

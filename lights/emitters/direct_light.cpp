@@ -57,7 +57,7 @@ template <bool Media>
 Rgb sample_light(const LitScene& scene, const ScatteringVertex& vertex, const PathWeights& weights,
                  const MediumState& state, float u_light, const Vec2& u, WalkContext& context,
                  const LightSampling& how) {
-    const LightChoice choice = scene.choose_light(u_light);
+    const LightChoice choice = scene.choose_light(vertex.light_receiver(), u_light);
     if (!choice.emitter) return Rgb(0.0f);
     if (how.lit_along && !vertex.on_surface() && choice.emitter->traits().delta_position) return Rgb(0.0f);
     const auto light = choice.emitter->sample_direct(vertex.position, u);
@@ -88,7 +88,7 @@ Rgb sample_light(const LitScene& scene, const ScatteringVertex& vertex, const Pa
 
 template <bool Media>
 Rgb found_light(const LitScene& scene, const WalkEvent& event, const Ray& ray, const PathWeights& weights,
-                const Vec3* previous) {
+                const LightReceiver* previous) {
     const Emitter* emitter = nullptr;
     const SurfaceHit* hit = nullptr;
     Rgb radiance(0.0f);
@@ -102,8 +102,8 @@ Rgb found_light(const LitScene& scene, const WalkEvent& event, const Ray& ray, c
     if (!emitter || is_black(radiance)) return Rgb(0.0f);
     const Rgb unidirectional = Media ? weights.unidirectional : Rgb(1.0f);
     if (!previous) return weights.throughput * radiance / channel_average<Media>(unidirectional);
-    const float pdf_light =
-        scene.light_probability(emitter) * emitter->pdf_direct(*previous, ray.direction, hit);
+    const float pdf_light = scene.light_probability(*previous, emitter) *
+                            emitter->pdf_direct(previous->position, ray.direction, hit);
     // Eq. 9.8 seen from the other technique: weights.light holds 1 / p(w) of the direction that led here.
     return weights.throughput * radiance / channel_average<Media>(unidirectional + weights.light * pdf_light);
 }
@@ -113,8 +113,8 @@ template Rgb sample_light<true>(const LitScene&, const ScatteringVertex&, const 
 template Rgb sample_light<false>(const LitScene&, const ScatteringVertex&, const PathWeights&,
                                  const MediumState&, float, const Vec2&, WalkContext&, const LightSampling&);
 template Rgb found_light<true>(const LitScene&, const WalkEvent&, const Ray&, const PathWeights&,
-                               const Vec3*);
+                               const LightReceiver*);
 template Rgb found_light<false>(const LitScene&, const WalkEvent&, const Ray&, const PathWeights&,
-                                const Vec3*);
+                                const LightReceiver*);
 
 }  // namespace mote::lights

@@ -49,7 +49,7 @@ core::Rgb sample_light(const core::LitScene& scene, const core::ScatteringVertex
 /// light (the eye itself, or a delta scattering): then the full contribution counts.
 template <bool Media>
 core::Rgb found_light(const core::LitScene& scene, const core::WalkEvent& event, const core::Ray& ray,
-                      const core::PathWeights& weights, const core::Vec3* previous);
+                      const core::PathWeights& weights, const core::LightReceiver* previous);
 
 /// Multiplies `weights` by a scattering sampled at `position` and prepares its rescaled pdfs for the next
 /// event.
@@ -74,7 +74,8 @@ core::Rgb light_towards(const core::LitScene& scene, const core::ScatteringVerte
     const core::Ray ray{vertex.ray_origin(s.wi), s.wi};
     core::Rgb emitted(0.0f);
     const core::WalkEvent event = core::walk<Media>(scene, ray, state, weights, emitted, context);
-    return emitted + found_light<Media>(scene, event, ray, weights, s.delta ? nullptr : &vertex.position);
+    const core::LightReceiver here = vertex.light_receiver();
+    return emitted + found_light<Media>(scene, event, ray, weights, s.delta ? nullptr : &here);
 }
 
 }  // namespace mote::lights

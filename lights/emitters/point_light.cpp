@@ -38,6 +38,9 @@ class PointLight final : public Emitter {
         return {1.0f, inv_four_pi};
     }
     Rgb power() const override { return 4.0f * pi * intensity_; }
+    std::optional<LightBounds> bounds() const override {
+        return LightBounds{.box = {position_, position_}, .intensity = double(average(intensity_))};
+    }
 
   private:
     Vec3 position_;

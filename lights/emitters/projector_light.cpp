@@ -75,6 +75,13 @@ class ProjectorLight final : public Emitter, public ConeLight {
         return {1.0f, uv ? pdf_solid_angle(*uv, local.z) : 0.0f};
     }
     Rgb power() const override { return power_; }
+    std::optional<LightBounds> bounds() const override {
+        const LightCone around = cone();
+        return LightBounds{.box = {position_, position_},
+                           .normals = DirectionCone::of(around.axis),
+                           .reach = float(around.angle),
+                           .intensity = double(average(power_)) / solid_angle()};
+    }
     /// Around the picture's corners.
     LightCone cone() const override {
         return {position_, world_from_local_ * Vec3(0, 0, 1), double(std::atan(glm::length(half_)))};
@@ -87,6 +94,11 @@ class ProjectorLight final : public Emitter, public ConeLight {
     }
     /// Area of the picture on the plane at distance 1.
     float area() const { return 4.0f * half_.x * half_.y; }
+    /// That the picture fills, seen from the light: four right pyramids.
+    double solid_angle() const {
+        const double x = double(half_.x), y = double(half_.y);
+        return 4.0 * std::atan(x * y / std::sqrt(1.0 + x * x + y * y));
+    }
     /// Where the picture is seen in the unit direction d of the light's own frame: its upper left corner,
     /// (0, 0), lies at +x and +y, as a camera's does. Nothing beside the picture.
     std::optional<Vec2> picture_place(const Vec3& d) const {

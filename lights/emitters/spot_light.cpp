@@ -61,6 +61,13 @@ class SpotLight final : public Emitter, public ConeLight {
                           : 0.0f};
     }
     Rgb power() const override { return power_; }
+    std::optional<LightBounds> bounds() const override {
+        const float wider = std::fmax(0.0f, cutoff_ - 0.5f * pi);  // what is beyond a right angle of the axis
+        return LightBounds{.box = {position_, position_},
+                           .normals = {world_from_local_ * Vec3(0, 0, 1), wider},
+                           .reach = cutoff_ - wider,
+                           .intensity = double(average(power_) * cone_pdf(one_minus_cos_cutoff_))};
+    }
     LightCone cone() const override {
         return {position_, world_from_local_ * Vec3(0, 0, 1), double(cutoff_),
                 texture_ ? 0.0 : double(beam_)};

@@ -344,25 +344,3 @@ TEST_CASE("Requirements count what the scene holds", "[scene][media]") {
     CHECK(r.media_bounds.lower.x == Approx(-5));
     CHECK(r.media_bounds.upper.y == Approx(5));
 }
-
-TEST_CASE("Lights are drawn half by power, half equally", "[scene][lights]") {
-    const auto scene = load_body(
-        "<shape type='sphere'/><emitter type='point'><rgb name='intensity' value='3'/></emitter>"
-        "<emitter type='point'><rgb name='intensity' value='1'/></emitter>"
-        "<emitter type='point'><rgb name='intensity' value='0'/></emitter>");
-    const auto lights = scene->emitters();
-    CHECK(scene->light_probability(lights[0].get()) == Approx(0.5 * 0.75 + 0.25));
-    CHECK(scene->light_probability(lights[1].get()) == Approx(0.5 * 0.25 + 0.25));
-    CHECK(scene->light_probability(lights[2].get()) == 0.0f);
-    CHECK(scene->choose_light(0.1f).emitter == lights[0].get());
-    CHECK(scene->choose_light(0.1f).probability == Approx(0.625));
-    CHECK(scene->choose_emitter_by_power(0.7f).emitter == lights[0].get());
-    CHECK(scene->choose_emitter_by_power(0.8f).probability == Approx(0.25));
-    float remapped = -1.0f;
-    scene->choose_light(0.625f + 0.375f * 0.5f, &remapped);
-    CHECK(remapped == Approx(0.5).epsilon(1e-5));
-    // All black: finite, and some light.
-    const auto black =
-        load_body("<shape type='sphere'/><emitter type='point'><rgb name='intensity' value='0'/></emitter>");
-    CHECK(black->choose_light(0.3f).probability == 1.0f);
-}

@@ -34,6 +34,10 @@ struct FakeEmitter : core::Emitter {
         return {1.0f, 1.0f};
     }
     core::Rgb power() const override { return strength; }
+    std::optional<core::LightBounds> bounds() const override {
+        if (!kind.delta_position) return std::nullopt;
+        return core::LightBounds{.box = {position, position}, .intensity = double(core::average(strength))};
+    }
     void set_shape(const core::Shape* s) override { shape = s; }
 };
 

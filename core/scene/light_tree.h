@@ -1,0 +1,58 @@
+// A hierarchy over lights, eight children a node, from which one is drawn for a receiver in proportion to
+// what it may contribute (Estevez and Kulla 2018; without their splitting: one light a draw).
+//
+// Going down, each child's share is its importance over that of all eight. The probability of a light is the
+// product of the shares on its way; where no child matters all are alike, so that the probabilities of all
+// lights add up to 1 for every receiver.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/scene/light_importance.h"
+
+namespace mote::core {
+
+class LightTree {
+  public:
+    LightTree() = default;
+    /// At most 2^28 lights, of intensity above 0.
+    explicit LightTree(std::span<const LightBounds> lights);
+
+    bool empty() const { return leaves_.empty(); }
+    std::size_t size() const { return leaves_.size(); }
+    int depth() const { return depth_; }  ///< nodes on the longest way down
+
+    struct Choice {
+        std::uint32_t light;
+        double probability;
+    };
+    /// Precondition: !empty(). `where` is a LightReceiver or a LightSegment; u in [0, 1).
+    template <typename Where>
+    Choice sample(const Where& where, double u) const;
+    /// Of sample() choosing this light.
+    template <typename Where>
+    double probability(const Where& where, std::uint32_t light) const;
+
+  private:
+    static constexpr std::uint32_t none = 0xffffffffu;
+    /// A child of a node.
+    struct Place {
+        std::uint32_t node = none, slot = 0;
+    };
+    struct Node {
+        LightGroups groups;
+        Place parent;
+        std::uint32_t children = 0;
+        LightGroups::Each<std::uint32_t> child{};  ///< a node, or a light where is_light
+        LightGroups::Each<bool> is_light{};
+    };
+    template <typename Where>
+    static LightImportances shares(const Node& node, const Where& where);
+
+    std::vector<Node> nodes_;
+    std::vector<Place> leaves_;  ///< by light
+    int depth_ = 0;
+};
+
+}  // namespace mote::core
