@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "apps/reference_metadata.h"
 #include "core/image/whole_file.h"
 #include "core/objects/error.h"
 
@@ -62,7 +63,7 @@ PictureFile read_picture(const std::string& path, const std::string& layer) {
     }
     const ImageChannels image = core::read_exr(path);
     PictureFile picture{{image.width, image.height, image.rgb(layer)},
-                        image.rgb(layer.empty() ? "Variance" : "Variance." + layer),
+                        layer.empty() ? variance_of_beauty(image) : image.rgb("Variance." + layer),
                         image.metadata};
     if (picture.bitmap.pixels.empty() && layer.empty())
         picture.bitmap = core::read_bitmap(path, false);  // grey, or with channels of other names

@@ -43,6 +43,17 @@ bool same_camera(const std::string& a, const std::string& b) {
     return true;
 }
 
+std::vector<core::Rgb> variance_of_beauty(const core::ImageChannels& image) {
+    std::vector<core::Rgb> variance = image.rgb("Variance");
+    const auto text = image.metadata.find(variance_gain_key);
+    if (text == image.metadata.end()) return variance;
+    const std::vector<double> gain = numbers(text->second);
+    // Files come from anywhere; a gain is at most a little above 1.
+    if (gain.size() == 1 && gain[0] >= 0.0 && gain[0] <= 2.0)
+        for (core::Rgb& v : variance) v *= float(gain[0]);
+    return variance;
+}
+
 std::string scene_content(const core::Scene& scene, std::vector<std::string> defines) {
     std::sort(defines.begin(), defines.end());
     return core::content_hash(scene, defines);

@@ -76,7 +76,8 @@ std::map<std::string, std::string> picture_metadata(const RenderReport& r) {
         {"sceneContent", r.scene_content},
         {"commandLine", quoted(r.command_line)},
         {"worldToCamera", world_to_camera(r.scene.camera())}};
-    const double noise = r.result.film.noise();
+    const auto [gain, noise] = r.result.film.gain_and_noise();
+    if (r.result.film.pass_count() >= 2) metadata[variance_gain_key] = fmt::format("{:.6g}", gain);
     if (!r.result.finished_pixels.empty()) {
         metadata["passes"] = "0";
         metadata["partOfFirstPass"] =
@@ -134,7 +135,7 @@ std::string statistics_json(const RenderReport& r) {
     if (const auto vpls = s.values.find("vpls"); vpls != s.values.end()) j["vpls"] = vpls->second;
     j["values"] = values;
     j["peak_memory_bytes"] = peak_memory_bytes();
-    j["noise"] = number_or_null(r.result.film.noise());
+    j["noise"] = number_or_null(s.values.contains("noise") ? s.values.at("noise") : r.result.film.noise());
     j["warnings"] = warnings;
     j["approximations"] = r.approximations;
     j["non_finite_samples"] = s.non_finite_samples;

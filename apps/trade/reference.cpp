@@ -151,7 +151,10 @@ double smallest_error(std::span<const core::Rgb> variance, const core::RelativeW
 
 double smallest_error(const core::Film& film) {
     if (film.pass_count() < 2) return core::infinity;
-    const std::vector<core::Rgb> picture = film.beauty(), variance = film.beauty_variance_of_mean();
+    const std::vector<core::Rgb> picture = film.beauty();
+    std::vector<core::Rgb> variance = film.beauty_variance_of_mean();
+    const auto gain = float(film.gain_and_noise().gain);
+    for (core::Rgb& v : variance) v *= gain;
     return smallest_error(variance, core::relative_weights(picture, variance, film.width(), film.height()));
 }
 
@@ -160,7 +163,7 @@ Reference load_reference(const std::string& path, const core::Scene& scene, cons
     Reference reference;
     reference.image = core::read_exr(path);
     reference.pixels = reference.image.rgb("");
-    reference.variance = reference.image.rgb("Variance");
+    reference.variance = variance_of_beauty(reference.image);
     if (const auto seed = number(reference.metadata("seed"))) reference.seed = std::uint64_t(*seed);
     Check(path, reference, scene, rules).run(content);
     return reference;

@@ -7,6 +7,7 @@
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -103,12 +104,6 @@ double Film::passes_of(std::size_t layer, std::size_t pixel) const {
     return where < layers_.size() ? sums_[where].at(3 * pixel) : double(parts_[layers_[layer].part].passes);
 }
 
-double Film::beauty_sum(const Part& part, std::size_t i) const {
-    double sum = 0.0;
-    for (const std::size_t layer : part.beauty_layers) sum += sums_[layer].at(i);
-    return sum;
-}
-
 void Film::add_pixel(const PassImage& image, Part& part, std::size_t pixel) {
     double beauty[3] = {0.0, 0.0, 0.0};
     for (std::size_t of_image = 0; of_image < part.layers.size(); ++of_image) {
@@ -124,16 +119,21 @@ void Film::add_pixel(const PassImage& image, Part& part, std::size_t pixel) {
     }
     for (int c = 0; c < 3; ++c)
         part.beauty_squares.block[3 * pixel + std::size_t(c)] += beauty[c] * beauty[c];
+    add_to_halves(part, pixel, float((beauty[0] + beauty[1] + beauty[2]) / 3.0));
+}
+
+// A binary counter: a pass closes as many blocks as the count before it ends in ones.
+void Film::add_to_halves(Part& part, std::size_t pixel, float sum) {
+    const auto closed = std::size_t(std::countr_one(part.passes));
+    for (std::size_t k = 0; k < closed; ++k) {
+        const float first = part.halves[k].open[pixel];
+        part.halves[k].squares[pixel] += (first - sum) * (first - sum);
+        sum += first;
+    }
+    part.halves[closed].open[pixel] = sum;
 }
 
 void Film::close_block(Part& part) {
-    for_each_pixel(pixels(), [&](std::size_t p) {
-        for (std::size_t c = 0; c < 3; ++c) {
-            double sum = 0.0;
-            for (const std::size_t layer : part.beauty_layers) sum += sums_[layer].block[3 * p + c];
-            part.block_squares.total[p] += sum * sum / 3.0;
-        }
-    });
     for (const std::size_t layer : part.layers)
         sums_[layer].close_block(), layer_squares_[layer].close_block();
     part.beauty_squares.close_block();
@@ -145,6 +145,8 @@ void Film::add_pass(const PassImage& image, std::size_t index, double work) {
         throw std::invalid_argument("the pass does not fit the film");
     for (auto& replaced : replaced_means_) replaced.clear();
 
+    if (std::size_t(std::countr_one(part.passes)) == part.halves.size())
+        part.halves.push_back({std::vector<float>(pixels()), std::vector<float>(pixels(), 0.0f)});
     // Pixels are independent of each other, so the order of tasks does not matter to any bit.
     non_finite_ += tbb::parallel_reduce(
         tbb::blocked_range<std::size_t>(0, pixels(), grain), std::uint64_t(0),
@@ -153,7 +155,7 @@ void Film::add_pass(const PassImage& image, std::size_t index, double work) {
                 if (pixel_is_finite(image, pixel))
                     add_pixel(image, part, pixel);
                 else
-                    ++dropped;
+                    add_to_halves(part, pixel, 0.0f), ++dropped;
             }
             return dropped;
         },

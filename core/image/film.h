@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -67,7 +68,14 @@ class Film {
     void set_mean(std::size_t layer, std::span<const Rgb> values);
     /// The noise of the beauty, Eq. (4) of core/image/relative_error.h: the error that the passes so far are
     /// expected to have left. Infinity for n < 2.
-    double noise() const;
+    double noise() const { return gain_and_noise().noise; }
+    struct GainAndNoise {
+        /// Passes are Sobol points: how much smaller the variance of the mean is, over the whole picture,
+        /// than beauty_variance_of_mean() says, which takes them for independent. 1 for n < 2.
+        double gain = 1.0;
+        double noise = std::numeric_limits<double>::infinity();
+    };
+    GainAndNoise gain_and_noise() const;
 
     /// The bits of the film, for checkpoints: sums, counts, block state, and a checksum.
     std::vector<std::byte> serialize() const;
@@ -83,27 +91,28 @@ class Film {
         double at(std::size_t i) const { return total[i] + block[i]; }
         void close_block();
     };
+    /// Of every aligned block of 2^(k+1) passes: how its halves differ, in the mean of the beauty's channels.
+    struct Halves {
+        std::vector<float> open;     ///< sum over the first half, where the second is not complete yet
+        std::vector<float> squares;  ///< (difference of the halves' sums)^2, summed over complete blocks
+    };
     struct Part {
         std::uint32_t passes = 0;
         double work = 0.0;
         Sums beauty_squares;                     ///< three channels
-        Sums block_squares;                      ///< of sums over a block, mean over channels
+        std::vector<Halves> halves;              ///< [k] of its beauty; as many as `passes` has bits
         std::vector<std::size_t> layers;         ///< in order
         std::vector<std::size_t> beauty_layers;  ///< those that are not auxiliary, in order
-        explicit Part(std::size_t pixels) : beauty_squares(3 * pixels), block_squares(pixels) {}
+        explicit Part(std::size_t pixels) : beauty_squares(3 * pixels) {}
     };
     void find_parts();
     void find_where();
     void add_pixel(const PassImage& image, Part& part, std::size_t pixel);
+    static void add_to_halves(Part& part, std::size_t pixel, float sum);
     void close_block(Part& part);
-    /// The sum over the layers of the beauty that are in a part; of complete blocks alone, or with the open
-    /// one.
-    double beauty_sum(const Part& part, std::size_t i) const;
-    /// Of the mean over complete blocks, averaged over channels, from the spread of the blocks' sums.
-    double block_variance_of_mean(const Part& part, std::size_t pixel) const;
-    /// The gain of blocks over independent passes, by which variances are too large (film_noise.cpp).
-    double gain_of_blocks(const Part& part, std::span<const Rgb> variance,
-                          std::span<const double> weights) const;
+    std::vector<Rgb> mean_of_passes() const;  ///< of the beauty, whatever set_mean() says
+    /// d[k] of core/image/sobol_gain.h.
+    std::vector<double> differences(const Part& part, std::span<const double> weights) const;
     std::vector<Rgb> variance_of_mean(std::span<const std::size_t> layers, const Sums& squares) const;
     /// How many passes the mean of a layer is over, for a pixel.
     double passes_of(std::size_t layer, std::size_t pixel) const;

@@ -5,6 +5,7 @@
 // zeros are not written, for a film takes hundreds of megabytes.
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstring>
 #include <utility>
 
@@ -18,7 +19,7 @@ namespace {
 
 struct Header {
     std::array<char, 8> magic = {'m', 'o', 't', 'e', 'f', 'i', 'l', 'm'};
-    std::uint32_t version = 3;
+    std::uint32_t version = 4;
     std::uint32_t width = 0, height = 0, layers = 0, all_squares = 0, parts = 0;
     std::uint64_t non_finite = 0;
 };
@@ -30,6 +31,10 @@ struct PartHeader {
 
 bool has_totals(std::uint32_t passes) { return passes >= Film::block_size; }
 bool has_blocks(std::uint32_t passes) { return passes % Film::block_size != 0; }
+
+// Of blocks of 2^(k+1) passes: is half of one there, and has one been complete?
+bool is_open(std::uint32_t passes, std::size_t k) { return (passes >> k) % 2 == 1; }
+bool is_closed(std::uint32_t passes, std::size_t k) { return std::uint64_t(passes) >> (k + 1) > 0; }
 
 // Fills a buffer of known size from front to back.
 class Writer {
@@ -54,8 +59,7 @@ template <typename Self, typename Body>
 void Film::for_each_sums(Self& film, const Body& body) {
     for (std::size_t i = 0; i < film.layers_.size(); ++i) body(film.sums_[i], film.layers_[i].part);
     for (std::size_t i = 0; i < film.layers_.size(); ++i) body(film.layer_squares_[i], film.layers_[i].part);
-    for (std::size_t i = 0; i < film.parts_.size(); ++i)
-        body(film.parts_[i].beauty_squares, i), body(film.parts_[i].block_squares, i);
+    for (std::size_t i = 0; i < film.parts_.size(); ++i) body(film.parts_[i].beauty_squares, i);
 }
 
 std::size_t Film::serialized_size(std::span<const std::uint32_t> passes) const {
@@ -65,6 +69,9 @@ std::size_t Film::serialized_size(std::span<const std::uint32_t> passes) const {
             (has_totals(passes[part]) ? 1u : 0u) + (has_blocks(passes[part]) ? 1u : 0u);
         size += copies * sums.total.size() * sizeof(double);
     });
+    for (const std::uint32_t n : passes)
+        for (std::size_t k = 0; k < std::size_t(std::bit_width(n)); ++k)
+            size += ((is_open(n, k) ? 1u : 0u) + (is_closed(n, k) ? 1u : 0u)) * pixels() * sizeof(float);
     return size;
 }
 
@@ -87,6 +94,12 @@ std::vector<std::byte> Film::serialize() const {
         if (has_totals(passes[part])) writer.write(sums.total.data(), bytes);
         if (has_blocks(passes[part])) writer.write(sums.block.data(), bytes);
     });
+    for (const Part& part : parts_)
+        for (std::size_t k = 0; k < part.halves.size(); ++k) {
+            if (is_open(part.passes, k)) writer.write(part.halves[k].open.data(), pixels() * sizeof(float));
+            if (is_closed(part.passes, k))
+                writer.write(part.halves[k].squares.data(), pixels() * sizeof(float));
+        }
     const std::uint64_t sum = checksum(writer.written());
     writer.write(&sum, sizeof(sum));
     return writer.take();
@@ -132,8 +145,20 @@ void Film::deserialize(std::span<const std::byte> bytes) {
     for_each_sums(*this, [&](Sums& sums, std::size_t part) {
         read(sums.total, has_totals(passes[part])), read(sums.block, has_blocks(passes[part]));
     });
-    for (std::size_t i = 0; i < parts_.size(); ++i)
-        parts_[i].passes = passes[i], parts_[i].work = part_headers[i].work;
+    const auto read_floats = [&from](std::vector<float>& values) {
+        std::memcpy(values.data(), from, values.size() * sizeof(float));
+        from += values.size() * sizeof(float);
+    };
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+        Part& part = parts_[i];
+        part.passes = passes[i], part.work = part_headers[i].work;
+        part.halves.assign(std::size_t(std::bit_width(part.passes)), {});
+        for (std::size_t k = 0; k < part.halves.size(); ++k) {
+            part.halves[k] = {std::vector<float>(pixels()), std::vector<float>(pixels(), 0.0f)};
+            if (is_open(part.passes, k)) read_floats(part.halves[k].open);
+            if (is_closed(part.passes, k)) read_floats(part.halves[k].squares);
+        }
+    }
     non_finite_ = header.non_finite;
     for (auto& replaced : replaced_means_) replaced.clear();
 }

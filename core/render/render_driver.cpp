@@ -136,12 +136,13 @@ class PassLoop {
     Clock::time_point noise_time_ = start_, checkpoint_time_ = start_;
 };
 
-/// Sums in double precision, twice; the pass in single.
+/// Sums in double precision, twice; halves of blocks of up to 2^10 passes, and the pass, in single.
 double film_bytes(const FilmSettings& film, std::span<const Layer> layers, bool all_squares) {
-    double planes = 4.0 / 3.0;  // of the beauty's squares
+    double planes = 1.0;  // of the beauty's squares
     for (const Layer& layer : layers) planes += all_squares || layer.squares ? 2.0 : 1.0;
     const double pixels = double(film.width) * double(film.height);
-    return pixels * (planes * 3.0 * 2.0 * sizeof(double) + double(layers.size()) * sizeof(Rgb));
+    return pixels * (planes * 3.0 * 2.0 * sizeof(double) + 10.0 * 2.0 * sizeof(float) +
+                     double(layers.size()) * sizeof(Rgb));
 }
 
 void resume(const RenderRequest& request, RenderResult& result) {
