@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "apps/render_report.h"
 #include "core/image/image_file.h"
@@ -30,13 +31,11 @@ class Clocks {
 };
 
 json to_json(const Tally& t) {
-    return {{"passes", t.passes},
-            {"build_wall", t.build_wall},
-            {"build_cpu", t.build_cpu},
-            {"wall", t.wall},
-            {"cpu", t.cpu},
-            {"mean", t.mean},
-            {"squares", t.squares}};
+    json spreads = json::array();
+    for (const Tally::Spread& s : t.spreads)
+        spreads.push_back({{"passes", s.passes}, {"mean", s.mean}, {"squares", s.squares}});
+    return {{"passes", t.passes}, {"build_wall", t.build_wall}, {"build_cpu", t.build_cpu}, {"wall", t.wall},
+            {"cpu", t.cpu},       {"spreads", spreads}};
 }
 
 Tally tally_from(const json& j) {
@@ -44,7 +43,9 @@ Tally tally_from(const json& j) {
     t.passes = j.at("passes").get<std::uint32_t>();
     t.build_wall = j.at("build_wall").get<double>(), t.build_cpu = j.at("build_cpu").get<double>();
     t.wall = j.at("wall").get<double>(), t.cpu = j.at("cpu").get<double>();
-    t.mean = j.at("mean").get<double>(), t.squares = j.at("squares").get<double>();
+    for (const json& s : j.at("spreads"))
+        t.spreads.push_back(
+            {s.at("passes").get<std::uint32_t>(), s.at("mean").get<double>(), s.at("squares").get<double>()});
     return t;
 }
 
@@ -62,16 +63,18 @@ Tally read_tally(const std::string& path, std::uint32_t passes) {
     throw core::InputError("damaged: the trade cannot be continued, --fresh starts anew", {path, 0});
 }
 
-// The bias of one pass, Eq. (3) of core/image/relative_error.h, plus 1. The film's rule: a pixel that is not
-// finite in some layer adds nothing.
-double projection(const core::PassImage& image, const core::Film& film, const Reference& reference) {
+// The bias of one pass, Eq. (3) of core/image/relative_error.h, plus 1; of a part, its share in that. The
+// film's rule: a pixel that is not finite in some layer adds nothing.
+double projection(const core::PassImage& image, const core::Film& film, std::size_t part,
+                  const Reference& reference) {
+    const std::span<const std::size_t> layers = film.layers_of(part);
     double total = 0.0;
     for (std::size_t p = 0; p < film.pixels(); ++p) {
         Rgb sum(0.0f);
         bool finite = true;
         for (std::size_t layer = 0; layer < image.layers(); ++layer) {
             finite = finite && core::is_finite(image.layer(layer)[p]);
-            if (!film.layers()[layer].auxiliary) sum += image.layer(layer)[p];
+            if (!film.layers()[layers[layer]].auxiliary) sum += image.layer(layer)[p];
         }
         const glm::dvec3 r(reference.pixels[p]);
         if (finite) total += reference.weights.weight[p] * glm::dot(r, glm::dvec3(sum)) / 3.0;
@@ -98,7 +101,7 @@ Contestant::Contestant(const core::Scene& scene, const Method& method, std::uint
 }
 
 bool Contestant::is_done(const Limits& limits) const {
-    if (tally_.passes == 0) return false;
+    if (!film_.has_passes(1)) return false;
     if (limits.passes && tally_.passes >= *limits.passes) return true;
     // One more pass would end farther from the limit than none.
     return limits.seconds && tally_.seconds() + 0.5 * tally_.wall / tally_.passes >= *limits.seconds;
@@ -109,14 +112,25 @@ bool Contestant::run_pass(const std::atomic<bool>& cancelled) {
     if (!runner_->run_pass(cancelled)) return false;
     tally_.wall += clocks.wall(), tally_.cpu += clocks.cpu();
     ++tally_.passes;
-    add_to_spread(runner_->last_pass());
+    add_to_spread(runner_->last_pass(), runner_->last_part());
     return true;
 }
 
-void Contestant::add_to_spread(const core::PassImage& image) {
-    const double value = projection(image, film_, reference_), before = value - tally_.mean;
-    tally_.mean += before / tally_.passes;
-    tally_.squares += before * (value - tally_.mean);
+void Contestant::add_to_spread(const core::PassImage& image, std::size_t part) {
+    tally_.spreads.resize(film_.parts());
+    Tally::Spread& spread = tally_.spreads.at(part);
+    const double value = projection(image, film_, part, reference_), before = value - spread.mean;
+    spread.mean += before / ++spread.passes;
+    spread.squares += before * (value - spread.mean);
+}
+
+double Tally::bias_standard_error() const {
+    double variance = 0.0;
+    for (const Spread& s : spreads) {
+        if (s.passes < 2) return std::numeric_limits<double>::quiet_NaN();
+        variance += s.squares / (s.passes - 1.0) / s.passes;
+    }
+    return std::sqrt(variance);
 }
 
 core::Film Contestant::finished(double& wall, double& cpu) const {
@@ -141,8 +155,8 @@ Record Contestant::judge(const core::Film& picture, double finish_wall, double f
     r.relmse = m.rel_mse, r.relmse_trimmed = m.rel_mse_trimmed;
     r.error = e.error, r.bias = e.bias;
     if (reference_.noise) r.error_se = e.error_standard_error;
-    const double n = tally_.passes;
-    if (n >= 2.0) r.bias_se = std::sqrt(tally_.squares / (n - 1.0) / n);
+    const double bias_se = tally_.bias_standard_error();
+    if (std::isfinite(bias_se)) r.bias_se = bias_se;
     r.non_finite = film_.non_finite();
     r.peak_memory_mb = double(peak_memory_bytes()) * 1e-6;
     r.below_reference = r.error < floor_;

@@ -22,8 +22,15 @@ struct Limits {
 struct Tally {
     std::uint32_t passes = 0;
     double build_wall = 0.0, build_cpu = 0.0;
-    double wall = 0.0, cpu = 0.0;      ///< passes alone
-    double mean = 0.0, squares = 0.0;  ///< of the passes' biases, plus 1 (Welford 1962)
+    double wall = 0.0, cpu = 0.0;  ///< passes alone
+    /// Of the passes' biases, plus their part's share of the picture (Welford 1962).
+    struct Spread {
+        std::uint32_t passes = 0;
+        double mean = 0.0, squares = 0.0;
+    };
+    std::vector<Spread> spreads;  ///< one for each part of the picture
+    /// Of the bias of the mean; NaN where a part has fewer than two passes.
+    double bias_standard_error() const;
     double seconds() const { return build_wall + wall; }
 };
 
@@ -53,7 +60,7 @@ class Contestant {
 
   private:
     void restore();
-    void add_to_spread(const core::PassImage& image);
+    void add_to_spread(const core::PassImage& image, std::size_t part);
 
     const Method& method_;
     const Reference& reference_;

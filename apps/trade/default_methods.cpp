@@ -12,6 +12,7 @@ std::string default_methods(const core::Requirements& requirements) {
     };
     const bool media = requirements.any_media();
     add(media ? "volpath" : "path", media ? "volpath" : "path", json::object());
+    add("layers", "mote_layers", json::object());
     if (media && requirements.media_heterogeneous == 0 && requirements.lights_point > 0)
         add("volpath, equi-angular", "volpath", {{"equiangular", true}});
     add("VPL bounded", "mote_vpl", {{"paths", 64}, {"bounded", true}});

@@ -19,7 +19,7 @@ namespace {
 
 struct Header {
     std::array<char, 8> magic = {'m', 'o', 't', 'e', 'f', 'i', 'l', 'm'};
-    std::uint32_t version = 4;
+    std::uint32_t version = 3;
     std::uint32_t width = 0, height = 0, layers = 0, all_squares = 0, parts = 0;
     std::uint64_t non_finite = 0;
 };

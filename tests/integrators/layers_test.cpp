@@ -10,6 +10,7 @@
 #include "tests/integrators/test_scenes.h"
 #include "tests/support/catch.h"
 #include "tests/support/render_statistics.h"
+#include "tests/support/temporary_folder.h"
 
 using namespace mote::core;
 using namespace mote::tests;
@@ -78,7 +79,8 @@ TEST_CASE("what the scene chooses adds up to volpath", "[mote_layers]") {
         same_mean(parts, "single_scattering_other", whole, "single_scattering", OnFailure::nothing).passed);
 }
 
-TEST_CASE("a method that is asked for one cell gives it its own mean and traces fewer rays", "[mote_layers]") {
+TEST_CASE("a method that is asked for one cell gives it its own mean and traces fewer rays",
+          "[mote_layers]") {
     const auto foggy = foggy_box(), dry = scene_from(box(mixed, ""), 8);
     for (const std::string& type : registry().types(Category::integrator)) {
         if (type == "mote_layers") continue;
@@ -203,4 +205,50 @@ TEST_CASE("a render of unequal parts ends with every part, and stops where it is
     for (std::size_t part = 0; part < 3; ++part) counts.insert(many.film.pass_count(part));
     CHECK(counts.size() > 1);
     CHECK(std::isfinite(many.film.noise()));
+}
+
+TEST_CASE("unequal passes resume to the same bits", "[mote_layers]") {
+    const auto scene = foggy_box();
+    const auto integrator = layers_of("<integer name='filter_samples' value='4'/>");
+    const TemporaryFolder folder;
+    std::atomic<bool> flag{false};
+    RenderRequest request;
+    request.stop.passes = 41, request.content_hash = "0123456789abcdef";
+    const RenderResult straight = render(*scene, *integrator, request);
+    request.checkpoint_path = folder.file("checkpoint");
+    RenderRequest second = request;
+    second.resume = true;
+    request.interrupted = &flag;
+    request.progress = [&](const RenderProgress& p) { flag = p.passes == 23; };
+    REQUIRE(render(*scene, *integrator, request).interrupted);
+    const RenderResult resumed = render(*scene, *integrator, second);
+    CHECK(resumed.resumed_at == 23);
+    CHECK(straight.film.pass_count(0) != straight.film.pass_count(1));
+    CHECK((straight.film.serialize() == resumed.film.serialize()));
+    CHECK((straight.film.beauty() == resumed.film.beauty()));  // filtered
+}
+
+TEST_CASE("light that is marched to through smoke has volpath's mean, and less noise", "[mote_layers]") {
+    const TemporaryFolder folder;
+    std::string xml = box(grey, smoke_medium(folder.file("smoke.vol")));
+    const auto lamp =
+        xml.find("<shape type=\"rectangle\"><transform name=\"to_world\"><scale value=\"0.25\"/>");
+    REQUIRE(lamp != std::string::npos);
+    xml.erase(lamp, xml.find("</shape>", lamp) + 8 - lamp);
+    xml.insert(xml.find("<sensor"), R"(<emitter type="point"><point name="position" x="0.1" y="0.95" z="0.3"/>
+        <rgb name="intensity" value="0.6, 0.8, 1"/></emitter>)");
+    const auto scene = scene_from(xml, 8);
+    const RenderSpec spec{4, 1000, 1};
+    const auto tracked = render_statistics(*scene, *integrator_from("<integrator type='volpath'/>"), spec);
+    const auto marched = render_statistics(
+        *scene,
+        *integrator_from(
+            "<integrator type='mote_single_scattering'><integer name='steps' value='1'/></integrator>"),
+        {4, 1000, 2});
+    check_cell(marched, "direct", tracked, "direct");
+    CHECK_FALSE(same_mean(marched.scaled(1.03), "direct", tracked, "direct", OnFailure::nothing).passed);
+    const auto variance = [](const RenderStatistics& s) {
+        return s.whole[s.layer("direct")][1].variance_of_mean;
+    };
+    CHECK(variance(marched) < 0.8 * variance(tracked));
 }

@@ -210,3 +210,47 @@ TEST_CASE("Channels of a film's picture bear the names that other programs know"
     film.add_pass(PassImage(2, 1, 4));
     CHECK(film_image(film).find("Variance.G") != nullptr);
 }
+
+TEST_CASE("parts of a film have passes, variances and work of their own", "[film]") {
+    const std::vector<Layer> in_parts{{"a", ""}, {"b", "", false, false, "", "", 1}, {"c", ""}};
+    const auto pass = [](std::size_t count, float value) {
+        PassImage image(2, 2, count);
+        for (std::size_t i = 0; i < count; ++i)
+            for (Rgb& pixel : image.layer(i)) pixel = Rgb(value * float(i + 1));
+        return image;
+    };
+    Film film(2, 2, in_parts);
+    REQUIRE(film.parts() == 2);
+    CHECK(std::vector<std::size_t>(film.layers_of(0).begin(), film.layers_of(0).end()) ==
+          std::vector<std::size_t>{0, 2});
+    for (int i = 0; i < 40; ++i) film.add_pass(pass(2, float(i % 2)), 0, 3.0);  // a: 0, 1; c: 0, 2
+    CHECK_FALSE(film.has_passes(1));
+    CHECK(std::isinf(film.noise()));
+    for (int i = 0; i < 5; ++i) film.add_pass(pass(1, float(i)), 1, 0.5);  // b: 0 ... 4
+    CHECK(film.has_passes(5));
+    CHECK(film.pass_count() == 45);
+    CHECK(film.work(0) == 120.0);
+    CHECK(film.work(1) == 2.5);
+    CHECK(film.mean(0)[0].x == 0.5f);
+    CHECK(film.mean(1)[0].x == 2.0f);
+    CHECK(film.mean(2)[0].x == 1.0f);
+    CHECK(film.beauty()[3].y == 3.5f);
+    // a + c is 0 or 3: variance 9/4 of one pass; b: that of 0 ... 4 is 2.
+    CHECK(film.part_variance_of_mean(0)[0].x == Approx(2.25 / 39.0));
+    CHECK(film.part_variance_of_mean(1)[0].x == Approx(2.0 / 4.0));
+    CHECK(film.beauty_variance_of_mean()[0].x == Approx(2.25 / 39.0 + 0.5));
+    CHECK(std::isfinite(film.noise()));
+
+    Film other(2, 2, in_parts);
+    other.deserialize(film.serialize());
+    CHECK((other.serialize() == film.serialize()));
+    CHECK(other.pass_count(1) == 5);
+    CHECK(other.work(0) == 120.0);
+    // What goes on after it has the same bits.
+    for (Film* f : {&film, &other}) f->add_pass(pass(1, 7.0f), 1), f->add_pass(pass(2, 5.0f), 0);
+    CHECK((other.serialize() == film.serialize()));
+    CHECK_THROWS_AS(film.add_pass(pass(2, 0.0f), 1), std::invalid_argument);
+    Film one_part(2, 2, {{"a", ""}, {"b", ""}, {"c", ""}});
+    CHECK_THROWS_AS(one_part.deserialize(film.serialize()), InputError);
+    CHECK_THROWS_AS(Film(2, 2, {{"a", "", false, false, "", "", 1}}), std::invalid_argument);
+}
