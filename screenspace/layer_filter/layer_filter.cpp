@@ -37,7 +37,7 @@ FilteredLayer filter_layer(const FilterFeatures& features, const LayerToFilter& 
         result.mean[i] += m * Rgb(change.planes[0][i], change.planes[1][i], change.planes[2][i]);
         result.variance[i] *= average(m * m);
     }
-    if (layer.kind == LayerKind::surface) put_mixed_together(features, layer, planes, result, cancelled);
+    put_mixed_together(features, layer, planes, result, cancelled);
     return result;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/math/random.h"
+#include "core/math/vectorize.h"
 #include "screenspace/layer_filter/level_kernel.h"
 
 namespace mote::screenspace {
@@ -62,9 +63,8 @@ void add_shrunk(const FilterPlanes& p, int step, const FilterChannels& fine, con
         kernel.average(level.energy, energy), kernel.average(level.noise, noise);
         float change[LevelKernel::most_pixels];  // g - 1, Eq. (2)
         for (int i = 0; i < x1 - x0; ++i)
-            change[i] = noise[i] > 0.0f
-                            ? -std::fmin(1.0f, confidence * noise[i] / std::fmax(energy[i], 1e-38f))
-                            : 0.0f;
+            change[i] =
+                noise[i] > 0.0f ? -min_of(1.0f, confidence * noise[i] / max_of(energy[i], 1e-38f)) : 0.0f;
         const std::size_t at = p.index(x0, y);
         for (std::size_t c = 0; c < channel_count; ++c) {
             const float *now = fine.planes[c].data() + at, *next = level.coarse.planes[c].data() + at;
@@ -81,7 +81,7 @@ FilterChannels demodulated(const FilterFeatures& f, const FilterPlanes& p, const
     tbb::parallel_for(std::size_t(0), f.pixels(), [&](std::size_t i) {
         if (!(p.weight[i] > 0.0f)) return;
         const Rgb m = modulation(f, layer.kind, i), y = layer.mean[i] / m;
-        const float deviation = std::sqrt(std::fmax(0.0f, average(layer.variance[i] / (m * m))));
+        const float deviation = std::sqrt(max_of(0.0f, average(layer.variance[i] / (m * m))));
         for (int c = 0; c < int(colours); ++c) channels.planes[std::size_t(c)][i] = y[c];
         const std::uint64_t bits = hash_keys(probe_stream, i);
         for (std::size_t c = colours; c < channel_count; ++c)
