@@ -28,22 +28,33 @@ std::optional<EquiangularSample> sample_equiangular(const Ray& ray, float t_max,
 }
 
 EquiangularLights::EquiangularLights(const Scene& scene) {
-    std::vector<float> power;
-    for (const auto& emitter : scene.emitters())
-        if (const auto position = Scene::light_position(*emitter)) {
-            lights_.push_back({emitter.get(), *position});
-            power.push_back(luminance(emitter->power()));
-        }
-    choice_ = Distribution1D(power);
-    if (choice_.empty()) lights_.clear();
+    std::vector<LightBounds> bounds;
+    for (const auto& emitter : scene.emitters()) {
+        const auto position = Scene::light_position(*emitter);
+        if (!position || !(average(emitter->power()) > 0.0f)) continue;
+        lights_.push_back({emitter.get(), *position, {}});
+        if (const auto* spot = dynamic_cast<const lights::ConeLight*>(emitter.get()))
+            lights_.back().cone = spot->cone();
+        bounds.push_back(emitter->bounds().value_or(LightBounds{
+            .box = {*position, *position}, .intensity = double(average(emitter->power()) * inv_four_pi)}));
+    }
+    choice_ = LightTree(bounds);
 }
 
 Rgb EquiangularLights::scattered_along(const Scene& scene, const Ray& ray, float t_max,
                                        const MediumState& state, const Vec2& u, WalkContext& context) const {
     if (lights_.empty()) return Rgb(0.0f);
-    const auto choice = choice_.sample_discrete(u.x);
-    const Light& light = lights_[choice.index];
-    const auto distance = sample_equiangular(ray, t_max, light.position, u.y);
+    const auto choice =
+        choice_.sample(LightSegment{ray.origin, ray.direction, ray.t_min, t_max}, double(u.x));
+    const Light& light = lights_[choice.light];
+    Ray lit = ray;
+    lit.t_max = t_max;
+    if (light.cone) {
+        const auto inside = lights::inside_cone(*light.cone, ray, double(ray.t_min), double(t_max));
+        if (!inside) return Rgb(0.0f);
+        lit.t_min = float(inside->first), lit.t_max = float(inside->second);
+    }
+    const auto distance = sample_equiangular(lit, lit.t_max, light.position, u.y);
     if (!distance) return Rgb(0.0f);
 
     ScatteringVertex vertex;
@@ -66,7 +77,8 @@ Rgb EquiangularLights::scattered_along(const Scene& scene, const Ray& ray, float
     const Rgb from_light =
         scene.transmittance(vertex.position, light.position, along.state(), context.rng, context.tracking);
     const Rgb scattered = sigma_s * vertex.eval(to_light->wi, TransportMode::radiance);
-    return to_eye * scattered * from_light * to_light->weight / (distance->pdf_distance * choice.probability);
+    return to_eye * scattered * from_light * to_light->weight /
+           (distance->pdf_distance * float(choice.probability));
 }
 
 }  // namespace mote::integrators

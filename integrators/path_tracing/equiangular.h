@@ -10,9 +10,10 @@
 #include <memory>
 #include <vector>
 
-#include "core/math/distribution.h"
+#include "core/scene/light_tree.h"
 #include "core/scene/scattering_vertex.h"
 #include "core/scene/scene.h"
+#include "lights/emitters/light_cone.h"
 
 namespace mote::integrators {
 
@@ -25,7 +26,8 @@ struct EquiangularSample {
 std::optional<EquiangularSample> sample_equiangular(const core::Ray& ray, float t_max,
                                                     const core::Vec3& light, float u);
 
-/// The point and spot lights of a scene.
+/// The point and spot lights of a scene. One is drawn for the ray by a hierarchy; a spot's samples lie inside
+/// its cone.
 class EquiangularLights {
   public:
     explicit EquiangularLights(const core::Scene& scene);
@@ -41,9 +43,10 @@ class EquiangularLights {
     struct Light {
         const core::Emitter* emitter;
         core::Vec3 position;
+        std::optional<lights::LightCone> cone;  ///< nothing: shines everywhere
     };
     std::vector<Light> lights_;
-    core::Distribution1D choice_;  ///< by power
+    core::LightTree choice_;
 };
 
 }  // namespace mote::integrators
