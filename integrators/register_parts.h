@@ -31,6 +31,9 @@ std::shared_ptr<const core::Integrator> make_single_scattering(const EyePathLimi
 /// Light that passes delta surfaces last, for integrators that can only hit lights.
 void plan_caustics(core::Plan& plan, const core::Scene& scene, const core::Requirements& requirements);
 
+/// How direct light is shared among several lights (core/scene/light_tree.h); nothing where there is one.
+void plan_choice_of_lights(core::Plan& plan, const core::Scene& scene);
+
 /// How the emission of media is drawn from.
 void plan_medium_lights(core::Plan& plan, const core::Requirements& requirements);
 

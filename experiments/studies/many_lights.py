@@ -2,13 +2,12 @@
 """Scenes with many lights: what choosing them by the receiver buys.
 
 Two scenes are written: a long hall with 10,000 small panels of light, and 1,000 spot lights in fog. Each is rendered
-with a number of passes that takes about the seconds asked for, and held against a long render of the same program; with
---against PROGRAM also another program, such as the `mote` of a commit before, is given the same seconds. Prints relMSE
-and processor seconds of each, and the ratio of their products.
+with a number of passes that takes about the processor seconds asked for, and held against a long render of the same
+program (in the fog by equi-angular sampling, another estimator); with --against PROGRAM also another program, such as
+the `mote` of a commit before, is given the same seconds. Prints relMSE and processor seconds, and the ratio of their
+products.
 """
 import argparse
-import json
-import math
 import random
 import resource
 import subprocess
@@ -89,15 +88,14 @@ def spots(count, width, height):
     return (text + "</scene>\n").replace("<shape", fog + "<shape", 1)
 
 
-def render(program, scene, output, passes, seed):
+def render(program, scene, output, passes, seed, *more):
+    """The picture without lights that are seen, for there is nothing to choose, and seconds of processor."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    statistics = output.with_suffix(".json")
     subprocess.run([program, "render", scene, "-o", output, "--passes", str(passes), "--seed", str(seed), "--quiet",
-                    "--stats", statistics], check=True)
+                    *more], check=True)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     layers = read_exr(output)
-    pixels = layers[""] - layers.get("emission", 0.0)  # lights that are seen: nothing to choose there
-    return pixels, json.loads(statistics.read_text())["seconds"]["render"], after.ru_utime - before.ru_utime
+    return layers[""] - layers.get("emission", 0.0), after.ru_utime - before.ru_utime
 
 
 def relative_error(picture, reference):
@@ -105,34 +103,52 @@ def relative_error(picture, reference):
     return float(np.mean((picture - reference) ** 2 / (reference ** 2 + scale)))
 
 
+def measure(program, scene, output, seconds, seeds, reference):
+    """Passes, processor seconds of them without loading, and relMSE, means over the seeds."""
+    _, load = render(program, scene, output, 1, 1)
+    _, some = render(program, scene, output, 9, 1)
+    passes = max(1, round(seconds / max((some - load) / 8, 1e-3)))
+    errors, times = [], []
+    for seed in range(11, 11 + seeds):
+        picture, time = render(program, scene, output, passes, seed)
+        errors.append(relative_error(picture, reference))
+        times.append(time - load + (some - load) / 8)
+    return passes, float(np.mean(times)), float(np.mean(errors))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--bin", type=Path, default=ROOT / "build/release/bin", help="folder of mote")
     parser.add_argument("--against", type=Path, help="another mote, given the same seconds")
     parser.add_argument("-o", "--output", type=Path, default=ROOT / "out/many_lights")
-    parser.add_argument("--seconds", type=float, default=20.0, help="of rendering, each")
-    parser.add_argument("--quick", action="store_true", help="few lights, small pictures, two seconds")
+    parser.add_argument("--seconds", type=float, default=10.0, help="of the processor, for each picture")
+    parser.add_argument("--seeds", type=int, default=3, help="pictures of each program")
+    parser.add_argument("--quick", action="store_true", help="few lights, small pictures, half a second")
+    parser.add_argument("--csv", type=Path, help="also write the numbers there")
     options = parser.parse_args()
-    share, seconds = (20, 2.0) if options.quick else (1, options.seconds)
+    share, seconds = (20, 0.5) if options.quick else (1, options.seconds)
     size = (64, 40) if options.quick else (320, 200)
     options.output.mkdir(parents=True, exist_ok=True)
     programs = {"mote": options.bin / "mote"} | ({"against": options.against} if options.against else {})
-    for name, text in (("hall", hall(10000 // share, *size)), ("spots", spots(1000 // share, *size))):
+    lines = ["scene,lights,program,passes,processor_seconds,relmse,relmse_times_seconds"]
+    for name, text, lights, passes, better in (
+            ("hall", hall(10000 // share, *size), 10000 // share, 600, []),
+            ("spots", spots(1000 // share, *size), 1000 // share, 1500, ["-D", "integrator.equiangular=true"])):
         scene = options.output / f"{name}.xml"
         scene.write_text(text)
+        reference, _ = render(programs["mote"], scene, options.output / f"{name}_reference.exr",
+                              64 if options.quick else passes, 1, *better)
         products = {}
-        reference, _, _ = render(programs["mote"], scene, options.output / f"{name}_reference.exr",
-                                 64 if options.quick else 2048, 1)
         for label, program in programs.items():
-            _, probe, _ = render(program, scene, options.output / f"{name}_probe.exr", 2, 2)
-            passes = max(1, math.floor(2 * seconds / max(probe, 1e-3)))
-            picture, wall, cpu = render(program, scene, options.output / f"{name}_{label}.exr", passes, 3)
-            error = relative_error(picture, reference)
-            products[label] = error * cpu
-            print(f"{name:6} {label:8} {passes:5} passes {wall:7.2f} s, {cpu:7.2f} s of processor, relMSE {error:.5f}, "
-                  f"error x time {products[label]:.4f}", flush=True)
+            passes, time, error = measure(program, scene, options.output / f"{name}_{label}.exr", seconds, options.seeds,
+                                          reference)
+            products[label] = error * time
+            lines.append(f"{name},{lights},{label},{passes},{time:.2f},{error:.6f},{products[label]:.5f}")
+            print(lines[-1], flush=True)
         if "against" in products:
-            print(f"{name:6} error x time: {products['against'] / products['mote']:.1f} times less than the other's")
+            print(f"{name}: relMSE x time is {products['against'] / products['mote']:.1f} times less than the other's")
+    if options.csv:
+        options.csv.write_text("# Script: experiments/studies/many_lights.py\n" + "\n".join(lines) + "\n")
 
 
 if __name__ == "__main__":

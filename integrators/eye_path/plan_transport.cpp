@@ -1,6 +1,7 @@
-// What the plans of several integrators say of media, lights in them, and caustics.
+// What the plans of several integrators say of lights, media, lights in them, and caustics.
 #include <fmt/format.h>
 
+#include "core/scene/light_tree.h"
 #include "core/scene/scene.h"
 #include "integrators/register_parts.h"
 
@@ -18,6 +19,24 @@ void plan_caustics(Plan& plan, const Scene& scene, const Requirements& r) {
     plan.run("caustics", "by chance only",
              "paths that reach a light through delta surfaces count when they hit it: expect noise, and use "
              "mote_photon_map or a bidirectional method where they matter");
+}
+
+void plan_choice_of_lights(Plan& plan, const Scene& scene) {
+    const std::size_t in_tree = scene.light_tree().size(), all = scene.emitters().size();
+    if (all < 2) return;
+    const std::string others =
+        in_tree < all ? fmt::format("{} without a place, at infinity or in media, by power", all - in_tree)
+                      : "";
+    if (in_tree < 2)
+        plan.run("choice of lights", in_tree ? others + ", against the other one" : others,
+                 "half by power, half equally: receivers make no difference");
+    else
+        plan.run(
+            "choice of lights",
+            fmt::format("hierarchy of {} lights, {} deep{}", in_tree, scene.light_tree().depth(),
+                        others.empty() ? "" : "; " + others),
+            "each receiver draws one by distance, directions and intensity; one draw in 16 by power, for "
+            "what the hierarchy does not see");
 }
 
 void plan_medium_lights(Plan& plan, const Requirements& r) {

@@ -27,6 +27,7 @@ class Path final : public Integrator {
                       "path traces surfaces only; volpath renders media");
         else
             plan.leave_out("media", "no code for media runs", "the scene has none");
+        plan_choice_of_lights(plan, scene);
         plan_caustics(plan, scene, requirements);
         return plan;
     }

@@ -67,6 +67,7 @@ Plan Volpath::plan(const Scene& scene, const Requirements& requirements) const {
     plan.integrator = type();
     plan.run("paths", "one per pixel and pass", "light and scattering directions combined at every vertex");
     plan_media(plan, requirements);
+    plan_choice_of_lights(plan, scene);
     plan_medium_lights(plan, requirements);
     if (bounded())
         plan.run("bound", std::to_string(settings_.bound) + " /m^2",

@@ -142,7 +142,7 @@ class MotePhotonMap final : public Integrator {
     PhotonMapSettings settings_;
 };
 
-Plan MotePhotonMap::plan(const Scene&, const Requirements& r) const {
+Plan MotePhotonMap::plan(const Scene& scene, const Requirements& r) const {
     Plan plan;
     plan.integrator = type();
     plan.run("light paths", fmt::format("{} a pass", settings_.paths), "a fresh set every pass");
@@ -165,6 +165,7 @@ Plan MotePhotonMap::plan(const Scene&, const Requirements& r) const {
     plan.run("kernels", fmt::format("radii shrink with alpha = {:.3g}", settings_.alpha),
              settings_.alpha < 1.0 ? "bias and noise of the mean both go to zero with the number of passes"
                                    : "alpha is 1: they do not shrink, and the bias stays");
+    plan_choice_of_lights(plan, scene);
     plan_medium_lights(plan, r);
     return plan;
 }

@@ -96,6 +96,7 @@ void plan_single_scattering(Plan& plan, const Scene& scene, const Requirements& 
     if (r.wants("indirect") || r.wants("multiple_scattering"))
         plan.miss("light scattered more than once", "indirect light and multiple scattering",
                   "this integrator stops after one scattering; volpath renders the rest");
+    plan_choice_of_lights(plan, scene);
     plan_caustics(plan, scene, r);
     if (!r.any_media()) {
         plan_media(plan, r);

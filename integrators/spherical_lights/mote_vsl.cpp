@@ -144,7 +144,7 @@ class MoteVsl final : public Integrator {
     VslSettings settings_;
 };
 
-Plan MoteVsl::plan(const Scene&, const Requirements& r) const {
+Plan MoteVsl::plan(const Scene& scene, const Requirements& r) const {
     const auto& gather = settings_.gather;
     Plan plan;
     plan.integrator = type();
@@ -160,6 +160,7 @@ Plan MoteVsl::plan(const Scene&, const Requirements& r) const {
         plan.run("visibility", "a shadow ray a direction", "soft where a sphere is partly hidden");
     else
         plan.run("visibility", "a shadow ray to the centre of every sphere", "asked for");
+    plan_choice_of_lights(plan, scene);
     plan.miss("detail of indirect light", "blurred over the spheres",
               "more passes do not sharpen it, more light paths do");
     if (r.any_delta())

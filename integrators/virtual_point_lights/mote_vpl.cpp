@@ -130,6 +130,7 @@ Plan MoteVpl::plan(const Scene& scene, const Requirements& r) const {
     if (r.any_delta())
         plan.miss("caustics", "light that reaches a receiver through a delta surface",
                   "a VPL cannot be connected through mirrors and glass; volpath renders it");
+    plan_choice_of_lights(plan, scene);
     plan_medium_lights(plan, r);
     return plan;
 }

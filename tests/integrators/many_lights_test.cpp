@@ -1,6 +1,7 @@
 // Many lights at once give the sum of the pictures that each gives alone, where there is nothing to choose.
 #include <fmt/format.h>
 
+#include "core/scene/requirements.h"
 #include "tests/integrators/test_scenes.h"
 #include "tests/support/catch.h"
 #include "tests/support/render_statistics.h"
@@ -96,4 +97,23 @@ TEST_CASE("many lights in fog give the sum of what each gives", "[many_lights][e
     check_sum(R"(<integrator type="volpath"/>)", medium);
     check_sum(R"(<integrator type="volpath"><boolean name="equiangular" value="true"/></integrator>)",
               medium);
+}
+
+TEST_CASE("plans say that lights are chosen by a hierarchy, and why", "[many_lights]") {
+    const std::vector<std::string> all = lights();
+    const auto plan_of = [](const std::string& light, const char* type) {
+        const auto scene = scene_from(box_with("", light), 8);
+        return integrator_from(fmt::format(R"(<integrator type="{}"/>)", type))
+            ->plan(*scene, mote::core::find_requirements(*scene))
+            .to_text();
+    };
+    for (const char* type : {"path", "volpath", "mote_vpl", "mote_vsl", "mote_photon_map",
+                             "mote_single_scattering", "mote_epipolar"}) {
+        INFO(type);
+        const std::string sky = R"(<emitter type="constant"/>)";
+        CHECK(plan_of(fmt::format("{}", fmt::join(all, "")), type).find("hierarchy of 8 lights") !=
+              std::string::npos);
+        CHECK(plan_of(all[0] + all[1] + sky, type).find("1 without a place") != std::string::npos);
+        CHECK(plan_of(all[0], type).find("choice of lights") == std::string::npos);
+    }
 }
