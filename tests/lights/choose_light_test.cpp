@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/math/warp.h"
+#include "core/scene/light_tree.h"
 #include "core/scene/scene.h"
 #include "tests/support/catch.h"
 #include "tests/support/pearson.h"
@@ -120,6 +121,16 @@ TEST_CASE("lights are drawn with the chance that is stated", "[lights][light_tre
 TEST_CASE("no light that shines on a receiver is left out", "[lights][light_tree]") {
     const auto scene = all_lights();
     Rng rng(29);
+    // A hierarchy alone, without the draws by power that the scene adds.
+    std::vector<LightBounds> bounds;
+    std::map<const Emitter*, std::uint32_t> in_tree;
+    for (const auto& light : scene->emitters())
+        if (const auto place = light->bounds()) {
+            in_tree.emplace(light.get(), bounds.size());
+            bounds.push_back(*place);
+        }
+    CHECK(in_tree.size() == scene->emitters().size() - 2);
+    const LightTree tree(bounds);
     std::map<const Emitter*, int> shone;
     for (const LightReceiver& receiver : receivers(3000))
         for (const auto& light : scene->emitters()) {
@@ -128,6 +139,7 @@ TEST_CASE("no light that shines on a receiver is left out", "[lights][light_tree
             if (receiver.normal != Vec3(0.0f) && !(glm::dot(receiver.normal, sample->wi) > 0.0f)) continue;
             ++shone[light.get()];
             CHECK(scene->light_probability(receiver, light.get()) > 0.0f);
+            if (in_tree.contains(light.get())) CHECK(tree.probability(receiver, in_tree[light.get()]) > 0.0);
         }
     CHECK(shone.size() == scene->emitters().size());  // each did, somewhere
 }

@@ -180,9 +180,9 @@ def try_fault(fault, commit, trusted, filters_only):
 def table(faults):
     """Markdown: every fault, and who found it. What survived at first names the test that was written for it."""
     known = results()
-    for earlier in (False, True):
+    for group in ("", "earlier", "later"):
         print("| fault | file | found by |\n|---|---|---|")
-        for fault in [f for f in faults if f.get("earlier", False) == earlier]:
+        for fault in [f for f in faults if group == next((g for g in ("earlier", "later") if f.get(g)), "")]:
             entry = known.get(fault["name"], {"outcome": "not tried", "test": ""})
             found = entry["test"] if entry["outcome"] == "found" else f"**{entry['outcome']}**"
             if "mended" in fault:
