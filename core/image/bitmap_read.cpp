@@ -14,6 +14,7 @@
 #include <optional>
 #include <string_view>
 
+#include "core/image/alpha_channel.h"
 #include "core/image/bmp_preflight.h"
 #include "core/image/image_file.h"
 #include "core/image/metadata_stripping.h"
@@ -72,8 +73,15 @@ std::vector<Rgb> to_rgb(const std::vector<float>& values, int channels) {
     return pixels;
 }
 
-Bitmap decode(const std::string& kind, std::vector<std::byte> bytes, std::size_t file_size, bool raw,
-              std::size_t max_pixels) {
+/// Interleaved channels as they are stored.
+struct Decoded {
+    int width = 0, height = 0, channels = 0;
+    bool eight_bits = false;
+    std::vector<float> values;
+};
+
+Decoded decode(const std::string& kind, std::vector<std::byte> bytes, std::size_t file_size,
+               std::size_t max_pixels) {
     const QuietStderr quiet;
     const auto input = OIIO::ImageInput::create(kind);
     if (!input) throw InputError("OpenImageIO has no reader for " + kind + " files");
@@ -93,15 +101,18 @@ Bitmap decode(const std::string& kind, std::vector<std::byte> bytes, std::size_t
     if (!input->open("picture." + kind, spec, config)) throw damaged();
     check_size(spec.width, spec.height, std::int64_t(spec.pixel_bytes()), file_size, max_pixels);
 
-    Bitmap bitmap;
-    bitmap.width = spec.width, bitmap.height = spec.height;
+    Decoded picture{spec.width, spec.height, spec.nchannels, spec.format == OIIO::TypeDesc::UINT8, {}};
     const std::size_t count = std::size_t(spec.width) * std::size_t(spec.height);
-    std::vector<float> values(count * std::size_t(spec.nchannels), 0.0f);
-    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, values.data()) ||
+    picture.values.assign(count * std::size_t(spec.nchannels), 0.0f);
+    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, picture.values.data()) ||
         input->has_error())
         throw damaged();
-    bitmap.pixels = to_rgb(values, spec.nchannels);
-    if (spec.format == OIIO::TypeDesc::UINT8 && !raw)
+    return picture;
+}
+
+Bitmap to_bitmap(const Decoded& picture, bool raw) {
+    Bitmap bitmap{picture.width, picture.height, to_rgb(picture.values, picture.channels)};
+    if (picture.eight_bits && !raw)
         for (Rgb& p : bitmap.pixels) p = {decode_srgb(p.x), decode_srgb(p.y), decode_srgb(p.z)};
     return bitmap;
 }
@@ -133,16 +144,14 @@ Bitmap bitmap_from_exr(const std::string& path, std::size_t max_pixels) {
     return bitmap;
 }
 
-Bitmap read(const std::string& path, bool raw, std::size_t max_pixels) {
+/// A picture other than an OpenEXR, which gives none.
+std::optional<Decoded> read_decoded(const std::string& path, std::size_t max_pixels) {
     std::vector<std::byte> bytes = read_whole_file(path);
     const auto kind = kind_of({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path);
     if (!kind)
         throw InputError(
             "not a picture of a known kind (OpenEXR, PNG, JPEG, Radiance HDR, PNM, PFM, BMP, TGA)");
-    if (kind == "openexr") {
-        bytes = {};
-        return bitmap_from_exr(path, max_pixels);
-    }
+    if (kind == "openexr") return std::nullopt;
     const std::size_t file_size = bytes.size();
     if (kind == "png" || kind == "jpeg") {
         StrippedImage stripped = kind == "png" ? strip_png(bytes) : strip_jpeg(bytes);
@@ -153,14 +162,32 @@ Bitmap read(const std::string& path, bool raw, std::size_t max_pixels) {
         const BmpSummary bmp = check_bmp(bytes);
         check_size(bmp.width, bmp.height, bmp.bits == 32 ? 4 : 3, file_size, max_pixels);
     }
-    return decode(*kind, std::move(bytes), file_size, raw, max_pixels);
+    return decode(*kind, std::move(bytes), file_size, max_pixels);
 }
 
-}  // namespace
+Bitmap read(const std::string& path, bool raw, std::size_t max_pixels) {
+    const auto picture = read_decoded(path, max_pixels);
+    return picture ? to_bitmap(*picture, raw) : bitmap_from_exr(path, max_pixels);
+}
 
-Bitmap read_bitmap(const std::string& path, bool raw, std::size_t max_pixels) {
+std::vector<float> alpha_of(const std::string& path, std::size_t max_pixels) {
+    const auto picture = read_decoded(path, max_pixels);
+    if (!picture) {
+        const ImageChannels image = read_exr(path);
+        return image.find("A") ? *image.find("A") : std::vector<float>{};
+    }
+    if (picture->channels != 2 && picture->channels < 4) return {};
+    const std::size_t stride = std::size_t(picture->channels), offset = stride == 2 ? 1 : 3;
+    std::vector<float> alpha(picture->values.size() / stride);
+    for (std::size_t i = 0; i < alpha.size(); ++i) alpha[i] = picture->values[i * stride + offset];
+    return alpha;
+}
+
+/// Runs f; what it throws becomes an InputError that names the file.
+template <typename F>
+auto naming(const std::string& path, F&& f) {
     try {
-        return read(path, raw, max_pixels);
+        return f();
     } catch (const InputError& error) {
         if (!error.where().file.empty()) throw;
         throw InputError(error.what(), {path, 0});
@@ -169,6 +196,16 @@ Bitmap read_bitmap(const std::string& path, bool raw, std::size_t max_pixels) {
     } catch (const std::exception& error) {
         throw InputError("damaged picture: " + printable(error.what()), {path, 0});
     }
+}
+
+}  // namespace
+
+Bitmap read_bitmap(const std::string& path, bool raw, std::size_t max_pixels) {
+    return naming(path, [&] { return read(path, raw, max_pixels); });
+}
+
+std::vector<float> read_alpha(const std::string& path, std::size_t max_pixels) {
+    return naming(path, [&] { return alpha_of(path, max_pixels); });
 }
 
 }  // namespace mote::core
