@@ -48,18 +48,21 @@ void add_lenient(CLI::App& command, bool& lenient) {
                      "Leave out or approximate what is wrong or unknown in the scene, and say what");
 }
 
+void add_defines(CLI::App& command, std::vector<std::string>& defines, const std::string& description) {
+    command.add_option("-D,--define", defines, description)
+        ->type_name("NAME=VALUE")
+        ->expected(1)
+        ->allow_extra_args(false)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
 void add_scene_options(CLI::App& command, SceneArguments& arguments) {
     command.add_option("SCENE", arguments.scene, "The scene file")->required();
     add_lenient(command, arguments.lenient);
     command.add_option("--integrator", arguments.integrator, "Render with this type instead of the scene's")
         ->type_name("TYPE");
-    command
-        .add_option("-D,--define", arguments.defines,
-                    "Set a $parameter of the scene file, or a value such as integrator.paths (repeatable)")
-        ->type_name("NAME=VALUE")
-        ->expected(1)
-        ->allow_extra_args(false)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    add_defines(command, arguments.defines,
+                "Set a $parameter of the scene file, or a value such as integrator.paths (repeatable)");
 }
 
 void add_render(CLI::App& app, RenderArguments& a, std::function<int()>& action) {
@@ -176,9 +179,15 @@ int parse_and_run(int argc, char** argv) {
     info_app.callback([&] { action = [&] { return info_command(info); }; });
 
     ConvertArguments convert;
-    CLI::App& convert_app = *app.add_subcommand("convert", "Convert a picture to EXR or PNG");
-    convert_app.add_option("IN", convert.input, "EXR, PNG, JPEG, HDR, PNM, PFM, BMP or TGA")->required();
-    convert_app.add_option("OUT", convert.output, "A file that ends in .exr or .png")->required();
+    CLI::App& convert_app =
+        *app.add_subcommand("convert", "Convert a picture to EXR or PNG, or a glTF scene to XML");
+    convert_app
+        .add_option("IN", convert.input, "EXR, PNG, JPEG, HDR, PNM, PFM, BMP or TGA; or a scene: glTF, GLB")
+        ->required();
+    convert_app.add_option("OUT", convert.output, "A file that ends in .exr or .png, or in .xml for a scene")
+        ->required();
+    add_lenient(convert_app, convert.lenient);
+    add_defines(convert_app, convert.defines, "For a scene: camera=NAME, or emission=FACTOR (repeatable)");
     convert_app.add_option("--exposure", convert.exposure, "Brighten by this many stops")
         ->check(number_between(-100.0, 100.0));
     convert_app.add_option("--layer", convert.layer, "This layer of an EXR instead of the beauty");

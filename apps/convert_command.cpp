@@ -1,4 +1,4 @@
-// mote convert: pictures to EXR or PNG.
+// mote convert: pictures to EXR or PNG, glTF scenes to XML (convert_scene.cpp).
 #include <cmath>
 #include <cstdio>
 
@@ -6,6 +6,7 @@
 #include "apps/output_files.h"
 #include "apps/picture_file.h"
 #include "apps/subcommands.h"
+#include "core/gltf/gltf_scene.h"
 #include "core/image/image_file.h"
 #include "core/objects/error.h"
 
@@ -16,8 +17,12 @@ using core::ImageChannels;
 
 int convert_command(const ConvertArguments& arguments) {
     const std::string kind = extension_of(arguments.output);
+    if (kind == ".xml" || core::is_gltf(arguments.input)) return convert_scene(arguments);
+    if (arguments.lenient || !arguments.defines.empty())
+        throw UsageError("--lenient and -D are for scenes, not for pictures");
     if (kind != ".exr" && kind != ".png")
-        throw UsageError("'" + core::printable(arguments.output) + "' ends in neither .exr nor .png");
+        throw UsageError("'" + core::printable(arguments.output) +
+                         "' ends in neither .exr nor .png (nor, for a glTF scene, .xml)");
     check_outputs(std::vector<NamedFile>{{"the result", arguments.output}},
                   std::vector<NamedFile>{{"the picture that is converted,", arguments.input}});
     const Bitmap bitmap = read_picture(arguments.input, arguments.layer).bitmap;

@@ -11,6 +11,7 @@
 #include "apps/placement_notes.h"
 #include "apps/subcommands.h"
 #include "core/geometry/triangle_mesh.h"
+#include "core/gltf/gltf_scene.h"
 #include "core/image/exr_preflight.h"
 #include "core/image/image_file.h"
 #include "core/objects/error.h"
@@ -161,7 +162,7 @@ int info_command(const InfoArguments& arguments) {
     if (!std::filesystem::exists(path, ignored)) throw core::InputError("there is no such file", {path, 0});
     require_input(path);
     const std::string extension = extension_of(path);
-    if (extension == ".xml")
+    if (extension == ".xml" || core::is_gltf(path))
         describe_scene(path, arguments.lenient);
     else if (extension == ".vdb")
         describe_vdb(path);
@@ -169,9 +170,8 @@ int info_command(const InfoArguments& arguments) {
         describe_vol(path);
     else if (extension == ".exr")
         describe_exr(path);
-    else if (extension == ".obj" || extension == ".ply" || extension == ".stl" || extension == ".glb" ||
-             extension == ".gltf" || extension == ".fbx" || extension == ".dae" || extension == ".3ds" ||
-             extension == ".off")
+    else if (extension == ".obj" || extension == ".ply" || extension == ".stl" || extension == ".fbx" ||
+             extension == ".dae" || extension == ".3ds" || extension == ".off")
         describe_mesh(path, extension == ".obj");
     else
         describe_bitmap(path);

@@ -26,16 +26,22 @@ core::Registry make_registry() {
     return registry;
 }
 
+std::vector<std::pair<std::string, std::string>> split_defines(const std::vector<std::string>& defines) {
+    std::vector<std::pair<std::string, std::string>> split;
+    for (const std::string& define : defines) {
+        const auto equals = define.find('=');
+        if (equals == std::string::npos || equals == 0)
+            throw UsageError("-D " + core::printable(define) + ": expected name=value");
+        split.emplace_back(define.substr(0, equals), define.substr(equals + 1));
+    }
+    return split;
+}
+
 core::LoadOptions load_options(const SceneArguments& arguments) {
     core::LoadOptions options;
     options.integrator = arguments.integrator, options.default_integrator = "mote_layers";
     options.lenient = arguments.lenient;
-    for (const std::string& define : arguments.defines) {
-        const auto equals = define.find('=');
-        if (equals == std::string::npos || equals == 0)
-            throw UsageError("-D " + core::printable(define) + ": expected name=value");
-        options.defines.emplace_back(define.substr(0, equals), define.substr(equals + 1));
-    }
+    options.defines = split_defines(arguments.defines);
     return options;
 }
 

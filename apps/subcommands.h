@@ -53,6 +53,8 @@ struct ConvertArguments {
     std::string input, output, layer;
     float exposure = 0.0f;
     bool half = false;
+    bool lenient = false;              ///< of a scene
+    std::vector<std::string> defines;  ///< of a scene: "camera=NAME", "emission=FACTOR"
 };
 
 struct CompareArguments {
@@ -73,6 +75,7 @@ struct ExportArguments {
 core::Registry make_registry();
 /// The definitions as names and values. Throws UsageError for a malformed one.
 core::LoadOptions load_options(const SceneArguments& arguments);
+std::vector<std::pair<std::string, std::string>> split_defines(const std::vector<std::string>& defines);
 /// Loads the scene with everything that the command line changes. Throws InputError, or UsageError for a
 /// malformed definition.
 std::unique_ptr<core::Scene> load(const SceneArguments& arguments, const core::Registry& registry,
@@ -87,6 +90,8 @@ int render_command(const RenderArguments& arguments);
 int plan_command(const SceneArguments& arguments);
 int info_command(const InfoArguments& arguments);
 int convert_command(const ConvertArguments& arguments);
+/// The part of it that turns a glTF scene into XML.
+int convert_scene(const ConvertArguments& arguments);
 int compare_command(const CompareArguments& arguments);
 int export_command(const ExportArguments& arguments);
 int formats_command();

@@ -99,6 +99,38 @@ what its author switched off) are left out with a note, and so are `sampleNum` a
 `sample_count` or `--passes` say how many samples), `version` (lajolla: which of its estimators of one picture) and
 `subdiv` of spheres.
 
+## glTF scenes
+
+Every command that takes a scene takes glTF 2.0 as well, `.gltf` or `.glb`; `mote convert scene.gltf scene.xml` writes
+what it is taken for, in this language, and meshes and pictures into `scene_files` beside it. Both give the same picture to
+the bit, and Mitsuba reads the XML after `sobol` became `independent`. Lines in messages ("scene.gltf as XML:57") are those of
+that file.
+
+| glTF | here |
+|---|---|
+| camera | the first one, or `-D camera=NAME`; without one, a view of everything, with a note. 576 pixels high, as wide as the camera says; 64 passes |
+| `KHR_lights_punctual` | `point`, `spot`, `directional`; candela and lux over 683 lm/W. A spot falls off linearly in the angle from the inner to the outer cone; `range` is ignored |
+| emissive factor, texture, strength | `area`; cd/m² over 683 lm/W, times `-D emission=FACTOR`. A double-sided lamp that is open is two sheets, 1e-5 of its coordinates apart |
+| no light at all | `constant` of radiance 1, with a note |
+| metallic-roughness | `principled`; factors are multiplied into new pictures where there is a texture |
+| colours of vertices | `mesh_attribute` |
+| normal texture, its scale | `normalmap`; parts that show the picture mirrored, and nodes that mirror, get one with green turned over |
+| `MASK`, `BLEND` | `mask`; a cutoff is applied to the texels, before they are interpolated |
+| `doubleSided` | `twosided`; else a surface is black from behind |
+| `KHR_materials_transmission` | with `KHR_materials_volume` glass (`principled` and an absorbing medium inside); without, a thin sheet: `principledthin`, or where it is smooth and clear `thindielectric` |
+| `KHR_materials_ior`, `KHR_texture_transform` | `eta`, `to_uv` |
+| `KHR_materials_unlit` | `diffuse`, with a note |
+| a mesh of many nodes | `shapegroup` and `instance`; copies where it emits light |
+| occlusion texture, animations | ignored: shadows are computed, and everything stands as it is stored |
+
+Blender's exporter writes lamps in watts times 683 lm/W, but the strength of an emissive surface as it is; the two fit
+together again with `-D emission=683`.
+
+Errors, which `--lenient` turns into a line of what was left out: clearcoat, sheen, specular, iridescence, anisotropy and
+dispersion where they are switched on; light from a surface with holes; textures with different sets of coordinates, or
+wrapped differently along u and v; a texture and colours of vertices at once; skins, shape keys, compressed meshes,
+pictures other than PNG and JPEG, and unknown extensions that the file requires.
+
 ## What is ours
 
 Types and parameters that Mitsuba does not know: volumes of type `vdbvolume`; the parameters `Le`, `Lescale`,

@@ -6,9 +6,11 @@
 #include "core/loading/element_checks.h"
 #include "core/loading/foreign_integrators.h"
 #include "core/loading/foreign_names.h"
+#include "core/loading/gltf_loader.h"
 #include "core/loading/lenient_scene.h"
 #include "core/loading/scene_builder.h"
 #include "core/loading/scene_defines.h"
+#include "core/loading/scene_making.h"
 #include "core/loading/scene_values.h"
 
 namespace mote::core {
@@ -67,19 +69,23 @@ Scene::Parts make_parts(SceneDocument& document, const Registry& registry, const
     }
 }
 
+}  // namespace
+
 std::unique_ptr<Scene> make_scene(SceneDocument document, SceneDefines& defines, const Registry& registry,
-                                  const LoadOptions& options, const std::string& file) {
+                                  const LoadOptions& options, const std::string& file,
+                                  const std::function<void(Scene::Parts&)>& finish) {
     Faults faults;
     prepare(document, defines, registry, options, faults);
-    auto scene = std::make_unique<Scene>(make_parts(document, registry, file, options.lenient, faults));
+    Scene::Parts parts = make_parts(document, registry, file, options.lenient, faults);
+    if (finish) finish(parts);
+    auto scene = std::make_unique<Scene>(std::move(parts));
     if (options.report) *options.report = {document.approximations, document.features};
     return scene;
 }
 
-}  // namespace
-
 SceneDocument load_scene_elements(const std::string& path, const Registry& registry,
                                   const LoadOptions& options) {
+    if (is_gltf(path)) throw InputError("is a glTF scene: turn it into XML first (mote convert)", {path, 0});
     SceneDefines defines(options.defines);
     SceneDocument document = read_scene_file(path, defines);
     Faults faults;
@@ -96,6 +102,7 @@ SceneDocument load_scene_elements(const std::string& path, const Registry& regis
 
 std::unique_ptr<Scene> load_scene(const std::string& path, const Registry& registry,
                                   const LoadOptions& options) {
+    if (is_gltf(path)) return load_gltf_scene(path, registry, options);
     SceneDefines defines(options.defines);
     return make_scene(read_scene_file(path, defines), defines, registry, options, path);
 }

@@ -22,7 +22,7 @@ FLOORS = [
 ]
 FLOOR_OF = {folder: level for level, floor in enumerate(FLOORS) for folder in floor}
 # core has floors of its own.
-CORE_FLOORS = [["math"], ["objects"], ["image"], ["materials"], ["geometry"], ["scene", "assets"], ["cameras", "render"],
+CORE_FLOORS = [["math"], ["objects"], ["image"], ["materials"], ["geometry"], ["scene", "assets"], ["cameras", "render", "gltf"],
                ["loading"]]
 CORE_FLOOR_OF = {folder: level for level, floor in enumerate(CORE_FLOORS) for folder in floor}
 EXEMPT = {"tests", "tools"}

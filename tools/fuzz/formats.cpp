@@ -128,12 +128,10 @@ std::vector<Format> formats() {
     const auto pictures = [camera] { return exr_seeds(camera); };
 
     std::vector<Format> all;
-    all.push_back(textual({"scene",
-                           ".xml",
-                           "mote",
-                           [registry](const std::string& path) { core::load_scene(path, *registry); },
-                           scene_seeds,
-                           {}}));
+    const auto read_scene = [registry](const std::string& path) { core::load_scene(path, *registry); };
+    all.push_back(textual({"scene", ".xml", "mote", read_scene, scene_seeds, {}}));
+    all.push_back(textual({"glTF scene", ".gltf", "mote", read_scene, gltf_scene_seeds, {}}));
+    all.push_back({"GLB scene", ".glb", "mote", read_scene, glb_scene_seeds, {}});
     all.push_back(textual({"obj", ".obj", "mote", read_mesh, obj_seeds, {}}));
     all.push_back(textual({"ply", ".ply", "mote", read_mesh, ply_seeds, {}}));
     all.push_back({"vol",

@@ -26,6 +26,9 @@ std::vector<Bytes> exported_cubes(const std::vector<std::string>& formats);
 std::vector<Bytes> off_seeds();
 std::vector<Bytes> stl_seeds();
 std::vector<Bytes> gltf_seeds();
+/// A scene with cameras, lights, pictures and materials, as text and as .glb.
+std::vector<Bytes> gltf_scene_seeds();
+std::vector<Bytes> glb_scene_seeds();
 std::vector<Bytes> pfm_seeds();
 
 /// What the checkpoints among the seeds belong to.

@@ -1,0 +1,64 @@
+// mote convert SCENE.gltf SCENE.xml: the scene in our language, and a folder with its meshes and pictures.
+#include <cstdio>
+#include <filesystem>
+
+#include "apps/command.h"
+#include "apps/output_files.h"
+#include "apps/picture_file.h"
+#include "apps/subcommands.h"
+#include "core/gltf/scratch_folder.h"
+#include "core/image/image_file.h"
+#include "core/loading/gltf_loader.h"
+
+namespace mote::apps {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Throws InputError where the scene was read from one of the files that would be written.
+void move_files(const fs::path& from, const fs::path& to, const std::vector<std::string>& inputs,
+                const std::string& scene) {
+    std::vector<NamedFile> outputs = {{"the scene", scene}};
+    for (const auto& file : fs::directory_iterator(from))
+        outputs.push_back({"a file of the scene", (to / file.path().filename()).string()});
+    check_outputs(outputs, scene_inputs(inputs));
+    std::error_code error;
+    fs::create_directories(to, error);
+    for (const auto& file : fs::directory_iterator(from))
+        if (!error)
+            fs::copy_file(file.path(), to / file.path().filename(), fs::copy_options::overwrite_existing,
+                          error);
+    if (error) throw core::InputError("cannot be written: " + error.message(), {to.string(), 0});
+}
+
+}  // namespace
+
+int convert_scene(const ConvertArguments& arguments) {
+    if (!core::is_gltf(arguments.input) || extension_of(arguments.output) != ".xml")
+        throw UsageError("a scene is converted from .gltf or .glb to .xml, not from '" +
+                         core::printable(arguments.input) + "' to '" + core::printable(arguments.output) +
+                         "'");
+    if (arguments.half || arguments.exposure != 0.0f || !arguments.layer.empty())
+        throw UsageError("--half, --exposure and --layer are for pictures, not for scenes");
+    require_input(arguments.input);
+    auto defines = split_defines(arguments.defines);
+    core::GltfOptions options = core::take_gltf_options(defines);
+    if (!defines.empty())
+        throw UsageError("-D " + core::printable(defines.front().first) +
+                         ": a conversion knows camera=NAME and emission=FACTOR");
+    const fs::path folder = fs::path(arguments.output).replace_extension().string() + "_files";
+    options.prefix = folder.filename().string() + "/", options.copy_pictures = true;
+    const core::ScratchFolder scratch;  // nothing is left of a scene that is refused
+    const core::GltfScene scene = core::convert_gltf(arguments.input, scratch.path(), options);
+    for (const std::string& line : core::gltf_approximations(scene, arguments.input, arguments.lenient))
+        std::fputs(("mote: --lenient: " + line + "\n").c_str(), stderr);
+    for (const std::string& note : scene.report.notes)
+        std::fputs(("mote: warning: " + arguments.input + ": " + note + "\n").c_str(), stderr);
+    move_files(scratch.path(), folder, scene.files, arguments.output);
+    core::write_file_atomically(arguments.output, std::as_bytes(std::span(scene.xml)));
+    std::printf("%s\n%s\n", arguments.output.c_str(), folder.string().c_str());
+    return exit_ok;
+}
+
+}  // namespace mote::apps
