@@ -158,6 +158,7 @@ pugi::xml_node GltfMaterials::add_holes(pugi::xml_node parent, const GltfValue& 
     const double factor = alpha_factor(material), cutoff = material["alphaCutoff"].number(0.5);
     const GltfValue info = pbr(material)["baseColorTexture"];
     pugi::xml_node mask = add_object(parent, "bsdf", "mask", "", id);
+    passes_straight_ = true;
     if (const auto image = textures_.image_of(info))
         textures_.add(mask, "opacity", info,
                       *textures_.opacity(*image, factor, cut ? std::optional(cutoff) : std::nullopt));
@@ -202,6 +203,7 @@ void GltfMaterials::add_surface(pugi::xml_node parent, const GltfValue& material
     const bool thin = transmission > 0.0 && !encloses_volume(material);
     if (thin && transmission == 1.0 && roughness == 0.0 && metallic == 0.0 && !shares.present()) {
         pugi::xml_node pane = add_object(parent, "bsdf", "thindielectric", "", id);
+        passes_straight_ = true;
         add_float(pane, "int_ior", eta), add_float(pane, "ext_ior", 1.0);
         return add_base_colour(pane, "specular_transmittance", material, colours);
     }

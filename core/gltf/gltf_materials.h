@@ -34,6 +34,9 @@ class GltfMaterials {
     /// The area light and the medium inside, where the material has them.
     void add_light_and_medium(pugi::xml_node shape, std::optional<std::size_t> number);
 
+    /// Light passes some surface straight on: through a hole, or a pane.
+    bool passes_straight() const { return passes_straight_; }
+
   private:
     GltfValue value(std::optional<std::size_t> number);
     GltfMaterial read(const GltfValue& material);
@@ -52,6 +55,7 @@ class GltfMaterials {
     GltfReport& report_;
     pugi::xml_node scene_;
     double emission_scale_;
+    bool passes_straight_ = false;
     std::map<std::size_t, std::unique_ptr<GltfMaterial>> read_;  ///< SIZE_MAX: the default material
     std::map<std::string, std::string> ids_;
 };

@@ -87,7 +87,9 @@ GltfScene convert_gltf(const std::string& path, const std::filesystem::path& fol
     pugi::xml_document document;
     pugi::xml_node root = document.append_child("scene");
     root.append_attribute("version") = "3.0.0";
-    add_object(root, "integrator", meshes.has_media() ? "volpath" : "path");
+    // Mitsuba's path lets no shadow ray through holes and panes; its volpath does, as both of ours.
+    const bool volpath = meshes.has_media() || looks.passes_straight();
+    add_object(root, "integrator", volpath ? "volpath" : "path");
     for (const pugi::xml_document* part : {&view, &materials, &shapes, &lights}) append_all(root, *part);
     std::ostringstream text;
     document.save(text, "    ");

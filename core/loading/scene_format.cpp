@@ -109,6 +109,7 @@ that file.
 | glTF | here |
 |---|---|
 | camera | the first one, or `-D camera=NAME`; without one, a view of everything, with a note. 576 pixels high, as wide as the camera says; 64 passes |
+| integrator | `path`; `volpath` where there are holes, panes or media: Mitsuba's `path` lets no shadow ray through the first two |
 | `KHR_lights_punctual` | `point`, `spot`, `directional`; candela and lux over 683 lm/W. A spot falls off linearly in the angle from the inner to the outer cone; `range` is ignored |
 | emissive factor, texture, strength | `area`; cd/m² over 683 lm/W, times `-D emission=FACTOR`. A double-sided lamp that is open is two sheets, 1e-5 of its coordinates apart |
 | no light at all | `constant` of radiance 1, with a note |

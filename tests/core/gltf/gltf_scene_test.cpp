@@ -225,7 +225,7 @@ TEST_CASE("glTF cameras are chosen by name, and stand in where there is none", "
     CHECK(load_text(b.text())->film().width == 2 * load_text(b.text())->film().height);
 }
 
-TEST_CASE("Holes of glTF materials", "[gltf]") {
+TEST_CASE("Holes and panes of glTF materials", "[gltf]") {
     const auto brightness = [](const json& extra) {
         GltfBuilder b;
         json material = dull({0, 0, 0, 0.25});
@@ -236,6 +236,16 @@ TEST_CASE("Holes of glTF materials", "[gltf]") {
         return mean_of(*load_text(b.text(), small), 256);
     };
     const double opaque = brightness(json::object());
+    GltfBuilder windows;
+    json pane = dull({0.5, 1, 1, 1});
+    pane["pbrMetallicRoughness"]["roughnessFactor"] = 0;
+    pane["extensions"]["KHR_materials_transmission"]["transmissionFactor"] = 1;
+    windows.node({{"mesh", windows.mesh(gltf_quad(), pane)}});
+    windows.camera(flat_camera, {{"translation", {0, 0, 5}}});
+    const auto window = load_text(windows.text(), small);
+    CHECK(window->integrator()->type() == "volpath");
+    // A pane of index 1.5 reflects 2 R / (1 + R) = 1/13, and lets the rest through in the colour.
+    CHECK_THAT(mean_of(*window, 64), WithinAbs(1.0 / 13.0 + 0.5 * 12.0 / 13.0, 0.02));
     CHECK(opaque < 0.2);  // the black floor's reflection alone
     CHECK(brightness({{"alphaMode", "MASK"}}) == 1.0);
     CHECK(brightness({{"alphaMode", "MASK"}, {"alphaCutoff", 0.2}}) == opaque);
