@@ -8,25 +8,41 @@
 namespace mote::media {
 namespace {
 
+class VolumeTexture final : public core::Texture {
+  public:
+    explicit VolumeTexture(std::shared_ptr<const Volume> volume) : volume_(std::move(volume)) {}
+
+    core::Rgb eval(const core::TextureCoordinates& uv) const override { return volume_->eval(uv.position); }
+    /// Of which part a surface shows, nothing is known here: half of the largest value.
+    core::Rgb mean() const override { return 0.5f * volume_->upper_bound(); }
+    float maximum() const override { return core::max_component(volume_->upper_bound()); }
+    float minimum() const override { return 0.0f; }
+
+  private:
+    std::shared_ptr<const Volume> volume_;
+};
+
 std::shared_ptr<core::Object> create(const core::Properties& p) {
     const auto volume = volume_of(p, "volume", core::Rgb(1.0f));
-    const auto value = volume->constant();
-    if (!value)
-        throw core::InputError("a texture 'volume' holds a constvolume: grids on surfaces are not supported",
-                               p.where_of("volume"));
-    return core::make_constant_texture(*value);
+    if (const auto value = volume->constant()) return core::make_constant_texture(*value);
+    return std::make_shared<VolumeTexture>(volume);
 }
 
 }  // namespace
 
 void register_volume_texture(core::Registry& registry) {
-    registry.add(
-        {core::Category::texture,
-         "volume",
-         "A volume that is the same everywhere, as a colour; volumes that vary are refused.",
-         {{"volume", "volume", "1", "a constvolume, a colour or a number"}},
-         R"(<texture type="volume" name="reflectance"><volume type="constvolume" name="volume"><rgb name="value" value="0.2, 0.5, 0.3"/></volume></texture>)"},
-        create);
+    registry.add({core::Category::texture,
+                  "volume",
+                  "A volume as a texture: a surface has the value of the volume where it stands in the "
+                  "world, whatever "
+                  "its texture coordinates. No slopes: as a bump map it has no effect.",
+                  {{"volume", "volume", "1", "a gridvolume, vdbvolume or constvolume, a colour or a number"}},
+                  R"(<texture type="volume" name="reflectance">
+    <volume type="gridvolume" name="volume">
+        <string name="filename" value="marble.vol"/>
+    </volume>
+</texture>)"},
+                 create);
 }
 
 }  // namespace mote::media

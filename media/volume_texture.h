@@ -1,5 +1,4 @@
-// <texture type="volume">: a volume as a texture. Textures are asked by their place on the surface, not in
-// space, so only a volume that is the same everywhere can be one.
+// <texture type="volume">: surfaces with the values of a volume, looked up by position.
 #pragma once
 
 namespace mote::core {

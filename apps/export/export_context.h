@@ -55,5 +55,7 @@ void export_shape(core::Element& element, const core::Shape& shape, const core::
 void export_emitter(core::Element& emitter, const ExportContext& context);
 void export_bsdf(core::Element& bsdf, const ExportContext& context);
 void export_medium(core::Element& medium, const ExportContext& context);
+/// Of a medium or a texture; what is exported already stays.
+void export_volume(core::Element& volume, bool is_extinction, const ExportContext& context);
 
 }  // namespace mote::apps

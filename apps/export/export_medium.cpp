@@ -162,11 +162,15 @@ void export_vol(Element& volume, const ExportContext& context) {
     context.copy_file(volume, "volumes");
 }
 
+}  // namespace
+
 void export_volume(Element& volume, bool is_extinction, const ExportContext& context) {
     if (volume.get("type") == "vdbvolume") export_vdb(volume, is_extinction, context);
     if (volume.get("type") == "gridvolume" && text_of(volume, "filename", "").rfind("volumes/", 0) != 0)
         export_vol(volume, context);
 }
+
+namespace {
 
 /// A constant parameter of a medium, or nothing when it is a grid.
 std::optional<Rgb> constant_of(Element& medium, const std::string& name, float default_value) {

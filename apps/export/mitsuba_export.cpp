@@ -89,6 +89,7 @@ void export_parts(Element& object, const ExportContext& context) {
         if (is_object(c)) export_parts(c, context);
     if (object.tag == "bsdf") export_bsdf(object, context);
     if (object.tag == "texture" && object.child("filename")) context.copy_file(object, "textures");
+    if (object.tag == "volume") export_volume(object, false, context);
     if (object.tag == "emitter") export_emitter(object, context);
 }
 

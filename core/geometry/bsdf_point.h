@@ -1,4 +1,4 @@
-// What a BSDF asks about the place that a ray found.
+// What BSDFs and textures ask about a place on a surface.
 #pragma once
 
 #include "core/geometry/shape.h"
@@ -6,9 +6,18 @@
 
 namespace mote::core {
 
-/// Texture coordinates; and where the shape says that they matter, the derivatives in the shading frame.
+/// Of a hit or a sample: the texture coordinates, with the position that they belong to.
+template <typename Point>
+TextureCoordinates texture_place(const Point& point) {
+    TextureCoordinates place = point.uv;
+    place.position = point.position;
+    return place;
+}
+
+/// Texture coordinates and position; and where the shape says that they matter, the derivatives in the
+/// shading frame.
 inline BsdfPoint bsdf_point(const SurfaceHit& hit) {
-    BsdfPoint p{hit.uv};
+    BsdfPoint p{texture_place(hit)};
     if (!hit.shape || !hit.shape->tangent_matters) return p;
     p.dp_du = hit.shading.to_local(hit.dp_du), p.dp_dv = hit.shading.to_local(hit.dp_dv);
     p.geometric_normal = hit.shading.to_local(hit.geometric_normal);

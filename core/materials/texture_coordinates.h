@@ -24,11 +24,12 @@ class SurfaceAttributes {
 };
 
 /// The coordinates (u, v) themselves, together with the point of the shape that they belong to. Whoever has
-/// coordinates alone gives them as they are: textures other than mesh_attribute need no more.
+/// coordinates alone gives them as they are: textures other than mesh_attribute and volume need no more.
 struct TextureCoordinates : Vec2 {
     const SurfaceAttributes* attributes = nullptr;  ///< of the shape, or null
     std::uint32_t primitive = 0;
     Vec2 barycentric{0, 0};
+    Vec3 position{0, 0, 0};  ///< in the world [m]; filled by texture_place(), not by shapes
 
     TextureCoordinates() : Vec2(0.0f) {}
     TextureCoordinates(const Vec2& uv) : Vec2(uv) {}

@@ -31,9 +31,9 @@ sys.path[0] = str(HERE / "witness")
 WITNESS_SET = {"cornell_diffuse": 64, "cornell_glossy": 96, "rough_dielectric": 64, "environment": 64, "fog": 96,
                "chromatic_fog": 96, "camera_in_fog": 96, "smoke": 64, "everything_else": 64,
                "window": 96, "leaves": 96, "bumps": 64, "principled": 64, "rough_materials": 64, "shapes": 128,
-               "instances": 96, "projector": 96, "hidden_lights": 96}
+               "instances": 96, "projector": 96, "hidden_lights": 96, "volume_texture": 64}
 LEFT_OUT_OF_QUICK = ("environment", "chromatic_fog", "everything_else", "window", "leaves", "bumps", "principled",
-                     "rough_materials", "shapes", "instances", "projector", "hidden_lights")
+                     "rough_materials", "shapes", "instances", "projector", "hidden_lights", "volume_texture")
 
 
 def arguments():

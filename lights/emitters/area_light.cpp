@@ -1,6 +1,7 @@
 // The area light: the front side of a shape emits the same radiance in all directions. Front is where the
 // geometric normal points to, in evaluation, density and particles alike: mixing it with the shading normal
 // would make the two halves disagree at silhouettes.
+#include "core/geometry/bsdf_point.h"
 #include "core/geometry/shape.h"
 #include "core/math/warp.h"
 #include "core/objects/registry.h"
@@ -40,7 +41,7 @@ class AreaLight final : public Emitter {
         if (!(distance > 0.0f)) return std::nullopt;
         const Vec3 wi = d / distance;
         if (!(glm::dot(point->normal, wi) < 0.0f)) return std::nullopt;
-        const Rgb weight = emitted(point->uv) / pdf;
+        const Rgb weight = emitted(texture_place(*point)) / pdf;
         if (is_black(weight) || !is_finite(weight)) return std::nullopt;
         return DirectSample{wi, distance, weight, pdf, false, point->normal};
     }
@@ -49,7 +50,7 @@ class AreaLight final : public Emitter {
         return shape_->pdf_visible(p, wi, *hit);
     }
     Rgb radiance(const SurfaceHit& hit, const Vec3& wo) const override {
-        return glm::dot(hit.geometric_normal, wo) > 0.0f ? emitted(hit.uv) : Rgb(0.0f);
+        return glm::dot(hit.geometric_normal, wo) > 0.0f ? emitted(texture_place(hit)) : Rgb(0.0f);
     }
 
     std::optional<EmissionSample> sample_emission(const Vec2& u_position,
@@ -57,7 +58,7 @@ class AreaLight final : public Emitter {
         if (!shape_) return std::nullopt;
         const ShapeSample point = shape_->sample_area(u_position);
         if (!(point.pdf_area > 0.0f)) return std::nullopt;
-        const Rgb radiance = emitted(point.uv);
+        const Rgb radiance = emitted(texture_place(point));
         if (is_black(radiance)) return std::nullopt;
         const Vec3 local = square_to_cosine_hemisphere(u_direction);
         EmissionSample sample{};

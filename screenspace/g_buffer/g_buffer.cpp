@@ -30,7 +30,7 @@ void enter(GBuffer& buffer, std::size_t i, const SurfaceHit& hit, const Vec3& wo
     buffer.distance[i] = hit.t, buffer.position[i] = hit.position;
     buffer.geometric_normal[i] = towards_viewer(hit.geometric_normal);
     buffer.shading_normal[i] = towards_viewer(hit.shading.n);
-    buffer.shape[i] = hit.shape, buffer.uv[i] = hit.uv;
+    buffer.shape[i] = hit.shape, buffer.uv[i] = texture_place(hit);
     if (!hit.shape->bsdf) return;
     const Vec3 local = hit.shading.to_local(wo);
     buffer.reflectance[i] = hit.shape->bsdf->albedo(bsdf_point(hit), local);
