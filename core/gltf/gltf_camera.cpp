@@ -65,17 +65,34 @@ void add_orthographic(pugi::xml_node scene, const GltfNode& node, const GltfValu
     add_film(sensor, std::fabs(x / y));
 }
 
+/// How far from its center a box just fills the view along `forward`.
+double distance_to_see(const Vec3d& half, const Vec3d& forward, double tan_x, double tan_y) {
+    const Vec3d x = glm::normalize(glm::cross(forward, Vec3d(0, 1, 0))), y = glm::cross(x, forward);
+    double distance = 0.0;
+    for (int i = 0; i < 8; ++i) {
+        const Vec3d corner = half * Vec3d(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
+        const double needed =
+            std::fmax(std::fabs(glm::dot(corner, x)) / tan_x, std::fabs(glm::dot(corner, y)) / tan_y);
+        distance = std::fmax(distance, needed - glm::dot(corner, forward));
+    }
+    return distance;
+}
+
 /// From in front, a little from the right and above: glTF models look along +z.
 void add_overview(pugi::xml_node scene, const Bounds3& bounds) {
-    const Vec3d lower(bounds.lower), upper(bounds.upper), center = 0.5 * (lower + upper);
-    const double radius = std::fmax(0.5 * glm::length(upper - lower), 1e-6), angle = 40.0;
-    const double distance = 1.05 * radius / std::sin(glm::radians(0.5 * angle));
+    constexpr double angle = 40.0, margin = 1.1;
+    const Vec3d lower(bounds.lower), upper(bounds.upper), center = 0.5 * (lower + upper),
+                                                          half = upper - center;
+    const Vec3d forward = -glm::normalize(Vec3d(0.45, 0.3, 1.0));
+    const double tan_y = std::tan(glm::radians(0.5 * angle));
+    const double distance =
+        margin * std::fmax(distance_to_see(half, forward, default_aspect * tan_y, tan_y), 1e-6);
     pugi::xml_node sensor = add_object(scene, "sensor", "perspective");
-    add_value(sensor, "string", "fov_axis", "smaller");
+    add_value(sensor, "string", "fov_axis", "y");
     add_float(sensor, "fov", angle);
     add_float(sensor, "near_clip", 1e-3 * distance);
-    add_float(sensor, "far_clip", 10.0 * distance);
-    add_lookat(sensor, center + distance * glm::normalize(Vec3d(0.45, 0.3, 1.0)), center, {0, 1, 0}, 1.0);
+    add_float(sensor, "far_clip", 10.0 * (distance + glm::length(half)));
+    add_lookat(sensor, center - distance * forward, center, {0, 1, 0}, 1.0);
     add_film(sensor, default_aspect);
 }
 

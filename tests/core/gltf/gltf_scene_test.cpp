@@ -209,6 +209,14 @@ TEST_CASE("glTF cameras are chosen by name, and stand in where there is none", "
     b.node({{"mesh", b.mesh(gltf_quad(), dull({1, 1, 1, 1}))}});
     const auto overview = load_text(b.text(), small);
     CHECK(mean_of(*overview) > 0.1);  // it shows something, in the light that stands in
+    const auto whole = load_text(b.text());
+    double lowest = 1e9, highest = 0.0;
+    for (const Vec3& corner : gltf_quad().positions) {  // all of it, and large
+        const auto place = whole->camera().project(corner);
+        REQUIRE(place);
+        lowest = std::min(lowest, double(place->y)), highest = std::max(highest, double(place->y));
+    }
+    CHECK(highest - lowest > 0.8 * whole->film().height);
     REQUIRE(overview->parts().warnings.size() == 2);
     contains(overview->parts().warnings[0], "no camera");
     contains(overview->parts().warnings[1], "no light");
