@@ -12,6 +12,7 @@
 #include "core/gltf/scratch_folder.h"
 #include "core/loading/faults.h"
 #include "core/loading/scene_loader.h"
+#include "core/materials/bsdf.h"
 #include "tests/core/gltf/gltf_builder.h"
 #include "tests/core/scene/scene_fixture.h"
 #include "tests/support/render_statistics.h"
@@ -277,6 +278,49 @@ TEST_CASE("Normal maps on mirrored glTF nodes are mirrored too", "[gltf]") {
     CHECK_THAT(brightness(-1, -1), WithinRel(right, 1e-3));
     CHECK_THAT(brightness(-1, 1), WithinRel(brightness(1, -1), 1e-3));
     CHECK(right > 1.1 * brightness(1, -1));
+}
+
+TEST_CASE("glTF texture transforms scale, turn the picture clockwise, and move it", "[gltf]") {
+    // Red, of a picture that is black otherwise, in the quarters of the square: left to right, top to bottom.
+    const auto red_in = [](const json& transform) {
+        GltfBuilder b;
+        json light = {{"emissiveFactor", {1, 1, 1}}};
+        light["emissiveTexture"]["index"] = b.texture(2, 2, {255, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0});
+        light["emissiveTexture"]["extensions"]["KHR_texture_transform"] = transform;
+        b.document["textures"][0]["sampler"] = b.add("samplers", {{"magFilter", 9728}});
+        b.node({{"mesh", b.mesh(gltf_quad(), light)}});
+        b.camera({{"type", "orthographic"}, {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"znear", 0.1}}}},
+                 {{"translation", {0, 0, 5}}});
+        LoadOptions options;
+        options.defines = {{"film.width", "2"}, {"film.height", "2"}, {"emission", "683"}};
+        const auto scene = load_text(b.text(), options);
+        scene->film().filter = "box";
+        const RenderStatistics r = picture(*scene, 64);
+        std::string where;
+        for (std::size_t i = 0; i < 4; ++i)
+            where += r.blocks[r.layer("beauty")][3 * i].mean > 0.5 ? 'r' : '-';
+        return where;
+    };
+    CHECK(red_in(json::object()) == "r---");
+    CHECK(red_in({{"rotation", M_PI / 2}}) == "-r--");
+    CHECK(red_in({{"offset", {0.5, 0}}}) == "-r--");
+    CHECK(red_in({{"offset", {0, 0.5}}}) == "--r-");
+    CHECK(red_in({{"scale", {0.5, 0.5}}}) == "rrrr");
+    // Scaled along v before it is turned.
+    CHECK(red_in({{"scale", {1, 0.5}}, {"rotation", M_PI / 2}}) == "-r-r");
+}
+
+TEST_CASE("Colours of vertices are multiplied by the material's", "[gltf]") {
+    GltfBuilder b;
+    const std::size_t mesh = b.mesh(gltf_quad(), dull({0.5, 0.25, 1, 1}));
+    b.document["meshes"][mesh]["primitives"][0]["attributes"]["COLOR_0"] =
+        b.floats(std::vector<float>(12, 0.5f), "VEC3", 3);
+    b.node({{"mesh", mesh}});
+    const auto scene = load_text(b.text(), small);
+    const SurfaceAttributes* attributes = scene->shapes()[0]->attributes();
+    REQUIRE(attributes);
+    CHECK(attributes->attribute("vertex_color", 0, {0.2f, 0.3f}) == Rgb(0.25f, 0.125f, 0.5f));
+    CHECK(scene->shapes()[0]->bsdf->traits().textured);
 }
 
 TEST_CASE("Meshes of many glTF nodes are instances", "[gltf]") {
