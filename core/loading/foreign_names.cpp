@@ -123,11 +123,11 @@ void drop_foreign_parameters(Element& e, const Manual& manual, std::vector<std::
 
 void drop_foreign_elements(Element& scene, std::vector<std::string>& warnings) {
     // Of Rainbow: final picture or preview; and what its author switched off.
-    for (const auto& [tag, meaning] : {std::pair("mode", "a mode of another renderer has no effect"),
-                                       std::pair("hide", "a hidden element is left out")})
+    for (const auto& foreign : {std::pair("mode", "a mode of another renderer has no effect"),
+                                std::pair("hide", "a hidden element is left out")})
         std::erase_if(scene.children, [&](const Element& e) {
-            if (e.tag != tag) return false;
-            warnings.push_back(InputError("<" + e.tag + ">: " + meaning, e.where).what());
+            if (e.tag != foreign.first) return false;
+            warnings.push_back(InputError("<" + e.tag + ">: " + foreign.second, e.where).what());
             return true;
         });
     for (Element& e : scene.children) drop_foreign_elements(e, warnings);
