@@ -20,7 +20,7 @@ namespace {
 std::atomic<bool> stop{false}, time_over{false};
 std::atomic<int> first_signal{0};
 std::atomic<std::int64_t> first_time{0};
-std::atomic<const char*> idle_phase{nullptr};
+std::atomic<const char*> idle_phase{nullptr}, idle_reason{nullptr};
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<std::int64_t>::is_always_lock_free &&
                   std::atomic<const char*>::is_always_lock_free,
               "a signal handler must not wait for a lock");
@@ -40,7 +40,7 @@ void say(const char* text) {
 void leave_if_idle(const char* what, int exit_code) {
     const char* phase = idle_phase;
     if (!phase) return;
-    say("mote: "), say(what), say(" while "), say(phase), say(": no pixel was rendered yet\n");
+    say("mote: "), say(what), say(" while "), say(phase), say(": "), say(idle_reason), say("\n");
     ::_exit(exit_code);
 }
 
@@ -90,7 +90,10 @@ Interruption::~Interruption() {
     set_handlers(SIG_DFL, SIG_DFL);
 }
 
-void Interruption::end_at_once_while(const char* phase) { idle_phase = phase; }
+void Interruption::end_at_once_while(const char* phase, const char* why) {
+    idle_reason = why;
+    idle_phase = phase;
+}
 
 void Interruption::set_alarm(std::optional<double> seconds) {
     itimerval timer{};

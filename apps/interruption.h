@@ -18,8 +18,9 @@ class Interruption {
     Interruption& operator=(const Interruption&) = delete;
 
     /// While there is nothing to be lost (`phase`: "loading the scene"), a signal or the end of the time ends
-    /// the program at once, with one line. `phase` must be a literal; null: from now on there is.
-    void end_at_once_while(const char* phase);
+    /// the program at once, with one line, which ends in `why`. Both must be literals; null: from now on
+    /// there is.
+    void end_at_once_while(const char* phase, const char* why = "no pixel was rendered yet");
     /// The end of the time, from now [s]; nothing: no more.
     void set_alarm(std::optional<double> seconds);
 

@@ -109,6 +109,8 @@ core::RenderResult render_with_progress(const core::Scene& scene, const core::In
 
 int make_reference(const TradeArguments& arguments) {
     check_output(arguments.make_reference);
+    Interruption interruption;
+    interruption.end_at_once_while("loading the scene");
     const int threads = arguments.threads > 0 ? arguments.threads : tbb::info::default_concurrency();
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
     const core::Registry registry = make_registry();
@@ -138,8 +140,9 @@ int make_reference(const TradeArguments& arguments) {
         for (const std::string& line : plan.warnings()) note(line);
     }
 
-    const Interruption interruption;
+    interruption.end_at_once_while("building", "nothing is lost");
     request.interrupted = &interruption.flag();
+    request.building_is_over = [&] { interruption.end_at_once_while(nullptr); };
     ProgressLine progress(fmt::format("mote: reference of {} by {} that judges errors down to {:.3g} %",
                                       scene->parts().file, type, 100.0 * arguments.resolve),
                           arguments.quiet);

@@ -58,18 +58,22 @@ class Forecast {
 
 class SeedRun {
   public:
-    SeedRun(const Plan& plan, Folder& folder, std::size_t seed_index, const std::atomic<bool>& cancelled,
+    SeedRun(const Plan& plan, Folder& folder, std::size_t seed_index, Interruption& interruption,
             ProgressLine& progress)
         : plan_(plan),
           folder_(folder),
           seed_index_(seed_index),
-          cancelled_(cancelled),
+          interruption_(interruption),
+          cancelled_(interruption.flag()),
           progress_(progress),
           errors_(plan.methods.size(), -1.0) {}
 
     /// Returns false when interrupted.
     bool run() {
-        if (!enter()) return save_all();
+        // Records and checkpoints of before are on the disk.
+        interruption_.end_at_once_while("building", "the same command continues");
+        enter();
+        interruption_.end_at_once_while(nullptr);
         while (!running_.empty() &&
                std::any_of(running_.begin(), running_.end(), [](auto& c) { return !!c; })) {
             std::unique_ptr<Contestant>& turn = running_[next()];
@@ -86,20 +90,18 @@ class SeedRun {
   private:
     std::uint64_t seed() const { return plan_.seeds[seed_index_]; }
 
-    /// Every method builds what it needs; the time counts. Returns false when interrupted.
-    bool enter() {
+    /// Every method builds what it needs; the time counts.
+    void enter() {
         running_.resize(plan_.methods.size());
         for (std::size_t i = 0; i < plan_.methods.size(); ++i) {
             const Method& method = plan_.methods[i];
             if (folder_.is_complete(method.name, seed())) continue;
-            if (cancelled_) return false;
             running_[i] =
                 std::make_unique<Contestant>(plan_.scene, method, seed(), plan_.reference,
                                              folder_.checkpoint(method.slug, seed()), plan_.content);
             // What was measured after the checkpoint was lost with its film, and its seconds with it.
             folder_.drop_after(method.name, seed(), running_[i]->tally().passes);
         }
-        return true;
     }
     std::size_t next() const {
         std::vector<double> seconds;
@@ -156,6 +158,7 @@ class SeedRun {
     const Plan& plan_;
     Folder& folder_;
     std::size_t seed_index_;
+    Interruption& interruption_;
     const std::atomic<bool>& cancelled_;
     ProgressLine& progress_;
     std::vector<double> errors_;  ///< the last of each method
@@ -188,9 +191,9 @@ std::vector<std::string> render_command_of(const Plan& plan, const Method& metho
     return command;
 }
 
-bool run(const Plan& plan, Folder& folder, const Interruption& interruption, ProgressLine& progress) {
+bool run(const Plan& plan, Folder& folder, Interruption& interruption, ProgressLine& progress) {
     for (std::size_t i = 0; i < plan.seeds.size(); ++i)
-        if (!SeedRun(plan, folder, i, interruption.flag(), progress).run()) return false;
+        if (!SeedRun(plan, folder, i, interruption, progress).run()) return false;
     return true;
 }
 

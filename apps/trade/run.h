@@ -32,6 +32,6 @@ std::vector<std::string> render_command_of(const Plan& plan, const Method& metho
 
 /// Continues where the folder's records and checkpoints end. Returns false when interrupted; everything that
 /// is needed to continue has been written then.
-bool run(const Plan& plan, Folder& folder, const Interruption& interruption, ProgressLine& progress);
+bool run(const Plan& plan, Folder& folder, Interruption& interruption, ProgressLine& progress);
 
 }  // namespace mote::apps::trade

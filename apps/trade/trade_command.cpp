@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 
 #include "apps/command.h"
 #include "apps/number_options.h"
@@ -203,6 +204,8 @@ int redraw(const TradeArguments& a) {
 int measure(const TradeArguments& given) {
     const bool automatic = given.reference.empty();
     const TradeArguments a = with_defaults(given);
+    std::optional<Interruption> interruption(std::in_place);
+    interruption->end_at_once_while("loading the scene");
     const int threads = a.threads > 0 ? a.threads : tbb::info::default_concurrency();
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
     const core::Registry registry = make_registry();
@@ -216,8 +219,12 @@ int measure(const TradeArguments& given) {
                                  : read_methods_file(a.methods, registry, *scene, warnings);
     const Limits limits = limits_of(a, file);
     const std::string content = scene_content(*scene, a.scene.defines);
-    if (automatic && !is_good_reference(a.reference, *scene, content, {core::infinity, false, false}))
+    if (automatic && !is_good_reference(a.reference, *scene, content, {core::infinity, false, false})) {
+        interruption.reset();  // it has one of its own
         if (const int code = make_automatic_reference(a, file, limits); code != exit_ok) return code;
+        interruption.emplace();
+        interruption->end_at_once_while("loading the reference", "the same command continues");
+    }
     // One of our own says how noisy it is, and the page with it; one that was chosen must do what was asked
     // for.
     const double resolve = automatic ? core::infinity : a.resolve;
@@ -241,14 +248,14 @@ int measure(const TradeArguments& given) {
     keep_reference(folder, reference);
     warn(a, plan, warnings);
 
-    const Interruption interruption;
+    interruption->end_at_once_while(nullptr);
     ProgressLine progress(fmt::format("mote: trade on {}: {} methods, {} seeds, {} x {} pixels, {} threads",
                                       a.scene.scene, plan.methods.size(), plan.seeds.size(),
                                       scene->film().width, scene->film().height, threads),
                           a.quiet);
     const bool complete = [&] {
         try {
-            return trade::run(plan, folder, interruption, progress);
+            return trade::run(plan, folder, *interruption, progress);
         } catch (...) {
             progress.end();
             throw;
@@ -261,7 +268,7 @@ int measure(const TradeArguments& given) {
         return finish(folder, a.page_width, a.quiet);
     }
     note("interrupted: the same command continues");
-    return 128 + interruption.signal_number();
+    return 128 + interruption->signal_number();
 }
 
 }  // namespace

@@ -167,3 +167,29 @@ TEST_CASE("Too little memory names what it was for", "[command][stopping]") {
     CHECK(r.err.find("not enough memory for a film of 16000 x 16000 pixels") != std::string::npos);
     CHECK(r.err.find("GB") != std::string::npos);
 }
+
+TEST_CASE("A trade and its reference end at once while the scene is loaded", "[command][stopping][trade]") {
+    const Folder folder;
+    // A million spheres take several seconds, and no pixel.
+    std::string many = "<scene version=\"3.0.0\">", includes;
+    for (int i = 0; i < 1000; ++i)
+        many += "<shape type=\"sphere\"/>", includes += "<include filename=\"many.xml\"/>";
+    write_file(folder.file("many.xml"), many + "</scene>");
+    write_file(folder.file("crowd.xml"), R"(<scene version="3.0.0"><sensor type="perspective"/>
+        <emitter type="constant"/>)" + includes +
+                                             "</scene>");
+    for (const auto& arguments : {std::vector<std::string>{"trade", "crowd.xml", "--make-reference", "r.exr"},
+                                  std::vector<std::string>{"trade", "crowd.xml"}}) {
+        RunResult r;
+        for (int wait = 250; r.exit_code == -1 && wait < 20000; wait *= 2) {  // as above
+            MoteProcess process(folder, arguments);
+            std::this_thread::sleep_for(std::chrono::milliseconds(wait));
+            process.send(SIGINT);
+            CHECK(seconds_of([&] { r = process.wait(); }) < generous_seconds);
+        }
+        INFO(r.err);
+        CHECK(r.exit_code == 128 + SIGINT);
+        CHECK(r.err.find("interrupted while loading the scene: no pixel was rendered yet") !=
+              std::string::npos);
+    }
+}
