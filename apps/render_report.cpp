@@ -64,6 +64,14 @@ double finished_share(const core::RenderResult& result) {
 
 std::string git_hash() { return MOTE_GIT_HASH; }
 
+/// As the driver found them, for it takes a while in large pictures; a picture of a trade has no driver.
+static core::Film::GainAndNoise gain_and_noise(const core::RenderResult& result) {
+    const auto& values = result.statistics.values;
+    const auto gain = values.find("varianceGain"), noise = values.find("noise");
+    if (gain == values.end() || noise == values.end()) return result.film.gain_and_noise();
+    return {gain->second, noise->second};
+}
+
 std::map<std::string, std::string> picture_metadata(const RenderReport& r) {
     std::map<std::string, std::string> metadata = {
         {"software", std::string("mote ") + MOTE_VERSION},
@@ -76,7 +84,7 @@ std::map<std::string, std::string> picture_metadata(const RenderReport& r) {
         {"sceneContent", r.scene_content},
         {"commandLine", quoted(r.command_line)},
         {"worldToCamera", world_to_camera(r.scene.camera())}};
-    const auto [gain, noise] = r.result.film.gain_and_noise();
+    const auto [gain, noise] = gain_and_noise(r.result);
     if (r.result.film.pass_count() >= 2) metadata[variance_gain_key] = fmt::format("{:.6g}", gain);
     if (!r.result.finished_pixels.empty()) {
         metadata["passes"] = "0";
@@ -98,7 +106,7 @@ std::string statistics_json(const RenderReport& r) {
     const core::Statistics& s = r.result.statistics;
     json values = json::object();
     for (const auto& [name, value] : s.values)
-        if (name != "noise" && name != "vpls") values[name] = number_or_null(value);
+        if (name != "noise" && name != "varianceGain" && name != "vpls") values[name] = number_or_null(value);
     json warnings = json::array();
     for (const std::string& w : r.scene.parts().warnings) warnings.push_back(w);
     for (const std::string& w : s.warnings) warnings.push_back(w);
@@ -135,7 +143,7 @@ std::string statistics_json(const RenderReport& r) {
     if (const auto vpls = s.values.find("vpls"); vpls != s.values.end()) j["vpls"] = vpls->second;
     j["values"] = values;
     j["peak_memory_bytes"] = peak_memory_bytes();
-    j["noise"] = number_or_null(s.values.contains("noise") ? s.values.at("noise") : r.result.film.noise());
+    j["noise"] = number_or_null(gain_and_noise(r.result).noise);
     j["warnings"] = warnings;
     j["approximations"] = r.approximations;
     j["non_finite_samples"] = s.non_finite_samples;

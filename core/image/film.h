@@ -116,10 +116,8 @@ class Film {
     std::vector<Rgb> variance_of_mean(std::span<const std::size_t> layers, const Sums& squares) const;
     /// How many passes the mean of a layer is over, for a pixel.
     double passes_of(std::size_t layer, std::size_t pixel) const;
-    /// body(sums, part) in the order of a serialised film.
-    template <typename Self, typename Body>
-    static void for_each_sums(Self& film, const Body& body);
-    std::size_t serialized_size(std::span<const std::uint32_t> passes) const;
+    template <typename AnyFilm, typename Body>
+    static void for_each_array(AnyFilm& film, const Body& body);
 
     int width_, height_;
     std::vector<Layer> layers_;

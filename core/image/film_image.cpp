@@ -1,6 +1,8 @@
 // Names of channels: what is not part of the beauty must not look like it.
 #include "core/image/film_image.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 
 namespace mote::core {
@@ -39,13 +41,20 @@ void add_auxiliary(ImageChannels& image, const Film& film, std::size_t i) {
 ImageChannels film_image(const Film& film) {
     ImageChannels image;
     image.width = film.width(), image.height = film.height();
-    image.add_rgb("", film.beauty());
-    for (std::size_t i = 0; i < film.layers().size(); ++i) {
-        const Layer& layer = film.layers()[i];
-        if (layer.auxiliary)
+    std::vector<std::vector<Rgb>> means(film.layers().size());
+    std::vector<Rgb> beauty(film.pixels(), Rgb(0.0f));  // Film::beauty(), whose layers are needed alone, too
+    for (std::size_t i = 0; i < means.size(); ++i) {
+        if (film.layers()[i].auxiliary) continue;
+        means[i] = film.mean(i);
+        tbb::parallel_for(std::size_t(0), beauty.size(), [&](std::size_t p) { beauty[p] += means[i][p]; });
+    }
+    image.add_rgb("", beauty);
+    for (std::size_t i = 0; i < means.size(); ++i) {
+        if (film.layers()[i].auxiliary)
             add_auxiliary(image, film, i);
         else
-            image.add_rgb(layer.name, film.mean(i));
+            image.add_rgb(film.layers()[i].name, means[i]);
+        means[i] = {};
     }
     if (film.pass_count() >= 2) image.add_rgb("Variance", film.beauty_variance_of_mean());
     return image;

@@ -1,16 +1,18 @@
-// The bits of a film as bytes: header, a head for each part, sums, checksum. Little-endian, as every machine
-// this runs on.
+// The bits of a film as bytes: header, a head for each part, packed sums (packed_numbers.h), checksum.
+// Little-endian, as every machine this runs on.
 //
 // Before the first block of a part is complete all totals are zero, and right after a block the open one is:
-// zeros are not written, for a film takes hundreds of megabytes.
+// these are not written, for a film takes hundreds of megabytes.
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
 #include <utility>
+#include <vector>
 
 #include "core/image/checksum.h"
 #include "core/image/film.h"
+#include "core/image/packed_numbers.h"
 #include "core/objects/error.h"
 
 namespace mote::core {
@@ -31,48 +33,29 @@ struct PartHeader {
 
 bool has_totals(std::uint32_t passes) { return passes >= Film::block_size; }
 bool has_blocks(std::uint32_t passes) { return passes % Film::block_size != 0; }
-
 // Of blocks of 2^(k+1) passes: is half of one there, and has one been complete?
 bool is_open(std::uint32_t passes, std::size_t k) { return (passes >> k) % 2 == 1; }
 bool is_closed(std::uint32_t passes, std::size_t k) { return std::uint64_t(passes) >> (k + 1) > 0; }
 
-// Fills a buffer of known size from front to back.
-class Writer {
-  public:
-    explicit Writer(std::size_t size) : bytes_(size) {}
-    void write(const void* data, std::size_t size) {
-        if (size == 0) return;  // data may be null then, which memcpy() forbids
-        std::memcpy(bytes_.data() + position_, data, size);
-        position_ += size;
-    }
-    std::span<const std::byte> written() const { return std::span(bytes_).first(position_); }
-    std::vector<std::byte> take() { return std::move(bytes_); }
-
-  private:
-    std::vector<std::byte> bytes_;
-    std::size_t position_ = 0;
-};
-
 }  // namespace
 
-template <typename Self, typename Body>
-void Film::for_each_sums(Self& film, const Body& body) {
-    for (std::size_t i = 0; i < film.layers_.size(); ++i) body(film.sums_[i], film.layers_[i].part);
-    for (std::size_t i = 0; i < film.layers_.size(); ++i) body(film.layer_squares_[i], film.layers_[i].part);
-    for (std::size_t i = 0; i < film.parts_.size(); ++i) body(film.parts_[i].beauty_squares, i);
-}
-
-std::size_t Film::serialized_size(std::span<const std::uint32_t> passes) const {
-    std::size_t size = sizeof(Header) + parts_.size() * sizeof(PartHeader) + sizeof(std::uint64_t);
-    for_each_sums(*this, [&](const Sums& sums, std::size_t part) {
-        const std::size_t copies =
-            (has_totals(passes[part]) ? 1u : 0u) + (has_blocks(passes[part]) ? 1u : 0u);
-        size += copies * sums.total.size() * sizeof(double);
-    });
-    for (const std::uint32_t n : passes)
-        for (std::size_t k = 0; k < std::size_t(std::bit_width(n)); ++k)
-            size += ((is_open(n, k) ? 1u : 0u) + (is_closed(n, k) ? 1u : 0u)) * pixels() * sizeof(float);
-    return size;
+/// Every array that the film of so many passes has, in the order of the file.
+template <typename AnyFilm, typename Body>
+void Film::for_each_array(AnyFilm& film, const Body& body) {
+    const auto of_sums = [&](auto& sums, std::uint32_t passes) {
+        if (has_totals(passes)) body(sums.total);
+        if (has_blocks(passes)) body(sums.block);
+    };
+    const auto passes_of = [&](std::size_t layer) { return film.parts_[film.layers_[layer].part].passes; };
+    for (std::size_t i = 0; i < film.layers_.size(); ++i) of_sums(film.sums_[i], passes_of(i));
+    for (std::size_t i = 0; i < film.layers_.size(); ++i) of_sums(film.layer_squares_[i], passes_of(i));
+    for (auto& part : film.parts_) {
+        of_sums(part.beauty_squares, part.passes);
+        for (std::size_t k = 0; k < part.halves.size(); ++k) {
+            if (is_open(part.passes, k)) body(part.halves[k].open);
+            if (is_closed(part.passes, k)) body(part.halves[k].squares);
+        }
+    }
 }
 
 std::vector<std::byte> Film::serialize() const {
@@ -81,28 +64,27 @@ std::vector<std::byte> Film::serialize() const {
     header.layers = std::uint32_t(layers_.size()), header.all_squares = all_squares_ ? 1 : 0;
     header.parts = std::uint32_t(parts_.size()), header.non_finite = non_finite_;
 
-    std::vector<std::uint32_t> passes;
-    for (const Part& part : parts_) passes.push_back(part.passes);
-    Writer writer(serialized_size(passes));
-    writer.write(&header, sizeof(header));
-    for (const Part& part : parts_) {
-        const PartHeader head{part.passes, part.work};
-        writer.write(&head, sizeof(head));
-    }
-    for_each_sums(*this, [&](const Sums& sums, std::size_t part) {
-        const std::size_t bytes = sums.total.size() * sizeof(double);
-        if (has_totals(passes[part])) writer.write(sums.total.data(), bytes);
-        if (has_blocks(passes[part])) writer.write(sums.block.data(), bytes);
+    std::vector<PartHeader> heads;
+    for (const Part& part : parts_) heads.push_back({part.passes, part.work});
+    const std::size_t head_bytes = heads.size() * sizeof(PartHeader);
+    std::vector<Packing> packings;
+    std::size_t size = sizeof(header) + head_bytes + sizeof(std::uint64_t);
+    for_each_array(*this, [&](const auto& numbers) {
+        packings.push_back(packing_of(std::span(numbers)));
+        size += packings.back().size;
     });
-    for (const Part& part : parts_)
-        for (std::size_t k = 0; k < part.halves.size(); ++k) {
-            if (is_open(part.passes, k)) writer.write(part.halves[k].open.data(), pixels() * sizeof(float));
-            if (is_closed(part.passes, k))
-                writer.write(part.halves[k].squares.data(), pixels() * sizeof(float));
-        }
-    const std::uint64_t sum = checksum(writer.written());
-    writer.write(&sum, sizeof(sum));
-    return writer.take();
+    std::vector<std::byte> bytes(size);
+    std::memcpy(bytes.data(), &header, sizeof(header));
+    std::memcpy(bytes.data() + sizeof(header), heads.data(), head_bytes);
+    std::byte* to = bytes.data() + sizeof(header) + head_bytes;
+    auto packing = packings.begin();
+    for_each_array(*this, [&](const auto& numbers) {
+        pack(std::span(numbers), *packing, to);
+        to += packing++->size;
+    });
+    const std::uint64_t sum = checksum(std::span(bytes).first(size - sizeof(sum)));
+    std::memcpy(to, &sum, sizeof(sum));
+    return bytes;
 }
 
 void Film::deserialize(std::span<const std::byte> bytes) {
@@ -121,44 +103,61 @@ void Film::deserialize(std::span<const std::byte> bytes) {
     if (header.layers != layers_.size() || (header.all_squares != 0) != all_squares_ ||
         header.parts != parts_.size())
         throw InputError("the film has other layers");
-    const std::size_t heads = parts_.size() * sizeof(PartHeader);
-    if (bytes.size() < sizeof(Header) + heads + sizeof(std::uint64_t))
-        throw InputError("the film is damaged: its length is wrong");
-    std::vector<PartHeader> part_headers(parts_.size());
-    std::memcpy(part_headers.data(), bytes.data() + sizeof(header), heads);
-    std::vector<std::uint32_t> passes;
-    for (const PartHeader& head : part_headers) passes.push_back(std::uint32_t(head.passes));
-    const std::size_t expected = serialized_size(passes);
-    if (bytes.size() != expected) throw InputError("the film is damaged: its length is wrong");
     std::uint64_t sum;
-    std::memcpy(&sum, bytes.data() + expected - sizeof(sum), sizeof(sum));
-    if (sum != checksum(bytes.first(expected - sizeof(sum))))
-        throw InputError("the film is damaged: its checksum is wrong");
+    const auto content = bytes.first(bytes.size() - sizeof(sum));
+    std::memcpy(&sum, bytes.data() + content.size(), sizeof(sum));
+    if (sum != checksum(content)) throw InputError("the film is damaged: its checksum is wrong");
 
-    const std::byte* from = bytes.data() + sizeof(header) + heads;
-    const auto read = [&from](std::vector<double>& values, bool present) {
-        const std::size_t size = present ? values.size() * sizeof(double) : 0;
-        if (size > 0) std::memcpy(values.data(), from, size);
-        if (!present) std::fill(values.begin(), values.end(), 0.0);
-        from += size;
-    };
-    for_each_sums(*this, [&](Sums& sums, std::size_t part) {
-        read(sums.total, has_totals(passes[part])), read(sums.block, has_blocks(passes[part]));
-    });
-    const auto read_floats = [&from](std::vector<float>& values) {
-        std::memcpy(values.data(), from, values.size() * sizeof(float));
-        from += values.size() * sizeof(float);
-    };
-    for (std::size_t i = 0; i < parts_.size(); ++i) {
-        Part& part = parts_[i];
-        part.passes = passes[i], part.work = part_headers[i].work;
-        part.halves.assign(std::size_t(std::bit_width(part.passes)), {});
-        for (std::size_t k = 0; k < part.halves.size(); ++k) {
-            part.halves[k] = {std::vector<float>(pixels()), std::vector<float>(pixels(), 0.0f)};
-            if (is_open(part.passes, k)) read_floats(part.halves[k].open);
-            if (is_closed(part.passes, k)) read_floats(part.halves[k].squares);
-        }
+    std::vector<PartHeader> heads(parts_.size());
+    const std::size_t head_bytes = heads.size() * sizeof(PartHeader);
+    if (content.size() < sizeof(header) + head_bytes)
+        throw InputError("the film is damaged: its length is wrong");
+    std::memcpy(heads.data(), content.data() + sizeof(header), head_bytes);
+
+    // Nothing is changed before it is known that all of it is there: but for passes and halves, which say
+    // what `all` is, and are exchanged again where it is not.
+    std::vector<std::pair<std::uint32_t, std::vector<Halves>>> states;
+    for (const PartHeader& head : heads) {
+        states.emplace_back(std::uint32_t(head.passes), 0);
+        for (std::size_t k = 0; k < std::size_t(std::bit_width(states.back().first)); ++k)
+            states.back().second.push_back(
+                {std::vector<float>(pixels()), std::vector<float>(pixels(), 0.0f)});
     }
+    const auto exchange_states = [&] {
+        for (std::size_t i = 0; i < parts_.size(); ++i)
+            std::swap(parts_[i].passes, states[i].first), std::swap(parts_[i].halves, states[i].second);
+    };
+    exchange_states();
+    std::vector<Packing> packings;
+    auto rest = content.subspan(sizeof(header) + head_bytes);
+    bool fits = true;
+    for_each_array(*this, [&](const auto& numbers) {
+        auto packing = fits ? read_packing(rest, numbers.size(), sizeof(numbers[0])) : std::nullopt;
+        fits = packing.has_value();
+        if (!fits) return;
+        rest = rest.subspan(packing->size);
+        packings.push_back(std::move(*packing));
+    });
+    if (!fits || !rest.empty()) {
+        exchange_states();
+        throw InputError("the film is damaged: its length is wrong");
+    }
+    const auto clear_absent = [&](Sums& sums, std::uint32_t passes) {
+        if (!has_totals(passes)) std::fill(sums.total.begin(), sums.total.end(), 0.0);
+        if (!has_blocks(passes)) std::fill(sums.block.begin(), sums.block.end(), 0.0);
+    };
+    for (std::size_t i = 0; i < layers_.size(); ++i) {
+        clear_absent(sums_[i], parts_[layers_[i].part].passes);
+        clear_absent(layer_squares_[i], parts_[layers_[i].part].passes);
+    }
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+        clear_absent(parts_[i].beauty_squares, parts_[i].passes), parts_[i].work = heads[i].work;
+    const std::byte* from = content.data() + sizeof(header) + head_bytes;
+    auto packing = packings.begin();
+    for_each_array(*this, [&](auto& numbers) {
+        unpack(from, *packing, std::span(numbers));
+        from += packing++->size;
+    });
     non_finite_ = header.non_finite;
     for (auto& replaced : replaced_means_) replaced.clear();
 }

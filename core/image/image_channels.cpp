@@ -1,4 +1,6 @@
 // A picture as named planes of floats.
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <stdexcept>
 
@@ -24,11 +26,12 @@ void ImageChannels::add(const std::string& name, std::vector<float> plane) {
 
 void ImageChannels::add_rgb(const std::string& layer, std::span<const Rgb> pixels) {
     const char* channel[3] = {"R", "G", "B"};
-    for (int c = 0; c < 3; ++c) {
-        std::vector<float> plane(pixels.size());
-        std::transform(pixels.begin(), pixels.end(), plane.begin(), [c](const Rgb& p) { return p[c]; });
-        add(channel_name(layer, channel[c]), std::move(plane));
-    }
+    std::vector<float> planes[3];
+    tbb::parallel_for(0, 3, [&](int c) {
+        planes[c].resize(pixels.size());
+        std::transform(pixels.begin(), pixels.end(), planes[c].begin(), [c](const Rgb& p) { return p[c]; });
+    });
+    for (int c = 0; c < 3; ++c) add(channel_name(layer, channel[c]), std::move(planes[c]));
 }
 
 const std::vector<float>* ImageChannels::find(const std::string& name) const {

@@ -76,7 +76,9 @@ class PassLoop {
         result_.statistics.seconds["render"] = state_.seconds;
         if (!result_.checkpoint_problem.empty())
             result_.statistics.warnings.push_back(result_.checkpoint_problem);
-        result_.statistics.values["noise"] = result_.film.noise();
+        const Film::GainAndNoise found = result_.film.gain_and_noise();
+        result_.statistics.values["noise"] = found.noise;
+        result_.statistics.values["varianceGain"] = found.gain;
     }
 
     const std::atomic<bool>& cancelled_flag() const {

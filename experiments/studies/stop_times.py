@@ -4,7 +4,8 @@
 Renders large pictures and sends SIGINT after a while: in the first pass of every integrator, while a large mesh is loaded
 and its tree is built, and while the picture is written. Prints one line each: seconds from the signal to the last
 line of the program's own work (`stop`) and to its end (`end`), which includes writing what there is. The difference is
-the disk's. Then the same for --time. Exit code 0: every `stop` is within two seconds (--quick: ten, for busy machines).
+the disk's. `cpu`: processor seconds of all threads between the signal and the end, which a busy machine leaves as
+they are. Then the same for --time. Exit code 0: every `stop` is within two seconds (--quick: ten, for busy machines).
 
     experiments/studies/stop_times.py [--quick] [--size N] [--bin FOLDER]
 """
@@ -65,6 +66,14 @@ def cases(size, quick):
     yield "many lights, path", "path", {}, many, "", "", wait
 
 
+def processor_seconds(process):
+    try:
+        fields = Path(f"/proc/{process.pid}/stat").read_text(encoding="ascii").rpartition(")")[2].split()
+    except OSError:
+        return 0.0
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
 def run(mote, folder, scene, integrator, settings, seconds, limit):
     command = [mote, "render", scene, "-o", folder / "o.exr", "--integrator", integrator, "-t", "2"]
     for key, value in settings.items():
@@ -83,14 +92,18 @@ def run(mote, folder, scene, integrator, settings, seconds, limit):
         start = time.monotonic()
         process.send_signal(signal.SIGINT)
     # The program writes its outputs as soon as its work has stopped: what lies before is `stop`.
-    written = None
+    written = used = before = None
     while process.poll() is None:
+        if before is None and time.monotonic() >= start:
+            before = processor_seconds(process)
+        used = processor_seconds(process) or used
         if written is None and any(f.name.endswith(".part") for f in folder.iterdir()):
             written = time.monotonic() - start
         time.sleep(0.01)
     end = time.monotonic() - start
     error = process.stderr.read().strip().splitlines()
-    return min(written or end, end), end, process.returncode, error[-1] if error else ""
+    cpu = max(0.0, (used or 0.0) - (before or 0.0))
+    return min(written or end, end), end, cpu, process.returncode, error[-1] if error else ""
 
 
 def main():
@@ -106,7 +119,7 @@ def main():
     size = arguments.size or (400 if arguments.quick else 3000)
     bound = 10.0 if arguments.quick else 2.0
     late = 0
-    print(f"{'stop':>6} {'end':>6} code  {size} x {size} pixels")
+    print(f"{'stop':>6} {'end':>6} {'cpu':>6} code  {size} x {size} pixels; load {os.getloadavg()[0]:.1f}")
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         write_mesh(folder / "mesh.obj", 100 if arguments.quick else 1500)
@@ -115,9 +128,9 @@ def main():
             shape = '<shape type="obj"><string name="filename" value="mesh.obj"/></shape>' if mesh else ""
             scene.write_text(SCENE.format(size=size, lights=point_lights(lights), medium=medium, mesh=shape), encoding="utf-8")
             for limit in (None, 1.0 if arguments.quick else 3.0):
-                stop, end, code, line = run(mote, folder, scene, integrator, settings, wait, limit)
+                stop, end, cpu, code, line = run(mote, folder, scene, integrator, settings, wait, limit)
                 late += stop > bound
-                print(f"{stop:6.2f} {end:6.2f} {code:4}  {title}{', --time' if limit else ''}{'  LATE' if stop > bound else ''}"
+                print(f"{stop:6.2f} {end:6.2f} {cpu:6.2f} {code:4}  {title}{', --time' if limit else ''}{'  LATE' if stop > bound else ''}"
                       f"  [{line[:70]}]", flush=True)
     return 1 if late else 0
 
