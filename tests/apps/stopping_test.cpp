@@ -157,6 +157,21 @@ TEST_CASE("Where the system grants few threads, those do the work", "[command][s
     WARN("no limit leaves two threads here, or nobody may not run the program: not tested");
 }
 
+TEST_CASE("Where the system grants no threads, one line says so", "[command][stopping]") {
+    const Folder folder;
+    fs::permissions(folder.path(), fs::perms::all);
+    const RunResult r = run_mote(folder, {"formats"}, [] {
+        limited(RLIMIT_NPROC, 1)();
+        if (::getuid() == 0 && (::setgid(65534) != 0 || ::setuid(65534) != 0)) ::_exit(126);
+    });
+    if (r.exit_code == 126 || r.exit_code == 127 || r.exit_code == 0) {
+        WARN("nobody may not run the program, or limits do not hold here: not tested");
+        return;
+    }
+    CHECK(r.exit_code == 3);
+    CHECK(r.err.find("mote: the system grants too few threads") == 0);
+}
+
 TEST_CASE("Too little memory names what it was for", "[command][stopping]") {
     const Folder folder;
     const RunResult r =
