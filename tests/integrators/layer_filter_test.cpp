@@ -1,0 +1,150 @@
+// Layers of a film filtered in image space: features of a scene against closed forms, and a render with and
+// without.
+#include "integrators/layer_filter/layer_filter.h"
+
+#include <tbb/global_control.h>
+
+#include "core/render/pass_runner.h"
+#include "core/render/render_driver.h"
+#include "integrators/layer_filter/eye_march.h"
+#include "tests/integrators/test_scenes.h"
+#include "tests/support/catch.h"
+#include "tests/support/render_statistics.h"
+
+using namespace mote;
+using namespace mote::core;
+using namespace mote::integrators;
+using namespace mote::screenspace;
+using namespace mote::tests;
+
+namespace {
+
+const std::string coloured_fog =
+    R"(<medium type="homogeneous" name="interior"><rgb name="sigma_t" value="0.7, 0.5, 0.3"/>
+    <rgb name="albedo" value="0.8, 0.6, 0.4"/></medium>)";
+
+RenderOptions options_of(const Scene& scene) {
+    RenderOptions options;
+    options.seed = 3, options.width = scene.film().width, options.height = scene.film().height;
+    return options;
+}
+
+FilterFeatures features_of(const Scene& scene, int samples = 8) {
+    return find_filter_features(scene, options_of(scene), {samples, 1.0f});
+}
+
+/// The film of volpath after some passes.
+Film rendered(const Scene& scene, std::uint32_t passes, std::uint64_t seed) {
+    const auto integrator = integrator_from(R"(<integrator type="volpath"/>)");
+    Film film(scene.film().width, scene.film().height, film_layers(scene, *integrator, {}), true);
+    PassRunner runner(scene, *integrator, seed, film);
+    const std::atomic<bool> never{false};
+    while (film.pass_count() < passes) runner.run_pass(never);
+    return film;
+}
+
+std::size_t layer_called(const Film& film, const std::string& name) {
+    for (std::size_t i = 0; i < film.layers().size(); ++i)
+        if (film.layers()[i].name == name) return i;
+    throw std::out_of_range(name);
+}
+
+double squared_error(const std::vector<Rgb>& a, const std::vector<Rgb>& b) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i) sum += double(average((a[i] - b[i]) * (a[i] - b[i])));
+    return sum / double(a.size());
+}
+
+}  // namespace
+
+TEST_CASE("Transmittance and scattering along eye rays are their closed forms", "[layer_filter]") {
+    const auto scene = scene_from(box(grey, coloured_fog), 16);
+    WalkContext walk;
+    EyeMarch march;
+    const Ray ray{{0, 0, 3.6f}, {0, 0, -1}};  // the fog from 0.9 to -0.9, that is from 2.7 to 4.5
+    march.march(*scene, ray, 4.6f, 1.0f, walk);
+    const Vec3d sigma(0.7, 0.5, 0.3), albedo(0.8, 0.6, 0.4);
+    for (const float t : {1.0f, 3.0f, 4.0f, 4.6f, infinity}) {
+        CAPTURE(t);
+        const EyeMarch::Value value = march.at(t);
+        const double length = std::clamp(double(t) - 2.7, 0.0, 1.8);
+        for (int c = 0; c < 3; ++c) {
+            // Linear between 32 steps: off by (sigma step)^2 / 8 at most.
+            const double passes = std::exp(-sigma[c] * length), step = sigma[c] * 1.8 / 32.0;
+            CHECK(std::abs(double(value.transmittance[c]) - passes) < step * step / 8.0 + 1e-6);
+            CHECK(std::abs(double(value.scattering[c]) - albedo[c] * (1.0 - passes)) <
+                  step * step / 8.0 + 1e-6);
+        }
+    }
+}
+
+TEST_CASE("Rays that never end see all that an endless medium scatters", "[layer_filter]") {
+    const std::string around =
+        R"(<medium type="homogeneous" id="fog"><float name="sigma_t" value="0.5"/><float name="albedo" value="0.9"/></medium>)";
+    const auto scene = scene_from(
+        "<scene version=\"3.0.0\">" + around +
+            R"(<shape type="sphere"><float name="radius" value="0.5"/><ref id="fog" name="exterior"/></shape>
+            <emitter type="point"><point name="position" x="0" y="3" z="3"/></emitter>
+            <sensor type="perspective"><transform name="to_world"><lookat origin="0, 0, 4" target="0, 0, 0" up="0, 1, 0"/>
+            </transform><ref id="fog"/></sensor></scene>)",
+        16);
+    const FilterFeatures f = features_of(*scene);
+    CHECK(f.kind[0] == PixelKind::none);
+    CHECK(f.scattering[0].x == Approx(0.9f).epsilon(1e-5));
+    const std::size_t middle = 8 * 16 + 8;
+    CHECK(f.kind[middle] != PixelKind::none);
+    const float to_ball = std::exp(-0.5f * (f.distance[middle] - 0.01f));  // from near_clip on
+    // Linear between 32 steps, and eight rays' distances for one: both of second order in 0.5 * 3.6 / 32.
+    CHECK(f.transmittance[middle] == Approx(to_ball).epsilon(2e-3));
+    CHECK(f.scattering[middle].x == Approx(0.9f * (1.0f - to_ball)).epsilon(2e-3));
+}
+
+TEST_CASE("Features do not depend on threads, and pixels at edges keep their samples", "[layer_filter]") {
+    const auto scene = scene_from(box(grey, coloured_fog), 24);
+    const auto with = [&](std::size_t threads) {
+        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+        return features_of(*scene);
+    };
+    const FilterFeatures one = with(1), many = with(4);
+    CHECK(one.kind == many.kind);
+    CHECK(one.position == many.position);
+    CHECK(one.scattering == many.scattering);
+    CHECK(one.mixed == many.mixed);
+    CHECK(!one.mixed.empty());
+    CHECK(one.mixed.size() < one.pixels() / 2);
+    CHECK(one.samples.size() == one.mixed.size() * 8);
+}
+
+TEST_CASE("A filtered render has less noise, and filtering it again changes nothing", "[layer_filter]") {
+    const auto scene = scene_from(box(grey, coloured_fog), 32);
+    const Film reference = rendered(*scene, 512, 9);
+    Film film = rendered(*scene, 8, 1);
+    const std::vector<LayerFilter::Choice> choices = {
+        {layer_called(film, "indirect"), LayerKind::surface},
+        {layer_called(film, "multiple_scattering"), LayerKind::volume}};
+    std::vector<std::vector<Rgb>> before, once;
+    for (const auto& c : choices) before.push_back(film.mean(c.layer));
+    LayerFilter filter(*scene, options_of(*scene), {});
+    filter.apply(film, choices);
+    for (std::size_t k = 0; k < choices.size(); ++k) {
+        once.push_back(film.mean(choices[k].layer));
+        const std::vector<Rgb> truth = reference.mean(choices[k].layer);
+        CAPTURE(film.layers()[choices[k].layer].name);
+        CHECK(squared_error(once[k], truth) < squared_error(before[k], truth) / 4.0);
+    }
+    filter.apply(film, choices);
+    for (std::size_t k = 0; k < choices.size(); ++k) CHECK(film.mean(choices[k].layer) == once[k]);
+    CHECK(filter.variances().size() == choices.size());
+}
+
+TEST_CASE("What cannot be filtered is said", "[layer_filter]") {
+    const auto scene = scene_from(box(grey, ""), 8);
+    Film film(8, 8, {{"indirect", ""}});
+    LayerFilter filter(*scene, options_of(*scene), {});
+    const LayerFilter::Choice choice{0, LayerKind::surface};
+    CHECK_THROWS_AS(filter.apply(film, {&choice, 1}), std::invalid_argument);
+    const std::atomic<bool> stop{true};
+    RenderOptions options = options_of(*scene);
+    options.cancelled = stop;
+    CHECK_THROWS_AS(find_filter_features(*scene, options, {}), Cancelled);
+}
