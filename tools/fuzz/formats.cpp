@@ -9,6 +9,7 @@
 #include "apps/trade/methods_file.h"
 #include "apps/trade/record.h"
 #include "apps/trade/reference.h"
+#include "core/assets/mesh_file.h"
 #include "core/geometry/triangle_mesh.h"
 #include "core/image/image_file.h"
 #include "core/image/whole_file.h"
@@ -73,10 +74,30 @@ std::string text_of(const std::string& path) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
+void use_mesh(core::MeshData data) {
+    const core::TriangleMesh mesh(std::move(data));
+    if (std::isnan(mesh.area())) throw std::logic_error("the area of a mesh is NaN");
+}
+
 void read_mesh(const std::string& path) {
     std::vector<std::string> notes;
-    const core::TriangleMesh mesh(core::load_mesh(path, false, path.ends_with(".obj"), notes));
-    if (std::isnan(mesh.area())) throw std::logic_error("the area of a mesh is NaN");
+    use_mesh(core::load_mesh(path, false, path.ends_with(".obj"), notes));
+}
+
+// The second mesh is found by the table at the end of the file.
+void read_serialized(const std::string& path) {
+    std::vector<std::string> notes;
+    for (const int index : {0, 1})
+        use_mesh(core::load_mesh_as("serialized", path, false, false, notes, index));
+}
+
+// With a scene around them, for Embree is to build what was read.
+void read_curves(const std::string& type, const std::string& path, const core::Registry& registry) {
+    core::load_scene_from_string("<scene version=\"3.0.0\"><shape type=\"" + type +
+                                     "\"><string name=\"filename\" value=\"" + path +
+                                     "\"/></shape><emitter type=\"constant\"/><sensor "
+                                     "type=\"perspective\"/></scene>",
+                                 ".", registry);
 }
 
 void read_picture(const std::string& path) {
@@ -134,6 +155,15 @@ std::vector<Format> formats() {
     all.push_back({"GLB scene", ".glb", "mote", read_scene, glb_scene_seeds, {}});
     all.push_back(textual({"obj", ".obj", "mote", read_mesh, obj_seeds, {}}));
     all.push_back(textual({"ply", ".ply", "mote", read_mesh, ply_seeds, {}}));
+    all.push_back({"serialized", ".serialized", "mote", read_serialized, serialized_seeds, {}});
+    for (const std::string type : {"bsplinecurve", "linearcurve"})
+        all.push_back(
+            textual({type,
+                     ".txt",
+                     "mote",
+                     [registry, type](const std::string& path) { read_curves(type, path, *registry); },
+                     curve_seeds,
+                     {}}));
     all.push_back({"vol",
                    ".vol",
                    "mote",

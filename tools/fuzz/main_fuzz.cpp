@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 using namespace mote::fuzz;
 
 struct Arguments {
-    std::string format, corpus, folder = ".", write, seeds_to;
+    std::string format, corpus, folder = ".", write, read, seeds_to;
     std::uint64_t first = 0, count = 100, seed = 14, memory_megabytes = 4096;
     bool list = false;
 };
@@ -46,20 +46,32 @@ void write_file(const std::string& path, const Bytes& bytes) {
         .write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
 }
 
+// A file that asks for more memory than its reader may have is refused, with sanitizers and without.
+bool is_of_a_memory_limit(const fs::path& report) {
+    const Bytes bytes = bytes_of_file(report.string());
+    const std::string text(bytes.begin(), bytes.end());
+    const char* const limits[] = {"exceeds maximum supported size", "rss limit exhausted", "out of memory",
+                                  "failed to allocate"};
+    return std::any_of(std::begin(limits), std::end(limits),
+                       [&](const char* words) { return text.find(words) != std::string::npos; });
+}
+
 // Reports of sanitizers on processes of their own, which readers started: put aside under the number of the
 // case.
 bool put_reports_aside(const std::string& folder, const std::string& path, std::uint64_t index) {
+    std::vector<fs::path> reports;
+    for (const auto& entry : fs::directory_iterator(folder))
+        if (entry.path().filename().string().starts_with("report")) reports.push_back(entry.path());
+    const fs::path stem = fs::path(folder) / ("contained_" + std::to_string(index));
     bool any = false;
-    const fs::path root(folder);
-    const std::string stem = "contained_" + std::to_string(index);
-    for (const auto& entry : fs::directory_iterator(root)) {
-        if (!entry.path().filename().string().starts_with("report")) continue;
-        fs::rename(entry.path(), root / (stem + ".txt"));
-        any = true;
-    }
     std::error_code ignored;
+    for (const fs::path& report : reports)
+        if (is_of_a_memory_limit(report))
+            fs::remove(report, ignored);
+        else
+            fs::rename(report, stem.string() + ".txt", ignored), any = true;
     if (any)
-        fs::copy_file(path, root / (stem + fs::path(path).extension().string()),
+        fs::copy_file(path, stem.string() + fs::path(path).extension().string(),
                       fs::copy_options::overwrite_existing, ignored);
     return any;
 }
@@ -90,6 +102,15 @@ std::uint64_t key_of(const std::string& format, std::uint64_t seed, std::uint64_
     return h;
 }
 
+constexpr const char* names[] = {"read", "refused", "defect"};
+
+int read_one(const Format& format, const std::string& path) {
+    std::string message;
+    const Outcome outcome = try_file(format, path, message);
+    std::printf("%s %s\n", names[int(outcome)], message.c_str());
+    return outcome == Outcome::defect ? 1 : 0;
+}
+
 int run(const Arguments& a) {
     const std::vector<Format> all = formats();
     if (a.list) {
@@ -98,6 +119,7 @@ int run(const Arguments& a) {
         return 0;
     }
     const Format& format = find_format(all, a.format);
+    if (!a.read.empty()) return read_one(format, a.read);
     fs::create_directories(a.folder);
     write_neighbours(a.folder);
     const std::vector<Bytes> files = originals(format, a.corpus);
@@ -124,7 +146,6 @@ int run(const Arguments& a) {
         std::string message;
         const Outcome outcome = try_file(format, path, message);
         const double seconds = processor_seconds() - start;
-        const char* const names[] = {"read", "refused", "defect"};
         std::replace(message.begin(), message.end(), '\n', ' ');
         std::printf("end %llu %s %.6f %s\n", static_cast<unsigned long long>(i), names[int(outcome)], seconds,
                     outcome == Outcome::defect             ? message.c_str()
@@ -149,6 +170,7 @@ int main(int argc, char** argv) {
     app.add_option("--seed", a.seed, "Other cases (default: 14)");
     app.add_option("--memory", a.memory_megabytes, "Limit in megabytes (default: 4096)");
     app.add_option("--write", a.write, "Only write the first case to this file");
+    app.add_option("--read", a.read, "Only read this file, and say what came of it");
     app.add_option("--seeds", a.seeds_to, "Only write the originals to this folder");
     CLI11_PARSE(app, argc, argv);
     try {

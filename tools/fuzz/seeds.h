@@ -30,6 +30,10 @@ std::vector<Bytes> gltf_seeds();
 std::vector<Bytes> gltf_scene_seeds();
 std::vector<Bytes> glb_scene_seeds();
 std::vector<Bytes> pfm_seeds();
+/// Two meshes a file.
+std::vector<Bytes> serialized_seeds();
+/// Control points, as `bsplinecurve` and `linearcurve` read them.
+std::vector<Bytes> curve_seeds();
 
 /// What the checkpoints among the seeds belong to.
 core::Film small_film();
