@@ -109,7 +109,7 @@ struct JudgedFolder : TradeFolder {
         image.add_rgb("", pixels);
         if (std::find(without.begin(), without.end(), "Variance") == without.end())
             image.add_rgb("Variance", source.rgb("Variance"));
-        for (const char* key : {"worldToCamera", "sceneContent", "seed", "integrator"})
+        for (const char* key : {"worldToCamera", "sceneContent", "seed", "integrator", "varianceGain"})
             if (std::find(without.begin(), without.end(), key) == without.end())
                 image.metadata[key] = source.metadata.at(key);
         mote::core::write_exr(file(name), image);
@@ -166,7 +166,7 @@ TEST_CASE("A reference says how exact it is, and is not made twice", "[trade][co
     // What it can judge follows from the variance in the file.
     const auto smallest = [&] {
         const auto image = mote::core::read_exr(folder.file("ref.exr"));
-        const auto variance = image.rgb("Variance");
+        const auto variance = mote::apps::variance_of_beauty(image);
         return mote::apps::trade::smallest_error(
             variance, mote::core::relative_weights(image.rgb(""), variance, image.width, image.height));
     };
