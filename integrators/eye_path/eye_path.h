@@ -27,9 +27,14 @@ template <bool Media>
 class EyePath {
   public:
     /// `context` holds the path's generator: the channel that drives distances is drawn from it.
+    /// `lights`: those that are drawn, where it is not all of them.
     EyePath(const core::Scene& scene, const EyePathLimits& limits, const EyeRay& eye,
-            core::WalkContext& context)
-        : scene_(scene), limits_(limits), sampler_(eye.sampler), ray_(eye.ray) {
+            core::WalkContext& context, const core::LitScene* lights = nullptr)
+        : scene_(scene),
+          lights_(lights ? *lights : scene),
+          limits_(limits),
+          sampler_(eye.sampler),
+          ray_(eye.ray) {
         if constexpr (Media) {
             weights_.hero = core::draw_hero(context.rng);
             state_ = scene.eye_medium_state(eye.ray);
@@ -58,7 +63,7 @@ class EyePath {
     const core::ScatteringVertex& vertex() const { return vertex_; }
     /// Next-event estimation: the light of one light drawn for the vertex (lights/emitters/direct_light.h).
     core::Rgb sample_light(core::WalkContext& context, const lights::LightSampling& how = {}) {
-        return lights::sample_light<Media>(scene_, vertex_, weights_, state_, choices_.x, sampler_.next_2d(),
+        return lights::sample_light<Media>(lights_, vertex_, weights_, state_, choices_.x, sampler_.next_2d(),
                                            context, how);
     }
     /// Whether a path that would leave the vertex by a mirror or through glass ends.
@@ -98,6 +103,7 @@ class EyePath {
     void pass_light(const core::WalkEvent& event);
 
     const core::Scene& scene_;
+    const core::LitScene& lights_;
     EyePathLimits limits_;
     core::Sampler sampler_;
     core::Ray ray_;
@@ -133,7 +139,8 @@ bool EyePath<Media>::advance_by(Walker&& walker, core::WalkContext& context, Tra
         pass_light(event), go();
     const bool hidden = hides_lights() && event.kind == core::WalkEvent::Kind::escaped;
     if (limits_.wanted[layer_of_emission()] && !hidden)
-        found += lights::found_light<Media>(scene_, event, ray_, weights_, connected_ ? &previous_ : nullptr);
+        found +=
+            lights::found_light<Media>(lights_, event, ray_, weights_, connected_ ? &previous_ : nullptr);
     if (event.kind == core::WalkEvent::Kind::escaped || depth_ == limits_.max_depth ||
         scatterings_ == limits_.max_scatterings || core::is_black(weights_.throughput))
         return false;

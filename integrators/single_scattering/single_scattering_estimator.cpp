@@ -10,19 +10,25 @@ using namespace screenspace;
 namespace {
 
 constexpr int tile_size = 16;
+/// With more lights than this one of all is drawn: connecting to each would take longer than it saves.
+constexpr std::size_t most_connected_lights = 16;
 
 template <bool Media>
 class SingleScatteringEstimator final : public Estimator {
   public:
     SingleScatteringEstimator(const Scene& scene, const RenderOptions& options,
                               const ScatteringSettings& settings)
-        : scene_(scene), options_(options), settings_(settings) {
+        : scene_(scene), options_(options), settings_(settings), positional_(positional_lights(scene)) {
         settings_.eye.limits.wanted = wanted_transport(options);
         for (const auto& [lights, cell] : {std::pair(ScatteringLights::positional, positional_scattering),
                                            std::pair(ScatteringLights::other, other_scattering)})
             if (settings_.lights == lights)
                 settings_.eye.limits.wanted.of[std::size_t(Transport::single_scattering)] =
                     options.wants(cell);
+        if (positional_.size() <= most_connected_lights) {
+            others_.emplace(scene, positional_);
+            settings_.eye.connected = positional_, settings_.eye.others = &*others_;
+        }
         if (!Media) return;
         accelerations_.emplace(scene, settings.accelerations);
         settings_.eye.maps = accelerations_->maps();
@@ -45,6 +51,8 @@ class SingleScatteringEstimator final : public Estimator {
     const Scene& scene_;
     RenderOptions options_;
     ScatteringSettings settings_;
+    std::vector<const Emitter*> positional_;
+    std::optional<lights::OtherLights> others_;  ///< where every vertex is connected to the positional ones
     std::optional<ScatteringAccelerations> accelerations_;  ///< nothing without media
     SharedCounters counters_;
     InterpolatedScattering interpolated_{scene_, options_, settings_, counters_};
@@ -92,7 +100,7 @@ bool SingleScatteringEstimator<Media>::pass(const PassContext& context, PassImag
     std::vector<InScattering> lights;
     if (Media && settings_.eye.limits.wanted[Transport::single_scattering] &&
         settings_.lights != ScatteringLights::other)
-        for (const Emitter* light : positional_lights(scene_))
+        for (const Emitter* light : positional_)
             lights.emplace_back(scene_, *light, march, accelerations_->of(*light));
     const bool full = settings_.sampling == ScatteringSampling::full;
     if (!full && !lights.empty()) interpolated_.make_room();

@@ -12,16 +12,17 @@ namespace {
 /// Lights without a position, scattered once along the ray, and emission of media: by one sampled distance.
 void add_other_lights(const Scene& scene, const EyeSettings& settings, const Ray& ray, MediumState state,
                       PathWeights weights, Sampler& sampler, WalkContext& context, TransportSum& sum) {
+    const LitScene& others = settings.others ? static_cast<const LitScene&>(*settings.others) : scene;
     weights.hero = draw_hero(context.rng);
     const WalkEvent event = walk<true>(scene, ray, state, weights, sum[Transport::emission], context);
     const Vec2 choices = sampler.next_2d(), u_light = sampler.next_2d(), u = sampler.next_2d();
     if (event.kind != WalkEvent::Kind::collision) return;
     const ScatteringVertex vertex = make_vertex(event, ray);
     Rgb& scattered = sum[Transport::single_scattering];
-    scattered += lights::sample_light<true>(scene, vertex, weights, state, choices.x, u_light, context,
+    scattered += lights::sample_light<true>(others, vertex, weights, state, choices.x, u_light, context,
                                             {true, settings.maps});
     if (const auto s = vertex.sample(choices.y, u, TransportMode::radiance))
-        scattered += lights::light_towards<true>(scene, vertex, *s, weights, state, context);
+        scattered += lights::light_towards<true>(others, vertex, *s, weights, state, context);
 }
 
 /// The legs of an eye path that goes from surface to surface: media in between are marched, not sampled.
@@ -88,19 +89,29 @@ class MarchedLegs {
     EyeLight& found_;
 };
 
+/// Direct light at a vertex: of every light that it is connected to, and of one that is drawn.
+template <bool Media>
+Rgb direct_light(const Scene& scene, const EyeSettings& settings, EyePath<Media>& path, WalkContext& walk) {
+    const lights::LightSampling how{.marched_voxels = settings.voxels};
+    Rgb sum(0.0f);
+    for (const Emitter* light : settings.connected)
+        sum += lights::connect_light<Media>(scene, path.vertex(), path.weights(), path.state(), {light, 1.0f},
+                                            Vec2(0.5f), walk, how);
+    return sum + path.sample_light(walk, how);
+}
+
 }  // namespace
 
 template <bool Media>
 EyeLight trace_eye(const Scene& scene, const EyeSettings& settings, std::span<const InScattering> positional,
                    const EyeRay& eye, MarchScratch& scratch) {
     EyeLight found;
-    EyePath<Media> path(scene, settings.limits, eye, scratch.walk);
+    EyePath<Media> path(scene, settings.limits, eye, scratch.walk, settings.others);
     MarchedLegs<Media> legs(scene, settings, positional, path, scratch, found);
     const auto nothing = [](const EyeLeg&) {};
     while (path.advance_by(legs, scratch.walk, found.sum, nothing))
         if (path.vertex().connectable() && path.wants_connection())
-            found.sum[Transport::direct] +=
-                path.sample_light(scratch.walk, {.marched_voxels = settings.voxels});
+            found.sum[Transport::direct] += direct_light(scene, settings, path, scratch.walk);
     return found;
 }
 

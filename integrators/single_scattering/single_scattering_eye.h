@@ -11,6 +11,7 @@
 #include "integrators/eye_path/eye_path_limits.h"
 #include "integrators/eye_path/eye_ray.h"
 #include "integrators/eye_path/transport_layers.h"
+#include "lights/emitters/other_lights.h"
 #include "lights/shadow_maps/light_shadow_maps.h"
 #include "screenspace/in_scattering/in_scattering.h"
 
@@ -21,6 +22,10 @@ struct EyeSettings {
     EyePathLimits limits{.max_depth = 33, .rr_depth = 1 << 30, .max_scatterings = 1};
     float voxels = 1.0f;
     const lights::LightShadowMaps* maps = nullptr;  ///< of lights without a position; null: traced
+    /// Lights with a position that every vertex is connected to, and all others, one of which is drawn; where
+    /// these are null, one of all is drawn.
+    std::span<const core::Emitter* const> connected = {};
+    const lights::OtherLights* others = nullptr;
     bool other_lights =
         true;  ///< some light has no position, or a medium emits: distances are sampled for them
 };

@@ -92,7 +92,10 @@ bool has_other_lights(const Scene& scene) {
 
 void plan_single_scattering(Plan& plan, const Scene& scene, const Requirements& r,
                             const ScatteringSettings& s) {
-    plan.run("surfaces", "one eye path per pixel and pass", "direct light at full rate, by two techniques");
+    plan.run(
+        "surfaces", "one eye path per pixel and pass",
+        "direct light at full rate: of each light with a position where they are few, and of one that is "
+        "drawn, by two techniques");
     if (r.wants("indirect") || r.wants("multiple_scattering"))
         plan.miss("light scattered more than once", "indirect light and multiple scattering",
                   "this integrator stops after one scattering; volpath renders the rest");

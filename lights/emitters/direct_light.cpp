@@ -57,7 +57,14 @@ template <bool Media>
 Rgb sample_light(const LitScene& scene, const ScatteringVertex& vertex, const PathWeights& weights,
                  const MediumState& state, float u_light, const Vec2& u, WalkContext& context,
                  const LightSampling& how) {
-    const LightChoice choice = scene.choose_light(vertex.light_receiver(), u_light);
+    return connect_light<Media>(scene, vertex, weights, state,
+                                scene.choose_light(vertex.light_receiver(), u_light), u, context, how);
+}
+
+template <bool Media>
+Rgb connect_light(const LitScene& scene, const ScatteringVertex& vertex, const PathWeights& weights,
+                  const MediumState& state, const LightChoice& choice, const Vec2& u, WalkContext& context,
+                  const LightSampling& how) {
     if (!choice.emitter) return Rgb(0.0f);
     if (how.lit_along && !vertex.on_surface() && choice.emitter->traits().delta_position) return Rgb(0.0f);
     const auto light = choice.emitter->sample_direct(vertex.position, u);
@@ -112,6 +119,12 @@ template Rgb sample_light<true>(const LitScene&, const ScatteringVertex&, const 
                                 const MediumState&, float, const Vec2&, WalkContext&, const LightSampling&);
 template Rgb sample_light<false>(const LitScene&, const ScatteringVertex&, const PathWeights&,
                                  const MediumState&, float, const Vec2&, WalkContext&, const LightSampling&);
+template Rgb connect_light<true>(const LitScene&, const ScatteringVertex&, const PathWeights&,
+                                 const MediumState&, const LightChoice&, const Vec2&, WalkContext&,
+                                 const LightSampling&);
+template Rgb connect_light<false>(const LitScene&, const ScatteringVertex&, const PathWeights&,
+                                  const MediumState&, const LightChoice&, const Vec2&, WalkContext&,
+                                  const LightSampling&);
 template Rgb found_light<true>(const LitScene&, const WalkEvent&, const Ray&, const PathWeights&,
                                const LightReceiver*);
 template Rgb found_light<false>(const LitScene&, const WalkEvent&, const Ray&, const PathWeights&,

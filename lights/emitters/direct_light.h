@@ -44,6 +44,13 @@ core::Rgb sample_light(const core::LitScene& scene, const core::ScatteringVertex
                        const core::PathWeights& weights, const core::MediumState& state, float u_light,
                        const core::Vec2& u, core::WalkContext& context, const LightSampling& how = {});
 
+/// The same for a light that was chosen already, divided by its probability.
+template <bool Media>
+core::Rgb connect_light(const core::LitScene& scene, const core::ScatteringVertex& vertex,
+                        const core::PathWeights& weights, const core::MediumState& state,
+                        const core::LightChoice& choice, const core::Vec2& u, core::WalkContext& context,
+                        const LightSampling& how = {});
+
 /// Light emitted at the end of a walk: an area light at the surface, or the environment outside. `previous`
 /// is the vertex whose sampled direction led here, null where next-event estimation could not have found this
 /// light (the eye itself, or a delta scattering): then the full contribution counts.

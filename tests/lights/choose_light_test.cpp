@@ -5,6 +5,7 @@
 #include "core/math/warp.h"
 #include "core/scene/light_tree.h"
 #include "core/scene/scene.h"
+#include "lights/emitters/other_lights.h"
 #include "tests/support/catch.h"
 #include "tests/support/pearson.h"
 #include "tests/support/render_statistics.h"
@@ -65,8 +66,8 @@ std::vector<LightReceiver> receivers(int count) {
 
 /// Draws for one receiver against the probabilities stated for another; they are the same but where an error
 /// is planted.
-Chi2Result chi2_of_choice(const Scene& scene, const LightReceiver& drawn_for, const LightReceiver& stated_for,
-                          std::size_t& impossible) {
+Chi2Result chi2_of_choice(const LitScene& scene, const LightReceiver& drawn_for,
+                          const LightReceiver& stated_for, std::size_t& impossible) {
     constexpr int samples = 50000;
     std::map<const Emitter*, double> counts;
     Rng rng(23);
@@ -142,4 +143,33 @@ TEST_CASE("no light that shines on a receiver is left out", "[lights][light_tree
             if (in_tree.contains(light.get())) CHECK(tree.probability(receiver, in_tree[light.get()]) > 0.0);
         }
     CHECK(shone.size() == scene->emitters().size());  // each did, somewhere
+}
+
+TEST_CASE("without some of its lights a scene draws the others alone, with the chance that is stated",
+          "[lights][light_tree][chi2]") {
+    const auto scene = all_lights();
+    std::vector<const Emitter*> left_out;
+    for (const auto& light : scene->emitters())
+        if (light->traits().delta_position) left_out.push_back(light.get());
+    REQUIRE(left_out.size() == 30);
+    const mote::lights::OtherLights others(*scene, left_out);
+    REQUIRE(others.any());
+    constexpr std::size_t tests = 4;
+    for (const LightReceiver& receiver : receivers(tests)) {
+        double sum = 0.0;
+        for (const auto& light : scene->emitters())
+            sum += double(others.light_probability(receiver, light.get()));
+        CHECK(sum == Approx(1.0).epsilon(1e-4));
+        for (const Emitter* light : left_out) CHECK(others.light_probability(receiver, light) == 0.0f);
+        std::size_t impossible = 0;
+        const Chi2Result result = chi2_of_choice(others, receiver, receiver, impossible);
+        INFO("chi2 " << result.statistic << ", p " << result.p_value);
+        CHECK(impossible == 0);
+        CHECK(result.p_value >= sidak_level(0.01, tests));
+    }
+    std::vector<const Emitter*> all;
+    for (const auto& light : scene->emitters()) all.push_back(light.get());
+    const mote::lights::OtherLights none(*scene, all);
+    CHECK_FALSE(none.any());
+    CHECK(none.choose_light(receivers(1)[0], 0.3f).emitter == nullptr);
 }
