@@ -67,31 +67,26 @@ std::vector<LayerMethod> choose_layer_methods(const Scene& scene, const Requirem
                 {make_path(limits),
                  {"indirect"},
                  "paths of pixels err independently of each other, which the filter takes"}};
-    std::vector<LayerMethod> methods;
     const std::size_t lights = positional_lights(scene).size();
     const bool marched = r.media_scattering && lights > 0 && lights <= most_marched_lights &&
                          (limits.max_depth < 0 || limits.max_depth > 1);
-    if (marched) {
-        methods.push_back(
-            {make_single_scattering(limits),
+    const std::string surfaces = "surfaces behind media whose transmittance is marched",
+                      far = "paths of pixels err independently of each other, which the filter takes";
+    if (!marched)
+        return {{make_single_scattering(limits), {"emission", "direct"}, surfaces},
+                {make_volpath(limits),
+                 {"indirect", "single_scattering", "multiple_scattering"},
+                 far + (lights > 0 ? "; too many lights to march each of them"
+                                   : "; no light has a position to march to")}};
+    // Lines end at the border of the picture: as many as there are pixels along half of it.
+    const int lines = std::clamp(scene.film().width + scene.film().height, 16, 1024);
+    return {{make_single_scattering(limits),
              {"emission", "direct", other_scattering},
-             "surfaces behind media whose transmittance is marched; one distance a ray for lights "
-             "without a position"});
-        // Lines end at the border of the picture: as many as there are pixels along half of it.
-        const int lines = std::clamp(scene.film().width + scene.film().height, 16, 1024);
-        methods.push_back(
+             surfaces + "; one distance a ray for lights without a position"},
             {make_epipolar(limits, lines),
              {positional_scattering},
-             "lights with a position, marched along epipolar lines: nothing is left to chance"});
-    } else
-        methods.push_back({make_volpath(limits),
-                           {"emission", "direct", "single_scattering"},
-                           lights > most_marched_lights ? "too many lights to march each of them"
-                                                        : "no light has a position to march to"});
-    methods.push_back({make_volpath(limits),
-                       {"indirect", "multiple_scattering"},
-                       "paths of pixels err independently of each other, which the filter takes"});
-    return methods;
+             "lights with a position, marched along epipolar lines: nothing is left to chance"},
+            {make_volpath(limits), {"indirect", "multiple_scattering"}, far}};
 }
 
 std::vector<LayerMethod> with_cells(const Scene& scene, std::vector<LayerMethod> methods) {

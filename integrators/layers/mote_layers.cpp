@@ -35,12 +35,14 @@ std::string joined(const std::vector<std::string>& names) {
     return text;
 }
 
-/// Light that has come a long way is smooth but where surfaces and media are not, which the filter knows.
+/// Light that has come a long way is smooth but where surfaces and media are not, which the filter knows; so
+/// is light of large lights scattered in media, and shafts of others show as soon as noise is below them.
 std::optional<screenspace::LayerKind> filtered_kind(const Layer& layer) {
     if (layer.auxiliary) return std::nullopt;
     const std::string& cell = layer.transport();
     if (cell == transport_name(Transport::indirect)) return screenspace::LayerKind::surface;
-    if (cell == transport_name(Transport::multiple_scattering) || cell == other_scattering)
+    if (cell == transport_name(Transport::multiple_scattering) || cell == other_scattering ||
+        cell == transport_name(Transport::single_scattering))
         return screenspace::LayerKind::volume;
     return std::nullopt;
 }
