@@ -107,7 +107,10 @@ class PassLoop {
     }
     /// Means that finish() replaces are those of the passes again after the next one.
     void show_preview() {
-        if (!request_.preview || is_done() || !result_.film.has_passes(1)) return;
+        if (!request_.preview || is_done()) return;
+        // Whoever waits sees what there is, though some part of the picture is still black.
+        constexpr double patience = 2.5;
+        if (!result_.film.has_passes(1) && seconds_since(start_) < patience) return;
         if (previews_ > 0 && seconds_since(preview_time_) < std::max(1.0, 20.0 * preview_seconds_)) return;
         const Clock::time_point begin = Clock::now();
         try {

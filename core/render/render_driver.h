@@ -42,8 +42,9 @@ struct RenderRequest {
     std::vector<HitFeature> features;         ///< become layers of the film, behind those of the integrator
     std::function<bool(const Film&)> enough;  ///< a rule of the caller's, asked where the noise rule looks
     std::function<void(const RenderProgress&)> progress;  ///< called after every pass; may be empty
-    /// Shown the picture so far, as Estimator::finish() leaves it, as soon as every part has a pass and then
-    /// now and then: all of it together takes a twentieth of the time at most. May be empty.
+    /// Shown the picture so far, as Estimator::finish() leaves it, as soon as every part has a pass, after
+    /// some seconds those that have one, and then now and then: it takes a twentieth of the time at most. May
+    /// be empty.
     std::function<void(const Film&)> preview;
     std::function<void(const std::string&)> checkpoint_failed;  ///< told at once; it is tried again later
     std::function<void()> building_is_over;           ///< called before the first pass; may be empty
