@@ -139,6 +139,13 @@ int report_interruption(const RenderArguments& arguments, const OutputFiles& fil
                         "alpha 0; there is "
                         "nothing to resume",
                         files.picture, 100.0 * finished_share(result)));
+    } else if (!result.film.has_passes(1)) {
+        std::string missing;
+        for (const core::Layer& layer : result.film.layers())
+            if (result.film.pass_count(layer.part) == 0)
+                missing += (missing.empty() ? "" : ", ") + layer.name;
+        note(fmt::format("interrupted before every layer had a pass: {} holds the picture without {}",
+                         files.picture, missing));
     } else if (!result.checkpoint_problem.empty()) {
         note(fmt::format(
             "interrupted after {} passes: {} holds the picture so far, but it cannot be resumed ({})",
