@@ -64,7 +64,7 @@ std::vector<Case> cases() {
             {"sky", scene_of(path, sky + sphere)},
             {"fog", scene_of(equiangular, point, fog)},
             {"virtual point lights", scene_of(vpl, lamp)},
-            // Nothing was developed on the last two.
+            // No number was chosen by the last two, though a prototype of the estimate was tried on them.
             {"direct light of a lamp", scene_of(direct, lamp)},
             {"fog under a lamp and a sky", scene_of(volpath, lamp + sky, fog)}};
 }
