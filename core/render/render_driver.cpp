@@ -105,7 +105,7 @@ class PassLoop {
         if (seconds_since(checkpoint_time_) >= request_.checkpoint_every_seconds) write_checkpoint_now();
         show_preview();
     }
-    /// Means that finish() replaces are those of the passes again after the next one.
+    /// The film is afterwards as it was: which part is next must not depend on whether somebody looked.
     void show_preview() {
         if (!request_.preview || is_done()) return;
         // Whoever waits sees what there is, though some part of the picture is still black.
@@ -118,6 +118,7 @@ class PassLoop {
             request_.preview(result_.film);
         } catch (const Cancelled&) {
         }
+        for (std::size_t i = 0; i < result_.film.layers().size(); ++i) result_.film.set_mean(i, {});
         ++previews_, preview_time_ = Clock::now(), preview_seconds_ = seconds_since(begin);
         result_.statistics.seconds["previews"] += preview_seconds_;
     }

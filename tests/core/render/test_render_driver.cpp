@@ -412,3 +412,51 @@ TEST_CASE("A plan as text holds every entry with its reason", "[plan]") {
     plan.miss("caustics", "", "delta");
     CHECK(plan.to_text().find("missing") != std::string::npos);
 }
+
+namespace {
+
+/// One that finishes its picture with sevens, and notes what the film says when the next pass is chosen.
+class FinishingIntegrator final : public Integrator {
+  public:
+    explicit FinishingIntegrator(std::vector<float>& seen) : seen_(seen) {}
+    std::string type() const override { return "finishing"; }
+    std::vector<Layer> layers(const Scene&) const override { return {{"direct", ""}}; }
+    Plan plan(const Scene&, const Requirements&) const override { return {}; }
+    std::unique_ptr<Estimator> prepare(const Scene&, const RenderOptions&) const override {
+        return std::make_unique<Pass>(seen_);
+    }
+
+  private:
+    class Pass final : public Estimator {
+      public:
+        explicit Pass(std::vector<float>& seen) : seen_(seen) {}
+        bool pass(const PassContext&, PassImage& image) override {
+            for (Rgb& pixel : image.layer(0)) pixel = Rgb(1.0f);
+            return true;
+        }
+        std::size_t next_part(const Film& film) const override {
+            seen_.push_back(film.mean(0)[0].x);
+            return 0;
+        }
+        void finish(Film& film) override { film.set_mean(0, std::vector<Rgb>(film.pixels(), Rgb(7.0f))); }
+
+      private:
+        std::vector<float>& seen_;
+    };
+    std::vector<float>& seen_;
+};
+
+}  // namespace
+
+TEST_CASE("a preview shows the finished picture and leaves the film as it was", "[driver]") {
+    const auto scene = fake_scene();
+    std::vector<float> seen;
+    std::vector<float> shown;
+    RenderRequest request = request_for(3);
+    request.preview = [&](const Film& film) { shown.push_back(film.mean(0)[0].x); };
+    const RenderResult result = render(*scene, FinishingIntegrator(seen), request);
+    REQUIRE_FALSE(shown.empty());
+    CHECK(shown.front() == 7.0f);
+    CHECK(seen == std::vector<float>{0.0f, 1.0f, 1.0f});
+    CHECK(result.film.mean(0)[0].x == 7.0f);
+}
