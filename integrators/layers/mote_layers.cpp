@@ -72,27 +72,31 @@ class MoteLayers final : public Integrator {
 
     std::string type() const override { return "mote_layers"; }
     bool works_on_mean() const override { return true; }
-    std::vector<Layer> layers(const Scene& scene) const override {
-        std::vector<Layer> layers;
-        const std::vector<LayerMethod> chosen = methods(scene);
-        for (std::size_t part = 0; part < chosen.size(); ++part)
-            for (const std::size_t i : kept_layers(scene, chosen[part])) {
-                layers.push_back(chosen[part].integrator->layers(scene)[i]);
-                layers.back().part = part;
-                if (filters_ && filtered_kind(layers.back())) layers.back().squares = true;
-            }
-        return layers;
-    }
+    std::vector<Layer> layers(const Scene& scene) const override { return layers_of(scene, methods(scene)); }
     Plan plan(const Scene& scene, const Requirements& requirements) const override;
     std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
+        const std::vector<LayerMethod> chosen = methods(scene);
         FilterPlan filter{filter_, {}};
-        const std::vector<Layer> all = layers(scene);
+        const std::vector<Layer> all = layers_of(scene, chosen);
         for (std::size_t i = 0; filters_ && i < all.size(); ++i)
             if (const auto kind = filtered_kind(all[i])) filter.layers.push_back({i, *kind});
-        return make_layers_estimator(scene, options, methods(scene), filter);
+        return make_layers_estimator(scene, options, chosen, filter);
     }
 
   private:
+    /// The kept layers of every method, each a part.
+    std::vector<Layer> layers_of(const Scene& scene, const std::vector<LayerMethod>& chosen) const {
+        std::vector<Layer> layers;
+        for (std::size_t part = 0; part < chosen.size(); ++part) {
+            const std::vector<Layer> own = chosen[part].integrator->layers(scene);
+            for (const std::size_t i : kept_layers(scene, chosen[part])) {
+                layers.push_back(own[i]);
+                layers.back().part = part;
+                if (filters_ && filtered_kind(layers.back())) layers.back().squares = true;
+            }
+        }
+        return layers;
+    }
     std::vector<LayerMethod> methods(const Scene& scene) const {
         return with_cells(scene, asked_for_.empty()
                                      ? choose_layer_methods(scene, find_requirements(scene), limits_)
@@ -120,7 +124,7 @@ Plan MoteLayers::plan(const Scene& scene, const Requirements& requirements) cons
     plan.run("passes", fmt::format("shared out among {} methods", chosen.size()),
              "to the one whose next pass takes the most error for its rays and lookups");
     std::vector<std::string> filtered;
-    for (const Layer& layer : layers(scene))
+    for (const Layer& layer : layers_of(scene, chosen))
         if (filters_ && filtered_kind(layer)) filtered.push_back(layer.name);
     if (!filtered.empty())
         plan.run("filter", joined(filtered) + " in image space",
