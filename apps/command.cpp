@@ -100,6 +100,8 @@ void add_compare(CLI::App& app, CompareArguments& a, std::function<int()>& actio
     CLI::App& command = *app.add_subcommand("compare", "Measure the error of a picture against a reference");
     command.add_option("IMAGE", a.image, "The picture")->required();
     command.add_option("REFERENCE", a.reference, "The picture that is taken for right")->required();
+    command.add_option("--second", a.second,
+                       "A reference of another seed: error and bias then hold none of the noise of either");
     command.add_option(
         "--layer", a.layer,
         "Compare this layer of two EXR files instead of the beauty, or A:B, layers of different names");

@@ -1,10 +1,12 @@
 // mote compare: a picture against its reference, every number with its definition.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "apps/command.h"
 #include "apps/difference_picture.h"
@@ -15,6 +17,7 @@
 #include "apps/subcommands.h"
 #include "core/image/error_map.h"
 #include "core/image/metrics.h"
+#include "core/image/reference_pair.h"
 #include "core/objects/error.h"
 
 namespace mote::apps {
@@ -38,6 +41,9 @@ std::vector<std::string> doubts(const PictureFile& image, const PictureFile& ref
     const auto equal = [](const std::string& a, const std::string& b) { return a == b; };
     std::vector<std::string> list;
     if (differ("worldToCamera", same_camera)) list.push_back("the pictures come from different cameras");
+    if (const auto seed = image.metadata.find("seed");
+        seed != image.metadata.end() && reference.metadata.contains("seed") && !differ("seed", equal))
+        list.push_back("the pictures have the same seed, so their noise may be the same in part (--seed)");
     if (differ("sceneHash", equal) && image.metadata.contains("integrator") && !differ("integrator", equal))
         list.push_back("the pictures come from different scenes or settings (sceneHash)");
     return list;
@@ -48,6 +54,47 @@ void check_sizes(const core::Bitmap& a, const core::Bitmap& r, const CompareArgu
     throw InputError(fmt::format("has {} x {} pixels, the reference {} has {} x {}", a.width, a.height,
                                  core::printable(arguments.reference), r.width, r.height),
                      {arguments.image, 0});
+}
+
+/// The reference, or the mean of both, and the error against them.
+struct References {
+    PictureFile first;
+    std::optional<PictureFile> second;
+    core::PairMean mean;
+
+    core::ReferencePair pair() const {
+        return {first.bitmap.pixels, second->bitmap.pixels, first.variance, second->variance};
+    }
+    const std::vector<core::Rgb>& pixels() const { return second ? mean.picture : first.bitmap.pixels; }
+    const std::vector<core::Rgb>& variance() const { return second ? mean.variance : first.variance; }
+};
+
+References read_references(const CompareArguments& arguments, const std::string& layer) {
+    References r{read_picture(arguments.reference, layer), {}, {}};
+    if (arguments.second.empty()) return r;
+    r.second = read_picture(arguments.second, layer);
+    const core::Bitmap &a = r.first.bitmap, &b = r.second->bitmap;
+    if (a.width != b.width || a.height != b.height)
+        throw InputError(fmt::format("has {} x {} pixels, the reference {} has {} x {}", b.width, b.height,
+                                     core::printable(arguments.reference), a.width, a.height),
+                         {arguments.second, 0});
+    if (a.pixels == b.pixels)
+        throw InputError("is the same picture as the first reference: two must differ in their seeds",
+                         {arguments.second, 0});
+    r.mean = core::mean_of(r.pair());
+    return r;
+}
+
+ImageMetrics measure(const PictureFile& image, const References& references) {
+    const core::Bitmap& a = image.bitmap;
+    ImageMetrics m = core::compare_images(a.pixels, references.pixels(), a.width, a.height,
+                                          {image.variance, references.variance()});
+    if (!references.second || m.non_finite_either > 0) return m;
+    const core::RelativeError e =
+        core::relative_error(a.pixels, references.pair(), a.width, a.height, image.variance);
+    m.error = e.error, m.error_standard_error = e.error_standard_error, m.bias = e.bias;
+    if (!image.variance.empty()) m.bias_standard_error = e.bias_standard_error, m.noise = e.noise;
+    return m;
 }
 
 json mean_json(const std::array<double, 3>& rgb, double average) {
@@ -89,6 +136,7 @@ void print_json(const CompareArguments& arguments, const core::Bitmap& size, con
     j["mote"] = MOTE_VERSION;
     j["image"] = arguments.image;
     j["reference"] = arguments.reference;
+    if (!arguments.second.empty()) j["second_reference"] = arguments.second;
     if (!arguments.layer.empty()) j["layer"] = arguments.layer;
     j["width"] = size.width;
     j["height"] = size.height;
@@ -119,6 +167,9 @@ void print_text(const CompareArguments& arguments, const core::Bitmap& size, con
                 const std::string& difference) {
     std::string text = fmt::format("image      {}\nreference  {}\n", core::printable(arguments.image, 400),
                                    core::printable(arguments.reference, 400));
+    if (!arguments.second.empty())
+        text += fmt::format("and        {}: errors and biases are free of the noise of both\n",
+                            core::printable(arguments.second, 400));
     if (!arguments.layer.empty()) text += fmt::format("layer      {}\n", core::printable(arguments.layer));
     text += fmt::format("pixels     {} x {}\n\n", size.width, size.height) + headline(m);
     text += fmt::format("non-finite {:.3g} % of the pixels ({} in the image, {} in the reference): {}\n",
@@ -145,22 +196,26 @@ int compare_command(const CompareArguments& arguments) {
         throw UsageError("the map '" + core::printable(arguments.map) + "' does not end in .png");
     const std::string difference_path = difference_file(arguments);
     const double factor = arguments.difference.empty() ? 1.0 : amplification(arguments.difference);
-    check_outputs(
-        std::vector<NamedFile>{{"the map", arguments.map}, {"the difference", difference_path}},
-        std::vector<NamedFile>{{"the picture", arguments.image}, {"the reference", arguments.reference}});
+    check_outputs(std::vector<NamedFile>{{"the map", arguments.map}, {"the difference", difference_path}},
+                  std::vector<NamedFile>{{"the picture", arguments.image},
+                                         {"the reference", arguments.reference},
+                                         {"the second reference", arguments.second}});
     const std::size_t colon = arguments.layer.find(':');
     const std::string layer = arguments.layer.substr(0, colon);
-    const PictureFile image = read_picture(arguments.image, layer),
-                      reference = read_picture(arguments.reference, colon == std::string::npos
-                                                                        ? layer
-                                                                        : arguments.layer.substr(colon + 1));
-    const core::Bitmap &a = image.bitmap, &r = reference.bitmap;
+    const PictureFile image = read_picture(arguments.image, layer);
+    const References references =
+        read_references(arguments, colon == std::string::npos ? layer : arguments.layer.substr(colon + 1));
+    const core::Bitmap& a = image.bitmap;
+    core::Bitmap r = references.first.bitmap;
     check_sizes(a, r, arguments);
-    const std::vector<std::string> warnings = doubts(image, reference);
+    r.pixels = references.pixels();
+    std::vector<std::string> warnings = doubts(image, references.first);
+    if (references.second)
+        for (const std::string& text : doubts(image, *references.second))
+            if (std::find(warnings.begin(), warnings.end(), text) == warnings.end()) warnings.push_back(text);
     for (const std::string& warning : warnings)
         std::fputs(("mote: warning: " + warning + "\n").c_str(), stderr);
-    const ImageMetrics metrics =
-        core::compare_images(a.pixels, r.pixels, a.width, a.height, {image.variance, reference.variance});
+    const ImageMetrics metrics = measure(image, references);
     if (!arguments.map.empty())
         core::write_png(arguments.map, a.width, a.height, core::error_map(a.pixels, r.pixels));
     std::string difference;

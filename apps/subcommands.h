@@ -59,6 +59,7 @@ struct ConvertArguments {
 
 struct CompareArguments {
     std::string image, reference;
+    std::string second;      ///< a reference of another seed; "": none
     std::string layer;       ///< of both, or "A:B", that of the image and that of the reference
     std::string map;         ///< "": none
     std::string difference;  ///< "x4": how much differences are amplified; "": none

@@ -19,13 +19,14 @@ constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr MetricDefinition definitions[] = {
     {"error",
      "square root of sum w |d|^2 / sum w |r|^2, without the reference's own noise where that is known; |x|^2 "
-     "is "
-     "the "
-     "mean over channels, w = 1 / (|r|^2 + (m / 10)^2), m the median of |r| where it is not 0",
+     "is the mean over channels, w = 1 / (|r|^2 + (m / 10)^2), m the median of |r| where it is not 0",
      &ImageMetrics::error},
     {"error_standard_error", "of error, from the noise of the reference",
      &ImageMetrics::error_standard_error},
-    {"bias", "sum w <r, d> / sum w |r|^2, signed; never more than error", &ImageMetrics::bias},
+    {"bias",
+     "sum w <r, d> / sum w |r|^2, signed, without the reference's own noise where that is known; never more "
+     "than error",
+     &ImageMetrics::bias},
     {"bias_standard_error",
      "of bias, from the noise of image and reference; too low where pixels share light paths",
      &ImageMetrics::bias_standard_error},

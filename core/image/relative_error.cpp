@@ -82,6 +82,10 @@ void check_sizes(std::size_t a, std::size_t b) {
 
 }  // namespace
 
+std::vector<double> weights_of_squares(const std::vector<double>& squares) {
+    return weights_of(squares, squares);
+}
+
 RelativeWeights relative_weights(std::span<const Rgb> reference) {
     std::vector<double> squares(reference.size());
     std::transform(reference.begin(), reference.end(), squares.begin(),
@@ -135,7 +139,8 @@ RelativeError relative_error(std::span<const Rgb> image, std::span<const Rgb> re
         return {unknown, unknown, unknown, unknown, unknown};
     }
     RelativeError result;
-    result.bias = bias / norm, result.bias_standard_error = std::sqrt(bias_variance) / norm;
+    // r = R + n: <r, d> is lower by v on average.
+    result.bias = (bias + subtracted) / norm, result.bias_standard_error = std::sqrt(bias_variance) / norm;
     const double squared = std::max((error - subtracted) / norm, result.bias * result.bias);
     result.error = std::sqrt(squared);
     result.error_standard_error = std::sqrt(squared + std::sqrt(error_variance) / norm) - result.error;

@@ -38,11 +38,14 @@ RelativeWeights relative_weights(std::span<const Rgb> reference);
 RelativeWeights relative_weights(std::span<const Rgb> picture, std::span<const Rgb> variance_of_mean,
                                  int width, int height);
 
+/// Eq. (1) of |r|^2 pixel by pixel, however it was found. 0 everywhere when all of it is black.
+std::vector<double> weights_of_squares(const std::vector<double>& squares);
+
 /// How far a picture is from its reference. NaN where the reference is black.
 struct RelativeError {
     double error = 0.0;                 ///< Eq. (2), without the reference's own noise where that is known
     double error_standard_error = 0.0;  ///< from the noise of the reference: sqrt(error^2 + s) - error
-    double bias = 0.0;                  ///< Eq. (3)
+    double bias = 0.0;                  ///< Eq. (3), without what the reference's own noise adds to it
     double bias_standard_error = 0.0;   ///< from the noise of both where their variances are given
     double noise = 0.0;                 ///< Eq. (4) of the image; 0 where its variance is not given
 };

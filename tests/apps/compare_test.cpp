@@ -113,6 +113,41 @@ TEST_CASE("compare begins with error, bias and what noise explains of it", "[com
     CHECK(contains(folder.compare().out, fmt::format(", noise of the image {:.3g} %\n", 100.0 * noise)));
 }
 
+TEST_CASE("compare takes a second reference, whose noise is another one", "[command][compare]") {
+    Pictures folder;
+    // Both references are off by 30 %: the picture is 5 % too bright.
+    Pixels second = folder.reference;
+    Rng rng(5);
+    for (Pixels* pixels : {&folder.reference, &second})
+        for (Rgb& p : *pixels) p *= rng.next_float() < 0.5f ? 1.3f : 0.7f;
+    folder.write();
+    write_picture(folder.file("s.exr"), 16, 12, second);
+    const json one = json::parse(folder.compare({"--json"}).out).at("metrics");
+    CHECK(one.at("error").at("value").get<double>() > 0.25);
+    const json j = json::parse(folder.compare({"--second", "s.exr", "--json"}).out);
+    CHECK(j.at("second_reference") == "s.exr");
+    const double bias = j.at("metrics").at("bias").at("value"),
+                 error = j.at("metrics").at("error").at("value"),
+                 se = j.at("metrics").at("error_standard_error").at("value");
+    // 2 x 192 values of +- 30 %: the bias is good to 1.5 %.
+    CHECK(std::abs(bias - 0.05) < 4.0 * 0.3 / std::sqrt(384.0));
+    CHECK(error >= bias);
+    CHECK(error < std::sqrt(0.05 * 0.05 + 4.0 * ((0.05 + se) * (0.05 + se) - 0.05 * 0.05)));
+    CHECK(se < 0.1);
+    CHECK(contains(folder.compare({"--second", "s.exr"}).out, "and        s.exr"));
+    const RunResult same = folder.compare({"--second", "r.exr"});
+    CHECK(same.exit_code == 1);
+    CHECK(contains(same.err, "is the same picture as the first reference"));
+}
+
+TEST_CASE("compare warns of equal seeds", "[command][compare]") {
+    const Pictures folder;
+    folder.write({{"seed", "3"}}, {{"seed", "3"}});
+    CHECK(contains(folder.compare().err, "the pictures have the same seed"));
+    folder.write({{"seed", "4"}}, {{"seed", "3"}});
+    CHECK_FALSE(contains(folder.compare().err, "seed"));
+}
+
 TEST_CASE("compare shows differences amplified, side by side", "[command][compare]") {
     const Pictures folder;
     const RunResult r = folder.compare({"--difference", "x4"});

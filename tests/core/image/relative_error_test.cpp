@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/image/film.h"
+#include "core/image/reference_pair.h"
 #include "core/image/relative_error.h"
 #include "core/math/random.h"
 #include "tests/support/catch.h"
@@ -138,9 +139,73 @@ TEST_CASE("A reference of 4 % judges an error of 1 %, and says how well", "[rela
     }
     CHECK(raw > 0.035);  // without subtracting, the reference is all that one sees
     // Scores that are not normal to the last: below zero they are cut, so their squares are below 1 on
-    // average; 1 + 4 standard deviations of the mean of 300 squares of normal ones bound it from above.
+    // average; 1 + 4 standard deviations of the mean of 300 squares of normal ones bound it from above. Cut
+    // where error^2 is 0, at -0.8 s, they have 0.69; and 4 D^2 v is taken from |d|^2 where that is above v,
+    // which doubles s^2 where noise is nearly all there is: 0.35, with a spread of 0.75 and so 0.044 for the
+    // mean.
     CHECK(z_squares < 1.0 + 4.0 * std::sqrt(2.0 / n));
-    CHECK(z_squares > 0.3);
+    CHECK(z_squares > 0.35 - 4.0 * 0.044);
+}
+
+TEST_CASE("Neither one noisy reference nor two of them add to a bias", "[relative][statistics]") {
+    // The picture is 2 % too bright; references have a noise of 20 %, in which 4 % of bias would hide.
+    const Picture truth = scene_picture();
+    Picture image = truth, variance = truth;
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+        image[i] *= 1.02f;
+        variance[i] = 0.04f * truth[i] * truth[i];
+    }
+    const int n = 400;
+    double one = 0.0, one_squares = 0.0, two = 0.0, two_squares = 0.0;
+    for (int seed = 0; seed < n; ++seed) {
+        Picture a = truth, b = truth;
+        Rng rng(hash_keys(6, std::uint64_t(seed)));
+        for (std::size_t i = 0; i < truth.size(); ++i) {
+            a[i] *= float(1.0 + 0.2 * normal(rng));
+            b[i] *= float(1.0 + 0.2 * normal(rng));
+        }
+        // One reference: with the weights of the truth, since its own are another question.
+        const double e = relative_error(image, a, relative_weights(truth), {}, variance).bias;
+        const double f = relative_error(image, {a, b, variance, variance}, width, height).bias;
+        one += e / n, one_squares += e * e / n, two += f / n, two_squares += f * f / n;
+    }
+    const double one_error = std::sqrt((one_squares - one * one) / n);
+    const double two_error = std::sqrt((two_squares - two * two) / n);
+    INFO("one " << one << " +- " << one_error << ", two " << two << " +- " << two_error);
+    CHECK(one_error < 0.001);  // a fortieth of the 4 %
+    CHECK(two_error < 0.001);
+    CHECK(std::abs(one - 0.02) < 4.0 * one_error);
+    CHECK(std::abs(two - 0.02) < 4.0 * two_error);
+}
+
+TEST_CASE("Two references of 40 % that know no variance judge an error of 5 %", "[relative][statistics]") {
+    const Picture truth = scene_picture();
+    Picture image = truth;
+    Rng image_rng(78);
+    for (Rgb& p : image) p *= float(1.01 + 0.05 * normal(image_rng));
+    const int n = 300;
+    double exact = 0.0, mean = 0.0, squares = 0.0, variances = 0.0;
+    for (int seed = 0; seed < n; ++seed) {
+        Picture a = truth, b = truth;
+        Rng rng(hash_keys(7, std::uint64_t(seed)));
+        for (Picture* r : {&a, &b})
+            for (Rgb& p : *r)
+                // An exponential value, mostly less than the truth and sometimes twice as much: variance
+                // 0.16. A lamp that is seen has no noise.
+                if (p.x < 500.0f) p *= 0.6f - 0.4f * std::log(1.0f - rng.next_float());
+        const ReferencePair pair{a, b, {}, {}};
+        const RelativeError e = relative_error(image, pair, width, height);
+        exact += relative_error(image, ReferencePair{truth, truth, {}, {}}, width, height).error / n;
+        const double squared = e.error * e.error, more = e.error + e.error_standard_error;
+        mean += squared / n, squares += squared * squared / n;
+        variances += (more * more - squared) * (more * more - squared) / n;
+    }
+    const double variance = squares - mean * mean;
+    INFO("exact " << exact << ", square " << mean << " +- " << std::sqrt(variance / n) << ", spread "
+                  << std::sqrt(variance) << ", stated " << std::sqrt(variances));
+    CHECK(std::sqrt(variance / n) < 0.2 * exact * exact);
+    CHECK(std::abs(mean - exact * exact) < 4.0 * std::sqrt(variance / n));
+    CHECK(variances > variance);  // squares that are cut at zero spread less than what was stated
 }
 
 TEST_CASE("The noise of a film is the error that it has", "[relative][film][statistics]") {

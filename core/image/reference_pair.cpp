@@ -1,0 +1,95 @@
+// Sums over pixels in index order.
+#include "core/image/reference_pair.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace mote::core {
+
+namespace {
+
+constexpr double two_deviations = 4.0;  ///< squared
+constexpr double brighter = 4.0;        ///< twice, squared
+
+/// |r|^2 from the neighbours of a pixel, by channels.
+double neighbours_square(std::span<const Rgb> picture, int width, int height, int x, int y) {
+    std::array<std::array<double, 8>, 3> values{};
+    std::size_t count = 0;
+    for (int v = std::max(0, y - 1); v <= std::min(height - 1, y + 1); ++v)
+        for (int u = std::max(0, x - 1); u <= std::min(width - 1, x + 1); ++u) {
+            if (u == x && v == y) continue;
+            const Rgb& p = picture[std::size_t(v) * std::size_t(width) + std::size_t(u)];
+            for (int c = 0; c < 3; ++c) values[std::size_t(c)][count] = double(p[c]);
+            ++count;
+        }
+    glm::dvec3 median(0.0);
+    for (int c = 0; c < 3 && count > 0; ++c) {
+        auto& channel = values[std::size_t(c)];
+        std::sort(channel.begin(), channel.begin() + std::ptrdiff_t(count));
+        median[c] = 0.5 * (channel[(count - 1) / 2] + channel[count / 2]);
+    }
+    return mean_square(median);
+}
+
+std::vector<double> weights_of_pair(const PairMean& mean, int width, int height) {
+    std::vector<double> squares(mean.picture.size());
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const std::size_t p = std::size_t(y) * std::size_t(width) + std::size_t(x);
+            const double others = neighbours_square(mean.picture, width, height, x, y);
+            const double own = mean_square(mean.picture[p]);
+            const double for_certain = own - two_deviations * mean_of_channels(mean.variance[p]);
+            squares[p] = for_certain > brighter * others ? own : others;
+        }
+    return weights_of_squares(squares);
+}
+
+}  // namespace
+
+PairMean mean_of(const ReferencePair& pair) {
+    if (pair.first.size() != pair.second.size()) throw std::invalid_argument("the references differ in size");
+    const bool known = !pair.first_variance.empty() && !pair.second_variance.empty();
+    PairMean mean{std::vector<Rgb>(pair.first.size()), std::vector<Rgb>(pair.first.size())};
+    for (std::size_t p = 0; p < pair.first.size(); ++p) {
+        const Rgb difference = pair.first[p] - pair.second[p];
+        mean.picture[p] = 0.5f * (pair.first[p] + pair.second[p]);
+        mean.variance[p] =
+            0.25f * (known ? pair.first_variance[p] + pair.second_variance[p] : difference * difference);
+    }
+    return mean;
+}
+
+RelativeError relative_error(std::span<const Rgb> image, const ReferencePair& pair, int width, int height,
+                             std::span<const Rgb> image_variance) {
+    const PairMean mean = mean_of(pair);
+    if (mean.picture.size() != std::size_t(width) * std::size_t(height))
+        throw std::invalid_argument("the pictures differ in size");
+    RelativeWeights weights{weights_of_pair(mean, width, height)};
+    for (std::size_t p = 0; p < mean.picture.size(); ++p)
+        weights.norm += weights.weight[p] * mean_square(mean.picture[p]);
+    RelativeError result = relative_error(image, mean.picture, weights, image_variance, mean.variance);
+    double error = 0.0, bias = 0.0, norm = 0.0, variance = 0.0;
+    for (std::size_t p = 0; p < image.size(); ++p) {
+        const double w = weights.weight[p];
+        const glm::dvec3 x(image[p]), a(pair.first[p]), b(pair.second[p]);
+        const double product = glm::dot(x - a, x - b) / 3.0;
+        error += w * product, norm += w * glm::dot(a, b) / 3.0;
+        bias += w * 0.5 * (glm::dot(a, x - b) + glm::dot(b, x - a)) / 3.0;
+        variance += w * w * product * product;
+    }
+    if (!(norm > 0.0)) {
+        const double unknown = std::numeric_limits<double>::quiet_NaN();
+        return {unknown, unknown, unknown, unknown, unknown};
+    }
+    const double to_pair = weights.norm / norm;  // one reference's noise is in |r|^2, none in <a, b>
+    result.bias = bias / norm, result.bias_standard_error *= to_pair, result.noise *= std::sqrt(to_pair);
+    const double squared = std::max(error / norm, result.bias * result.bias);
+    result.error = std::sqrt(squared);
+    result.error_standard_error = std::sqrt(squared + std::sqrt(variance) / norm) - result.error;
+    return result;
+}
+
+}  // namespace mote::core
