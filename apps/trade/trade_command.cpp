@@ -79,12 +79,15 @@ std::string pixels_hash(const Reference& reference) {
     return fmt::format("{:016x}", core::checksum(bytes));
 }
 
-/// What the scene's own integrator sets, for the page.
+/// What the scene's integrators set, for the page.
 std::string inherited_text(const core::Scene& scene) {
     std::string text;
-    if (const auto& element = scene.parts().integrator_element)
-        for (const core::Element& c : element->children)
-            text += (text.empty() ? "" : " ") + c.get("name") + "=" + c.get("value");
+    const auto add = [&](const core::Element& element, const std::string& of) {
+        for (const core::Element& c : element.children)
+            text += (text.empty() ? "" : " ") + of + c.get("name") + "=" + c.get("value");
+    };
+    if (const auto& element = scene.parts().integrator_element) add(*element, "");
+    for (const auto& element : scene.parts().further_integrators) add(*element, element->get("type") + ".");
     return text;
 }
 

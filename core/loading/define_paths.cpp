@@ -1,8 +1,9 @@
 // -D with a path: "integrator.paths=4096", "sensor.film.width=64", "left_wall.reflectance=0.2".
 //
 // Each word but the last chooses an element by id, else by name, tag or type, and of those that are nested in
-// each other the outermost; the last is a parameter. Where that parameter is a nested object, the value is
-// its type: "integrator.compensation=approximate", and then "integrator.compensation.depth=2".
+// each other the outermost, and of several integrators of a scene the first; the last is a parameter. Where
+// that parameter is a nested object, the value is its type: "integrator.compensation=approximate", and then
+// "integrator.compensation.depth=2".
 #include <sstream>
 
 #include "core/loading/element_checks.h"
@@ -58,6 +59,8 @@ void known_words(const Element& parent, std::vector<std::string>& words) {
 Element& find_one(Element& parent, const std::string& word, const SourceLocation& where) {
     const std::vector<Element*> found = matches(parent, word);
     if (found.size() == 1) return *found.front();
+    // Of a scene's integrators the first renders; the others are found by their types.
+    if (found.size() > 1 && parent.tag == "scene" && word == "integrator") return *found.front();
     if (found.size() > 1)
         throw InputError("'" + printable(word) + "' fits " + std::to_string(found.size()) +
                              " elements; give the id of one",

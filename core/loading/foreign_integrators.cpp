@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <sstream>
 
 #include "core/loading/element_checks.h"
@@ -100,14 +101,21 @@ void replace(Element& e, SceneDocument& document, const Registry& registry, int 
     }
 }
 
-Element& own_integrator(SceneDocument& document) {
+/// The scene's integrator of this type, else its first, else a fresh one; the only one from then on.
+Element& own_integrator(SceneDocument& document, const std::string& type) {
     Element& scene = document.scene;
-    bool first = true;
+    const auto integrator = [](const Element& e) { return e.tag == "integrator"; };
+    const auto wanted = [&](const Element& e) { return integrator(e) && e.get("type") == type; };
+    if (std::any_of(scene.children.begin(), scene.children.end(), wanted))
+        std::erase_if(scene.children, [&](const Element& e) { return integrator(e) && !wanted(e); });
+    std::optional<std::string> first;
     std::erase_if(scene.children, [&](const Element& e) {
-        if (e.tag != "integrator") return false;
-        const bool extra = !std::exchange(first, false);
-        if (extra) warn(document, "the scene has more than one integrator: ignored", e.where);
-        return extra;
+        if (!integrator(e)) return false;
+        if (first && *first == e.get("type"))
+            warn(document,
+                 "the scene has more than one integrator of type '" + printable(*first) + "': ignored",
+                 e.where);
+        return std::exchange(first, first.value_or(e.get("type"))).has_value();
     });
     if (Element* element = scene.child_with_tag("integrator")) return *element;
     Element fresh;
@@ -131,7 +139,7 @@ Faults faults_of(Element& alone, const Registry& registry) {
 
 /// The integrator becomes one of another type, with the parameters that it knows.
 void replace_type(SceneDocument& document, const std::string& type, const Registry& registry) {
-    Element& element = own_integrator(document);
+    Element& element = own_integrator(document, type);
     const Manual* own = registry.find(Category::integrator, element.get("type"));
     element.set("type", type);
     if (!registry.find(Category::integrator, type)) element.where = {"--integrator " + printable(type), 0};
@@ -171,7 +179,7 @@ void replace_foreign_integrators(SceneDocument& document, const Registry& regist
 void complete_integrator(SceneDocument& document, const std::string& type, const Registry& registry) {
     const Element* own = document.scene.child_with_tag("integrator");
     if (!own) {
-        own_integrator(document).set("type", type);
+        own_integrator(document, type).set("type", type);
         return;
     }
     const std::string unknown = own->get("type");
@@ -184,7 +192,7 @@ void complete_integrator(SceneDocument& document, const std::string& type, const
 }
 
 void override_integrator(SceneDocument& document, const std::string& type, const Registry& registry) {
-    const Element& element = own_integrator(document);
+    const Element& element = own_integrator(document, type);
     if (element.find("type") && !registry.find(Category::integrator, element.get("type")))
         warn(document,
              "unknown integrator type '" + printable(element.get("type")) + "': --integrator takes its place",

@@ -12,11 +12,15 @@ namespace mote::core {
 
 namespace {
 
-/// What the scene file sets for its own integrator, as far as this type knows it.
-std::vector<Element> inherited_values(const Scene& scene, const Manual& manual) {
+/// What the scene file sets for integrators of this type, else for its own, as far as this type knows it.
+std::vector<Element> inherited_values(const Scene& scene, const std::string& type, const Manual& manual) {
     std::vector<Element> values;
-    if (!scene.parts().integrator_element) return values;
-    for (const Element& child : scene.parts().integrator_element->children)
+    const Scene::Parts& parts = scene.parts();
+    if (!parts.integrator_element) return values;
+    const Element* element = parts.integrator_element.get();
+    for (const auto& further : parts.further_integrators)
+        if (further->get("type") == type && element->get("type") != type) element = further.get();
+    for (const Element& child : element->children)
         if (has_place_for(manual, child)) values.push_back(child);
     return values;
 }
@@ -39,7 +43,7 @@ std::shared_ptr<Integrator> make_integrator(const Registry& registry, const Scen
     element.tag = "integrator", element.where = where;
     element.set("type", type);
     const Manual& manual = require_manual(element, registry);
-    element.children = inherited_values(scene, manual);
+    element.children = inherited_values(scene, type, manual);
     for (const IntegratorSetting& setting : settings) {
         if (is_path_of_object(setting.name, manual)) {
             set_by_path(element, setting.name, setting.text, registry, setting.where);

@@ -20,8 +20,8 @@ struct IntegratorSetting {
     SourceLocation where;
 };
 
-/// The integrator `type` with these settings; where they are silent, the parameters of the scene's own
-/// integrator hold, as with `--integrator`. Adds to `warnings`. Throws InputError with the place of what is
+/// The integrator `type` with these settings; where they are silent, the parameters of the scene's
+/// integrator of this type hold, else those of its own, as with `--integrator`. Adds to `warnings`. Throws InputError with the place of what is
 /// unknown or wrong, and the nearest known name.
 std::shared_ptr<Integrator> make_integrator(const Registry& registry, const Scene& scene,
                                             const std::string& type,

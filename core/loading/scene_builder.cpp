@@ -1,6 +1,7 @@
 // Collects what stands directly in <scene>.
 #include "core/loading/scene_builder.h"
 
+#include <algorithm>
 #include <set>
 
 #include "core/geometry/instances.h"
@@ -25,6 +26,7 @@ struct Builder {
     Faults& faults;
     Scene::Parts parts;
     std::vector<std::pair<std::shared_ptr<Emitter>, const Element*>> lights;
+    bool integrator_met = false;
 
     void add(const Element& e) {
         if (e.tag == "shape") {
@@ -37,12 +39,25 @@ struct Builder {
         } else if (e.tag == "sensor") {
             if (once(e, bool(parts.camera))) parts.camera = maker.make_as<Camera>(e);
         } else if (e.tag == "integrator") {
-            if (!once(e, bool(parts.integrator))) return;
-            parts.integrator = maker.make_as<Integrator>(e);
-            parts.integrator_element = std::make_shared<const Element>(e);
+            add_integrator(e);
         } else if (find_category(e.tag)) {
             maker.make(e);  // checked even when nothing refers to it
         }
+    }
+    /// The first makes the picture; others are what the scene sets for methods of other types.
+    void add_integrator(const Element& e) {
+        const auto same = [&](const auto& other) { return other->get("type") == e.get("type"); };
+        if (!integrator_met) {
+            integrator_met = true;
+            parts.integrator = maker.make_as<Integrator>(e);
+            parts.integrator_element = std::make_shared<const Element>(e);
+            return;
+        }
+        auto& further = parts.further_integrators;
+        if (!once(e, same(parts.integrator_element) || std::any_of(further.begin(), further.end(), same)))
+            return;
+        maker.make_as<Integrator>(e);
+        further.push_back(std::make_shared<const Element>(e));
     }
     /// A shape, or those that an instance places; a group alone is not seen.
     void add_shapes(const Element& e) {
@@ -58,7 +73,8 @@ struct Builder {
         }
     }
     bool once(const Element& e, bool taken) {
-        if (taken) faults.add(&e, InputError("the scene has more than one " + e.tag, e.where));
+        const std::string type = e.tag == "integrator" ? " of type '" + printable(e.get("type")) + "'" : "";
+        if (taken) faults.add(&e, InputError("the scene has more than one " + e.tag + type, e.where));
         return !taken;
     }
     /// Area lights that no shape took up.
@@ -78,7 +94,7 @@ Scene::Parts build_scene(const SceneDocument& document, const Registry& registry
                          Faults& faults) {
     const IdTable ids = collect_ids(document.scene, faults);
     check_references(document.scene, ids, registry, faults);
-    Builder builder{ObjectMaker(registry, ids, document.search_paths, faults), faults, {}, {}};
+    Builder builder{ObjectMaker(registry, ids, document.search_paths, faults), faults, {}, {}, false};
     for (const Element& e : document.scene.children) builder.add(e);
     builder.check_area_lights();
     const ObjectMaker& maker = builder.maker;

@@ -14,6 +14,8 @@ page is an error with file, line and the nearest known name; nothing is skipped 
 scene are told at once. A parameter of Mitsuba that changes nothing here gives a warning. With `--lenient` what is
 wrong or unknown is left out or approximated instead, and listed in the log, the statistics and the picture's
 metadata (`approximations`). With `--integrator` whatever is wrong with the file's own integrator is a warning.
+Further integrators, each of another type, are what a scene sets for these methods: `--integrator TYPE` and the methods of a trade
+take their parameters from the scene's integrator of that type, else from its first, which renders where nothing else is asked for.
 
 ```xml
 <scene version="3.0.0">

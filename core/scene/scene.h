@@ -45,6 +45,8 @@ class Scene final : public LitScene {
         std::shared_ptr<Camera> camera;
         std::shared_ptr<Integrator> integrator;             ///< the one the file names, or null
         std::shared_ptr<const Element> integrator_element;  ///< its text, or null
+        /// The texts of further integrators, each of another type: what the scene sets for these methods.
+        std::vector<std::shared_ptr<const Element>> further_integrators;
         FilmSettings film;
         std::string file;                      ///< path of the scene file, or "" when built in code
         std::vector<std::string> input_files;  ///< every file read, for the content hash

@@ -60,10 +60,12 @@ class Mote:
         self.folder.mkdir(parents=True, exist_ok=True)
 
     def render(self, scene, name, settings, passes, seed=1, threads=0, auxiliary=False):
-        """`scene` is a name in scenes/ or a path; `settings` go to -D, but for `integrator`, which is a type. 0 threads:
+        """`scene` is a name in scenes/ or a path; `settings` go to -D, but for `integrator`, which is a type (a scene of
+        scenes/ without any: mote_vpl, as the papers' figures are about virtual point lights). 0 threads:
         one for every core. `auxiliary`: with what `mote ssbc` reads."""
         path = self.folder / f"{name}_{seed}.exr"
-        scene = scene if isinstance(scene, Path) else ROOT / "scenes" / f"{scene}.xml"
+        if not isinstance(scene, Path):
+            scene, settings = ROOT / "scenes" / f"{scene}.xml", {"integrator": "mote_vpl"} | settings
         if not (self.redraw and path.is_file()):
             command = [self.program, "render", scene, "-o", path, "--seed", str(seed), "--quiet",
                        "--stats", path.with_suffix(".json")]

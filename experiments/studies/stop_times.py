@@ -52,8 +52,9 @@ def cases(size, quick):
     wait = 3.0 if quick else 8.0
     many = 50 if quick else 1000
     big = {"integrator.paths": 20000}
-    surface = [("path", {}, 1), ("mote_vpl", big, 1), ("mote_vsl", big, 1), ("mote_photon_map", {"integrator.photon_paths": 10**7}, 1)]
-    media = [("volpath", {}, 1), ("mote_vpl", big, 1), ("mote_photon_map", {"integrator.photon_paths": 10**7}, 1),
+    surface = [("path", {}, 1), ("mote_layers", {}, 1), ("mote_vpl", big, 1), ("mote_vsl", big, 1),
+               ("mote_photon_map", {"integrator.photon_paths": 10**7}, 1)]
+    media = [("volpath", {}, 1), ("mote_layers", {}, 1), ("mote_vpl", big, 1), ("mote_photon_map", {"integrator.photon_paths": 10**7}, 1),
              ("mote_single_scattering", {}, many), ("mote_epipolar", {}, many),
              ("mote_epipolar", {"integrator.crossings": "true"}, many),
              ("mote_vpl", {**big, "integrator.visibility": "shadow_map", "integrator.visibility.size": 64}, 1),

@@ -89,6 +89,14 @@ TEST_CASE("With --integrator whatever is wrong with the file's own is a warning"
     CHECK(warned(*bad, "test.xml:4: 'flg' is ignored"));
     const auto two = with_integrator("<integrator type='other'/><integrator type='other'/>" + rest);
     CHECK(warned(*two, "more than one integrator"));
+    // Of another type, it is what the scene sets for that method.
+    const std::string settings =
+        "<integrator type='other'><integer name='max_depth' value='3'/></integrator>"
+        "<integrator type='fake'><integer name='max_depth' value='6'/></integrator>";
+    const auto chosen = with_integrator(settings + rest);
+    CHECK(integrator_of(*chosen).type == "fake");
+    CHECK(integrator_of(*chosen).get_int("max_depth", 0) == 6);
+    CHECK(chosen->parts().warnings.empty());
     const auto kept =
         with_integrator("<integrator type='other'><integer name='max_depth' value='5'/></integrator>" + rest);
     CHECK(integrator_of(*kept).get_int("max_depth", 0) == 5);

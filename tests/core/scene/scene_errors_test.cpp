@@ -134,7 +134,7 @@ TEST_CASE("Objects in the wrong place are refused", "[scene][errors]") {
     CHECK(error_of("<shape type='sphere'>\n<include filename='x.xml'/></shape>") ==
           "test.xml:3: <include> belongs directly into <scene>");
     CHECK(error_of("<integrator type='fake'/>\n<integrator type='fake'/>") ==
-          "test.xml:3: the scene has more than one integrator");
+          "test.xml:3: the scene has more than one integrator of type 'fake'");
 }
 
 TEST_CASE("Scenes that show nothing are refused", "[scene][errors]") {
