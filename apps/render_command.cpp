@@ -129,6 +129,16 @@ void print_times(const core::Statistics& statistics) {
                stderr);
 }
 
+/// A second is not always enough for what comes after the last pass.
+std::string unfinished_text(const core::RenderResult& result) {
+    const std::uint32_t passes = *result.finished_for;
+    return fmt::format(
+        "filters or compensation of the whole picture take too long to wait for and are {}; with '--resume "
+        "--passes {}' they are made now",
+        passes > 0 ? fmt::format("those of the preview after pass {}", passes) : "left out",
+        result.film.pass_count());
+}
+
 int report_interruption(const RenderArguments& arguments, const OutputFiles& files,
                         const core::RenderResult& result, int signal_number) {
     if (result.film.pass_count() == 0) {
@@ -156,6 +166,7 @@ int report_interruption(const RenderArguments& arguments, const OutputFiles& fil
         note(fmt::format("interrupted after {} passes: {} holds the picture so far", result.film.pass_count(),
                          files.picture));
         note("continue with: " + quoted(command));
+        if (result.finished_for) note(unfinished_text(result));
     }
     return 128 + signal_number;
 }

@@ -91,6 +91,9 @@ std::map<std::string, std::string> picture_metadata(const RenderReport& r) {
         metadata["partOfFirstPass"] =
             fmt::format("{:.6f} of the pixels; those that are missing have A = 0", finished_share(r.result));
     }
+    if (r.result.finished_for)
+        metadata["postProcessed"] =
+            fmt::format("after {} passes, of {}", *r.result.finished_for, r.result.film.pass_count());
     const auto& values = r.result.statistics.values;
     if (const auto bound = values.find("bound"); bound != values.end())
         metadata["bound"] = fmt::format("{:.9g}", bound->second);  // mote ssbc asks for it
@@ -136,6 +139,7 @@ std::string statistics_json(const RenderReport& r) {
     }
     j["resumed_at"] = r.result.resumed_at;
     j["interrupted"] = r.result.interrupted;
+    if (r.result.finished_for) j["post_processed_after_passes"] = *r.result.finished_for;
     j["seconds"] = s.seconds;
     j["seconds"]["total"] = total_seconds(s);
     j["rays"] = s.rays;

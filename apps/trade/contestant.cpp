@@ -136,7 +136,7 @@ double Tally::bias_standard_error() const {
 core::Film Contestant::finished(double& wall, double& cpu) const {
     core::Film picture = film_;
     const Clocks clocks;
-    runner_->estimator().finish(picture);
+    runner_->estimator().finish(picture, {});
     wall = clocks.wall(), cpu = clocks.cpu();
     return picture;
 }

@@ -226,4 +226,13 @@ void Film::set_mean(std::size_t layer, std::span<const Rgb> values) {
     replaced_means_.at(layer).assign(values.begin(), values.end());
 }
 
+Film::ReplacedMeans Film::exchange_replaced(ReplacedMeans replaced) {
+    replaced.resize(layers_.size());
+    for (const auto& values : replaced)
+        if (!values.empty() && values.size() != pixels())
+            throw std::invalid_argument("the layer does not fit the film");
+    std::swap(replaced, replaced_means_);
+    return replaced;
+}
+
 }  // namespace mote::core

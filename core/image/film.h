@@ -66,6 +66,11 @@ class Film {
     /// them the variances, the noise and the serialised film, stay those of the passes.
     /// Without values it is the mean of the passes again.
     void set_mean(std::size_t layer, std::span<const Rgb> values);
+    /// What set_mean() has put in place of the means of the passes; [layer], empty for those that it did not
+    /// touch.
+    using ReplacedMeans = std::vector<std::vector<Rgb>>;
+    /// Puts others there, or none, and returns what was there.
+    ReplacedMeans exchange_replaced(ReplacedMeans replaced = {});
     /// The noise of the beauty, Eq. (4) of core/image/relative_error.h: the error that the passes so far are
     /// expected to have left. Infinity for n < 2.
     double noise() const { return gain_and_noise().noise; }
@@ -124,10 +129,10 @@ class Film {
     bool all_squares_;
     std::uint64_t non_finite_ = 0;
     std::vector<Part> parts_;
-    std::vector<Sums> sums_;                        ///< one per layer, three channels
-    std::vector<Sums> layer_squares_;               ///< one per layer, empty where not kept
-    std::vector<std::size_t> where_;                ///< index of Layer::where, or that of no layer
-    std::vector<std::vector<Rgb>> replaced_means_;  ///< per layer; empty unless set_mean() was called
+    std::vector<Sums> sums_;           ///< one per layer, three channels
+    std::vector<Sums> layer_squares_;  ///< one per layer, empty where not kept
+    std::vector<std::size_t> where_;   ///< index of Layer::where, or that of no layer
+    ReplacedMeans replaced_means_;
 };
 
 }  // namespace mote::core

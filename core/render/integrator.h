@@ -36,7 +36,7 @@ struct RenderOptions {
     std::uint64_t seed = 0;
     int width = 0, height = 0;
     SamplerKind sampler = SamplerKind::sobol;
-    CancelToken cancelled = {};  ///< prepare() and finish() may throw Cancelled when it asks for it
+    CancelToken cancelled = {};  ///< prepare() may throw Cancelled when it asks for it
     /// The cells of the transport (Layer::transport) that are wanted; empty: all. The layers of the others
     /// may hold anything, and nothing should be spent on them.
     std::vector<std::string> cells = {};
@@ -75,8 +75,8 @@ class Estimator {
     virtual bool pass(const PassContext& context, PassImage& image) = 0;
     /// Which part has the next pass. Of the film alone, so that it is the same after an interruption.
     virtual std::size_t next_part(const Film& /*film*/) const { return 0; }
-    /// Post-processes on the mean, after the last pass.
-    virtual void finish(Film& /*film*/) {}
+    /// Post-processes on the mean, after the last pass and for previews. May throw Cancelled.
+    virtual void finish(Film& /*film*/, CancelToken /*cancelled*/) {}
     /// Adds this estimator's counters (rays, lookups, VPLs, ...).
     virtual void add_statistics(Statistics& /*statistics*/) const {}
 };

@@ -1,13 +1,16 @@
 // The loop over passes.
 #include "core/render/render_driver.h"
 
+#include <algorithm>
 #include <chrono>
 #include <new>
 #include <stdexcept>
+#include <system_error>
 
 #include "core/objects/error.h"
 #include "core/objects/memory_error.h"
 #include "core/render/checkpoint.h"
+#include "core/render/deadline.h"
 #include "core/render/pass_runner.h"
 #include "core/render/stop_clock.h"
 #include "core/scene/scene.h"
@@ -34,7 +37,37 @@ class PassLoop {
         with_memory_for("the passes", [&] { run_passes(); });
         finish_run();
     }
-    /// Also once more where the end of the render was interrupted.
+    /// Estimator::finish() of the picture.
+    void finish_picture(const std::string& type) {
+        if (result_.film.pass_count() == 0 || !result_.finished_pixels.empty()) return;
+        const Clock::time_point begin = Clock::now();
+        try {
+            if (!result_.interrupted)
+                with_memory_for("what '" + type + "' does after its passes",
+                                [&] { runner_.estimator().finish(result_.film, cancelled_flag()); });
+        } catch (const Cancelled&) {
+            result_.interrupted = true;
+            write_checkpoint_now();
+        }
+        if (result_.interrupted) finish_in_a_hurry();
+        result_.statistics.seconds["finish"] = seconds_since(begin);
+    }
+
+  private:
+    /// Whoever interrupts wants the picture, but soon: of the last preview what takes too long.
+    void finish_in_a_hurry() {
+        try {
+            const Deadline deadline(most_finish_seconds);
+            return runner_.estimator().finish(result_.film, deadline.is_over());
+        } catch (const Cancelled&) {
+        } catch (const std::bad_alloc&) {
+        } catch (const std::system_error&) {  // no thread for the deadline
+        }
+        const bool any = std::any_of(preview_means_.begin(), preview_means_.end(),
+                                     [](const auto& means) { return !means.empty(); });
+        result_.finished_for = any ? preview_passes_ : 0;
+        result_.film.exchange_replaced(std::move(preview_means_));
+    }
     void write_checkpoint_now() {
         if (request_.checkpoint_path.empty() || result_.film.pass_count() == 0) return;
         if (!result_.finished_pixels.empty()) return;  // to continue is to begin anew
@@ -55,7 +88,6 @@ class PassLoop {
         result_.statistics.seconds["checkpoints"] += seconds_since(begin);
     }
 
-  private:
     void run_passes() {
         if (!stop_.noise || noise_is_due(state_.passes)) refresh_noise();
         while (!is_done()) {
@@ -114,11 +146,12 @@ class PassLoop {
         if (previews_ > 0 && seconds_since(preview_time_) < std::max(1.0, 20.0 * preview_seconds_)) return;
         const Clock::time_point begin = Clock::now();
         try {
-            runner_.estimator().finish(result_.film);
+            runner_.estimator().finish(result_.film, cancelled_flag());
             request_.preview(result_.film);
+            preview_means_ = result_.film.exchange_replaced(), preview_passes_ = state_.passes;
         } catch (const Cancelled&) {
+            result_.film.exchange_replaced();
         }
-        for (std::size_t i = 0; i < result_.film.layers().size(); ++i) result_.film.set_mean(i, {});
         ++previews_, preview_time_ = Clock::now(), preview_seconds_ = seconds_since(begin);
         result_.statistics.seconds["previews"] += preview_seconds_;
     }
@@ -136,6 +169,8 @@ class PassLoop {
     RenderState state_{.noise = infinity};
     int previews_ = 0;
     double preview_seconds_ = 0.0;  ///< that the last one took
+    Film::ReplacedMeans preview_means_;
+    std::uint32_t preview_passes_ = 0;
     Clock::time_point preview_time_ = Clock::now();
     double noise_seconds_ = 0.0;  ///< that looking at the noise took the last time
     const Clock::time_point start_ = Clock::now();
@@ -194,17 +229,7 @@ RenderResult render(const Scene& scene, const Integrator& integrator, const Rend
     loop.run();
     if (request.passes_are_over) request.passes_are_over();
 
-    if (!result.interrupted && result.film.pass_count() > 0 && result.finished_pixels.empty()) {
-        const Clock::time_point finish_start = Clock::now();
-        try {
-            with_memory_for("what '" + integrator.type() + "' does after its passes",
-                            [&] { runner->estimator().finish(result.film); });
-        } catch (const Cancelled&) {
-            result.interrupted = true;
-            loop.write_checkpoint_now();
-        }
-        result.statistics.seconds["finish"] = seconds_since(finish_start);
-    }
+    loop.finish_picture(integrator.type());
     runner->add_statistics(result.statistics);
     result.statistics.non_finite_samples += result.film.non_finite();
     return result;

@@ -62,15 +62,20 @@ struct RenderResult {
     Statistics statistics;
     bool interrupted = false;
     std::uint32_t resumed_at = 0;  ///< pass index the checkpoint held
+    /// Interrupted, and there was no time for Estimator::finish(): what it changes is as the last preview had
+    /// it, of so many passes; of 0, as the passes left it.
+    std::optional<std::uint32_t> finished_for = {};
     /// Not empty: the film holds a part of one pass, the pixels with a 1, and zeros elsewhere.
     std::vector<std::uint8_t> finished_pixels = {};
     std::string checkpoint_problem = "";  ///< why the last checkpoint could not be written
 };
 
+/// Estimator::finish() of an interrupted render may take so long [s]: half of what stopping may take.
+inline constexpr double most_finish_seconds = 1.0;
+
 /// Renders until a stop rule holds. When interrupted, the running pass is dropped and everything before it
-/// kept; Estimator::finish is then not called. Throws InputError when a checkpoint does not belong to this
-/// render or is damaged. One that cannot be written is a warning and another try later: the one before it
-/// stays intact.
+/// kept. Throws InputError when a checkpoint does not belong to this render or is damaged. One that cannot be
+/// written is a warning and another try later: the one before it stays intact.
 RenderResult render(const Scene& scene, const Integrator& integrator, const RenderRequest& request);
 
 /// The filter of a film as a distribution of offsets. Throws InputError for an unknown name.

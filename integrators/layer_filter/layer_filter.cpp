@@ -39,17 +39,18 @@ LayerFilter::LayerFilter(const Scene& scene, const RenderOptions& options,
                          const LayerFilterParameters& parameters)
     : scene_(scene), options_(options), parameters_(parameters) {}
 
-void LayerFilter::find_features() {
+void LayerFilter::find_features(CancelToken cancelled) {
     if (features_) return;
+    options_.cancelled = cancelled;
     const auto start = Clock::now();
     features_ = std::make_unique<screenspace::FilterFeatures>(
         find_filter_features(scene_, options_, parameters_.features));
     feature_seconds_ += seconds_since(start);
 }
 
-void LayerFilter::apply(Film& film, std::span<const Choice> layers) {
+void LayerFilter::apply(Film& film, std::span<const Choice> layers, CancelToken cancelled) {
     variances_.clear();
-    find_features();
+    find_features(cancelled);
     const auto start = Clock::now();
     for (const Choice& choice : layers) {
         if (!film.has_squares(choice.layer))
@@ -59,7 +60,7 @@ void LayerFilter::apply(Film& film, std::span<const Choice> layers) {
         const std::vector<Rgb> mean = film.mean(choice.layer);
         const std::vector<Rgb> variance = film.layer_variance_of_mean(choice.layer);
         auto filtered = screenspace::filter_layer(*features_, {mean, variance, choice.kind},
-                                                  parameters_.filter, options_.cancelled);
+                                                  parameters_.filter, cancelled);
         film.set_mean(choice.layer, filtered.mean);
         variances_.push_back(std::move(filtered.variance));
     }

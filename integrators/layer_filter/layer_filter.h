@@ -32,13 +32,13 @@ class LayerFilter {
         screenspace::LayerKind kind;
     };
 
-    /// The scene must outlive this; size, seed, sampler and cancellation are those of the render.
+    /// The scene must outlive this; size, seed and sampler are those of the render.
     LayerFilter(const core::Scene& scene, const core::RenderOptions& options,
                 const LayerFilterParameters& parameters);
 
     /// Sets the means of these layers to the filtered ones. A film of fewer than two passes knows no variance
     /// and stays as it is. Throws std::invalid_argument where a layer has no squares, and Cancelled.
-    void apply(core::Film& film, std::span<const Choice> layers);
+    void apply(core::Film& film, std::span<const Choice> layers, core::CancelToken cancelled = {});
 
     /// What was left of the variance of a layer by the last apply(), mean over channels; in its order.
     const std::vector<std::vector<float>>& variances() const { return variances_; }
@@ -46,7 +46,7 @@ class LayerFilter {
     double filter_seconds() const { return filter_seconds_; }    ///< of all calls
 
   private:
-    void find_features();
+    void find_features(core::CancelToken cancelled);
 
     const core::Scene& scene_;
     core::RenderOptions options_;

@@ -57,8 +57,8 @@ class LayersEstimator final : public Estimator {
         return true;
     }
 
-    void finish(Film& film) override {
-        if (filter_ && film.has_passes(2)) filter_->apply(film, filtered_);
+    void finish(Film& film, CancelToken cancelled) override {
+        if (filter_ && film.has_passes(2)) filter_->apply(film, filtered_, cancelled);
     }
 
     void add_statistics(Statistics& statistics) const override {

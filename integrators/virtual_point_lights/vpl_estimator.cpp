@@ -30,13 +30,13 @@ class VplEstimator final : public Estimator {
     }
 
     /// Light that surfaces send to the eye is layers 1 and 2, direct and indirect (transport_layers.h).
-    void finish(Film& film) override {
+    void finish(Film& film, CancelToken cancelled) override {
         if (!settings_.screen_space || !std::isfinite(bound_)) return;
         constexpr std::size_t reflected[] = {std::size_t(Transport::direct),
                                              std::size_t(Transport::indirect)};
         ssbc_cost_ = add_screen_space_compensation(scene_, *settings_.screen_space, bound_,
                                                    {reflected, first_compensation_layer, first_hidden_layer},
-                                                   options_.cancelled, film);
+                                                   cancelled, film);
     }
 
     bool pass(const PassContext& context, PassImage& image) override {

@@ -220,7 +220,11 @@ TEST_CASE("unequal passes resume to the same bits", "[mote_layers]") {
     second.resume = true;
     request.interrupted = &flag;
     request.progress = [&](const RenderProgress& p) { flag = p.passes == 23; };
-    REQUIRE(render(*scene, *integrator, request).interrupted);
+    const RenderResult interrupted = render(*scene, *integrator, request);
+    REQUIRE(interrupted.interrupted);
+    RenderRequest same;
+    same.stop.passes = 23;
+    CHECK((interrupted.film.beauty() == render(*scene, *integrator, same).film.beauty()));  // filtered, too
     const RenderResult resumed = render(*scene, *integrator, second);
     CHECK(resumed.resumed_at == 23);
     CHECK(straight.film.pass_count(0) != straight.film.pass_count(1));

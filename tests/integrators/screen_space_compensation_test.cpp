@@ -64,7 +64,7 @@ Rendered render(const core::Scene& scene, const std::string& compensation, std::
     core::PassImage image(width, height, layers.size());
     for (std::uint32_t pass = 0; pass < passes; ++pass) {
         if (pass > 0 && pass == interrupted) {
-            estimator->finish(film);  // as a driver does for a preview
+            estimator->finish(film, {});  // as a driver does for a preview
             const auto bytes = film.serialize();
             film = core::Film(width, height, layers);
             film.deserialize(bytes);
@@ -74,7 +74,7 @@ Rendered render(const core::Scene& scene, const std::string& compensation, std::
         estimator->pass({pass, *filter, cancelled}, image);
         film.add_pass(image);
     }
-    estimator->finish(film);
+    estimator->finish(film, {});
     Rendered result;
     for (std::size_t i = 0; i < layers.size(); ++i) result.layers[layers[i].name] = film.mean(i);
     return result;
@@ -375,4 +375,20 @@ TEST_CASE("screen-space compensation of media is refused by name", "[compensatio
     CHECK_THAT(refusal(R"(<boolean name="bounded" value="false"/><compensation type="screen_space"/>)"),
                Contains("bounded"));
     CHECK(refusal(R"(<compensation type="screen_space"/>)") == "accepted");
+}
+
+TEST_CASE("an interrupted render is compensated, as one of so many passes",
+          "[compensation][ssbc][stopping]") {
+    const auto scene = scene_from(corner, 16);
+    const auto integrator = integrator_from(vpl(screen_space(2, 1)));
+    std::atomic<bool> flag{false};
+    core::RenderRequest request;
+    request.stop.passes = 3;
+    const core::RenderResult whole = core::render(*scene, *integrator, request);
+    request.stop.passes = 9, request.interrupted = &flag;
+    request.progress = [&](const core::RenderProgress& p) { flag = p.passes == 3; };
+    const core::RenderResult interrupted = core::render(*scene, *integrator, request);
+    REQUIRE(interrupted.interrupted);
+    CHECK((interrupted.film.beauty() == whole.film.beauty()));
+    CHECK_FALSE(interrupted.finished_for);
 }

@@ -113,7 +113,7 @@ class FakeEstimator final : public core::Estimator {
                     }
             });
     }
-    void finish(core::Film& film) override {
+    void finish(core::Film& film, core::CancelToken) override {
         film.set_mean(0, std::vector<core::Rgb>(film.pixels(), core::Rgb(7.0f)));
     }
 

@@ -150,7 +150,8 @@ TEST_CASE("An interrupted render drops the running pass and keeps the rest", "[d
     const RenderResult cut = interrupted_render(*scene, request_for(30, folder.file("c")), 19);
     CHECK(cut.interrupted);
     CHECK(cut.film.pass_count() == 19);
-    CHECK(cut.film.mean(0)[0] != Rgb(7.0f));  // finish() was not called
+    CHECK(cut.film.mean(0)[0] == Rgb(7.0f));  // finish() was called nonetheless
+    CHECK_FALSE(cut.finished_for);
     CHECK(bits(cut) == bits(render(*scene, CountingIntegrator(), request_for(19))));
     CHECK(folder.size() == 1);
 }
@@ -415,21 +416,25 @@ TEST_CASE("A plan as text holds every entry with its reason", "[plan]") {
 
 namespace {
 
+/// What a test may do in finish(), which may throw.
+using InFinish = std::function<void(const Film&, CancelToken)>;
+
 /// One that finishes its picture with sevens, and notes what the film says when the next pass is chosen.
 class FinishingIntegrator final : public Integrator {
   public:
-    explicit FinishingIntegrator(std::vector<float>& seen) : seen_(seen) {}
+    explicit FinishingIntegrator(std::vector<float>& seen, InFinish in_finish = {})
+        : seen_(seen), in_finish_(std::move(in_finish)) {}
     std::string type() const override { return "finishing"; }
     std::vector<Layer> layers(const Scene&) const override { return {{"direct", ""}}; }
     Plan plan(const Scene&, const Requirements&) const override { return {}; }
     std::unique_ptr<Estimator> prepare(const Scene&, const RenderOptions&) const override {
-        return std::make_unique<Pass>(seen_);
+        return std::make_unique<Pass>(seen_, in_finish_);
     }
 
   private:
     class Pass final : public Estimator {
       public:
-        explicit Pass(std::vector<float>& seen) : seen_(seen) {}
+        Pass(std::vector<float>& seen, InFinish in_finish) : seen_(seen), in_finish_(std::move(in_finish)) {}
         bool pass(const PassContext&, PassImage& image) override {
             for (Rgb& pixel : image.layer(0)) pixel = Rgb(1.0f);
             return true;
@@ -438,12 +443,17 @@ class FinishingIntegrator final : public Integrator {
             seen_.push_back(film.mean(0)[0].x);
             return 0;
         }
-        void finish(Film& film) override { film.set_mean(0, std::vector<Rgb>(film.pixels(), Rgb(7.0f))); }
+        void finish(Film& film, CancelToken cancelled) override {
+            film.set_mean(0, std::vector<Rgb>(film.pixels(), Rgb(7.0f)));
+            if (in_finish_) in_finish_(film, cancelled);
+        }
 
       private:
         std::vector<float>& seen_;
+        InFinish in_finish_;
     };
     std::vector<float>& seen_;
+    InFinish in_finish_;
 };
 
 }  // namespace
@@ -459,4 +469,68 @@ TEST_CASE("a preview shows the finished picture and leaves the film as it was", 
     CHECK(shown.front() == 7.0f);
     CHECK(seen == std::vector<float>{0.0f, 1.0f, 1.0f});
     CHECK(result.film.mean(0)[0].x == 7.0f);
+}
+
+TEST_CASE("an interrupted render has the finished picture where that is quick, and else the last preview's",
+          "[driver][stopping]") {
+    const auto scene = fake_scene();
+    std::vector<float> seen;
+    std::atomic<bool> stop{false};
+    const TemporaryFolder folder;
+    RenderRequest request = request_for(9, folder.file("c"));
+    request.interrupted = &stop;
+    request.progress = [&](const RenderProgress& p) { stop = p.passes == 4; };
+    const auto mean = [](const RenderResult& result) { return result.film.mean(0)[0].x; };
+
+    const RenderResult quick = render(*scene, FinishingIntegrator(seen), request);
+    CHECK(quick.interrupted);
+    CHECK(mean(quick) == 7.0f);
+    CHECK_FALSE(quick.finished_for);
+
+    // Previews have their time, the end has a second: what was half done is left out, and said.
+    const InFinish slow = [&](const Film&, CancelToken cancelled) {
+        while (stop) cancelled.check();
+    };
+    const auto start = std::chrono::steady_clock::now();
+    stop = false;
+    const RenderResult without = render(*scene, FinishingIntegrator(seen, slow), request);
+    CHECK(without.finished_for == 0u);
+    CHECK(mean(without) == 1.0f);
+    stop = false, request.preview = [](const Film&) {};  // after the first pass
+    const RenderResult with = render(*scene, FinishingIntegrator(seen, slow), request);
+    CHECK(with.finished_for == 1u);
+    CHECK(mean(with) == 7.0f);
+    CHECK(with.film.pass_count() == 4);
+    CHECK(bits(with) == bits(quick));
+    CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(20));  // two, on a quiet machine
+
+    // It goes on from there, and is finished in the end.
+    stop = false, request.progress = {}, request.resume = true;
+    const RenderResult resumed = render(*scene, FinishingIntegrator(seen, slow), request);
+    CHECK(resumed.resumed_at == 4);
+    CHECK(mean(resumed) == 7.0f);
+    CHECK_FALSE(resumed.finished_for);
+}
+
+TEST_CASE("a render that is interrupted while its picture is finished is finished in a hurry",
+          "[driver][stopping]") {
+    const auto scene = fake_scene();
+    std::vector<float> seen;
+    std::atomic<bool> stop{false};
+    const TemporaryFolder folder;
+    RenderRequest request = request_for(2, folder.file("c"));
+    request.interrupted = &stop, request.checkpoint_at_end = false;
+    int calls = 0;
+    const RenderResult result = render(*scene,
+                                       FinishingIntegrator(seen,
+                                                           [&](const Film&, CancelToken cancelled) {
+                                                               stop = true, ++calls;
+                                                               cancelled.check();
+                                                           }),
+                                       request);
+    CHECK(result.interrupted);
+    CHECK(calls == 2);
+    CHECK(result.film.mean(0)[0].x == 7.0f);
+    CHECK_FALSE(result.finished_for);
+    CHECK(folder.size() == 1);  // the checkpoint
 }
