@@ -1,0 +1,86 @@
+"""Run inside of Blender: builds a scene and renders it again and again, each picture with its own seed.
+
+    blender -b --factory-startup --python experiments/peers/cycles/render.py -- JOB.json
+
+The job: folder (of the exported scene), vdb, output, threads, step_rate, max_steps, cut_grids, volume_sampling, and
+`samples`, a list, or a list of one and `budget` in seconds: then samples double until the next picture would not fit.
+Writes output/N.exr (linear, float, box filter) and output/log.json. Raw: no view transform, denoiser, clamping, adaptive
+sampling, light threshold or blur; as many bounces as Cycles has.
+"""
+import json
+import resource
+import sys
+import time
+from pathlib import Path
+
+import bpy
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from build import build  # noqa: E402
+
+BOUNCES = 1024  # the most that Cycles allows
+
+
+def configure(job):
+    scene = bpy.context.scene
+    scene.render.engine = "CYCLES"
+    cycles, render = scene.cycles, scene.render
+    cycles.device, cycles.use_denoising, cycles.use_adaptive_sampling = "CPU", False, False
+    cycles.time_limit, cycles.use_auto_tile = 0.0, False
+    for name in ("max_bounces", "diffuse_bounces", "glossy_bounces", "transmission_bounces", "volume_bounces",
+                 "transparent_max_bounces"):
+        setattr(cycles, name, BOUNCES)
+    cycles.caustics_reflective = cycles.caustics_refractive = True
+    cycles.blur_glossy = cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
+    cycles.light_sampling_threshold = 0.0
+    cycles.pixel_filter_type = "BOX"
+    cycles.volume_step_rate, cycles.volume_max_steps = job["step_rate"], job["max_steps"]
+    render.threads_mode, render.threads = "FIXED", job["threads"]
+    render.film_transparent, render.use_compositing, render.use_sequencer = False, False, False
+    render.use_persistent_data = True  # the scene is loaded once
+    image = render.image_settings
+    image.file_format, image.color_depth, image.exr_codec, image.color_mode = "OPEN_EXR", "32", "ZIP", "RGB"
+    scene.view_settings.view_transform = "Raw"
+
+
+def processor_seconds():
+    used = resource.getrusage(resource.RUSAGE_SELF)
+    return used.ru_utime + used.ru_stime
+
+
+def picture(job, index, samples, seed):
+    """One render: samples, seed, seconds on the wall and of the processors, and the file."""
+    scene = bpy.context.scene
+    scene.cycles.samples, scene.cycles.seed = samples, seed
+    path = Path(job["output"]) / f"{index}.exr"
+    scene.render.filepath = str(path)
+    wall, cpu = time.monotonic(), processor_seconds()
+    bpy.ops.render.render(write_still=True)
+    return {"passes": samples, "seed": seed, "wall_s": time.monotonic() - wall, "cpu_s": processor_seconds() - cpu,
+            "file": path.name}
+
+
+def main():
+    job = json.loads(Path(sys.argv[sys.argv.index("--") + 1]).read_text())
+    start = time.monotonic()
+    notes = build(job, Path(job["folder"]))
+    configure(job)
+    built = time.monotonic() - start
+    # The first picture loads the scene and builds its BVH: a warm-up of one sample, not counted.
+    warm_up = picture(job, "warm_up", 1, 12345)
+    log = {"version": bpy.app.version_string, "notes": notes, "build_s": built + warm_up["wall_s"], "runs": []}
+    samples, spent = list(job["samples"]), 0.0
+    while samples:
+        run = picture(job, len(log["runs"]), samples.pop(0), job["seed"] + len(log["runs"]))
+        log["runs"].append(run)
+        spent += run["wall_s"]
+        if not samples and job.get("budget") and spent + 2 * run["wall_s"] < job["budget"]:
+            samples.append(2 * run["passes"])
+    (Path(job["output"]) / "log.json").write_text(json.dumps(log, indent=1))
+
+
+try:
+    main()
+except Exception as error:  # Blender itself would end with 0
+    print(f"render.py: {error!r}", file=sys.stderr)
+    raise SystemExit(1) from error
