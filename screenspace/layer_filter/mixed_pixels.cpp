@@ -70,14 +70,15 @@ class MixedPixel {
         return sum < 1.0f;
     }
 
-    /// V[y] is too noisy itself at one pixel: a black one would be taken to be sure, and what is bright by
-    /// chance to be unsure, which would make the picture darker.
+    /// V[y] is too noisy itself at one pixel: a black one would be taken to be sure. An outlier is known to
+    /// be unsure, and would stand in the picture as a dot with the variance of its neighbours; what it takes
+    /// from the light is a share of the share that the pixel's own mean has.
     float own_variance() const {
         float sum = average(layer_.variance[pixel_]), count = 1.0f;
         for_each_neighbour(variance_reach, [&](std::uint32_t q) {
             if (is_finite(layer_.variance[q])) sum += average(layer_.variance[q]), count += 1.0f;
         });
-        return sum / count;
+        return max_of(sum / count, average(layer_.variance[pixel_]));
     }
 
   private:

@@ -55,16 +55,35 @@ void take_apart(const FilterPlanes& p, int step, const FilterChannels& fine, Lev
     });
 }
 
+/// k of Eq. (2). Energies are averages over the taps, some m independent values where noise is even, but one
+/// or two where outliers have most of it: then a few of them in one pixel pass for a detail, and stand in the
+/// picture as a dot. With w the weights of the taps, 1 / m = sum w^2 N^2 / (sum w N)^2, which is nearly w_0
+/// sum w N^2 / (sum w N)^2 where noise is that of the pixel itself; there k is three times what it is where
+/// noise is even.
+float needed_ratio(float confidence, float noise, float squared_noise) {
+    constexpr float centre = 36.0f / 256.0f;                                 // w_0
+    const float concentration = squared_noise / max_of(sqr(noise), 1e-36f);  // denormal numbers are 0
+    return confidence * (1.0f + 2.0f * centre * (max_of(1.0f, concentration) - 1.0f));
+}
+
 void add_shrunk(const FilterPlanes& p, int step, const FilterChannels& fine, const Level& level,
                 float confidence, FilterChannels& sum, CancelToken cancelled) {
+    std::vector<float> squared(level.noise.size());
+    std::transform(level.noise.begin(), level.noise.end(), squared.begin(), [](float n) {
+        return sqr(
+            min_of(n, 1e18f));  // of what is all but black the noise can be so much; infinity times 0 is NaN
+    });
     for_each_piece(p, cancelled, [&](int y, int x0, int x1) {
         const LevelKernel kernel(p, step, y, x0, x1);
         float energy[LevelKernel::most_pixels], noise[LevelKernel::most_pixels];
+        float squared_noise[LevelKernel::most_pixels];
         kernel.average(level.energy, energy), kernel.average(level.noise, noise);
+        kernel.average(squared, squared_noise);
         float change[LevelKernel::most_pixels];  // g - 1, Eq. (2)
         for (int i = 0; i < x1 - x0; ++i)
-            change[i] =
-                noise[i] > 0.0f ? -min_of(1.0f, confidence * noise[i] / max_of(energy[i], 1e-38f)) : 0.0f;
+            change[i] = noise[i] > 0.0f ? -min_of(1.0f, needed_ratio(confidence, noise[i], squared_noise[i]) *
+                                                            noise[i] / max_of(energy[i], 1e-38f))
+                                        : 0.0f;
         const std::size_t at = p.index(x0, y);
         for (std::size_t c = 0; c < channel_count; ++c) {
             const float *now = fine.planes[c].data() + at, *next = level.coarse.planes[c].data() + at;
