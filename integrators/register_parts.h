@@ -25,7 +25,7 @@ std::shared_ptr<const core::Integrator> make_path(const EyePathLimits& limits);
 std::shared_ptr<const core::Integrator> make_volpath(const EyePathLimits& limits);
 /// Light of lights with a position, scattered once in media; light of all others, with all else that scatters
 /// at most once (lights = positional, other).
-std::shared_ptr<const core::Integrator> make_epipolar(const EyePathLimits& limits, int lines);
+std::shared_ptr<const core::Integrator> make_epipolar(const EyePathLimits& limits, int lines, int samples);
 std::shared_ptr<const core::Integrator> make_single_scattering(const EyePathLimits& limits);
 
 /// Light that passes delta surfaces last, for integrators that can only hit lights.

@@ -80,10 +80,12 @@ std::vector<LayerMethod> choose_layer_methods(const Scene& scene, const Requirem
                                    : "; no light has a position to march to")}};
     // Lines end at the border of the picture: as many as there are pixels along half of it.
     const int lines = std::clamp(scene.film().width + scene.film().height, 16, 1024);
+    // Refinement starts from the evenly spread samples: a gap in the smoke between two of them is not seen.
+    const int samples = r.media_heterogeneous > 0 ? 64 : 16;
     return {{make_single_scattering(limits),
              {"emission", "direct", other_scattering},
              surfaces + "; one distance a ray for lights without a position"},
-            {make_epipolar(limits, lines),
+            {make_epipolar(limits, lines, samples),
              {positional_scattering},
              "lights with a position, marched along epipolar lines: nothing is left to chance"},
             {make_volpath(limits), {"indirect", "multiple_scattering"}, far}};

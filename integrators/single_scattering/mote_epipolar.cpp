@@ -75,9 +75,10 @@ Plan MoteEpipolar::plan(const Scene& scene, const Requirements& r) const {
 
 }  // namespace
 
-std::shared_ptr<const Integrator> make_epipolar(const EyePathLimits& limits, int lines) {
+std::shared_ptr<const Integrator> make_epipolar(const EyePathLimits& limits, int lines, int samples) {
     Properties properties = scattering_properties(limits, "positional");
     properties.values["lines"] = {std::int64_t(lines), {}};
+    properties.values["samples"] = {std::int64_t(samples), {}};
     return std::make_shared<const MoteEpipolar>(properties);
 }
 
