@@ -6,8 +6,11 @@
 
 #include <fmt/format.h>
 
+#include <array>
+
 #include "core/objects/properties.h"
 #include "core/objects/registry.h"
+#include "core/scene/scattering_points.h"
 #include "media/medium_emitter.h"
 #include "media/medium_parameters.h"
 #include "media/tracking_random.h"
@@ -104,6 +107,46 @@ std::optional<float> HomogeneousMedium::sample_collision(const Ray& ray, core::P
     }
     ++counters.collisions;
     return std::fmin(float(ray.t_min + t), std::fmin(ray.t_max, std::numeric_limits<float>::max()));
+}
+
+/// Distances to scatterings before the end of the ray, of the channels in turn: channel h has the density
+/// sigma_h exp(-sigma_h t) / (1 - T_h), and points count by the mean over channels (balance heuristic). Grey
+/// media need no other weights than that of 1 - T.
+void HomogeneousMedium::scatter_along(const Ray& ray, core::PathWeights& weights, Rgb& emitted,
+                                      core::ScatteringPoints& points, Rng& rng,
+                                      core::TrackingCounters& counters) const {
+    const double length = length_of(ray);
+    const Rgb start = weights.throughput / core::average(weights.unidirectional);
+    if (!core::is_black(emission_)) emitted += start * emission_along(sigma_t_, emission_, length);
+    std::array<int, 3> channels;
+    std::array<double, 3> collides;  // 1 - T_h
+    int count = 0;
+    for (int c = 0; c < 3; ++c)
+        if (sigma_t_[c] > 0.0f)
+            channels[std::size_t(count)] = c,
+            collides[std::size_t(count++)] = -std::expm1(-optical_depth(sigma_t_[c], length));
+    const int samples = absorbs_alone_ || !(length > 0.0) ? 0 : points.count();
+    const int first = samples > 0 ? std::min(int(rng.next_float() * float(count)), count - 1) : 0;
+    for (int i = 0; i < samples; ++i) {
+        const auto h = std::size_t((first + i) % count);
+        const double place = (double(i) + double(rng.next_float())) / double(samples);
+        const double t = -std::log1p(-place * collides[h]) / sigma_t_[channels[h]];
+        // Everything over the transmittance of channel h, which may be as small as it likes.
+        const double of_h = optical_depth(sigma_t_[channels[h]], t);
+        double density = 0.0;
+        for (std::size_t j = 0; j < std::size_t(count); ++j) {
+            const double sigma = sigma_t_[channels[j]];
+            density += sigma * std::exp(of_h - optical_depth(sigma, t)) / collides[j] / double(count);
+        }
+        Rgb weight;
+        for (int c = 0; c < 3; ++c)
+            weight[c] = float(std::exp(of_h - optical_depth(sigma_t_[c], t)) * sigma_s_[c] /
+                              (density * double(samples)));
+        const double far = std::min(double(ray.t_min) + t, double(ray.t_max));
+        points.add(ray.at(std::fmin(float(far), std::numeric_limits<float>::max())), start * weight);
+    }
+    counters.collisions += std::uint64_t(samples);
+    weights.throughput *= transmittance_over(sigma_t_, length);
 }
 
 void HomogeneousMedium::connect(const Ray& ray, core::PathWeights& weights, Rng&,

@@ -30,6 +30,9 @@ class HomogeneousMedium final : public core::Medium {
     std::optional<float> sample_collision(const core::Ray& ray, core::PathWeights& weights,
                                           core::Rgb& emitted, core::Rng& rng,
                                           core::TrackingCounters& counters) const override;
+    void scatter_along(const core::Ray& ray, core::PathWeights& weights, core::Rgb& emitted,
+                       core::ScatteringPoints& points, core::Rng& rng,
+                       core::TrackingCounters& counters) const override;
     void connect(const core::Ray& ray, core::PathWeights& weights, core::Rng& rng,
                  core::TrackingCounters& counters) const override;
     core::Rgb transmittance(const core::Ray& ray, core::Rng& rng,

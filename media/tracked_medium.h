@@ -102,6 +102,9 @@ class TrackedMedium final : public HeterogeneousMedium {
     std::optional<float> sample_collision(const core::Ray& ray, core::PathWeights& weights,
                                           core::Rgb& emitted, core::Rng& rng,
                                           core::TrackingCounters& counters) const override;
+    void scatter_along(const core::Ray& ray, core::PathWeights& weights, core::Rgb& emitted,
+                       core::ScatteringPoints& points, core::Rng& rng,
+                       core::TrackingCounters& counters) const override;
     void connect(const core::Ray& ray, core::PathWeights& weights, core::Rng& rng,
                  core::TrackingCounters& counters) const override;
     core::Rgb transmittance_by(TransmittanceEstimator estimator, const core::Ray& ray, core::Rng& rng,
@@ -116,11 +119,21 @@ class TrackedMedium final : public HeterogeneousMedium {
     /// density) -> bool` (false stops) for every tentative collision, `at_piece(range, length)` for every
     /// piece that was passed. Rates and densities are in the grid's own unit; the scale is applied to
     /// lengths. At the step limit the walk ends: the t up to which it came. Pieces that are better tracked
-    /// regularly go to `at_voxels(voxels, t0, t1) -> bool` instead.
+    /// regularly go to `at_voxels(voxels, t0, t1) -> bool` instead. `next_gap()` is the optical depth to the
+    /// next event, where that is not a tentative collision alone.
+    template <typename RateOf, typename AtPiece, typename AtCollision, typename AtVoxels, typename NextGap>
+    std::optional<double> track(const core::Ray& ray, core::TrackingCounters& counters, RateOf&& rate_of,
+                                AtPiece&& at_piece, AtCollision&& at_collision, AtVoxels&& at_voxels,
+                                NextGap&& next_gap) const;
     template <typename RateOf, typename AtPiece, typename AtCollision, typename AtVoxels>
     std::optional<double> track(const core::Ray& ray, core::Rng& rng, core::TrackingCounters& counters,
                                 RateOf&& rate_of, AtPiece&& at_piece, AtCollision&& at_collision,
-                                AtVoxels&& at_voxels) const;
+                                AtVoxels&& at_voxels) const {
+        return track(ray, counters, rate_of, at_piece, at_collision, at_voxels,
+                     [&] { return sample_optical_depth(rng); });
+    }
+    /// The strata for so many samples along a ray: the majorants' optical depth shared out among them.
+    double stratum_along(const core::Ray& ray, int samples) const;
 
     /// The voxels along a ray, for regular tracking; counts lookups.
     class Voxels;
@@ -170,3 +183,4 @@ class TrackedMedium final : public HeterogeneousMedium {
 }  // namespace mote::media
 
 #include "media/tracked_medium_impl.h"
+#include "media/tracked_scattering_impl.h"

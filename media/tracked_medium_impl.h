@@ -54,16 +54,15 @@ class TrackedMedium<Grid>::Voxels {
 };
 
 template <typename Grid>
-template <typename RateOf, typename AtPiece, typename AtCollision, typename AtVoxels>
-std::optional<double> TrackedMedium<Grid>::track(const core::Ray& ray, core::Rng& rng,
-                                                 core::TrackingCounters& counters, RateOf&& rate_of,
-                                                 AtPiece&& at_piece, AtCollision&& at_collision,
-                                                 AtVoxels&& at_voxels) const {
+template <typename RateOf, typename AtPiece, typename AtCollision, typename AtVoxels, typename NextGap>
+std::optional<double> TrackedMedium<Grid>::track(const core::Ray& ray, core::TrackingCounters& counters,
+                                                 RateOf&& rate_of, AtPiece&& at_piece,
+                                                 AtCollision&& at_collision, AtVoxels&& at_voxels,
+                                                 NextGap&& next_gap) const {
     const core::Vec3d origin = index_origin(ray), direction = index_direction(ray);
     const double scale = parts_.scale;
     auto cursor = grid_.cursor();
-    double depth =
-        sample_optical_depth(rng);  // majorant optical depth left until the next tentative collision
+    double depth = next_gap();  // majorant optical depth left until the next tentative collision
     std::uint64_t steps = 0;
     std::optional<double> given_up;
     double uneven_from = 0.0, uneven_to = 0.0;  // a piece for regular tracking, outside of the fast loop
@@ -96,7 +95,7 @@ std::optional<double> TrackedMedium<Grid>::track(const core::Ray& ray, core::Rng
                 given_up = t;
                 return false;
             }
-            depth = sample_optical_depth(rng);
+            depth = next_gap();
         }
     };
     const auto voxel_by_voxel = [&]() __attribute__((noinline, cold)) {

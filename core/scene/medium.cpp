@@ -1,7 +1,9 @@
-// Marching through media that know nothing better.
+// Marching through media, and scattering along a ray, for those that know nothing better.
 #include "core/scene/medium.h"
 
 #include <cmath>
+
+#include "core/scene/scattering_points.h"
 
 namespace mote::core {
 
@@ -26,6 +28,19 @@ Vec3d march(const Medium& medium, const Ray& ray, double t0, double t1, float st
 }
 
 }  // namespace
+
+void Medium::scatter_along(const Ray& ray, PathWeights& weights, Rgb& emitted, ScatteringPoints& points,
+                           Rng& rng, TrackingCounters& counters) const {
+    const int tries = std::max(points.count(), 1);
+    for (int i = 0; i < tries; ++i) {
+        PathWeights path = weights;
+        path.throughput /= float(tries);
+        path.hero = std::min(int(rng.next_float() * 3.0f), 2);  // of this point alone
+        if (const auto t = sample_collision(ray, path, emitted, rng, counters))
+            points.add(ray.at(*t), path.throughput / average(path.unidirectional));
+    }
+    weights.throughput *= transmittance(ray, rng, counters);
+}
 
 float Medium::marching_step(float voxels, float length) const {
     const MediumTraits t = traits();

@@ -59,6 +59,7 @@ struct MediumTraits {
 };
 
 class Emitter;
+class ScatteringPoints;
 
 class Medium : public Object {
   public:
@@ -80,6 +81,15 @@ class Medium : public Object {
     /// throughput alone is multiplied, by the transmittance or an unbiased estimate of it.
     virtual std::optional<float> sample_collision(const Ray& ray, PathWeights& weights, Rgb& emitted,
                                                   Rng& rng, TrackingCounters& counters) const = 0;
+
+    /// Both at once, the light that is scattered along the ray and what comes through: adds candidates to
+    /// `points` (scattering_points.h) whose weights hold weights.throughput, and multiplies that by an
+    /// unbiased estimate of the transmittance to t_max. Emission met on the way is added to `emitted`,
+    /// divided by average(unidirectional), to which nothing else happens. Precondition: weights.light is
+    /// black (no other technique finds what lies on this ray). The interface does it by sample_collision(),
+    /// points.count() times.
+    virtual void scatter_along(const Ray& ray, PathWeights& weights, Rgb& emitted, ScatteringPoints& points,
+                               Rng& rng, TrackingCounters& counters) const;
 
     /// Ratio tracking of the transmittance from t_min to t_max for a connection to a light: multiplies
     /// `weights` so that throughput holds the estimate, `light` the pdf ratio of this technique, and

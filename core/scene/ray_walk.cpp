@@ -1,6 +1,7 @@
 #include "core/scene/ray_walk.h"
 
 #include "core/scene/media_along.h"
+#include "core/scene/scattering_points.h"
 
 namespace mote::core {
 namespace {
@@ -38,11 +39,10 @@ WalkEvent collision_at(float t, const Medium* medium, float surface_distance) {
     return event;
 }
 
-}  // namespace
-
-template <bool Media>
-WalkEvent walk(const RayQueries& scene, const Ray& ray, MediumState& state, PathWeights& weights,
-               Rgb& emitted, WalkContext& context) {
+/// `cross(t0, t1)` goes through a segment of one medium and returns the distance of a collision, if any.
+template <bool Media, typename Cross>
+WalkEvent follow(const RayQueries& scene, const Ray& ray, MediumState& state, PathWeights& weights,
+                 WalkContext& context, const Cross& cross) {
     context.cancelled.check();
     ++context.rays.closest;
     const auto hit = scene.first_hit(ray);
@@ -56,8 +56,7 @@ WalkEvent walk(const RayQueries& scene, const Ray& ray, MediumState& state, Path
         scene.boundaries_along(boundary_ray, context.boundary_hits);
         for (const SurfaceHit& boundary : context.boundary_hits) {
             if constexpr (Media)
-                if (const auto c = cross_segment(state, ray, t, boundary.t, weights, emitted, context))
-                    return collision_at(*c, state.current(), t_end);
+                if (const auto c = cross(t, boundary.t)) return collision_at(*c, state.current(), t_end);
             if (is_pane(boundary))
                 if (const StraightPassage pane = passage_through(boundary, ray.direction);
                     !passes(pane, weights, context.rng))
@@ -67,8 +66,7 @@ WalkEvent walk(const RayQueries& scene, const Ray& ray, MediumState& state, Path
         }
     }
     if constexpr (Media)
-        if (const auto c = cross_segment(state, ray, t, t_end, weights, emitted, context))
-            return collision_at(*c, state.current(), t_end);
+        if (const auto c = cross(t, t_end)) return collision_at(*c, state.current(), t_end);
     WalkEvent event;
     event.surface_distance = ray.t_max;
     if (hit) {
@@ -76,6 +74,28 @@ WalkEvent walk(const RayQueries& scene, const Ray& ray, MediumState& state, Path
         event.distance = event.surface_distance = hit->t;
     }
     return event;
+}
+
+}  // namespace
+
+template <bool Media>
+WalkEvent walk(const RayQueries& scene, const Ray& ray, MediumState& state, PathWeights& weights,
+               Rgb& emitted, WalkContext& context) {
+    return follow<Media>(scene, ray, state, weights, context, [&](float t0, float t1) {
+        return cross_segment(state, ray, t0, t1, weights, emitted, context);
+    });
+}
+
+WalkEvent walk_to_surface(const RayQueries& scene, const Ray& ray, MediumState& state, PathWeights& weights,
+                          Rgb& emitted, ScatteringPoints& points, WalkContext& context) {
+    return follow<true>(scene, ray, state, weights, context, [&](float t0, float t1) -> std::optional<float> {
+        if (const Medium* medium = state.current(); medium && t0 < t1) {
+            points.begin_part(state);
+            medium->scatter_along({ray.origin, ray.direction, t0, t1}, weights, emitted, points, context.rng,
+                                  context.tracking);
+        }
+        return std::nullopt;
+    });
 }
 
 template WalkEvent walk<true>(const RayQueries&, const Ray&, MediumState&, PathWeights&, Rgb&, WalkContext&);

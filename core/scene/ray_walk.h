@@ -46,6 +46,11 @@ template <bool Media>
 WalkEvent walk(const RayQueries& scene, const Ray& ray, MediumState& state, PathWeights& weights,
                Rgb& emitted, WalkContext& context);
 
+/// Goes on to the first surface, or to a pane that reflects the path, or outside: media on the way scatter at
+/// `points` and let the rest through (Medium::scatter_along). For paths whose `weights.light` is black.
+WalkEvent walk_to_surface(const RayQueries& scene, const Ray& ray, MediumState& state, PathWeights& weights,
+                          Rgb& emitted, ScatteringPoints& points, WalkContext& context);
+
 extern template WalkEvent walk<true>(const RayQueries&, const Ray&, MediumState&, PathWeights&, Rgb&,
                                      WalkContext&);
 extern template WalkEvent walk<false>(const RayQueries&, const Ray&, MediumState&, PathWeights&, Rgb&,

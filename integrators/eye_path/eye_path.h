@@ -6,6 +6,7 @@
 // (max_scatterings = 1): what its direction then finds is the other technique for direct light.
 #pragma once
 
+#include "core/scene/scattering_points.h"
 #include "core/scene/scattering_vertex.h"
 #include "integrators/eye_path/eye_path_limits.h"
 #include "integrators/eye_path/eye_ray.h"
@@ -45,11 +46,8 @@ class EyePath {
     /// where the path ends. `on_leg(EyeLeg)` sees every leg before its vertex is made.
     template <typename OnLeg>
     bool advance(core::WalkContext& context, TransportSum& sum, const OnLeg& on_leg) {
-        return advance_by(
-            [this](core::Rgb& emitted, core::WalkContext& c) {
-                return core::walk<Media>(scene_, ray_, state_, weights_, emitted, c);
-            },
-            context, sum, on_leg);
+        return advance_by([this](core::Rgb& emitted, core::WalkContext& c) { return go_on(emitted, c); },
+                          context, sum, on_leg);
     }
     bool advance(core::WalkContext& context, TransportSum& sum) {
         return advance(context, sum, [](const EyeLeg&) {});
@@ -59,6 +57,20 @@ class EyePath {
     template <typename Walker, typename OnLeg>
     bool advance_by(Walker&& walker, core::WalkContext& context, TransportSum& sum, const OnLeg& on_leg);
 
+    /// The same, but until the path has scattered it goes on to surfaces: media on the leg scatter at
+    /// `points`, and let the rest through. Those of the leg are chosen from `points` afterwards, whether or
+    /// not there is a vertex; what scatters there is up to the method (light_at()).
+    bool advance_to_surface(core::WalkContext& context, TransportSum& sum, core::ScatteringPoints& points) {
+        points.start(core::Rng(context.rng.next_u32()));
+        return advance_by(
+            [&](core::Rgb& emitted, core::WalkContext& c) {
+                return scatterings_ == 0
+                           ? core::walk_to_surface(scene_, ray_, state_, weights_, emitted, points, c)
+                           : go_on(emitted, c);
+            },
+            context, sum, [](const EyeLeg&) {});
+    }
+
     // At a vertex:
     const core::ScatteringVertex& vertex() const { return vertex_; }
     /// Next-event estimation: the light of one light drawn for the vertex (lights/emitters/direct_light.h).
@@ -66,6 +78,18 @@ class EyePath {
         return lights::sample_light<Media>(lights_, vertex_, weights_, state_, choices_.x, sampler_.next_2d(),
                                            context, how);
     }
+    /// The vertex at a scattering point of the last leg.
+    core::ScatteringVertex vertex_at(const core::Vec3& position, const core::MediumState& state) const {
+        core::ScatteringVertex vertex;
+        vertex.position = position, vertex.wo = -ray_.direction, vertex.phase = &state.current()->phase();
+        return vertex;
+    }
+    /// The light of lights that scatters there, by both techniques; `weight` is that of the point.
+    core::Rgb light_at(const core::ScatteringVertex& point, const core::Rgb& weight,
+                       const core::MediumState& state, core::WalkContext& context,
+                       const lights::LightSampling& how = {});
+    /// May a path of one more edge than the last leg's be found?
+    bool may_go_on() const { return depth_ != limits_.max_depth; }
     /// Whether a path that would leave the vertex by a mirror or through glass ends.
     void end_at_delta(bool ends) { ends_at_delta_ = ends; }
     void scale(float factor) { weights_.throughput *= factor; }
@@ -96,6 +120,9 @@ class EyePath {
     bool wants_along() const { return limits_.wanted[layer_along()]; }
 
   private:
+    core::WalkEvent go_on(core::Rgb& emitted, core::WalkContext& context) {
+        return core::walk<Media>(scene_, ray_, state_, weights_, emitted, context);
+    }
     bool scatter(core::WalkContext& context);
     bool wants_more() const;
     /// Lights that the camera does not see: the first leg goes on behind them.
@@ -147,6 +174,20 @@ bool EyePath<Media>::advance_by(Walker&& walker, core::WalkContext& context, Tra
     vertex_ = make_vertex(event, ray_), leg_length_ = event.distance;
     choices_ = sampler_.next_2d();
     return true;
+}
+
+template <bool Media>
+core::Rgb EyePath<Media>::light_at(const core::ScatteringVertex& point, const core::Rgb& weight,
+                                   const core::MediumState& state, core::WalkContext& context,
+                                   const lights::LightSampling& how) {
+    core::PathWeights weights;
+    weights.throughput = weight, weights.hero = weights_.hero;
+    const core::Vec2 choices = sampler_.next_2d();
+    core::Rgb sum = lights::sample_light<Media>(lights_, point, weights, state, choices.x, sampler_.next_2d(),
+                                                context, how);
+    if (const auto next = point.sample(choices.y, sampler_.next_2d(), core::TransportMode::radiance))
+        sum += lights::light_towards<Media>(lights_, point, *next, weights, state, context);
+    return sum;
 }
 
 template <bool Media>

@@ -40,6 +40,8 @@ class MoteVpl final : public Integrator {
             if (!settings_.bounded) properties.warn("bound has no effect: bounded is false");
         }
         read_compensation(properties);
+        settings_.scattering_points =
+            int(properties.get_int_in("scattering_points", settings_.scattering_points, 0, 64));
         if (const auto nested = properties.child_of<Visibility>(Category::visibility))
             settings_.visibility = nested->settings();
     }
@@ -114,8 +116,13 @@ Plan MoteVpl::plan(const Scene& scene, const Requirements& r) const {
     const double pixels = double(scene.film().width) * double(scene.film().height);
     plan_visibility(plan, scene, settings_.visibility, pixels * settings_.eye_samples);
     plan_media(plan, r);
-    if (r.any_media())
+    if (r.any_media() && settings_.scattering_points == 0)
         plan.run("eye rays", "one distance by tracking per pixel and pass", "Engelhardt 2013, Eq. 10.9");
+    if (r.any_media() && settings_.scattering_points > 0)
+        plan.run(
+            "eye rays",
+            std::to_string(settings_.scattering_points) + " scattering points, and the surface behind them",
+            "one walk a pixel and pass; VPLs are shared out among the points");
     if (settings_.bounded && !settings_.compensates())
         plan.miss("short distances", "light between points closer than the bound's radius is darkened",
                   "the bound removes it; <compensation> brings it back");
@@ -147,6 +154,10 @@ void register_mote_vpl(Registry& registry) {
     parameters.push_back({"compensation", "compensation", "none", "what the bound takes, brought back"});
     parameters.push_back(
         {"visibility", "visibility", "traced", "what stands between VPLs and receivers: traced, shadow_map"});
+    parameters.push_back({"scattering_points", "integer", "8",
+                          "points in media where the light of each eye ray is gathered, besides the surface "
+                          "behind them, up to 64; 0: "
+                          "one collision or the surface, by chance"});
     parameters.push_back(
         {"eye_samples", "integer", "4 for 1-to-1 compensation, else 1",
          "eye paths a pixel and pass; VPLs are shared out among them, except with compensation "

@@ -1,41 +1,24 @@
 // The eye paths of a 4x4 tile of pixels, advanced together to their connectable vertices, where all VPLs are
 // gathered at once (lights/virtual_lights/vpl_gather.h).
+//
+// With scattering points a path goes on to its first surface, and gathers there and at K points of the media
+// before it (core/scene/scattering_points.h): at each of them the light of lights, and every K-th VPL, which
+// counts K times. So the points of a ray cost no more VPLs than one collision does. Which point meets which
+// VPLs is random, so that the sum is unbiased.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 
 #include "integrators/eye_path/eye_path.h"
 #include "integrators/virtual_point_lights/tile_compensation.h"
+#include "integrators/virtual_point_lights/vpl_pixel.h"
 #include "integrators/virtual_point_lights/vpl_settings.h"
-#include "lights/shadow_maps/shadow_map_gather.h"
 #include "lights/virtual_lights/particle_tracer.h"
 #include "lights/virtual_lights/vpl_gather.h"
 
 namespace mote::integrators {
-
-/// Where a receiver lies: the layers of compensation are named after it.
-enum class ReceiverKind : std::uint8_t { surface, medium };
-
-/// One estimate of a pixel.
-struct VplPixel {
-    TransportSum transport;
-    std::array<core::Rgb, 2> compensation{};  ///< by ReceiverKind
-
-    void add(const VplPixel& other, float weight) {
-        for (std::size_t i = 0; i < transport.light.size(); ++i)
-            transport.light[i] += weight * other.transport.light[i];
-        for (std::size_t i = 0; i < 2; ++i) compensation[i] += weight * other.compensation[i];
-    }
-};
-
-/// Where shadow maps stand in for shadow rays; all null where they do not.
-struct EyeShadowMaps {
-    const lights::LightShadowMaps* lights = nullptr;
-    lights::ReceiverStore* receivers = nullptr;  ///< takes the receivers instead of their gathering VPLs here
-    int column = 0, row = 0;                     ///< pixel of the first lane
-    float scale = 1.0f;                          ///< of the light at receivers
-};
 
 /// Advances the lanes from one connectable vertex to the next, until no eye path goes on.
 template <bool Media>
@@ -61,6 +44,7 @@ class EyeTile {
         l.sum = {}, l.receiver = ReceiverKind::surface, l.alive = true;
         walk_.rng = eye.rng;
         l.path.emplace(scene_, settings_.eye, eye, walk_);
+        l.scattering.emplace(wants_points() ? settings_.scattering_points : 0);
         l.rng = walk_.rng;
     }
     void stop(int lane) {
@@ -82,23 +66,12 @@ class EyeTile {
             any = false;
             for (int i = 0; i < lights::ReceiverTile::width; ++i) {
                 Lane& lane = lanes_[std::size_t(i)];
+                lane.points = {};
                 if (lane.alive) lane.alive = advance(lane, i);
                 any |= lane.alive;
             }
-            lights::TileLight light{};
-            if (maps_.receivers)
-                maps_.receivers->add(receivers_, maps_.column, maps_.row, range, vpl_scale * maps_.scale);
-            else
-                // The sum over VPLs of Eqs. 10.4 and 10.5, with min(G*, b).
-                light = lights::gather({scene_, scratch_, walk_.rays, walk_.tracking, walk_.cancelled}, vpls_,
-                                       range, lights::BoundedGeometry{bound_}, receivers_);
-            const auto compensated = compensation_.run(range, vpl_scale);
-            for (int i = 0; i < lights::ReceiverTile::width; ++i) {
-                Lane& lane = lanes_[std::size_t(i)];
-                const bool surface = lane.receiver == ReceiverKind::surface;
-                lane.sum.transport[transport_layer(2, surface)] += vpl_scale * light[std::size_t(i)];
-                lane.sum.compensation[std::size_t(lane.receiver)] += compensated[std::size_t(i)];
-            }
+            gather(range, vpl_scale);
+            if constexpr (Media) gather_at_points(range, vpl_scale);
         }
     }
 
@@ -107,40 +80,124 @@ class EyeTile {
         std::optional<EyePath<Media>> path;
         core::Rng rng;  ///< of the path, while other lanes advance
         VplPixel sum;
+        std::optional<core::ScatteringPoints> scattering;
+        std::span<const core::ScatteringPoint> points;  ///< of the last leg
+        core::ScatteringVertex vertex;                  ///< at one of them
         ReceiverKind receiver = ReceiverKind::surface;
         bool alive = false;
     };
+
+    /// The sum over VPLs of Eqs. 10.4 and 10.5, with min(G*, b), and compensation, at all receivers.
+    void gather(const lights::VplRange& range, float vpl_scale) {
+        lights::TileLight light{};
+        if (maps_.receivers)
+            maps_.receivers->add(receivers_, maps_.column, maps_.row, range, vpl_scale * maps_.scale);
+        else
+            light = lights::gather({scene_, scratch_, walk_.rays, walk_.tracking, walk_.cancelled}, vpls_,
+                                   range, lights::BoundedGeometry{bound_}, receivers_);
+        const auto compensated = compensation_.run(range, vpl_scale);
+        for (int i = 0; i < lights::ReceiverTile::width; ++i) {
+            Lane& lane = lanes_[std::size_t(i)];
+            const bool surface = lane.receiver == ReceiverKind::surface;
+            lane.sum.transport[transport_layer(2, surface)] += vpl_scale * light[std::size_t(i)];
+            lane.sum.compensation[std::size_t(lane.receiver)] += compensated[std::size_t(i)];
+        }
+    }
+
+    /// The same at the scattering points, the n-th of every lane at once. VPLs are shared out among a few of
+    /// them.
+    void gather_at_points(const lights::VplRange& range, float vpl_scale) {
+        if (std::all_of(lanes_.begin(), lanes_.end(), [](const Lane& lane) { return lane.points.empty(); }))
+            return;
+        const auto count = std::size_t(settings_.scattering_points);
+        const std::size_t receivers = std::min(count, most_receivers), spacing = count / receivers;
+        for (std::size_t n = 0; n < count; ++n) {
+            const bool receives = n % spacing == 0 && n / spacing < receivers;
+            receivers_.clear();
+            for (int i = 0; i < lights::ReceiverTile::width; ++i)
+                if (Lane& lane = lanes_[std::size_t(i)]; !lane.points.empty())
+                    at_point(lane, i, lane.points[n], receives ? float(count) / float(receivers) : 0.0f);
+            if (receives)
+                gather({range.first + n / spacing * range.stride, range.stride * receivers, range.end},
+                       vpl_scale * float(receivers));
+        }
+    }
 
     /// Follows one eye path to its next vertex; makes it a receiver where it can be connected. Returns
     /// whether there is one.
     bool advance(Lane& lane, int index) {
         walk_.rng = lane.rng;
         EyePath<Media>& path = *lane.path;
-        const bool at_vertex = path.advance(walk_, lane.sum.transport);
+        const bool at_vertex = next_vertex(lane);
         if (at_vertex && path.vertex().connectable()) {
             if (path.wants_connection())
                 lane.sum.transport[path.layer_of_connection()] +=
                     path.sample_light(walk_, {false, maps_.lights});
+            // Engelhardt 2013, Eq. 10.9: tau sigma_s / p(t) of a receiver in a medium is in the throughput.
+            // The print leaves out sigma_s (docs/errata.md).
             if (settings_.eye.wanted[transport_layer(2, path.vertex().on_surface())])
-                add_receiver(lane, index);
+                add_receiver(lane, index, path.vertex(), path.throughput(), path.state());
         }
         lane.rng = walk_.rng;
         return at_vertex;
     }
 
-    void add_receiver(Lane& lane, int index) {
+    bool next_vertex(Lane& lane) {
         EyePath<Media>& path = *lane.path;
+        if constexpr (Media)
+            if (settings_.scattering_points > 0) {
+                const bool at_vertex = path.advance_to_surface(walk_, lane.sum.transport, *lane.scattering);
+                if (path.may_go_on()) lane.points = lane.scattering->choose(rare_light);
+                return at_vertex && (path.scatterings() > 0 || survives(path));
+            }
+        return path.advance(walk_, lane.sum.transport);
+    }
+    /// Does a path whose media let little through go on behind them? By chance, which its weight makes up
+    /// for.
+    bool survives(EyePath<Media>& path) {
+        const float stays = core::max_component(path.throughput()) / rare_light;
+        if (stays >= 1.0f) return true;
+        if (!(walk_.rng.next_float() < stays)) return false;
+        path.scale(1.0f / stays);
+        return true;
+    }
+
+    /// Light of lights at a point. `share` above 0: it is a receiver, too, and stands for so many points.
+    void at_point(Lane& lane, int index, const core::ScatteringPoint& point, float share) {
+        if (core::is_black(point.weight)) return;
+        walk_.rng = lane.rng;
+        const core::MediumState& state = lane.scattering->state_of(point);
+        lane.vertex = lane.path->vertex_at(point.position, state);
+        if (settings_.eye.wanted[Transport::single_scattering])
+            lane.sum.transport[Transport::single_scattering] +=
+                lane.path->light_at(lane.vertex, point.weight, state, walk_, {false, maps_.lights});
+        if (share > 0.0f && settings_.eye.wanted[Transport::multiple_scattering])
+            add_receiver(lane, index, lane.vertex, share * point.weight, state);
+        lane.rng = walk_.rng;
+    }
+    bool wants_points() const {
+        return settings_.eye.wanted[Transport::single_scattering] ||
+               settings_.eye.wanted[Transport::multiple_scattering];
+    }
+
+    /// `throughput` is the weight of the eye path up to `vertex`, which stays until the gathering.
+    void add_receiver(Lane& lane, int index, const core::ScatteringVertex& vertex,
+                      const core::Rgb& throughput, const core::MediumState& state) {
+        const EyePath<Media>& path = *lane.path;
         const int max_depth = settings_.eye.max_depth;
         const std::int32_t vpl_depth =
             max_depth < 0 ? std::numeric_limits<std::int32_t>::max() : max_depth - path.depth() - 1;
-        lane.receiver = path.vertex().on_surface() ? ReceiverKind::surface : ReceiverKind::medium;
-        // Engelhardt 2013, Eq. 10.9: tau sigma_s / p(t) of a receiver in a medium is in the throughput. The
-        // print leaves out sigma_s (docs/errata.md).
-        const core::Rgb throughput = path.throughput();
-        receivers_.set(index, path.vertex(), throughput, path.state(), core::Rng(walk_.rng.next_u32()),
-                       vpl_depth);
-        compensation_.add(index, path.vertex(), throughput, path.state(), vpl_depth);
+        lane.receiver = vertex.on_surface() ? ReceiverKind::surface : ReceiverKind::medium;
+        receivers_.set(index, vertex, throughput, state, core::Rng(walk_.rng.next_u32()), vpl_depth);
+        compensation_.add(index, vertex, throughput, state, vpl_depth);
     }
+
+    /// Eye paths and scattering points that carry less than this share of the light are followed by chance:
+    /// VPLs by the hundred cost the same wherever they are gathered.
+    static constexpr float rare_light = 0.3f;
+    /// So many of a ray's scattering points are receivers of VPLs: more take memory and compensation, and
+    /// gain little, because they meet no more VPLs (docs/media.md).
+    static constexpr std::size_t most_receivers = 2;
 
     const core::Scene& scene_;
     const VplSettings& settings_;

@@ -20,6 +20,9 @@ struct VplSettings {
     std::optional<ScreenSpaceSettings> screen_space;  ///< after the last pass, on surfaces
     int eye_samples = 1;                              ///< eye paths a pixel and pass
     VisibilitySettings visibility;
+    /// Points in media where the light along an eye ray is gathered, besides the surface behind them; 0: one
+    /// collision or the surface, by chance.
+    int scattering_points = 8;
 
     bool compensates() const { return compensation.enabled || screen_space.has_value(); }
     /// VPLs are shared out among the eye paths of a pixel, instead of all of them meeting every one.

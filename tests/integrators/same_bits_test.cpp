@@ -59,6 +59,7 @@ const std::map<std::string, Words> numbers = {
     {"max_depth", {"", "3"}},
     {"rr_depth", {"", "1"}},
     {"eye_samples", {"", "3"}},
+    {"scattering_points", {"3", "0"}},
     {"max_photons", {"", "99"}},
     {"alpha", {"", "1"}},
     {"vpl_bound", {"", "1"}},

@@ -144,7 +144,8 @@ TEST_CASE("shadow maps take the memory of a handful, whatever the number of VPLs
     CHECK(many.values["shadow_map_bytes"] == 4.0 * double(settings.bytes(8, false)));
     CHECK(many.values["receiver_bytes_peak"] == few.values["receiver_bytes_peak"]);
     CHECK(many.values["receivers"] > 200.0);
-    CHECK(many.values["receiver_bytes_peak"] < 100.0 * 256.0 * 1.5);
+    // At most three receivers a pixel: the surface, and two of its scattering points.
+    CHECK(many.values["receiver_bytes_peak"] < 100.0 * 256.0 * 1.5 * 3.0);
 }
 
 TEST_CASE("a shadow map above its limit is refused, with file, line and the size that fits",

@@ -1,0 +1,32 @@
+// What the eye paths of `mote_vpl` leave behind: light, and receivers for shadow maps.
+#pragma once
+
+#include "integrators/eye_path/transport_layers.h"
+#include "lights/shadow_maps/shadow_map_gather.h"
+
+namespace mote::integrators {
+
+/// Where a receiver lies: the layers of compensation are named after it.
+enum class ReceiverKind : std::uint8_t { surface, medium };
+
+/// One estimate of a pixel.
+struct VplPixel {
+    TransportSum transport;
+    std::array<core::Rgb, 2> compensation{};  ///< by ReceiverKind
+
+    void add(const VplPixel& other, float weight) {
+        for (std::size_t i = 0; i < transport.light.size(); ++i)
+            transport.light[i] += weight * other.transport.light[i];
+        for (std::size_t i = 0; i < 2; ++i) compensation[i] += weight * other.compensation[i];
+    }
+};
+
+/// Where shadow maps stand in for shadow rays; all null where they do not.
+struct EyeShadowMaps {
+    const lights::LightShadowMaps* lights = nullptr;
+    lights::ReceiverStore* receivers = nullptr;  ///< takes the receivers instead of their gathering VPLs here
+    int column = 0, row = 0;                     ///< pixel of the first lane
+    float scale = 1.0f;                          ///< of the light at receivers
+};
+
+}  // namespace mote::integrators
