@@ -42,15 +42,31 @@ class MoteVpl final : public Integrator {
         read_compensation(properties);
         settings_.scattering_points =
             int(properties.get_int_in("scattering_points", settings_.scattering_points, 0, 64));
+        settings_.interleaving = int(properties.get_int_in("interleaving", 1, 1, 8));
+        settings_.filters = properties.get_bool("filter", false);
+        settings_.filter = read_layer_filter(properties);
         if (const auto nested = properties.child_of<Visibility>(Category::visibility))
             settings_.visibility = nested->settings();
     }
 
     std::string type() const override { return "mote_vpl"; }
-    bool works_on_mean() const override { return settings_.screen_space.has_value(); }
+    bool works_on_mean() const override { return settings_.screen_space.has_value() || settings_.filters; }
     std::vector<Layer> layers(const Scene& scene) const override {
         auto layers = transport_layers(scene.has_media(), settings_.bounded);
-        if (!settings_.compensates()) return layers;
+        if (settings_.compensates()) add_compensation_layers(scene, layers);
+        for (Layer& layer : layers)
+            layer.squares =
+                settings_.filters && (layer.transport() == transport_name(Transport::indirect) ||
+                                      layer.transport() == transport_name(Transport::multiple_scattering));
+        return layers;
+    }
+    Plan plan(const Scene& scene, const Requirements& requirements) const override;
+    std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
+        return make_vpl_estimator(scene, options, settings_);
+    }
+
+  private:
+    void add_compensation_layers(const Scene& scene, std::vector<Layer>& layers) const {
         layers.push_back(
             {"compensation_surface", "what the bound took from light first scattered by a surface"});
         layers.back().cell = transport_name(Transport::indirect);
@@ -61,16 +77,10 @@ class MoteVpl final : public Integrator {
         }
         if (settings_.screen_space)
             for (Layer& layer : settings_.screen_space->film_layers()) layers.push_back(std::move(layer));
-        return layers;
     }
-    Plan plan(const Scene& scene, const Requirements& requirements) const override;
-    std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
-        return make_vpl_estimator(scene, options, settings_);
-    }
-
-  private:
     void read_compensation(const Properties& properties);
     void plan_bound(Plan& plan, const Bounds3& surfaces) const;
+    void plan_image_space(Plan& plan) const;
     VplSettings settings_;
 };
 
@@ -99,6 +109,20 @@ void MoteVpl::plan_bound(Plan& plan, const Bounds3& surfaces) const {
              settings_.bound ? "asked for"
                              : "automatic: light paths / R^2, with R = " + std::to_string(surfaces.radius()) +
                                    " m the radius of all shapes");
+}
+
+void MoteVpl::plan_image_space(Plan& plan) const {
+    const int n = settings_.interleaving;
+    if (n > 1)
+        plan.run("interleaving",
+                 std::to_string(n * n) + " shares of the VPLs, for pixels of " + std::to_string(n) + " x " +
+                     std::to_string(n),
+                 "unbiased: noise differs from pixel to pixel, and less work is done");
+    if (settings_.filters)
+        plan.run("filter", "light of VPLs in image space",
+                 "biased by what it smoothes, less with every pass. The noise that is stated, and --noise, "
+                 "are those of "
+                 "the passes before it");
 }
 
 Plan MoteVpl::plan(const Scene& scene, const Requirements& r) const {
@@ -134,6 +158,7 @@ Plan MoteVpl::plan(const Scene& scene, const Requirements& r) const {
     if (settings_.eye_samples > 1)
         plan.run("eye paths", std::to_string(settings_.eye_samples) + " a pixel and pass",
                  settings_.vpls_shared_out() ? "VPLs are shared out among them" : "each meets all VPLs");
+    plan_image_space(plan);
     if (r.any_delta())
         plan.miss("caustics", "light that reaches a receiver through a delta surface",
                   "a VPL cannot be connected through mirrors and glass; volpath renders it");
@@ -158,6 +183,13 @@ void register_mote_vpl(Registry& registry) {
                           "points in media where the light of each eye ray is gathered, besides the surface "
                           "behind them, up to 64; 0: "
                           "one collision or the surface, by chance"});
+    parameters.push_back({"interleaving", "integer", "1",
+                          "n, up to 8: a pixel of n x n gathers every n^2-th VPL, which counts n^2 times"});
+    parameters.push_back(
+        {"filter", "boolean", "false",
+         "smooth the light of VPLs in image space, as far as noise that differs from pixel to pixel "
+         "explains its detail: for interleaving"});
+    for (Parameter& p : layer_filter_parameters()) parameters.push_back(std::move(p));
     parameters.push_back(
         {"eye_samples", "integer", "4 for 1-to-1 compensation, else 1",
          "eye paths a pixel and pass; VPLs are shared out among them, except with compensation "

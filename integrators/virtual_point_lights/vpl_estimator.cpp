@@ -20,17 +20,20 @@ class VplEstimator final : public Estimator {
         : scene_(scene),
           options_(options),
           settings_(settings),
-          bound_(settings.bound_for(scene.rays().bounds())) {
+          bound_(settings.bound_for(scene.rays().bounds())),
+          tile_size_(interleaved_tile(settings.interleaving)) {
         settings_.eye.wanted = wanted_transport(options);
         if (settings_.compensation.enabled && std::isfinite(bound_))
             transport_.emplace(scene, bound_, settings_.compensation);
         if (settings_.screen_space && settings_.screen_space->layers > 1 && std::isfinite(bound_))
             hidden_.emplace(scene, options, settings, bound_);
         if (settings_.visibility.used_in(scene)) maps_.emplace(scene, settings_.visibility);
+        if (settings_.filters) filter_.emplace(scene, options, settings_.filter);
     }
 
     /// Light that surfaces send to the eye is layers 1 and 2, direct and indirect (transport_layers.h).
     void finish(Film& film, CancelToken cancelled) override {
+        if (filter_ && film.has_passes(2)) filter_->apply(film, filtered_layers(), cancelled);
         if (!settings_.screen_space || !std::isfinite(bound_)) return;
         constexpr std::size_t reflected[] = {std::size_t(Transport::direct),
                                              std::size_t(Transport::indirect)};
@@ -47,15 +50,16 @@ class VplEstimator final : public Estimator {
         counters_.add(vpls.rays, vpls.tracking);
         vpls_ += vpls.lights.size(), paths_ += vpls.paths;
         bytes_ = std::max(bytes_, vpls.memory_bytes());
-        const int columns = (options_.width + tile_size - 1) / tile_size;
-        const int rows = (options_.height + tile_size - 1) / tile_size;
+        const int columns = (options_.width + tile_size_ - 1) / tile_size_;
+        const int rows = (options_.height + tile_size_ - 1) / tile_size_;
         std::vector<lights::ReceiverStore> stores(maps_ ? std::size_t(columns) * std::size_t(rows) : 0);
         const auto tile = [&](int x0, int y0, int x1, int y1) {
-            const std::size_t index = std::size_t(y0 / tile_size * columns + x0 / tile_size);
+            const std::size_t index = std::size_t(y0 / tile_size_ * columns + x0 / tile_size_);
             render_tile(context, image, vpls, maps_ ? &stores[index] : nullptr, x0, y0, x1, y1);
         };
         if (maps_ || hidden_) image.finish_late();
-        if (!for_each_tile(options_.width, options_.height, tile_size, context.cancelled, tile)) return false;
+        if (!for_each_tile(options_.width, options_.height, tile_size_, context.cancelled, tile))
+            return false;
         if (hidden_ && !hidden_->template pass<Media>(context, vpls, first_hidden_layer, image)) return false;
         return !maps_ || maps_->add_light(vpls, bound_, stores, context.cancelled, image);
     }
@@ -70,6 +74,10 @@ class VplEstimator final : public Estimator {
             maps_->add_statistics(statistics);
         else if (settings_.visibility.shadow_maps)
             statistics.warnings.push_back("visibility 'shadow_map' has no effect: there are no media");
+        if (filter_) {
+            statistics.seconds["filter_features"] = filter_->feature_seconds();
+            statistics.seconds["filter"] = filter_->filter_seconds();
+        }
         if (settings_.screen_space) {
             statistics.values["ssbc_samples"] = double(ssbc_cost_.samples);
             statistics.seconds["ssbc"] = ssbc_cost_.seconds;
@@ -83,7 +91,8 @@ class VplEstimator final : public Estimator {
     }
 
   private:
-    static constexpr int tile_size = 16;
+    /// Pixels of a task: a multiple of the tiles of receivers, whose pixels are `interleaving` apart.
+    static constexpr int interleaved_tile(int n) { return EyeTile<Media>::side * n * std::max(1, 4 / n); }
     static constexpr std::size_t first_compensation_layer = transport_layer_count(Media);
     static constexpr std::size_t first_hidden_layer = first_compensation_layer + (Media ? 2 : 1);
 
@@ -95,44 +104,54 @@ class VplEstimator final : public Estimator {
         const auto tile = std::make_unique<EyeTile<Media>>(
             scene_, settings_, bound_, vpls, transport_ ? &*transport_ : nullptr, *scratch, walk,
             EyeShadowMaps{maps_ ? maps_->of_lights() : nullptr, store});
-        constexpr int side = EyeTile<Media>::side;
+        const int n = settings_.interleaving, side = EyeTile<Media>::side * n;
         for (int y = y0; y < y1; y += side)
-            for (int x = x0; x < x1; x += side) {
-                if (context.cancelled) return;  // a tile of many VPLs takes long
-                render_lanes(context, image, *tile, x, y, x1, y1);
-            }
+            for (int x = x0; x < x1; x += side)
+                for (int i = 0; i < n * n; ++i) {
+                    if (context.cancelled) return;  // a tile of many VPLs takes long
+                    render_lanes(context, image, *tile, x + i % n, y + i / n, x1, y1);
+                }
         counters_.add(walk.rays, walk.tracking);
         const std::lock_guard lock(cost_mutex_);
         cost_.vertices += tile->compensation_cost().vertices;
         cost_.seconds += tile->compensation_cost().seconds;
     }
 
+    /// Which of the n^2 shares of the VPLs pixels of (column, row) gather. Every pixel comes by all of them,
+    /// beginning anywhere: that makes its mean right, since the first VPLs of a set are not like the last.
+    std::size_t share_of(const PassContext& context, int column, int row) const {
+        const auto n = std::size_t(settings_.interleaving);
+        const auto start = std::size_t(hash_keys(options_.seed, 0x696e7465726cull) % (n * n));
+        return (std::size_t(column) % n + n * (std::size_t(row) % n) + start + context.index) % (n * n);
+    }
+
+    /// Pixels from (x0, y0) on, `interleaving` apart.
     void render_lanes(const PassContext& context, PassImage& image, EyeTile<Media>& tile, int x0, int y0,
                       int x1, int y1) const {
         constexpr int side = EyeTile<Media>::side;
+        const int n = settings_.interleaving;
+        const std::size_t shares = std::size_t(n) * std::size_t(n), share = share_of(context, x0, y0);
+        const auto pixel = [&](int lane) { return std::array{x0 + lane % side * n, y0 + lane / side * n}; };
         std::array<VplPixel, side * side> sums;
         const auto samples = std::uint32_t(settings_.eye_samples);
-        tile.place(x0, y0, 1.0f / float(samples));
+        tile.place(x0, y0, n, 1.0f / float(samples));
         for (std::uint32_t sample = 0; sample < samples; ++sample) {
             const PassContext eye{context.index * samples + sample, context.filter, context.cancelled};
-            for (int lane = 0; lane < side * side; ++lane) {
-                const int x = x0 + lane % side, y = y0 + lane / side;
-                if (x < x1 && y < y1)
+            for (int lane = 0; lane < side * side; ++lane)
+                if (const auto [x, y] = pixel(lane); x < x1 && y < y1)
                     tile.start(lane, make_eye_ray(scene_, options_, eye, x, y));
                 else
                     tile.stop(lane);
-            }
             if (settings_.vpls_shared_out())
-                tile.run({sample, samples}, float(samples));
+                tile.run({sample + samples * share, samples * shares}, float(samples * shares));
             else
-                tile.run({}, 1.0f);
+                tile.run({share, shares}, float(shares));
             for (int lane = 0; lane < side * side; ++lane)
                 sums[std::size_t(lane)].add(tile.sum(lane), 1.0f / float(samples));
         }
-        for (int lane = 0; lane < side * side; ++lane) {
-            const int x = x0 + lane % side, y = y0 + lane / side;
-            if (x < x1 && y < y1) store_pixel(sums[std::size_t(lane)], image, x, y);
-        }
+        for (int lane = 0; lane < side * side; ++lane)
+            if (const auto [x, y] = pixel(lane); x < x1 && y < y1)
+                store_pixel(sums[std::size_t(lane)], image, x, y);
     }
 
     void store_pixel(const VplPixel& pixel, PassImage& image, int x, int y) const {
@@ -142,13 +161,28 @@ class VplEstimator final : public Estimator {
             image.at(first_compensation_layer + i, x, y) = pixel.compensation[i];
     }
 
+    /// Those of VPLs; what the screen-space compensation fills comes after the filter.
+    std::vector<LayerFilter::Choice> filtered_layers() const {
+        std::vector<LayerFilter::Choice> layers{
+            {std::size_t(Transport::indirect), screenspace::LayerKind::surface}};
+        if (Media)
+            layers.push_back({std::size_t(Transport::multiple_scattering), screenspace::LayerKind::volume});
+        if (!settings_.compensation.enabled) return layers;
+        if (!settings_.screen_space)
+            layers.push_back({first_compensation_layer, screenspace::LayerKind::surface});
+        if (Media) layers.push_back({first_compensation_layer + 1, screenspace::LayerKind::volume});
+        return layers;
+    }
+
     const Scene& scene_;
     RenderOptions options_;
     VplSettings settings_;
     float bound_;
+    int tile_size_;
     std::optional<compensation::ResidualTransport> transport_;  ///< nothing: no compensation
     std::optional<HiddenLight> hidden_;                         ///< nothing: one layer
     std::optional<VplShadowMaps> maps_;                         ///< nothing: visibility is traced
+    std::optional<LayerFilter> filter_;                         ///< nothing: pixels stay as they are
     SharedCounters counters_;
     std::mutex cost_mutex_;
     CompensationCost cost_;

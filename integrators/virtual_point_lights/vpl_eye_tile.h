@@ -54,9 +54,10 @@ class EyeTile {
     const VplPixel& sum(int lane) const { return lanes_[std::size_t(lane)].sum; }
     CompensationCost compensation_cost() const { return compensation_.cost(); }
 
-    /// Of the lanes to come: where they lie in the picture, and how much receivers that are stored count.
-    void place(int column, int row, float scale) {
-        maps_.column = column, maps_.row = row, maps_.scale = scale;
+    /// Of the lanes to come: where they lie in the picture, `spacing` pixels apart, and how much receivers
+    /// that are stored count.
+    void place(int column, int row, int spacing, float scale) {
+        maps_.column = column, maps_.row = row, maps_.spacing = spacing, maps_.scale = scale;
     }
 
     /// Follows the eye paths and gathers the VPLs of `range`, whose light counts `vpl_scale` times.
@@ -91,7 +92,8 @@ class EyeTile {
     void gather(const lights::VplRange& range, float vpl_scale) {
         lights::TileLight light{};
         if (maps_.receivers)
-            maps_.receivers->add(receivers_, maps_.column, maps_.row, range, vpl_scale * maps_.scale);
+            maps_.receivers->add(receivers_, maps_.column, maps_.row, maps_.spacing, range,
+                                 vpl_scale * maps_.scale);
         else
             light = lights::gather({scene_, scratch_, walk_.rays, walk_.tracking, walk_.cancelled}, vpls_,
                                    range, lights::BoundedGeometry{bound_}, receivers_);

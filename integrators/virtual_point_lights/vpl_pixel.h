@@ -26,6 +26,7 @@ struct EyeShadowMaps {
     const lights::LightShadowMaps* lights = nullptr;
     lights::ReceiverStore* receivers = nullptr;  ///< takes the receivers instead of their gathering VPLs here
     int column = 0, row = 0;                     ///< pixel of the first lane
+    int spacing = 1;                             ///< of the lanes' pixels
     float scale = 1.0f;                          ///< of the light at receivers
 };
 

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "integrators/eye_path/eye_path_limits.h"
+#include "integrators/layer_filter/layer_filter.h"
 #include "integrators/screen_space_compensation/screen_space_compensation.h"
 #include "integrators/virtual_point_lights/vpl_visibility.h"
 #include "lights/virtual_lights/light_path.h"
@@ -23,6 +24,11 @@ struct VplSettings {
     /// Points in media where the light along an eye ray is gathered, besides the surface behind them; 0: one
     /// collision or the surface, by chance.
     int scattering_points = 8;
+
+    /// n: a pixel of n x n gathers every n^2-th VPL, which counts n^2 times.
+    int interleaving = 1;
+    bool filters = false;  ///< light of VPLs is smoothed in image space after the last pass
+    LayerFilterParameters filter;
 
     bool compensates() const { return compensation.enabled || screen_space.has_value(); }
     /// VPLs are shared out among the eye paths of a pixel, instead of all of them meeting every one.

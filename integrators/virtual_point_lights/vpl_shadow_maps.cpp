@@ -79,13 +79,14 @@ void VplShadowMaps::gather(const VplSet& vpls, float bound, std::span<const Entr
     tbb::parallel_for(std::size_t(0), stores.size(), [&](std::size_t s) {
         cancelled.check();
         constexpr int side = 4;
-        gathers.local().run(
-            stores[s], vpls, lights::BoundedGeometry{bound}, mapped,
-            [&](const ReceiverStore::Tile& tile, int lane, const Rgb& light) {
-                const bool medium = tile.in_medium[lane] != 0.0f;
-                const auto layer = medium ? Transport::multiple_scattering : Transport::indirect;
-                image.at(std::size_t(layer), tile.column + lane % side, tile.row + lane / side) += light;
-            });
+        gathers.local().run(stores[s], vpls, lights::BoundedGeometry{bound}, mapped,
+                            [&](const ReceiverStore::Tile& tile, int lane, const Rgb& light) {
+                                const bool medium = tile.in_medium[lane] != 0.0f;
+                                const auto layer =
+                                    medium ? Transport::multiple_scattering : Transport::indirect;
+                                image.at(std::size_t(layer), tile.column + lane % side * tile.spacing,
+                                         tile.row + lane / side * tile.spacing) += light;
+                            });
     });
     for (const ShadowMapGather& g : gathers) lookups_ += g.lookups();
 }

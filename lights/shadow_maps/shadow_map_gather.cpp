@@ -6,12 +6,12 @@ namespace mote::lights {
 
 using namespace core;
 
-void ReceiverStore::add(const ReceiverLanes& receivers, int column, int row, const VplRange& range,
-                        float scale) {
+void ReceiverStore::add(const ReceiverLanes& receivers, int column, int row, int spacing,
+                        const VplRange& range, float scale) {
     if (!receivers.any_active) return;
     Tile& tile = tiles_.emplace_back();
     static_cast<ReceiverLanes&>(tile) = receivers;
-    tile.column = column, tile.row = row, tile.range = range;
+    tile.column = column, tile.row = row, tile.spacing = spacing, tile.range = range;
     for (int i = 0; i < ReceiverLanes::width; ++i) {
         tile.weight_r[i] *= scale, tile.weight_g[i] *= scale, tile.weight_b[i] *= scale;
         if (receivers.max_vpl_depth[i] > 0) ++receivers_;

@@ -16,11 +16,13 @@ class ReceiverStore {
   public:
     struct Tile : ReceiverLanes {
         std::int32_t column, row;  ///< pixel of the first lane; lanes go on in rows of four
+        std::int32_t spacing;      ///< pixels from lane to lane
         VplRange range;            ///< the VPLs that they look at
     };
 
     /// Keeps receivers whose light counts `scale` times. Copies what they point to.
-    void add(const ReceiverLanes& receivers, int column, int row, const VplRange& range, float scale);
+    void add(const ReceiverLanes& receivers, int column, int row, int spacing, const VplRange& range,
+             float scale);
     void clear();
 
     const std::vector<Tile>& tiles() const { return tiles_; }

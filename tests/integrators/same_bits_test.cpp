@@ -60,6 +60,7 @@ const std::map<std::string, Words> numbers = {
     {"rr_depth", {"", "1"}},
     {"eye_samples", {"", "3"}},
     {"scattering_points", {"3", "0"}},
+    {"interleaving", {"", "3"}},
     {"max_photons", {"", "99"}},
     {"alpha", {"", "1"}},
     {"vpl_bound", {"", "1"}},

@@ -1,0 +1,81 @@
+#!/usr/bin/python3
+"""Interleaved virtual point lights and the filter in image space (mote_vpl): error against counted work, and bias.
+
+Usage: interleaving.py [--mote build/release/bin/mote] [--seeds N] [--reference PASSES]
+For the smoke room and the Cornell box, with the same bounded lights throughout: squared error against a long render without
+interleaving (relative as in docs/testing.md, the reference's own noise taken off), counted work of a pixel
+(core/render/counted_work.h) and processor seconds of a picture, their products, and the signed bias of the mean over seeds.
+"""
+import argparse
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "experiments/figures"))
+from exr import read_exr
+
+SCENES = {"smoke_room": (64, 40), "cornell_box": (56, 56)}
+# name, settings, passes
+METHODS = [("n = 1", {}, 4), ("n = 1, filter", {"filter": "true"}, 4),
+           ("n = 2", {"interleaving": 2}, 12), ("n = 2, filter", {"interleaving": 2, "filter": "true"}, 12),
+           ("n = 4", {"interleaving": 4}, 32), ("n = 4, filter", {"interleaving": 4, "filter": "true"}, 32)]
+
+
+def counted_work(s):
+    """As core/render/counted_work.cpp has it."""
+    rays, lookups = s["rays"], s["lookups"]
+    return (rays.get("closest", 0) + 0.5 * rays.get("occlusion", 0) + 0.5 * rays.get("boundary", 0)
+            + 0.25 * lookups.get("density", 0))
+
+
+def render(args, scene, settings, passes, seed, folder):
+    exr, stats = folder / "p.exr", folder / "p.json"
+    width, height = SCENES[scene]
+    settings = {"paths": 64, "bound": 20, **settings}
+    defines = [x for k, v in settings.items() for x in ("-D", f"integrator.{k}={v}")]
+    subprocess.run([args.mote, "render", ROOT / f"scenes/{scene}.xml", "--integrator", "mote_vpl", "-t", "1", "--quiet",
+                    "-D", f"resx={width}", "-D", f"resy={height}", "--passes", str(passes), "--seed", str(seed), *defines,
+                    "-o", exr, "--stats", stats], check=True)
+    s = json.loads(stats.read_text())
+    return read_exr(exr), counted_work(s) / (width * height), s["seconds"]["render"] + s["seconds"].get("finish", 0)
+
+
+def beauty(picture):
+    """The sum of the layers that a filter may have changed."""
+    return picture[""]
+
+
+def study(args, scene, folder):
+    long, _, _ = render(args, scene, {}, args.reference, 99, folder)
+    reference, noise = beauty(long), long["Variance"].mean(axis=2)
+    r2 = (reference ** 2).mean(axis=2)
+    weights = 1 / (r2 + (np.median(np.sqrt(r2[r2 > 0])) / 10) ** 2)
+    whole = (weights * r2).sum()
+    for name, settings, passes in METHODS:
+        pictures, works, seconds = zip(*(render(args, scene, settings, passes, s, folder) for s in range(1, args.seeds + 1)))
+        errors = [((weights * (((beauty(p) - reference) ** 2).mean(axis=2) - noise)).sum() / whole) for p in pictures]
+        signed = [((beauty(p) - reference).mean(axis=2) * weights * np.sqrt(r2)).sum() / whole for p in pictures]
+        error, work, time = np.mean(errors), np.mean(works), np.mean(seconds)
+        print(f"{scene}, {name}, {passes} passes: error^2 {error:.4f}; work {work:.0f}, {time:.1f} s; error^2 x work "
+              f"{error * work:.1f}, x s {error * time:.4f}; bias {np.mean(signed):+.2%} +- "
+              f"{np.std(signed, ddof=1) / len(signed) ** 0.5:.2%}", flush=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--mote", default=ROOT / "build/release/bin/mote")
+    parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--reference", type=int, default=200)
+    args = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        for scene in SCENES:
+            study(args, scene, Path(folder))
+
+
+if __name__ == "__main__":
+    main()
