@@ -48,6 +48,7 @@ def arguments():
     parser.add_argument("--variant", default="scalar_rgb", choices=("scalar_rgb", "llvm_ad_rgb"))
     parser.add_argument("--quick", action="store_true", help="six scenes, a twelfth of the samples")
     parser.add_argument("--trade", metavar="DIR", help="measure Mitsuba against the reference of a trade instead")
+    parser.add_argument("--timed", metavar="DIR", help="do the job of experiments/trade/run --peers in DIR instead")
     parser.add_argument("--install", action="store_true", help="make build/mitsuba_env, then go on")
     options = parser.parse_args()
     options.n = options.n or (8 if options.quick else 32)
@@ -130,6 +131,9 @@ def main():
     mi.set_variant(options.variant)
     self_check()
     try:
+        if options.timed:
+            from timed import write_timed
+            return write_timed(options.timed)
         if options.trade:
             from trade import write_peer
             return write_peer(options)

@@ -1,9 +1,9 @@
 """Run inside of Blender: builds a scene and renders it again and again, each picture with its own seed.
 
-    blender -b --factory-startup --python experiments/peers/cycles/render.py -- JOB.json
+    blender -b --factory-startup --python-exit-code 1 --python experiments/peers/cycles/render.py -- JOB.json
 
-The job: folder (of the exported scene), vdb, output, threads, step_rate, max_steps, cut_grids, volume_sampling, and
-`samples`, a list, or a list of one and `budget` in seconds: then samples double until the next picture would not fit.
+The job: folder (of the exported scene), vdb, output, threads, seed, budget (real_sizes/doubling.py), and step_rate,
+max_steps, cut_grids, volume_sampling (media.py).
 Writes output/N.exr (linear, float, box filter) and output/log.json. Raw: no view transform, denoiser, clamping, adaptive
 sampling, light threshold or blur; as many bounces as Cycles has.
 """
@@ -15,8 +15,10 @@ from pathlib import Path
 
 import bpy
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parent / "real_sizes")]
 from build import build  # noqa: E402
+from doubling import next_passes  # noqa: E402
 
 BOUNCES = 1024  # the most that Cycles allows
 
@@ -69,18 +71,11 @@ def main():
     # The first picture loads the scene and builds its BVH: a warm-up of one sample, not counted.
     warm_up = picture(job, "warm_up", 1, 12345)
     log = {"version": bpy.app.version_string, "notes": notes, "build_s": built + warm_up["wall_s"], "runs": []}
-    samples, spent = list(job["samples"]), 0.0
+    samples = 1
     while samples:
-        run = picture(job, len(log["runs"]), samples.pop(0), job["seed"] + len(log["runs"]))
-        log["runs"].append(run)
-        spent += run["wall_s"]
-        if not samples and job.get("budget") and spent + 2 * run["wall_s"] < job["budget"]:
-            samples.append(2 * run["passes"])
+        log["runs"].append(picture(job, len(log["runs"]), samples, job["seed"] + len(log["runs"])))
+        samples = next_passes(log["runs"], job["budget"])
     (Path(job["output"]) / "log.json").write_text(json.dumps(log, indent=1))
 
 
-try:
-    main()
-except Exception as error:  # Blender itself would end with 0
-    print(f"render.py: {error!r}", file=sys.stderr)
-    raise SystemExit(1) from error
+main()

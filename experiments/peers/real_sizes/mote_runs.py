@@ -1,0 +1,87 @@
+"""Our own pictures: references, and each method at doubling passes, every picture with its own seed."""
+import json
+import resource
+import subprocess
+from pathlib import Path
+
+from doubling import next_passes
+from exr import read_exr
+
+
+class Mote:
+    def __init__(self, program, scene, sizes, threads):
+        """`scene`: the file; `sizes`: words of -D for the size and the filter, for all of its pictures."""
+        self.program, self.scene, self.sizes, self.threads = str(program), str(scene), list(sizes), threads
+
+    def render(self, output, integrator, settings, *rule, seed, sizes=None):
+        """One picture; its statistics. Raises RuntimeError with mote's own words."""
+        command = [self.program, "render", self.scene, "-o", str(output), "--seed", str(seed), "--quiet",
+                   "--threads", str(self.threads), "--stats", str(output.with_suffix(".json")), *map(str, rule)]
+        command += ["--integrator", integrator] + defined(self.sizes if sizes is None else sizes)
+        command += defined(f"integrator.{name}={word(value)}" for name, value in settings.items())
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        if done.returncode:
+            raise RuntimeError(done.stderr.strip() or f"mote ended with {done.returncode}")
+        return json.loads(output.with_suffix(".json").read_text())
+
+    def timed(self, output, method, passes, seed):
+        """Passes, seed, file, and seconds without loading the scene and writing the file; `cpu_s` has those of writing."""
+        before = processor_seconds()
+        statistics = self.render(output, method["integrator"], method.get("settings", {}), "--passes", passes, seed=seed)
+        seconds = statistics["seconds"]
+        return {"passes": passes, "seed": seed, "file": output.name, "cpu_s": processor_seconds() - before,
+                "wall_s": seconds["build"] + seconds["render"] + seconds["finish"], "build_s": seconds["load"],
+                "commit": statistics["git_hash"]}
+
+    def loading(self, folder, method):
+        """Processor seconds of a picture of two by two pixels: those of loading the scene."""
+        before = processor_seconds()
+        tiny = [word for word in self.sizes if not word.startswith(("resx", "resy"))] + ["resx=2", "resy=2"]
+        self.render(folder / "loading.exr", method["integrator"], {}, "--passes", 1, seed=1, sizes=tiny)
+        return processor_seconds() - before
+
+    def run(self, method, folder, budget, seed):
+        """Pictures at doubling passes, within about `budget` seconds of rendering."""
+        folder.mkdir(parents=True, exist_ok=True)
+        loading = self.loading(folder, {"integrator": "path", "settings": {}})
+        runs, passes = [], 1
+        while passes:
+            run = self.timed(folder / f"{len(runs)}.exr", method, passes, seed + len(runs))
+            run["cpu_s"] = max(0.0, run["cpu_s"] - loading)
+            runs.append(run)
+            passes = next_passes(runs, budget)
+        log = {"version": f"mote {runs[0]['commit']}", "notes": [], "build_s": runs[-1]["build_s"], "runs": runs}
+        (folder / "log.json").write_text(json.dumps(log, indent=1))
+        return log
+
+
+def defined(words):
+    return [part for word in words for part in ("-D", word)]
+
+
+def word(value):
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def processor_seconds():
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def reference(mote, folder, name, letter, scene, seconds):
+    """FOLDER/NAME_LETTER.exr, rendered by the scene's path tracer where it is missing; the file."""
+    path = Path(folder) / f"{name}_{letter}.exr"
+    if not path.is_file():
+        Path(folder).mkdir(parents=True, exist_ok=True)
+        print(f"{name}: reference {letter}, {seconds} s", flush=True)
+        mote.render(path, scene["integrator"], scene.get("settings", {}), "--passes", 10**6, "--time", seconds,
+                    seed=1000 + ord(letter))
+    return path
+
+
+def beauty_and_variance(path):
+    """Arrays [height, width, 3]; the variance is that of the mean of each pixel."""
+    layers = read_exr(path)
+    if "Variance" not in layers:
+        raise RuntimeError(f"{path} has no layer Variance: not a picture of mote render")
+    return layers[""], layers["Variance"]

@@ -1,0 +1,57 @@
+"""Pictures by other renderers, each in a process of its own that says what it measured in a log.json.
+
+Both read the scene that `mote export --to mitsuba3` writes. `None` stands for a peer that is not installed.
+"""
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+PEERS = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(PEERS / "cycles"))
+from flat_scene import vdb_volumes  # noqa: E402
+from tight_boundaries import tighten  # noqa: E402
+
+
+def export(mote, integrator, folder):
+    """The scene for Mitsuba; what was dropped or changed, but for the sampler."""
+    words = [part for word in mote.sizes for part in ("-D", word)]
+    done = subprocess.run([mote.program, "export", mote.scene, "--to", "mitsuba3", "--integrator", integrator, "-o",
+                           folder, *words], capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise RuntimeError(done.stderr.strip())
+    dropped = (Path(folder) / "dropped.txt").read_text().splitlines()
+    return [line for line in dropped if "sampler" not in line] + tighten(Path(folder))
+
+
+def run_mitsuba(mote, settings, exported, folder, budget, seed):
+    job = {"folder": str(exported), "budget": budget, "seed": seed, "threads": mote.threads,
+           "samples_at_once": settings["samples_at_once"]}
+    command = [sys.executable, str(PEERS / "mitsuba.py"), "--variant", settings["variant"], "--timed", str(folder)]
+    return run(command, job, folder)
+
+
+def run_cycles(mote, settings, exported, folder, budget, seed):
+    blender = shutil.which("blender")
+    if blender is None:
+        return None
+    job = {**settings, "folder": str(exported), "vdb": vdb_volumes(mote.scene), "output": str(folder),
+           "budget": budget, "seed": seed, "threads": mote.threads}
+    command = [blender, "-b", "--factory-startup", "--python-exit-code", "1", "--python",
+               str(PEERS / "cycles" / "render.py"), "--", str(folder / "job.json")]
+    # Blender takes the first Python of the path for its own, which then has to be the system's.
+    return run(command, job, folder, {**os.environ, "PATH": os.pathsep.join(["/usr/bin", "/bin", os.environ["PATH"]])})
+
+
+def run(command, job, folder, environment=None):
+    """The log that the process leaves, or None where it says that its program is not installed by leaving none."""
+    folder.mkdir(parents=True, exist_ok=True)
+    log = folder / "log.json"
+    log.unlink(missing_ok=True)
+    (folder / "job.json").write_text(json.dumps(job, indent=1))
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
+    if done.returncode:
+        raise RuntimeError(f"{' '.join(command)}: {done.stderr.strip()[-2000:]}")
+    return json.loads(log.read_text()) if log.is_file() else None

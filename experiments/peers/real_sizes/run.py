@@ -1,0 +1,156 @@
+#!/usr/bin/env python3
+"""Peers at real sizes: error against time of mote, Mitsuba 3 and Cycles on the same scenes.
+
+    experiments/trade/run --peers [SCENE...]           640 x 400, into out/peers/: some four minutes a scene
+    experiments/trade/run --peers --quick [SCENE...]   80 x 50, into out/peers_quick/: some three minutes in all
+    experiments/trade/run --peers --references         the references alone, where they are missing
+    experiments/trade/run --peers --match              means of the peers against volpath, 64 x 40
+
+Scenes: cornell_box smoke_room fog_grille cloud atrium city; settings.json has their settings. Two references a scene,
+NAME_a.exr and NAME_b.exr with box filter and this size, are looked for in the folder MOTE_REFERENCES (default
+out/references) and made there by the path tracer where they are missing, REFERENCE_TIME seconds each. A method that was
+measured is not measured again (--fresh: it is). A peer that is not installed is left out with a notice.
+"""
+import argparse
+import json
+import os
+import sys
+from pathlib import Path
+
+import numpy as np
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parent.parent.parent
+sys.path.append(str(ROOT / "experiments" / "figures"))
+from error_measure import Judge  # noqa: E402
+from exr import read_exr  # noqa: E402
+from mote_runs import Mote, beauty_and_variance, reference  # noqa: E402
+from origin import commit  # noqa: E402
+from page import markdown, write_csv, write_page  # noqa: E402
+from peer_runs import export, run_cycles, run_mitsuba  # noqa: E402
+from plot import svg  # noqa: E402
+from times import judged  # noqa: E402
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("scenes", nargs="*")
+    parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--match", action="store_true")
+    parser.add_argument("--references", action="store_true")
+    parser.add_argument("--fresh", action="store_true")
+    parser.add_argument("--mote", default=os.environ.get("MOTE", str(ROOT / "build/release/bin/mote")))
+    options = parser.parse_args()
+    settings = json.loads((HERE / "settings.json").read_text())
+    unknown = [name for name in options.scenes if name not in settings["scenes"]]
+    if unknown:
+        parser.error(f"no scene {unknown[0]}: there are {' '.join(settings['scenes'])}")
+    if options.quick or options.match:
+        settings.update(settings["quick" if options.quick else "match"])
+    settings["reference_time"] = float(os.environ.get("REFERENCE_TIME", settings["reference_time"]))
+    kind = "_quick" if options.quick else "_match" if options.match else ""
+    options.output = ROOT / "out" / f"peers{kind}"
+    folder = os.environ.get("MOTE_REFERENCES", ROOT / "out" / "references")
+    options.folder = options.output / "references" if kind else Path(folder)
+    return options, settings
+
+
+def pictures(folder, log):
+    for run in log["runs"]:
+        path = folder / run["file"]
+        yield np.load(path) if path.suffix == ".npy" else read_exr(path)[""]
+
+
+def measured(folder, fresh, action):
+    """The log of an earlier run, or of this one; None where the program is not installed."""
+    log = folder / "log.json"
+    if log.is_file() and not fresh:
+        return json.loads(log.read_text())
+    return action(folder)
+
+
+def methods_of(mote, scene, settings, options, output):
+    """(name, settings as text, is a peer, is unbiased, folder, log) of each, one after the other."""
+    budget, exported = settings["budget"], output / "exported"
+    for index, method in enumerate([] if options.match else settings["ours"]):
+        method = {"integrator": scene["integrator"], **({} if "integrator" in method else scene), **method,
+                  "name": method["name"]}
+        folder = output / method["name"].replace(" ", "_").replace(",", "")
+        log = measured(folder, options.fresh, lambda f: mote.run(method, f, budget, 100 * (index + 1)))
+        text = " ".join([method["integrator"]] + [f"{k}={v}" for k, v in method.get("settings", {}).items()])
+        yield method["name"], text, False, method.get("unbiased", False), folder, log
+    notes = export(mote, scene["integrator"], exported)
+    for index, (name, action) in enumerate((("mitsuba", run_mitsuba), ("cycles", run_cycles))):
+        folder, s = output / name, settings[name]
+        log = measured(folder, options.fresh, lambda f: action(mote, s, exported, f, budget, 1000 * (index + 1)))
+        if log is None:
+            print(f"{name} is not installed: left out", flush=True)
+            continue
+        log["notes"] += notes if name == "mitsuba" else []
+        yield log_name(name, log), " ".join(f"{k}={v}" for k, v in s.items()), True, True, folder, log
+
+
+def log_name(name, log):
+    return log["version"].replace("_ad_rgb", "") if name == "mitsuba" else f"Cycles {log['version']}"
+
+
+def scene_page(name, scene, settings, options):
+    """Measures one scene and writes its CSV, SVG and table; what write_page needs of it."""
+    output = options.output / name
+    sizes = [f"resx={settings['width']}", f"resy={settings['height']}", "film.rfilter=box"]
+    mote = Mote(options.mote, ROOT / "scenes" / f"{name}.xml", sizes, settings["threads"])
+    files = [reference(mote, options.folder, name, letter, scene, settings["reference_time"]) for letter in "ab"]
+    if options.references:
+        return None
+    (a, va), (b, vb) = map(beauty_and_variance, files)
+    if a.shape[:2] != (settings["height"], settings["width"]) or b.shape != a.shape:
+        raise RuntimeError(f"{files[0]}: not {settings['width']} x {settings['height']} pixels")
+    judge, methods, notes = Judge(a, b, va, vb), [], []
+    for method, text, peer, unbiased, folder, log in methods_of(mote, scene, settings, options, output):
+        systematic = judged(judge, log["runs"], list(pictures(folder, log)))
+        methods.append({"name": method, "settings": text, "peer": peer, "unbiased": unbiased, "runs": log["runs"],
+                        "version": log["version"], "build_s": log["build_s"], "systematic": systematic})
+        notes += [f"{method}: {note}" for note in log["notes"]]
+        last = log["runs"][-1]
+        print(f"{name}: {method}: {last['passes']} passes, {last['wall_s']:.1f} s, error {100 * last['error']:.2f} ± "
+              f"{100 * last['error_se']:.2f} %, bias {100 * last['bias']:+.2f} ± {100 * last['bias_se']:.2f} %, mean "
+              f"{100 * last['mean']:+.2f} ± {100 * last['mean_se']:.2f} %", flush=True)
+    notes.append(f"noise of each reference: {100 * judge.reference_noise():.2f} %")
+    facts = facts_of(settings, options)
+    write_csv(output / "peers.csv", facts, name, methods)
+    drawing = svg(f"{scene['name']}, {settings['width']} x {settings['height']}",
+                  [(m["name"], m["runs"], m["peer"]) for m in methods])
+    (output / "peers.svg").write_text(drawing, encoding="utf-8")
+    (output / "peers.md").write_text(markdown(methods), encoding="utf-8")
+    print(markdown(methods), flush=True)
+    return scene["name"], drawing, methods, notes
+
+
+def facts_of(settings, options):
+    return {"Script": "experiments/peers/real_sizes/run.py", "Commit": commit(),
+            "Run": "quick" if options.quick else "match" if options.match else "full",
+            "Size": f"{settings['width']} x {settings['height']}, box filter",
+            "Seconds": f"{settings['budget']} for all pictures of a method, {settings['threads']} threads"}
+
+
+def main():
+    options, settings = arguments()
+    if not os.access(options.mote, os.X_OK):
+        print(f"no {options.mote}: build it first (./quickstart does)", file=sys.stderr)
+        return 2
+    pages = []
+    try:
+        for name in options.scenes or settings["scenes"]:
+            page = scene_page(name, settings["scenes"][name], settings, options)
+            pages += [page] if page else []
+        if pages:
+            write_page(options.output / "peers.html", facts_of(settings, options), pages)
+            print(options.output / "peers.html")
+    except (RuntimeError, OSError) as error:
+        print(f"run.py: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,46 @@
+"""Rows of errors, and the time to an error: between measured pictures, or beyond them where that is known to hold."""
+import numpy as np
+from error_measure import root
+
+TARGETS = (0.05, 0.02, 0.01)
+
+
+def judged(judge, runs, pictures):
+    """Adds to every run its error, bias and their standard errors; returns the systematic error of the two longest runs,
+    with its standard error."""
+    for run, picture in zip(runs, pictures):
+        squared, its_error = judge.squared_error(picture)
+        run["error"], run["error_se"] = root(squared, its_error)
+        run["bias"], run["bias_se"] = judge.bias(picture)
+        run["mean"], run["mean_se"] = judge.mean_difference(picture)
+        run["non_finite"] = int(np.count_nonzero(~np.isfinite(picture)))
+    if len(runs) < 2:
+        return 0.0, float("nan")
+    return root(*judge.squared_systematic(pictures[-1], pictures[-2]))
+
+
+def noise_alone(runs, systematic):
+    """Copies of the runs whose errors are without the systematic one: for other renderers, where it is the difference of
+    two models, not an error."""
+    return [{**run, "error": float(np.sqrt(max(0.0, run["error"]**2 - systematic[0]**2)))} for run in runs]
+
+
+def time_to(target, runs, seconds, systematic=(0.0, 0.0)):
+    """(seconds, how): `measured` between two pictures on a line in logarithms, `below` where the first has less error;
+    `by 1/sqrt(t)` from the last one, the systematic error kept as it is; (None, `bias`) where that alone is more.
+
+    `seconds`: wall_s or cpu_s. A systematic error counts where it is more than three of its standard errors.
+    """
+    points = sorted((run[seconds], run["error"]) for run in runs if run["error"] > 0)
+    if not points:
+        return None, "not measured"
+    if points[0][1] <= target:
+        return points[0][0], "below"
+    for (t0, e0), (t1, e1) in zip(points, points[1:]):
+        if e1 <= target < e0:
+            return float(t0 * (t1 / t0)**(np.log(e0 / target) / np.log(e0 / e1))), "measured"
+    stays = systematic[0] if systematic[0] > 3 * systematic[1] else 0.0
+    if target <= stays:
+        return None, "bias"
+    last, error = points[-1]
+    return float(last * max(error**2 - stays**2, 0.0) / (target**2 - stays**2)), "by 1/sqrt(t)"
