@@ -68,10 +68,12 @@ def main():
     notes = build(job, Path(job["folder"]))
     configure(job)
     built = time.monotonic() - start
-    # The first picture loads the scene and builds its BVH: a warm-up of one sample, not counted.
+    # The first picture loads the scene and builds its BVH: a small one of one sample, not counted.
+    bpy.context.scene.render.resolution_percentage = 10
     warm_up = picture(job, "warm_up", 1, 12345)
+    bpy.context.scene.render.resolution_percentage = 100
     log = {"version": bpy.app.version_string, "notes": notes, "build_s": built + warm_up["wall_s"], "runs": []}
-    samples = 1
+    samples = next_passes([], job["budget"])
     while samples:
         log["runs"].append(picture(job, len(log["runs"]), samples, job["seed"] + len(log["runs"])))
         samples = next_passes(log["runs"], job["budget"])

@@ -44,7 +44,7 @@ class Mote:
         """Pictures at doubling passes, within about `budget` seconds of rendering."""
         folder.mkdir(parents=True, exist_ok=True)
         loading = self.loading(folder, {"integrator": "path", "settings": {}})
-        runs, passes = [], 1
+        runs, passes = [], next_passes([], budget)
         while passes:
             run = self.timed(folder / f"{len(runs)}.exr", method, passes, seed + len(runs))
             run["cpu_s"] = max(0.0, run["cpu_s"] - loading)

@@ -9,6 +9,9 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
+from exr import read_exr
+
 PEERS = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(PEERS / "cycles"))
 from flat_scene import vdb_volumes  # noqa: E402
@@ -43,6 +46,13 @@ def run_cycles(mote, settings, exported, folder, budget, seed):
                str(PEERS / "cycles" / "render.py"), "--", str(folder / "job.json")]
     # Blender takes the first Python of the path for its own, which then has to be the system's.
     return run(command, job, folder, {**os.environ, "PATH": os.pathsep.join(["/usr/bin", "/bin", os.environ["PATH"]])})
+
+
+def pictures(folder, log):
+    """Of a log of any program, in its order: arrays [height, width, 3]."""
+    for run_ in log["runs"]:
+        path = folder / run_["file"]
+        yield np.load(path) if path.suffix == ".npy" else read_exr(path)[""]
 
 
 def run(command, job, folder, environment=None):

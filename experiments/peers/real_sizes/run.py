@@ -4,7 +4,7 @@
     experiments/trade/run --peers [SCENE...]           640 x 400, into out/peers/: some four minutes a scene
     experiments/trade/run --peers --quick [SCENE...]   80 x 50, into out/peers_quick/: some three minutes in all
     experiments/trade/run --peers --references         the references alone, where they are missing
-    experiments/trade/run --peers --match              means of the peers against volpath, 64 x 40
+    experiments/trade/run --peers --match [SCENE...]   means of the peers against volpath, 64 x 40: a table
 
 Scenes: cornell_box smoke_room fog_grille cloud atrium city; settings.json has their settings. Two references a scene,
 NAME_a.exr and NAME_b.exr with box filter and this size, are looked for in the folder MOTE_REFERENCES (default
@@ -17,17 +17,15 @@ import os
 import sys
 from pathlib import Path
 
-import numpy as np
-
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent.parent
 sys.path.append(str(ROOT / "experiments" / "figures"))
 from error_measure import Judge  # noqa: E402
-from exr import read_exr  # noqa: E402
+from match import match  # noqa: E402
 from mote_runs import Mote, beauty_and_variance, reference  # noqa: E402
 from origin import commit  # noqa: E402
 from page import markdown, write_csv, write_page  # noqa: E402
-from peer_runs import export, run_cycles, run_mitsuba  # noqa: E402
+from peer_runs import export, pictures, run_cycles, run_mitsuba  # noqa: E402
 from plot import svg  # noqa: E402
 from times import judged  # noqa: E402
 
@@ -45,20 +43,13 @@ def arguments():
     unknown = [name for name in options.scenes if name not in settings["scenes"]]
     if unknown:
         parser.error(f"no scene {unknown[0]}: there are {' '.join(settings['scenes'])}")
-    if options.quick or options.match:
-        settings.update(settings["quick" if options.quick else "match"])
+    if options.quick:
+        settings.update(settings["quick"])
     settings["reference_time"] = float(os.environ.get("REFERENCE_TIME", settings["reference_time"]))
-    kind = "_quick" if options.quick else "_match" if options.match else ""
-    options.output = ROOT / "out" / f"peers{kind}"
+    options.output = ROOT / "out" / ("peers_quick" if options.quick else "peers")
     folder = os.environ.get("MOTE_REFERENCES", ROOT / "out" / "references")
-    options.folder = options.output / "references" if kind else Path(folder)
+    options.folder = options.output / "references" if options.quick else Path(folder)
     return options, settings
-
-
-def pictures(folder, log):
-    for run in log["runs"]:
-        path = folder / run["file"]
-        yield np.load(path) if path.suffix == ".npy" else read_exr(path)[""]
 
 
 def measured(folder, fresh, action):
@@ -72,7 +63,7 @@ def measured(folder, fresh, action):
 def methods_of(mote, scene, settings, options, output):
     """(name, settings as text, is a peer, is unbiased, folder, log) of each, one after the other."""
     budget, exported = settings["budget"], output / "exported"
-    for index, method in enumerate([] if options.match else settings["ours"]):
+    for index, method in enumerate(settings["ours"]):
         method = {"integrator": scene["integrator"], **({} if "integrator" in method else scene), **method,
                   "name": method["name"]}
         folder = output / method["name"].replace(" ", "_").replace(",", "")
@@ -128,7 +119,7 @@ def scene_page(name, scene, settings, options):
 
 def facts_of(settings, options):
     return {"Script": "experiments/peers/real_sizes/run.py", "Commit": commit(),
-            "Run": "quick" if options.quick else "match" if options.match else "full",
+            "Run": "quick" if options.quick else "full",
             "Size": f"{settings['width']} x {settings['height']}, box filter",
             "Seconds": f"{settings['budget']} for all pictures of a method, {settings['threads']} threads"}
 
@@ -140,6 +131,8 @@ def main():
         return 2
     pages = []
     try:
+        if options.match:
+            return match(options.mote, options.scenes or settings["scenes"], settings, ROOT / "out" / "peers_match")
         for name in options.scenes or settings["scenes"]:
             page = scene_page(name, settings["scenes"][name], settings, options)
             pages += [page] if page else []

@@ -1,6 +1,6 @@
 """Mitsuba at doubling samples, with times: the job of real_sizes/peer_runs.py, in DIR/job.json.
 
-Loading and compiling come first and are stated apart (`build_s`): two pictures of one sample. Its pictures are DIR/N.npy;
+Loading and compiling come first and are stated apart (`build_s`), with a picture of one sample. Its pictures are DIR/N.npy;
 each is the mean of renders of `samples_at_once` samples, which the compiled program renders in one go (a go of its own
 takes some milliseconds to set up, and much memory where it is large).
 """
@@ -36,11 +36,10 @@ def write_timed(folder):
     start = Clock()
     scene = renderers.load_mitsuba(job["folder"])
     at_once = job["samples_at_once"]
-    for warm_up in range(2):
-        picture(scene, 1, at_once, warm_up)
+    picture(scene, 1, at_once, 0)
     log = {"version": f"Mitsuba {mi.__version__} {mi.variant()}", "build_s": start.read()[0], "runs": [],
            "notes": [f"integrator {scene.integrator().class_name()}"]}
-    samples = 1
+    samples = next_passes([], job["budget"])
     while samples:
         index = len(log["runs"])
         seed, clock = renderers.seed_list(1, offset=job["seed"] + index)[0], Clock()
