@@ -37,6 +37,7 @@ def arguments():
     parser.add_argument("--match", action="store_true")
     parser.add_argument("--references", action="store_true")
     parser.add_argument("--fresh", action="store_true")
+    parser.add_argument("--budget", type=float, help="seconds for all pictures of a method (settings.json: 34)")
     parser.add_argument("--mote", default=os.environ.get("MOTE", str(ROOT / "build/release/bin/mote")))
     options = parser.parse_args()
     settings = json.loads((HERE / "settings.json").read_text())
@@ -45,6 +46,7 @@ def arguments():
         parser.error(f"no scene {unknown[0]}: there are {' '.join(settings['scenes'])}")
     if options.quick:
         settings.update(settings["quick"])
+    settings["budget"] = options.budget or settings["budget"]
     settings["reference_time"] = float(os.environ.get("REFERENCE_TIME", settings["reference_time"]))
     options.output = ROOT / "out" / ("peers_quick" if options.quick else "peers")
     folder = os.environ.get("MOTE_REFERENCES", ROOT / "out" / "references")
