@@ -4,7 +4,7 @@
 sigma_s : sigma_a = 0.9 : 0.001 as in the paper. Bounded; with one step of approximate compensation, every
 simplification on; and with exact compensation, which is the reference there too. The VPLs come in three independent
 sets that all variants share. The clean picture, by `mote_layers`, is for the eye alone. Exit code 0: all is as
-documented; 1: it is not; 2: wrong usage, or mote is missing. A full run takes 3.5 minutes of one core, --quick 20 s.
+documented; 1: it is not; 2: wrong usage, or mote is missing. A full run takes 2 minutes of one core, --quick 20 s.
 
     experiments/figures/engelhardt_10_10_room.py [--quick] [--redraw] [--output FOLDER] [--bin FOLDER]
 """
