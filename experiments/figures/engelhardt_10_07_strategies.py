@@ -35,7 +35,12 @@ class EqualTime:
             cpu = self.render(name, "_pilot", pilot, 1).cpu - self.start[name]
             self.passes[name] = min(max(1, round(self.seconds * pilot / max(cpu, 0.01))), 40 * pilot)
 
-    def render(mote, quick):
+    def render(self, name, suffix, passes, seed, settings={}):
+        return self.mote.render("smoke_room", name.replace(" ", "_").replace(".", "") + suffix,
+                                self.common | STRATEGIES[name] | settings, passes=passes, seed=seed)
+
+
+def render(mote, quick):
     """Two independent references, by strategy the pictures of three seeds, and what made them."""
     size = {"resx": 24, "resy": 15} if quick else {"resx": 96, "resy": 60}
     references = [mote.render("smoke_room", "reference", size | {"integrator": "volpath"}, seed=s, passes=500) for s in (98, 99)]
