@@ -76,8 +76,8 @@ def draw(pairs, more, cleans, path):
         x = 429 * column + 1
         show(canvas.panel(x, TITLE, 421, 421), picture, exposure, f"{ANISOTROPIES[g]}, g = {g}: all light, by mote_layers")
         recovered = np.mean([a[RECOVERED] for a in [a for a, _ in pictures] + more[g]], axis=0)
-        show(canvas.panel(x, 2 * TITLE + 429, 421, 421), enlarged(recovered, 5, *picture.shape[:2]), 4 * exposure,
-             "what two steps bring back, x4, 5 x 5 pixels")
+        show(canvas.panel(x, 2 * TITLE + 429, 421, 421), enlarged(recovered, 3, *picture.shape[:2]), 4 * exposure,
+             "what two steps bring back, x4, means over 3 x 3 pixels")
     canvas.save(path)
 
 
