@@ -2,20 +2,18 @@
 """A scan line with virtual point lights, by steps of bias compensation: Engelhardt 2013, Figs. 10.1 and 10.4.
 
 A line through the smoke room: light unbounded, bounded, with one to three steps of compensation, and with all of them
-(the paper's reference). All variants share their VPLs, several independent sets of them. Exit code 0: all is as
-documented; 1: it is not; 2: wrong usage, or mote is missing. A full run takes 2.5 minutes of one core, --quick half a
-minute.
+(the paper's reference). All variants share their VPLs, several independent sets of them. The picture of the room, by
+`mote_layers`, shows where the line is. Exit code 0: all is as documented; 1: it is not; 2: wrong usage, or mote is
+missing. A full run takes 3.5 minutes of one core, --quick half a minute.
 
     experiments/figures/engelhardt_10_04_recursion.py [--quick] [--redraw] [--output FOLDER] [--bin FOLDER]
 """
 import sys
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 from claims import Claims
-from renders import (BOUNDED, RECOVERED, approximate, compensation, luminance, main, mean_and_error, write_csv)
+from panels import TITLE, Canvas, clean, show, title
+from renders import BOUNDED, RECOVERED, approximate, compensation, luminance, main, mean_and_error, write_csv
 
 ROWS = 4  # a line is the mean of so many rows of pixels
 
@@ -94,37 +92,43 @@ def check(beauty, multiple, few):
     return claims.exit_code()
 
 
-def draw(beauty, multiple, few, vpls, path):
-    figure, panels = plt.subplots(1, 3, figsize=(14, 4.3), sharex=True)
+def draw(beauty, multiple, few, vpls, clean, path):
+    canvas = Canvas(1280, 2 * TITLE + 400 + 368 + 64)
+    left, right, below = 52, 692, 2 * TITLE + 440
+    room = canvas.panel(left, TITLE, 578, 361)
+    show(room, clean, 0.8 / np.quantile(luminance(clean), 0.985), "all light, by mote_layers, filtered, and the line")
+    height, width = clean.shape[:2]
+    high = ROWS * width / beauty["reference"].shape[1]  # of the line, in pixels of the clean picture
+    room.axhspan((height - high) / 2, (height + high) / 2, facecolor="none", edgecolor="white", linewidth=1)
+    panels = [canvas.panel(right, TITLE, 578, 361), canvas.panel(left, below, 578, 340), canvas.panel(right, below, 578, 340)]
     columns = lambda lines: (np.arange(lines.shape[1]) + 0.5) / lines.shape[1]
     worst = np.argmax(peak(few, "unbounded"))
     for name, color in (("unbounded", "tab:red"), ("compensated", "black"), ("bounded", "tab:blue")):
-        panels[0].plot(columns(few[name]), few[name][worst], color=color, linewidth=1, label=name)
-    panels[0].set_title(f"one set of about {vpls:.0f} VPLs: multiple scattering", fontsize=10)
+        panels[0].plot(columns(few[name]), few[name][worst], color=color, linewidth=1.5, label=name)
+    title(panels[0], f"one set of about {vpls:.0f} VPLs: multiple scattering")
     panels[0].set_yscale("log")
-    for axes, lines, title in ((panels[1], beauty, "brightness"), (panels[2], multiple, "multiple scattering alone")):
-        axes.plot(columns(lines["reference"]), lines["reference"].mean(axis=0), color="black", linewidth=2.5, label="reference")
+    for axes, lines, text in ((panels[1], beauty, "brightness"), (panels[2], multiple, "multiple scattering alone")):
+        axes.plot(columns(lines["reference"]), lines["reference"].mean(axis=0), color="black", linewidth=3.5, label="reference")
         for name, color in (("bounded", "tab:blue"), ("1 step", "tab:orange"), ("2 steps", "tab:green")):
-            axes.plot(columns(lines[name]), lines[name].mean(axis=0), color=color, linewidth=1, label=name)
-        axes.set_title(f"mean of {len(lines['reference'])} sets: {title}", fontsize=10)
+            axes.plot(columns(lines[name]), lines[name].mean(axis=0), color=color, linewidth=1.5, label=name)
+        title(axes, f"mean of {len(lines['reference'])} sets: {text}")
         axes.set_ylim(bottom=0)
     for axes in panels:
-        axes.legend(fontsize=8)
+        axes.legend(fontsize=11)
         axes.set(xlim=(0, 1), xlabel="along the line")
-    figure.tight_layout()
-    figure.savefig(path, dpi=80)
-    plt.close(figure)
+    canvas.save(path)
 
 
 def figure(mote, quick, output):
     beauty, multiple = render(mote, quick)
     few, vpls = render_few(mote, quick)
+    picture = clean(mote, "smoke_room", {"resx": 160, "resy": 100} if quick else {"resx": 640, "resy": 400}, passes=32)
     rows = [[layer, name, *map(float, mean_and_error(lines.mean(axis=1)))]
             for layer, by_name in (("beauty", beauty), ("multiple_scattering", multiple),
                                   ("few_vpls", few))
             for name, lines in by_name.items()]
     write_csv(output.with_suffix(".csv"), ["layer", "variant", "mean", "standard_error"], rows)
-    draw(beauty, multiple, few, vpls, output.with_suffix(".png"))
+    draw(beauty, multiple, few, vpls, picture[""], output.with_suffix(".png"))
     return check(beauty, multiple, few)
 
 

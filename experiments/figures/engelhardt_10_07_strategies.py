@@ -4,19 +4,17 @@
 Light that the smoke scatters more than once, by the four strategies of Sec. 10.2.3, each with as many passes as fit the
 same processor time. Where every vertex of an eye path meets all VPLs, a pass takes one eye path a pixel; the 1-to-1
 strategies share the VPLs out among 64. The error is the root mean square of the difference to `volpath` over the
-pixels. Exit code 0: all is as documented; 1: it is not; 2: wrong usage, or mote is missing. A full run takes 2.5
-minutes of one core, --quick 45 s.
+pixels, without the noise of `volpath`; the clean picture, by `mote_layers`, is for the eye alone. Exit code 0: all is
+as documented; 1: it is not; 2: wrong usage, or mote is missing. A full run takes 4 minutes of one core, --quick 45 s.
 
     experiments/figures/engelhardt_10_07_strategies.py [--quick] [--redraw] [--output FOLDER] [--bin FOLDER]
 """
 import sys
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 from claims import Claims
-from renders import RECOVERED, approximate, compensation, luminance, main, mean_and_error, show, write_csv
+from panels import TITLE, Canvas, clean, show, title
+from renders import RECOVERED, approximate, compensation, luminance, main, mean_and_error, write_csv
 
 SHARED = {"integrator.eye_samples": 64}
 STRATEGIES = {"1-to-N": compensation("exact", strategy="1-to-n"),
@@ -31,11 +29,11 @@ class EqualTime:
     def __init__(self, mote, common, seconds):
         self.mote, self.common, self.seconds = mote, common, seconds
         self.start = {name: self.render(name, "_start", 1, 1, {"paths": 0}).cpu for name in STRATEGIES}
-        pilot = 8
+        pilot = 4
         self.passes = {}
         for name in STRATEGIES:
             cpu = self.render(name, "_pilot", pilot, 1).cpu - self.start[name]
-            self.passes[name] = min(max(1, round(self.seconds * pilot / max(cpu, 0.01))), 20 * pilot)
+            self.passes[name] = min(max(1, round(self.seconds * pilot / max(cpu, 0.01))), 40 * pilot)
 
     def render(self, name, suffix, passes, seed, settings={}):
         return self.mote.render("smoke_room", name.replace(" ", "_").replace(".", "") + suffix,
@@ -43,18 +41,19 @@ class EqualTime:
 
 
 def render(mote, quick):
-    size = {"resx": 24, "resy": 16} if quick else {"resx": 36, "resy": 24}
-    reference = mote.render("smoke_room", "reference", size | {"integrator": "volpath"}, seed=99,
-                            passes=1000 if quick else 3000)
-    equal = EqualTime(mote, size | {"paths": 100 if quick else 400}, 1.5 if quick else 4)
+    """Two independent references, by strategy the pictures of three seeds, and what made them."""
+    size = {"resx": 24, "resy": 15} if quick else {"resx": 96, "resy": 60}
+    references = [mote.render("smoke_room", "reference", size | {"integrator": "volpath"}, seed=s, passes=500) for s in (98, 99)]
+    equal = EqualTime(mote, size | {"paths": 100 if quick else 200}, 1.5 if quick else 6)
     pictures = {name: [equal.render(name, "", equal.passes[name], seed) for seed in range(2, 5)] for name in STRATEGIES}
-    return reference, pictures, equal
+    return references, pictures, equal
 
 
-def error_of(picture, reference):
-    """Root mean square over the pixels, relative to the mean of the reference."""
-    difference = luminance(picture.multiple() - reference.multiple())
-    return np.mean(difference ** 2) ** 0.5 / luminance(reference.multiple()).mean()
+def error_of(picture, references):
+    """Root mean square over the pixels, relative to the mean of the references. Two independent ones cancel their noise out of
+    the square."""
+    p, r, s = (luminance(x.multiple()) for x in (picture, *references))
+    return max(np.mean((p - r) * (p - s)), 0.0) ** 0.5 / (0.5 * (r + s).mean())
 
 
 def spread_of_a_pass(pictures):
@@ -82,35 +81,34 @@ def check(rmse, pictures):
     return claims.exit_code()
 
 
-def draw(reference, pictures, rmse, equal, path):
-    figure = plt.figure(figsize=(13, 5.4))
-    grid = figure.add_gridspec(2, 5, height_ratios=[1, 1.1], left=0.06, right=0.99, top=0.94, bottom=0.1, hspace=0.25)
-    exposure = 1 / np.quantile(luminance(reference.multiple()), 0.98)
-    for column, (name, ps) in enumerate(pictures.items()):
-        axes = figure.add_subplot(grid[0, column])
-        show(axes, ps[0].multiple(), exposure, f"{name}, {ps[0].passes} passes")
-    show(figure.add_subplot(grid[0, 4]), reference.multiple(), exposure, "volpath")
-    axes = figure.add_subplot(grid[1, :])
+def draw(clean, pictures, rmse, equal, path):
+    """Pictures with the noise that they have, beside the clean one and the errors."""
+    canvas = Canvas(1280, 2 * (TITLE + 263) + 40)
+    exposure = 0.8 / np.quantile(luminance(clean), 0.985)
+    show(canvas.panel(1, TITLE, 421, 263), clean, exposure, "multiple scattering, by mote_layers, filtered")
+    for i, (name, ps) in enumerate(pictures.items()):
+        place = canvas.panel(430 + 429 * (i % 2), TITLE + (TITLE + 275) * (i // 2), 421, 263)
+        show(place, ps[0].multiple(), exposure, f"{name}: {ps[0].passes} passes")
+    axes = canvas.panel(48, 2 * TITLE + 275, 374, 263 - 24)
     for x, (name, errors) in enumerate(rmse.items()):
         mean, error = mean_and_error(errors)
         axes.bar(x, 100 * mean, yerr=100 * error, color=["0.6", "0.6", "tab:blue", "tab:green"][x], width=0.6)
-    axes.set_xticks(range(len(rmse)))
-    axes.set_xticklabels(rmse.keys())
+    axes.set_xticks(range(len(rmse)), rmse.keys())
     axes.set_ylabel("RMSE, % of the mean")
-    axes.set_title(f"after {equal.seconds} s of processor time", fontsize=10)
-    figure.savefig(path, dpi=75)
-    plt.close(figure)
+    title(axes, f"after {equal.seconds} s of processor time")
+    canvas.save(path)
 
 
 def figure(mote, quick, output):
-    reference, pictures, equal = render(mote, quick)
-    rmse = {name: [error_of(p, reference) for p in ps] for name, ps in pictures.items()}
+    references, pictures, equal = render(mote, quick)
+    rmse = {name: [error_of(p, references) for p in ps] for name, ps in pictures.items()}
     rows = [[name, *map(float, mean_and_error(rmse[name])), ps[0].passes, float(np.mean([p.cpu for p in ps]) - equal.start[name])]
             for name, ps in pictures.items()]
     write_csv(output.with_suffix(".csv"), ["strategy", "rmse", "standard_error", "passes", "cpu_seconds"], rows)
     for row in rows:
         print(f"                {row[0]}: {row[3]} passes, {row[4]:.1f} s")
-    draw(reference, pictures, rmse, equal, output.with_suffix(".png"))
+    picture = clean(mote, "smoke_room", {"resx": 160, "resy": 100} if quick else {"resx": 640, "resy": 400}, passes=32)
+    draw(picture.multiple(), pictures, rmse, equal, output.with_suffix(".png"))
     return check(rmse, pictures)
 
 

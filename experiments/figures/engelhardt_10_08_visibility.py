@@ -3,20 +3,19 @@
 
 Two steps of compensation with and without local visibility, all else the same and exact, down to the VPLs: in the smoke
 room, and beside a thin wall in thin fog with light on one side only, where light should bleed through if anywhere. What
-is left out works both ways: surfaces hide light, and they reflect it. Exit code 0: all is as documented; 1: it is not;
-2: wrong usage, or mote is missing. A full run takes 2 minutes of one core, --quick 35 s.
+is left out works both ways: surfaces hide light, and they reflect it. The clean pictures, by `mote_layers`, are for
+the eye alone. Exit code 0: all is as documented; 1: it is not; 2: wrong usage, or mote is missing. A full run takes 4
+minutes of one core, --quick 40 s.
 
     experiments/figures/engelhardt_10_08_visibility.py [--quick] [--redraw] [--output FOLDER] [--bin FOLDER]
 """
 import sys
 from pathlib import Path
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 from claims import Claims
-from renders import (RECOVERED, approximate, luminance, main, mean_and_error, show, show_difference, write_csv)
+from panels import TITLE, Canvas, clean, enlarged, show, show_difference
+from renders import RECOVERED, approximate, luminance, main, mean_and_error, write_csv
 
 WALL = Path(__file__).resolve().parent / "scenes" / "thin_wall.xml"
 SCALE = 512  # of the paper's difference
@@ -85,22 +84,44 @@ def check(pairs):
     return claims.exit_code(), rows
 
 
-def draw(pairs, path):
-    figure, panels = plt.subplots(len(pairs), 4, figsize=(13, 8.5), gridspec_kw={"hspace": 0.15, "wspace": 0.04})
-    for row, (case, pictures) in zip(panels, pairs.items()):
-        looks, blind = (np.mean([pair[i][""] for pair in pictures], axis=0) for i in (0, 1))
-        exposure = 1 / np.quantile(luminance(looks), 0.95)
-        show(row[0], looks, exposure, f"{case}: with local visibility")
-        show(row[1], blind, exposure, "without")
-        show_difference(row[2], blind - looks, 16 * exposure, "difference x16")
-        show_difference(row[3], blind - looks, SCALE * exposure, f"difference x{SCALE}")
-    figure.savefig(path, dpi=70, bbox_inches="tight")
-    plt.close(figure)
+def draw(pairs, cleans, path):
+    """A line for each case: a clean picture, without visibility (where that shows), and differences. The room is by
+    mote_layers; of the fog beside the walls, what scatters more than once is the mean of the VPLs' pictures."""
+    canvas = Canvas(1280, 3 * TITLE + 263 + 2 * 281 + 16)
+    y = 0
+    for case, pictures in pairs.items():
+        picture = cleans[case]
+        height, width = picture[""].shape[:2]
+        difference = np.mean([blind[""] - looks[""] for looks, blind in pictures], axis=0)
+        if case == "room":
+            picture = picture[""]
+        else:  # fog alone is as smooth as a coarse picture of it
+            multiple = np.mean([looks.multiple() for looks, _ in pictures], axis=0)
+            picture = picture[""] - picture.multiple() + enlarged(multiple, 2, height, width)
+        exposure = 0.8 / np.quantile(luminance(picture), 0.97)
+        y += TITLE
+        high = 263 if case == "room" else 281
+        column = [canvas.panel(429 * i + 1, y, 421, high) for i in range(3)]
+        show(column[0], picture, exposure, f"{case}: with local visibility")
+        scene = exposure * luminance(picture)
+        if case != "room":
+            show(column[1], picture + enlarged(difference, 2, height, width), exposure, "without")
+        for axes, scale in zip(column[1 if case == "room" else 2:], (16, SCALE)):
+            n = 4 if case == "room" else 2
+            show_difference(axes, enlarged(difference, n, height, width), scale * exposure,
+                            f"difference x{scale}, means over {n} x {n} pixels", scene)
+        y += high + 8
+    canvas.save(path)
 
 
 def figure(mote, quick, output):
     pairs = render(mote, quick)
-    draw(pairs, output.with_suffix(".png"))
+    room, wall = ({"resx": 160, "resy": 100}, {"resx": 150, "resy": 100}) if quick else (
+        {"resx": 640, "resy": 400}, {"resx": 421, "resy": 281})
+    cleans = {"room": clean(mote, "smoke_room", room, passes=32),
+              "dark wall": clean(mote, WALL, wall | {"wall": 0.05}, 160, "clean_dark"),
+              "light wall": clean(mote, WALL, wall | {"wall": 0.8}, 160, "clean_light")}
+    draw(pairs, cleans, output.with_suffix(".png"))
     code, rows = check(pairs)
     write_csv(output.with_suffix(".csv"), ["scene", "where", "relative_bias", "standard_error", "recovered_share"], rows)
     return code

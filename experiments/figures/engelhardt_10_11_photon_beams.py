@@ -3,20 +3,19 @@
 
 What the smoke of the room scatters more than once, along the ray through the middle of every pixel: by 1536 light paths
 with two steps of approximate compensation, and by the photon map with 117 photons in an estimate as in the paper and as
-many photons as the same processor time allows, in one pass and in eight. All are judged by `volpath`. Exit code 0: all
-is as documented; 1: it is not; 2: wrong usage, or mote is missing. A full run takes 3 minutes of one core, --quick 40
-s.
+many photons as the same processor time allows, in one pass and in eight. All are judged by `volpath`; the clean
+picture, by `mote_layers`, is for the eye alone. Exit code 0: all is as documented; 1: it is not; 2: wrong usage, or
+mote is missing. A full run takes 5 minutes of one core, --quick 40 s.
 
     experiments/figures/engelhardt_10_11_photon_beams.py [--quick] [--redraw] [--output FOLDER] [--bin FOLDER]
 """
 import sys
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
+import panels
 from claims import Claims
-from renders import approximate, luminance, main, mean_and_error, show, show_difference, write_csv
+from panels import TITLE, Canvas, clean, enlarged, show, show_difference, title
+from renders import approximate, luminance, main, mean_and_error, write_csv
 
 SCENE, SEEDS = "smoke_room", range(1, 4)
 PASSES, BLOCKS = 8, (1, 8)
@@ -31,9 +30,9 @@ def render(mote, quick):
     """Two independent references, and by method the pictures of three seeds; and the seconds that one takes."""
     # Rays through the middle of a pixel: a pass of the photon map takes one a pixel, VPLs many, and with so few pixels
     # what lies within one of them would decide.
-    size = {"resx": 24, "resy": 24} if quick else {"resx": 56, "resy": 56}
+    size = {"resx": 32, "resy": 24} if quick else {"resx": 128, "resy": 80}
     size |= {"film.rfilter": "gaussian", "film.rfilter.stddev": 0.02}
-    references = [mote.render(SCENE, "reference", size | {"integrator": "volpath"}, passes=300 if quick else 400, seed=s)
+    references = [mote.render(SCENE, "reference", size | {"integrator": "volpath"}, passes=300 if quick else 250, seed=s)
                   for s in (101, 102)]
     lights = size | {"paths": 1000 if quick else 1536, "integrator.eye_samples": 64} | approximate(2)
     beams = size | {"integrator": "mote_photon_map", "integrator.neighbours": 117}
@@ -55,11 +54,7 @@ def render(mote, quick):
 def error(picture, references, block):
     """Root mean square over blocks of pixels, relative to the mean. Two independent references cancel their noise out of
     the square."""
-    def means(image):
-        l = luminance(image.multiple())
-        return l.reshape(l.shape[0] // block, block, l.shape[1] // block, block).mean(axis=(1, 3))
-
-    p, r, s = (means(x) for x in (picture, *references))
+    p, r, s = (luminance(panels.blocks(x.multiple(), block)) for x in (picture, *references))
     return max(np.mean((p - r) * (p - s)), 0.0) ** 0.5 / (0.5 * (r + s).mean())
 
 
@@ -80,17 +75,32 @@ def check(table):
     return claims.exit_code()
 
 
-def draw(references, pictures, times, path):
-    figure, panels = plt.subplots(2, 4, figsize=(12, 6), gridspec_kw={"wspace": 0.04, "hspace": 0.1})
+def bars(axes, table):
+    """The errors, over pixels and over blocks."""
+    for i, block in enumerate(BLOCKS):
+        values = [100 * np.array([row[part][1 + i] for row in table.values()]) for part in (0, 1)]
+        axes.bar(np.arange(len(table)) + 0.4 * i - 0.2, values[0], yerr=values[1], width=0.38, color=["tab:blue", "tab:orange"][i],
+                 label="pixels" if block == 1 else f"blocks of {block} x {block} pixels")
+    axes.set_xticks(range(len(table)), [name.replace(", ", ",\n") for name in table])
+    axes.set_ylabel("RMSE, % of the mean")
+    axes.legend(fontsize=11)
+    title(axes, "error against volpath at equal processor time")
+
+
+def draw(references, pictures, times, table, clean, path):
+    """Pictures with the noise that they have; differences to volpath over blocks, since it has noise too."""
     reference = 0.5 * sum(r.multiple() for r in references)
-    exposure = 1 / np.quantile(luminance(reference), 0.97)
-    show(panels[0, 0], reference, exposure, "volpath")
-    panels[1, 0].axis("off")
-    for column, (name, ps) in enumerate(pictures.items(), 1):
-        show(panels[0, column], ps[0].multiple(), exposure, f"{name}, {times[name]:.0f} s")
-        show_difference(panels[1, column], ps[0].multiple() - reference, 3 * exposure, "difference x3")
-    figure.savefig(path, dpi=75, bbox_inches="tight")
-    plt.close(figure)
+    exposure = 0.8 / np.quantile(luminance(clean), 0.985)
+    canvas = Canvas(1280, 3 * TITLE + 400 + 2 * 263 + 16)
+    show(canvas.panel(0, TITLE, 640, 400), clean, exposure, "multiple scattering, by mote_layers, filtered")
+    bars(canvas.panel(700, TITLE, 572, 354), table)
+    y = 2 * TITLE + 408
+    for column, (name, ps) in enumerate(pictures.items()):
+        show(canvas.panel(429 * column + 1, y, 421, 263), ps[0].multiple(), exposure, f"{name}, {times[name]:.0f} s")
+        shown = enlarged(ps[0].multiple() - reference, 4, 263, 421)
+        show_difference(canvas.panel(429 * column + 1, y + TITLE + 271, 421, 263), shown, 3 * exposure,
+                        "less volpath, x3, means over 4 x 4 pixels")
+    canvas.save(path)
 
 
 def figure(mote, quick, output):
@@ -105,7 +115,9 @@ def figure(mote, quick, output):
         mean, error = table[name]
         print(f"                {name}: {count:.0f} {what}, {times[name]:.1f} s, bias {100 * mean[0]:+.1f} +- "
               f"{100 * error[0]:.1f} %")
-    draw(references, pictures, times, output.with_suffix(".png"))
+    size = {"resx": 160, "resy": 100} if quick else {"resx": 640, "resy": 400}
+    picture = clean(mote, SCENE, size, passes=32)
+    draw(references, pictures, times, table, picture.multiple(), output.with_suffix(".png"))
     return check(table)
 
 
