@@ -27,7 +27,7 @@ std::vector<core::Rgb> picture(const core::Scene& scene, const std::string& inte
     core::PassRunner runner(scene, *method, 3, film);
     const std::atomic<bool> cancelled = false;
     for (int i = 0; i < passes; ++i) REQUIRE(runner.run_pass(cancelled));
-    runner.estimator().finish(film);
+    runner.estimator().finish(film, {});
     if (statistics) runner.estimator().add_statistics(*statistics);
     for (std::size_t i = 0; i < film.layers().size(); ++i)
         if (film.layers()[i].name == layer) return film.mean(i);
