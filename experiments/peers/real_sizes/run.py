@@ -4,11 +4,10 @@
     experiments/trade/run --peers [SCENE...]           640 x 400, into out/peers/: some four minutes a scene
     experiments/trade/run --peers --quick [SCENE...]   80 x 50, into out/peers_quick/: some three minutes in all
     experiments/trade/run --peers --references         the references alone, where they are missing
-    experiments/trade/run --peers --ours [SCENE...]    our methods alone, with the filter of the scenes, into out/ours/
     experiments/trade/run --peers --match [SCENE...]   means of the peers against volpath, 64 x 40: a table
 
 Scenes: cornell_box smoke_room fog_grille cloud atrium city; settings.json has their settings. Two references a scene,
-NAME_a.exr and NAME_b.exr with this size and box filter (--ours: the scene's own), are looked for in the folder MOTE_REFERENCES (default
+NAME_a.exr and NAME_b.exr with box filter and this size, are looked for in the folder MOTE_REFERENCES (default
 out/references) and made there by the path tracer where they are missing, REFERENCE_TIME seconds each. A method that was
 measured is not measured again (--fresh: it is). A peer that is not installed is left out with a notice.
 """
@@ -37,7 +36,6 @@ def arguments():
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--match", action="store_true")
     parser.add_argument("--references", action="store_true")
-    parser.add_argument("--ours", action="store_true")
     parser.add_argument("--fresh", action="store_true")
     parser.add_argument("--budget", type=float, help="seconds for all pictures of a method (settings.json: 34)")
     parser.add_argument("--mote", default=os.environ.get("MOTE", str(ROOT / "build/release/bin/mote")))
@@ -50,7 +48,7 @@ def arguments():
         settings.update(settings["quick"])
     settings["budget"] = options.budget or settings["budget"]
     settings["reference_time"] = float(os.environ.get("REFERENCE_TIME", settings["reference_time"]))
-    options.output = ROOT / "out" / (("ours" if options.ours else "peers") + "_quick" * options.quick)
+    options.output = ROOT / "out" / ("peers_quick" if options.quick else "peers")
     folder = os.environ.get("MOTE_REFERENCES", ROOT / "out" / "references")
     options.folder = options.output / "references" if options.quick else Path(folder)
     return options, settings
@@ -74,8 +72,6 @@ def methods_of(mote, scene, settings, options, output):
         log = measured(folder, options.fresh, lambda f: mote.run(method, f, budget, 100 * (index + 1)))
         text = " ".join([method["integrator"]] + [f"{k}={v}" for k, v in method.get("settings", {}).items()])
         yield method["name"], text, False, method.get("unbiased", False), folder, log
-    if options.ours:
-        return
     notes = export(mote, scene["integrator"], exported)
     for index, (name, action) in enumerate((("mitsuba", run_mitsuba), ("cycles", run_cycles))):
         folder, s = output / name, settings[name]
@@ -94,8 +90,7 @@ def log_name(name, log):
 def scene_page(name, scene, settings, options):
     """Measures one scene and writes its CSV, SVG and table; what write_page needs of it."""
     output = options.output / name
-    settings = settings | scene.get("size", {}) if options.ours and not options.quick else settings
-    sizes = [f"resx={settings['width']}", f"resy={settings['height']}"] + ["film.rfilter=box"] * (not options.ours)
+    sizes = [f"resx={settings['width']}", f"resy={settings['height']}", "film.rfilter=box"]
     mote = Mote(options.mote, ROOT / "scenes" / f"{name}.xml", sizes, settings["threads"])
     files = [reference(mote, options.folder, name, letter, scene, settings["reference_time"]) for letter in "ab"]
     if options.references:
@@ -127,7 +122,7 @@ def scene_page(name, scene, settings, options):
 def facts_of(settings, options):
     return {"Script": "experiments/peers/real_sizes/run.py", "Commit": commit(),
             "Run": "quick" if options.quick else "full",
-            "Size": f"{settings['width']} x {settings['height']}, " + ("gaussian" if options.ours else "box") + " filter",
+            "Size": f"{settings['width']} x {settings['height']}, box filter",
             "Seconds": f"{settings['budget']} for all pictures of a method, {settings['threads']} threads"}
 
 
