@@ -156,6 +156,7 @@ def times():
     near(noise_alone([{"error": 0.05}], (0.03, 0.001))[0]["error"], 0.04, "noise without what is systematic")
     check(next_passes(runs[:1], 64) == 4 and next_passes(runs[:2], 64) == 4, "passes that double")
     check(next_passes(runs, 64) is None, "the budget ends")
+    check(next_passes(runs[:1], 2) == 1, "two pictures at least")
     check([next_passes(runs[:n], [3, 5]) for n in range(3)] == [3, 5, None], "passes by a list")
 
 

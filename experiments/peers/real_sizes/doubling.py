@@ -4,8 +4,8 @@
 def next_passes(runs, budget):
     """None where the pictures so far (each with `passes` and `wall_s`) leave no time for it within `budget` seconds.
 
-    Passes double; but after the first picture, which has one, as many as take a thirty-second of the budget. A budget that
-    is a list says the passes of each picture.
+    Passes double; but after the first picture, which has one, as many as take a thirty-second of the budget. There
+    are two pictures at least: what is systematic needs them. A budget that is a list says the passes of each picture.
     """
     if isinstance(budget, list):
         return budget[len(runs)] if len(runs) < len(budget) else None
@@ -16,4 +16,6 @@ def next_passes(runs, budget):
     while len(runs) == 1 and 2 * more * seconds / n <= budget / 16:
         more *= 2
     spent = sum(run["wall_s"] for run in runs)
-    return more if spent + more * seconds / n <= budget else None
+    if spent + more * seconds / n <= budget:
+        return more
+    return n if len(runs) == 1 else None

@@ -41,7 +41,7 @@ def row(m):
     last = m["runs"][-1]
     percent = lambda value, error, sign="": f"{100 * value:{sign}.2f} ± {100 * error:.2f} %"
     return cells + [f"{last['passes']} in {last['wall_s']:.1f} s: {percent(last['error'], last['error_se'])}",
-                    percent(last["bias"], last["bias_se"], "+"), percent(*m["systematic"]), f"{m['build_s']:.1f} s"]
+                    percent(last["bias"], last["bias_se"], "+"), percent(*m["systematic"]) if len(runs) > 1 else "-", f"{m['build_s']:.1f} s"]
 
 
 HEAD = ("method", *(f"s to {100 * t:.0f} %" for t in TARGETS), "last picture", "bias", "systematic", "loading")
