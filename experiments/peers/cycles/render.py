@@ -3,8 +3,8 @@
     blender -b --factory-startup --python-exit-code 1 --python experiments/peers/cycles/render.py -- JOB.json
 
 The job: folder (of the exported scene), vdb, output, threads, seed, budget (real_sizes/doubling.py), and step_rate,
-max_steps, cut_grids, volume_sampling (media.py).
-Writes output/N.exr (linear, float, box filter) and output/log.json. Raw: no view transform, denoiser, clamping, adaptive
+max_steps, cut_grids, volume_sampling (media.py), filter: box or gaussian.
+Writes output/N.exr (linear, float) and output/log.json. Raw: no view transform, denoiser, clamping, adaptive
 sampling, light threshold or blur; as many bounces as Cycles has.
 """
 import json
@@ -35,7 +35,8 @@ def configure(job):
     cycles.caustics_reflective = cycles.caustics_refractive = True
     cycles.blur_glossy = cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
     cycles.light_sampling_threshold = 0.0
-    cycles.pixel_filter_type = "BOX"
+    cycles.pixel_filter_type = {"box": "BOX", "gaussian": "GAUSSIAN"}[job["filter"]]
+    cycles.filter_width = 6.0  # exp(-2 x^2), Mitsuba's default; Cycles goes on to 3 pixels, Mitsuba to 2
     cycles.volume_step_rate, cycles.volume_max_steps = job["step_rate"], job["max_steps"]
     render.threads_mode, render.threads = "FIXED", job["threads"]
     render.film_transparent, render.use_compositing, render.use_sequencer = False, False, False

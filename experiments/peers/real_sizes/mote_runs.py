@@ -5,7 +5,7 @@ import subprocess
 from pathlib import Path
 
 from doubling import next_passes
-from exr import read_exr
+from exr import read_exr, read_header
 
 
 class Mote:
@@ -68,15 +68,25 @@ def processor_seconds():
     return used.ru_utime + used.ru_stime
 
 
-def reference(mote, folder, name, letter, scene, seconds):
-    """FOLDER/NAME_LETTER.exr, rendered by the scene's path tracer where it is missing; the file."""
-    path = Path(folder) / f"{name}_{letter}.exr"
-    if not path.is_file():
-        Path(folder).mkdir(parents=True, exist_ok=True)
-        print(f"{name}: reference {letter}, {seconds} s", flush=True)
-        mote.render(path, scene["integrator"], scene.get("settings", {}), "--passes", 10**6, "--time", seconds,
-                    seed=1000 + ord(letter))
+def found_references(folders, name):
+    """[NAME_a.exr, NAME_b.exr], each in the first folder that has it, or None; NAME.exr stands for a missing NAME_a.exr."""
+    first = lambda words: next((Path(f) / w for w in words for f in folders if (Path(f) / w).is_file()), None)
+    return [first([f"{name}_a.exr", f"{name}.exr"]), first([f"{name}_b.exr"])]
+
+
+def make_reference(mote, path, scene, seconds):
+    """By the scene's path tracer; the last letter of the file's name is its seed."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    print(f"{path.stem}: a reference, {seconds} s", flush=True)
+    mote.render(path, scene["integrator"], scene.get("settings", {}), "--passes", 10**6, "--time", seconds,
+                seed=1000 + ord(path.stem[-1]))
     return path
+
+
+def filter_of(path):
+    """`box` where the command of a picture says so, else the default of our scenes."""
+    header, _ = read_header(Path(path).read_bytes())
+    return "box" if b"film.rfilter=box" in header.get("commandLine", b"") else "gaussian"
 
 
 def beauty_and_variance(path):

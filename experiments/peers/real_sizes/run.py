@@ -7,9 +7,10 @@
     experiments/trade/run --peers --match [SCENE...]   means of the peers against volpath, 64 x 40: a table
 
 Scenes: cornell_box smoke_room fog_grille cloud atrium city; settings.json has their settings. Two references a scene,
-NAME_a.exr and NAME_b.exr with box filter and this size, are looked for in the folder MOTE_REFERENCES (default
-out/references) and made there by the path tracer where they are missing, REFERENCE_TIME seconds each. A method that was
-measured is not measured again (--fresh: it is). A peer that is not installed is left out with a notice.
+NAME_a.exr (or NAME.exr) and NAME_b.exr, are looked for in the folders MOTE_REFERENCES (default out/references) and made
+in the first of them by the path tracer where they are missing, with box filter, REFERENCE_TIME seconds each. All pictures
+have the size and the pixel filter of the references. A method that was measured is not measured again (--fresh: it is). A
+peer that is not installed is left out with a notice.
 """
 import argparse
 import json
@@ -22,7 +23,7 @@ ROOT = HERE.parent.parent.parent
 sys.path.append(str(ROOT / "experiments" / "figures"))
 from error_measure import Judge  # noqa: E402
 from match import match  # noqa: E402
-from mote_runs import Mote, beauty_and_variance, reference  # noqa: E402
+from mote_runs import Mote, beauty_and_variance, filter_of, found_references, make_reference  # noqa: E402
 from origin import commit  # noqa: E402
 from page import markdown, write_csv, write_page  # noqa: E402
 from peer_runs import export, pictures, run_cycles, run_mitsuba  # noqa: E402
@@ -49,8 +50,8 @@ def arguments():
     settings["budget"] = options.budget or settings["budget"]
     settings["reference_time"] = float(os.environ.get("REFERENCE_TIME", settings["reference_time"]))
     options.output = ROOT / "out" / ("peers_quick" if options.quick else "peers")
-    folder = os.environ.get("MOTE_REFERENCES", ROOT / "out" / "references")
-    options.folder = options.output / "references" if options.quick else Path(folder)
+    folders = os.environ.get("MOTE_REFERENCES", str(ROOT / "out" / "references")).split(os.pathsep)
+    options.folders = [options.output / "references"] if options.quick else [Path(f) for f in folders]
     return options, settings
 
 
@@ -92,12 +93,19 @@ def scene_page(name, scene, settings, options):
     output = options.output / name
     sizes = [f"resx={settings['width']}", f"resy={settings['height']}", "film.rfilter=box"]
     mote = Mote(options.mote, ROOT / "scenes" / f"{name}.xml", sizes, settings["threads"])
-    files = [reference(mote, options.folder, name, letter, scene, settings["reference_time"]) for letter in "ab"]
+    files = found_references(options.folders, name)
+    files = [file or make_reference(mote, options.folders[0] / f"{name}_{letter}.exr", scene, settings["reference_time"])
+             for file, letter in zip(files, "ab")]
     if options.references:
         return None
     (a, va), (b, vb) = map(beauty_and_variance, files)
-    if a.shape[:2] != (settings["height"], settings["width"]) or b.shape != a.shape:
-        raise RuntimeError(f"{files[0]}: not {settings['width']} x {settings['height']} pixels")
+    filters = {filter_of(file) for file in files}
+    if b.shape != a.shape or len(filters) > 1:
+        raise RuntimeError(f"{files[0]} and {files[1]} differ in size or pixel filter")
+    # Whoever made the references chose size and filter of all pictures.
+    settings = {**settings, "height": a.shape[0], "width": a.shape[1], "filter": filters.pop()}
+    settings["cycles"] = {**settings["cycles"], "filter": settings["filter"]}
+    mote.sizes = [f"resx={settings['width']}", f"resy={settings['height']}", f"film.rfilter={settings['filter']}"]
     judge, methods, notes = Judge(a, b, va, vb), [], []
     for method, text, peer, unbiased, folder, log in methods_of(mote, scene, settings, options, output):
         systematic = judged(judge, log["runs"], list(pictures(folder, log)))
@@ -109,7 +117,8 @@ def scene_page(name, scene, settings, options):
               f"{100 * last['error_se']:.2f} %, bias {100 * last['bias']:+.2f} ± {100 * last['bias_se']:.2f} %, mean "
               f"{100 * last['mean']:+.2f} ± {100 * last['mean_se']:.2f} %", flush=True)
     notes.append(f"noise of each reference: {100 * judge.reference_noise():.2f} %")
-    facts = facts_of(settings, options)
+    notes.append(f"{settings['width']} x {settings['height']} pixels, {settings['filter']} filter")
+    facts = {**facts_of(settings, options), "References": " ".join(f"{f.name} ({f.stat().st_size} bytes)" for f in files)}
     write_csv(output / "peers.csv", facts, name, methods)
     drawing = svg(f"{scene['name']}, {settings['width']} x {settings['height']}",
                   [(m["name"], m["runs"], m["peer"]) for m in methods])
@@ -122,7 +131,6 @@ def scene_page(name, scene, settings, options):
 def facts_of(settings, options):
     return {"Script": "experiments/peers/real_sizes/run.py", "Commit": commit(),
             "Run": "quick" if options.quick else "full",
-            "Size": f"{settings['width']} x {settings['height']}, box filter",
             "Seconds": f"{settings['budget']} for all pictures of a method, {settings['threads']} threads"}
 
 
