@@ -4,7 +4,7 @@
 The statue in a homogeneous medium with the paper's sigma_s = 0.075 and sigma_a = 0.001, scattering backward, evenly and
 forward, with 4320 virtual point lights in three independent sets and two steps of approximate compensation; exact
 compensation with the same VPLs is what it is judged by. The clean pictures, by `mote_layers`, are for the eye alone.
-Exit code 0: all is as documented; 1: it is not; 2: wrong usage, or mote is missing. A full run takes 7 minutes of one
+Exit code 0: all is as documented; 1: it is not; 2: wrong usage, or mote is missing. A full run takes 8 minutes of one
 core, --quick 30 s.
 
     experiments/figures/engelhardt_10_12_anisotropic.py [--quick] [--redraw] [--output FOLDER] [--bin FOLDER]
@@ -77,7 +77,7 @@ def draw(pairs, more, cleans, path):
         show(canvas.panel(x, TITLE, 421, 421), picture, exposure, f"{ANISOTROPIES[g]}, g = {g}: all light, by mote_layers")
         recovered = np.mean([a[RECOVERED] for a in [a for a, _ in pictures] + more[g]], axis=0)
         show(canvas.panel(x, 2 * TITLE + 429, 421, 421), enlarged(recovered, 3, *picture.shape[:2]), 4 * exposure,
-             "what two steps bring back, x4, means over 3 x 3 pixels")
+             "what two steps bring back, x4, 3 x 3 pixels")
     canvas.save(path)
 
 

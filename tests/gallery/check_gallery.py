@@ -3,7 +3,7 @@
 
 For each picture of docs/gallery in a page of docs: it names its script, which the section names too; its run was full; its commit is one
 of this repository, without changes; its table lies beside it, with the same origin, and is the one that it was drawn with
-(experiments/figures/origin.py). Each section ends with a comment of lines such as
+(experiments/figures/origin.py), and it is wide enough. Each section ends with a comment of lines such as
 
     1.58 ± 0.02 % = bunny; taken_by_the_bound; standard_error
     22.2 ± 0.3 % = claim: clamping darkens
@@ -11,13 +11,14 @@ of this repository, without changes; its table lies beside it, with the same ori
 The words before '=' stand in the section or in its row of the first table. Behind it: the first cells of a row of the CSV
 file and the columns with the numbers, which must be those of the text as it rounds them; or the beginning of a claim, whose
 measured value holds these numbers in this order. A picture that was not made anew since pictures carry their origin says
-'Recorded: afterwards', and its section says so in the words NOT_ANEW.
+'Recorded: afterwards', and its section says so in the words NOT_ANEW, and may be as narrow as it was.
 
     tests/gallery/check_gallery.py ROOT
 """
 import csv
 import hashlib
 import re
+import struct
 import subprocess
 import sys
 from pathlib import Path
@@ -26,6 +27,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent / "experime
 from origin import csv_text, png_text, table_of
 
 NOT_ANEW = "not made anew since pictures say where they come from"
+WIDTH = 960  # pixels, at the least: a figure is to be read on a wall
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?")
 
 
@@ -138,6 +140,11 @@ def is_commit(root, commit):
     return git("cat-file", "-e", f"{commit}^{{commit}}").returncode == 0
 
 
+def width(picture):
+    """Of a PNG file, in pixels: the first number of its first chunk, which is IHDR."""
+    return struct.unpack(">I", picture.read_bytes()[16:20])[0]
+
+
 def check_picture(root, name, section, first_rows):
     picture, table = (root / "docs" / "gallery" / f"{name}{suffix}" for suffix in (".png", ".csv"))
     if not picture.is_file():
@@ -156,6 +163,8 @@ def check_picture(root, name, section, first_rows):
             offences.append(f"commit {commit} is none of this repository")
     if text.get("Recorded") == "afterwards":
         return offences + ([] if NOT_ANEW in " ".join(section.split()) else [f"the section does not say: {NOT_ANEW}"])
+    if width(picture) < WIDTH:
+        offences.append(f"only {width(picture)} pixels wide, not {WIDTH}")
     if not table.is_file():
         return offences + ["no table lies beside it"]
     if csv_text(table) != text:

@@ -32,15 +32,15 @@ It takes 3.5 s, and {loss} % are lost.
 TABLE = "scene,share,share_error,seconds\nbunny,0.123,0.0096,3.52\nclaim,measured,holds\nthe bound takes light,4.2 +- 0.1 %,holds\n"
 
 
-def plant(root, loss="4.2", table=TABLE, after=None, **facts):
+def plant(root, loss="4.2", table=TABLE, after=None, width=960, **facts):
     for folder in ("docs/gallery", "experiments/figures"):
         (root / folder).mkdir(parents=True, exist_ok=True)
     (root / "experiments/figures/figure.py").write_text("")
     (root / "docs/gallery.md").write_text(SECTION.format(loss=loss), encoding="utf-8")
     picture, csv = root / "docs/gallery/figure.png", root / "docs/gallery/figure.csv"
     chunk = lambda kind, data: struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-    picture.write_bytes(SIGNATURE + chunk(b"IHDR", struct.pack(">IIBBBBB", 1, 1, 8, 0, 0, 0, 0)) +
-                        chunk(b"IDAT", zlib.compress(b"\0\0")) + chunk(b"IEND", b""))
+    picture.write_bytes(SIGNATURE + chunk(b"IHDR", struct.pack(">IIBBBBB", width, 1, 8, 0, 0, 0, 0)) +
+                        chunk(b"IDAT", zlib.compress(bytes(1 + width))) + chunk(b"IEND", b""))
     csv.write_text(table)
     origin = Origin.__new__(Origin)
     origin.facts = {"Script": "experiments/figures/figure.py", "Run": "full", "Commit": "0123456789ab", **facts}
@@ -67,6 +67,7 @@ CASES = [  # what is planted, what is found ('' for nothing)
     ({"after": lambda picture, csv: edit(csv, "Run: full", "Run: quick")}, "do not come from one run"),
     ({"after": lambda picture, csv: csv.unlink()}, "no table lies beside it"),
     ({"after": lambda picture, csv: write_png_text(picture, {})}, "does not say: Script, Run, Commit"),
+    ({"width": 959}, "only 959 pixels wide"),
     ({"Recorded": "afterwards"}, "the section does not say"),
 ]
 
