@@ -141,6 +141,11 @@ def errors():
     coarse.w = 1 / (0.25 * (coarse.a + coarse.b)**2 + 0.01).mean(axis=2)
     squared, its_error = coarse.squared_error(truth)
     check(abs(squared) > 4.5 * its_error, f"weights that know of the noise were not found: {squared} ± {its_error}")
+    a, b = noisy(truth, 0.05), noisy(truth, 0.05)
+    b[3, 4] = 1e9
+    judge = Judge(a, b, (0.05 * truth)**2, (0.05 * truth)**2)
+    squared, its_error = judge.squared_error(noisy(truth, 0.05))
+    check(judge.broken == 1 and abs(squared - 0.05**2) < 4.5 * its_error, f"a broken pixel: {squared} ± {its_error}")
     check(naive > 1.5 * squared_of_x, "one noisy reference alone would have done")
 
 

@@ -54,11 +54,22 @@ def ratio_and_error(numerator, denominator):
     return numerator.sum() / denominator.sum(), np.sqrt((n - 1) / n * ((left_out - left_out.mean())**2).sum())
 
 
+def broken_pixels(a, b):
+    """Where one reference is a thousand times brighter than the other one is anywhere: that is no noise to average over."""
+    bright = lambda x: np.abs(x).max(axis=2)
+    x, y = bright(a), bright(b)
+    return (x > 1000 * y.max()) | (y > 1000 * x.max()) | ~np.isfinite(x) | ~np.isfinite(y)
+
+
 class Judge:
     def __init__(self, first, second, first_variance, second_variance):
         """References and the variances of their means, arrays [height, width, 3]."""
         self.a, self.b = first.astype(float), second.astype(float)
-        self.w = weights(0.5 * (self.a + self.b), 0.25 * (first_variance + second_variance))
+        broken = broken_pixels(self.a, self.b)
+        self.broken = int(broken.sum())   # pixels that are left out of everything
+        for values in (self.a, self.b, variance := 0.25 * (first_variance + second_variance)):
+            values[broken] = 0.0
+        self.w = np.where(broken, 0.0, weights(0.5 * (self.a + self.b), variance))
         self.norm = by_blocks(self.w * dot(self.a, self.b))
 
     def ratio(self, values):
@@ -75,7 +86,8 @@ class Judge:
     def mean_difference(self, x):
         """Of the mean radiance, relative to that of the references, without weights; and its standard error."""
         r = 0.5 * (self.a + self.b)
-        return ratio_and_error(by_blocks((x - r).mean(axis=2)), by_blocks(r.mean(axis=2)))
+        there = self.w > 0
+        return ratio_and_error(by_blocks((x - r).mean(axis=2) * there), by_blocks(r.mean(axis=2) * there))
 
     def squared_systematic(self, x, y):
         """Eq. (4) and its standard error."""

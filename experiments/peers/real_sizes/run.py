@@ -116,6 +116,9 @@ def scene_page(name, scene, settings, options):
         print(f"{name}: {method}: {last['passes']} passes, {last['wall_s']:.1f} s, error {100 * last['error']:.2f} ± "
               f"{100 * last['error_se']:.2f} %, bias {100 * last['bias']:+.2f} ± {100 * last['bias_se']:.2f} %, mean "
               f"{100 * last['mean']:+.2f} ± {100 * last['mean_se']:.2f} %", flush=True)
+    if judge.broken:
+        notes.append(f"{judge.broken} pixels are left out: one reference is a thousand times brighter there than the other "
+                     "is anywhere")
     notes.append(f"noise of each reference: {100 * judge.reference_noise():.2f} %")
     notes.append(f"{settings['width']} x {settings['height']} pixels, {settings['filter']} filter")
     facts = {**facts_of(settings, options), "References": " ".join(f"{f.name} ({f.stat().st_size} bytes)" for f in files)}
