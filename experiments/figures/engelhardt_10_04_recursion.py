@@ -4,7 +4,7 @@
 A line through the smoke room: light unbounded, bounded, with one to three steps of compensation, and with all of them
 (the paper's reference). All variants share their VPLs, several independent sets of them. The picture of the room, by
 `mote_layers`, shows where the line is. Exit code 0: all is as documented; 1: it is not; 2: wrong usage, or mote is
-missing. A full run takes 3.5 minutes of one core, --quick half a minute.
+missing. A full run takes 2.5 minutes of one core, --quick half a minute.
 
     experiments/figures/engelhardt_10_04_recursion.py [--quick] [--redraw] [--output FOLDER] [--bin FOLDER]
 """
