@@ -55,28 +55,35 @@ def arguments():
     return options, settings
 
 
-def measured(folder, fresh, action):
-    """The log of an earlier run, or of this one; None where the program is not installed."""
-    log = folder / "log.json"
-    if log.is_file() and not fresh:
-        return json.loads(log.read_text())
-    return action(folder)
+def measured(folder, fresh, setup, action):
+    """The log of an earlier run with the same setup, or of this one; None where the program is not installed."""
+    file = folder / "log.json"
+    if file.is_file() and not fresh:
+        log = json.loads(file.read_text())
+        if log.get("setup") == setup:
+            return log
+    log = action(folder)
+    if log is not None:
+        log["setup"] = setup
+        file.write_text(json.dumps(log, indent=1))
+    return log
 
 
 def methods_of(mote, scene, settings, options, output):
     """(name, settings as text, is a peer, is unbiased, folder, log) of each, one after the other."""
     budget, exported = settings["budget"], output / "exported"
+    setup = [settings[key] for key in ("width", "height", "filter", "threads", "budget")]
     for index, method in enumerate(settings["ours"]):
         method = {"integrator": scene["integrator"], **({} if "integrator" in method else scene), **method,
                   "name": method["name"]}
         folder = output / method["name"].replace(" ", "_").replace(",", "")
-        log = measured(folder, options.fresh, lambda f: mote.run(method, f, budget, 100 * (index + 1)))
+        log = measured(folder, options.fresh, [*setup, method], lambda f: mote.run(method, f, budget, 100 * (index + 1)))
         text = " ".join([method["integrator"]] + [f"{k}={v}" for k, v in method.get("settings", {}).items()])
         yield method["name"], text, False, method.get("unbiased", False), folder, log
     notes = export(mote, scene["integrator"], exported)
     for index, (name, action) in enumerate((("mitsuba", run_mitsuba), ("cycles", run_cycles))):
         folder, s = output / name, settings[name]
-        log = measured(folder, options.fresh, lambda f: action(mote, s, exported, f, budget, 1000 * (index + 1)))
+        log = measured(folder, options.fresh, [*setup, s], lambda f: action(mote, s, exported, f, budget, 1000 * (index + 1)))
         if log is None:
             print(f"{name} is not installed: left out", flush=True)
             continue
