@@ -35,8 +35,9 @@ def configure(job):
     cycles.caustics_reflective = cycles.caustics_refractive = True
     cycles.blur_glossy = cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
     cycles.light_sampling_threshold = 0.0
-    cycles.pixel_filter_type = {"box": "BOX", "gaussian": "GAUSSIAN"}[job["filter"]]
-    cycles.filter_width = 6.0  # exp(-2 x^2), Mitsuba's default; Cycles goes on to 3 pixels, Mitsuba to 2
+    cycles.pixel_filter_type = {"box": "BOX", "gaussian": "BLACKMAN_HARRIS"}[job["filter"]]
+    # Mitsuba's Gaussian, within 0.3 % at an edge; that of Cycles ends at two standard deviations.
+    cycles.filter_width = 3.55
     cycles.volume_step_rate, cycles.volume_max_steps = job["step_rate"], job["max_steps"]
     render.threads_mode, render.threads = "FIXED", job["threads"]
     render.film_transparent, render.use_compositing, render.use_sequencer = False, False, False
