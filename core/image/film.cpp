@@ -57,7 +57,7 @@ Film::Film(int width, int height, std::vector<Layer> layers, bool all_squares)
     sums_.assign(layers_.size(), Sums(3 * pixels()));
     for (const Layer& layer : layers_)
         layer_squares_.emplace_back(all_squares_ || layer.squares ? 3 * pixels() : 0);
-    replaced_means_.resize(layers_.size());
+    replaced_.resize(layers_.size());
     find_parts();
     find_where();
 }
@@ -143,7 +143,7 @@ void Film::add_pass(const PassImage& image, std::size_t index, double work) {
     Part& part = parts_.at(index);
     if (image.width() != width_ || image.height() != height_ || image.layers() != part.layers.size())
         throw std::invalid_argument("the pass does not fit the film");
-    for (auto& replaced : replaced_means_) replaced.clear();
+    for (Replacement& replaced : replaced_) replaced = {};
 
     if (std::size_t(std::countr_one(part.passes)) == part.halves.size())
         part.halves.push_back({std::vector<float>(pixels()), std::vector<float>(pixels(), 0.0f)});
@@ -165,7 +165,7 @@ void Film::add_pass(const PassImage& image, std::size_t index, double work) {
 }
 
 std::vector<Rgb> Film::mean(std::size_t layer) const {
-    if (!replaced_means_.at(layer).empty()) return replaced_means_[layer];
+    if (!replaced_.at(layer).mean.empty()) return replaced_[layer].mean;
     std::vector<Rgb> result(pixels(), Rgb(0.0f));
     const Sums& sums = sums_[layer];
     for_each_pixel(pixels(), [&](std::size_t p) {
@@ -220,18 +220,20 @@ std::vector<Rgb> Film::layer_variance_of_mean(std::size_t layer) const {
     return variance_of_mean(std::span(&layer, 1), layer_squares_.at(layer));
 }
 
-void Film::set_mean(std::size_t layer, std::span<const Rgb> values) {
-    if (!values.empty() && values.size() != pixels())
+void Film::set_mean(std::size_t layer, std::span<const Rgb> values, std::span<const float> variance) {
+    if ((!values.empty() && values.size() != pixels()) || (!variance.empty() && variance.size() != pixels()))
         throw std::invalid_argument("the layer does not fit the film");
-    replaced_means_.at(layer).assign(values.begin(), values.end());
+    if (!variance.empty() && !has_squares(layer))
+        throw std::invalid_argument("what is left of a variance that is not known");
+    replaced_.at(layer) = {{values.begin(), values.end()}, {variance.begin(), variance.end()}};
 }
 
-Film::ReplacedMeans Film::exchange_replaced(ReplacedMeans replaced) {
+Film::Replacements Film::exchange_replaced(Replacements replaced) {
     replaced.resize(layers_.size());
-    for (const auto& values : replaced)
-        if (!values.empty() && values.size() != pixels())
+    for (const Replacement& r : replaced)
+        if (!r.mean.empty() && r.mean.size() != pixels())
             throw std::invalid_argument("the layer does not fit the film");
-    std::swap(replaced, replaced_means_);
+    std::swap(replaced, replaced_);
     return replaced;
 }
 

@@ -63,16 +63,21 @@ class Film {
     /// The same for a layer, over the passes of Layer::where; needs has_squares(layer).
     std::vector<Rgb> layer_variance_of_mean(std::size_t layer) const;
     /// Replaces what mean() returns for a layer, for post-processes (Estimator::finish). The sums, and with
-    /// them the variances, the noise and the serialised film, stay those of the passes.
-    /// Without values it is the mean of the passes again.
-    void set_mean(std::size_t layer, std::span<const Rgb> values);
-    /// What set_mean() has put in place of the means of the passes; [layer], empty for those that it did not
-    /// touch.
-    using ReplacedMeans = std::vector<std::vector<Rgb>>;
+    /// them all variances and the serialised film, stay those of the passes.
+    /// Without values it is the mean of the passes again. `variance`: what the process leaves of the
+    /// variance of the layer's mean, averaged over channels, for noise(); needs has_squares(layer). Without
+    /// it the layer counts there with the noise of its passes.
+    void set_mean(std::size_t layer, std::span<const Rgb> values, std::span<const float> variance = {});
+    /// What set_mean() has put in place of the passes' mean; empty where it has not.
+    struct Replacement {
+        std::vector<Rgb> mean;
+        std::vector<float> variance;
+    };
+    using Replacements = std::vector<Replacement>;  ///< [layer]
     /// Puts others there, or none, and returns what was there.
-    ReplacedMeans exchange_replaced(ReplacedMeans replaced = {});
+    Replacements exchange_replaced(Replacements replaced = {});
     /// The noise of the beauty, Eq. (4) of core/image/relative_error.h: the error that the passes so far are
-    /// expected to have left. Infinity for n < 2.
+    /// expected to have left, but for the bias of post-processes. Infinity for n < 2.
     double noise() const { return gain_and_noise().noise; }
     struct GainAndNoise {
         /// Passes are Sobol points: how much smaller the variance of the mean is, over the whole picture,
@@ -116,6 +121,11 @@ class Film {
     static void add_to_halves(Part& part, std::size_t pixel, float sum);
     void close_block(Part& part);
     std::vector<Rgb> mean_of_passes() const;  ///< of the beauty, whatever set_mean() says
+    bool has_replaced_variance() const;
+    /// Of the beauty as it is shown: what set_mean() says of a layer in place of its passes' variance.
+    std::vector<Rgb> shown_variance_of_mean() const;
+    /// sum w v of a part as it is shown, where that of its passes is `of_passes`.
+    double shown_sum(const Part& part, double of_passes, std::span<const double> weights) const;
     /// d[k] of core/image/sobol_gain.h.
     std::vector<double> differences(const Part& part, std::span<const double> weights) const;
     std::vector<Rgb> variance_of_mean(std::span<const std::size_t> layers, const Sums& squares) const;
@@ -132,7 +142,7 @@ class Film {
     std::vector<Sums> sums_;           ///< one per layer, three channels
     std::vector<Sums> layer_squares_;  ///< one per layer, empty where not kept
     std::vector<std::size_t> where_;   ///< index of Layer::where, or that of no layer
-    ReplacedMeans replaced_means_;
+    Replacements replaced_;
 };
 
 }  // namespace mote::core

@@ -159,7 +159,7 @@ void Film::deserialize(std::span<const std::byte> bytes) {
         from += packing++->size;
     });
     non_finite_ = header.non_finite;
-    for (auto& replaced : replaced_means_) replaced.clear();
+    for (Replacement& replaced : replaced_) replaced = {};
 }
 
 }  // namespace mote::core

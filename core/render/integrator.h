@@ -77,6 +77,9 @@ class Estimator {
     virtual std::size_t next_part(const Film& /*film*/) const { return 0; }
     /// Post-processes on the mean, after the last pass and for previews. May throw Cancelled.
     virtual void finish(Film& /*film*/, CancelToken /*cancelled*/) {}
+    /// Does finish() tell the film what it leaves of the variance (Film::set_mean)? Then the noise is that of
+    /// the finished picture.
+    virtual bool changes_noise() const { return false; }
     /// Adds this estimator's counters (rays, lookups, VPLs, ...).
     virtual void add_statistics(Statistics& /*statistics*/) const {}
 };

@@ -52,6 +52,11 @@ class PassLoop {
         if (result_.interrupted) finish_in_a_hurry();
         result_.statistics.seconds["finish"] = seconds_since(begin);
     }
+    void state_noise() {
+        const Film::GainAndNoise found = result_.film.gain_and_noise();
+        result_.statistics.values["noise"] = found.noise;
+        result_.statistics.values["varianceGain"] = found.gain;
+    }
 
   private:
     /// Whoever interrupts wants the picture, but soon: of the last preview what takes too long.
@@ -64,7 +69,7 @@ class PassLoop {
         } catch (const std::system_error&) {  // no thread for the deadline
         }
         const bool any = std::any_of(preview_means_.begin(), preview_means_.end(),
-                                     [](const auto& means) { return !means.empty(); });
+                                     [](const auto& means) { return !means.mean.empty(); });
         result_.finished_for = any ? preview_passes_ : 0;
         result_.film.exchange_replaced(std::move(preview_means_));
     }
@@ -89,7 +94,7 @@ class PassLoop {
     }
 
     void run_passes() {
-        if (!stop_.noise || noise_is_due(state_.passes)) refresh_noise();
+        if (!stop_.noise || noise_rule_looks()) refresh_noise();
         while (!is_done()) {
             if (interrupted()) break;
             if (!runner_.run_pass(cancelled_flag())) {
@@ -108,9 +113,6 @@ class PassLoop {
         result_.statistics.seconds["render"] = state_.seconds;
         if (!result_.checkpoint_problem.empty())
             result_.statistics.warnings.push_back(result_.checkpoint_problem);
-        const Film::GainAndNoise found = result_.film.gain_and_noise();
-        result_.statistics.values["noise"] = found.noise;
-        result_.statistics.values["varianceGain"] = found.gain;
     }
 
     const std::atomic<bool>& cancelled_flag() const {
@@ -130,35 +132,69 @@ class PassLoop {
         // The rule must not depend on the clock; for the eye twice a second will do, and a twentieth of the
         // time.
         const bool for_the_eye = seconds_since(noise_time_) > std::max(0.5, 20.0 * noise_seconds_);
-        if (stop_.noise ? noise_is_due(state_.passes) : for_the_eye || state_.passes == 2) refresh_noise();
+        if (stop_.noise ? noise_rule_looks() : for_the_eye || state_.passes == 2) refresh_noise();
         if (request_.progress)
             request_.progress({state_.passes, state_.passes_of_this_run, stop_.passes, state_.seconds,
                                seconds_left(stop_, state_), state_.noise});
         if (seconds_since(checkpoint_time_) >= request_.checkpoint_every_seconds) write_checkpoint_now();
         show_preview();
     }
+    bool noise_rule_looks() const {
+        return runner_.estimator().changes_noise() ? filtered_noise_is_due(state_.passes)
+                                                   : noise_is_due(state_.passes);
+    }
     /// The film is afterwards as it was: which part is next must not depend on whether somebody looked.
     void show_preview() {
-        if (!request_.preview || is_done()) return;
+        // Whoever looks at the progress alone sees the noise of what a preview would show.
+        const bool for_the_noise = request_.progress && !stop_.noise && runner_.estimator().changes_noise();
+        if ((!request_.preview && !for_the_noise) || is_done()) return;
         // Whoever waits sees what there is, though some part of the picture is still black.
         constexpr double patience = 2.5;
         if (!result_.film.has_passes(1) && seconds_since(start_) < patience) return;
         if (previews_ > 0 && seconds_since(preview_time_) < std::max(1.0, 20.0 * preview_seconds_)) return;
         const Clock::time_point begin = Clock::now();
         try {
-            runner_.estimator().finish(result_.film, cancelled_flag());
-            request_.preview(result_.film);
-            preview_means_ = result_.film.exchange_replaced(), preview_passes_ = state_.passes;
+            finish_for_now([&] {
+                if (request_.preview) request_.preview(result_.film);
+            });
         } catch (const Cancelled&) {
-            result_.film.exchange_replaced();
         }
         ++previews_, preview_time_ = Clock::now(), preview_seconds_ = seconds_since(begin);
         result_.statistics.seconds["previews"] += preview_seconds_;
     }
+    /// Looks at the finished picture; the film is afterwards as it was. Throws Cancelled.
+    template <typename Look>
+    void finish_for_now(const Look& look) {
+        try {
+            runner_.estimator().finish(result_.film, cancelled_flag());
+        } catch (const Cancelled&) {
+            result_.film.exchange_replaced();
+            throw;
+        }
+        look();
+        const double finished = runner_.estimator().changes_noise() ? result_.film.noise() : 0.0;
+        preview_means_ = result_.film.exchange_replaced(), preview_passes_ = state_.passes;
+        if (!runner_.estimator().changes_noise()) return;
+        finished_noise_ = finished, left_of_noise_ = finished / result_.film.noise();
+    }
     void refresh_noise() {
         const Clock::time_point begin = Clock::now();
-        state_.noise = result_.film.noise();
+        if (!runner_.estimator().changes_noise())
+            state_.noise = result_.film.noise();
+        else if (stop_.noise)  // the rule must not depend on when somebody looked before
+            state_.noise = finished_noise_now();
+        else if (std::isfinite(left_of_noise_))
+            state_.noise = left_of_noise_ * result_.film.noise();
         noise_seconds_ = seconds_since(begin), noise_time_ = Clock::now();
+    }
+    double finished_noise_now() {
+        if (!result_.film.has_passes(2) || state_.passes < noise_rule_from) return infinity;
+        try {
+            finish_for_now([] {});
+        } catch (const Cancelled&) {
+            return infinity;  // the render ends here
+        }
+        return finished_noise_;
     }
 
     const RenderRequest& request_;
@@ -169,8 +205,10 @@ class PassLoop {
     RenderState state_{.noise = infinity};
     int previews_ = 0;
     double preview_seconds_ = 0.0;  ///< that the last one took
-    Film::ReplacedMeans preview_means_;
+    Film::Replacements preview_means_;
     std::uint32_t preview_passes_ = 0;
+    /// Of the picture when it was finished last, and relative to the noise of its passes.
+    double finished_noise_ = infinity, left_of_noise_ = infinity;
     Clock::time_point preview_time_ = Clock::now();
     double noise_seconds_ = 0.0;  ///< that looking at the noise took the last time
     const Clock::time_point start_ = Clock::now();
@@ -230,6 +268,7 @@ RenderResult render(const Scene& scene, const Integrator& integrator, const Rend
     if (request.passes_are_over) request.passes_are_over();
 
     loop.finish_picture(integrator.type());
+    loop.state_noise();
     runner->add_statistics(result.statistics);
     result.statistics.non_finite_samples += result.film.non_finite();
     return result;

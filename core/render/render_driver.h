@@ -20,14 +20,16 @@ struct StopRule {
     std::optional<std::uint32_t> passes;  ///< this many in all, those of a checkpoint included
     std::optional<double> seconds;  ///< wall time from RenderRequest::seconds_before on: ends as near to it
                                     ///< as whole passes allow, after one at least
-    std::optional<double> noise;    ///< Film::noise(), looked at from 8 passes on
+    std::optional<double> noise;    ///< Film::noise() of the finished picture, looked at from 8 passes on
 };
 
 struct RenderProgress {
     std::uint32_t passes, passes_of_this_run;  ///< the first holds those of a checkpoint too
     std::optional<std::uint32_t> passes_wanted;
     double seconds, seconds_left;  ///< seconds_left < 0: unknown
-    double noise;  ///< Film::noise(); infinity before two passes; refreshed twice a second at most
+    /// Film::noise() of the finished picture; infinity: not known yet. Refreshed twice a second at most; what
+    /// Estimator::finish() takes from it is that of the last preview.
+    double noise;
 };
 
 struct RenderRequest {

@@ -26,6 +26,11 @@ inline bool noise_is_due(std::uint32_t passes) {
     return passes % std::max(1u, std::bit_floor(passes) / 16) == 0;
 }
 
+/// The same where looking at it takes a filter of the whole picture: at every fourth of a power of two.
+inline bool filtered_noise_is_due(std::uint32_t passes) {
+    return passes % std::max(1u, std::bit_floor(passes) / 4) == 0;
+}
+
 inline bool must_stop(const StopRule& rule, const RenderState& state) {
     if (rule.passes && state.passes >= *rule.passes) return true;
     // One more pass would end farther from the wanted time than none, or more than a second behind it.

@@ -61,7 +61,7 @@ void LayerFilter::apply(Film& film, std::span<const Choice> layers, CancelToken 
         const std::vector<Rgb> variance = film.layer_variance_of_mean(choice.layer);
         auto filtered = screenspace::filter_layer(*features_, {mean, variance, choice.kind},
                                                   parameters_.filter, cancelled);
-        film.set_mean(choice.layer, filtered.mean);
+        film.set_mean(choice.layer, filtered.mean, filtered.variance);
         variances_.push_back(std::move(filtered.variance));
     }
     filter_seconds_ += seconds_since(start);

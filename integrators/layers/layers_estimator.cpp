@@ -61,6 +61,8 @@ class LayersEstimator final : public Estimator {
         if (filter_ && film.has_passes(2)) filter_->apply(film, filtered_, cancelled);
     }
 
+    bool changes_noise() const override { return filter_.has_value(); }
+
     void add_statistics(Statistics& statistics) const override {
         for (const Part& part : parts_) part.estimator->add_statistics(statistics);
         if (!filter_) return;

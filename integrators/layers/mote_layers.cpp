@@ -129,8 +129,7 @@ Plan MoteLayers::plan(const Scene& scene, const Requirements& requirements) cons
     if (!filtered.empty())
         plan.run("filter", joined(filtered) + " in image space",
                  "biased by what it smoothes, less with every pass; filter=false leaves the noise. The noise "
-                 "that is "
-                 "stated, and --noise, are those of the passes before it");
+                 "that is stated, and --noise, are what the filter leaves, without that bias");
     for (const std::string& cell : unfilled_cells(requirements.any_media(), chosen))
         plan.miss(cell, "no method fills it", "none of the nested integrators has it in its name");
     for (const LayerMethod& method : chosen) {

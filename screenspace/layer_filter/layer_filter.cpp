@@ -25,7 +25,7 @@ FilteredLayer filter_layer(const FilterFeatures& features, const LayerToFilter& 
                            const LayerFilterSettings& settings, CancelToken cancelled) {
     const FilterPlanes planes(features, layer);
     const FilterChannels channels = demodulated(features, planes, layer);
-    const FilterChannels change = shrink_details(planes, channels, settings, cancelled);
+    const auto [change, of_gains] = shrink_details(planes, channels, settings, cancelled);
     const std::vector<float> left = smoothed(planes, variance_of(channels, change), cancelled);
     FilteredLayer result{{layer.mean.begin(), layer.mean.end()}, left};
     for (std::size_t i = 0; i < features.pixels(); ++i) {
@@ -38,6 +38,11 @@ FilteredLayer filter_layer(const FilterFeatures& features, const LayerToFilter& 
         result.variance[i] *= average(m * m);
     }
     put_mixed_together(features, layer, planes, result, cancelled);
+    for (std::size_t i = 0; i < features.pixels(); ++i) {
+        if (!(planes.weight[i] > 0.0f) || features.kind[i] == PixelKind::mixed) continue;
+        const Rgb m = modulation(features, layer.kind, i);
+        result.variance[i] += average(m * m) * of_gains[i];
+    }
     return result;
 }
 

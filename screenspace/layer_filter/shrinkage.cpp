@@ -66,8 +66,18 @@ float needed_ratio(float confidence, float noise, float squared_noise) {
     return confidence * (1.0f + 2.0f * centre * (max_of(1.0f, concentration) - 1.0f));
 }
 
+/// Over how many independent values the energies are averaged: one over the sum of the squared weights of the
+/// 5 x 5 taps.
+constexpr float averaged_values = (256.0f / 70.0f) * (256.0f / 70.0f);
+
+/// Where noise is above its expectation by chance, the gain is higher, too, so that more of it is kept than
+/// the gains as they are would keep of other noise. With d = (1 - k N m / |d|^2) d over m independent values,
+/// the factor's derivative adds 2 (1 - g) to the gain along d itself, so that the variance that is left is N
+/// (g^2 + ((2 - g)^2 - g^2) / m) = N (g^2 + 4 (1 - g) / m).
+float variance_of_gain(float change) { return change > -1.0f ? -4.0f * change / averaged_values : 0.0f; }
+
 void add_shrunk(const FilterPlanes& p, int step, const FilterChannels& fine, const Level& level,
-                float confidence, FilterChannels& sum, CancelToken cancelled) {
+                float confidence, ShrunkDetails& sum, CancelToken cancelled) {
     std::vector<float> squared(level.noise.size());
     std::transform(level.noise.begin(), level.noise.end(), squared.begin(), [](float n) {
         return sqr(
@@ -85,9 +95,11 @@ void add_shrunk(const FilterPlanes& p, int step, const FilterChannels& fine, con
                                                             noise[i] / max_of(energy[i], 1e-38f))
                                         : 0.0f;
         const std::size_t at = p.index(x0, y);
+        for (int i = 0; i < x1 - x0; ++i)
+            sum.of_gains[at + std::size_t(i)] += noise[i] * variance_of_gain(change[i]);
         for (std::size_t c = 0; c < channel_count; ++c) {
             const float *now = fine.planes[c].data() + at, *next = level.coarse.planes[c].data() + at;
-            float* out = sum.planes[c].data() + at;
+            float* out = sum.change.planes[c].data() + at;
             for (int i = 0; i < x1 - x0; ++i) out[i] += change[i] * (now[i] - next[i]);
         }
     });
@@ -109,9 +121,9 @@ FilterChannels demodulated(const FilterFeatures& f, const FilterPlanes& p, const
     return channels;
 }
 
-FilterChannels shrink_details(const FilterPlanes& p, FilterChannels channels,
-                              const LayerFilterSettings& settings, CancelToken cancelled) {
-    FilterChannels sum(p.weight.size());
+ShrunkDetails shrink_details(const FilterPlanes& p, FilterChannels channels,
+                             const LayerFilterSettings& settings, CancelToken cancelled) {
+    ShrunkDetails sum{FilterChannels(p.weight.size()), std::vector<float>(p.weight.size())};
     for (int l = 0; l < settings.levels; ++l) {
         Level level(p.weight.size());
         take_apart(p, 1 << l, channels, level, cancelled);

@@ -25,9 +25,15 @@ struct FilterChannels {
 FilterChannels demodulated(const FilterFeatures& features, const FilterPlanes& planes,
                            const LayerToFilter& layer);
 
-/// sum_l (g_l - 1) d_l of Eq. (1), for the colours and for the probes. Throws Cancelled.
-FilterChannels shrink_details(const FilterPlanes& planes, FilterChannels channels,
-                              const LayerFilterSettings& settings, core::CancelToken cancelled);
+/// sum_l (g_l - 1) d_l of Eq. (1), for the colours and for the probes.
+struct ShrunkDetails {
+    FilterChannels change;
+    /// What the probes do not see of the variance that is left: gains follow the noise, which probes do not.
+    std::vector<float> of_gains;
+};
+/// Throws Cancelled.
+ShrunkDetails shrink_details(const FilterPlanes& planes, FilterChannels channels,
+                             const LayerFilterSettings& settings, core::CancelToken cancelled);
 
 /// Mean over 5 x 5 pixels of one surface.
 std::vector<float> smoothed(const FilterPlanes& planes, const std::vector<float>& values,

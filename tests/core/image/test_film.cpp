@@ -254,3 +254,44 @@ TEST_CASE("parts of a film have passes, variances and work of their own", "[film
     CHECK_THROWS_AS(one_part.deserialize(film.serialize()), InputError);
     CHECK_THROWS_AS(Film(2, 2, {{"a", "", false, false, "", "", 1}}), std::invalid_argument);
 }
+
+TEST_CASE("what a post-process leaves of a layer's variance is in the noise, in place of the layer's own",
+          "[film][noise]") {
+    // Two independent layers of one part, with variances of 4 and 1 a pass, mean 10 each.
+    constexpr int w = 64, h = 64;
+    const std::vector<Layer> layers{{"a", "", false, true}, {"b", ""}};
+    Film film(w, h, layers);
+    Rng rng(5);
+    for (int i = 0; i < 16; ++i) {
+        PassImage image(w, h, 2);
+        for (Rgb& v : image.layer(0)) v = Rgb(10.0f + 2.0f * std::sqrt(12.0f) * (rng.next_float() - 0.5f));
+        for (Rgb& v : image.layer(1)) v = Rgb(10.0f + std::sqrt(12.0f) * (rng.next_float() - 0.5f));
+        film.add_pass(image);
+    }
+    const auto bytes = film.serialize();
+    const double before = film.noise(), gain = film.gain_and_noise().gain;
+    const std::vector<Rgb> mean = film.mean(0);
+    const auto with = [&](float share) {
+        std::vector<float> left;
+        for (const Rgb& v : film.layer_variance_of_mean(0)) left.push_back(share * v.x);
+        film.set_mean(0, mean, left);
+        return std::pow(film.noise() / before, 2.0);
+    };
+    // Sums over 4096 pixels of variances from 16 passes: known to sqrt(2 / (15 * 4096)) = 0.6 % each, and
+    // their covariance to as much; four standard errors of the difference of three of them.
+    const double within = 4.0 * std::sqrt(3.0) * std::sqrt(2.0 / (15.0 * 4096.0));
+    CHECK(std::fabs(with(1.0f) - 1.0) < 1e-3);
+    CHECK(std::fabs(with(0.25f) - (1.0 + 0.25 * 4.0) / 5.0) < within);
+    CHECK(std::fabs(with(0.0f) - 1.0 / 5.0) < within);
+    CHECK(film.gain_and_noise().gain == Approx(gain).epsilon(1e-3));  // of the passes
+    CHECK((film.serialize() == bytes));
+    film.set_mean(0, mean);  // without a word about its variance: that of the passes
+    CHECK(film.noise() == before);
+    film.set_mean(0, mean, std::vector<float>(film.pixels(), 0.0f));
+    const Film::Replacements taken = film.exchange_replaced();
+    CHECK(film.noise() == before);
+    film.exchange_replaced(taken);
+    CHECK(film.noise() < 0.6 * before);
+    CHECK_THROWS_AS(film.set_mean(1, mean, std::vector<float>(film.pixels())), std::invalid_argument);
+    CHECK_THROWS_AS(film.set_mean(0, mean, std::vector<float>(3)), std::invalid_argument);
+}

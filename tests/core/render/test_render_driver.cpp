@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <fstream>
+#include <set>
 #include <thread>
 
 #include "core/objects/error.h"
@@ -533,4 +534,79 @@ TEST_CASE("a render that is interrupted while its picture is finished is finishe
     CHECK(result.film.mean(0)[0].x == 7.0f);
     CHECK_FALSE(result.finished_for);
     CHECK(folder.size() == 1);  // the checkpoint
+}
+
+namespace {
+
+/// Noise in one layer, of which a hundredth of the variance is left when it is finished.
+class FilteringIntegrator final : public Integrator {
+  public:
+    std::string type() const override { return "filtering"; }
+    std::vector<Layer> layers(const Scene&) const override { return {{"direct", "", false, true}}; }
+    Plan plan(const Scene&, const Requirements&) const override { return {}; }
+    std::unique_ptr<Estimator> prepare(const Scene&, const RenderOptions&) const override {
+        return std::make_unique<Pass>();
+    }
+
+  private:
+    class Pass final : public Estimator {
+      public:
+        bool pass(const PassContext& context, PassImage& image) override {
+            std::uint64_t i = 0;
+            for (Rgb& pixel : image.layer(0))
+                pixel = Rgb(0.5f + Sampler(SamplerKind::independent, 1, context.index, i++).next_1d());
+            return true;
+        }
+        void finish(Film& film, CancelToken) override {
+            std::vector<float> left;
+            for (const Rgb& v : film.layer_variance_of_mean(0)) left.push_back(0.01f * average(v));
+            film.set_mean(0, std::vector<Rgb>(film.pixels(), Rgb(1.0f)), left);
+        }
+        bool changes_noise() const override { return true; }
+    };
+};
+
+}  // namespace
+
+TEST_CASE("the noise that is stated is that of the finished picture", "[driver][noise]") {
+    const auto scene = fake_scene();
+    // Standard deviation 1/sqrt(12) and mean 1: after n passes 0.289 / sqrt(n), of which a tenth is left. The
+    // gain of Sobol points, 1 here, is known from one difference of halves in each of 777 pixels at the
+    // least: its standard error is sqrt(2 / 777), half of that for the noise.
+    const auto expected = [](std::uint32_t n) { return 0.1 / std::sqrt(12.0 * n); };
+    const double within = 5.0 * 0.5 * std::sqrt(2.0 / 777.0);
+    std::vector<double> told;
+    RenderRequest request = request_for(20);
+    request.progress = [&](const RenderProgress& p) { told.push_back(p.noise); };
+    const RenderResult result = render(*scene, FilteringIntegrator(), request);
+    CHECK(result.film.noise() == Approx(expected(20)).epsilon(within));
+    CHECK(result.statistics.values.at("noise") == result.film.noise());
+    Film passes = result.film;
+    passes.exchange_replaced();
+    CHECK(passes.noise() == Approx(10.0 * expected(20)).epsilon(within));
+    // Nobody is told the noise of the passes, and what is told does not wait for a preview that is shown.
+    REQUIRE(told.size() == 20);
+    for (std::uint32_t i = 1; i < 20; ++i)
+        CHECK((std::isinf(told[i]) || told[i] < 0.5 * 10.0 * expected(i + 1)));
+
+    // The rule looks at it after 8, 10, 12, 14, 16, 20, 24, ... passes, whoever else looked when.
+    RenderRequest rule = request_for(1000);
+    const TemporaryFolder folder;
+    rule.stop = {{}, {}, expected(31)};
+    const RenderResult straight = render(*scene, FilteringIntegrator(), rule);
+    const std::uint32_t passes_of_rule = straight.film.pass_count();
+    CHECK(straight.film.noise() <= *rule.stop.noise);
+    const std::set<std::uint32_t> looks{20, 24, 28, 32, 40};  // within those 13 %
+    CHECK(looks.contains(passes_of_rule));
+    CHECK(render(*scene, FilteringIntegrator(), request_for(passes_of_rule - 1)).film.noise() >
+          0.9 * *rule.stop.noise);
+    rule.preview = [](const Film&) {};
+    CHECK(bits(render(*scene, FilteringIntegrator(), rule)) == bits(straight));
+    rule.checkpoint_path = folder.file("c");
+    std::atomic<bool> stop{false};
+    rule.interrupted = &stop;
+    rule.progress = [&](const RenderProgress& p) { stop = p.passes == 21; };
+    REQUIRE(render(*scene, FilteringIntegrator(), rule).interrupted);
+    stop = false, rule.progress = {}, rule.resume = true;
+    CHECK(bits(render(*scene, FilteringIntegrator(), rule)) == bits(straight));
 }
