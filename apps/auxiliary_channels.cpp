@@ -44,6 +44,12 @@ std::vector<core::HitFeature> features_by_name(const core::Scene& scene, std::sp
     return features;
 }
 
+std::vector<core::HitFeature> features_for_denoising(const core::Scene& scene,
+                                                     std::vector<std::string> asked) {
+    for (const char* name : {"Albedo", "Ns"}) asked.emplace_back(name);
+    return features_by_name(scene, asked);
+}
+
 void add_center_channels(core::ImageChannels& image, const core::Scene& scene) {
     const screenspace::GBuffer g =
         screenspace::make_g_buffer(scene, scene.camera(), image.width, image.height);

@@ -13,6 +13,7 @@
 #include <limits>
 #include <new>
 
+#include "apps/denoise/denoise_command.h"
 #include "apps/interruption.h"
 #include "apps/number_options.h"
 #include "apps/ssbc_command.h"
@@ -91,6 +92,9 @@ void add_render(CLI::App& app, RenderArguments& a, std::function<int()>& action)
     command.add_flag("--half", a.half, "Write float16 instead of float32");
     command.add_flag("--auxiliary", a.auxiliary,
                      "Also write what is seen: positions, normals, depth, albedo, with variances");
+    command.add_flag(
+        "--denoise", a.denoise,
+        "Add a denoised picture, for the eye, and show it in the preview (needs OpenImageDenoise)");
     command.add_flag("--quiet", a.quiet, "No progress, no warnings");
     command.add_flag("-v,--verbose", a.verbose, "Also print the plan and where the time went");
     command.callback([&a, &action] { action = [&a] { return render_command(a); }; });
@@ -202,6 +206,9 @@ int parse_and_run(int argc, char** argv) {
 
     CompareArguments compare;
     add_compare(app, compare, action);
+
+    DenoiseArguments denoise;
+    add_denoise(app, denoise, action);
 
     SsbcArguments ssbc;
     add_ssbc(app, ssbc, action);

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "apps/command.h"
+#include "apps/denoise/denoised_layer.h"
 #include "apps/difference_picture.h"
 #include "apps/number_or_null.h"
 #include "apps/output_files.h"
@@ -202,17 +203,25 @@ int compare_command(const CompareArguments& arguments) {
                                          {"the second reference", arguments.second}});
     const std::size_t colon = arguments.layer.find(':');
     const std::string layer = arguments.layer.substr(0, colon);
+    const std::string reference_layer =
+        colon == std::string::npos ? layer : arguments.layer.substr(colon + 1);
     const PictureFile image = read_picture(arguments.image, layer);
-    const References references =
-        read_references(arguments, colon == std::string::npos ? layer : arguments.layer.substr(colon + 1));
+    const References references = read_references(arguments, reference_layer);
     const core::Bitmap& a = image.bitmap;
     core::Bitmap r = references.first.bitmap;
     check_sizes(a, r, arguments);
     r.pixels = references.pixels();
     std::vector<std::string> warnings = doubts(image, references.first);
-    if (references.second)
-        for (const std::string& text : doubts(image, *references.second))
-            if (std::find(warnings.begin(), warnings.end(), text) == warnings.end()) warnings.push_back(text);
+    const auto add = [&](const std::string& text) {
+        if (!text.empty() && std::find(warnings.begin(), warnings.end(), text) == warnings.end())
+            warnings.push_back(text);
+    };
+    add(denoised_doubt(image.metadata, arguments.image, layer));
+    add(denoised_doubt(references.first.metadata, arguments.reference, reference_layer));
+    if (references.second) {
+        for (const std::string& text : doubts(image, *references.second)) add(text);
+        add(denoised_doubt(references.second->metadata, arguments.second, reference_layer));
+    }
     for (const std::string& warning : warnings)
         std::fputs(("mote: warning: " + warning + "\n").c_str(), stderr);
     const ImageMetrics metrics = measure(image, references);

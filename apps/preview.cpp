@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <cmath>
+#include <map>
 
 #include "core/image/exposure.h"
 #include "core/image/png_text.h"
@@ -22,7 +23,10 @@ std::string write_preview(const std::string& path, const core::ImageChannels& im
         if (!finished[i]) pixels[i] = core::Rgb(((x / 8 + y / 8) % 2 ? 0.1f : 0.2f) * std::exp2(-stops));
     }
     const std::string text = exposure_text(stops, exposure.has_value());
-    core::write_png(path, image.width, image.height, pixels, stops, {{"Exposure", text}});
+    std::map<std::string, std::string> said{{"Exposure", text}};
+    if (const auto denoised = image.metadata.find("denoised"); denoised != image.metadata.end())
+        said["Denoised"] = denoised->second;
+    core::write_png(path, image.width, image.height, pixels, stops, said);
     return text;
 }
 

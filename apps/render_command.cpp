@@ -8,9 +8,11 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 
 #include "apps/auxiliary_channels.h"
 #include "apps/command.h"
+#include "apps/denoise/denoised_layer.h"
 #include "apps/interruption.h"
 #include "apps/output_files.h"
 #include "apps/picture_file.h"
@@ -105,18 +107,41 @@ void warn_of_range(const core::ImageChannels& image, std::uint64_t clamped,
     if (clamped > 0) warnings.push_back(clamped_text(clamped));
 }
 
+/// Adds the denoised layer where there is a whole picture, and time: returns whether it did.
+bool denoise(core::ImageChannels& image, const OidnLibrary* library, const core::RenderResult& result,
+             const std::string& file, std::vector<std::string>& warnings) {
+    if (!library) return false;
+    if (!result.finished_pixels.empty() || !result.film.has_passes(1)) {
+        note("a part of a picture is not denoised");
+        return false;
+    }
+    if (result.interrupted) {
+        note("not denoised: 'mote denoise " + core::printable(file, 300) + "' does it");
+        return false;
+    }
+    try {
+        add_denoised_layer(image, *library);
+        return true;
+    } catch (const core::InputError& error) {  // the picture is worth more
+        warnings.push_back(std::string("not denoised: ") + error.what());
+        return false;
+    }
+}
+
 void write_outputs(const OutputFiles& files, const RenderReport& report, const RenderArguments& arguments,
-                   std::vector<std::string>& warnings) {
+                   const OidnLibrary* denoiser, std::vector<std::string>& warnings) {
     core::ImageChannels image = core::film_image(report.result.film);
     image.metadata = picture_metadata(report);
     if (arguments.auxiliary) add_center_channels(image, report.scene);
     const std::span<const std::uint8_t> finished = report.result.finished_pixels;
     if (!finished.empty())  // those that no pass reached are transparent
         image.add("A", std::vector<float>(finished.begin(), finished.end()));
+    const bool denoised = denoise(image, denoiser, report.result, files.picture, warnings);
     const std::uint64_t clamped =
         core::write_exr(files.picture, image, arguments.half || report.scene.film().half);
     warn_of_range(image, clamped, warnings);
-    const std::string exposure = write_preview(files.preview, image, arguments.exposure, finished);
+    const std::string exposure = write_preview(files.preview, denoised ? denoised_picture(image) : image,
+                                               arguments.exposure, finished);
     if (!arguments.quiet)
         note(fmt::format("{}: exposure {}{}", core::printable(files.preview), exposure,
                          arguments.exposure ? "" : " (--exposure fixes it)"));
@@ -196,6 +221,8 @@ int render_command(const RenderArguments& arguments) {
     for (const std::string& path : {files.picture, files.preview}) check_writable(path);
     if (!arguments.stats.empty()) check_writable(arguments.stats);
     check_identities(files, arguments, *scene);
+    std::optional<OidnLibrary> denoiser;  // what is missing is said now, not in hours
+    if (arguments.denoise) denoiser.emplace(threads);
 
     core::RenderRequest request;
     request.seed = arguments.seed;
@@ -205,8 +232,9 @@ int render_command(const RenderArguments& arguments) {
     request.checkpoint_at_end = false;
     request.resume = arguments.resume;
     request.content_hash = hash_of(*scene, integrator, arguments.scene);
-    request.features =
-        arguments.auxiliary ? auxiliary_features(*scene) : features_by_name(*scene, loaded.features);
+    request.features = arguments.auxiliary ? auxiliary_features(*scene)
+                       : arguments.denoise ? features_for_denoising(*scene, loaded.features)
+                                           : features_by_name(*scene, loaded.features);
     const double load_seconds = seconds_since(start);
     interruption.end_at_once_while("building");
 
@@ -267,8 +295,10 @@ int render_command(const RenderArguments& arguments) {
                             threads,
                             arguments.command_line,
                             loaded.approximations};
-        core::with_memory_for("writing the picture",
-                              [&] { write_outputs(files, report, arguments, result.statistics.warnings); });
+        core::with_memory_for("writing the picture", [&] {
+            write_outputs(files, report, arguments, denoiser ? &*denoiser : nullptr,
+                          result.statistics.warnings);
+        });
         result.statistics.seconds["write"] = seconds_since(write_start);
         if (!arguments.stats.empty()) {
             const std::string json = statistics_json(report);

@@ -42,7 +42,7 @@ struct RenderArguments {
     std::optional<double> seconds, noise;
     std::uint64_t seed = 0;
     int threads = 0;  ///< 0: one for every core
-    bool resume = false, quiet = false, verbose = false, half = false, auxiliary = false;
+    bool resume = false, quiet = false, verbose = false, half = false, auxiliary = false, denoise = false;
     double checkpoint_every = 60.0;
     std::optional<float> exposure;  ///< of the preview [stops]; none: it adapts
     std::string stats;

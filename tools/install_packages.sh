@@ -4,6 +4,7 @@
 #   tools/install_packages.sh          install what is missing (with sudo when not root)
 #   tools/install_packages.sh --list   print the names and end
 #   tools/install_packages.sh --fuzz   also what the long campaign of tools/fuzz/run is built with
+#   pip install pyoidn                 not from Debian and not needed: OpenImageDenoise, for --denoise (docs/guide.md)
 #   MOTE_SKIP_PACKAGES=1               believe that everything is there, on systems without dpkg
 set -euo pipefail
 

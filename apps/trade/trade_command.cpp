@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "apps/command.h"
+#include "apps/denoise/denoised_layer.h"
 #include "apps/number_options.h"
 #include "apps/output_files.h"
 #include "apps/reference_metadata.h"
@@ -233,6 +234,8 @@ int measure(const TradeArguments& given) {
     const double resolve = automatic ? core::infinity : a.resolve;
     const Reference reference =
         load_reference(a.reference, *scene, content, {resolve, a.trust_reference, a.force_reference});
+    if (const std::string doubt = denoised_doubt(reference.image.metadata, a.reference, ""); !doubt.empty())
+        note("warning: " + doubt);
     std::vector<std::string> render_command = {"mote", "render", a.scene.scene};
     for (const std::string& define : a.scene.defines)
         render_command.insert(render_command.end(), {"-D", define});

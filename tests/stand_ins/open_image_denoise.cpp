@@ -1,0 +1,94 @@
+// Functions of OpenImageDenoise with results that a test can predict. A feature becomes itself plus 1; a
+// colour with both features, denoised before (above 0, or above -1 + 1 for normals), twice itself; without
+// any three times; with anything else, or without being told that it is HDR, an error. MOTE_STAND_IN_FAILS:
+// the error of every run.
+#include <cstdlib>
+#include <map>
+#include <string>
+
+namespace {
+
+struct Image {
+    float* pixels = nullptr;
+    std::size_t width = 0, height = 0;
+    std::size_t numbers() const { return 3 * width * height; }
+};
+struct Device {
+    bool committed = false;
+    std::string error;
+};
+struct Filter {
+    Device* device;
+    std::map<std::string, Image> images;
+    std::map<std::string, bool> flags;
+    bool committed = false;
+    bool has(const std::string& name) const { return images.count(name) > 0; }
+};
+
+bool denoised_before(const Image& feature) {
+    for (std::size_t i = 0; i < feature.numbers(); ++i)
+        if (feature.pixels[i] < 0.0f) return false;
+    return true;
+}
+
+/// What the output is of the input: times a factor, plus a number. "" or an error.
+std::string rule(const Filter& f, std::string& input, float& factor, float& more) {
+    if (!f.committed || !f.device->committed || !f.has("output")) return "not committed";
+    if (!f.has("color")) {
+        input = f.has("albedo") ? "albedo" : "normal", factor = 1.0f, more = 1.0f;
+        return f.has(input) ? "" : "no input";
+    }
+    input = "color", more = 0.0f;
+    if (!f.flags.count("hdr")) return "colour without hdr";
+    if (!f.has("albedo") && !f.has("normal")) return factor = 3.0f, "";
+    if (!f.has("albedo") || !f.has("normal") || !f.flags.count("cleanAux")) return "half of the features";
+    factor = 2.0f;
+    return denoised_before(f.images.at("albedo")) && denoised_before(f.images.at("normal"))
+               ? ""
+               : "noisy features";
+}
+
+}  // namespace
+
+extern "C" {
+
+void* oidnNewDevice(int type) { return type == 1 ? new Device : nullptr; }
+void oidnSetDeviceInt(void*, const char*, int) {}
+void oidnSetDeviceBool(void*, const char*, bool) {}
+int oidnGetDeviceInt(void*, const char* name) {
+    const std::string n = name;
+    return n == "versionMajor" ? 9 : n == "versionMinor" ? 8 : n == "versionPatch" ? 7 : -1;
+}
+int oidnGetDeviceError(void* device, const char** message) {
+    static thread_local std::string last;
+    last = static_cast<Device*>(device)->error;
+    static_cast<Device*>(device)->error.clear();
+    *message = last.c_str();
+    return last.empty() ? 0 : 3;
+}
+void oidnCommitDevice(void* device) { static_cast<Device*>(device)->committed = true; }
+void oidnReleaseDevice(void* device) { delete static_cast<Device*>(device); }
+void* oidnNewFilter(void* device, const char* type) {
+    return std::string(type) == "RT" ? new Filter{static_cast<Device*>(device), {}, {}} : nullptr;
+}
+void oidnSetSharedFilterImage(void* filter, const char* name, void* pixels, int format, std::size_t width,
+                              std::size_t height, std::size_t, std::size_t, std::size_t) {
+    if (format == 3)
+        static_cast<Filter*>(filter)->images[name] = {static_cast<float*>(pixels), width, height};
+}
+void oidnSetFilterBool(void* filter, const char* name, bool value) {
+    if (value) static_cast<Filter*>(filter)->flags[name] = true;
+}
+void oidnCommitFilter(void* filter) { static_cast<Filter*>(filter)->committed = true; }
+void oidnExecuteFilter(void* filter) {
+    const Filter& f = *static_cast<Filter*>(filter);
+    std::string input;
+    float factor = 0.0f, more = 0.0f;
+    f.device->error = rule(f, input, factor, more);
+    if (const char* fails = std::getenv("MOTE_STAND_IN_FAILS")) f.device->error = fails;
+    if (!f.device->error.empty()) return;
+    const Image &from = f.images.at(input), &to = f.images.at("output");
+    for (std::size_t i = 0; i < to.numbers(); ++i) to.pixels[i] = factor * from.pixels[i] + more;
+}
+void oidnReleaseFilter(void* filter) { delete static_cast<Filter*>(filter); }
+}
