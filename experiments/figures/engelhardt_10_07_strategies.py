@@ -83,17 +83,17 @@ def check(rmse, pictures):
 
 def draw(clean, pictures, rmse, equal, path):
     """Pictures with the noise that they have, beside the clean one and the errors."""
-    canvas = Canvas(1280, 2 * (TITLE + 263) + 40)
+    canvas = Canvas(1280, 2 * (TITLE + 263) + 13)
     exposure = 0.8 / np.quantile(luminance(clean), 0.985)
     show(canvas.panel(1, TITLE, 421, 263), clean, exposure, "multiple scattering, by mote_layers, filtered")
     for i, (name, ps) in enumerate(pictures.items()):
         place = canvas.panel(430 + 429 * (i % 2), TITLE + (TITLE + 275) * (i // 2), 421, 263)
         show(place, ps[0].multiple(), exposure, f"{name}: {ps[0].passes} passes")
-    axes = canvas.panel(48, 2 * TITLE + 275, 374, 263 - 24)
+    axes = canvas.panel(66, 2 * TITLE + 275, 356, 263 - 24)
     for x, (name, errors) in enumerate(rmse.items()):
         mean, error = mean_and_error(errors)
         axes.bar(x, 100 * mean, yerr=100 * error, color=["0.6", "0.6", "tab:blue", "tab:green"][x], width=0.6)
-    axes.set_xticks(range(len(rmse)), rmse.keys())
+    axes.set_xticks(range(len(rmse)), [name.replace("1-to-1 ", "") for name in rmse])
     axes.set_ylabel("RMSE, % of the mean")
     title(axes, f"after {equal.seconds} s of processor time")
     canvas.save(path)
