@@ -1,6 +1,7 @@
 #include "integrators/path_tracing/equiangular.h"
 
 #include <algorithm>
+#include <numbers>
 
 #include "core/scene/transmittance_along.h"
 
@@ -17,7 +18,9 @@ std::optional<EquiangularSample> sample_equiangular(const Ray& ray, float t_max,
     const double distance = glm::length(to_light);
     const double D = std::max(glm::length(to_light - nearest * direction), 1e-4 * distance + 1e-30);
     const double theta_a = std::atan2(double(ray.t_min) - nearest, D);
-    const double theta_b = std::isfinite(t_max) ? std::atan2(double(t_max) - nearest, D) : 0.5 * double(pi);
+    // Half of pi in single precision is more than half of pi: beyond it the tangent begins at minus infinity.
+    const double theta_b =
+        std::isfinite(t_max) ? std::atan2(double(t_max) - nearest, D) : 0.5 * std::numbers::pi;
     if (!(theta_a < theta_b)) return std::nullopt;
     const double s = D * std::tan(theta_a + (theta_b - theta_a) * double(u));
     const double pdf = D / ((theta_b - theta_a) * (D * D + s * s));

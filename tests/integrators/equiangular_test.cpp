@@ -84,7 +84,8 @@ TEST_CASE("An equi-angular density integrates to one", "[equiangular]") {
     // infinite one.
     const core::Ray ray{core::Vec3(1, 2, 3), glm::normalize(core::Vec3(1, 1, -2)), 0.25f};
     for (const core::Vec3& light :
-         {core::Vec3(2, 2, 2), ray.at(1.0f) + core::Vec3(0.02f, 0, 0), core::Vec3(-4, 0, 9)}) {
+         {core::Vec3(2, 2, 2), ray.at(1.0f) + core::Vec3(0.02f, 0, 0), core::Vec3(-4, 0, 9),
+          ray.at(-8.0f)}) {  // behind the ray, nearly on its line: all angles lie close to half of pi
         double length = 0.0, decay = 0.0;
         const int count = 200000;
         for (int i = 0; i < count; ++i) {

@@ -186,7 +186,7 @@ inline lights::TileLight mapped_light(const AnalyticScene& scene, FloorUnderLigh
     lights::VolumetricShadowMap map;
     map.build(scene, lights::ShadowMapView::of_point(FloorUnderLight::light, size), {}, {});
     lights::ReceiverStore store;
-    store.add(at.tile, 0, 0, {}, 1.0f);
+    store.add(at.tile, 0, 0, 1, {}, 1.0f);
     const lights::MappedVpl mapped{0, &map};
     lights::TileLight found{};
     const auto gather = std::make_unique<lights::ShadowMapGather>();
