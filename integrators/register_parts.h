@@ -22,7 +22,7 @@ void register_mote_epipolar(core::Registry& registry);
 // What a scene's requirements choose (layers/layer_methods.h), with the settings of a scene file that names
 // nothing but these limits.
 std::shared_ptr<const core::Integrator> make_path(const EyePathLimits& limits);
-std::shared_ptr<const core::Integrator> make_volpath(const EyePathLimits& limits);
+std::shared_ptr<const core::Integrator> make_volpath(const EyePathLimits& limits, bool equiangular);
 /// Light of lights with a position, scattered once in media; light of all others, with all else that scatters
 /// at most once (lights = positional, other).
 std::shared_ptr<const core::Integrator> make_epipolar(const EyePathLimits& limits, int lines, int samples);

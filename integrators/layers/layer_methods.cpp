@@ -43,6 +43,16 @@ void check_name(const LayerMethod& method, const std::string& cell,
 /// More lights than this, marched one after the other, take longer than one that is drawn.
 constexpr std::size_t most_marched_lights = 16;
 
+/// Light at collisions close to a lamp has no finite variance: the density of collisions knows nothing of
+/// 1/d^2.
+bool lamps_in_media(const Scene& scene) {
+    const auto lights = positional_lights(scene);
+    return std::any_of(lights.begin(), lights.end(), [&](const Emitter* light) {
+        const Medium* medium = scene.emitter_medium_state(*light, {}).current();
+        return medium && medium->traits().scattering;
+    });
+}
+
 /// The cells that are filled where `cell` is: itself, and its halves or the whole.
 std::vector<std::string> overlapping(const std::string& cell) {
     const std::string& whole = transport_name(Transport::single_scattering);
@@ -72,9 +82,10 @@ std::vector<LayerMethod> choose_layer_methods(const Scene& scene, const Requirem
                          (limits.max_depth < 0 || limits.max_depth > 1);
     const std::string surfaces = "surfaces behind media whose transmittance is marched",
                       far = "paths of pixels err independently of each other, which the filter takes";
+    const bool equiangular = r.media_scattering && lamps_in_media(scene);
     if (!marched)
         return {{make_single_scattering(limits), {"emission", "direct"}, surfaces},
-                {make_volpath(limits),
+                {make_volpath(limits, equiangular),
                  {"indirect", "single_scattering", "multiple_scattering"},
                  far + (lights > 0 ? "; too many lights to march each of them"
                                    : "; no light has a position to march to")}};
@@ -88,7 +99,7 @@ std::vector<LayerMethod> choose_layer_methods(const Scene& scene, const Requirem
             {make_epipolar(limits, lines, samples),
              {positional_scattering},
              "lights with a position, marched along epipolar lines: nothing is left to chance"},
-            {make_volpath(limits), {"indirect", "multiple_scattering"}, far}};
+            {make_volpath(limits, equiangular), {"indirect", "multiple_scattering"}, far}};
 }
 
 std::vector<LayerMethod> with_cells(const Scene& scene, std::vector<LayerMethod> methods) {

@@ -18,7 +18,7 @@ namespace {
 
 class Volpath final : public Integrator {
   public:
-    explicit Volpath(const EyePathLimits& limits) : settings_{limits} {}
+    Volpath(const EyePathLimits& limits, bool equiangular) : settings_{limits}, equiangular_(equiangular) {}
     explicit Volpath(const Properties& properties) : settings_{read_eye_path_limits(properties)} {
         const double bound = properties.get_float("vpl_bound", 0.0);
         if (bound < 0.0) throw InputError("vpl_bound must not be negative", properties.where_of("vpl_bound"));
@@ -53,7 +53,8 @@ class Volpath final : public Integrator {
 void Volpath::plan_equiangular(Plan& plan, const Requirements& r) const {
     const bool useful = r.media_scattering && r.lights_point > 0;
     if (equiangular_ && useful)
-        plan.run("equi-angular sampling", "one distance a ray, for point and spot lights", "asked for");
+        plan.run("equi-angular sampling", "one distance a ray, for point and spot lights",
+                 "asked for, or by mote_layers where one stands in a medium");
     else if (equiangular_)
         plan.leave_out("equi-angular sampling", "asked for, without effect",
                        r.media_scattering ? "no light has a position" : "no medium scatters");
@@ -79,8 +80,8 @@ Plan Volpath::plan(const Scene& scene, const Requirements& requirements) const {
 
 }  // namespace
 
-std::shared_ptr<const Integrator> make_volpath(const EyePathLimits& limits) {
-    return std::make_shared<const Volpath>(limits);
+std::shared_ptr<const Integrator> make_volpath(const EyePathLimits& limits, bool equiangular) {
+    return std::make_shared<const Volpath>(limits, equiangular);
 }
 
 void register_volpath(Registry& registry) {

@@ -2,6 +2,7 @@
 // is counted twice or left out without a word, and the schedule is a function of scene, seed and passes.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 
 #include "core/image/film.h"
@@ -77,6 +78,45 @@ TEST_CASE("what the scene chooses adds up to volpath", "[mote_layers]") {
     for (const std::string& cell : cells) check_cell(parts, cell, whole, cell);
     CHECK_FALSE(
         same_mean(parts, "single_scattering_other", whole, "single_scattering", OnFailure::nothing).passed);
+}
+
+TEST_CASE("paths through fog in which a lamp stands look for its light along every ray", "[mote_layers]") {
+    const auto scene_with_lamp_at = [](const char* place) {
+        return scene_from(fmt::format(R"(<scene version="3.0.0"><shape type="cube"><bsdf type="null"/>
+            <medium type="homogeneous" name="interior"><float name="sigma_t" value="0.5"/>
+            <float name="albedo" value="0.9"/></medium></shape>
+            <emitter type="point"><point name="position" value="{}"/></emitter>
+            <sensor type="perspective"><float name="fov" value="40"/><transform name="to_world">
+            <lookat origin="0, 0, 3" target="0, 0, 0" up="0, 1, 0"/></transform></sensor></scene>)",
+                                      place),
+                          8);
+    };
+    const auto looks_along = [](const Scene& scene) {
+        const Plan plan = layers_of("")->plan(scene, find_requirements(scene));
+        return std::any_of(plan.runs.begin(), plan.runs.end(), [](const PlanEntry& entry) {
+            return entry.topic.find("equi-angular") != std::string::npos;
+        });
+    };
+    const auto inside = scene_with_lamp_at("0.1, 0.1, 0");
+    CHECK(looks_along(*inside));
+    CHECK_FALSE(looks_along(*scene_with_lamp_at("0.1, 2.1, 0")));
+    const auto variance = [&](const std::string& integrator) {
+        const auto r = render_statistics(*inside, *integrator_from(integrator), {4, 1000, 1});
+        return r.whole[r.layer("multiple_scattering")][1].variance_of_mean;
+    };
+    const auto along = render_statistics(
+        *inside,
+        *integrator_from(
+            "<integrator type='volpath'><boolean name='equiangular' value='true'/></integrator>"),
+        {4, 1000, 2});
+    const auto chosen = render_statistics(*inside, *layers_of(""), {4, 1000, 1});
+    check_cell(chosen, "multiple_scattering", along, "multiple_scattering");
+    CHECK_FALSE(
+        same_mean(chosen.scaled(1.1), "multiple_scattering", along, "multiple_scattering", OnFailure::nothing)
+            .passed);
+    // At collisions alone it has no finite variance: more than twice in any sample of it.
+    CHECK(2.0 * chosen.whole[chosen.layer("multiple_scattering")][1].variance_of_mean <
+          variance("<integrator type='volpath'/>"));
 }
 
 TEST_CASE("a method that is asked for one cell gives it its own mean and traces fewer rays",
