@@ -23,10 +23,7 @@ constexpr MetricDefinition definitions[] = {
      &ImageMetrics::error},
     {"error_standard_error", "of error, from the noise of the reference",
      &ImageMetrics::error_standard_error},
-    {"bias",
-     "sum w <r, d> / sum w |r|^2, signed, without the reference's own noise where that is known; never more "
-     "than error",
-     &ImageMetrics::bias},
+    {"bias", "sum w <r, d> / sum w |r|^2, signed; never more than error", &ImageMetrics::bias},
     {"bias_standard_error",
      "of bias, from the noise of image and reference; too low where pixels share light paths",
      &ImageMetrics::bias_standard_error},

@@ -139,8 +139,7 @@ RelativeError relative_error(std::span<const Rgb> image, std::span<const Rgb> re
         return {unknown, unknown, unknown, unknown, unknown};
     }
     RelativeError result;
-    // r = R + n: <r, d> is lower by v on average.
-    result.bias = (bias + subtracted) / norm, result.bias_standard_error = std::sqrt(bias_variance) / norm;
+    result.bias = bias / norm, result.bias_standard_error = std::sqrt(bias_variance) / norm;
     const double squared = std::max((error - subtracted) / norm, result.bias * result.bias);
     result.error = std::sqrt(squared);
     result.error_standard_error = std::sqrt(squared + std::sqrt(error_variance) / norm) - result.error;

@@ -45,7 +45,7 @@ std::vector<double> weights_of_squares(const std::vector<double>& squares);
 struct RelativeError {
     double error = 0.0;                 ///< Eq. (2), without the reference's own noise where that is known
     double error_standard_error = 0.0;  ///< from the noise of the reference: sqrt(error^2 + s) - error
-    double bias = 0.0;                  ///< Eq. (3), without what the reference's own noise adds to it
+    double bias = 0.0;                  ///< Eq. (3); the reference's noise makes it lower by up to its square
     double bias_standard_error = 0.0;   ///< from the noise of both where their variances are given
     double noise = 0.0;                 ///< Eq. (4) of the image; 0 where its variance is not given
 };
