@@ -25,7 +25,8 @@ def export(mote, integrator, folder):
                            folder, *words], capture_output=True, text=True, check=False)
     if done.returncode:
         raise RuntimeError(done.stderr.strip())
-    dropped = (Path(folder) / "dropped.txt").read_text().splitlines()
+    text = (Path(folder) / "dropped.txt").read_text().replace(f"{Path(mote.scene).parent}/", "")
+    dropped = text.splitlines()
     return [line for line in dropped if "sampler" not in line] + tighten(Path(folder))
 
 
