@@ -2,7 +2,6 @@
 #include "core/image/reference_pair.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -11,27 +10,20 @@ namespace mote::core {
 
 namespace {
 
-constexpr double two_deviations = 4.0;  ///< squared
-constexpr double brighter = 4.0;        ///< twice, squared
+constexpr int pair_reach = 2;               ///< neighbours within 5 x 5 pixels
+constexpr double certain_deviations = 3.0;  ///< by which a pixel is what it is for certain
 
-/// |r|^2 from the neighbours of a pixel, by channels.
+/// |r|^2 of the neighbours of a pixel alone, their mean.
 double neighbours_square(std::span<const Rgb> picture, int width, int height, int x, int y) {
-    std::array<std::array<double, 8>, 3> values{};
-    std::size_t count = 0;
-    for (int v = std::max(0, y - 1); v <= std::min(height - 1, y + 1); ++v)
-        for (int u = std::max(0, x - 1); u <= std::min(width - 1, x + 1); ++u) {
+    double sum = 0.0, count = 0.0;
+    for (int v = std::max(0, y - pair_reach); v <= std::min(height - 1, y + pair_reach); ++v)
+        for (int u = std::max(0, x - pair_reach); u <= std::min(width - 1, x + pair_reach); ++u) {
             if (u == x && v == y) continue;
-            const Rgb& p = picture[std::size_t(v) * std::size_t(width) + std::size_t(u)];
-            for (int c = 0; c < 3; ++c) values[std::size_t(c)][count] = double(p[c]);
-            ++count;
+            sum += mean_square(picture[std::size_t(v) * std::size_t(width) + std::size_t(u)]);
+            count += 1.0;
         }
-    glm::dvec3 median(0.0);
-    for (int c = 0; c < 3 && count > 0; ++c) {
-        auto& channel = values[std::size_t(c)];
-        std::sort(channel.begin(), channel.begin() + std::ptrdiff_t(count));
-        median[c] = 0.5 * (channel[(count - 1) / 2] + channel[count / 2]);
-    }
-    return mean_square(median);
+    return count > 0.0 ? sum / count
+                       : mean_square(picture[std::size_t(y) * std::size_t(width) + std::size_t(x)]);
 }
 
 std::vector<double> weights_of_pair(const PairMean& mean, int width, int height) {
@@ -39,10 +31,10 @@ std::vector<double> weights_of_pair(const PairMean& mean, int width, int height)
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
             const std::size_t p = std::size_t(y) * std::size_t(width) + std::size_t(x);
-            const double others = neighbours_square(mean.picture, width, height, x, y);
-            const double own = mean_square(mean.picture[p]);
-            const double for_certain = own - two_deviations * mean_of_channels(mean.variance[p]);
-            squares[p] = for_certain > brighter * others ? own : others;
+            const double certain = std::sqrt(mean_square(mean.picture[p])) -
+                                   certain_deviations * std::sqrt(mean_of_channels(mean.variance[p]));
+            squares[p] = neighbours_square(mean.picture, width, height, x, y);
+            if (certain > 0.0) squares[p] = std::max(squares[p], certain * certain);
         }
     return weights_of_squares(squares);
 }

@@ -7,9 +7,9 @@
 // in expectation, whatever their variances are; none has to be known. So a pair of 4 % judges errors of far
 // below 1 %, also where passes are not independent or outliers hide from estimates of variance.
 //
-// The weights must not know of a pixel's noise either: |r| is the median of the eight neighbours, without the
-// pixel itself. Only where it is more than twice as bright for certain, a lamp or a glint, it speaks for
-// itself.
+// The weights must not know of a pixel's noise either: |r|^2 is the mean of its neighbours', 5 x 5 pixels
+// without the pixel itself. Only one that is brighter for certain, by three standard deviations, a lamp or a
+// glint, speaks for itself.
 //
 // What is left is the scatter of the product. Noises of different pixels of path-traced references are
 // independent, so its variance is the sum of its squares where noise dominates, and less where the error

@@ -154,7 +154,7 @@ TEST_CASE("Two noisy references add nothing to a bias", "[relative][statistics]"
     Picture image = truth, variance = truth;
     for (std::size_t i = 0; i < truth.size(); ++i) {
         image[i] *= 1.02f;
-        variance[i] = 0.04f * truth[i] * truth[i];
+        variance[i] = truth[i].x < 500.0f ? 0.04f * truth[i] * truth[i] : Rgb(0.0f);
     }
     const int n = 400;
     double one = 0.0, two = 0.0, squares = 0.0;
@@ -162,6 +162,7 @@ TEST_CASE("Two noisy references add nothing to a bias", "[relative][statistics]"
         Picture a = truth, b = truth;
         Rng rng(hash_keys(6, std::uint64_t(seed)));
         for (std::size_t i = 0; i < truth.size(); ++i) {
+            if (truth[i].x >= 500.0f) continue;  // a lamp that is seen has no noise
             a[i] *= float(1.0 + 0.2 * normal(rng));
             b[i] *= float(1.0 + 0.2 * normal(rng));
         }
