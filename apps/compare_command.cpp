@@ -50,11 +50,13 @@ std::vector<std::string> doubts(const PictureFile& image, const PictureFile& ref
     return list;
 }
 
-void check_sizes(const core::Bitmap& a, const core::Bitmap& r, const CompareArguments& arguments) {
+/// `a` is the picture in the file `path`, `r` the first reference.
+void check_sizes(const core::Bitmap& a, const std::string& path, const core::Bitmap& r,
+                 const CompareArguments& arguments) {
     if (a.width == r.width && a.height == r.height) return;
     throw InputError(fmt::format("has {} x {} pixels, the reference {} has {} x {}", a.width, a.height,
                                  core::printable(arguments.reference), r.width, r.height),
-                     {arguments.image, 0});
+                     {path, 0});
 }
 
 /// The reference, or the mean of both, and the error against them.
@@ -74,12 +76,8 @@ References read_references(const CompareArguments& arguments, const std::string&
     References r{read_picture(arguments.reference, layer), {}, {}};
     if (arguments.second.empty()) return r;
     r.second = read_picture(arguments.second, layer);
-    const core::Bitmap &a = r.first.bitmap, &b = r.second->bitmap;
-    if (a.width != b.width || a.height != b.height)
-        throw InputError(fmt::format("has {} x {} pixels, the reference {} has {} x {}", b.width, b.height,
-                                     core::printable(arguments.reference), a.width, a.height),
-                         {arguments.second, 0});
-    if (a.pixels == b.pixels)
+    check_sizes(r.second->bitmap, arguments.second, r.first.bitmap, arguments);
+    if (r.second->bitmap.pixels == r.first.bitmap.pixels)
         throw InputError("is the same picture as the first reference: two must differ in their seeds",
                          {arguments.second, 0});
     r.mean = core::mean_of(r.pair());
@@ -209,7 +207,7 @@ int compare_command(const CompareArguments& arguments) {
     const References references = read_references(arguments, reference_layer);
     const core::Bitmap& a = image.bitmap;
     core::Bitmap r = references.first.bitmap;
-    check_sizes(a, r, arguments);
+    check_sizes(a, arguments.image, r, arguments);
     r.pixels = references.pixels();
     std::vector<std::string> warnings = doubts(image, references.first);
     const auto add = [&](const std::string& text) {
