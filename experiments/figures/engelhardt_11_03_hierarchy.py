@@ -5,7 +5,7 @@ Fig. 11.3.
 Pictures of 1024 x 768 pixels. (a) The bound is chosen so that the sum over pixels alone takes thousands of samples a pixel
 where it takes most, as in the thesis; its radius is 0.3 times that of the scene. (b) Two steps with 6 levels beside direct
 light and 1024 virtual point lights at every pixel, and with the bound that goes with 1024 light paths; processor time.
-A full run takes about 15 minutes on two cores, --quick half a minute.
+Pictures of the scenes are by `mote_layers`. A full run takes about 8 minutes of one core, --quick half a minute.
 
     experiments/figures/engelhardt_11_03_hierarchy.py [--quick] [--redraw] [--output FOLDER] [--bin FOLDER]
 """
@@ -14,13 +14,12 @@ import re
 import sys
 from pathlib import Path
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
+import numpy as np
 from claims import Claims
 from occluders import sculpture
 from origin import table_of
-from renders import main, write_csv
+from panels import TITLE, Canvas, clean, show, title
+from renders import luminance, main, write_csv
 
 SCENES = Path(__file__).resolve().parent / "scenes"
 LEVELS = [1, 2, 3, 4, 5, 6]
@@ -62,14 +61,17 @@ def measure(mote, name, scene, settings, size, paths):
     return {"samples": samples, "direct": direct.cpu, "vpls": 1024 * per_vpl, **seconds}
 
 
-def draw(results, path):
-    figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4))
+def draw(results, cleans, path):
+    canvas = Canvas(1280, 2 * TITLE + 236 + 8 + 420)
+    for i, (name, picture) in enumerate(cleans.items()):
+        show(canvas.panel(1 + 321 * i, TITLE, 315, 236), picture, 0.6 / np.percentile(luminance(picture), 95), name)
+    left, right = canvas.panel(62, 2 * TITLE + 244, 560, 366), canvas.panel(700, 2 * TITLE + 244, 572, 366)
     for name, r in results.items():
-        left.semilogy(LEVELS, r["samples"], "o-", label=name)
+        left.semilogy(LEVELS, r["samples"], "o-", linewidth=2, label=name)
+    title(left, "samples a pixel")
     left.set_xlabel("levels that are summed (1: pixels alone)")
-    left.set_ylabel("samples a pixel")
     left.grid(alpha=0.3)
-    left.legend()
+    left.legend(fontsize=11)
     names = list(results)
     below = [0.0] * len(names)
     for key, label in (("direct", "primary rays, direct light"), ("vpls", "1024 VPLs"), ("wide", "two steps, wide bound")):
@@ -77,11 +79,9 @@ def draw(results, path):
         share = [100 * r[key] / t for r, t in zip(results.values(), total)]
         right.bar(names, share, bottom=below, label=label)
         below = [b + s for b, s in zip(below, share)]
-    right.set_ylabel("share of the processor time [%]")
-    right.legend(loc="lower right")
-    figure.tight_layout()
-    figure.savefig(path.with_suffix(".png"), dpi=80)
-    plt.close(figure)
+    title(right, "share of the processor time [%]")
+    right.legend(loc="lower right", fontsize=11)
+    canvas.save(path.with_suffix(".png"))
 
 
 # The thesis does not say how fine its scenes are. These two have surfaces of a few pixels everywhere.
@@ -123,7 +123,10 @@ def figure(mote, quick, output):
                      r["wide"] <= 0.5 * r["vpls"], fine)
     write_csv(output.with_suffix(".csv"), ["scene", *(f"samples_{n}_levels" for n in LEVELS), "seconds_direct", "seconds_1024_vpls",
                                            "seconds_two_steps", "seconds_two_steps_automatic_bound"], rows)
-    draw(results, output)
+    size, passes = ({"resx": 80, "resy": 60}, 16) if quick else ({"resx": 315, "resy": 236}, 64)
+    cleans = {name: clean(mote, scene, {**settings, **size}, passes, f"clean_{name.replace(' ', '_')}")[""]
+              for name, (scene, settings) in scenes(mote, quick).items()}
+    draw(results, cleans, output)
     return claims.exit_code()
 
 

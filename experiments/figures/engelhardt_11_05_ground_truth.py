@@ -12,17 +12,17 @@ exact pictures, known from seeds, is subtracted everywhere. Processor time. A fu
 import sys
 from pathlib import Path
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 from claims import Claims
 from occluders import sculpture
-from renders import compensation, luminance, main, mean_and_error, show, write_csv
+from panels import TITLE, Canvas, clean, enlarged, mark, show
+from renders import compensation, luminance, main, mean_and_error, write_csv
 
 SCENES = Path(__file__).resolve().parent / "scenes"
 LAYER, BLOCK = "compensation_surface", 8
 METHODS = {"exact": compensation("exact"), "screen space": compensation("screen_space", steps=3)}
+PASSES = {"bunny": 32, "sculpture": 32, "atrium": 48}  # of the clean pictures
+PIECES = {"bunny": (0.5, 0.5), "sculpture": (0.5, 0.5), "atrium": (0.7, 0.3)}  # where they begin, as shares of the width and height
 # Most of what is missing in the atrium: docs/ssbc.md, Hidden surfaces.
 HIDDEN = "backs of columns, balusters and leaves, and floors and leaves thinner than a pixel, are not in the picture"
 
@@ -75,19 +75,32 @@ def measure(mote, name, scene, settings, quick):
             "vpl_seconds": np.mean([p.cpu for p in pictures["screen space"]])}
 
 
-def draw(results, path):
-    figure, grid = plt.subplots(len(results), 5, figsize=(17, 2.9 * len(results)))
-    for row, (name, r) in zip(grid, results.items()):
-        exposure = 0.6 / np.percentile(luminance(r["mean"]("exact", "")), 95)
-        bounded = r["mean"]("screen space", "") - r["mean"]("screen space", LAYER)
-        show(row[0], bounded, exposure, f"{name}: bounded")
-        show(row[1], r["mean"]("exact", ""), exposure, f"exact compensation; equal error: {r['equal_seconds']:.0f} s")
-        show(row[2], r["mean"]("screen space", ""), exposure, f"screen space, three steps: {r['screen_seconds']:.2f} s")
-        show(row[3], r["mean"]("exact", LAYER), 4 * exposure, "recovered by exact compensation, x 4")
-        show(row[4], r["mean"]("screen space", LAYER), 4 * exposure, f"by screen space, x 4: {r['recovered']:.0%}")
-    figure.tight_layout()
-    figure.savefig(path.with_suffix(".png"), dpi=75)
-    plt.close(figure)
+def draw(results, cleans, path):
+    """A line for each scene: the clean picture and what is brought back. Below, the marked pieces of all three: the clean
+    picture less what was measured to be missing."""
+    heights = [round(421 * r["mean"]("exact", "").shape[0] / r["mean"]("exact", "").shape[1]) for r in results.values()]
+    canvas = Canvas(1280, sum(heights) + (TITLE + 8) * len(results) + TITLE + 205)
+    y, below = 0, sum(heights) + (TITLE + 8) * len(results) + TITLE
+    for i, ((name, r), high) in enumerate(zip(results.items(), heights)):
+        picture = cleans[name]
+        height, width = picture.shape[:2]
+        exposure = 0.6 / np.percentile(luminance(picture), 95)
+        exact, found = r["mean"]("exact", LAYER), r["mean"]("screen space", LAYER)
+        x, top = PIECES[name]
+        piece = slice(int(top * height), int(top * height) + height * 3 // 8), slice(int(x * width), int(x * width) + height // 4)
+        y += TITLE
+        axes = canvas.panel(1, y, 421, high)
+        show(axes, picture, exposure, f"{name}: all light, by mote_layers, filtered")
+        mark(axes, piece)
+        show(canvas.panel(430, y, 421, high), enlarged(exact, 2, high, 421), 4 * exposure,
+             f"exact, x4, means over 2 x 2; equal error: {r['equal_seconds']:.0f} s")
+        show(canvas.panel(859, y, 421, high), enlarged(found, 1, high, 421), 4 * exposure,
+             f"three steps, x4: {r['recovered']:.0%}, {r['screen_seconds']:.2f} s")
+        for k, (layer, title) in enumerate(((0 * exact, f"{name}: bounded"), (exact, "exact"), (found, "three steps"))):
+            shown = picture + enlarged(layer - exact, 2, height, width)
+            show(canvas.panel(1 + 429 * i + 142 * k, below, 137, 205), shown[piece], exposure, title)
+        y += high + 8
+    canvas.save(path.with_suffix(".png"))
 
 
 def figure(mote, quick, output):
@@ -112,7 +125,10 @@ def figure(mote, quick, output):
                                            "difference_bounded", "difference_screen_space", "seconds_vpls",
                                            "seconds_exact_compensation", "seconds_exact_to_equal_error",
                                            "seconds_screen_space"], rows)
-    draw(results, output)
+    cleans = {name: clean(mote, scene, settings | ({} if quick else {"resx": 421, "resy": 421 * settings["resy"] // settings["resx"]}),
+                          16 if quick else PASSES[name], f"clean_{name}")[""]
+              for name, (scene, settings) in scenes(mote, quick).items()}
+    draw(results, cleans, output)
     return claims.exit_code()
 
 
