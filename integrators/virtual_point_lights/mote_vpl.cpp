@@ -43,10 +43,12 @@ class MoteVpl final : public Integrator {
         settings_.scattering_points =
             int(properties.get_int_in("scattering_points", settings_.scattering_points, 0, 64));
         settings_.interleaving = int(properties.get_int_in("interleaving", 1, 1, 8));
+        settings_.upsampling = int(properties.get_int_in("upsampling", 1, 1, 8));
         settings_.filters = properties.get_bool("filter", false);
         settings_.filter = read_layer_filter(properties);
         if (const auto nested = properties.child_of<Visibility>(Category::visibility))
             settings_.visibility = nested->settings();
+        if (settings_.upsampling > 1) check_upsampling(properties);
     }
 
     std::string type() const override { return "mote_vpl"; }
@@ -79,6 +81,7 @@ class MoteVpl final : public Integrator {
             for (Layer& layer : settings_.screen_space->film_layers()) layers.push_back(std::move(layer));
     }
     void read_compensation(const Properties& properties);
+    void check_upsampling(const Properties& properties) const;
     void plan_bound(Plan& plan, const Bounds3& surfaces) const;
     void plan_image_space(Plan& plan) const;
     VplSettings settings_;
@@ -95,6 +98,16 @@ void MoteVpl::read_compensation(const Properties& properties) {
                          properties.where_of("bounded"));
     const bool one_to_one = settings_.compensation.enabled && settings_.vpls_shared_out();
     settings_.eye_samples = int(properties.get_int_in("eye_samples", one_to_one ? 4 : 1, 1, 4096));
+}
+
+void MoteVpl::check_upsampling(const Properties& properties) const {
+    const char* against = settings_.interleaving > 1         ? "interleaving"
+                          : settings_.eye_samples > 1        ? "eye_samples above 1"
+                          : settings_.visibility.shadow_maps ? "shadow maps"
+                                                             : nullptr;
+    if (against)
+        throw InputError(std::string("upsampling does not go together with ") + against,
+                         properties.where_of("upsampling"));
 }
 
 void MoteVpl::plan_bound(Plan& plan, const Bounds3& surfaces) const {
@@ -118,6 +131,11 @@ void MoteVpl::plan_image_space(Plan& plan) const {
                  std::to_string(n * n) + " shares of the VPLs, for pixels of " + std::to_string(n) + " x " +
                      std::to_string(n),
                  "unbiased: noise differs from pixel to pixel, and less work is done");
+    if (const int m = settings_.upsampling; m > 1)
+        plan.run("upsampling",
+                 "VPLs at one pixel of " + std::to_string(m) + " x " + std::to_string(m) +
+                     ", between by what neighbours see",
+                 "biased by what light does between them; pixels without a neighbour alike gather their own");
     if (settings_.filters)
         plan.run("filter", "light of VPLs in image space",
                  "biased by what it smoothes, less with every pass. The noise that is stated, and --noise, "

@@ -1,5 +1,7 @@
 #include "integrators/virtual_point_lights/vpl_estimator.h"
 
+#include <tbb/parallel_for.h>
+
 #include <mutex>
 
 #include "integrators/eye_path/counters.h"
@@ -21,7 +23,7 @@ class VplEstimator final : public Estimator {
           options_(options),
           settings_(settings),
           bound_(settings.bound_for(scene.rays().bounds())),
-          tile_size_(interleaved_tile(settings.interleaving)) {
+          tile_size_(lane_tile(spacing())) {
         settings_.eye.wanted = wanted_transport(options);
         if (settings_.compensation.enabled && std::isfinite(bound_))
             transport_.emplace(scene, bound_, settings_.compensation);
@@ -53,13 +55,17 @@ class VplEstimator final : public Estimator {
         const int columns = (options_.width + tile_size_ - 1) / tile_size_;
         const int rows = (options_.height + tile_size_ - 1) / tile_size_;
         std::vector<lights::ReceiverStore> stores(maps_ ? std::size_t(columns) * std::size_t(rows) : 0);
+        std::optional<SharedPixels> shared;
+        if (settings_.upsampling > 1) shared.emplace(options_.width, options_.height, lattice(context));
         const auto tile = [&](int x0, int y0, int x1, int y1) {
             const std::size_t index = std::size_t(y0 / tile_size_ * columns + x0 / tile_size_);
-            render_tile(context, image, vpls, maps_ ? &stores[index] : nullptr, x0, y0, x1, y1);
+            render_tile(context, image, vpls, maps_ ? &stores[index] : nullptr, shared ? &*shared : nullptr,
+                        {x0, y0, x1, y1});
         };
-        if (maps_ || hidden_) image.finish_late();
+        if (maps_ || hidden_ || shared) image.finish_late();
         if (!for_each_tile(options_.width, options_.height, tile_size_, context.cancelled, tile))
             return false;
+        if (shared && !upsample(context, *shared, vpls, image)) return false;
         if (hidden_ && !hidden_->template pass<Media>(context, vpls, first_hidden_layer, image)) return false;
         return !maps_ || maps_->add_light(vpls, bound_, stores, context.cancelled, image);
     }
@@ -74,6 +80,7 @@ class VplEstimator final : public Estimator {
             maps_->add_statistics(statistics);
         else if (settings_.visibility.shadow_maps)
             statistics.warnings.push_back("visibility 'shadow_map' has no effect: there are no media");
+        if (settings_.upsampling > 1) statistics.values["pixels_shaded_again"] += double(shaded_again_);
         if (filter_) {
             statistics.seconds["filter_features"] = filter_->feature_seconds();
             statistics.seconds["filter"] = filter_->filter_seconds();
@@ -91,30 +98,94 @@ class VplEstimator final : public Estimator {
     }
 
   private:
-    /// Pixels of a task: a multiple of the tiles of receivers, whose pixels are `interleaving` apart.
-    static constexpr int interleaved_tile(int n) { return EyeTile<Media>::side * n * std::max(1, 4 / n); }
+    /// Pixels from lane to lane of a tile of receivers.
+    int spacing() const { return std::max(settings_.interleaving, settings_.upsampling); }
+    /// Pixels of a task: a multiple of such tiles.
+    static constexpr int lane_tile(int n) { return EyeTile<Media>::side * n * std::max(1, 4 / n); }
     static constexpr std::size_t first_compensation_layer = transport_layer_count(Media);
     static constexpr std::size_t first_hidden_layer = first_compensation_layer + (Media ? 2 : 1);
 
-    void render_tile(const PassContext& context, PassImage& image, const lights::VplSet& vpls,
-                     lights::ReceiverStore* store, int x0, int y0, int x1, int y1) {
+    struct Box {
+        int x0, y0, x1, y1;
+    };
+    static constexpr std::size_t lane_count = lights::ReceiverTile::width;
+    using Lanes = std::array<glm::ivec2, lane_count>;  ///< pixels; x < 0: none
+
+    /// Calls render(tile) with a tile of receivers of one task.
+    template <typename Render>
+    void with_tile(const PassContext& context, const lights::VplSet& vpls, lights::ReceiverStore* store,
+                   const Render& render) {
         WalkContext walk;
         walk.cancelled = context.cancelled;
         const auto scratch = std::make_unique<lights::GatherScratch>();
         const auto tile = std::make_unique<EyeTile<Media>>(
             scene_, settings_, bound_, vpls, transport_ ? &*transport_ : nullptr, *scratch, walk,
             EyeShadowMaps{maps_ ? maps_->of_lights() : nullptr, store});
-        const int n = settings_.interleaving, side = EyeTile<Media>::side * n;
-        for (int y = y0; y < y1; y += side)
-            for (int x = x0; x < x1; x += side)
-                for (int i = 0; i < n * n; ++i) {
-                    if (context.cancelled) return;  // a tile of many VPLs takes long
-                    render_lanes(context, image, *tile, x + i % n, y + i / n, x1, y1);
-                }
+        render(*tile);
         counters_.add(walk.rays, walk.tracking);
         const std::lock_guard lock(cost_mutex_);
         cost_.vertices += tile->compensation_cost().vertices;
         cost_.seconds += tile->compensation_cost().seconds;
+    }
+
+    void render_tile(const PassContext& context, PassImage& image, const lights::VplSet& vpls,
+                     lights::ReceiverStore* store, SharedPixels* shared, const Box& box) {
+        constexpr int side = EyeTile<Media>::side;
+        const int n = spacing();
+        with_tile(context, vpls, store, [&](EyeTile<Media>& tile) {
+            for (int y = box.y0; y < box.y1; y += side * n)
+                for (int x = box.x0; x < box.x1; x += side * n)
+                    for (int i = 0; i < n * n; ++i) {
+                        if (context.cancelled) return;  // a tile of many VPLs takes long
+                        const int x0 = x + i % n, y0 = y + i / n;
+                        Lanes lanes;
+                        for (int lane = 0; lane < side * side; ++lane) {
+                            const glm::ivec2 pixel(x0 + lane % side * n, y0 + lane / side * n);
+                            lanes[std::size_t(lane)] =
+                                pixel.x < box.x1 && pixel.y < box.y1 ? pixel : glm::ivec2(-1);
+                        }
+                        tile.gathers(!shared || shared->lattice().holds(x0, y0));
+                        render_lanes(context, image, tile, lanes, shared);
+                    }
+        });
+    }
+
+    /// The lattice goes round from pass to pass.
+    screenspace::ShadedLattice lattice(const PassContext& context) const {
+        const auto n = std::uint32_t(settings_.upsampling);
+        const std::uint32_t at = context.index % (n * n);
+        return {int(n), int(at % n), int(at / n)};
+    }
+
+    /// Pixels between the lattice: those that find nobody alike once more, with their VPLs, the others by
+    /// neighbours.
+    bool upsample(const PassContext& context, const SharedPixels& shared, const lights::VplSet& vpls,
+                  PassImage& image) {
+        const std::vector<std::uint32_t> again = shared.again();
+        constexpr std::size_t task = 256;
+        tbb::parallel_for(std::size_t(0), (again.size() + task - 1) / task, [&](std::size_t t) {
+            with_tile(context, vpls, nullptr, [&](EyeTile<Media>& tile) {
+                const std::size_t end = std::min((t + 1) * task, again.size());
+                for (std::size_t i = t * task; i < end && !context.cancelled; i += lane_count) {
+                    Lanes lanes;
+                    for (std::size_t lane = 0; lane < lanes.size(); ++lane) {
+                        const auto pixel = i + lane < end ? int(again[i + lane]) : -1;
+                        lanes[lane] = pixel < 0 ? glm::ivec2(-1)
+                                                : glm::ivec2(pixel % options_.width, pixel / options_.width);
+                    }
+                    render_lanes(context, image, tile, lanes, nullptr);
+                }
+            });
+        });
+        shaded_again_ += again.size();
+        if (context.cancelled) return false;
+        using screenspace::LayerKind;
+        const auto fill = [&](LayerKind kind, std::size_t layer) { shared.fill(kind, image.layer(layer)); };
+        fill(LayerKind::surface, std::size_t(Transport::indirect));
+        if (Media) fill(LayerKind::volume, std::size_t(Transport::multiple_scattering));
+        if (settings_.compensation.enabled) fill(LayerKind::surface, first_compensation_layer);
+        if (settings_.compensation.enabled && Media) fill(LayerKind::volume, first_compensation_layer + 1);
+        return true;
     }
 
     /// Which of the n^2 shares of the VPLs pixels of (column, row) gather. Every pixel comes by all of them,
@@ -125,33 +196,35 @@ class VplEstimator final : public Estimator {
         return (std::size_t(column) % n + n * (std::size_t(row) % n) + start + context.index) % (n * n);
     }
 
-    /// Pixels from (x0, y0) on, `interleaving` apart.
-    void render_lanes(const PassContext& context, PassImage& image, EyeTile<Media>& tile, int x0, int y0,
-                      int x1, int y1) const {
-        constexpr int side = EyeTile<Media>::side;
+    /// The pixels of the lanes, which have one share of the VPLs. `shared` is told what they see.
+    void render_lanes(const PassContext& context, PassImage& image, EyeTile<Media>& tile, const Lanes& lanes,
+                      SharedPixels* shared) const {
+        const glm::ivec2 first = lanes[0];  // the others lie to the right and below
         const int n = settings_.interleaving;
-        const std::size_t shares = std::size_t(n) * std::size_t(n), share = share_of(context, x0, y0);
-        const auto pixel = [&](int lane) { return std::array{x0 + lane % side * n, y0 + lane / side * n}; };
-        std::array<VplPixel, side * side> sums;
+        const std::size_t shares = std::size_t(n) * std::size_t(n);
+        const std::size_t share = first.x < 0 ? 0 : share_of(context, first.x, first.y);
+        std::array<VplPixel, lane_count> sums;
         const auto samples = std::uint32_t(settings_.eye_samples);
-        tile.place(x0, y0, n, 1.0f / float(samples));
+        tile.place(first.x, first.y, n, 1.0f / float(samples));
         for (std::uint32_t sample = 0; sample < samples; ++sample) {
             const PassContext eye{context.index * samples + sample, context.filter, context.cancelled};
-            for (int lane = 0; lane < side * side; ++lane)
-                if (const auto [x, y] = pixel(lane); x < x1 && y < y1)
-                    tile.start(lane, make_eye_ray(scene_, options_, eye, x, y));
+            for (std::size_t lane = 0; lane < lanes.size(); ++lane)
+                if (lanes[lane].x >= 0)
+                    tile.start(int(lane), make_eye_ray(scene_, options_, eye, lanes[lane].x, lanes[lane].y));
                 else
-                    tile.stop(lane);
+                    tile.stop(int(lane));
             if (settings_.vpls_shared_out())
                 tile.run({sample + samples * share, samples * shares}, float(samples * shares));
             else
                 tile.run({share, shares}, float(shares));
-            for (int lane = 0; lane < side * side; ++lane)
-                sums[std::size_t(lane)].add(tile.sum(lane), 1.0f / float(samples));
+            for (std::size_t lane = 0; lane < lanes.size(); ++lane)
+                sums[lane].add(tile.sum(int(lane)), 1.0f / float(samples));
         }
-        for (int lane = 0; lane < side * side; ++lane)
-            if (const auto [x, y] = pixel(lane); x < x1 && y < y1)
-                store_pixel(sums[std::size_t(lane)], image, x, y);
+        for (std::size_t lane = 0; lane < lanes.size(); ++lane)
+            if (const glm::ivec2 p = lanes[lane]; p.x >= 0) {
+                store_pixel(sums[lane], image, p.x, p.y);
+                if (shared) shared->set(p.x, p.y, tile.seen(int(lane)));
+            }
     }
 
     void store_pixel(const VplPixel& pixel, PassImage& image, int x, int y) const {
@@ -187,7 +260,7 @@ class VplEstimator final : public Estimator {
     std::mutex cost_mutex_;
     CompensationCost cost_;
     ScreenSpaceCost ssbc_cost_;
-    std::uint64_t vpls_ = 0, paths_ = 0;
+    std::uint64_t vpls_ = 0, paths_ = 0, shaded_again_ = 0;
     std::size_t bytes_ = 0;
 };
 

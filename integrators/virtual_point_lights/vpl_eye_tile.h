@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "integrators/eye_path/eye_path.h"
+#include "integrators/virtual_point_lights/shared_pixels.h"
 #include "integrators/virtual_point_lights/tile_compensation.h"
 #include "integrators/virtual_point_lights/vpl_pixel.h"
 #include "integrators/virtual_point_lights/vpl_settings.h"
@@ -42,6 +43,7 @@ class EyeTile {
     void start(int lane, const EyeRay& eye) {
         Lane& l = lanes_[std::size_t(lane)];
         l.sum = {}, l.receiver = ReceiverKind::surface, l.alive = true;
+        l.seen = {}, l.film = eye.film;
         walk_.rng = eye.rng;
         l.path.emplace(scene_, settings_.eye, eye, walk_);
         l.scattering.emplace(wants_points() ? settings_.scattering_points : 0);
@@ -52,6 +54,10 @@ class EyeTile {
         l.sum = {}, l.alive = false;
     }
     const VplPixel& sum(int lane) const { return lanes_[std::size_t(lane)].sum; }
+    /// What the lane's eye path met first, after run().
+    const SeenPixel& seen(int lane) const { return lanes_[std::size_t(lane)].seen; }
+    /// Do lanes to come gather VPLs and compensate? Else receivers are seen, and nothing arrives at them.
+    void gathers(bool yes) { gathers_ = yes; }
     CompensationCost compensation_cost() const { return compensation_.cost(); }
 
     /// Of the lanes to come: where they lie in the picture, `spacing` pixels apart, and how much receivers
@@ -84,6 +90,8 @@ class EyeTile {
         std::optional<core::ScatteringPoints> scattering;
         std::span<const core::ScatteringPoint> points;  ///< of the last leg
         core::ScatteringVertex vertex;                  ///< at one of them
+        SeenPixel seen;
+        core::Vec2 film{0.0f};
         ReceiverKind receiver = ReceiverKind::surface;
         bool alive = false;
     };
@@ -131,14 +139,17 @@ class EyeTile {
         walk_.rng = lane.rng;
         EyePath<Media>& path = *lane.path;
         const bool at_vertex = next_vertex(lane);
+        if (at_vertex && path.depth() == 1 && !path.vertex().connectable()) lane.seen.share_nothing();
         if (at_vertex && path.vertex().connectable()) {
             if (path.wants_connection())
                 lane.sum.transport[path.layer_of_connection()] +=
                     path.sample_light(walk_, {false, maps_.lights});
             // Engelhardt 2013, Eq. 10.9: tau sigma_s / p(t) of a receiver in a medium is in the throughput.
             // The print leaves out sigma_s (docs/errata.md).
-            if (settings_.eye.wanted[transport_layer(2, path.vertex().on_surface())])
+            if (settings_.eye.wanted[transport_layer(2, path.vertex().on_surface())]) {
+                see_receiver(lane);
                 add_receiver(lane, index, path.vertex(), path.throughput(), path.state());
+            }
         }
         lane.rng = walk_.rng;
         return at_vertex;
@@ -149,10 +160,24 @@ class EyeTile {
         if constexpr (Media)
             if (settings_.scattering_points > 0) {
                 const bool at_vertex = path.advance_to_surface(walk_, lane.sum.transport, *lane.scattering);
+                if (at_vertex && path.depth() == 1) lane.seen = see_first_leg(scene_, path, lane.film);
                 if (path.may_go_on()) lane.points = lane.scattering->choose(rare_light);
                 return at_vertex && (path.scatterings() > 0 || survives(path));
             }
-        return path.advance(walk_, lane.sum.transport);
+        const bool at_vertex = path.advance(walk_, lane.sum.transport);
+        if (at_vertex && path.depth() == 1) lane.seen = see_first_leg(scene_, path, lane.film);
+        return at_vertex;
+    }
+    /// The weight of a receiver on the first surface.
+    void see_receiver(Lane& lane) const {
+        const EyePath<Media>& path = *lane.path;
+        if (path.depth() > 1 || !path.vertex().on_surface()) return;
+        screenspace::UpsamplingPoint& surface = lane.seen.surface;
+        const auto reflectance = path.vertex().diffuse_reflectance();
+        surface.shared = reflectance.has_value();
+        surface.modulation = path.throughput() * reflectance.value_or(core::Rgb(1.0f));
+        if (reflectance && !(glm::dot(surface.shading_normal, path.vertex().wo) > 0.0f))
+            surface.modulation = core::Rgb(0.0f);  // as ReceiverTile::set() has it
     }
     /// Does a path whose media let little through go on behind them? By chance, which its weight makes up
     /// for.
@@ -173,8 +198,11 @@ class EyeTile {
         if (settings_.eye.wanted[Transport::single_scattering])
             lane.sum.transport[Transport::single_scattering] +=
                 lane.path->light_at(lane.vertex, point.weight, state, walk_, {false, maps_.lights});
-        if (share > 0.0f && settings_.eye.wanted[Transport::multiple_scattering])
+        if (share > 0.0f && settings_.eye.wanted[Transport::multiple_scattering]) {
+            if (lane.path->depth() == 1 && lane.seen.volume.shared)
+                lane.seen.volume.modulation += share * point.weight;
             add_receiver(lane, index, lane.vertex, share * point.weight, state);
+        }
         lane.rng = walk_.rng;
     }
     bool wants_points() const {
@@ -185,6 +213,7 @@ class EyeTile {
     /// `throughput` is the weight of the eye path up to `vertex`, which stays until the gathering.
     void add_receiver(Lane& lane, int index, const core::ScatteringVertex& vertex,
                       const core::Rgb& throughput, const core::MediumState& state) {
+        if (!gathers_) return;
         const EyePath<Media>& path = *lane.path;
         const int max_depth = settings_.eye.max_depth;
         const std::int32_t vpl_depth =
@@ -211,6 +240,7 @@ class EyeTile {
     TileCompensation<Media> compensation_;
     std::array<Lane, lights::ReceiverTile::width> lanes_;
     lights::ReceiverTile receivers_;
+    bool gathers_ = true;
 };
 
 }  // namespace mote::integrators

@@ -27,6 +27,9 @@ struct VplSettings {
 
     /// n: a pixel of n x n gathers every n^2-th VPL, which counts n^2 times.
     int interleaving = 1;
+    /// n: VPLs are gathered at one pixel of n x n, and between by bilateral upsampling. Not with
+    /// interleaving.
+    int upsampling = 1;
     bool filters = false;  ///< light of VPLs is smoothed in image space after the last pass
     LayerFilterParameters filter;
 

@@ -61,6 +61,7 @@ const std::map<std::string, Words> numbers = {
     {"eye_samples", {"", "3"}},
     {"scattering_points", {"3", "0"}},
     {"interleaving", {"", "3"}},
+    {"upsampling", {"", "2"}},
     {"max_photons", {"", "99"}},
     {"alpha", {"", "1"}},
     {"vpl_bound", {"", "1"}},
