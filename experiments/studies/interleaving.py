@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""Interleaved virtual point lights and the filter in image space (mote_vpl): error against counted work, and bias.
+"""Virtual point lights in image space (mote_vpl): interleaving, the filter, and upsampling: error against counted work, and bias.
 
-Usage: interleaving.py [--mote build/release/bin/mote] [--seeds N] [--reference PASSES]
+Usage: interleaving.py [--mote build/release/bin/mote] [--seeds N] [--reference PASSES] [--scale N]
 For the smoke room and the Cornell box, with the same bounded lights throughout: squared error against a long render without
-interleaving (relative as in docs/testing.md, the reference's own noise taken off), counted work of a pixel
+either (relative as in docs/testing.md, the reference's own noise taken off), counted work of a pixel
 (core/render/counted_work.h) and processor seconds of a picture, their products, and the signed bias of the mean over seeds.
 """
 import argparse
@@ -23,7 +23,9 @@ SCENES = {"smoke_room": (64, 40), "cornell_box": (56, 56)}
 # name, settings, passes
 METHODS = [("n = 1", {}, 4), ("n = 1, filter", {"filter": "true"}, 4),
            ("n = 2", {"interleaving": 2}, 12), ("n = 2, filter", {"interleaving": 2, "filter": "true"}, 12),
-           ("n = 4", {"interleaving": 4}, 32), ("n = 4, filter", {"interleaving": 4, "filter": "true"}, 32)]
+           ("n = 4", {"interleaving": 4}, 32), ("n = 4, filter", {"interleaving": 4, "filter": "true"}, 32),
+           ("upsampling 2", {"upsampling": 2}, 12), ("upsampling 4", {"upsampling": 4}, 24),
+           ("upsampling 4, filter", {"upsampling": 4, "filter": "true"}, 24)]
 
 
 def counted_work(s):
@@ -35,7 +37,7 @@ def counted_work(s):
 
 def render(args, scene, settings, passes, seed, folder):
     exr, stats = folder / "p.exr", folder / "p.json"
-    width, height = SCENES[scene]
+    width, height = (args.scale * n for n in SCENES[scene])
     settings = {"paths": 64, "bound": 20, **settings}
     defines = [x for k, v in settings.items() for x in ("-D", f"integrator.{k}={v}")]
     subprocess.run([args.mote, "render", ROOT / f"scenes/{scene}.xml", "--integrator", "mote_vpl", "-t", "1", "--quiet",
@@ -71,6 +73,7 @@ def main():
     parser.add_argument("--mote", default=ROOT / "build/release/bin/mote")
     parser.add_argument("--seeds", type=int, default=3)
     parser.add_argument("--reference", type=int, default=200)
+    parser.add_argument("--scale", type=int, default=1, help="pictures so many times as wide and high")
     args = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         for scene in SCENES:

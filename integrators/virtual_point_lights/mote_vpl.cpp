@@ -204,6 +204,11 @@ void register_mote_vpl(Registry& registry) {
     parameters.push_back({"interleaving", "integer", "1",
                           "n, up to 8: a pixel of n x n gathers every n^2-th VPL, which counts n^2 times"});
     parameters.push_back(
+        {"upsampling", "integer", "1",
+         "n, up to 8: VPLs are gathered at one pixel of n x n, light between them comes from "
+         "neighbours that see the same, and pixels without any gather their own; not together "
+         "with interleaving, eye_samples or shadow maps"});
+    parameters.push_back(
         {"filter", "boolean", "false",
          "smooth the light of VPLs in image space, as far as noise that differs from pixel to pixel "
          "explains its detail: for interleaving"});

@@ -46,7 +46,7 @@ TEST_CASE("upsampled VPLs keep the light of the picture for a share of the rays"
     const double again = share.counts.values.at("pixels_shaded_again");
     INFO(again << " of " << 32 * 32 << " pixels shaded again");
     CHECK((again > 0.0 && again < 0.35 * 32 * 32));  // silhouettes and edges of a small picture
-    CHECK(double(share.counts.rays["occlusion"]) < 0.75 * double(all.counts.rays["occlusion"]));
+    CHECK(double(share.counts.rays.at("occlusion")) < 0.75 * double(all.counts.rays.at("occlusion")));
     for (const std::string layer : {"emission", "direct", "single_scattering"})  // nothing to do with it
         CHECK(mean_of(share.light, layer) == Approx(mean_of(all.light, layer)).epsilon(0.03));
     for (const std::string layer : {"indirect_bounded", "multiple_scattering_bounded"}) {
