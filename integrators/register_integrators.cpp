@@ -14,6 +14,7 @@ void register_integrators(core::Registry& registry) {
     register_mote_layers(registry);
     register_path(registry);
     register_volpath(registry);
+    register_mote_bdpt(registry);
     register_mote_vpl(registry);
     register_mote_photon_map(registry);
     register_mote_vsl(registry);

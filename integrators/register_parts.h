@@ -13,6 +13,7 @@ namespace mote::integrators {
 void register_mote_layers(core::Registry& registry);
 void register_path(core::Registry& registry);
 void register_volpath(core::Registry& registry);
+void register_mote_bdpt(core::Registry& registry);
 void register_mote_vpl(core::Registry& registry);
 void register_mote_photon_map(core::Registry& registry);
 void register_mote_vsl(core::Registry& registry);

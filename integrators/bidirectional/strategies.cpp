@@ -1,0 +1,219 @@
+#include "integrators/bidirectional/strategies.h"
+
+namespace mote::integrators {
+
+using namespace core;
+
+namespace {
+/// Shadow rays stop this much short of a light, whose own surface they would hit otherwise.
+constexpr float shadow_fraction = 0.9999f;
+}  // namespace
+
+template <bool Media>
+bool Strategies<Media>::start_light_path(Sampler& sampler, SubpathWalk<Media>& walk) {
+    float u_light = sampler.next_1d();
+    const LightChoice choice = ends_.choose(u_light, &u_light);
+    const Vec2 u_position = sampler.next_2d(), u_direction = sampler.next_2d();
+    if (!choice.emitter) return false;
+    const auto emission = choice.emitter->sample_emission(u_position, u_direction);
+    if (!emission) return false;
+    light_start_ = {choice.emitter, emission->origin, emission->normal, -emission->direction};
+    const LightEnds::Start start = ends_.start(light_start_);
+    start_density_ = start.light;
+    light_.without = choice.emitter->traits().can_be_hit() ? 1.0 : 0.0;
+    PathVertex vertex;
+    vertex.scattering.position = emission->origin, vertex.light_normal = emission->normal;
+    vertex.start = true, vertex.infinite = light_start_.infinite(), vertex.density = start.light;
+    light_.vertices.push_back(vertex);
+    PathWeights weights;
+    weights.throughput = emission->weight / choice.probability;
+    MediumState state;
+    if constexpr (Media) {
+        weights.hero = draw_hero(context_.rng);
+        state = scene_.emitter_medium_state(*choice.emitter, *emission);
+    }
+    walk.start({emission->origin, emission->direction}, start.receiver, light_start_.infinite(), weights,
+               state);
+    return true;
+}
+
+/// The density with which the first vertex would draw the light, now that it is known.
+template <bool Media>
+void Strategies<Media>::finish_light_start() {
+    PathVertex& first = light_.vertices[1];
+    first.connection = 0.0;
+    if (!first.scattering.connectable() || !(start_density_ > 0.0)) return;
+    const double drawn = ends_.drawn(first.scattering.light_receiver(), light_start_, first.distance_squared);
+    first.connection = weigh(settings_.heuristic, drawn / start_density_);
+}
+
+template <bool Media>
+Rgb Strategies<Media>::between(const Ray& segment, const ScatteringVertex& from, const MediumState& state,
+                               float visible_to) {
+    Ray shadow = segment;
+    shadow.t_max = visible_to;
+    ++context_.rays.occlusion;
+    if (!scene_.visible(shadow)) return Rgb(0.0f);
+    if (!scene_.attenuates()) return Rgb(1.0f);
+    const MediumState start = Media ? from.state_towards(state, segment.direction) : state;
+    if (std::isfinite(segment.t_max))
+        return scene_.transmittance(segment.at(segment.t_min), segment.at(segment.t_max), start, context_.rng,
+                                    context_.tracking);
+    // To infinity. A channel of its own drives it: estimates that are multiplied must be independent.
+    PathWeights weights;
+    weights.light = Rgb(1.0f), weights.hero = draw_hero(context_.rng);
+    scene_.connect(segment, start, weights, context_.rng, context_.tracking);
+    return weights.throughput / average(weights.light);
+}
+
+template <bool Media>
+std::optional<std::pair<Contribution, Vec2>> Strategies<Media>::join_to_lens(std::size_t s,
+                                                                             const Vec2& u_lens) {
+    const PathVertex& y = light_.vertices[s - 1];
+    const ScatteringVertex& v = y.scattering;
+    const Transport layer = transport_layer(int(s) - 1, v.on_surface());
+    if (!v.connectable() || !settings_.limits.wanted[layer]) return std::nullopt;
+    const Camera& camera = scene_.camera();
+    const auto lens = camera.sample_importance(v.position, u_lens, filter_radius_);
+    if (!lens) return std::nullopt;
+    const Rgb f = v.eval_cos(lens->wi, TransportMode::power) * adjoint_correction(v, v.wo, lens->wi);
+    if (is_black(f)) return std::nullopt;
+    const auto importance = camera.importance(lens->origin, -lens->wi, filter_radius_);
+    if (!importance) return std::nullopt;
+    // What lies before the near plane hides nothing.
+    Ray ray{v.ray_origin(lens->wi), lens->wi, 0.0f, lens->distance - lens->t_min};
+    const Rgb seen = between(ray, v, y.state, ray.t_max);
+    if (is_black(seen)) return std::nullopt;
+    const double edge =
+        Media ? edge_transmittance(scene_, ray, v.state_towards(y.state, lens->wi), context_.tracking) : 1.0;
+    const bool parallel = camera.traits().delta_direction;
+    const double by_camera = double(parallel ? importance->pdf_area : importance->pdf_solid_angle) *
+                             double(v.geometric_cosine(lens->wi)) * edge /
+                             (parallel ? 1.0 : double(lens->distance) * double(lens->distance));
+    // In terms of one light path: this technique has all of them.
+    const double own =
+        settings_.heuristic == Heuristic::none ? 1.0 : weigh(settings_.heuristic, light_paths_);
+    const double others =
+        light_.others(s - 1, by_camera, reverse_of_previous(light_, s - 1, lens->wi, TransportMode::power));
+    const Rgb light = y.weight * f * seen * (lens->weight * weight(others / own, 0.0) / float(light_paths_));
+    return std::pair{Contribution{light, layer, int(s), 1}, lens->film_position};
+}
+
+template <bool Media>
+Contribution Strategies<Media>::hit_light(std::size_t t) {
+    const PathVertex& z = eye_.vertices[t - 1];
+    const Vec3 direction = -z.scattering.wo;
+    LightPoint point;
+    Rgb radiance(0.0f);
+    if (z.infinite) {
+        point.emitter = scene_.environment();
+        if (point.emitter) radiance = point.emitter->environment(direction);
+    } else if (z.scattering.on_surface() && z.scattering.hit.shape->emitter) {
+        point.emitter = z.scattering.hit.shape->emitter.get();
+        radiance = point.emitter->radiance(z.scattering.hit, z.scattering.wo);
+    }
+    if (!point.emitter || is_black(radiance)) return {};
+    point.position = z.scattering.position, point.wi = direction;
+    if (!z.infinite) point.normal = z.scattering.hit.geometric_normal;
+    double others = 0.0;
+    if (t >= 3 && settings_.heuristic != Heuristic::none) {
+        const PathVertex& receiver = eye_.vertices[t - 2];
+        const ScatteringVertex& v = receiver.scattering;
+        const double drawn =
+            receiver.delta ? 0.0 : ends_.drawn(v.light_receiver(), point, z.distance_squared);
+        const LightEnds::Start start = ends_.start(point);
+        const double by_light =
+            start.of(v.geometric_cosine(direction), z.distance_squared, z.infinite) * z.edge;
+        others = weigh(settings_.heuristic, drawn / z.density) +
+                 weigh(settings_.heuristic, start.light / z.density) * eye_.ratio(t - 2, by_light) *
+                     (eye_.technique(t - 2) + z.others);
+    }
+    return {z.weight * radiance * weight(0.0, others), layer_of(0, t), 0, int(t)};
+}
+
+template <bool Media>
+Contribution Strategies<Media>::draw_light(std::size_t t, float u_light, const Vec2& u) {
+    const PathVertex& z = eye_.vertices[t - 1];
+    const ScatteringVertex& v = z.scattering;
+    const LightChoice choice = scene_.choose_light(v.light_receiver(), u_light);
+    if (!choice.emitter || choice.emitter->traits().kind == EmitterKind::medium) return {};
+    const auto light = choice.emitter->sample_direct(v.position, u);
+    if (!light) return {};
+    const Rgb f = v.eval_cos(light->wi, TransportMode::radiance);
+    if (is_black(f)) return {};
+    const LightPoint point{choice.emitter, v.position + light->distance * light->wi, light->normal,
+                           light->wi};
+    const bool infinite = point.infinite();
+    const Ray ray{v.ray_origin(light->wi), light->wi, 0.0f,
+                  light->distance * (light->delta ? 1.0f : shadow_fraction)};
+    const Rgb seen = between(ray, v, z.state, light->distance * shadow_fraction);
+    if (is_black(seen)) return {};
+    const double edge =
+        Media ? edge_transmittance(scene_, ray, v.state_towards(z.state, light->wi), context_.tracking) : 1.0;
+    const double d2 = infinite ? 1.0 : double(light->distance) * double(light->distance);
+    const double measure = point.area_measure(d2);
+    const double drawn =
+        double(choice.probability) * (light->delta ? 1.0 : double(light->pdf_solid_angle) * measure);
+    double from_light = 0.0, from_eye = 0.0;
+    if (settings_.heuristic != Heuristic::none) {
+        if (choice.emitter->traits().can_be_hit())
+            from_light =
+                weigh(settings_.heuristic,
+                      double(v.pdf_solid_angle(light->wi, TransportMode::radiance)) * measure * edge / drawn);
+        const LightEnds::Start start = ends_.start(point);
+        const double by_light = start.of(v.geometric_cosine(light->wi), d2, infinite) * edge;
+        from_eye = weigh(settings_.heuristic, start.light / drawn) *
+                   eye_.others(t - 1, by_light,
+                               reverse_of_previous(eye_, t - 1, light->wi, TransportMode::radiance));
+    }
+    return {z.weight * f * light->weight * seen * (weight(from_light, from_eye) / choice.probability),
+            layer_of(1, t), 1, int(t)};
+}
+
+template <bool Media>
+bool Strategies<Media>::prepare(std::size_t s, std::size_t t, Connection& c) const {
+    const PathVertex &y = light_.vertices[s - 1], &z = eye_.vertices[t - 1];
+    if (!y.scattering.connectable()) return false;
+    const Vec3d d = Vec3d(y.scattering.position) - Vec3d(z.scattering.position);
+    const double d2 = glm::dot(d, d);
+    if (!(d2 > 0.0)) return false;
+    c.s = s, c.wi = Vec3(d / std::sqrt(d2));
+    // f* G f* (Veach 1997, Eq. 10.7), cosines within.
+    const Rgb f_eye = z.scattering.eval_cos(c.wi, TransportMode::radiance);
+    if (is_black(f_eye)) return false;
+    const Rgb f_light = y.scattering.eval_cos(-c.wi, TransportMode::power) *
+                        adjoint_correction(y.scattering, y.scattering.wo, -c.wi);
+    if (is_black(f_light)) return false;
+    c.light = z.weight * f_eye * f_light * y.weight * float(1.0 / d2);
+    c.to_light =
+        double(z.scattering.pdf_solid_angle(c.wi, TransportMode::radiance)) * y.area_measure(c.wi, d2);
+    c.to_eye = double(y.scattering.pdf_solid_angle(-c.wi, TransportMode::power)) * z.area_measure(c.wi, d2);
+    c.before_light = reverse_of_previous(light_, s - 1, -c.wi, TransportMode::power);
+    c.before_eye = reverse_of_previous(eye_, t - 1, c.wi, TransportMode::radiance);
+    c.expected = average(c.light) * weight_of(c, t, 1.0);
+    return true;
+}
+
+template <bool Media>
+float Strategies<Media>::weight_of(const Connection& c, std::size_t t, double edge) const {
+    if (settings_.heuristic == Heuristic::none) return 1.0f;
+    return weight(light_.others(c.s - 1, c.to_light * edge, c.before_light),
+                  eye_.others(t - 1, c.to_eye * edge, c.before_eye));
+}
+
+template <bool Media>
+Contribution Strategies<Media>::test(const Connection& c, std::size_t t) {
+    const PathVertex &y = light_.vertices[c.s - 1], &z = eye_.vertices[t - 1];
+    const Ray segment = segment_between(z.scattering, y.scattering, c.wi);
+    const Rgb seen = between(segment, z.scattering, z.state, segment.t_max * shadow_fraction);
+    if (is_black(seen)) return {};
+    const double edge = Media ? edge_transmittance(scene_, segment, z.scattering.state_towards(z.state, c.wi),
+                                                   context_.tracking)
+                              : 1.0;
+    return {c.light * seen * weight_of(c, t, edge), layer_of(c.s, t), int(c.s), int(t)};
+}
+
+template class Strategies<true>;
+template class Strategies<false>;
+
+}  // namespace mote::integrators

@@ -1,0 +1,193 @@
+// The strategies of bidirectional path tracing: a light path, an eye path, and every way to join them.
+#pragma once
+
+#include "core/scene/scene.h"
+#include "integrators/bidirectional/light_ends.h"
+#include "integrators/bidirectional/splats.h"
+#include "integrators/bidirectional/subpath_walk.h"
+#include "integrators/eye_path/eye_path_limits.h"
+#include "integrators/eye_path/eye_ray.h"
+
+namespace mote::integrators {
+
+struct BidirectionalSettings {
+    EyePathLimits limits;
+    Heuristic heuristic = Heuristic::power;
+    bool all_connections = false;  ///< test all of them, not one drawn for each eye vertex
+    int strategies = 0;  ///< paths of up to so many edges are also sorted by their strategy; 0: none
+};
+
+/// What one technique found: its light, weighted, in which layer it belongs, and which technique (s, t) it
+/// was.
+struct Contribution {
+    core::Rgb light{0.0f};
+    Transport layer{};
+    int s = 0, t = 0;
+};
+
+template <bool Media>
+class Strategies {
+  public:
+    /// `light_paths`: how many are traced for one ray of each pixel. `filter_radius` [pixels]: how far
+    /// outside of the film a pixel still sees.
+    Strategies(const core::Scene& scene, const LightEnds& ends, const BidirectionalSettings& settings,
+               std::uint32_t light_paths, float filter_radius, core::WalkContext& context)
+        : scene_(scene),
+          ends_(ends),
+          settings_(settings),
+          light_paths_(light_paths),
+          filter_radius_(filter_radius),
+          context_(context) {
+        light_.heuristic = eye_.heuristic = settings.heuristic;
+    }
+
+    /// Traces a light path, and joins its vertices to the lens (t = 1): splat(Contribution, film position).
+    template <typename Splat>
+    void trace_light_path(core::Sampler& sampler, const Splat& splat);
+    /// Traces an eye path, and adds what it finds with all vertices of the last light path:
+    /// found(Contribution).
+    template <typename Found>
+    void trace_eye_path(const EyeRay& eye, const Found& found);
+
+  private:
+    bool start_light_path(core::Sampler& sampler, SubpathWalk<Media>& walk);
+    void finish_light_start();
+    std::optional<std::pair<Contribution, core::Vec2>> join_to_lens(std::size_t s, const core::Vec2& u_lens);
+    Contribution hit_light(std::size_t t);
+    Contribution draw_light(std::size_t t, float u_light, const core::Vec2& u);
+    /// A connection to light vertex s - 1 before it is known whether anything is in between.
+    struct Connection {
+        std::size_t s = 0;
+        core::Vec3 wi{0.0f};              ///< unit, from the eye vertex
+        core::Rgb light{0.0f};            ///< unoccluded and unweighted
+        double to_light, to_eye;          ///< densities of the vertices from the other end, without tau
+        double before_light, before_eye;  ///< of those before them
+        float expected = 0.0f;            ///< what it weighs in the choice
+    };
+    bool prepare(std::size_t s, std::size_t t, Connection& connection) const;
+    float weight_of(const Connection& c, std::size_t t, double edge) const;
+    Contribution test(const Connection& connection, std::size_t t);
+    template <typename Found>
+    void connect(std::size_t t, const Found& found);
+
+    /// 1 over the sum of all techniques' h in terms of this one's.
+    static float weight(double fewer_from_light, double fewer_from_eye) {
+        return float(1.0 / (1.0 + fewer_from_light + fewer_from_eye));
+    }
+    bool allowed(std::size_t s, std::size_t t) const {
+        return settings_.limits.max_depth < 0 || int(s + t) - 1 <= settings_.limits.max_depth;
+    }
+    /// Of light that reaches eye vertex t - 1 and scattered s times before, `joined` at that vertex once
+    /// more.
+    Transport layer_of(std::size_t s, std::size_t t) const {
+        const PathVertex& z = eye_.vertices[t - 1];
+        if (s == 0) return transport_layer(z.scatterings, z.surface_first);
+        const bool surface = z.scatterings == 0 ? z.scattering.on_surface() : z.surface_first;
+        return transport_layer(z.scatterings + int(s), surface);
+    }
+    bool wanted(std::size_t s, std::size_t t) const { return settings_.limits.wanted[layer_of(s, t)]; }
+    /// Visibility times an unbiased estimate of the transmittance.
+    core::Rgb between(const core::Ray& segment, const core::ScatteringVertex& from,
+                      const core::MediumState& state, float visible_to);
+    double reverse_of_previous(const Subpath& path, std::size_t k, const core::Vec3& from,
+                               core::TransportMode mode) const {
+        return density_of_previous(path, k, from, mode, false);
+    }
+
+    const core::Scene& scene_;
+    const LightEnds& ends_;
+    const BidirectionalSettings& settings_;
+    double light_paths_;
+    float filter_radius_;
+    core::WalkContext& context_;
+    Subpath light_, eye_;
+    std::vector<Connection> connections_;
+    LightPoint light_start_;
+    double start_density_ = 0.0;
+};
+
+template <bool Media>
+template <typename Splat>
+void Strategies<Media>::trace_light_path(core::Sampler& sampler, const Splat& splat) {
+    light_.vertices.clear();
+    const int max_depth = settings_.limits.max_depth;
+    SubpathWalk<Media> walk(scene_, core::TransportMode::power,
+                            {max_depth < 0 ? -1 : std::max(0, max_depth - 1), settings_.limits.rr_depth},
+                            light_, sampler, context_);
+    if (!start_light_path(sampler, walk)) return;
+    while (walk.advance()) {
+        if (light_.size() == 2) finish_light_start();
+        if (settings_.limits.hide_emitters) continue;  // eye rays pass lights, connections to the lens do not
+        const core::Vec2 u_lens = sampler.next_2d();
+        if (const auto joined = join_to_lens(light_.size(), u_lens)) splat(joined->first, joined->second);
+    }
+}
+
+template <bool Media>
+template <typename Found>
+void Strategies<Media>::trace_eye_path(const EyeRay& eye, const Found& found) {
+    eye_.vertices.assign(1, {});
+    eye_.vertices[0].scattering.position = eye.ray.origin;
+    core::PathWeights weights;
+    core::MediumState state;
+    if constexpr (Media) {
+        weights.hero = core::draw_hero(context_.rng);
+        state = scene_.eye_medium_state(eye.ray);
+    }
+    const auto importance = scene_.camera().importance(eye.ray.origin, eye.ray.direction, filter_radius_);
+    const bool parallel = scene_.camera().traits().delta_direction;
+    // Its density is that of one ray a pixel (camera.h).
+    const double density =
+        !importance ? 1.0 : double(parallel ? importance->pdf_area : importance->pdf_solid_angle);
+    core::Sampler sampler = eye.sampler;
+    const EyePathLimits& limits = settings_.limits;
+    SubpathWalk<Media> walk(scene_, core::TransportMode::radiance,
+                            {limits.max_depth, limits.rr_depth, limits.hide_emitters}, eye_, sampler,
+                            context_);
+    walk.start(eye.ray, density, parallel, weights, state);
+    while (true) {
+        const bool goes_on = walk.advance();
+        const PathVertex& last = eye_.vertices.back();
+        // That of media is found by no other technique.
+        if (Media && !core::is_black(walk.emitted()))
+            found(Contribution{walk.emitted(), walk.emission_layer(), 0, int(eye_.size()) + !goes_on});
+        if (!goes_on) return;
+        const std::size_t t = eye_.size();
+        if (t == 2)
+            eye_.vertices[1].connection =
+                limits.hide_emitters ? 0.0 : weigh(settings_.heuristic, light_paths_);
+        if (wanted(0, t)) found(hit_light(t));
+        if (last.infinite) return;
+        const core::Vec2 choice = sampler.next_2d(), u = sampler.next_2d();
+        if (!last.scattering.connectable()) continue;
+        if (allowed(1, t) && wanted(1, t)) found(draw_light(t, choice.x, u));
+        connect(t, found);
+    }
+}
+
+/// Joins the last eye vertex to the light path. Of all connections one is tested, drawn by what it would
+/// bring if nothing were in between: shadow rays are then as many as vertices, not pairs of them.
+template <bool Media>
+template <typename Found>
+void Strategies<Media>::connect(std::size_t t, const Found& found) {
+    connections_.clear();
+    float sum = 0.0f;
+    for (std::size_t s = 2; s <= light_.size() && allowed(s, t); ++s) {
+        Connection c;
+        if (!wanted(s, t) || !prepare(s, t, c)) continue;
+        if (settings_.all_connections)
+            found(test(c, t));
+        else if (c.expected > 0.0f)
+            sum += c.expected, connections_.push_back(c);
+    }
+    if (connections_.empty()) return;
+    float left = context_.rng.next_float() * sum;
+    std::size_t i = 0;
+    while (i + 1 < connections_.size() && left >= connections_[i].expected)
+        left -= connections_[i++].expected;
+    Connection& drawn = connections_[i];
+    drawn.light *= sum / drawn.expected;
+    found(test(drawn, t));
+}
+
+}  // namespace mote::integrators

@@ -1,0 +1,119 @@
+// A subpath of bidirectional path tracing, from the camera or from a light, and what every vertex must know
+// so that a path that is put together from two subpaths is weighed in constant time.
+//
+// A path of n vertices x_0 (light) ... x_{n-1} (camera) can be found by techniques (s, t): s vertices from
+// the light, t from the camera, and a connection between them (s = 0: the eye path hits the light; s = 1: a
+// light is drawn for the receiver; t = 1: the light path is joined to the lens). The heuristics (Veach 1997,
+// Sec. 10.2) weigh technique (s, t) by h(p_s) / sum_i h(p_i), h(p) = p^2 or p. Neighbouring densities differ
+// in one vertex,
+//   p_{i-1} / p_i = (density of x_{i-1} from the camera) / (density of x_{i-1} from the light),
+// so the sum over all techniques with fewer vertices from one end is a Horner scheme along that end's
+// subpath. All but the last two of its terms are known when a vertex is made (`others`).
+//
+// **In media weights need no true density of a random walk**, only the same function of the path in every
+// technique. A density here is
+//   p_w(w) C(x) / d^2 tau(edge)      [1/m^2; a collision has C = 1 and leaves its sigma_t out]
+// with tau from the optical depth of the edge by marching: the same from both ends, never an estimate. What
+// is left out (sigma_t, roulette, panes that let a path pass by chance) is alike in all techniques.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "core/scene/reverse_density.h"
+
+namespace mote::integrators {
+
+enum class Heuristic : std::uint8_t {
+    power,    ///< h(p) = p^2
+    balance,  ///< h(p) = p
+    none      ///< every technique counts in full: for looking at them one by one
+};
+
+/// h of a ratio of densities. The largest numbers are cut off long before they overflow: what they stand
+/// beside has no weight left.
+inline double weigh(Heuristic heuristic, double ratio) {
+    if (heuristic == Heuristic::none) return 0.0;
+    const double r = std::min(ratio, 1e50);
+    return heuristic == Heuristic::power ? r * r : r;
+}
+
+struct PathVertex {
+    /// On the lens or on a light (index 0) only the position counts.
+    core::ScatteringVertex scattering;
+    core::MediumState state;  ///< media on the side of scattering.wo
+    core::Rgb weight{0.0f};   ///< light (or importance) that arrives, over its density
+    /// Of the vertex, drawn from the one before it; of a light at infinity per solid angle. 1 at the lens.
+    double density = 1.0;
+    double edge = 1.0;              ///< tau of the edge to the vertex before it
+    double distance_squared = 1.0;  ///< of that edge [m^2]; 1 where there is none: a light at infinity
+    /// h of what the density of the technique that connects along this edge has beyond those of the vertices.
+    double connection = 1.0;
+    double others = 0.0;    ///< sum over the techniques with at least two vertices less from this end
+    bool delta = false;     ///< the path went on by a delta part
+    bool infinite = false;  ///< a light at infinity: the start of a light path, the end of an eye path
+    bool start = false;     ///< on a light, with its normal there, or zero
+    core::Vec3 light_normal{0.0f};
+    int scatterings = 0;  ///< of an eye path before this vertex, without leading mirrors and glass
+    bool surface_first = true;
+
+    /// C(x) / d^2 of a vertex seen along a unit direction from the square root of `d2` away; 1 at infinity.
+    double area_measure(const core::Vec3& direction, double d2) const {
+        if (infinite) return 1.0;
+        if (!start) return double(scattering.geometric_cosine(direction)) / d2;
+        if (light_normal == core::Vec3(0.0f)) return 1.0 / d2;
+        return std::fabs(double(glm::dot(light_normal, direction))) / d2;
+    }
+};
+
+struct Subpath {
+    std::vector<PathVertex> vertices;
+    Heuristic heuristic = Heuristic::power;
+    /// h of the technique that takes no vertex from this end: of a light, 1 if it can be hit.
+    double without = 0.0;
+
+    std::size_t size() const { return vertices.size(); }
+
+    /// h, in terms of the vertices' densities, of the technique that connects along the edge to vertex k: 0
+    /// where a delta part stands at one of its ends. `last`: k is where the path is connected.
+    double technique(std::size_t k, bool last = false) const {
+        if (k == 0) return without;
+        if ((k >= 2 && vertices[k - 1].delta) || (!last && vertices[k].delta)) return 0.0;
+        return vertices[k].connection;
+    }
+    double ratio(std::size_t k, double reverse) const {
+        return weigh(heuristic, vertices[k].density > 0.0 ? reverse / vertices[k].density : 0.0);
+    }
+    /// Sum over all techniques with fewer vertices from this end, in terms of the one that connects vertex k.
+    /// `reverse`, `reverse_before`: densities of vertices k and k - 1 drawn from the other end.
+    double others(std::size_t k, double reverse, double reverse_before) const {
+        const double r = ratio(k, reverse);
+        if (k == 0) return r * without;
+        return std::min(1e200, r * (technique(k, true) +
+                                    ratio(k - 1, reverse_before) * (technique(k - 1) + vertices[k].others)));
+    }
+    /// The part of it that does not depend on how the path goes on, once vertex k is made.
+    double others_before(std::size_t k, double reverse_of_second_before) const {
+        if (k < 2) return 0.0;
+        return std::min(1e200,
+                        ratio(k - 2, reverse_of_second_before) * (technique(k - 2) + vertices[k - 1].others));
+    }
+};
+
+/// The density of the vertex before k, drawn from the other end by a path that comes to vertex k from the
+/// direction `from`. `mode` is that of the subpath itself; `delta`: k is passed by a delta part, whose own
+/// density is left out at both ends.
+double density_of_previous(const Subpath& path, std::size_t k, const core::Vec3& from,
+                           core::TransportMode mode, bool delta);
+
+/// tau of the segment for weights: exp(-optical depth), marched in steps of 16 voxels, mean over channels,
+/// media that only absorb left out. `state` holds the media at ray.t_min. Not below e^-40, nor where the
+/// depth is infinite: weights may be any function of the path.
+double edge_transmittance(const core::RayQueries& scene, const core::Ray& ray, const core::MediumState& state,
+                          core::TrackingCounters& counters);
+
+/// The segment between two vertices, off the surfaces at its ends: the same from both.
+core::Ray segment_between(const core::ScatteringVertex& a, const core::ScatteringVertex& b,
+                          const core::Vec3& direction);
+
+}  // namespace mote::integrators
