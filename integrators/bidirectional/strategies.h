@@ -100,6 +100,7 @@ class Strategies {
     double light_paths_;
     float filter_radius_;
     core::WalkContext& context_;
+    bool pinhole_ = scene_.camera().traits().delta_position;
     Subpath light_, eye_;
     std::vector<Connection> connections_;
     LightPoint light_start_;
@@ -118,7 +119,7 @@ void Strategies<Media>::trace_light_path(core::Sampler& sampler, const Splat& sp
     while (walk.advance()) {
         if (light_.size() == 2) finish_light_start();
         if (settings_.limits.hide_emitters) continue;  // eye rays pass lights, connections to the lens do not
-        const core::Vec2 u_lens = sampler.next_2d();
+        const core::Vec2 u_lens = pinhole_ ? core::Vec2(0.5f) : sampler.next_2d();
         if (const auto joined = join_to_lens(light_.size(), u_lens)) splat(joined->first, joined->second);
     }
 }

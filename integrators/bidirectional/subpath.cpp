@@ -22,7 +22,7 @@ double edge_transmittance(const RayQueries& scene, const Ray& ray, const MediumS
     Vec3d depth(0.0);
     const auto medium = [&](float t0, float t1, const MediumState& here) {
         const Medium* m = here.current();
-        if (m && t0 < t1 && m->traits().scattering)
+        if (m && t0 < t1)
             depth += m->optical_depth_along({ray.origin, ray.direction, t0, t1}, voxels, counters);
         return true;
     };

@@ -106,8 +106,8 @@ struct Subpath {
 double density_of_previous(const Subpath& path, std::size_t k, const core::Vec3& from,
                            core::TransportMode mode, bool delta);
 
-/// tau of the segment for weights: exp(-optical depth), marched in steps of 16 voxels, mean over channels,
-/// media that only absorb left out. `state` holds the media at ray.t_min. Not below e^-40, nor where the
+/// tau of the segment for weights: exp(-optical depth), marched in steps of 16 voxels, mean over channels.
+/// `state` holds the media at ray.t_min. Not below e^-40, nor where the
 /// depth is infinite: weights may be any function of the path.
 double edge_transmittance(const core::RayQueries& scene, const core::Ray& ray, const core::MediumState& state,
                           core::TrackingCounters& counters);

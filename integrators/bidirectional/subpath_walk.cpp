@@ -77,8 +77,9 @@ bool SubpathWalk<Media>::advance() {
 template <bool Media>
 void SubpathWalk<Media>::append(const WalkEvent& event, const MediumState& start) {
     const std::size_t k = path_.size();
-    const PathVertex& previous = path_.vertices.back();
-    PathVertex vertex;
+    path_.vertices.emplace_back();
+    PathVertex& vertex = path_.vertices[k];
+    const PathVertex& previous = path_.vertices[k - 1];
     vertex.state = state_, vertex.weight = channel_throughput();
     vertex.infinite = event.kind == WalkEvent::Kind::escaped;
     if (vertex.infinite)
@@ -103,12 +104,9 @@ void SubpathWalk<Media>::append(const WalkEvent& event, const MediumState& start
         vertex.edge = edge_transmittance(scene_, edge, from_infinity ? state_ : start, context_.tracking);
     }
     vertex.density = density_ * vertex.area_measure(ray_.direction, vertex.distance_squared) * vertex.edge;
-    path_.vertices.push_back(vertex);
-    if (k >= 2) {
-        const double reverse =
-            density_of_previous(path_, k - 1, ray_.direction, mode_, path_.vertices[k - 1].delta);
-        path_.vertices[k].others = path_.others_before(k, reverse);
-    }
+    if (k >= 2)
+        vertex.others =
+            path_.others_before(k, density_of_previous(path_, k - 1, ray_.direction, mode_, previous.delta));
 }
 
 template class SubpathWalk<true>;
