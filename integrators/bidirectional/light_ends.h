@@ -12,9 +12,9 @@ namespace mote::integrators {
 /// A point on a light, or a direction to one at infinity.
 struct LightPoint {
     const core::Emitter* emitter = nullptr;
-    core::Vec3 position{0.0f};
-    core::Vec3 normal{0.0f};  ///< zero where the light has no surface
-    core::Vec3 wi{0.0f};      ///< unit, from the receiver to the light
+    core::Vec3 position{0.0f};  ///< of a light at infinity any on the ray to it, such as the receiver's
+    core::Vec3 normal{0.0f};    ///< zero where the light has no surface
+    core::Vec3 wi{0.0f};        ///< unit, from the receiver to the light
 
     bool infinite() const { return emitter->traits().infinite; }
     /// From solid angle at a receiver to area on the light; 1 where the light's measure is the solid angle,

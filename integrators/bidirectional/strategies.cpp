@@ -78,6 +78,7 @@ std::optional<std::pair<Contribution, Vec2>> Strategies<Media>::join_to_lens(std
     if (!lens) return std::nullopt;
     const Rgb f = v.eval_cos(lens->wi, TransportMode::power) * adjoint_correction(v, v.wo, lens->wi);
     if (is_black(f)) return std::nullopt;
+    lens_point_ = lens->origin;
     const auto importance = camera.importance(lens->origin, -lens->wi, filter_radius_);
     if (!importance) return std::nullopt;
     // What lies before the near plane hides nothing.
@@ -95,8 +96,9 @@ std::optional<std::pair<Contribution, Vec2>> Strategies<Media>::join_to_lens(std
         settings_.heuristic == Heuristic::none ? 1.0 : weigh(settings_.heuristic, light_paths_);
     const double others =
         light_.others(s - 1, by_camera, reverse_of_previous(light_, s - 1, lens->wi, TransportMode::power));
-    const Rgb light = y.weight * f * seen * (lens->weight * weight(others / own, 0.0) / float(light_paths_));
-    return std::pair{Contribution{light, layer, int(s), 1}, lens->film_position};
+    const float w = weight(others / own, 0.0);
+    const Rgb light = y.weight * f * seen * (lens->weight * w / float(light_paths_));
+    return std::pair{Contribution{light, layer, int(s), 1, w}, lens->film_position};
 }
 
 template <bool Media>
@@ -113,8 +115,12 @@ Contribution Strategies<Media>::hit_light(std::size_t t) {
         radiance = point.emitter->radiance(z.scattering.hit, z.scattering.wo);
     }
     if (!point.emitter || is_black(radiance)) return {};
-    point.position = z.scattering.position, point.wi = direction;
-    if (!z.infinite) point.normal = z.scattering.hit.geometric_normal;
+    point.wi = direction;
+    if (z.infinite)
+        point.position = eye_.vertices[t - 2].scattering.position;
+    else
+        point.position = z.scattering.position, point.normal = z.scattering.hit.geometric_normal;
+    light_point_ = point;
     double others = 0.0;
     if (t >= 3 && settings_.heuristic != Heuristic::none) {
         const PathVertex& receiver = eye_.vertices[t - 2];
@@ -128,7 +134,8 @@ Contribution Strategies<Media>::hit_light(std::size_t t) {
                  weigh(settings_.heuristic, start.light / z.density) * eye_.ratio(t - 2, by_light) *
                      (eye_.technique(t - 2) + z.others);
     }
-    return {z.weight * radiance * weight(0.0, others), layer_of(0, t), 0, int(t)};
+    const float w = weight(0.0, others);
+    return {z.weight * radiance * w, layer_of(0, t), 0, int(t), w};
 }
 
 template <bool Media>
@@ -141,9 +148,9 @@ Contribution Strategies<Media>::draw_light(std::size_t t, float u_light, const V
     if (!light) return {};
     const Rgb f = v.eval_cos(light->wi, TransportMode::radiance);
     if (is_black(f)) return {};
-    const LightPoint point{choice.emitter, v.position + light->distance * light->wi, light->normal,
-                           light->wi};
+    LightPoint point{choice.emitter, v.position, light->normal, light->wi};
     const bool infinite = point.infinite();
+    if (!infinite) point.position += light->distance * light->wi;
     const Ray ray{v.ray_origin(light->wi), light->wi, 0.0f,
                   light->distance * (light->delta ? 1.0f : shadow_fraction)};
     const Rgb seen = between(ray, v, z.state, light->distance * shadow_fraction);
@@ -154,6 +161,7 @@ Contribution Strategies<Media>::draw_light(std::size_t t, float u_light, const V
     const double measure = point.area_measure(d2);
     const double drawn =
         double(choice.probability) * (light->delta ? 1.0 : double(light->pdf_solid_angle) * measure);
+    light_point_ = point;
     double from_light = 0.0, from_eye = 0.0;
     if (settings_.heuristic != Heuristic::none) {
         if (choice.emitter->traits().can_be_hit())
@@ -166,8 +174,8 @@ Contribution Strategies<Media>::draw_light(std::size_t t, float u_light, const V
                    eye_.others(t - 1, by_light,
                                reverse_of_previous(eye_, t - 1, light->wi, TransportMode::radiance));
     }
-    return {z.weight * f * light->weight * seen * (weight(from_light, from_eye) / choice.probability),
-            layer_of(1, t), 1, int(t)};
+    const float w = weight(from_light, from_eye);
+    return {z.weight * f * light->weight * seen * (w / choice.probability), layer_of(1, t), 1, int(t), w};
 }
 
 template <bool Media>
@@ -210,7 +218,8 @@ Contribution Strategies<Media>::test(const Connection& c, std::size_t t) {
     const double edge = Media ? edge_transmittance(scene_, segment, z.scattering.state_towards(z.state, c.wi),
                                                    context_.tracking)
                               : 1.0;
-    return {c.light * seen * weight_of(c, t, edge), layer_of(c.s, t), int(c.s), int(t)};
+    const float w = weight_of(c, t, edge);
+    return {c.light * seen * w, layer_of(c.s, t), int(c.s), int(t), w};
 }
 
 template class Strategies<true>;

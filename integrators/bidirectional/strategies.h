@@ -23,6 +23,7 @@ struct Contribution {
     core::Rgb light{0.0f};
     Transport layer{};
     int s = 0, t = 0;
+    float weight = 0.0f;  ///< of multiple importance sampling, in `light`
 };
 
 template <bool Media>
@@ -48,6 +49,13 @@ class Strategies {
     /// found(Contribution).
     template <typename Found>
     void trace_eye_path(const EyeRay& eye, const Found& found);
+
+    // While `splat` and `found` are told of a path:
+    const Subpath& light_path() const { return light_; }
+    const Subpath& eye_path() const { return eye_; }
+    const LightPoint& light_point() const { return light_point_; }  ///< that was drawn, or hit
+    const LightPoint& light_start() const { return light_start_; }  ///< of the light path
+    const core::Vec3& lens_point() const { return lens_point_; }    ///< that a light path is joined to
 
   private:
     bool start_light_path(core::Sampler& sampler, SubpathWalk<Media>& walk);
@@ -103,7 +111,8 @@ class Strategies {
     bool pinhole_ = scene_.camera().traits().delta_position;
     Subpath light_, eye_;
     std::vector<Connection> connections_;
-    LightPoint light_start_;
+    LightPoint light_start_, light_point_;
+    core::Vec3 lens_point_{0.0f};
     double start_density_ = 0.0;
 };
 

@@ -17,6 +17,7 @@ IDEAS = {
     "a walk from vertex to vertex": (r"\bwalk<\w+>\(", {
         "integrators/eye_path/eye_path.h": 1,            # the eye path
         "lights/virtual_lights/light_path.h": 1,         # the light path
+        "integrators/bidirectional/subpath_walk.cpp": 1, # both at once, and the densities of every vertex
         "lights/emitters/direct_light.h": 1,             # the other technique for direct light
         "compensation/residual_transport.cpp": 1,        # a step inside the bounding region
         # Legs that cross media by marching, the last one through tracked media, and lights without a position.
@@ -28,6 +29,9 @@ IDEAS = {
         "compensation/residual_transport.cpp": 1,
         "integrators/single_scattering/single_scattering_eye.cpp": 1,
         "integrators/screen_space_compensation/hidden_light.cpp": 1,
+        "integrators/bidirectional/strategies.h": 1,
+        # Of a light path, and of a connection to infinity: estimates that are multiplied must be independent.
+        "integrators/bidirectional/strategies.cpp": 2,
     }),
     "scattering from a vertex of an eye path": (r"\bapply_scattering<\w+>\(", {
         "integrators/eye_path/eye_path.h": 1,

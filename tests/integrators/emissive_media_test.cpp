@@ -65,6 +65,13 @@ TEST_CASE("points drawn from a glowing medium change the noise, not the mean", "
     }
 }
 
+TEST_CASE("bidirectional paths meet the light of a glowing medium once", "[emissive][equality][bdpt]") {
+    const auto walked = render(glow(true, true), R"(<integrator type="mote_bdpt"/>)", 2500, 1);
+    const auto reference = render(glow(true, true), volpath, 5000, 2);
+    check(walked, reference, {"emission", "direct", "indirect", "beauty"}, 1.1);
+    check(walked, reference, {"single_scattering", "multiple_scattering"}, 1.2);
+}
+
 TEST_CASE("VPLs of a glowing medium carry what the bounded path tracer finds", "[emissive][equality]") {
     const auto reference =
         render(glow(true, true),

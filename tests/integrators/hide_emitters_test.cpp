@@ -111,7 +111,7 @@ TEST_CASE("fog before and behind a hidden lamp dims alike", "[hide_emitters]") {
     // a path that skips either is brighter by 8 or 10 %, which check_mean() tells.
     const double expected = light_of_floor(2.0);
     for (const char* type :
-         {"volpath", "mote_vpl", "mote_photon_map", "mote_single_scattering", "mote_epipolar"}) {
+         {"volpath", "mote_bdpt", "mote_vpl", "mote_photon_map", "mote_single_scattering", "mote_epipolar"}) {
         INFO(type);
         const auto picture = render(*scene, type, true);
         CHECK(mean_of(picture, "emission") == 0.0);
@@ -169,7 +169,8 @@ TEST_CASE("the sky is hidden from the camera, not from mirrors", "[hide_emitters
         "value='none'/></bsdf></shape>" +
             sky + "</scene>",
         4);
-    for (const char* type : {"path", "volpath", "mote_vpl", "mote_photon_map", "mote_single_scattering"}) {
+    for (const char* type :
+         {"path", "volpath", "mote_bdpt", "mote_vpl", "mote_photon_map", "mote_single_scattering"}) {
         INFO(type);
         CHECK(mean_of(render(*alone, type, true, 16), "emission") == 0.0);
         CHECK(mean_of(render(*alone, type, false, 16), "emission") == Approx(2.0));

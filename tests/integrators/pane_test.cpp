@@ -40,6 +40,7 @@ RenderStatistics render(const core::Scene& scene, const std::string& integrator,
 const std::string integrators[] = {
     R"(<integrator type="path"/>)",
     R"(<integrator type="volpath"/>)",
+    R"(<integrator type="mote_bdpt"/>)",
     R"(<integrator type="mote_vpl"><integer name="paths" value="4"/></integrator>)",
     R"(<integrator type="mote_vsl"><integer name="paths" value="4"/></integrator>)",
     R"(<integrator type="mote_photon_map"><integer name="photon_paths" value="50"/></integrator>)",

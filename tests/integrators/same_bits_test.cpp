@@ -29,6 +29,7 @@ using Words = std::vector<std::string>;
 const std::map<std::string, Words> words = {
     {"mote_photon_map.single_scattering", {"sampled", "photons"}},
     {"mote_vsl.visibility", {"sample", "light"}},
+    {"mote_bdpt.heuristic", {"power", "balance", "none"}},
     {"mote_single_scattering.sampling", {"full", "sub_sampled"}},
     {"mote_single_scattering.lights", {"all", "positional", "other"}},
     {"mote_epipolar.lights", {"all", "positional", "other"}},
@@ -62,6 +63,7 @@ const std::map<std::string, Words> numbers = {
     {"scattering_points", {"3", "0"}},
     {"interleaving", {"", "3"}},
     {"upsampling", {"", "2"}},
+    {"strategies", {"", "3"}},
     {"max_photons", {"", "99"}},
     {"alpha", {"", "1"}},
     {"vpl_bound", {"", "1"}},

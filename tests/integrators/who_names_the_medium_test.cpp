@@ -174,6 +174,18 @@ TEST_CASE("bounded VPLs equal bounded paths, whoever names the fog", "[vpl][equa
     });
 }
 
+TEST_CASE("bidirectional paths equal volpath, whoever names the fog", "[bdpt][equality][naming]") {
+    for_every_telling(Lamp::globe, [](const core::Scene& scene) {
+        check_same(render(scene, R"(<integrator type="mote_bdpt"/>)", 250, 21),
+                   render(scene, R"(<integrator type="volpath"/>)", 1500, 22),
+                   {{"direct", "direct"},
+                    {"single_scattering", "single_scattering"},
+                    {"indirect", "indirect"},
+                    {"multiple_scattering", "multiple_scattering"}},
+                   0.3);
+    });
+}
+
 TEST_CASE("VPLs with maps equal those by rays, whoever names the fog", "[vpl][shadow_map][naming]") {
     // The same lights and eye paths; what maps interpolate wrongly is below 2 % here (docs/media.md).
     const std::string maps = R"(<visibility type="shadow_map"><integer name="size" value="32"/>
