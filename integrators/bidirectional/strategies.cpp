@@ -48,6 +48,20 @@ void Strategies<Media>::finish_light_start() {
 }
 
 template <bool Media>
+float Strategies<Media>::worth_a_ray(float weight) {
+    constexpr float worth = 0.1f;
+    if (settings_.all_connections || !(weight < worth)) return 1.0f;
+    const float chance = weight / worth;
+    return context_.rng.next_float() < chance ? chance : 0.0f;
+}
+
+template <bool Media>
+double Strategies<Media>::edge_along(const Ray& ray, const ScatteringVertex& from, const MediumState& state) {
+    if constexpr (!Media) return 1.0;
+    return edge_transmittance(scene_, ray, from.state_towards(state, ray.direction), context_.tracking);
+}
+
+template <bool Media>
 Rgb Strategies<Media>::between(const Ray& segment, const ScatteringVertex& from, const MediumState& state,
                                float visible_to) {
     Ray shadow = segment;
@@ -81,23 +95,25 @@ std::optional<std::pair<Contribution, Vec2>> Strategies<Media>::join_to_lens(std
     lens_point_ = lens->origin;
     const auto importance = camera.importance(lens->origin, -lens->wi, filter_radius_);
     if (!importance) return std::nullopt;
+    const bool parallel = camera.traits().delta_direction;
+    const double by_camera = double(parallel ? importance->pdf_area : importance->pdf_solid_angle) *
+                             double(v.geometric_cosine(lens->wi)) /
+                             (parallel ? 1.0 : double(lens->distance) * double(lens->distance));
+    const double before = reverse_of_previous(light_, s - 1, lens->wi, TransportMode::power);
+    // In terms of one light path: this technique has all of them.
+    const double own =
+        settings_.heuristic == Heuristic::none ? 1.0 : weigh(settings_.heuristic, light_paths_);
+    const auto weight_with = [&](double edge) {
+        return weight(light_.others(s - 1, by_camera * edge, before) / own, 0.0);
+    };
+    const float chance = worth_a_ray(weight_with(1.0));
+    if (!(chance > 0.0f)) return std::nullopt;
     // What lies before the near plane hides nothing.
     Ray ray{v.ray_origin(lens->wi), lens->wi, 0.0f, lens->distance - lens->t_min};
     const Rgb seen = between(ray, v, y.state, ray.t_max);
     if (is_black(seen)) return std::nullopt;
-    const double edge =
-        Media ? edge_transmittance(scene_, ray, v.state_towards(y.state, lens->wi), context_.tracking) : 1.0;
-    const bool parallel = camera.traits().delta_direction;
-    const double by_camera = double(parallel ? importance->pdf_area : importance->pdf_solid_angle) *
-                             double(v.geometric_cosine(lens->wi)) * edge /
-                             (parallel ? 1.0 : double(lens->distance) * double(lens->distance));
-    // In terms of one light path: this technique has all of them.
-    const double own =
-        settings_.heuristic == Heuristic::none ? 1.0 : weigh(settings_.heuristic, light_paths_);
-    const double others =
-        light_.others(s - 1, by_camera, reverse_of_previous(light_, s - 1, lens->wi, TransportMode::power));
-    const float w = weight(others / own, 0.0);
-    const Rgb light = y.weight * f * seen * (lens->weight * w / float(light_paths_));
+    const float w = weight_with(edge_along(ray, v, y.state));
+    const Rgb light = y.weight * f * seen * (lens->weight * w / (chance * float(light_paths_)));
     return std::pair{Contribution{light, layer, int(s), 1, w}, lens->film_position};
 }
 
@@ -151,31 +167,31 @@ Contribution Strategies<Media>::draw_light(std::size_t t, float u_light, const V
     LightPoint point{choice.emitter, v.position, light->normal, light->wi};
     const bool infinite = point.infinite();
     if (!infinite) point.position += light->distance * light->wi;
-    const Ray ray{v.ray_origin(light->wi), light->wi, 0.0f,
-                  light->distance * (light->delta ? 1.0f : shadow_fraction)};
-    const Rgb seen = between(ray, v, z.state, light->distance * shadow_fraction);
-    if (is_black(seen)) return {};
-    const double edge =
-        Media ? edge_transmittance(scene_, ray, v.state_towards(z.state, light->wi), context_.tracking) : 1.0;
+    light_point_ = point;
     const double d2 = infinite ? 1.0 : double(light->distance) * double(light->distance);
     const double measure = point.area_measure(d2);
     const double drawn =
         double(choice.probability) * (light->delta ? 1.0 : double(light->pdf_solid_angle) * measure);
-    light_point_ = point;
-    double from_light = 0.0, from_eye = 0.0;
-    if (settings_.heuristic != Heuristic::none) {
-        if (choice.emitter->traits().can_be_hit())
-            from_light =
-                weigh(settings_.heuristic,
-                      double(v.pdf_solid_angle(light->wi, TransportMode::radiance)) * measure * edge / drawn);
-        const LightEnds::Start start = ends_.start(point);
-        const double by_light = start.of(v.geometric_cosine(light->wi), d2, infinite) * edge;
-        from_eye = weigh(settings_.heuristic, start.light / drawn) *
-                   eye_.others(t - 1, by_light,
-                               reverse_of_previous(eye_, t - 1, light->wi, TransportMode::radiance));
-    }
-    const float w = weight(from_light, from_eye);
-    return {z.weight * f * light->weight * seen * (w / choice.probability), layer_of(1, t), 1, int(t), w};
+    const bool can_be_hit = choice.emitter->traits().can_be_hit();
+    const double to_light =
+        can_be_hit ? double(v.pdf_solid_angle(light->wi, TransportMode::radiance)) * measure : 0.0;
+    const LightEnds::Start start = ends_.start(point);
+    const double by_light = start.of(v.geometric_cosine(light->wi), d2, infinite);
+    const double before = reverse_of_previous(eye_, t - 1, light->wi, TransportMode::radiance);
+    const auto weight_with = [&](double edge) {
+        return weight(
+            weigh(settings_.heuristic, to_light * edge / drawn),
+            weigh(settings_.heuristic, start.light / drawn) * eye_.others(t - 1, by_light * edge, before));
+    };
+    const float chance = worth_a_ray(weight_with(1.0));
+    if (!(chance > 0.0f)) return {};
+    const Ray ray{v.ray_origin(light->wi), light->wi, 0.0f,
+                  light->distance * (light->delta ? 1.0f : shadow_fraction)};
+    const Rgb seen = between(ray, v, z.state, light->distance * shadow_fraction);
+    if (is_black(seen)) return {};
+    const float w = weight_with(edge_along(ray, v, z.state));
+    return {z.weight * f * light->weight * seen * (w / (choice.probability * chance)), layer_of(1, t), 1,
+            int(t), w};
 }
 
 template <bool Media>
@@ -212,14 +228,13 @@ float Strategies<Media>::weight_of(const Connection& c, std::size_t t, double ed
 template <bool Media>
 Contribution Strategies<Media>::test(const Connection& c, std::size_t t) {
     const PathVertex &y = light_.vertices[c.s - 1], &z = eye_.vertices[t - 1];
+    const float chance = worth_a_ray(weight_of(c, t, 1.0));
+    if (!(chance > 0.0f)) return {};
     const Ray segment = segment_between(z.scattering, y.scattering, c.wi);
     const Rgb seen = between(segment, z.scattering, z.state, segment.t_max * shadow_fraction);
     if (is_black(seen)) return {};
-    const double edge = Media ? edge_transmittance(scene_, segment, z.scattering.state_towards(z.state, c.wi),
-                                                   context_.tracking)
-                              : 1.0;
-    const float w = weight_of(c, t, edge);
-    return {c.light * seen * w, layer_of(c.s, t), int(c.s), int(t), w};
+    const float w = weight_of(c, t, edge_along(segment, z.scattering, z.state));
+    return {c.light * seen * (w / chance), layer_of(c.s, t), int(c.s), int(t), w};
 }
 
 template class Strategies<true>;

@@ -13,7 +13,8 @@ namespace mote::integrators {
 struct BidirectionalSettings {
     EyePathLimits limits;
     Heuristic heuristic = Heuristic::power;
-    bool all_connections = false;  ///< test all of them, not one drawn for each eye vertex
+    bool all_connections = false;  ///< test all of them, not one drawn for each eye vertex, and whatever
+                                   ///< their weight
     int strategies = 0;  ///< paths of up to so many edges are also sorted by their strategy; 0: none
 };
 
@@ -94,6 +95,11 @@ class Strategies {
         return transport_layer(z.scatterings + int(s), surface);
     }
     bool wanted(std::size_t s, std::size_t t) const { return settings_.limits.wanted[layer_of(s, t)]; }
+    /// The chance with which a ray is spent on what other techniques find better, by its weight (without the
+    /// tau of the edge itself); 0: not this time.
+    float worth_a_ray(float weight);
+    double edge_along(const core::Ray& ray, const core::ScatteringVertex& from,
+                      const core::MediumState& state);
     /// Visibility times an unbiased estimate of the transmittance.
     core::Rgb between(const core::Ray& segment, const core::ScatteringVertex& from,
                       const core::MediumState& state, float visible_to);
