@@ -57,8 +57,11 @@ class RawHits {
 struct Query {
     RTCRayQueryContext base;
     RawHits* collected = nullptr;
+    RTCRayQueryFlags flags = RTC_RAY_QUERY_FLAG_NONE;
     Query() { rtcInitRayQueryContext(&base); }
 };
+/// The rays of a packet are neighbours and go the same way.
+inline void use_coherent_rays(Query& query) { query.flags = RTC_RAY_QUERY_FLAG_COHERENT; }
 inline constexpr auto filter_scene_flag = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
 inline constexpr bool has_streams = false;  // Embree 4 has none
 
@@ -85,7 +88,7 @@ inline void occluded(RTCScene scene, Query& query, RTCRay& ray) {
 inline void occluded(const int* valid, RTCScene scene, Query& query, RTCRay16& rays) {
     RTCOccludedArguments arguments;
     rtcInitOccludedArguments(&arguments);
-    arguments.context = &query.base;
+    arguments.context = &query.base, arguments.flags = query.flags;
     rtcOccluded16(valid, scene, &rays, &arguments);
 }
 inline void occluded_stream(RTCScene scene, Query& query, RTCRay* rays, unsigned count) {
@@ -97,6 +100,8 @@ struct Query {
     RawHits* collected = nullptr;
     Query() { rtcInitIntersectContext(&base); }  // with the incoherent flag, the faster one for shadow rays
 };
+/// The rays of a packet are neighbours and go the same way.
+inline void use_coherent_rays(Query& query) { query.base.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT; }
 inline constexpr auto filter_scene_flag = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
 inline constexpr bool has_streams = true;
 
