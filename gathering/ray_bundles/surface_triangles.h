@@ -4,8 +4,11 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <vector>
 
+#include "core/geometry/shape.h"
 #include "core/math/bounds.h"
 
 namespace mote::gathering {
@@ -22,5 +25,19 @@ struct SurfaceTriangles {
 
     std::size_t size() const { return corners.size(); }
 };
+
+struct TessellationSettings {
+    /// How far a sphere, cylinder, disk or curve may lie off its triangles, as a share of its extent.
+    float chord_error = 1e-3f;
+    std::size_t memory_budget = std::size_t(4) << 30;  ///< [B]
+};
+
+/// The triangles of all shapes that stop light: meshes as they are, instances where they are placed (a
+/// mirrored one with its second and third corners exchanged), other shapes cut into triangles, with their
+/// corners on the surface. What light passes straight (null BSDFs, panes) is left out. Round joints and ends
+/// of straight curves are left out too. Throws InputError where the triangles would take more than the
+/// budget, saying how much.
+SurfaceTriangles surface_triangles(std::span<const std::shared_ptr<core::Shape>> shapes,
+                                   const TessellationSettings& settings = {});
 
 }  // namespace mote::gathering

@@ -1,0 +1,74 @@
+#include "gathering/ray_bundles/bundle_assembly.h"
+
+#include <fmt/format.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <atomic>
+
+#include "core/objects/error.h"
+#include "core/objects/memory_error.h"
+
+namespace mote::gathering {
+
+using namespace core;
+
+namespace {
+
+constexpr std::size_t most_hits = 0xffffffffu;  // what RayBundle::first can count
+
+std::size_t bytes_of(std::size_t rays, std::size_t hits) {
+    return (rays + 1) * sizeof(std::uint32_t) + hits * sizeof(BundleHit);
+}
+
+/// `share`: of the rays that had been traced when it became too much.
+[[noreturn]] void refuse(const BundleGrid& grid, std::size_t hits, double share, std::size_t budget) {
+    const double needed = double(bytes_of(grid.rays(), 0)) + double(hits) * sizeof(BundleHit) / share;
+    const double allowed = std::min(double(budget), double(most_hits) * sizeof(BundleHit));
+    const double coarser = std::sqrt(needed / allowed) * 1.05;  // hits go with the number of rays
+    throw InputError(fmt::format(
+        "a ray-bundle of {} x {} rays takes about{}, more than the{} allowed: about {} x {} rays "
+        "fit, {:.3g} m apart",
+        grid.columns, grid.rows, memory_text(needed), memory_text(allowed),
+        std::uint32_t(grid.columns / coarser), std::uint32_t(grid.rows / coarser), grid.spacing * coarser));
+}
+
+/// Bands one after the other; each leaves memory as soon as it has been copied.
+RayBundle joined(const BundleGrid& grid, std::vector<OrderedBand>& bands, std::size_t hits) {
+    RayBundle bundle{grid, {}, {}};
+    with_memory_for("a ray-bundle" + memory_text(double(bytes_of(grid.rays(), hits))),
+                    [&] { bundle.first.reserve(grid.rays() + 1), bundle.hits.reserve(hits); });
+    bundle.first.push_back(0);
+    for (OrderedBand& band : bands) {
+        for (const std::uint32_t count : band.counts) bundle.first.push_back(bundle.first.back() + count);
+        bundle.hits.insert(bundle.hits.end(), band.hits.begin(), band.hits.end());
+        band = {};
+    }
+    return bundle;
+}
+
+}  // namespace
+
+RayBundle assemble_bundle(const BundleGrid& grid, std::uint32_t rows_per_band, float tolerance,
+                          const BundleLimits& limits, const TraceRows& trace_rows) {
+    if (bytes_of(grid.rays(), 0) > limits.memory_budget) refuse(grid, 0, 1.0, limits.memory_budget);
+    const std::uint32_t count = (grid.rows + rows_per_band - 1) / rows_per_band;
+    std::vector<OrderedBand> bands(count);
+    tbb::enumerable_thread_specific<HitBand> scratch;
+    std::atomic<std::size_t> hits{0}, rays{0};
+    tbb::parallel_for(std::uint32_t(0), count, [&](std::uint32_t i) {
+        limits.cancelled.check();
+        const std::uint32_t begin = i * rows_per_band, end = std::min(begin + rows_per_band, grid.rows);
+        HitBand& band = scratch.local();
+        band.clear();
+        trace_rows(begin, end, band);
+        const std::size_t rays_now = rays += std::size_t(end - begin) * grid.columns;
+        const std::size_t hits_now = hits += band.size();
+        if (hits_now > most_hits || bytes_of(grid.rays(), hits_now) > limits.memory_budget)
+            refuse(grid, hits_now, double(rays_now) / double(grid.rays()), limits.memory_budget);
+        bands[i] = band.ordered((end - begin) * grid.columns, tolerance);
+    });
+    return joined(grid, bands, hits);
+}
+
+}  // namespace mote::gathering

@@ -1,0 +1,57 @@
+#include "gathering/ray_bundles/bundle_tracer.h"
+
+#include <fmt/format.h>
+
+#include "core/geometry/mesh_checks.h"
+#include "core/objects/error.h"
+#include "gathering/ray_bundles/bundle_assembly.h"
+#include "gathering/ray_bundles/ray_form.h"
+
+namespace mote::gathering {
+
+using namespace core;
+
+namespace {
+
+/// Surfaces nearer to each other than this may have changed places by rounding: a few units in the last place
+/// of the distances and coordinates [m].
+float coincidence(const BundleGrid& grid, const Bounds3& bounds) {
+    const Vec3 farthest = glm::max(glm::abs(bounds.lower), glm::abs(bounds.upper));
+    return 0x1p-22f * (glm::length(farthest) + glm::length(bounds.center() - grid.origin) + bounds.radius());
+}
+
+}  // namespace
+
+BundleTracer::BundleTracer(const SurfaceTriangles& triangles) : triangles_(triangles) {
+    if (triangles.size() >= BundleHit::behind_bit)
+        throw InputError("more triangles than ray-bundles can number");
+    for (std::size_t i = 0; i < triangles.size(); ++i)
+        for (const Vec3& corner : triangles.corners[i]) {
+            if (!(max_component(glm::abs(corner)) < largest_coordinate) || !is_finite(corner))
+                throw InputError(
+                    fmt::format("triangle {} (shape {}) has a corner that is not finite or lies beyond 1e18",
+                                i, triangles.shape.size() > i ? triangles.shape[i] : 0));
+            bounds_.extend(corner);
+        }
+}
+
+BundleTracer::~BundleTracer() = default;
+
+const RayForm& BundleTracer::ray_form() const {
+    std::call_once(ray_form_once_, [&] { ray_form_ = std::make_unique<RayForm>(triangles_, bounds_); });
+    return *ray_form_;
+}
+
+RayBundle BundleTracer::trace(const BundleGrid& grid, const BundleSettings& settings) const {
+    const BundleLimits limits{settings.memory_budget, settings.cancelled};
+    const float tolerance = coincidence(grid, bounds_);
+    if (triangles_.size() == 0)
+        return assemble_bundle(grid, RayForm::packet_side, 0.0f, limits, [](auto, auto, auto&) {});
+    const RayForm& rays = ray_form();
+    return assemble_bundle(grid, RayForm::packet_side, tolerance, limits,
+                           [&](std::uint32_t begin, std::uint32_t end, HitBand& band) {
+                               rays.trace_rows(grid, begin, end, band);
+                           });
+}
+
+}  // namespace mote::gathering

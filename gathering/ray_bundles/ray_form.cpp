@@ -1,0 +1,107 @@
+#include "gathering/ray_bundles/ray_form.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace mote::gathering {
+
+using namespace core;
+
+namespace {
+
+constexpr std::uint32_t side = RayForm::packet_side;
+constexpr int width = ShadowPacket::width;
+
+/// Origins are rounded to single precision, and so is each step of Embree's box test: some 2^-22 of the
+/// coordinates and distances. Eight times that costs next to nothing.
+float margin_of(const Bounds3& bounds) {
+    const float reach = max_component(glm::max(glm::abs(bounds.lower), glm::abs(bounds.upper)));
+    return bounds.empty() ? 0.0f : 0x1p-19f * (reach + glm::length(bounds.diagonal()));
+}
+
+std::vector<Bounds3> boxes_of(const SurfaceTriangles& triangles, float margin) {
+    std::vector<Bounds3> boxes(triangles.size());
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        for (const Vec3& corner : triangles.corners[i]) boxes[i].extend(corner);
+        boxes[i].lower -= Vec3(margin), boxes[i].upper += Vec3(margin);
+    }
+    return boxes;
+}
+
+/// Packets of one grid, which begin shortly before the bounds.
+class PacketMaker {
+  public:
+    PacketMaker(const BundleGrid& grid, const Bounds3& bounds, float margin) : grid_(grid) {
+        packet_.clear();
+        const Vec3d d(grid.direction),
+            to_center = 0.5 * (Vec3d(bounds.lower) + Vec3d(bounds.upper)) - Vec3d(grid.origin);
+        const double reach =
+            0.5 * glm::length(Vec3d(bounds.upper) - Vec3d(bounds.lower)) + 4.0 * double(margin);
+        const double middle = glm::dot(to_center, d) / glm::dot(d, d);
+        start_ = Vec3d(grid.origin) + std::max(0.0, middle - reach) * d;
+        length_ = float(2.0 * reach * 1.001);
+        for (int lane = 0; lane < width; ++lane) {
+            packet_.direction_x[lane] = grid.direction.x, packet_.direction_y[lane] = grid.direction.y;
+            packet_.direction_z[lane] = grid.direction.z, packet_.t_min[lane] = 0.0f;
+        }
+    }
+    const ShadowPacket& at(std::uint32_t x0, std::uint32_t y0, std::uint32_t end_row) {
+        const double step = double(grid_.spacing);
+        for (int lane = 0; lane < width; ++lane) {
+            const std::uint32_t x = x0 + std::uint32_t(lane) % side, y = y0 + std::uint32_t(lane) / side;
+            const Vec3d origin = start_ + (double(x) + 0.5) * step * Vec3d(grid_.right) +
+                                 (double(y) + 0.5) * step * Vec3d(grid_.up);
+            packet_.origin_x[lane] = float(origin.x), packet_.origin_y[lane] = float(origin.y);
+            packet_.origin_z[lane] = float(origin.z);
+            packet_.t_max[lane] = x < grid_.columns && y < end_row ? length_ : -infinity;
+        }
+        return packet_;
+    }
+
+  private:
+    const BundleGrid& grid_;
+    ShadowPacket packet_;
+    Vec3d start_;
+    float length_;
+};
+
+/// Bit i: does ray i of the packet at (x0, y0) hit the triangle?
+std::uint32_t lanes_hit(const ProjectedTriangle& triangle, double x0, double y0, double (&values)[3][width]) {
+    std::uint32_t left[3] = {0, 0, 0};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const ProjectedEdge& edge = triangle.edge(i);
+        for (int lane = 0; lane < width; ++lane)
+            values[i][lane] = edge.value(x0 + double(lane % int(side)), y0 + double(lane / int(side)));
+        for (int lane = 0; lane < width; ++lane) left[i] |= std::uint32_t(edge.left(values[i][lane])) << lane;
+    }
+    return (left[0] & left[1] & left[2]) | (~left[0] & ~left[1] & ~left[2] & 0xffffu);
+}
+
+}  // namespace
+
+RayForm::RayForm(const SurfaceTriangles& triangles, const Bounds3& bounds)
+    : triangles_(triangles),
+      bounds_(bounds),
+      margin_(margin_of(bounds)),
+      boxes_(boxes_of(triangles, margin_)) {}
+
+void RayForm::trace_rows(const BundleGrid& grid, std::uint32_t begin, std::uint32_t end,
+                         HitBand& band) const {
+    const BundleProjection projection(grid);
+    PacketMaker packets(grid, bounds_, margin_);
+    for (std::uint32_t x0 = 0; x0 < grid.columns; x0 += side)
+        boxes_.for_each_box(packets.at(x0, begin, end), [&](std::uint32_t index, std::uint32_t lanes) {
+            const ProjectedTriangle triangle(projection, triangles_.corners[index]);
+            double values[3][width];
+            for (lanes &= lanes_hit(triangle, double(x0), double(begin), values); lanes != 0;
+                 lanes &= lanes - 1) {
+                const auto lane = std::uint32_t(std::countr_zero(lanes));
+                const bool behind = triangle.edge(0).left(values[0][lane]);
+                const auto hit = triangle.make_hit(values[0][lane], values[1][lane], values[2][lane],
+                                                   behind ? index | BundleHit::behind_bit : index);
+                if (hit) band.add(lane / side * grid.columns + x0 + lane % side, *hit);
+            }
+        });
+}
+
+}  // namespace mote::gathering
