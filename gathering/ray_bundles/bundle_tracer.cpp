@@ -6,6 +6,7 @@
 #include "core/objects/error.h"
 #include "gathering/ray_bundles/bundle_assembly.h"
 #include "gathering/ray_bundles/ray_form.h"
+#include "gathering/ray_bundles/scan_form.h"
 
 namespace mote::gathering {
 
@@ -47,11 +48,19 @@ RayBundle BundleTracer::trace(const BundleGrid& grid, const BundleSettings& sett
     const float tolerance = coincidence(grid, bounds_);
     if (triangles_.size() == 0)
         return assemble_bundle(grid, RayForm::packet_side, 0.0f, limits, [](auto, auto, auto&) {});
+    if ((settings.form == BundleForm::automatic ? plan(grid) : settings.form) == BundleForm::scan) {
+        const ScanForm scan(triangles_, grid, settings.memory_budget, settings.cancelled);
+        return assemble_bundle(
+            grid, scan.rows_per_band(), tolerance, limits,
+            [&](std::uint32_t begin, std::uint32_t end, HitBand& band) { scan.scan_rows(begin, end, band); });
+    }
     const RayForm& rays = ray_form();
     return assemble_bundle(grid, RayForm::packet_side, tolerance, limits,
                            [&](std::uint32_t begin, std::uint32_t end, HitBand& band) {
                                rays.trace_rows(grid, begin, end, band);
                            });
 }
+
+BundleForm BundleTracer::plan(const BundleGrid&) const { return BundleForm::scan; }
 
 }  // namespace mote::gathering

@@ -25,7 +25,7 @@ enum class BundleForm : std::uint8_t {
 struct BundleSettings {
     BundleForm form = BundleForm::automatic;
     std::size_t memory_budget = std::size_t(1) << 30;  ///< of the bundle's hits [B]
-    core::CancelToken cancelled;
+    core::CancelToken cancelled = {};
 };
 
 class BundleTracer {
@@ -42,6 +42,9 @@ class BundleTracer {
     /// bits for any number of them. Throws InputError where the hits exceed the budget, Cancelled when asked
     /// to stop.
     RayBundle trace(const BundleGrid& grid, const BundleSettings& settings = {}) const;
+
+    /// What `automatic` takes: rays or scan.
+    BundleForm plan(const BundleGrid& grid) const;
 
   private:
     const RayForm& ray_form() const;

@@ -6,6 +6,7 @@
 // above (Edelsbrunner & Muecke 1990, simulation of simplicity): what rasterizers call the top-left rule.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 
@@ -55,14 +56,18 @@ class ProjectedTriangle {
         const double v0 = edges_[0].value(x, y), v1 = edges_[1].value(x, y), v2 = edges_[2].value(x, y);
         const bool left = edges_[0].left(v0);
         if (edges_[1].left(v1) != left || edges_[2].left(v2) != left) return std::nullopt;
-        return make_hit(v0, v1, v2, left ? triangle | BundleHit::behind_bit : triangle);
+        return make_hit(x, y, v0, v1, v2, triangle);
     }
-    /// From the values of the edges. Corners that run counter-clockwise on the grid turn their back to it.
-    std::optional<BundleHit> make_hit(double v0, double v1, double v2, std::uint32_t triangle) const {
+    /// Of a ray that passes all edges on the same side, from their values. Corners that run counter-clockwise
+    /// on the grid turn their back to it.
+    std::optional<BundleHit> make_hit(double x, double y, double v0, double v1, double v2,
+                                      std::uint32_t triangle) const {
+        if (edges_[0].left(v0)) triangle |= BundleHit::behind_bit;
         v0 = edges_[0].directed(v0), v1 = edges_[1].directed(v1), v2 = edges_[2].directed(v2);
         const double sum = v0 + v1 + v2;
-        if (!(sum != 0.0)) return std::nullopt;  // a sliver that rounding has made a line
-        const double u = v1 / sum, v = v2 / sum;
+        // Of a sliver that rounding has made a line, no sign is certain.
+        if (sum == 0.0 || !in_box(x, y)) return std::nullopt;
+        const double scale = 1.0 / sum, u = v1 * scale, v = v2 * scale;
         const double z =
             corners_[0].z + u * (corners_[1].z - corners_[0].z) + v * (corners_[2].z - corners_[0].z);
         if (!(z >= 0.0)) return std::nullopt;
@@ -70,6 +75,12 @@ class ProjectedTriangle {
     }
 
   private:
+    bool in_box(double x, double y) const {
+        const auto &a = corners_[0], &b = corners_[1], &c = corners_[2];
+        return x >= std::min(a.x, std::min(b.x, c.x)) && x <= std::max(a.x, std::max(b.x, c.x)) &&
+               y >= std::min(a.y, std::min(b.y, c.y)) && y <= std::max(a.y, std::max(b.y, c.y));
+    }
+
     std::array<core::Vec3d, 3> corners_{};
     std::array<ProjectedEdge, 3> edges_{};
 };

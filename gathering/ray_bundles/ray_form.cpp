@@ -96,10 +96,10 @@ void RayForm::trace_rows(const BundleGrid& grid, std::uint32_t begin, std::uint3
             for (lanes &= lanes_hit(triangle, double(x0), double(begin), values); lanes != 0;
                  lanes &= lanes - 1) {
                 const auto lane = std::uint32_t(std::countr_zero(lanes));
-                const bool behind = triangle.edge(0).left(values[0][lane]);
-                const auto hit = triangle.make_hit(values[0][lane], values[1][lane], values[2][lane],
-                                                   behind ? index | BundleHit::behind_bit : index);
-                if (hit) band.add(lane / side * grid.columns + x0 + lane % side, *hit);
+                const std::uint32_t x = x0 + lane % side, row = lane / side;
+                const auto hit = triangle.make_hit(double(x), double(begin + row), values[0][lane],
+                                                   values[1][lane], values[2][lane], index);
+                if (hit) band.add(row * grid.columns + x, *hit);
             }
         });
 }

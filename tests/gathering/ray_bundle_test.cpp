@@ -3,6 +3,7 @@
 
 #include "core/math/random.h"
 #include "core/math/warp.h"
+#include "gathering/ray_bundles/bundle_directions.h"
 #include "tests/gathering/bundle_scenes.h"
 #include "tests/support/catch.h"
 
@@ -128,4 +129,34 @@ TEST_CASE("bundles have the same bits for any number of threads", "[ray_bundles]
     const RayBundle many = tracer.trace(grid);
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     CHECK(same_bundles(many, tracer.trace(grid)));
+}
+
+TEST_CASE("rays and scan find the same hits", "[ray_bundles]") {
+    // Triangles of all sizes and shapes in any place, with some that coincide.
+    Rng rng(7);
+    TriangleBuilder builder;
+    const auto corner = [&](float size) {
+        return size * (2.0f * Vec3(rng.next_float(), rng.next_float(), rng.next_float()) - Vec3(1.0f));
+    };
+    for (int i = 0; i < 3000; ++i) {
+        const Vec3 center = corner(1.0f);
+        const float size = std::exp(-6.0f * rng.next_float());
+        const Vec3 a = center + corner(size), b = center + corner(size), c = center + corner(size);
+        builder.triangle(a, b, c);
+        if (i % 50 == 0) builder.triangle(a, c, b);
+    }
+    const SurfaceTriangles soup = builder.list();
+    const BundleTracer tracer(soup);
+    for (const float spacing : {0.3f, 0.05f, 0.01f}) {
+        const BundleSample sample = bundle_sample(3, 5);
+        const BundleGrid grid = bundle_grid(sample.direction, soup.bounds, spacing, sample.offset);
+        const RayBundle rays = tracer.trace(grid, {BundleForm::rays});
+        CHECK(rays.hits.size() > 100);
+        CHECK(same_bundles(rays, tracer.trace(grid, {BundleForm::scan})));
+        // One hit that is left out is seen.
+        RayBundle planted = rays;
+        planted.hits.erase(planted.hits.begin() + 17);
+        for (std::uint32_t& first : planted.first) first -= first > 17;
+        CHECK_FALSE(same_bundles(planted, tracer.trace(grid, {BundleForm::scan})));
+    }
 }

@@ -1,0 +1,101 @@
+// Times and counts of ray-bundles through the surfaces of a scene file, as CSV: one line a form and
+// resolution.
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <iostream>
+
+#include "core/loading/scene_loader.h"
+#include "gathering/ray_bundles/bundle_directions.h"
+#include "gathering/ray_bundles/bundle_tracer.h"
+#include "integrators/register_integrators.h"
+#include "lights/register_lights.h"
+#include "media/register_media.h"
+
+namespace {
+
+using namespace mote;
+using namespace mote::gathering;
+
+struct Arguments {
+    std::string scene;
+    std::vector<std::string> forms = {"rays", "scan", "automatic"};
+    std::vector<std::uint32_t> sides = {128, 256, 512, 1024};
+    std::uint32_t directions = 8;
+    int threads = 1;
+};
+
+double now() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+std::unique_ptr<core::Scene> load(const std::string& file) {
+    core::Registry registry;
+    core::register_core(registry), media::register_media(registry);
+    lights::register_lights(registry), integrators::register_integrators(registry);
+    return core::load_scene(file, registry);
+}
+
+BundleForm form_of(const std::string& name) {
+    if (name == "rays") return BundleForm::rays;
+    if (name == "scan") return BundleForm::scan;
+    if (name == "automatic") return BundleForm::automatic;
+    throw core::InputError("no form '" + name + "': rays, scan or automatic");
+}
+
+/// `side` rays across the diagonal of the scene.
+void measure(const BundleTracer& tracer, const std::string& form, std::uint32_t side,
+             std::uint32_t directions) {
+    const core::Bounds3& bounds = tracer.triangles().bounds;
+    const float spacing = glm::length(bounds.diagonal()) / float(side);
+    double seconds = 0.0, hits = 0.0, links = 0.0, rays = 0.0, least = core::infinity;
+    std::size_t deepest = 0;
+    const BundleSettings settings{form_of(form), std::size_t(4) << 30, {}};
+    for (std::uint32_t i = 0; i <= directions; ++i) {
+        const BundleSample sample = bundle_sample(1, i);
+        const BundleGrid grid = bundle_grid(sample.direction, bounds, spacing, sample.offset);
+        const double start = now();
+        const RayBundle bundle = tracer.trace(grid, settings);
+        if (i == 0) continue;  // first touches, and the hierarchy
+        const double taken = now() - start;
+        seconds += taken, least = std::min(least, taken);
+        hits += double(bundle.hits.size()), rays += double(grid.rays());
+        for_each_link(
+            bundle, [](std::uint32_t) { return true; }, [&](auto, auto&, auto&) { links += 1.0; });
+        for (std::size_t ray = 0; ray < grid.rays(); ++ray)
+            deepest = std::max(deepest, bundle.hits_of(ray).size());
+    }
+    std::cout << fmt::format("{},{},{:.0f},{:.0f},{:.0f},{},{:.3f},{:.2f}\n", form, side, rays / directions,
+                             hits / directions, links / directions, deepest, 1e3 * seconds / directions,
+                             1e9 * seconds / std::max(hits, 1.0))
+              << std::flush;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    Arguments a;
+    CLI::App app("Times ray-bundles through the surfaces of a scene.");
+    app.add_option("scene", a.scene)->required();
+    app.add_option("--forms", a.forms)->delimiter(',');
+    app.add_option("--sides", a.sides, "rays across the scene's diagonal")->delimiter(',');
+    app.add_option("--directions", a.directions);
+    app.add_option("--threads", a.threads);
+    CLI11_PARSE(app, argc, argv);
+    try {
+        const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
+                                          std::size_t(a.threads));
+        const auto scene = load(a.scene);
+        const SurfaceTriangles triangles = surface_triangles(scene->shapes());
+        std::cerr << triangles.size() << " triangles\n";
+        const BundleTracer tracer(triangles);
+        std::cout << "form,side,rays,hits,links,deepest,ms_per_direction,ns_per_hit\n";
+        for (const std::uint32_t side : a.sides)
+            for (const std::string& form : a.forms) measure(tracer, form, side, a.directions);
+    } catch (const std::exception& error) {
+        std::cerr << error.what() << "\n";
+        return 1;
+    }
+}
