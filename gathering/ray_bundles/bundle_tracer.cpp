@@ -43,13 +43,18 @@ const RayForm& BundleTracer::ray_form() const {
     return *ray_form_;
 }
 
+const TriangleCull& BundleTracer::cull() const {
+    std::call_once(cull_once_, [&] { cull_ = std::make_unique<TriangleCull>(triangles_, bounds_); });
+    return *cull_;
+}
+
 RayBundle BundleTracer::trace(const BundleGrid& grid, const BundleSettings& settings) const {
     const BundleLimits limits{settings.memory_budget, settings.cancelled};
     const float tolerance = coincidence(grid, bounds_);
     if (triangles_.size() == 0)
         return assemble_bundle(grid, RayForm::packet_side, 0.0f, limits, [](auto, auto, auto&) {});
     if ((settings.form == BundleForm::automatic ? plan(grid) : settings.form) == BundleForm::scan) {
-        const ScanForm scan(triangles_, grid, settings.memory_budget, settings.cancelled);
+        const ScanForm scan(triangles_, cull(), grid, settings.memory_budget, settings.cancelled);
         return assemble_bundle(
             grid, scan.rows_per_band(), tolerance, limits,
             [&](std::uint32_t begin, std::uint32_t end, HitBand& band) { scan.scan_rows(begin, end, band); });

@@ -15,6 +15,7 @@
 namespace mote::gathering {
 
 class RayForm;
+class TriangleCull;
 
 enum class BundleForm : std::uint8_t {
     automatic,  ///< the one that should be faster
@@ -48,11 +49,14 @@ class BundleTracer {
 
   private:
     const RayForm& ray_form() const;
+    const TriangleCull& cull() const;
 
     const SurfaceTriangles& triangles_;
     core::Bounds3 bounds_;
-    mutable std::once_flag ray_form_once_;
-    mutable std::unique_ptr<const RayForm> ray_form_;  // made when it is first needed
+    // Made when they are first needed.
+    mutable std::once_flag ray_form_once_, cull_once_;
+    mutable std::unique_ptr<const RayForm> ray_form_;
+    mutable std::unique_ptr<const TriangleCull> cull_;
 };
 
 }  // namespace mote::gathering

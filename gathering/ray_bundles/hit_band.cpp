@@ -1,26 +1,33 @@
 #include "gathering/ray_bundles/hit_band.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace mote::gathering {
 namespace {
 
-bool is_before(const BundleHit& a, const BundleHit& b) {
-    if (a.distance != b.distance) return a.distance < b.distance;
-    return a.index() < b.index();
+/// Distances are not negative, so that their bits are in their order.
+std::uint64_t key_of(const BundleHit& hit) {
+    return std::uint64_t(std::bit_cast<std::uint32_t>(hit.distance)) << 32 | std::rotl(hit.triangle, 1);
+}
+template <typename Placed>
+BundleHit hit_of(const Placed& p) {
+    return {std::bit_cast<float>(std::uint32_t(p.key >> 32)), std::rotr(std::uint32_t(p.key), 1), p.u16,
+            p.v16};
 }
 
 /// Most rays have a few hits.
-void sort_by_distance(std::span<BundleHit> hits) {
-    if (hits.size() > 16) {
-        std::sort(hits.begin(), hits.end(), is_before);
+template <typename Placed>
+void sort_by_key(Placed* begin, Placed* end) {
+    if (end - begin > 24) {
+        std::sort(begin, end, [](const Placed& a, const Placed& b) { return a.key < b.key; });
         return;
     }
-    for (std::size_t i = 1; i < hits.size(); ++i) {
-        const BundleHit hit = hits[i];
-        std::size_t j = i;
-        for (; j > 0 && is_before(hit, hits[j - 1]); --j) hits[j] = hits[j - 1];
-        hits[j] = hit;
+    for (Placed* at = begin; at < end; ++at) {
+        const Placed moved = *at;
+        Placed* hole = at;
+        for (; hole > begin && moved.key < hole[-1].key; --hole) *hole = hole[-1];
+        *hole = moved;
     }
 }
 
@@ -59,13 +66,15 @@ OrderedBand HitBand::ordered(std::uint32_t rays, float tolerance) {
     next_.resize(rays);
     std::uint32_t sum = 0;
     for (std::uint32_t ray = 0; ray < rays; ++ray) next_[ray] = sum, sum += band.counts[ray];
-    band.hits.resize(found_.size());
-    for (const Found& found : found_) band.hits[next_[found.ray]++] = found.hit;
-    std::size_t first = 0;
+    placed_.resize(found_.size());
+    for (const Found& found : found_)
+        placed_[next_[found.ray]++] = {key_of(found.hit), found.hit.u16, found.hit.v16};
+    band.hits.reserve(found_.size());
+    Placed* begin = placed_.data();
     for (const std::uint32_t count : band.counts) {
-        const std::span<BundleHit> hits(band.hits.data() + first, count);
-        sort_by_distance(hits), order_coincident(hits, tolerance);
-        first += count;
+        sort_by_key(begin, begin + count);
+        for (Placed* end = begin + count; begin != end; ++begin) band.hits.push_back(hit_of(*begin));
+        order_coincident({band.hits.data() + band.hits.size() - count, count}, tolerance);
     }
     return band;
 }

@@ -29,7 +29,13 @@ class HitBand {
         std::uint32_t ray;
         BundleHit hit;
     };
+    /// A hit by its place on the ray: distance first, then triangle.
+    struct Placed {
+        std::uint64_t key;
+        std::uint16_t u16, v16;
+    };
     std::vector<Found> found_;
+    std::vector<Placed> placed_;       // by ray
     std::vector<std::uint32_t> next_;  // by ray: where its next hit goes
 };
 

@@ -27,8 +27,17 @@ class ProjectedEdge {
     }
     /// Twice the area that the edge spans with (x, y), positive on its left; seen from the end that comes
     /// first.
-    double value(double x, double y) const { return along_.x * (y - a_.y) - along_.y * (x - a_.x); }
+    double value(double x, double y) const { return row(y) - column(x); }
+    double row(double y) const { return along_.x * (y - a_.y); }
+    double column(double x) const { return along_.y * (x - a_.x); }
     bool flipped() const { return flipped_; }
+    /// A bit for each value that is on the left as seen from that end.
+    template <std::size_t n>
+    static std::uint32_t bits(const double (&values)[n]) {
+        std::uint64_t result = 0;
+        for (std::size_t i = 0; i < n; ++i) result |= values[i] >= 0.0 ? std::uint64_t(1) << i : 0;
+        return std::uint32_t(result);
+    }
     /// Of a value: is the ray on the left of the edge, as it runs in the triangle? Edges run downwards or, if
     /// level, to the right: a little to the right, or above, of a point on the line is its left.
     bool left(double value) const { return (value >= 0.0) != flipped_; }
@@ -39,11 +48,16 @@ class ProjectedEdge {
     bool flipped_ = false;
 };
 
+inline std::array<core::Vec3d, 3> project(const BundleProjection& projection,
+                                          const std::array<core::Vec3, 3>& corners) {
+    return {projection(corners[0]), projection(corners[1]), projection(corners[2])};
+}
+
 class ProjectedTriangle {
   public:
     ProjectedTriangle() = default;
-    ProjectedTriangle(const BundleProjection& projection, const std::array<core::Vec3, 3>& corners)
-        : corners_{projection(corners[0]), projection(corners[1]), projection(corners[2])},
+    explicit ProjectedTriangle(const std::array<core::Vec3d, 3>& corners)
+        : corners_(corners),
           edges_{ProjectedEdge(corners_[1], corners_[2]), ProjectedEdge(corners_[2], corners_[0]),
                  ProjectedEdge(corners_[0], corners_[1])} {}
 
@@ -70,7 +84,7 @@ class ProjectedTriangle {
         const double scale = 1.0 / sum, u = v1 * scale, v = v2 * scale;
         const double z =
             corners_[0].z + u * (corners_[1].z - corners_[0].z) + v * (corners_[2].z - corners_[0].z);
-        if (!(z >= 0.0)) return std::nullopt;
+        if (!(z > 0.0)) return std::nullopt;
         return BundleHit{float(z), triangle, std::uint16_t(u * 65535.0), std::uint16_t(v * 65535.0)};
     }
 

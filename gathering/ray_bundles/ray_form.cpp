@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "gathering/ray_bundles/grid_steps.h"
+
 namespace mote::gathering {
 
 using namespace core;
@@ -65,16 +67,33 @@ class PacketMaker {
     float length_;
 };
 
+/// Do the boxes of the triangle and of the packet at (x0, y0) meet on the grid?
+bool may_hit(const std::array<Vec3d, 3>& p, double x0, double y0) {
+    constexpr double last = side - 1;
+    return least_of(p[0].x, p[1].x, p[2].x) <= x0 + last && most_of(p[0].x, p[1].x, p[2].x) >= x0 &&
+           least_of(p[0].y, p[1].y, p[2].y) <= y0 + last && most_of(p[0].y, p[1].y, p[2].y) >= y0;
+}
+
+/// The values of the edges at each ray of a packet.
+struct PacketValues {
+    double v[3][width];
+};
+
 /// Bit i: does ray i of the packet at (x0, y0) hit the triangle?
-std::uint32_t lanes_hit(const ProjectedTriangle& triangle, double x0, double y0, double (&values)[3][width]) {
-    std::uint32_t left[3] = {0, 0, 0};
+std::uint32_t lanes_hit(const ProjectedTriangle& triangle, double x0, double y0, PacketValues& values) {
+    std::uint32_t left[3];
     for (std::size_t i = 0; i < 3; ++i) {
         const ProjectedEdge& edge = triangle.edge(i);
-        for (int lane = 0; lane < width; ++lane)
-            values[i][lane] = edge.value(x0 + double(lane % int(side)), y0 + double(lane / int(side)));
-        for (int lane = 0; lane < width; ++lane) left[i] |= std::uint32_t(edge.left(values[i][lane])) << lane;
+        double columns[side];
+        for (std::uint32_t x = 0; x < side; ++x) columns[x] = edge.column(x0 + double(x));
+        for (std::uint32_t y = 0; y < side; ++y) {
+            const double row = edge.row(y0 + double(y));
+            for (std::uint32_t x = 0; x < side; ++x) values.v[i][y * side + x] = row - columns[x];
+        }
+        left[i] = ProjectedEdge::bits(values.v[i]);
+        if (edge.flipped()) left[i] = ~left[i];
     }
-    return (left[0] & left[1] & left[2]) | (~left[0] & ~left[1] & ~left[2] & 0xffffu);
+    return (left[0] & left[1] & left[2]) | ~(left[0] | left[1] | left[2]);
 }
 
 }  // namespace
@@ -91,14 +110,16 @@ void RayForm::trace_rows(const BundleGrid& grid, std::uint32_t begin, std::uint3
     PacketMaker packets(grid, bounds_, margin_);
     for (std::uint32_t x0 = 0; x0 < grid.columns; x0 += side)
         boxes_.for_each_box(packets.at(x0, begin, end), [&](std::uint32_t index, std::uint32_t lanes) {
-            const ProjectedTriangle triangle(projection, triangles_.corners[index]);
-            double values[3][width];
+            const auto corners = project(projection, triangles_.corners[index]);
+            if (!may_hit(corners, double(x0), double(begin))) return;
+            const ProjectedTriangle triangle(corners);
+            PacketValues values;
             for (lanes &= lanes_hit(triangle, double(x0), double(begin), values); lanes != 0;
                  lanes &= lanes - 1) {
                 const auto lane = std::uint32_t(std::countr_zero(lanes));
                 const std::uint32_t x = x0 + lane % side, row = lane / side;
-                const auto hit = triangle.make_hit(double(x), double(begin + row), values[0][lane],
-                                                   values[1][lane], values[2][lane], index);
+                const auto hit = triangle.make_hit(double(x), double(begin + row), values.v[0][lane],
+                                                   values.v[1][lane], values.v[2][lane], index);
                 if (hit) band.add(row * grid.columns + x, *hit);
             }
         });
