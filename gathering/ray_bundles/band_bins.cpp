@@ -1,13 +1,9 @@
 #include "gathering/ray_bundles/band_bins.h"
 
-#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <atomic>
-
-#include "core/objects/error.h"
-#include "core/objects/memory_error.h"
 
 namespace mote::gathering {
 
@@ -58,12 +54,8 @@ BandBins::BandBins(const TriangleCull& cull, const BundleGrid& grid, std::uint32
     });
     first_.assign(bands + 1, 0);
     for (std::size_t b = 0; b < bands; ++b) first_[b + 1] = first_[b] + next[b + 1], next[b] = first_[b];
-    const double bytes = double(first_.back()) * sizeof(std::uint32_t);
-    if (bytes > double(memory_budget))
-        throw InputError(
-            fmt::format("sorting the triangles of a ray-bundle of {} x {} rays takes{}, more than the{} "
-                        "allowed",
-                        grid.columns, grid.rows, memory_text(bytes), memory_text(double(memory_budget))));
+    complete_ = first_.back() * sizeof(std::uint32_t) <= memory_budget;
+    if (!complete_) return;
     binned_.resize(first_.back());
     tbb::parallel_for(std::size_t(0), tasks, [&](std::size_t task) {
         for (const Reaching& t : found[task])

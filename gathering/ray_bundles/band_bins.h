@@ -15,6 +15,8 @@ class BandBins {
     BandBins(const TriangleCull& cull, const BundleGrid& grid, std::uint32_t rows_per_band,
              std::size_t memory_budget, core::CancelToken cancelled);
 
+    /// No: they would take more than the budget, and are empty.
+    bool complete() const { return complete_; }
     /// In no particular order.
     std::span<const std::uint32_t> of_band(std::size_t band) const {
         return {binned_.data() + first_[band], first_[band + 1] - first_[band]};
@@ -24,6 +26,7 @@ class BandBins {
     }
 
   private:
+    bool complete_ = true;
     std::vector<std::size_t> first_;  ///< by band, and one more
     std::vector<std::uint32_t> binned_;
 };

@@ -21,16 +21,35 @@ std::size_t bytes_of(std::size_t rays, std::size_t hits) {
     return (rays + 1) * sizeof(std::uint32_t) + hits * sizeof(BundleHit);
 }
 
-/// `share`: of the rays that had been traced when it became too much.
-[[noreturn]] void refuse(const BundleGrid& grid, std::size_t hits, double share, std::size_t budget) {
-    const double needed = double(bytes_of(grid.rays(), 0)) + double(hits) * sizeof(BundleHit) / share;
+/// A grid of the same bounds with a wider spacing.
+struct Coarser {
+    double spacing, columns, rows;
+    Coarser(const BundleGrid& grid, double times)
+        : spacing(times * double(grid.spacing)),
+          columns(std::ceil((double(grid.columns) - 2.0) / times) + 2.0),
+          rows(std::ceil((double(grid.rows) - 2.0) / times) + 2.0) {}
+    double rays() const { return columns * rows; }
+    double largest_inside() const { return (columns - 1.0) * (rows - 1.0); }
+};
+
+[[noreturn]] void refuse(const BundleGrid& grid, double all_hits, std::size_t budget) {
+    const double inside = (double(grid.columns) - 2.0) * (double(grid.rows) - 2.0);
     const double allowed = std::min(double(budget), double(most_hits) * sizeof(BundleHit));
-    const double coarser = std::sqrt(needed / allowed) * 1.05;  // hits go with the number of rays
+    double times = 1.0, coarse_bytes = infinity;
+    while (coarse_bytes > 0.95 * allowed && times < 1e9) {
+        times *= 1.05;
+        const Coarser coarser(grid, times);
+        coarse_bytes = (coarser.rays() + 1.0) * sizeof(std::uint32_t) +
+                       all_hits * coarser.largest_inside() / std::max(inside, 1.0) * sizeof(BundleHit);
+        if (coarser.rays() <= 9.0) break;  // no grid is coarser than that
+    }
+    const Coarser fits(grid, times);
+    const double bytes = double(bytes_of(grid.rays(), 0)) + all_hits * sizeof(BundleHit);
     throw InputError(fmt::format(
-        "a ray-bundle of {} x {} rays takes about{}, more than the{} allowed: about {} x {} rays "
-        "fit, {:.3g} m apart",
-        grid.columns, grid.rows, memory_text(needed), memory_text(allowed),
-        std::uint32_t(grid.columns / coarser), std::uint32_t(grid.rows / coarser), grid.spacing * coarser));
+        "a ray-bundle of {} x {} rays takes more than the memory allowed for it{}: it would be about{}; "
+        "{} x {} rays fit, {:.3g} m apart",
+        grid.columns, grid.rows, memory_text(allowed), memory_text(bytes), fits.columns, fits.rows,
+        fits.spacing));
 }
 
 /// Bands one after the other; each leaves memory as soon as it has been copied.
@@ -51,7 +70,8 @@ RayBundle joined(const BundleGrid& grid, std::vector<OrderedBand>& bands, std::s
 
 RayBundle assemble_bundle(const BundleGrid& grid, std::uint32_t rows_per_band, float tolerance,
                           const BundleLimits& limits, const TraceRows& trace_rows) {
-    if (bytes_of(grid.rays(), 0) > limits.memory_budget) refuse(grid, 0, 1.0, limits.memory_budget);
+    if (bytes_of(grid.rays(), 0) > limits.memory_budget)
+        refuse(grid, limits.largest_hits, limits.memory_budget);
     const std::uint32_t count = (grid.rows + rows_per_band - 1) / rows_per_band;
     std::vector<OrderedBand> bands(count);
     tbb::enumerable_thread_specific<HitBand> scratch;
@@ -65,7 +85,7 @@ RayBundle assemble_bundle(const BundleGrid& grid, std::uint32_t rows_per_band, f
         const std::size_t rays_now = rays += std::size_t(end - begin) * grid.columns;
         const std::size_t hits_now = hits += band.size();
         if (hits_now > most_hits || bytes_of(grid.rays(), hits_now) > limits.memory_budget)
-            refuse(grid, hits_now, double(rays_now) / double(grid.rays()), limits.memory_budget);
+            refuse(grid, double(hits_now) * double(grid.rays()) / double(rays_now), limits.memory_budget);
         bands[i] = band.ordered((end - begin) * grid.columns, tolerance);
     });
     return joined(grid, bands, hits);

@@ -10,6 +10,7 @@ namespace mote::gathering {
 
 struct BundleLimits {
     std::size_t memory_budget;  ///< [B]
+    double largest_hits;        ///< more than this there are hardly, see refusals
     core::CancelToken cancelled;
 };
 

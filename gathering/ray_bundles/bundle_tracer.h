@@ -20,7 +20,7 @@ class TriangleCull;
 enum class BundleForm : std::uint8_t {
     automatic,  ///< the one that should be faster
     rays,
-    scan
+    scan  ///< rays where sorting the triangles takes more than the budget
 };
 
 struct BundleSettings {
@@ -44,7 +44,7 @@ class BundleTracer {
     /// to stop.
     RayBundle trace(const BundleGrid& grid, const BundleSettings& settings = {}) const;
 
-    /// What `automatic` takes: rays or scan.
+    /// What `automatic` takes, rays or scan: by how many triangles there are for each hit.
     BundleForm plan(const BundleGrid& grid) const;
 
   private:
@@ -53,6 +53,7 @@ class BundleTracer {
 
     const SurfaceTriangles& triangles_;
     core::Bounds3 bounds_;
+    double area_ = 0.0;  // [m^2]
     // Made when they are first needed.
     mutable std::once_flag ray_form_once_, cull_once_;
     mutable std::unique_ptr<const RayForm> ray_form_;

@@ -11,10 +11,12 @@ namespace mote::gathering {
 
 class ScanForm {
   public:
-    /// Keeps references to the triangles and the grid. Throws as BandBins does.
+    /// Keeps references to the triangles and the grid. Throws Cancelled when asked to stop.
     ScanForm(const SurfaceTriangles& triangles, const TriangleCull& cull, const BundleGrid& grid,
              std::size_t memory_budget, core::CancelToken cancelled);
 
+    /// No: sorting the triangles would take more than the budget.
+    bool possible() const { return bins_.complete(); }
     std::uint32_t rows_per_band() const { return rows_per_band_; }
     /// A whole band: rows [begin, end), where `begin` is a multiple of rows_per_band(). Safe from many
     /// threads.
