@@ -6,6 +6,7 @@
 #include "core/geometry/triangle_mesh.h"
 #include "core/materials/bsdf.h"
 #include "core/objects/memory_error.h"
+#include "gathering/ray_bundles/curve_tubes.h"
 #include "gathering/ray_bundles/tessellation.h"
 
 namespace mote::gathering {
@@ -25,6 +26,8 @@ const Shape& original_of(const Shape& shape) {
 std::size_t triangles_of(const Shape& shape, const TessellationSettings& settings) {
     if (const auto* mesh = dynamic_cast<const TriangleMesh*>(&original_of(shape)))
         return mesh->data().triangles.size();
+    if (const auto* curves = dynamic_cast<const Curves*>(&original_of(shape)))
+        return tube_cuts(*curves, settings.chord_error).triangles();
     return tessellation_of(shape, settings.chord_error).triangles();
 }
 
@@ -37,7 +40,7 @@ Vec3 unit_or(const Vec3& n, const Vec3& otherwise) {
 /// A mesh where it is, or where an instance places it.
 void append_mesh(const TriangleMesh& mesh, const Placement* place, TriangleList& list) {
     const MeshData& data = mesh.data();
-    const bool mirrored = place && glm::determinant(glm::dmat3(place->to_world().matrix)) < 0.0;
+    const bool mirrored = place && place->to_world().determinant() < 0.0;
     for (std::uint32_t i = 0; i < data.triangles.size(); ++i) {
         TriangleList::Corner corners[3];
         for (std::size_t k = 0; k < 3; ++k) {
@@ -91,8 +94,11 @@ SurfaceTriangles surface_triangles(std::span<const std::shared_ptr<Shape>> shape
         const Shape& shape = *shapes[i];
         TriangleList list(result, i);
         const auto* placed = dynamic_cast<const InstancedShape*>(&shape);
+        const Placement* place = placed ? &placed->placement() : nullptr;
         if (const auto* mesh = dynamic_cast<const TriangleMesh*>(&original_of(shape)))
-            append_mesh(*mesh, placed ? &placed->placement() : nullptr, list);
+            append_mesh(*mesh, place, list);
+        else if (const auto* curves = dynamic_cast<const Curves*>(&original_of(shape)))
+            append_tubes(*curves, place, tube_cuts(*curves, settings.chord_error), list);
         else
             append_tessellated(shape, tessellation_of(shape, settings.chord_error), list);
     }

@@ -1,7 +1,9 @@
 // From shapes to triangles: nothing that stops light is left out, outsides stay outside.
 #include "gathering/ray_bundles/surface_triangles.h"
 #include "core/geometry/analytic_shapes.h"
+#include "core/geometry/curves.h"
 #include "core/geometry/instances.h"
+#include "core/geometry/ray_tracer.h"
 #include "core/geometry/triangle_mesh.h"
 #include "tests/support/catch.h"
 #include "tests/support/render_statistics.h"
@@ -91,6 +93,37 @@ TEST_CASE("texture coordinates of a cut sphere are its own", "[surface_triangles
         CHECK(std::min(std::fabs(u - hit.uv.x), 1.0f - std::fabs(u - hit.uv.x)) < 0.01f);
         CHECK(std::fabs(uv.y - hit.uv.y) < 0.01f);
     }
+}
+
+TEST_CASE("curves become tubes that lie on them", "[surface_triangles]") {
+    CurveData data;
+    for (int i = 0; i < 12; ++i)
+        data.points.push_back({std::cos(0.5f * float(i)), std::sin(0.5f * float(i)), 0.2f * float(i),
+                               0.05f + 0.002f * float(i)});
+    data.segments = {0, 1, 2, 3, 4, 5, 6, 7, 8};
+    auto group = std::make_shared<ShapeGroup>();
+    const auto spline = std::make_shared<Curves>(data);
+    data.basis = CurveBasis::linear;
+    group->shapes = {spline, std::make_shared<Curves>(data)};
+    for (const auto& curves : group->shapes) {
+        const SurfaceTriangles t = triangles_of(curves, 3e-4f);
+        CHECK(fronts_agree(t));
+        CHECK(area_of(t) ==
+              Approx(curves->area()).epsilon(0.02));  // tapered and bent: Curves::area() is a quadrature
+        for (const auto& corners : t.corners)
+            for (const Vec3& p : corners) CHECK(curves->bounds().contains(p));
+        CHECK(t.primitive.back() == 8);
+    }
+    const SurfaceTriangles t = triangles_of(spline, 3e-4f);
+    const RayTracer tracer(std::vector<std::shared_ptr<Shape>>{spline});
+    for (std::size_t i = 0; i < t.size(); i += 97) {
+        const Vec3 middle = (t.corners[i][0] + t.corners[i][1] + t.corners[i][2]) / 3.0f;
+        const auto hit = tracer.closest({middle + 0.01f * t.normals[i][0], -t.normals[i][0]});
+        REQUIRE(hit);
+        CHECK(std::fabs(hit->t - 0.01f) < 2e-3f);
+        CHECK(glm::dot(hit->geometric_normal, t.normals[i][0]) > 0.9f);
+    }
+    CHECK(fronts_agree(surface_triangles(place_group(group, stretched()))));
 }
 
 TEST_CASE("mirrored instances keep their outside", "[surface_triangles]") {
