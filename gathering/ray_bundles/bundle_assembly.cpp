@@ -68,7 +68,7 @@ RayBundle joined(const BundleGrid& grid, std::vector<OrderedBand>& bands, std::s
 
 }  // namespace
 
-RayBundle assemble_bundle(const BundleGrid& grid, std::uint32_t rows_per_band, float tolerance,
+RayBundle assemble_bundle(const BundleGrid& grid, std::uint32_t rows_per_band, const HitOrder& order,
                           const BundleLimits& limits, const TraceRows& trace_rows) {
     if (bytes_of(grid.rays(), 0) > limits.memory_budget)
         refuse(grid, limits.largest_hits, limits.memory_budget);
@@ -82,11 +82,11 @@ RayBundle assemble_bundle(const BundleGrid& grid, std::uint32_t rows_per_band, f
         HitBand& band = scratch.local();
         band.clear();
         trace_rows(begin, end, band);
+        bands[i] = band.ordered((end - begin) * grid.columns, order);
         const std::size_t rays_now = rays += std::size_t(end - begin) * grid.columns;
-        const std::size_t hits_now = hits += band.size();
+        const std::size_t hits_now = hits += bands[i].hits.size();
         if (hits_now > most_hits || bytes_of(grid.rays(), hits_now) > limits.memory_budget)
             refuse(grid, double(hits_now) * double(grid.rays()) / double(rays_now), limits.memory_budget);
-        bands[i] = band.ordered((end - begin) * grid.columns, tolerance);
     });
     return joined(grid, bands, hits);
 }

@@ -21,7 +21,7 @@ using TraceRows = std::function<void(std::uint32_t begin, std::uint32_t end, Hit
 /// Traces bands of `rows_per_band` rows in parallel; the same bits for any number of threads. At no time do
 /// the hits take more than the budget: throws InputError, which names the rays and the spacing that fit, as
 /// soon as they would. Throws Cancelled.
-RayBundle assemble_bundle(const BundleGrid& grid, std::uint32_t rows_per_band, float tolerance,
+RayBundle assemble_bundle(const BundleGrid& grid, std::uint32_t rows_per_band, const HitOrder& order,
                           const BundleLimits& limits, const TraceRows& trace_rows);
 
 }  // namespace mote::gathering

@@ -68,4 +68,10 @@ BundleGrid bundle_grid(const Vec3& direction, const Bounds3& bounds, float spaci
     return grid;
 }
 
+float coincidence(const BundleGrid& grid, const Bounds3& bounds) {
+    if (bounds.empty()) return 0.0f;
+    const Vec3 farthest = glm::max(glm::abs(bounds.lower), glm::abs(bounds.upper));
+    return 0x1p-22f * (glm::length(farthest) + glm::length(bounds.center() - grid.origin) + bounds.radius());
+}
+
 }  // namespace mote::gathering

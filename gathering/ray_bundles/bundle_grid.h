@@ -32,4 +32,8 @@ struct BundleGrid {
 BundleGrid bundle_grid(const core::Vec3& direction, const core::Bounds3& bounds, float spacing,
                        const core::Vec2& offset);
 
+/// Surfaces nearer to each other along the rays than this may have changed places by rounding: a few units in
+/// the last place of the distances and coordinates [m].
+float coincidence(const BundleGrid& grid, const core::Bounds3& bounds);
+
 }  // namespace mote::gathering

@@ -6,28 +6,50 @@
 namespace mote::gathering {
 namespace {
 
-/// Distances are not negative, so that their bits are in their order.
-std::uint64_t key_of(const BundleHit& hit) {
-    return std::uint64_t(std::bit_cast<std::uint32_t>(hit.distance)) << 32 | std::rotl(hit.triangle, 1);
-}
-template <typename Placed>
-BundleHit hit_of(const Placed& p) {
-    return {std::bit_cast<float>(std::uint32_t(p.key >> 32)), std::rotr(std::uint32_t(p.key), 1), p.u16,
-            p.v16};
+std::uint32_t triangle_key(const BundleHit& hit) {
+    return std::rotl(hit.triangle, 1);
+}  // by index, then side
+
+bool is_before(const BundleHit& a, const BundleHit& b) {
+    if (a.distance != b.distance) return a.distance < b.distance;
+    return triangle_key(a) < triangle_key(b);
 }
 
-/// Most rays have a few hits.
-template <typename Placed>
-void sort_by_key(Placed* begin, Placed* end) {
-    if (end - begin > 24) {
-        std::sort(begin, end, [](const Placed& a, const Placed& b) { return a.key < b.key; });
-        return;
+constexpr std::size_t most_ranked = 64;
+
+/// By distance: every hit goes where as many are nearer as places come before. All pairs are compared,
+/// without a branch, eight at a time. Of two that are equally far the first stays first.
+void put_by_rank(std::span<const BundleHit> hits, BundleHit* out) {
+    // Distances are not negative, so that their bits are in their order.
+    alignas(32) std::int32_t distances[most_ranked], ranks[most_ranked];
+    const auto count = std::int32_t(hits.size()), padded = (count + 7) / 8 * 8;
+    for (std::int32_t i = 0; i < count; ++i)
+        distances[i] = std::bit_cast<std::int32_t>(hits[std::size_t(i)].distance);
+    for (std::int32_t i = count; i < padded; ++i) distances[i] = 0;
+    for (std::int32_t i = 0; i < padded; ++i) ranks[i] = 0;
+    for (std::int32_t j = 0; j < count; ++j) {
+        const std::int32_t distance = distances[j];
+        for (std::int32_t i = 0; i < padded; ++i)
+            ranks[i] += distance < distances[i] + (j < i ? 1 : 0) ? 1 : 0;
     }
-    for (Placed* at = begin; at < end; ++at) {
-        const Placed moved = *at;
-        Placed* hole = at;
-        for (; hole > begin && moved.key < hole[-1].key; --hole) *hole = hole[-1];
-        *hole = moved;
+    for (std::int32_t i = 0; i < count; ++i) out[ranks[i]] = hits[std::size_t(i)];
+}
+
+/// Hits by distance that are equally far go by their triangles.
+void order_equal(std::span<BundleHit> hits) {
+    for (std::size_t i = 1; i < hits.size(); ++i)
+        for (std::size_t j = i; j > 0 && is_before(hits[j], hits[j - 1]); --j)
+            std::swap(hits[j], hits[j - 1]);
+}
+
+void put_sorted(std::span<const BundleHit> hits, BundleHit* out) {
+    if (hits.size() == 1) {
+        *out = hits[0];
+    } else if (hits.size() <= most_ranked) {
+        put_by_rank(hits, out), order_equal({out, hits.size()});
+    } else {
+        std::copy(hits.begin(), hits.end(), out);
+        std::sort(out, out + hits.size(), is_before);
     }
 }
 
@@ -57,25 +79,39 @@ void order_coincident(std::span<BundleHit> hits, float tolerance) {
     }
 }
 
+/// How many are left, in front.
+std::uint32_t merge(std::span<BundleHit> hits, float distance) {
+    std::uint32_t kept = 1;
+    for (const BundleHit& hit : hits.subspan(1)) {
+        const BundleHit& last = hits[kept - 1];
+        if (hit.from_behind() != last.from_behind() || hit.distance - last.distance > distance)
+            hits[kept++] = hit;
+    }
+    return kept;
+}
+
 }  // namespace
 
-OrderedBand HitBand::ordered(std::uint32_t rays, float tolerance) {
+OrderedBand HitBand::ordered(std::uint32_t rays, const HitOrder& order) {
     OrderedBand band;
     band.counts.assign(rays, 0);
     for (const Found& found : found_) ++band.counts[found.ray];
     next_.resize(rays);
     std::uint32_t sum = 0;
     for (std::uint32_t ray = 0; ray < rays; ++ray) next_[ray] = sum, sum += band.counts[ray];
-    placed_.resize(found_.size());
-    for (const Found& found : found_)
-        placed_[next_[found.ray]++] = {key_of(found.hit), found.hit.u16, found.hit.v16};
-    band.hits.reserve(found_.size());
-    Placed* begin = placed_.data();
-    for (const std::uint32_t count : band.counts) {
-        sort_by_key(begin, begin + count);
-        for (Placed* end = begin + count; begin != end; ++begin) band.hits.push_back(hit_of(*begin));
-        order_coincident({band.hits.data() + band.hits.size() - count, count}, tolerance);
+    by_ray_.resize(found_.size());
+    for (const Found& found : found_) by_ray_[next_[found.ray]++] = found.hit;
+    band.hits.resize(found_.size());
+    BundleHit *out = band.hits.data(), *in = by_ray_.data();
+    for (std::uint32_t& count : band.counts) {
+        if (count == 0) continue;
+        put_sorted({in, count}, out);
+        in += count;
+        order_coincident({out, count}, order.coincident);
+        if (order.merged > 0.0f) count = merge({out, count}, order.merged);
+        out += count;
     }
+    band.hits.resize(std::size_t(out - band.hits.data()));
     return band;
 }
 

@@ -10,6 +10,8 @@
 #include "core/loading/scene_loader.h"
 #include "gathering/ray_bundles/bundle_directions.h"
 #include "gathering/ray_bundles/bundle_tracer.h"
+#include "gathering/ray_bundles/imperfect_bundles.h"
+#include "gathering/ray_bundles/link_comparison.h"
 #include "integrators/register_integrators.h"
 #include "lights/register_lights.h"
 #include "media/register_media.h"
@@ -24,6 +26,8 @@ struct Arguments {
     std::vector<std::string> forms = {"rays", "scan", "automatic"};
     std::vector<std::uint32_t> sides = {128, 256, 512, 1024};
     std::uint32_t directions = 8;
+    ImperfectSettings imperfect;
+    bool two_sided = false;
     int threads = 1;
 };
 
@@ -49,30 +53,39 @@ BundleForm form_of(const std::string& name) {
 }
 
 /// `side` rays across the diagonal of the scene.
-void measure(const BundleTracer& tracer, const std::string& form, std::uint32_t side,
-             std::uint32_t directions) {
+void measure(const BundleTracer& tracer, const ImperfectBundles& imperfect, const Arguments& a,
+             const std::string& form, std::uint32_t side) {
     const core::Bounds3& bounds = tracer.triangles().bounds;
     const float spacing = glm::length(bounds.diagonal()) / float(side);
     double seconds = 0.0, hits = 0.0, links = 0.0, rays = 0.0, least = core::infinity;
     std::size_t deepest = 0;
-    const BundleSettings settings{form_of(form), std::size_t(4) << 30, {}};
+    LinkComparison comparison;
+    const std::uint32_t directions = a.directions;
+    const bool points = form == "imperfect";
+    const BundleSettings settings{points ? BundleForm::automatic : form_of(form), std::size_t(4) << 30, {}};
     for (std::uint32_t i = 0; i <= directions; ++i) {
         const BundleSample sample = bundle_sample(1, i);
         const BundleGrid grid = bundle_grid(sample.direction, bounds, spacing, sample.offset);
         const double start = now();
-        const RayBundle bundle = tracer.trace(grid, settings);
+        const RayBundle bundle =
+            points ? imperfect.trace(grid, i, a.imperfect) : tracer.trace(grid, settings);
         if (i == 0) continue;  // first touches, and the hierarchy
         const double taken = now() - start;
+        if (points) {
+            const auto radius = float(imperfect.disc_radius(a.imperfect));
+            comparison.add(compare_links(tracer.trace(grid), bundle, radius, a.two_sided));
+        }
         seconds += taken, least = std::min(least, taken);
         hits += double(bundle.hits.size()), rays += double(grid.rays());
         for_each_link(
-            bundle, [](std::uint32_t) { return true; }, [&](auto, auto&, auto&) { links += 1.0; });
+            bundle, [&](std::uint32_t) { return a.two_sided; }, [&](auto, auto&, auto&) { links += 1.0; });
         for (std::size_t ray = 0; ray < grid.rays(); ++ray)
             deepest = std::max(deepest, bundle.hits_of(ray).size());
     }
-    std::cout << fmt::format("{},{},{:.0f},{:.0f},{:.0f},{},{:.3f},{:.2f}\n", form, side, rays / directions,
-                             hits / directions, links / directions, deepest, 1e3 * seconds / directions,
-                             1e9 * seconds / std::max(hits, 1.0))
+    std::cout << fmt::format("{},{},{:.0f},{:.0f},{:.0f},{},{:.3f},{:.2f},{:.4f},{:.4f}\n", form, side,
+                             rays / directions, hits / directions, links / directions, deepest,
+                             1e3 * seconds / directions, 1e9 * seconds / std::max(hits, 1.0),
+                             comparison.missing(), comparison.wrong())
               << std::flush;
 }
 
@@ -85,6 +98,10 @@ int main(int argc, char** argv) {
     app.add_option("--forms", a.forms)->delimiter(',');
     app.add_option("--sides", a.sides, "rays across the scene's diagonal")->delimiter(',');
     app.add_option("--directions", a.directions);
+    app.add_option("--points", a.imperfect.points, "of imperfect bundles");
+    app.add_option("--splat", a.imperfect.splat_size, "size of their splats");
+    app.add_option("--merge", a.imperfect.merge, "share of a disc's radius");
+    app.add_flag("--two-sided", a.two_sided, "all surfaces send and receive on both sides");
     app.add_option("--threads", a.threads);
     CLI11_PARSE(app, argc, argv);
     try {
@@ -94,9 +111,10 @@ int main(int argc, char** argv) {
         const SurfaceTriangles triangles = surface_triangles(scene->shapes());
         std::cerr << triangles.size() << " triangles\n";
         const BundleTracer tracer(triangles);
-        std::cout << "form,side,rays,hits,links,deepest,ms_per_direction,ns_per_hit\n";
+        const ImperfectBundles imperfect(triangles);
+        std::cout << "form,side,rays,hits,links,deepest,ms_per_direction,ns_per_hit,missing,wrong\n";
         for (const std::uint32_t side : a.sides)
-            for (const std::string& form : a.forms) measure(tracer, form, side, a.directions);
+            for (const std::string& form : a.forms) measure(tracer, imperfect, a, form, side);
     } catch (const std::exception& error) {
         std::cerr << error.what() << "\n";
         return 1;

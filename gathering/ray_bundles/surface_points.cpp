@@ -1,0 +1,87 @@
+#include "gathering/ray_bundles/surface_points.h"
+
+#include <algorithm>
+#include <bit>
+#include <numeric>
+
+#include "core/math/random.h"
+#include "core/math/warp.h"
+
+namespace mote::gathering {
+
+using namespace core;
+
+namespace {
+
+double area_of(const std::array<Vec3, 3>& c) {
+    const double area = 0.5 * glm::length(glm::cross(Vec3d(c[1]) - Vec3d(c[0]), Vec3d(c[2]) - Vec3d(c[0])));
+    return std::isfinite(area) ? area : 0.0;
+}
+
+/// Ten bits of x, each followed by two zeros.
+std::uint32_t spread(std::uint32_t x) {
+    x = (x | x << 16) & 0x030000ffu, x = (x | x << 8) & 0x0300f00fu;
+    x = (x | x << 4) & 0x030c30c3u;
+    return (x | x << 2) & 0x09249249u;
+}
+
+std::uint32_t morton_code(const Vec3& p, const Bounds3& bounds) {
+    const Vec3 place =
+        1023.0f * glm::clamp((p - bounds.lower) / glm::max(bounds.diagonal(), Vec3(1e-30f)), 0.0f, 1.0f);
+    return spread(std::uint32_t(place.x)) << 2 | spread(std::uint32_t(place.y)) << 1 |
+           spread(std::uint32_t(place.z));
+}
+
+/// The bits of i mirrored at the binary point, moved by `shift` around [0, 1).
+float moved_radical_inverse(std::uint32_t i, std::uint32_t shift) {
+    i = (i & 0x55555555u) << 1 | (i & 0xaaaaaaaau) >> 1, i = (i & 0x33333333u) << 2 | (i & 0xccccccccu) >> 2;
+    i = (i & 0x0f0f0f0fu) << 4 | (i & 0xf0f0f0f0u) >> 4;
+    return to_unit_float(std::uint32_t(__builtin_bswap32(i)) + shift);
+}
+
+}  // namespace
+
+SurfacePoints::SurfacePoints(const SurfaceTriangles& triangles) {
+    std::vector<std::uint32_t> codes(triangles.size());
+    std::vector<double> areas(triangles.size());
+    for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+        const auto& c = triangles.corners[i];
+        areas[i] = area_of(c);
+        if (!(areas[i] > 0.0)) continue;
+        codes[i] = morton_code((c[0] + c[1] + c[2]) / 3.0f, triangles.bounds);
+        order_.push_back(i);
+    }
+    std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return codes[a] != codes[b] ? codes[a] < codes[b] : a < b;
+    });
+    below_.reserve(order_.size() + 1);
+    for (const std::uint32_t i : order_) below_.push_back(area_), area_ += areas[i];
+    below_.push_back(area_);
+    guide_.resize(std::bit_ceil(order_.size() + 1));
+    std::uint32_t place = 0;
+    for (std::size_t i = 0; i < guide_.size(); ++i) {
+        const double share = area_ * double(i) / double(guide_.size());
+        while (place + 1 < order_.size() && below_[place + 1] <= share) ++place;
+        guide_[i] = place;
+    }
+}
+
+void SurfacePoints::draw(std::uint64_t set, std::uint32_t count, std::uint32_t begin, std::uint32_t end,
+                         std::vector<SurfacePoint>& points) const {
+    points.clear();
+    if (order_.empty()) return;
+    Rng rng(hash_keys(set, 0x706f696e7473ull));
+    const double shift = double(rng.next_float()), share = 1.0 / double(count);
+    const std::uint32_t turned = rng.next_u32();
+    for (std::uint32_t i = begin; i < end; ++i) {
+        const double at = (double(i) + shift) * share;
+        std::uint32_t place = guide_[std::size_t(at * double(guide_.size()))];
+        while (place + 1 < order_.size() && below_[place + 1] <= at * area_) ++place;
+        const double within = (at * area_ - below_[place]) / (below_[place + 1] - below_[place]);
+        const Vec2 uv = square_to_triangle(
+            {std::clamp(float(within), 0.0f, one_minus_epsilon), moved_radical_inverse(i, turned)});
+        points.push_back({order_[place], uv.x, uv.y});
+    }
+}
+
+}  // namespace mote::gathering
