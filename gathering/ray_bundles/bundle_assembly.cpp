@@ -1,7 +1,6 @@
 #include "gathering/ray_bundles/bundle_assembly.h"
 
 #include <fmt/format.h>
-#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <atomic>
@@ -69,12 +68,11 @@ RayBundle joined(const BundleGrid& grid, std::vector<OrderedBand>& bands, std::s
 }  // namespace
 
 RayBundle assemble_bundle(const BundleGrid& grid, std::uint32_t rows_per_band, const HitOrder& order,
-                          const BundleLimits& limits, const TraceRows& trace_rows) {
+                          const BundleLimits& limits, BandScratch& scratch, const TraceRows& trace_rows) {
     if (bytes_of(grid.rays(), 0) > limits.memory_budget)
         refuse(grid, limits.largest_hits, limits.memory_budget);
     const std::uint32_t count = (grid.rows + rows_per_band - 1) / rows_per_band;
     std::vector<OrderedBand> bands(count);
-    tbb::enumerable_thread_specific<HitBand> scratch;
     std::atomic<std::size_t> hits{0}, rays{0};
     tbb::parallel_for(std::uint32_t(0), count, [&](std::uint32_t i) {
         limits.cancelled.check();

@@ -1,6 +1,8 @@
 // From bands of rays, found in parallel, to a bundle within its budget.
 #pragma once
 
+#include <tbb/enumerable_thread_specific.h>
+
 #include <functional>
 
 #include "core/objects/cancellation.h"
@@ -18,10 +20,13 @@ struct BundleLimits {
 /// threads.
 using TraceRows = std::function<void(std::uint32_t begin, std::uint32_t end, HitBand& band)>;
 
+/// What threads keep between bundles.
+using BandScratch = tbb::enumerable_thread_specific<HitBand>;
+
 /// Traces bands of `rows_per_band` rows in parallel; the same bits for any number of threads. At no time do
 /// the hits take more than the budget: throws InputError, which names the rays and the spacing that fit, as
 /// soon as they would. Throws Cancelled.
 RayBundle assemble_bundle(const BundleGrid& grid, std::uint32_t rows_per_band, const HitOrder& order,
-                          const BundleLimits& limits, const TraceRows& trace_rows);
+                          const BundleLimits& limits, BandScratch& scratch, const TraceRows& trace_rows);
 
 }  // namespace mote::gathering

@@ -60,17 +60,17 @@ RayBundle BundleTracer::trace(const BundleGrid& grid, const BundleSettings& sett
     const BundleLimits limits{settings.memory_budget, largest_hits, settings.cancelled};
     const HitOrder order{.coincident = coincidence(grid, bounds_)};
     if (triangles_.size() == 0)
-        return assemble_bundle(grid, RayForm::packet_side, {}, limits, [](auto, auto, auto&) {});
+        return assemble_bundle(grid, RayForm::packet_side, {}, limits, scratch_, [](auto, auto, auto&) {});
     if ((settings.form == BundleForm::automatic ? plan(grid) : settings.form) == BundleForm::scan) {
         const ScanForm scan(triangles_, cull(), grid, settings.memory_budget, settings.cancelled);
         if (scan.possible())
-            return assemble_bundle(grid, scan.rows_per_band(), order, limits,
+            return assemble_bundle(grid, scan.rows_per_band(), order, limits, scratch_,
                                    [&](std::uint32_t begin, std::uint32_t end, HitBand& band) {
                                        scan.scan_rows(begin, end, band);
                                    });
     }
     const RayForm& rays = ray_form();
-    return assemble_bundle(grid, RayForm::packet_side, order, limits,
+    return assemble_bundle(grid, RayForm::packet_side, order, limits, scratch_,
                            [&](std::uint32_t begin, std::uint32_t end, HitBand& band) {
                                rays.trace_rows(grid, begin, end, band);
                            });

@@ -9,6 +9,7 @@
 #include <mutex>
 
 #include "core/objects/cancellation.h"
+#include "gathering/ray_bundles/bundle_assembly.h"
 #include "gathering/ray_bundles/ray_bundle.h"
 #include "gathering/ray_bundles/surface_triangles.h"
 
@@ -54,6 +55,7 @@ class BundleTracer {
     const SurfaceTriangles& triangles_;
     core::Bounds3 bounds_;
     double area_ = 0.0;  // [m^2]
+    mutable BandScratch scratch_;
     // Made when they are first needed.
     mutable std::once_flag ray_form_once_, cull_once_;
     mutable std::unique_ptr<const RayForm> ray_form_;

@@ -42,17 +42,6 @@ void order_equal(std::span<BundleHit> hits) {
             std::swap(hits[j], hits[j - 1]);
 }
 
-void put_sorted(std::span<const BundleHit> hits, BundleHit* out) {
-    if (hits.size() == 1) {
-        *out = hits[0];
-    } else if (hits.size() <= most_ranked) {
-        put_by_rank(hits, out), order_equal({out, hits.size()});
-    } else {
-        std::copy(hits.begin(), hits.end(), out);
-        std::sort(out, out + hits.size(), is_before);
-    }
-}
-
 /// Hits that rounding may have exchanged take turns: a front after a back, and first of all.
 void take_turns(std::span<BundleHit> run, bool front_next) {
     const std::vector<BundleHit> all(run.begin(), run.end());
@@ -79,13 +68,47 @@ void order_coincident(std::span<BundleHit> hits, float tolerance) {
     }
 }
 
+/// What neighbours in order of distance ask for. Without branches, which would mostly be mispredicted.
+struct Neighbours {
+    bool equal = false;       ///< two are equally far
+    bool coincident = false;  ///< a front and a back within the tolerance
+    Neighbours(std::span<const BundleHit> hits, float tolerance) {
+        for (std::size_t i = 1; i < hits.size(); ++i) {
+            const float gap = hits[i].distance - hits[i - 1].distance;
+            equal = equal | (gap == 0.0f);
+            coincident =
+                coincident | ((gap <= tolerance) & (hits[i].from_behind() != hits[i - 1].from_behind()));
+        }
+    }
+};
+
+void put_sorted(std::span<const BundleHit> hits, BundleHit* out, float tolerance) {
+    if (hits.size() == 1) {
+        *out = hits[0];
+        return;
+    }
+    const std::span<BundleHit> sorted(out, hits.size());
+    if (hits.size() <= most_ranked) {
+        put_by_rank(hits, out);
+    } else {
+        std::copy(hits.begin(), hits.end(), out);
+        std::sort(sorted.begin(), sorted.end(), is_before);
+    }
+    const Neighbours neighbours(sorted, tolerance);
+    if (neighbours.equal && hits.size() <= most_ranked) order_equal(sorted);
+    if (neighbours.coincident) order_coincident(sorted, tolerance);
+}
+
 /// How many are left, in front.
 std::uint32_t merge(std::span<BundleHit> hits, float distance) {
-    std::uint32_t kept = 1;
-    for (const BundleHit& hit : hits.subspan(1)) {
-        const BundleHit& last = hits[kept - 1];
-        if (hit.from_behind() != last.from_behind() || hit.distance - last.distance > distance)
-            hits[kept++] = hit;
+    std::uint32_t kept = 1, side = hits[0].triangle & BundleHit::behind_bit;
+    float last = hits[0].distance;
+    for (std::size_t i = 1; i < hits.size(); ++i) {
+        const BundleHit hit = hits[i];
+        const std::uint32_t its_side = hit.triangle & BundleHit::behind_bit;
+        const bool keeps = (its_side != side) | (hit.distance - last > distance);
+        hits[kept] = hit, kept += std::uint32_t(keeps);
+        side = its_side, last = keeps ? hit.distance : last;
     }
     return kept;
 }
@@ -101,17 +124,16 @@ OrderedBand HitBand::ordered(std::uint32_t rays, const HitOrder& order) {
     for (std::uint32_t ray = 0; ray < rays; ++ray) next_[ray] = sum, sum += band.counts[ray];
     by_ray_.resize(found_.size());
     for (const Found& found : found_) by_ray_[next_[found.ray]++] = found.hit;
-    band.hits.resize(found_.size());
-    BundleHit *out = band.hits.data(), *in = by_ray_.data();
+    in_order_.resize(found_.size());
+    BundleHit *out = in_order_.data(), *in = by_ray_.data();
     for (std::uint32_t& count : band.counts) {
         if (count == 0) continue;
-        put_sorted({in, count}, out);
+        put_sorted({in, count}, out, order.coincident);
         in += count;
-        order_coincident({out, count}, order.coincident);
         if (order.merged > 0.0f) count = merge({out, count}, order.merged);
         out += count;
     }
-    band.hits.resize(std::size_t(out - band.hits.data()));
+    band.hits.assign(in_order_.data(), out);
     return band;
 }
 

@@ -38,7 +38,7 @@ class HitBand {
         BundleHit hit;
     };
     std::vector<Found> found_;
-    std::vector<BundleHit> by_ray_;
+    std::vector<BundleHit> by_ray_, in_order_;
     std::vector<std::uint32_t> next_;  // by ray: where its next hit goes
 };
 

@@ -1,5 +1,6 @@
 #include "gathering/ray_bundles/imperfect_bundles.h"
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -15,7 +16,8 @@ using namespace core;
 
 namespace {
 
-constexpr std::uint32_t rays_per_band = 4096, points_per_task = 2048;
+constexpr std::uint32_t rays_per_band = 4096, points_per_task = 32 * PointPool::block;
+constexpr std::uint32_t largest_count = 1u << 24;
 
 /// Splats by the bands of rows that they reach.
 class SplatBins {
@@ -43,28 +45,34 @@ class SplatBins {
     std::vector<std::uint32_t> binned_;
 };
 
+std::uint32_t checked(std::uint32_t count, const char* what) {
+    if (count == 0 || count > largest_count)
+        throw InputError(
+            fmt::format("imperfect ray-bundles need 1 to {} {}, not {}", largest_count, what, count));
+    return count;
+}
+
 }  // namespace
 
-ImperfectBundles::ImperfectBundles(const SurfaceTriangles& triangles)
-    : triangles_(triangles), points_(triangles) {}
+ImperfectBundles::ImperfectBundles(const SurfaceTriangles& triangles, std::uint32_t points,
+                                   std::uint32_t sets)
+    : bounds_(triangles.bounds),
+      pool_(triangles, checked(points, "points"), checked(sets, "sets of points")) {}
 
-std::vector<Splat> ImperfectBundles::splats(const BundleGrid& grid, std::uint64_t set, std::uint32_t count,
-                                            float radius) const {
-    std::vector<Splat> splats(points_.area() > 0.0 ? count : 0);
-    tbb::parallel_for(
-        std::size_t(0), (splats.size() + points_per_task - 1) / points_per_task, [&](std::size_t task) {
-            const std::size_t begin = task * points_per_task,
-                              end = std::min(begin + points_per_task, splats.size());
-            std::vector<SurfacePoint> points;
-            points.reserve(points_per_task);
-            points_.draw(set, count, std::uint32_t(begin), std::uint32_t(end), points);
-            make_splats(triangles_, grid, points, radius, std::span(splats).subspan(begin, end - begin));
-        });
+std::vector<Splat> ImperfectBundles::splats(const BundleGrid& grid, std::uint64_t set, float radius) const {
+    std::vector<Splat> splats(pool_.points());
+    tbb::parallel_for(std::size_t(0), (splats.size() + points_per_task - 1) / points_per_task,
+                      [&](std::size_t task) {
+                          const std::size_t begin = task * points_per_task,
+                                            end = std::min(begin + points_per_task, splats.size());
+                          make_splats(pool_, std::uint32_t(set % pool_.sets()), std::uint32_t(begin), grid,
+                                      radius, std::span(splats).subspan(begin, end - begin));
+                      });
     return splats;
 }
 
 double ImperfectBundles::disc_radius(const ImperfectSettings& settings) const {
-    const double patch = points_.area() / std::max(1.0, double(settings.points));
+    const double patch = pool_.area() / std::max(1.0, double(pool_.points()));
     return double(settings.splat_size) * std::sqrt(patch / double(pi));
 }
 
@@ -74,15 +82,15 @@ RayBundle ImperfectBundles::trace(const BundleGrid& grid, std::uint64_t set,
         throw InputError("the splat size of imperfect ray-bundles must be positive");
     settings.cancelled.check();
     const auto radius = float(disc_radius(settings));
-    const std::vector<Splat> splats = this->splats(grid, set, settings.points, radius);
+    const std::vector<Splat> splats = this->splats(grid, set, radius);
     const std::uint32_t rows =
         std::clamp(rays_per_band / std::max(grid.columns, 1u), 1u, std::max(grid.rows, 1u));
     const SplatBins bins(splats, (grid.rows + rows - 1) / rows, rows);
     const double largest_hits =
-        points_.area() * double(sqr(settings.splat_size)) / (double(grid.spacing) * double(grid.spacing));
-    const HitOrder order{coincidence(grid, triangles_.bounds), settings.merge * radius};
+        pool_.area() * double(sqr(settings.splat_size)) / (double(grid.spacing) * double(grid.spacing));
+    const HitOrder order{coincidence(grid, bounds_), settings.merge * radius};
     return assemble_bundle(grid, rows, order, {settings.memory_budget, largest_hits, settings.cancelled},
-                           [&](std::uint32_t begin, std::uint32_t end, HitBand& band) {
+                           scratch_, [&](std::uint32_t begin, std::uint32_t end, HitBand& band) {
                                for (const std::uint32_t i : bins.of_band(begin / rows))
                                    splat_rows(splats[i], grid, begin, end, band);
                            });

@@ -9,15 +9,14 @@
 #pragma once
 
 #include "core/objects/cancellation.h"
-#include "gathering/ray_bundles/ray_bundle.h"
+#include "gathering/ray_bundles/bundle_assembly.h"
 #include "gathering/ray_bundles/splats.h"
 
 namespace mote::gathering {
 
 struct ImperfectSettings {
-    std::uint32_t points = 16384;  ///< of each direction
     /// Radius of a disc in units of that whose area is a point's patch: at 1 discs have the surface's area.
-    float splat_size = 1.4f;
+    float splat_size = 1.0f;
     /// Hits from one side within this share of a disc's radius along the ray are one surface's: the first of
     /// them is kept.
     float merge = 0.5f;
@@ -27,21 +26,25 @@ struct ImperfectSettings {
 
 class ImperfectBundles {
   public:
-    /// Keeps a reference to the triangles.
-    explicit ImperfectBundles(const SurfaceTriangles& triangles);
+    /// Draws `sets` sets of `points` points each: 60 bytes a point. Does not refer to the triangles later.
+    /// Throws InputError for no points or sets, or more than 2^24.
+    explicit ImperfectBundles(const SurfaceTriangles& triangles, std::uint32_t points = 16384,
+                              std::uint32_t sets = 32);
 
     double disc_radius(const ImperfectSettings& settings) const;  ///< [m]
-    /// What points number `set` hide. Hits name the triangle of the disc; beside that triangle u and v are
-    /// those of its nearest border. Same bits for any number of threads. Throws InputError where the hits
-    /// exceed the budget or the splat size is not positive, Cancelled when asked to stop.
+    /// What set `set` (modulo their number) of points hides. Hits name the triangle of the disc; beside that
+    /// triangle u and v are those of its nearest border. Same bits for any number of threads. Throws
+    /// InputError where the hits exceed the budget or the splat size is not positive, Cancelled when asked to
+    /// stop.
     RayBundle trace(const BundleGrid& grid, std::uint64_t set, const ImperfectSettings& settings = {}) const;
+    std::size_t memory_bytes() const { return pool_.memory_bytes(); }
 
   private:
-    std::vector<Splat> splats(const BundleGrid& grid, std::uint64_t set, std::uint32_t count,
-                              float radius) const;
+    std::vector<Splat> splats(const BundleGrid& grid, std::uint64_t set, float radius) const;
 
-    const SurfaceTriangles& triangles_;
-    SurfacePoints points_;
+    core::Bounds3 bounds_;
+    PointPool pool_;
+    mutable BandScratch scratch_;
 };
 
 }  // namespace mote::gathering

@@ -5,10 +5,11 @@
 // n.right / n.direction, beta = n.up / n.direction and s is the spacing. On the grid the disc is an ellipse.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "gathering/ray_bundles/hit_band.h"
-#include "gathering/ray_bundles/surface_points.h"
+#include "gathering/ray_bundles/point_pool.h"
 
 namespace mote::gathering {
 
@@ -27,9 +28,10 @@ struct Splat {
     std::uint32_t triangle;            ///< with the bit of BundleHit
 };
 
-/// Discs of `radius` [m] in the planes of the points' triangles. A disc that is seen on edge has no rows.
-void make_splats(const SurfaceTriangles& triangles, const BundleGrid& grid,
-                 std::span<const SurfacePoint> points, float radius, std::span<Splat> splats);
+/// Discs of `radius` [m] around points [begin, begin + splats.size()) of a set; `begin` is a multiple of
+/// PointPool::block. A disc that is seen on edge has no rows.
+void make_splats(const PointPool& pool, std::uint32_t set, std::uint32_t begin, const BundleGrid& grid,
+                 float radius, std::span<Splat> splats);
 
 /// Adds the splat's hits on rows [begin, end) of the grid to the band that begins at row `begin`. Beside the
 /// triangle u and v are those of its border.

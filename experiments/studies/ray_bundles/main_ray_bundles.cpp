@@ -27,7 +27,8 @@ struct Arguments {
     std::vector<std::uint32_t> sides = {128, 256, 512, 1024};
     std::uint32_t directions = 8;
     ImperfectSettings imperfect;
-    bool two_sided = false;
+    std::uint32_t points = 16384;
+    bool two_sided = false, compare = true;
     int threads = 1;
 };
 
@@ -71,7 +72,7 @@ void measure(const BundleTracer& tracer, const ImperfectBundles& imperfect, cons
             points ? imperfect.trace(grid, i, a.imperfect) : tracer.trace(grid, settings);
         if (i == 0) continue;  // first touches, and the hierarchy
         const double taken = now() - start;
-        if (points) {
+        if (points && a.compare) {
             const auto radius = float(imperfect.disc_radius(a.imperfect));
             comparison.add(compare_links(tracer.trace(grid), bundle, radius, a.two_sided));
         }
@@ -98,9 +99,10 @@ int main(int argc, char** argv) {
     app.add_option("--forms", a.forms)->delimiter(',');
     app.add_option("--sides", a.sides, "rays across the scene's diagonal")->delimiter(',');
     app.add_option("--directions", a.directions);
-    app.add_option("--points", a.imperfect.points, "of imperfect bundles");
+    app.add_option("--points", a.points, "of imperfect bundles");
     app.add_option("--splat", a.imperfect.splat_size, "size of their splats");
     app.add_option("--merge", a.imperfect.merge, "share of a disc's radius");
+    app.add_flag("!--no-comparison", a.compare, "imperfect bundles without their errors");
     app.add_flag("--two-sided", a.two_sided, "all surfaces send and receive on both sides");
     app.add_option("--threads", a.threads);
     CLI11_PARSE(app, argc, argv);
@@ -111,7 +113,7 @@ int main(int argc, char** argv) {
         const SurfaceTriangles triangles = surface_triangles(scene->shapes());
         std::cerr << triangles.size() << " triangles\n";
         const BundleTracer tracer(triangles);
-        const ImperfectBundles imperfect(triangles);
+        const ImperfectBundles imperfect(triangles, a.points);
         std::cout << "form,side,rays,hits,links,deepest,ms_per_direction,ns_per_hit,missing,wrong\n";
         for (const std::uint32_t side : a.sides)
             for (const std::string& form : a.forms) measure(tracer, imperfect, a, form, side);
