@@ -42,6 +42,7 @@ class MoteVpl final : public Integrator {
         read_compensation(properties);
         settings_.scattering_points =
             int(properties.get_int_in("scattering_points", settings_.scattering_points, 0, 64));
+        settings_.lists.size = int(properties.get_int_in("light_lists", 0, 0, 256));
         settings_.interleaving = int(properties.get_int_in("interleaving", 1, 1, 8));
         settings_.upsampling = int(properties.get_int_in("upsampling", 1, 1, 8));
         settings_.filters = properties.get_bool("filter", false);
@@ -125,6 +126,10 @@ void MoteVpl::plan_bound(Plan& plan, const Bounds3& surfaces) const {
 }
 
 void MoteVpl::plan_image_space(Plan& plan) const {
+    if (const int size = settings_.lists.size; size > 0)
+        plan.run("light lists", "VPLs by what they see in " + std::to_string(size * size) + " directions",
+                 settings_.visibility.shadow_maps ? "no effect where shadow maps are used"
+                                                  : "unbiased; pays where much is hidden from many VPLs");
     const int n = settings_.interleaving;
     if (n > 1)
         plan.run("interleaving",
@@ -201,6 +206,11 @@ void register_mote_vpl(Registry& registry) {
                           "points in media where the light of each eye ray is gathered, besides the surface "
                           "behind them, up to 64; 0: "
                           "one collision or the surface, by chance"});
+    parameters.push_back(
+        {"light_lists", "integer", "0",
+         "texels along an edge of each VPL's picture of the surfaces that it sees, up to 256: "
+         "receivers look at the VPLs that see their part of a surface, and at one in 8 of the "
+         "others, which count 8 times; 0: at all of them"});
     parameters.push_back({"interleaving", "integer", "1",
                           "n, up to 8: a pixel of n x n gathers every n^2-th VPL, which counts n^2 times"});
     parameters.push_back(

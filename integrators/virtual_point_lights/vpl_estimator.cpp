@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <chrono>
 #include <mutex>
 
 #include "integrators/eye_path/counters.h"
@@ -23,7 +24,8 @@ class VplEstimator final : public Estimator {
           options_(options),
           settings_(settings),
           bound_(settings.bound_for(scene.rays().bounds())),
-          tile_size_(lane_tile(spacing())) {
+          tile_size_(lane_tile(spacing())),
+          items_(scene.rays().bounds(), settings.lists.cells) {
         settings_.eye.wanted = wanted_transport(options);
         if (settings_.compensation.enabled && std::isfinite(bound_))
             transport_.emplace(scene, bound_, settings_.compensation);
@@ -52,6 +54,7 @@ class VplEstimator final : public Estimator {
         counters_.add(vpls.rays, vpls.tracking);
         vpls_ += vpls.lights.size(), paths_ += vpls.paths;
         bytes_ = std::max(bytes_, vpls.memory_bytes());
+        if (settings_.lists.size > 0 && !maps_) make_lists(vpls, context.cancelled);
         const int columns = (options_.width + tile_size_ - 1) / tile_size_;
         const int rows = (options_.height + tile_size_ - 1) / tile_size_;
         std::vector<lights::ReceiverStore> stores(maps_ ? std::size_t(columns) * std::size_t(rows) : 0);
@@ -81,6 +84,7 @@ class VplEstimator final : public Estimator {
         else if (settings_.visibility.shadow_maps)
             statistics.warnings.push_back("visibility 'shadow_map' has no effect: there are no media");
         if (settings_.upsampling > 1) statistics.values["pixels_shaded_again"] += double(shaded_again_);
+        if (settings_.lists.size > 0) statistics.seconds["light_lists"] = list_seconds_;
         if (filter_) {
             statistics.seconds["filter_features"] = filter_->feature_seconds();
             statistics.seconds["filter"] = filter_->filter_seconds();
@@ -105,6 +109,14 @@ class VplEstimator final : public Estimator {
     static constexpr std::size_t first_compensation_layer = transport_layer_count(Media);
     static constexpr std::size_t first_hidden_layer = first_compensation_layer + (Media ? 2 : 1);
 
+    /// For the gathers of this pass.
+    void make_lists(const lights::VplSet& vpls, CancelToken cancelled) {
+        const auto begin = std::chrono::steady_clock::now();
+        lists_.emplace(scene_, items_, vpls, settings_.lists, cancelled);
+        list_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        counters_.add(lists_->rays(), {});
+    }
+
     struct Box {
         int x0, y0, x1, y1;
     };
@@ -120,7 +132,8 @@ class VplEstimator final : public Estimator {
         const auto scratch = std::make_unique<lights::GatherScratch>();
         const auto tile = std::make_unique<EyeTile<Media>>(
             scene_, settings_, bound_, vpls, transport_ ? &*transport_ : nullptr, *scratch, walk,
-            EyeShadowMaps{maps_ ? maps_->of_lights() : nullptr, store});
+            EyeShadowMaps{maps_ ? maps_->of_lights() : nullptr, store},
+            EyeLightLists{&items_, lists_ ? &*lists_ : nullptr});
         render(*tile);
         counters_.add(walk.rays, walk.tracking);
         const std::lock_guard lock(cost_mutex_);
@@ -252,6 +265,9 @@ class VplEstimator final : public Estimator {
     VplSettings settings_;
     float bound_;
     int tile_size_;
+    SurfaceItems items_;
+    std::optional<VplLightLists> lists_;  ///< of this pass; nothing: all lights are looked at
+    double list_seconds_ = 0.0;
     std::optional<compensation::ResidualTransport> transport_;  ///< nothing: no compensation
     std::optional<HiddenLight> hidden_;                         ///< nothing: one layer
     std::optional<VplShadowMaps> maps_;                         ///< nothing: visibility is traced

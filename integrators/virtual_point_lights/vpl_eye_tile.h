@@ -30,7 +30,7 @@ class EyeTile {
 
     EyeTile(const core::Scene& scene, const VplSettings& settings, float bound, const lights::VplSet& vpls,
             const compensation::ResidualTransport* transport, lights::GatherScratch& scratch,
-            core::WalkContext& walk, const EyeShadowMaps& maps = {})
+            core::WalkContext& walk, const EyeShadowMaps& maps = {}, const EyeLightLists& lists = {})
         : scene_(scene),
           settings_(settings),
           bound_(bound),
@@ -38,6 +38,7 @@ class EyeTile {
           scratch_(scratch),
           walk_(walk),
           maps_(maps),
+          lists_(lists),
           compensation_(scene, settings.compensation, transport, vpls, scratch, walk) {}
 
     void start(int lane, const EyeRay& eye) {
@@ -102,9 +103,10 @@ class EyeTile {
         if (maps_.receivers)
             maps_.receivers->add(receivers_, maps_.column, maps_.row, maps_.spacing, range,
                                  vpl_scale * maps_.scale);
+        else if (lists_.lists)
+            light = gather_lights(listed(range));
         else
-            light = lights::gather({scene_, scratch_, walk_.rays, walk_.tracking, walk_.cancelled}, vpls_,
-                                   range, lights::BoundedGeometry{bound_}, receivers_);
+            light = gather_lights(range);
         const auto compensated = compensation_.run(range, vpl_scale);
         for (int i = 0; i < lights::ReceiverTile::width; ++i) {
             Lane& lane = lanes_[std::size_t(i)];
@@ -112,6 +114,31 @@ class EyeTile {
             lane.sum.transport[transport_layer(2, surface)] += vpl_scale * light[std::size_t(i)];
             lane.sum.compensation[std::size_t(lane.receiver)] += compensated[std::size_t(i)];
         }
+    }
+
+    template <typename Lights>
+    lights::TileLight gather_lights(const Lights& choice) {
+        return lights::gather({scene_, scratch_, walk_.rays, walk_.tracking, walk_.cancelled}, vpls_, choice,
+                              lights::BoundedGeometry{bound_}, receivers_);
+    }
+
+    /// The lights that any receiver of the tile can see. In a medium that is all of them.
+    lights::ListedVpls listed(const lights::VplRange& range) {
+        list_.assign(lists_.lists->words(), 0);
+        std::size_t last = std::size_t(-1);
+        for (int i = 0; i < lights::ReceiverTile::width; ++i) {
+            if (receivers_.max_vpl_depth[i] == 0) continue;
+            if (receivers_.in_medium[i] != 0.0f) {
+                list_.assign(list_.size(), ~std::uint64_t(0));
+                break;
+            }
+            const std::size_t item =
+                lists_.items->item(receivers_.position(i), receivers_.geometric_normal(i));
+            if (item != last) lists_.lists->add(item, list_);
+            last = item;
+        }
+        const auto rest = std::size_t(settings_.lists.rest);
+        return {range, list_, rest, walk_.rng.next_u32() % rest};
     }
 
     /// The same at the scattering points, the n-th of every lane at once. VPLs are shared out among a few of
@@ -237,6 +264,8 @@ class EyeTile {
     lights::GatherScratch& scratch_;
     core::WalkContext& walk_;
     EyeShadowMaps maps_;
+    EyeLightLists lists_;
+    std::vector<std::uint64_t> list_;  ///< of a tile
     TileCompensation<Media> compensation_;
     std::array<Lane, lights::ReceiverTile::width> lanes_;
     lights::ReceiverTile receivers_;

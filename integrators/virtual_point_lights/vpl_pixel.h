@@ -2,6 +2,7 @@
 #pragma once
 
 #include "integrators/eye_path/transport_layers.h"
+#include "integrators/virtual_point_lights/vpl_light_lists.h"
 #include "lights/shadow_maps/shadow_map_gather.h"
 
 namespace mote::integrators {
@@ -28,6 +29,12 @@ struct EyeShadowMaps {
     int column = 0, row = 0;                     ///< pixel of the first lane
     int spacing = 1;                             ///< of the lanes' pixels
     float scale = 1.0f;                          ///< of the light at receivers
+};
+
+/// Where tiles look at listed lights first; both null where they do not.
+struct EyeLightLists {
+    const SurfaceItems* items = nullptr;
+    const VplLightLists* lists = nullptr;
 };
 
 }  // namespace mote::integrators

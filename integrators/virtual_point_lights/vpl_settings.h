@@ -7,6 +7,7 @@
 #include "integrators/eye_path/eye_path_limits.h"
 #include "integrators/layer_filter/layer_filter.h"
 #include "integrators/screen_space_compensation/screen_space_compensation.h"
+#include "integrators/virtual_point_lights/vpl_light_lists.h"
 #include "integrators/virtual_point_lights/vpl_visibility.h"
 #include "lights/virtual_lights/light_path.h"
 
@@ -24,6 +25,8 @@ struct VplSettings {
     /// Points in media where the light along an eye ray is gathered, besides the surface behind them; 0: one
     /// collision or the surface, by chance.
     int scattering_points = 8;
+
+    LightListSettings lists;
 
     /// n: a pixel of n x n gathers every n^2-th VPL, which counts n^2 times.
     int interleaving = 1;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 namespace mote::lights {
@@ -28,6 +29,26 @@ struct VplRange {
     template <typename Visit>
     void for_each(std::size_t lights, const Visit& visit) const {
         for (std::size_t j = first; j < std::min(end, lights); j += stride) visit(WeightedVpl{j});
+    }
+};
+
+/// Of a range, the lights that a list names, each once, and of all others every `rest`-th, which counts
+/// `rest` times: which ones begins with `offset`, and the sum is unbiased where that is drawn evenly from [0,
+/// rest).
+struct ListedVpls {
+    VplRange range;
+    std::span<const std::uint64_t> list;  ///< a bit for each light, 64 a number
+    std::size_t rest = 1, offset = 0;
+
+    template <typename Visit>
+    void for_each(std::size_t lights, const Visit& visit) const {
+        std::size_t others = offset;
+        range.for_each(lights, [&](const WeightedVpl& light) {
+            if (list[light.index / 64] >> (light.index % 64) & 1)
+                visit(light);
+            else if (others++ % rest == 0)
+                visit(WeightedVpl{light.index, float(rest)});
+        });
     }
 };
 

@@ -26,6 +26,9 @@ struct alignas(64) ReceiverLanes {
     const core::ScatteringVertex* directional[width] = {};  ///< set where f* depends on direction
     bool any_directional = false;
     bool any_active = false;
+
+    core::Vec3 position(int i) const { return {x[i], y[i], z[i]}; }
+    core::Vec3 geometric_normal(int i) const { return {geometric_x[i], geometric_y[i], geometric_z[i]}; }
 };
 
 struct alignas(64) ReceiverTile : ReceiverLanes {
