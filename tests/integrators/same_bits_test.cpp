@@ -61,6 +61,7 @@ const std::map<std::string, Words> numbers = {
     {"rr_depth", {"", "1"}},
     {"eye_samples", {"", "3"}},
     {"scattering_points", {"3", "0"}},
+    {"light_lists", {"", "4"}},
     {"interleaving", {"", "3"}},
     {"upsampling", {"", "2"}},
     {"strategies", {"", "3"}},

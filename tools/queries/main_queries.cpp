@@ -2,6 +2,7 @@
 // Ch. 6. CSV goes to stdout.
 //
 //   mote_queries ellipses   errors and times of region sets, of item buffers and of exact counts (Table 6.3)
+//   mote_queries detail     meshes as fine as they are visible
 //
 // Exit codes as the mote command's: 0, 2 (usage), 3 (ours). Times are the least of --repeat runs.
 
@@ -17,6 +18,7 @@
 #include "screenspace/visibility/conflict_graph.h"
 #include "screenspace/visibility/item_histogram.h"
 #include "screenspace/visibility/region_queries.h"
+#include "tools/queries/detail.h"
 
 namespace {
 
@@ -27,6 +29,7 @@ struct Options {
     std::vector<int> counts{100, 200, 300, 400, 500};
     benchmarks::EllipseSettings ellipses;
     RegionSettings regions;
+    queries::DetailSettings detail;
     int pictures = 8, t = 4, repeat = 3, threads = 2;
 };
 
@@ -114,6 +117,13 @@ void ellipses(const Options& o) {
     }
 }
 
+void detail(const Options& o) {
+    std::puts("by,triangles,query_seconds,seconds,changed,hidden");
+    for (const queries::DetailRow& row : queries::compare_details(o.detail))
+        std::printf("%s,%.0f,%.6g,%.6g,%.6g,%.0f\n", row.by, row.triangles, row.query_seconds, row.seconds,
+                    row.changed, row.hidden);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -135,6 +145,11 @@ int main(int argc, char** argv) {
     command->add_option("--tiles", o.t, "t: 2^t x 2^t tiles of the item buffer");
     command->add_option("--repeat", o.repeat, "times that everything is timed");
     command->add_option("--threads", o.threads, "of TBB");
+    CLI::App* detail_command = app.add_subcommand("detail", "meshes as fine as they are visible");
+    detail_command->add_option("--balls", o.detail.balls, "in the crowd");
+    detail_command->add_option("--radius", o.detail.radius, "of balls, in the mean [m], in a cube of 2 m");
+    detail_command->add_option("--finest", o.detail.finest, "cells from pole to pole of the finest mesh");
+    detail_command->add_option("--threads", o.threads, "of TBB");
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -143,7 +158,7 @@ int main(int argc, char** argv) {
     try {
         const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
                                           std::size_t(o.threads));
-        ellipses(o);
+        detail_command->parsed() ? detail(o) : ellipses(o);
         return 0;
     } catch (const std::exception& error) {
         std::cerr << error.what() << '\n';
