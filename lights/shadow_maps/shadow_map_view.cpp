@@ -23,13 +23,47 @@ ShadowMapView ShadowMapView::of_parallel(const Vec3& direction, const Vec3& cent
 }
 
 Ray ShadowMapView::ray(int texel) const {
-    if (kind == Kind::octahedral) return {origin, frame.to_world(OctahedralMap{size}.direction(texel))};
-    if (kind == Kind::hemispherical)
-        return {origin, frame.to_world(HemiOctahedralMap{size}.direction(texel))};
-    const Vec2 centre(float(texel % size) + 0.5f, float(texel / size) + 0.5f);
-    const Vec2 xy = half_extent * (2.0f * (centre / float(size)) - 1.0f);
-    if (kind == Kind::parallel) return {origin + xy.x * frame.s + xy.y * frame.t, frame.n};
-    return {origin, glm::normalize(frame.to_world(Vec3(xy, 1.0f)))};
+    return ray_at(Vec2(float(texel % size) + 0.5f, float(texel / size) + 0.5f) / float(size));
+}
+
+Ray ShadowMapView::ray_at(const Vec2& place) const {
+    const Vec2 p = 2.0f * place - 1.0f;
+    switch (kind) {
+        case Kind::octahedral:
+            return {origin, frame.to_world(octahedral_unproject(p))};
+        case Kind::hemispherical:
+            return {origin, frame.to_world(hemi_octahedral_unproject(p))};
+        case Kind::perspective:
+            return {origin, glm::normalize(frame.to_world(Vec3(half_extent * p, 1.0f)))};
+        case Kind::parallel:
+            break;
+    }
+    return {origin + half_extent * (p.x * frame.s + p.y * frame.t), frame.n};
+}
+
+float ShadowMapView::measure(const Vec2& place) const {
+    const Vec2 p = 2.0f * place - 1.0f;
+    // On the octahedron a direction w lies at w / |w|_1, on a face at the distance 1/sqrt(3), and the map
+    // shows faces at a slant with a cosine of as much: dw = |w|_1^3 dx dy. [0, 1]^2 is 4 dx dy, the half of
+    // it 2 dx dy.
+    const auto face = [](const Vec3& w) {
+        const float l1 = std::fabs(w.x) + std::fabs(w.y) + std::fabs(w.z);
+        return l1 * l1 * l1;
+    };
+    const float square = 4.0f * half_extent * half_extent;
+    switch (kind) {
+        case Kind::octahedral:
+            return 4.0f * face(octahedral_unproject(p));
+        case Kind::hemispherical:
+            return 2.0f * face(hemi_octahedral_unproject(p));
+        case Kind::perspective: {
+            const float slant = 1.0f + half_extent * half_extent * glm::dot(p, p);
+            return square / (slant * std::sqrt(slant));  // cos^3
+        }
+        case Kind::parallel:
+            break;
+    }
+    return square;
 }
 
 int ShadowMapView::neighbour(int i, int j) const {

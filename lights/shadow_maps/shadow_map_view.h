@@ -36,6 +36,11 @@ struct ShadowMapView {
     /// The ray through a texel's centre; `t` is the distance from the light, or from the plane of a parallel
     /// one.
     core::Ray ray(int texel) const;
+    /// The ray through any place of the map, in [0, 1]^2.
+    core::Ray ray_at(const core::Vec2& place) const;
+    /// What a piece of the map stands for, per its share of the map: solid angle [sr], of a parallel one area
+    /// [m^2].
+    float measure(const core::Vec2& place) const;
     /// The texel that column i of row j, both in [-1, size], continues the map with: round the edges of the
     /// octahedron, else the nearest.
     int neighbour(int i, int j) const;

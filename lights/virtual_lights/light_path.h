@@ -28,30 +28,23 @@ inline float remaining_power(const core::Rgb& alpha, const core::Rgb& alpha_star
     return start > 0.0f ? std::max(core::max_component(alpha) / start, 0.05f) : 0.0f;
 }
 
-/// Calls visit(vertex, alpha / paths, depth, state) at every vertex of one path, delta surfaces included;
-/// `depth` counts from 1 at the first. The vertex's `wo` points back along the path; `state` holds the media
-/// on its side.
+/// Follows a particle of `emitter` whose power over the number of paths is `start` [W]: calls visit(vertex,
+/// alpha / paths, depth, state) at every vertex, delta surfaces included; `depth` counts from 1 at the first.
+/// The vertex's `wo` points back along the path; `state` holds the media on its side.
 template <bool Media, typename Visit>
-void follow_light_path(const core::LitScene& scene, const LightPathSettings& settings, core::Sampler& sampler,
-                       core::WalkContext& context, const Visit& visit) {
-    float u_light = sampler.next_1d();
-    const core::LightChoice choice = scene.choose_emitter_by_power(u_light, &u_light);
-    const core::Vec2 u_position = sampler.next_2d(), u_direction = sampler.next_2d();
-    if (!choice.emitter) return;
-    const auto emission = choice.emitter->sample_emission(u_position, u_direction);
-    if (!emission) return;
-
-    // alpha_1, with the cosine at the light, over the paths (Engelhardt 2013, Sec. 10.1.1, step 3).
+void follow_particle(const core::LitScene& scene, const LightPathSettings& settings,
+                     const core::Emitter& emitter, const core::EmissionSample& emission,
+                     const core::Rgb& start, core::Sampler& sampler, core::WalkContext& context,
+                     const Visit& visit) {
     core::PathWeights weights;
-    weights.throughput = emission->weight / (choice.probability * float(settings.paths));
-    const core::Rgb start = weights.throughput;
+    weights.throughput = start;
     core::MediumState state;
     if constexpr (Media) {
         weights.hero = core::draw_hero(context.rng);
-        state = scene.emitter_medium_state(*choice.emitter, *emission);
-        if (emission->inside && state.current() != emission->inside) return;
+        state = scene.emitter_medium_state(emitter, emission);
+        if (emission.inside && state.current() != emission.inside) return;
     }
-    core::Ray ray{emission->origin, emission->direction};
+    core::Ray ray{emission.origin, emission.direction};
     for (int depth = 1; settings.max_vertices < 0 || depth <= settings.max_vertices; ++depth) {
         core::Rgb emitted(0.0f);
         // tau / p(t): sigma_s / sigma_t at a collision, 1 at a surface.
@@ -76,6 +69,21 @@ void follow_light_path(const core::LitScene& scene, const LightPathSettings& set
         if (Media && vertex.on_surface()) state = vertex.state_towards(state, next->wi);
         ray = core::Ray{vertex.ray_origin(next->wi), next->wi};
     }
+}
+
+/// The same for a path of a light that is drawn by its power.
+template <bool Media, typename Visit>
+void follow_light_path(const core::LitScene& scene, const LightPathSettings& settings, core::Sampler& sampler,
+                       core::WalkContext& context, const Visit& visit) {
+    float u_light = sampler.next_1d();
+    const core::LightChoice choice = scene.choose_emitter_by_power(u_light, &u_light);
+    const core::Vec2 u_position = sampler.next_2d(), u_direction = sampler.next_2d();
+    if (!choice.emitter) return;
+    const auto emission = choice.emitter->sample_emission(u_position, u_direction);
+    if (!emission) return;
+    // alpha_1, with the cosine at the light, over the paths (Engelhardt 2013, Sec. 10.1.1, step 3).
+    const core::Rgb start = emission->weight / (choice.probability * float(settings.paths));
+    follow_particle<Media>(scene, settings, *choice.emitter, *emission, start, sampler, context, visit);
 }
 
 }  // namespace mote::lights

@@ -15,9 +15,18 @@ constexpr std::uint32_t chunk_size = 32;
 constexpr std::uint32_t light_path_stream =
     0x56504cu;  // keeps light paths apart from pixels of the same index
 
+template <bool Media, typename Visit>
+void follow(const LitScene& scene, const LightPathSettings& settings, const LightPathStarts* starts,
+            std::uint32_t path, Sampler& sampler, WalkContext& context, const Visit& visit) {
+    if (!starts) return follow_light_path<Media>(scene, settings, sampler, context, visit);
+    if (const auto begin = starts->start(path, sampler))
+        follow_particle<Media>(scene, settings, *begin->emitter, begin->emission, begin->power, sampler,
+                               context, visit);
+}
+
 VplSet trace_chunk(const LitScene& scene, const LightPathSettings& settings, std::uint32_t begin,
                    std::uint32_t end, std::uint64_t seed, std::uint32_t pass, SamplerKind kind,
-                   CancelToken cancelled) {
+                   CancelToken cancelled, const LightPathStarts* starts) {
     VplSet set;
     for (std::uint32_t path = begin; path < end; ++path) {
         // The paths of one pass form one low-discrepancy set; every pass has a scramble of its own.
@@ -31,9 +40,9 @@ VplSet trace_chunk(const LitScene& scene, const LightPathSettings& settings, std
             if (scene.has_media() && set.states.size() < set.lights.size()) set.states.push_back(state);
         };
         if (scene.has_media())
-            follow_light_path<true>(scene, settings, sampler, context, leave_vpl);
+            follow<true>(scene, settings, starts, path, sampler, context, leave_vpl);
         else
-            follow_light_path<false>(scene, settings, sampler, context, leave_vpl);
+            follow<false>(scene, settings, starts, path, sampler, context, leave_vpl);
         set.rays.add(context.rays);
         set.tracking.add(context.tracking);
     }
@@ -54,12 +63,13 @@ void append(VplSet& to, VplSet&& from) {
 }  // namespace
 
 VplSet trace_light_paths(const LitScene& scene, const LightPathSettings& settings, std::uint64_t seed,
-                         std::uint32_t pass, SamplerKind sampler, CancelToken cancelled) {
+                         std::uint32_t pass, SamplerKind sampler, CancelToken cancelled,
+                         const LightPathStarts* starts) {
     const std::uint32_t chunks = (settings.paths + chunk_size - 1) / chunk_size;
     std::vector<VplSet> parts(chunks);
     tbb::parallel_for(std::uint32_t(0), chunks, [&](std::uint32_t c) {
         const std::uint32_t begin = c * chunk_size, end = std::min(begin + chunk_size, settings.paths);
-        parts[c] = trace_chunk(scene, settings, begin, end, seed, pass, sampler, cancelled);
+        parts[c] = trace_chunk(scene, settings, begin, end, seed, pass, sampler, cancelled, starts);
     });
     VplSet set;
     for (VplSet& part : parts) append(set, std::move(part));

@@ -1,0 +1,49 @@
+#include "lights/virtual_lights/reflective_shadow_maps.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace mote::lights {
+
+using namespace core;
+
+ReflectiveShadowMaps::ReflectiveShadowMaps(const LitScene& scene, int size, std::uint32_t other_paths)
+    : scene_(scene), texels_(std::uint32_t(size) * std::uint32_t(size)), other_paths_(0) {
+    if (size <= 0) throw std::invalid_argument("a reflective shadow map has texels");
+    for (const auto& emitter : scene.emitters())
+        if (const auto view = shadow_map_view_of(scene, *emitter, size))
+            maps_.push_back({emitter.get(), *view});
+        else if (!is_black(emitter->power()))
+            other_paths_ = other_paths;
+}
+
+std::optional<LightPathStart> ReflectiveShadowMaps::start(std::uint32_t path, Sampler& sampler) const {
+    if (path >= texels()) return of_other_light(sampler);
+    const Map& map = maps_[path / texels_];
+    const int texel = int(path % texels_), size = map.view.size;
+    const Vec2 place = (Vec2(float(texel % size), float(texel / size)) + sampler.next_2d()) / float(size);
+    const Ray ray = map.view.ray_at(place);
+    // One metre away the intensity is what arrives; of parallel light that is the irradiance, anywhere.
+    const auto light = map.emitter->sample_direct(ray.at(1.0f), Vec2(0.5f));
+    if (!light) return std::nullopt;
+    EmissionSample emission{};
+    emission.origin = ray.origin, emission.direction = ray.direction;
+    emission.pdf_area = emission.pdf_solid_angle = 1.0f;
+    emission.weight = light->weight * map.view.measure(place);
+    if (is_black(emission.weight)) return std::nullopt;
+    return LightPathStart{map.emitter, emission, emission.weight / float(texels_)};
+}
+
+std::optional<LightPathStart> ReflectiveShadowMaps::of_other_light(Sampler& sampler) const {
+    float u_light = sampler.next_1d();
+    const LightChoice choice = scene_.choose_emitter_by_power(u_light, &u_light);
+    const Vec2 u_position = sampler.next_2d(), u_direction = sampler.next_2d();
+    const auto is_chosen = [&](const Map& map) { return map.emitter == choice.emitter; };
+    if (!choice.emitter || std::any_of(maps_.begin(), maps_.end(), is_chosen)) return std::nullopt;
+    const auto emission = choice.emitter->sample_emission(u_position, u_direction);
+    if (!emission) return std::nullopt;
+    return LightPathStart{choice.emitter, *emission,
+                          emission->weight / (choice.probability * float(other_paths_))};
+}
+
+}  // namespace mote::lights
