@@ -72,7 +72,7 @@ class Culling:
 
     def __init__(self, mote, scene, name, quick):
         settings = {"film.width": 160 if quick else 320, "film.height": 100 if quick else 200, "integrator.paths": 256}
-        pair = [mote.render(scene, f"{name}_{lists}", settings | {"integrator.light_lists": lists}, passes=8 if quick else 32,
+        pair = [mote.render(scene, f"{name}_{lists}", settings | {"integrator.light_lists": lists}, passes=8 if quick or name in SCENES[1:] else 24,
                             threads=2) for lists in (0, 8)]
         self.name = name
         self.time, self.noise, self.rays = (
