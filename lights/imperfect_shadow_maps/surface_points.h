@@ -1,0 +1,30 @@
+// Points spread evenly by area over all surfaces of a scene: what imperfect shadow maps are made of.
+//
+// They are where straight lines through everything meet surfaces. Lines that are uniform within a sphere of
+// radius R meet a piece of surface in proportion to its area, wherever and however it lies: A / (2 pi R^2)
+// times a line. So no shape needs to know how it is sampled, and instances, meshes and balls are alike.
+#pragma once
+
+#include <vector>
+
+#include "core/scene/ray_queries.h"
+
+namespace mote::lights {
+
+struct SurfacePoint {
+    core::Vec3 position, normal;  ///< geometric, to either side
+};
+
+struct SurfacePoints {
+    std::vector<SurfacePoint> points;  ///< in random order: any range of them is a sample of all
+    float density = 0.0f;              ///< points per area [1/m^2]; 0: there are no surfaces
+
+    /// The radius of discs that cover a surface `coverage` times in the mean, of `count` of the points [m].
+    float radius(std::size_t count, float coverage) const;
+};
+
+/// `count` points, or fewer where 64 lines a point do not find as many. On the threads of TBB; the same for
+/// any number of them.
+SurfacePoints sample_surface_points(const core::RayQueries& scene, std::size_t count, std::uint64_t seed);
+
+}  // namespace mote::lights
