@@ -18,6 +18,7 @@ struct alignas(64) LaneLight {
     static constexpr int width = ReceiverLanes::width;
     float r[width], g[width], b[width];
     const ReceiverLanes* receivers;
+    std::size_t vpl;  ///< its index
 };
 
 /// Shadow rays stop this much short of the VPL, so that rounding of the direction cannot hit the VPL's own
@@ -110,7 +111,7 @@ template <typename Weight>
 bool contributions_of(const VplSet& vpls, const WeightedVpl& light, const ReceiverLanes& receivers,
                       const Weight& weight, core::ShadowPacket& packet, LaneLight& out) {
     const VirtualPointLight& vpl = vpls.lights[light.index];
-    out.receivers = &receivers;
+    out.receivers = &receivers, out.vpl = light.index;
     if (vpl.detail == VirtualPointLight::no_detail && !receivers.any_directional)
         return plain_contributions(receivers, vpl, light.weight, weight, packet, out);
     return general_contributions(receivers, vpls, vpl, light.weight, weight, packet, out);

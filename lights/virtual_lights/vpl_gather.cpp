@@ -18,13 +18,25 @@ std::uint64_t count_rays(std::span<const ShadowPacket> packets) {
     return rays;
 }
 
+void attenuate(const GatherContext& context, ReceiverTile& tile, const ShadowPacket& packet,
+               LaneLight& light) {
+    for (int i = 0; i < width; ++i) {
+        if (packet.occluded(i)) continue;
+        context.cancelled.check();
+        const Vec3 from(packet.origin_x[i], packet.origin_y[i], packet.origin_z[i]);
+        const Vec3 to = from + Vec3(packet.direction_x[i], packet.direction_y[i], packet.direction_z[i]);
+        const ScatteringVertex* v = tile.directional[i];
+        const MediumState state = v ? v->state_towards(tile.state[i], to - from) : tile.state[i];
+        const Rgb transmittance = context.scene.transmittance(from, to, state, tile.rng[i], context.tracking);
+        light.r[i] *= transmittance.x, light.g[i] *= transmittance.y, light.b[i] *= transmittance.z;
+    }
+}
+
 }  // namespace
 
-void TracedVisibility::operator()(std::span<ShadowPacket> packets, std::span<LaneLight> light) {
-    context_.cancelled.check();
-    context_.rays.occlusion += count_rays(packets);
-    context_.scene.find_occluded(packets);
-    const bool attenuates = context_.scene.attenuates();
+void attenuate_free(const GatherContext& context, ReceiverTile& tile, std::span<const ShadowPacket> packets,
+                    std::span<LaneLight> light) {
+    const bool attenuates = context.scene.attenuates();
     for (std::size_t p = 0; p < packets.size(); ++p) {
         const ShadowPacket& packet = packets[p];
         LaneLight& l = light[p];
@@ -33,22 +45,15 @@ void TracedVisibility::operator()(std::span<ShadowPacket> packets, std::span<Lan
                 packet.t_max[i] >= 0.0f;  // of a lane without light it was negative from the start
             l.r[i] = free ? l.r[i] : 0.0f, l.g[i] = free ? l.g[i] : 0.0f, l.b[i] = free ? l.b[i] : 0.0f;
         }
-        if (attenuates) attenuate(packet, l);
+        if (attenuates) attenuate(context, tile, packet, l);
     }
 }
 
-void TracedVisibility::attenuate(const ShadowPacket& packet, LaneLight& light) {
-    for (int i = 0; i < width; ++i) {
-        if (packet.occluded(i)) continue;
-        context_.cancelled.check();
-        const Vec3 from(packet.origin_x[i], packet.origin_y[i], packet.origin_z[i]);
-        const Vec3 to = from + Vec3(packet.direction_x[i], packet.direction_y[i], packet.direction_z[i]);
-        const ScatteringVertex* v = tile_.directional[i];
-        const MediumState state = v ? v->state_towards(tile_.state[i], to - from) : tile_.state[i];
-        const Rgb transmittance =
-            context_.scene.transmittance(from, to, state, tile_.rng[i], context_.tracking);
-        light.r[i] *= transmittance.x, light.g[i] *= transmittance.y, light.b[i] *= transmittance.z;
-    }
+void TracedVisibility::operator()(std::span<ShadowPacket> packets, std::span<LaneLight> light) {
+    context_.cancelled.check();
+    context_.rays.occlusion += count_rays(packets);
+    context_.scene.find_occluded(packets);
+    attenuate_free(context_, tile_, packets, light);
 }
 
 template TileLight gather(const GatherContext&, const VplSet&, const VplRange&, const BoundedGeometry&,

@@ -68,11 +68,14 @@ class TracedVisibility {
     void operator()(std::span<core::ShadowPacket> packets, std::span<LaneLight> light);
 
   private:
-    void attenuate(const core::ShadowPacket& packet, LaneLight& light);
-
     const GatherContext& context_;
     ReceiverTile& tile_;
 };
+
+/// Takes the light of occluded lanes away, whose t_max is below 0, and of all others what is lost between
+/// receiver and light, an estimate that draws from the tile's generators.
+void attenuate_free(const GatherContext& context, ReceiverTile& tile,
+                    std::span<const core::ShadowPacket> packets, std::span<LaneLight> light);
 
 using TileLight = std::array<core::Rgb, ReceiverLanes::width>;
 
@@ -91,19 +94,26 @@ struct alignas(64) TileSum {
     }
 };
 
-/// The light of `lights` at the receivers of a tile, per lane, with traced visibility.
-template <typename Lights, typename Weight>
-TileLight gather(const GatherContext& context, const VplSet& vpls, const Lights& lights, const Weight& weight,
-                 ReceiverTile& tile) {
+/// The light of `lights` at the receivers of a tile, per lane, with a visibility of the caller's.
+template <typename Lights, typename Weight, typename Visibility>
+TileLight gather_with(const GatherContext& context, const VplSet& vpls, const Lights& lights,
+                      const Weight& weight, ReceiverTile& tile, Visibility& visibility) {
     TileSum sum;
     if (!tile.any_active) return sum.value();
-    TracedVisibility visibility(context, tile);
     const auto pairs = [&](const auto& visit) {
         lights.for_each(vpls.lights.size(), [&](const WeightedVpl& light) { visit(tile, light); });
     };
     gather_pairs(vpls, pairs, weight, visibility, context.scratch,
                  [&](const LaneLight& light) { sum.add(light); });
     return sum.value();
+}
+
+/// The same with traced visibility.
+template <typename Lights, typename Weight>
+TileLight gather(const GatherContext& context, const VplSet& vpls, const Lights& lights, const Weight& weight,
+                 ReceiverTile& tile) {
+    TracedVisibility visibility(context, tile);
+    return gather_with(context, vpls, lights, weight, tile, visibility);
 }
 
 // What all renderers use; other policies are compiled where they are named.
