@@ -15,6 +15,7 @@
 #include "integrators/register_parts.h"
 #include "integrators/virtual_point_lights/plan_compensation.h"
 #include "integrators/virtual_point_lights/vpl_estimator.h"
+#include "lights/virtual_lights/reflective_shadow_maps.h"
 
 namespace mote::integrators {
 
@@ -42,6 +43,7 @@ class MoteVpl final : public Integrator {
         read_compensation(properties);
         settings_.scattering_points =
             int(properties.get_int_in("scattering_points", settings_.scattering_points, 0, 64));
+        settings_.reflective_maps = int(properties.get_int_in("reflective_shadow_maps", 0, 0, 2048));
         settings_.lists.size = int(properties.get_int_in("light_lists", 0, 0, 256));
         settings_.interleaving = int(properties.get_int_in("interleaving", 1, 1, 8));
         settings_.upsampling = int(properties.get_int_in("upsampling", 1, 1, 8));
@@ -84,6 +86,7 @@ class MoteVpl final : public Integrator {
     void read_compensation(const Properties& properties);
     void check_upsampling(const Properties& properties) const;
     void plan_bound(Plan& plan, const Bounds3& surfaces) const;
+    void plan_light_paths(Plan& plan, const Scene& scene) const;
     void plan_image_space(Plan& plan) const;
     VplSettings settings_;
 };
@@ -109,6 +112,19 @@ void MoteVpl::check_upsampling(const Properties& properties) const {
     if (against)
         throw InputError(std::string("upsampling does not go together with ") + against,
                          properties.where_of("upsampling"));
+}
+
+void MoteVpl::plan_light_paths(Plan& plan, const Scene& scene) const {
+    std::uint32_t paths = settings_.paths;
+    if (const int size = settings_.reflective_maps; size > 0) {
+        const lights::ReflectiveShadowMaps maps(scene, size, settings_.paths);
+        paths = maps.paths();
+        plan.run("reflective shadow maps",
+                 std::to_string(maps.maps()) + " of " + std::to_string(size) + "^2 texels",
+                 maps.maps() > 0 ? "each texel begins a light path, its flux is intensity times solid angle"
+                                 : "no light is a point, a cone or parallel");
+    }
+    plan.run("light paths", std::to_string(paths) + " a pass", "a fresh set every pass");
 }
 
 void MoteVpl::plan_bound(Plan& plan, const Bounds3& surfaces) const {
@@ -151,7 +167,7 @@ void MoteVpl::plan_image_space(Plan& plan) const {
 Plan MoteVpl::plan(const Scene& scene, const Requirements& r) const {
     Plan plan;
     plan.integrator = type();
-    plan.run("light paths", std::to_string(settings_.paths) + " a pass", "a fresh set every pass");
+    plan_light_paths(plan, scene);
     plan_bound(plan, scene.rays().bounds());
     const bool directional = r.any_glossy() || (r.media_anisotropic && r.media_scattering);
     if (directional)
@@ -195,13 +211,19 @@ Plan MoteVpl::plan(const Scene& scene, const Requirements& r) const {
 void register_mote_vpl(Registry& registry) {
     auto parameters = eye_path_parameters();
     parameters.push_back({"paths", "integer", "256", "light paths traced in every pass"});
+    parameters.push_back(
+        {"reflective_shadow_maps", "integer", "0",
+         "texels along an edge of the map of each point, spot and directional light, up to "
+         "2048: each begins a light path, and `paths` are those of other lights; 0: all lights "
+         "draw their paths"});
     parameters.push_back({"bound", "float", "automatic",
                           "bound b [1/m^2] on the geometry term; automatic: light paths / R^2 with the "
                           "radius R of all shapes"});
     parameters.push_back({"bounded", "boolean", "true", "false: no bound on the geometry term"});
     parameters.push_back({"compensation", "compensation", "none", "what the bound takes, brought back"});
     parameters.push_back(
-        {"visibility", "visibility", "traced", "what stands between VPLs and receivers: traced, shadow_map"});
+        {"visibility", "visibility", "traced",
+         "what stands between VPLs and receivers: traced, shadow_map, imperfect_shadow_map"});
     parameters.push_back({"scattering_points", "integer", "8",
                           "points in media where the light of each eye ray is gathered, besides the surface "
                           "behind them, up to 64; 0: "

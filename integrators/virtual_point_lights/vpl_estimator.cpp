@@ -10,6 +10,7 @@
 #include "integrators/screen_space_compensation/hidden_light.h"
 #include "integrators/virtual_point_lights/vpl_eye_tile.h"
 #include "integrators/virtual_point_lights/vpl_shadow_maps.h"
+#include "lights/virtual_lights/reflective_shadow_maps.h"
 
 namespace mote::integrators {
 
@@ -32,6 +33,11 @@ class VplEstimator final : public Estimator {
         if (settings_.screen_space && settings_.screen_space->layers > 1 && std::isfinite(bound_))
             hidden_.emplace(scene, options, settings, bound_);
         if (settings_.visibility.used_in(scene)) maps_.emplace(scene, settings_.visibility);
+        if (settings_.visibility.imperfect)
+            points_ = lights::sample_surface_points(
+                scene, std::size_t(settings.visibility.imperfect_map.all_points), options.seed);
+        if (settings_.reflective_maps > 0)
+            reflective_.emplace(scene, settings.reflective_maps, settings.paths);
         if (settings_.filters) filter_.emplace(scene, options, settings_.filter);
     }
 
@@ -48,12 +54,11 @@ class VplEstimator final : public Estimator {
 
     bool pass(const PassContext& context, PassImage& image) override {
         if (context.cancelled) return false;
-        const lights::VplSet vpls =
-            lights::trace_light_paths(scene_, settings_.light_paths(), options_.seed, context.index,
-                                      options_.sampler, context.cancelled);
+        const lights::VplSet vpls = trace_lights(context);
         counters_.add(vpls.rays, vpls.tracking);
         vpls_ += vpls.lights.size(), paths_ += vpls.paths;
         bytes_ = std::max(bytes_, vpls.memory_bytes());
+        if (settings_.visibility.imperfect) make_imperfect_maps(vpls, context);
         if (settings_.lists.size > 0 && !maps_) make_lists(vpls, context.cancelled);
         const int columns = (options_.width + tile_size_ - 1) / tile_size_;
         const int rows = (options_.height + tile_size_ - 1) / tile_size_;
@@ -84,6 +89,11 @@ class VplEstimator final : public Estimator {
         else if (settings_.visibility.shadow_maps)
             statistics.warnings.push_back("visibility 'shadow_map' has no effect: there are no media");
         if (settings_.upsampling > 1) statistics.values["pixels_shaded_again"] += double(shaded_again_);
+        if (settings_.visibility.imperfect) {
+            statistics.seconds["imperfect_shadow_maps"] = imperfect_seconds_;
+            statistics.values["imperfect_shadow_map_bytes"] = double(imperfect_.memory_bytes());
+            statistics.lookups["imperfect_shadow_maps"] += imperfect_lookups_;
+        }
         if (settings_.lists.size > 0) statistics.seconds["light_lists"] = list_seconds_;
         if (filter_) {
             statistics.seconds["filter_features"] = filter_->feature_seconds();
@@ -109,6 +119,20 @@ class VplEstimator final : public Estimator {
     static constexpr std::size_t first_compensation_layer = transport_layer_count(Media);
     static constexpr std::size_t first_hidden_layer = first_compensation_layer + (Media ? 2 : 1);
 
+    lights::VplSet trace_lights(const PassContext& context) const {
+        lights::LightPathSettings paths = settings_.light_paths();
+        if (reflective_) paths.paths = reflective_->paths();
+        return lights::trace_light_paths(scene_, paths, options_.seed, context.index, options_.sampler,
+                                         context.cancelled, reflective_ ? &*reflective_ : nullptr);
+    }
+
+    void make_imperfect_maps(const lights::VplSet& vpls, const PassContext& context) {
+        const auto begin = std::chrono::steady_clock::now();
+        imperfect_.build(points_, vpls, settings_.visibility.imperfect_map,
+                         hash_keys(options_.seed, context.index), context.cancelled);
+        imperfect_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    }
+
     /// For the gathers of this pass.
     void make_lists(const lights::VplSet& vpls, CancelToken cancelled) {
         const auto begin = std::chrono::steady_clock::now();
@@ -132,11 +156,14 @@ class VplEstimator final : public Estimator {
         const auto scratch = std::make_unique<lights::GatherScratch>();
         const auto tile = std::make_unique<EyeTile<Media>>(
             scene_, settings_, bound_, vpls, transport_ ? &*transport_ : nullptr, *scratch, walk,
-            EyeShadowMaps{maps_ ? maps_->of_lights() : nullptr, store},
+            EyeShadowMaps{.lights = maps_ ? maps_->of_lights() : nullptr,
+                          .receivers = store,
+                          .imperfect = settings_.visibility.imperfect ? &imperfect_ : nullptr},
             EyeLightLists{&items_, lists_ ? &*lists_ : nullptr});
         render(*tile);
         counters_.add(walk.rays, walk.tracking);
         const std::lock_guard lock(cost_mutex_);
+        imperfect_lookups_ += tile->imperfect_lookups();
         cost_.vertices += tile->compensation_cost().vertices;
         cost_.seconds += tile->compensation_cost().seconds;
     }
@@ -268,6 +295,11 @@ class VplEstimator final : public Estimator {
     SurfaceItems items_;
     std::optional<VplLightLists> lists_;  ///< of this pass; nothing: all lights are looked at
     double list_seconds_ = 0.0;
+    std::optional<lights::ReflectiveShadowMaps> reflective_;  ///< nothing: lights draw their paths
+    lights::SurfacePoints points_;
+    lights::ImperfectShadowMaps imperfect_;  ///< of this pass, from these points
+    double imperfect_seconds_ = 0.0;
+    std::uint64_t imperfect_lookups_ = 0;
     std::optional<compensation::ResidualTransport> transport_;  ///< nothing: no compensation
     std::optional<HiddenLight> hidden_;                         ///< nothing: one layer
     std::optional<VplShadowMaps> maps_;                         ///< nothing: visibility is traced

@@ -60,6 +60,7 @@ class EyeTile {
     /// Do lanes to come gather VPLs and compensate? Else receivers are seen, and nothing arrives at them.
     void gathers(bool yes) { gathers_ = yes; }
     CompensationCost compensation_cost() const { return compensation_.cost(); }
+    std::uint64_t imperfect_lookups() const { return imperfect_lookups_; }
 
     /// Of the lanes to come: where they lie in the picture, `spacing` pixels apart, and how much receivers
     /// that are stored count.
@@ -118,8 +119,13 @@ class EyeTile {
 
     template <typename Lights>
     lights::TileLight gather_lights(const Lights& choice) {
-        return lights::gather({scene_, scratch_, walk_.rays, walk_.tracking, walk_.cancelled}, vpls_, choice,
-                              lights::BoundedGeometry{bound_}, receivers_);
+        const lights::GatherContext context{scene_, scratch_, walk_.rays, walk_.tracking, walk_.cancelled};
+        const lights::BoundedGeometry weight{bound_};
+        if (!maps_.imperfect) return lights::gather(context, vpls_, choice, weight, receivers_);
+        lights::ImperfectVisibility visibility(context, receivers_, *maps_.imperfect);
+        const auto light = lights::gather_with(context, vpls_, choice, weight, receivers_, visibility);
+        imperfect_lookups_ += visibility.lookups();
+        return light;
     }
 
     /// The lights that any receiver of the tile can see. In a medium that is all of them.
@@ -266,6 +272,7 @@ class EyeTile {
     EyeShadowMaps maps_;
     EyeLightLists lists_;
     std::vector<std::uint64_t> list_;  ///< of a tile
+    std::uint64_t imperfect_lookups_ = 0;
     TileCompensation<Media> compensation_;
     std::array<Lane, lights::ReceiverTile::width> lanes_;
     lights::ReceiverTile receivers_;

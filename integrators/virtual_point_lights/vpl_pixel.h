@@ -3,6 +3,7 @@
 
 #include "integrators/eye_path/transport_layers.h"
 #include "integrators/virtual_point_lights/vpl_light_lists.h"
+#include "lights/imperfect_shadow_maps/imperfect_visibility.h"
 #include "lights/shadow_maps/shadow_map_gather.h"
 
 namespace mote::integrators {
@@ -29,6 +30,7 @@ struct EyeShadowMaps {
     int column = 0, row = 0;                     ///< pixel of the first lane
     int spacing = 1;                             ///< of the lanes' pixels
     float scale = 1.0f;                          ///< of the light at receivers
+    const lights::ImperfectShadowMaps* imperfect = nullptr;  ///< looked up instead of shadow rays to VPLs
 };
 
 /// Where tiles look at listed lights first; both null where they do not.

@@ -27,6 +27,7 @@ struct VplSettings {
     int scattering_points = 8;
 
     LightListSettings lists;
+    int reflective_maps = 0;  ///< texels along an edge of reflective shadow maps; 0: none
 
     /// n: a pixel of n x n gathers every n^2-th VPL, which counts n^2 times.
     int interleaving = 1;

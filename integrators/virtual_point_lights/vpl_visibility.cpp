@@ -33,6 +33,21 @@ std::shared_ptr<Object> make_shadow_map(const Properties& p) {
     return std::make_shared<Visibility>(s);
 }
 
+std::shared_ptr<Object> make_imperfect(const Properties& p) {
+    VisibilitySettings s;
+    lights::ImperfectMapSettings& map = s.imperfect_map;
+    s.imperfect = true;
+    map.size = int(p.get_int_in("size", map.size, 2, 1024));
+    map.points = int(p.get_int_in("points", map.points, 1, 1 << 24));
+    map.all_points =
+        int(p.get_int_in("all_points", std::max(map.all_points, map.points), map.points, 1 << 26));
+    map.splat = float(p.get_float_in("splat", double(map.splat), 0.0, 1000.0));
+    map.pull_push = p.get_bool("pull_push", true);
+    map.bias = float(p.get_float_in("bias", double(map.bias), 0.0, double(map.size) - 1.0));
+    s.where = p.where;
+    return std::make_shared<Visibility>(s);
+}
+
 std::string megabytes(std::size_t bytes) { return fmt::format("{:.2f} MB", double(bytes) * 1e-6); }
 
 std::size_t mapped_lights(const Scene& scene) {
@@ -68,6 +83,20 @@ void VisibilitySettings::check(const Scene& scene) const {
 }
 
 void plan_visibility(Plan& plan, const Scene& scene, const VisibilitySettings& s, double receivers) {
+    if (s.imperfect) {
+        const lights::ImperfectMapSettings& map = s.imperfect_map;
+        plan.run("visibility",
+                 fmt::format("imperfect shadow maps of {}^2 texels, {} of {} points in each, biased",
+                             map.size, map.points, map.all_points),
+                 "asked for; traced is exact");
+        plan.run("memory of shadow maps",
+                 fmt::format("{} for 1000 VPLs, {} of points", megabytes(1000 * map.bytes()),
+                             megabytes(std::size_t(map.all_points) * sizeof(lights::SurfacePoint))),
+                 "all maps of a pass are kept");
+        plan.miss("detail of shadows", "finer than a texel or a disc around a point",
+                  "maps are made of points: what is smaller casts no shadow, and edges are swollen");
+        return;
+    }
     if (!s.used_in(scene)) {
         plan.run("visibility", "shadow rays, sixteen at a time",
                  s.shadow_maps
@@ -107,6 +136,19 @@ void register_visibility(Registry& registry) {
                   {},
                   R"(<visibility type="traced"/>)"},
                  [](const Properties&) { return std::make_shared<Visibility>(VisibilitySettings{}); });
+    registry.add(
+        {Category::visibility,
+         "imperfect_shadow_map",
+         "Small shadow maps of VPLs, made of points of the surfaces: fast for many receivers, and biased.",
+         {{"size", "integer", "32", "texels along an edge of a VPL's map"},
+          {"points", "integer", "8192", "in each map"},
+          {"all_points", "integer", "131072, at least points",
+           "on all surfaces; each map has a range of them"},
+          {"splat", "float", "4", "how often the discs of a map's points cover a surface"},
+          {"pull_push", "boolean", "true", "fill holes and close gaps between the points"},
+          {"bias", "float", "0.5", "what is nearer by less than so many texels' width casts no shadow"}},
+         R"(<visibility type="imperfect_shadow_map"><integer name="points" value="4096"/></visibility>)"},
+        make_imperfect);
     registry.add(
         {Category::visibility,
          "shadow_map",

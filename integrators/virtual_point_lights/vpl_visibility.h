@@ -7,16 +7,19 @@
 #include "core/render/plan.h"
 #include "core/scene/requirements.h"
 #include "core/scene/scene.h"
+#include "lights/imperfect_shadow_maps/imperfect_shadow_maps.h"
 #include "lights/shadow_maps/volumetric_shadow_map.h"
 
 namespace mote::integrators {
 
 struct VisibilitySettings {
-    bool shadow_maps = false;  ///< else traced
+    bool shadow_maps = false;  ///< volumetric ones
+    bool imperfect = false;    ///< maps of points; without either: traced
     int size = 64;             ///< texels along an edge of a VPL's map
     int light_size = 256;      ///< of the lights' own maps; 0: none, they are traced
     int maps = 4;              ///< kept at once
     lights::ShadowMapSettings map;
+    lights::ImperfectMapSettings imperfect_map;
     core::SourceLocation where;
 
     /// Maps are used: they are asked for, and there are media.
@@ -34,7 +37,7 @@ class Visibility : public core::Object {
     VisibilitySettings settings_;
 };
 
-/// traced, shadow_map.
+/// traced, shadow_map, imperfect_shadow_map.
 void register_visibility(core::Registry& registry);
 
 /// `receivers`: of one pass, about.
