@@ -28,12 +28,14 @@ class Phong final : public Bsdf {
     }
     Rgb eval(const BsdfPoint& p, const Vec3& wo, const Vec3& wi, TransportMode) const override {
         if (!(wo.z > 0.0f && wi.z > 0.0f)) return Rgb(0.0f);
-        const float lobe = (exponent_ + 2.0f) * inv_two_pi * cos_power(wo, wi);
-        return scale_ * (diffuse_.eval(p.uv) * inv_pi + specular_.eval(p.uv) * lobe);
+        const Rgb specular = specular_.eval(p.uv);
+        const float exponent = widened(max_component(specular) * scale_ * wi.z, p.peak_limit);
+        const float lobe = (exponent + 2.0f) * inv_two_pi * cos_power(wo, wi, exponent);
+        return scale_ * (diffuse_.eval(p.uv) * inv_pi + specular * lobe);
     }
     float pdf_solid_angle(const BsdfPoint&, const Vec3& wo, const Vec3& wi, TransportMode) const override {
         if (!(wo.z > 0.0f && wi.z > 0.0f)) return 0.0f;
-        return specular_weight_ * (exponent_ + 1.0f) * inv_two_pi * cos_power(wo, wi) +
+        return specular_weight_ * (exponent_ + 1.0f) * inv_two_pi * cos_power(wo, wi, exponent_) +
                (1.0f - specular_weight_) * cosine_hemisphere_pdf(wi);
     }
     std::optional<BsdfSample> sample(const BsdfPoint& p, const Vec3& wo, float u_lobe, const Vec2& u,
@@ -52,13 +54,19 @@ class Phong final : public Bsdf {
     }
 
   private:
+    /// The exponent with which `weight` times the peak (n + 2) / 2 pi is at most `limit` [1/sr], or this one
+    /// where it is smaller (Tokuyoshi & Ogaki 2012, Eq. 10, which has n + 1 for a lobe over half vectors).
+    float widened(float weight, float limit) const {
+        if (!(limit < infinity) || !(weight > 0.0f)) return exponent_;
+        return std::max(0.0f, std::min(exponent_, 2.0f * pi * limit / weight - 2.0f));
+    }
     /// cos^n of the angle between wi and the mirror direction. 1 - cos comes from the difference of the two,
     /// which keeps its precision in narrow lobes.
-    float cos_power(const Vec3& wo, const Vec3& wi) const {
+    static float cos_power(const Vec3& wo, const Vec3& wi, float exponent) {
         const Vec3 difference = reflect_local(wo) - wi;
         const float h = 0.5f * glm::dot(difference, difference);
         if (!(h < 1.0f)) return 0.0f;
-        return std::exp(exponent_ * std::log1p(-h));
+        return std::exp(exponent * std::log1p(-h));
     }
     Vec3 sample_lobe(const Vec3& wo, const Vec2& u) const {
         const float h = -std::expm1(std::log1p(-u.x) / (exponent_ + 1.0f));  // 1 - cos

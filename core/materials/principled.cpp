@@ -53,13 +53,20 @@ class Principled final : public Bsdf {
         const DielectricFacet f = dielectric_facet(w.facets, eta_, wo, wi);
         const Rgb base = base_color_.eval(p.uv);
         // Walter 2007, Eqs. 20 and 21 with G / (cos cos) = 1 / area.
-        const float lobe = f.density / (w.facets.projected_area(wo) * w.facets.projected_area(wi));
+        const float area = w.facets.projected_area(wo) * w.facets.projected_area(wi);
+        const auto lobe = [&](const Rgb& facet) {
+            const Rgb weight = facet / area;
+            const float peak = max_component(weight) * std::fabs(wi.z);
+            return weight * (f.density > 0.0f || p.peak_limit < infinity
+                                 ? w.facets.widened(peak, p.peak_limit).density(f.normal)
+                                 : 0.0f);
+        };
         if (f.transmitted) {
             const float scale = mode == TransportMode::radiance ? 1.0f / sqr(f.eta) : 1.0f;
-            return glm::sqrt(base) * (w.glass * scale * (1.0f - f.reflectance) * lobe * f.jacobian * f.cos_o);
+            return lobe(glm::sqrt(base) * (w.glass * scale * (1.0f - f.reflectance) * f.jacobian * f.cos_o));
         }
-        if (wo.z < 0.0f) return Rgb(w.glass * f.reflectance * lobe * 0.25f);
-        Rgb value = reflectance(p, w, base, f.reflectance, f.cos_o) * (0.25f * lobe);
+        if (wo.z < 0.0f) return lobe(Rgb(w.glass * f.reflectance * 0.25f));
+        Rgb value = lobe(reflectance(p, w, base, f.reflectance, f.cos_o) * 0.25f);
         if (w.clearcoat > 0.0f) value += Rgb(clearcoat(p, w, f, wo, wi));
         if (w.diffuse > 0.0f) {
             value += base * (w.diffuse * inv_pi *

@@ -65,10 +65,10 @@ class PrincipledThin final : public Bsdf {
         Rgb value(0.0f);
         if (glossy > 0.0f && facet_seen(d, mode)) {
             const Microfacet facets = facets_at(p, d.transmitted);
-            const float lobe = facets.density(d.half) /
-                               (4.0f * facets.projected_area(d.wo) * facets.projected_area(d.mirrored));
-            value = glossy * lobe *
-                    (d.transmitted ? base * (1.0f - fresnel(p, d.cos_d)) : reflectance(p, base, d.cos_d));
+            const Rgb weight =
+                (d.transmitted ? base * (1.0f - fresnel(p, d.cos_d)) : reflectance(p, base, d.cos_d)) *
+                (glossy / (4.0f * facets.projected_area(d.wo) * facets.projected_area(d.mirrored)));
+            value = weight * facets.widened(max_component(weight) * d.mirrored.z, p.peak_limit).density(d.half);
         }
         if (d.transmitted) return value + base * ((1.0f - glossy) * through * inv_pi);
         const float diffuse =

@@ -26,10 +26,9 @@ class RoughConductor final : public Bsdf {
         if (!(wo.z > 0.0f && wi.z > 0.0f)) return Rgb(0.0f);
         const Vec3 m = half_vector(wo, wi);
         const Microfacet facets = roughness_.at(p.uv);
-        const float d = facets.density(m);
-        if (d == 0.0f) return Rgb(0.0f);
-        const float value = d / (4.0f * facets.projected_area(wo) * facets.projected_area(wi));
-        return specular_.eval(p.uv) * fresnel(wo, m) * value;
+        const Rgb weight = specular_.eval(p.uv) * fresnel(wo, m) /
+                           (4.0f * facets.projected_area(wo) * facets.projected_area(wi));
+        return weight * facets.widened(max_component(weight) * wi.z, p.peak_limit).density(m);
     }
     /// Walter 2007, Eq. 38 with the Jacobian of Eq. 14, for visible normals: <wo, m> D / A(wo) / (4 <wo, m>).
     float pdf_solid_angle(const BsdfPoint& p, const Vec3& wo, const Vec3& wi, TransportMode) const override {

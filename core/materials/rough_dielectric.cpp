@@ -33,13 +33,16 @@ class RoughDielectric final : public Bsdf {
     Rgb eval(const BsdfPoint& p, const Vec3& wo, const Vec3& wi, TransportMode mode) const override {
         const Microfacet facets = roughness_.at(p.uv);
         const DielectricFacet f = dielectric_facet(facets, eta_, wo, wi);
-        if (f.density == 0.0f) return Rgb(0.0f);
+        if (!(f.cos_o > 0.0f)) return Rgb(0.0f);
         const float area = facets.projected_area(wo) * facets.projected_area(wi);
         // Walter 2007, Eqs. 20 and 21 with G / (cos cos) = 1 / area; Eq. 21 is for radiance.
-        if (!f.transmitted) return reflectance_.eval(p.uv) * (f.reflectance * f.density / (4.0f * area));
         const float scale = mode == TransportMode::radiance ? 1.0f / sqr(f.eta) : 1.0f;
-        return transmittance_.eval(p.uv) *
-               (scale * (1.0f - f.reflectance) * f.density * f.jacobian * f.cos_o / area);
+        const Rgb weight =
+            f.transmitted ? transmittance_.eval(p.uv) *
+                                (scale * (1.0f - f.reflectance) * f.jacobian * f.cos_o / area)
+                          : reflectance_.eval(p.uv) * (f.reflectance / (4.0f * area));
+        const float peak = max_component(weight) * std::fabs(wi.z);
+        return weight * facets.widened(peak, p.peak_limit).density(f.normal);
     }
 
     /// Walter 2007, Eq. 38 with the Jacobians of Eqs. 14 and 17, for visible normals.

@@ -42,12 +42,11 @@ class RoughPlastic final : public Bsdf {
         if (!(wo.z > 0.0f && wi.z > 0.0f)) return Rgb(0.0f);
         Rgb result = base(p) * (transmittance_(wo.z) * transmittance_(wi.z) * inv_eta2_ * inv_pi);
         const Vec3 m = half_vector(wo, wi);
-        if (const float d = microfacet_.density(m); d > 0.0f) {
-            const float f = fresnel_dielectric(std::fmin(glm::dot(wo, m), 1.0f), eta_).reflectance;
-            result += specular_.eval(p.uv) *
-                      (f * d / (4.0f * microfacet_.projected_area(wo) * microfacet_.projected_area(wi)));
-        }
-        return result;
+        const float f = fresnel_dielectric(std::fmin(glm::dot(wo, m), 1.0f), eta_).reflectance;
+        const Rgb weight = specular_.eval(p.uv) *
+                           (f / (4.0f * microfacet_.projected_area(wo) * microfacet_.projected_area(wi)));
+        return result +
+               weight * microfacet_.widened(max_component(weight) * wi.z, p.peak_limit).density(m);
     }
     float pdf_solid_angle(const BsdfPoint&, const Vec3& wo, const Vec3& wi, TransportMode) const override {
         if (!(wo.z > 0.0f && wi.z > 0.0f)) return 0.0f;

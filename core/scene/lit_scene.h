@@ -25,6 +25,8 @@ class LitScene : public RayQueries {
     virtual float light_probability(const LightReceiver& receiver, const Emitter* emitter) const = 0;
     /// Light for a particle. `remapped` is u, ready to be used again.
     virtual LightChoice choose_emitter_by_power(float u, float* remapped = nullptr) const = 0;
+    /// With which probability choose_emitter_by_power() chooses it.
+    virtual float probability_by_power(const Emitter* emitter) const = 0;
 
     /// Where a light without extent (point, spot) stands; nothing for all others.
     static std::optional<Vec3> light_position(const Emitter& emitter);

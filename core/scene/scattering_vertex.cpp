@@ -12,14 +12,16 @@ bool sides_agree(const SurfaceHit& hit, const Vec3& wo, const Vec3& wi) {
 
 }  // namespace
 
-Rgb ScatteringVertex::eval(const Vec3& wi, TransportMode mode) const {
+Rgb ScatteringVertex::eval(const Vec3& wi, TransportMode mode, float peak_limit) const {
     if (phase) return phase->eval(wo, wi);
     if (!sides_agree(hit, wo, wi)) return Rgb(0.0f);
-    return bsdf->eval(bsdf_point(), hit.shading.to_local(wo), hit.shading.to_local(wi), mode) / stop_chance;
+    BsdfPoint point = bsdf_point();
+    point.peak_limit = peak_limit;
+    return bsdf->eval(point, hit.shading.to_local(wo), hit.shading.to_local(wi), mode) / stop_chance;
 }
 
-Rgb ScatteringVertex::eval_cos(const Vec3& wi, TransportMode mode) const {
-    return eval(wi, mode) * shading_cosine(wi);
+Rgb ScatteringVertex::eval_cos(const Vec3& wi, TransportMode mode, float peak_limit) const {
+    return eval(wi, mode, peak_limit) * shading_cosine(wi);
 }
 
 float ScatteringVertex::pdf_solid_angle(const Vec3& wi, TransportMode mode) const {

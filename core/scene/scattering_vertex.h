@@ -37,10 +37,10 @@ struct ScatteringVertex {
     BsdfPoint bsdf_point() const { return core::bsdf_point(hit); }
 
     /// f*(wo, wi) [1/sr], without cosine. Zero where shading and geometric normal disagree on the side, so
-    /// that no light leaks through smooth-shaded surfaces.
-    Rgb eval(const Vec3& wi, TransportMode mode) const;
+    /// that no light leaks through smooth-shaded surfaces. `peak_limit`: BsdfPoint::peak_limit.
+    Rgb eval(const Vec3& wi, TransportMode mode, float peak_limit = infinity) const;
     /// f*(wo, wi) times the shading cosine of wi (1 in a medium).
-    Rgb eval_cos(const Vec3& wi, TransportMode mode) const;
+    Rgb eval_cos(const Vec3& wi, TransportMode mode, float peak_limit = infinity) const;
     /// Density of sample() choosing wi, per solid angle.
     float pdf_solid_angle(const Vec3& wi, TransportMode mode) const;
     std::optional<ScatterSample> sample(float u_lobe, const Vec2& u, TransportMode mode) const;

@@ -84,6 +84,7 @@ class Scene final : public LitScene {
     const LightTree& light_tree() const { return *light_tree_; }
     /// Proportional to power.
     LightChoice choose_emitter_by_power(float u, float* remapped = nullptr) const override;
+    float probability_by_power(const Emitter* emitter) const override;
 
     /// The medium that surrounds everything, of which all who name it agree; null: vacuum.
     const Medium* outermost_medium() const { return outermost_; }

@@ -106,4 +106,9 @@ LightChoice Scene::choose_emitter_by_power(float u, float* remapped) const {
     return {parts_.emitters[chosen.index].get(), chosen.probability};
 }
 
+float Scene::probability_by_power(const Emitter* emitter) const {
+    const auto it = emitter_index_.find(emitter);
+    return it == emitter_index_.end() ? 0.0f : particle_lights_.probability(it->second);
+}
+
 }  // namespace mote::core

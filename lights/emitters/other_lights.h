@@ -51,9 +51,16 @@ class OtherLights final : public core::LitScene {
     }
     core::Bounds3 bounds() const override { return scene_.bounds(); }
     std::span<const std::shared_ptr<core::Emitter>> emitters() const override { return scene_.emitters(); }
-    const core::Emitter* environment() const override { return scene_.environment(); }
+    /// Null where it is left out: then directions do not find it either.
+    const core::Emitter* environment() const override {
+        const core::Emitter* sky = scene_.environment();
+        return is_left_out(sky) ? nullptr : sky;
+    }
     core::LightChoice choose_emitter_by_power(float u, float* remapped) const override {
         return scene_.choose_emitter_by_power(u, remapped);
+    }
+    float probability_by_power(const core::Emitter* emitter) const override {
+        return scene_.probability_by_power(emitter);
     }
     core::MediumState emitter_medium_state(const core::Emitter& emitter,
                                            const core::EmissionSample& sample) const override {

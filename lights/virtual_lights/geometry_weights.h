@@ -3,12 +3,22 @@
 // A policy is called with G*(x,y) = C*(x->y) C*(y->x) / |x-y|^2 [1/m^2], the squared distance [m^2] and the
 // two C*, and returns G* times its weight. It is called in the sixteen-lane loop and must be straight
 // arithmetic. A technique that is weighed against another one is a policy too: its weight is a function of
-// the same four numbers.
+// the same four numbers, or of more: with for_pair(receivers, vpls, index) it is made anew for every light,
+// and a policy that takes a fifth number is told the lane.
 #pragma once
 
 #include "core/math/vectorize.h"
 
 namespace mote::lights {
+
+/// What a policy makes of one lane.
+template <typename Weight>
+float weigh(const Weight& weight, float g, float d2, float cos_x, float cos_y, [[maybe_unused]] int lane) {
+    if constexpr (requires { weight(g, d2, cos_x, cos_y, lane); })
+        return weight(g, d2, cos_x, cos_y, lane);
+    else
+        return weight(g, d2, cos_x, cos_y);
+}
 
 /// All of G*.
 struct UnboundedGeometry {

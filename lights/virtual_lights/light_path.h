@@ -20,6 +20,7 @@ struct LightPathSettings {
     std::uint32_t paths = 1024;
     int max_vertices = -1;  ///< vertices on a light path after the light, delta ones included; -1: no limit
     int rr_depth = 5;       ///< Russian roulette after this many vertices
+    bool keep_starts = false;  ///< of trace_light_paths(): VplSet::starts
 };
 
 /// Share of the path's first power that is left; never below 1/20, so that one dark bounce does not end it.
@@ -27,6 +28,11 @@ inline float remaining_power(const core::Rgb& alpha, const core::Rgb& alpha_star
     const float start = core::max_component(alpha_start);
     return start > 0.0f ? std::max(core::max_component(alpha) / start, 0.05f) : 0.0f;
 }
+
+/// For whoever does not ask how a path began.
+struct AnyStart {
+    void operator()(const core::LightChoice&, const core::EmissionSample&) const {}
+};
 
 /// Follows a particle of `emitter` whose power over the number of paths is `start` [W]: calls visit(vertex,
 /// alpha / paths, depth, state) at every vertex, delta surfaces included; `depth` counts from 1 at the first.
@@ -71,16 +77,18 @@ void follow_particle(const core::LitScene& scene, const LightPathSettings& setti
     }
 }
 
-/// The same for a path of a light that is drawn by its power.
-template <bool Media, typename Visit>
+/// The same for a path of a light that is drawn by its power. `on_start(choice, emission)` is called first,
+/// for a path that there is.
+template <bool Media, typename Visit, typename Start = AnyStart>
 void follow_light_path(const core::LitScene& scene, const LightPathSettings& settings, core::Sampler& sampler,
-                       core::WalkContext& context, const Visit& visit) {
+                       core::WalkContext& context, const Visit& visit, const Start& on_start = {}) {
     float u_light = sampler.next_1d();
     const core::LightChoice choice = scene.choose_emitter_by_power(u_light, &u_light);
     const core::Vec2 u_position = sampler.next_2d(), u_direction = sampler.next_2d();
     if (!choice.emitter) return;
     const auto emission = choice.emitter->sample_emission(u_position, u_direction);
     if (!emission) return;
+    on_start(choice, *emission);
     // alpha_1, with the cosine at the light, over the paths (Engelhardt 2013, Sec. 10.1.1, step 3).
     const core::Rgb start = emission->weight / (choice.probability * float(settings.paths));
     follow_particle<Media>(scene, settings, *choice.emitter, *emission, start, sampler, context, visit);

@@ -15,10 +15,11 @@ constexpr std::uint32_t chunk_size = 32;
 constexpr std::uint32_t light_path_stream =
     0x56504cu;  // keeps light paths apart from pixels of the same index
 
-template <bool Media, typename Visit>
+template <bool Media, typename Visit, typename Start>
 void follow(const LitScene& scene, const LightPathSettings& settings, const LightPathStarts* starts,
-            std::uint32_t path, Sampler& sampler, WalkContext& context, const Visit& visit) {
-    if (!starts) return follow_light_path<Media>(scene, settings, sampler, context, visit);
+            std::uint32_t path, Sampler& sampler, WalkContext& context, const Visit& visit,
+            const Start& on_start) {
+    if (!starts) return follow_light_path<Media>(scene, settings, sampler, context, visit, on_start);
     if (const auto begin = starts->start(path, sampler))
         follow_particle<Media>(scene, settings, *begin->emitter, begin->emission, begin->power, sampler,
                                context, visit);
@@ -28,21 +29,27 @@ VplSet trace_chunk(const LitScene& scene, const LightPathSettings& settings, std
                    std::uint32_t end, std::uint64_t seed, std::uint32_t pass, SamplerKind kind,
                    CancelToken cancelled, const LightPathStarts* starts) {
     VplSet set;
+    if (settings.keep_starts) set.starts.resize(end - begin);
     for (std::uint32_t path = begin; path < end; ++path) {
         // The paths of one pass form one low-discrepancy set; every pass has a scramble of its own.
         Sampler sampler(kind, seed, path, pass, light_path_stream);
         WalkContext context;
         context.cancelled = cancelled;
         context.rng = Rng(hash_keys(seed, pass, path, light_path_stream));
+        const auto keep_start = [&](const LightChoice& choice, const EmissionSample& emission) {
+            if (settings.keep_starts)
+                set.starts[path - begin] = {choice.emitter, emission.origin, emission.normal,
+                                            emission.direction};
+        };
         const auto leave_vpl = [&](const ScatteringVertex& vertex, const Rgb& alpha, int depth,
                                    const MediumState& state) {
             append_vpl(set, vertex, alpha, std::uint32_t(depth), path);
             if (scene.has_media() && set.states.size() < set.lights.size()) set.states.push_back(state);
         };
         if (scene.has_media())
-            follow<true>(scene, settings, starts, path, sampler, context, leave_vpl);
+            follow<true>(scene, settings, starts, path, sampler, context, leave_vpl, keep_start);
         else
-            follow<false>(scene, settings, starts, path, sampler, context, leave_vpl);
+            follow<false>(scene, settings, starts, path, sampler, context, leave_vpl, keep_start);
         set.rays.add(context.rays);
         set.tracking.add(context.tracking);
     }
@@ -56,6 +63,7 @@ void append(VplSet& to, VplSet&& from) {
     to.lights.insert(to.lights.end(), from.lights.begin(), from.lights.end());
     to.details.insert(to.details.end(), from.details.begin(), from.details.end());
     to.states.insert(to.states.end(), from.states.begin(), from.states.end());
+    to.starts.insert(to.starts.end(), from.starts.begin(), from.starts.end());
     to.rays.add(from.rays);
     to.tracking.add(from.tracking);
 }

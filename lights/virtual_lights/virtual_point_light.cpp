@@ -15,8 +15,8 @@ float incoming_correction(const ScatteringVertex& v) {
 
 }  // namespace
 
-Rgb VplDetail::eval(const Vec3& to_receiver) const {
-    return vertex.eval(to_receiver, TransportMode::power) * incoming_correction(vertex);
+Rgb VplDetail::eval(const Vec3& to_receiver, float peak_limit) const {
+    return vertex.eval(to_receiver, TransportMode::power, peak_limit) * incoming_correction(vertex);
 }
 
 MediumState VplSet::state_towards(std::size_t light, const Vec3& direction) const {

@@ -35,7 +35,14 @@ struct VplDetail {
     core::ScatteringVertex vertex;
 
     /// f*(x <- y <- y') with the adjoint correction of a shading normal; `to_receiver` is unit length.
-    core::Rgb eval(const core::Vec3& to_receiver) const;
+    /// `peak_limit`: BsdfPoint::peak_limit.
+    core::Rgb eval(const core::Vec3& to_receiver, float peak_limit = core::infinity) const;
+};
+
+/// Where a light path began. For lights at infinity any origin on the path's ray will do.
+struct LightStart {
+    const core::Emitter* emitter = nullptr;                           ///< null: there is no path
+    core::Vec3 origin{0, 0, 0}, normal{0, 0, 0}, direction{0, 0, 1};  ///< of its EmissionSample
 };
 
 /// The VPLs of one set of light paths, in path order.
@@ -44,13 +51,20 @@ struct VplSet {
     std::vector<VplDetail> details;
     /// Media at every light, on the side that its light came from; none where the scene has no media.
     std::vector<core::MediumState> states;
-    std::uint32_t paths = 0;  ///< light paths traced, whether or not they left a VPL
+    /// By path: where it began. Only where LightPathSettings::keep_starts asks for it.
+    std::vector<LightStart> starts;
+    /// Known directions at both ends of a connection, for roughness clamping
+    /// (compensation/roughness_clamping.h); without, nothing is clamped.
+    std::vector<float> peak_density;  ///< by light: lights per area around it, over m' [1/m^2]
+    float peak_directions = 0.0f;     ///< of receivers that know directions besides, over m' [1/sr]
+    std::uint32_t paths = 0;          ///< light paths traced, whether or not they left a VPL
     core::RayCounters rays;
     core::TrackingCounters tracking;
 
     std::size_t memory_bytes() const {
         return lights.size() * sizeof(VirtualPointLight) + details.size() * sizeof(VplDetail) +
-               states.size() * sizeof(core::MediumState);
+               states.size() * sizeof(core::MediumState) + starts.size() * sizeof(LightStart) +
+               peak_density.size() * sizeof(float);
     }
     /// Media on the side of a light that `direction` leaves to.
     core::MediumState state_towards(std::size_t light, const core::Vec3& direction) const;

@@ -54,7 +54,7 @@ bool plain_contributions(const ReceiverLanes& x, const VirtualPointLight& y, flo
         const float c_x = core::min_of(side_x, cos_x) > 0.0f ? cos_x * inv_d : x.in_medium[i];
         const float c_y = core::min_of(side_y, cos_y) > 0.0f ? cos_y * inv_d : y_in_medium;
         const float g = c_x * c_y * (inv_d * inv_d);  // G* = C* C* / d^2
-        const float weighted_g = own_weight(g, d2, c_x, c_y);
+        const float weighted_g = weigh(own_weight, g, d2, c_x, c_y, i);
         const float weighted = depth <= x.max_vpl_depth[i] ? weighted_g : 0.0f;
         // f* w(G*) I_j of Eqs. 10.4 and 10.5
         const float r = x.weight_r[i] * ir * weighted;
@@ -93,7 +93,7 @@ bool general_contributions(const ReceiverLanes& x, const VplSet& vpls, const Vir
         if (std::int32_t(y.depth) > x.max_vpl_depth[i]) continue;
         const LaneConnection c = lane_connection(x, i, vpls, y, light_weight);
         const float g = c.cos_x * c.cos_y / c.distance_squared;
-        const core::Rgb value = c.value * weight(g, c.distance_squared, c.cos_x, c.cos_y);
+        const core::Rgb value = c.value * weigh(weight, g, c.distance_squared, c.cos_x, c.cos_y, i);
         if (!(core::max_component(value) > 0.0f)) continue;
         out.r[i] = value.x, out.g[i] = value.y, out.b[i] = value.z;
         packet.origin_x[i] = c.origin.x, packet.origin_y[i] = c.origin.y, packet.origin_z[i] = c.origin.z;
@@ -105,6 +105,16 @@ bool general_contributions(const ReceiverLanes& x, const VplSet& vpls, const Vir
     return any;
 }
 
+/// The policy for one light, where it is not the same for all of them.
+template <typename Weight>
+auto weight_of_pair(const Weight& weight, [[maybe_unused]] const ReceiverLanes& receivers,
+                    [[maybe_unused]] const VplSet& vpls, [[maybe_unused]] std::size_t index) {
+    if constexpr (requires { weight.for_pair(receivers, vpls, index); })
+        return weight.for_pair(receivers, vpls, index);
+    else
+        return weight;
+}
+
 /// Light into `out` and shadow rays into `packet`, which has been cleared once. Returns whether any lane
 /// receives light; else nothing of the two counts.
 template <typename Weight>
@@ -112,9 +122,10 @@ bool contributions_of(const VplSet& vpls, const WeightedVpl& light, const Receiv
                       const Weight& weight, core::ShadowPacket& packet, LaneLight& out) {
     const VirtualPointLight& vpl = vpls.lights[light.index];
     out.receivers = &receivers, out.vpl = light.index;
+    const auto own_weight = weight_of_pair(weight, receivers, vpls, light.index);
     if (vpl.detail == VirtualPointLight::no_detail && !receivers.any_directional)
-        return plain_contributions(receivers, vpl, light.weight, weight, packet, out);
-    return general_contributions(receivers, vpls, vpl, light.weight, weight, packet, out);
+        return plain_contributions(receivers, vpl, light.weight, own_weight, packet, out);
+    return general_contributions(receivers, vpls, vpl, light.weight, own_weight, packet, out);
 }
 
 }  // namespace mote::lights
