@@ -61,7 +61,8 @@ struct BsdfPoint {
     Vec3 dp_du{0.0f}, dp_dv{0.0f};  ///< derivatives of the position by the texture coordinates [m]
     Vec3 geometric_normal{0.0f, 0.0f, 1.0f};
     /// eval() widens a lobe whose peak, times the cosine of wi, would be higher than this [1/sr]: for light
-    /// that is known at a few directions only (compensation/roughness_clamping.h). Sampling knows nothing of it.
+    /// that is known at a few directions only (compensation/roughness_clamping.h). Sampling knows nothing of
+    /// it.
     float peak_limit = infinity;
 };
 

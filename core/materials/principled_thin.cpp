@@ -68,7 +68,8 @@ class PrincipledThin final : public Bsdf {
             const Rgb weight =
                 (d.transmitted ? base * (1.0f - fresnel(p, d.cos_d)) : reflectance(p, base, d.cos_d)) *
                 (glossy / (4.0f * facets.projected_area(d.wo) * facets.projected_area(d.mirrored)));
-            value = weight * facets.widened(max_component(weight) * d.mirrored.z, p.peak_limit).density(d.half);
+            value =
+                weight * facets.widened(max_component(weight) * d.mirrored.z, p.peak_limit).density(d.half);
         }
         if (d.transmitted) return value + base * ((1.0f - glossy) * through * inv_pi);
         const float diffuse =

@@ -37,10 +37,9 @@ class RoughDielectric final : public Bsdf {
         const float area = facets.projected_area(wo) * facets.projected_area(wi);
         // Walter 2007, Eqs. 20 and 21 with G / (cos cos) = 1 / area; Eq. 21 is for radiance.
         const float scale = mode == TransportMode::radiance ? 1.0f / sqr(f.eta) : 1.0f;
-        const Rgb weight =
-            f.transmitted ? transmittance_.eval(p.uv) *
-                                (scale * (1.0f - f.reflectance) * f.jacobian * f.cos_o / area)
-                          : reflectance_.eval(p.uv) * (f.reflectance / (4.0f * area));
+        const Rgb weight = f.transmitted ? transmittance_.eval(p.uv) *
+                                               (scale * (1.0f - f.reflectance) * f.jacobian * f.cos_o / area)
+                                         : reflectance_.eval(p.uv) * (f.reflectance / (4.0f * area));
         const float peak = max_component(weight) * std::fabs(wi.z);
         return weight * facets.widened(peak, p.peak_limit).density(f.normal);
     }

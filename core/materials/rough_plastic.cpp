@@ -45,8 +45,7 @@ class RoughPlastic final : public Bsdf {
         const float f = fresnel_dielectric(std::fmin(glm::dot(wo, m), 1.0f), eta_).reflectance;
         const Rgb weight = specular_.eval(p.uv) *
                            (f / (4.0f * microfacet_.projected_area(wo) * microfacet_.projected_area(wi)));
-        return result +
-               weight * microfacet_.widened(max_component(weight) * wi.z, p.peak_limit).density(m);
+        return result + weight * microfacet_.widened(max_component(weight) * wi.z, p.peak_limit).density(m);
     }
     float pdf_solid_angle(const BsdfPoint&, const Vec3& wo, const Vec3& wi, TransportMode) const override {
         if (!(wo.z > 0.0f && wi.z > 0.0f)) return 0.0f;

@@ -20,6 +20,7 @@ IDEAS = {
         "integrators/bidirectional/subpath_walk.cpp": 1, # both at once, and the densities of every vertex
         "lights/emitters/direct_light.h": 1,             # the other technique for direct light
         "compensation/residual_transport.cpp": 1,        # a step inside the bounding region
+        "gathering/eye_bundles/eye_bundles.cpp": 1,      # one ray of a bundle, in a direction that all receivers share
         # Legs that cross media by marching, the last one through tracked media, and lights without a position.
         "integrators/single_scattering/single_scattering_eye.cpp": 3,
     }),

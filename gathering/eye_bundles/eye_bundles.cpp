@@ -1,0 +1,146 @@
+#include "gathering/eye_bundles/eye_bundles.h"
+
+#include "core/scene/media_along.h"
+
+namespace mote::gathering {
+
+using namespace core;
+using lights::TileLight;
+
+namespace {
+
+/// Shadow rays stop this much short of a light with a surface, which they would hit otherwise.
+constexpr float shadow_fraction = 0.9999f;
+/// Light that weighs less is followed by chance: bundles are many, and most of what they find is far away,
+/// where virtual point lights do better.
+constexpr float rare_weight = 0.1f;
+
+/// The direction along the line that leaves x to the eye's side.
+Vec3 towards_eye_side(const ScatteringVertex& x, const Vec3& w) {
+    const Vec3& n = x.hit.geometric_normal;
+    return glm::dot(n, w) * glm::dot(n, x.wo) > 0.0f ? w : -w;
+}
+
+bool any_of(const auto& found) {
+    for (const auto& y : found)
+        if (y.max_vpl_depth > 0) return true;
+    return false;
+}
+
+}  // namespace
+
+void EyeBundles::add(const ReceiverArray& receivers, const BundleDirection& line, TileLight& indirect,
+                     TileLight& direct) {
+    for (int side = 0; side < 2; ++side) {
+        for (std::size_t i = 0; i < width; ++i) {
+            const BundleReceiver& x = receivers[i];
+            found_[i].max_vpl_depth = 0;
+            if (!x.vertex) continue;
+            const Vec3 w = towards_eye_side(*x.vertex, line.direction);
+            // Only where light comes through a surface are there two directions that count.
+            if (side == 0 || x.vertex->bsdf->traits().transmissive)
+                trace(x, side == 0 ? w : -w, line.pdf_line, found_[i], direct[i]);
+        }
+        if (!any_of(found_)) continue;
+        connect_lights(indirect);
+        if (pass_.samples.joined_share > 0.0f) join_lights(indirect);
+    }
+}
+
+void EyeBundles::trace(const BundleReceiver& x, const Vec3& w, float pdf_line, Found& y, Rgb& direct) {
+    const float density = pass_.samples.directions * pdf_line;  // M p_r
+    const float limit = pass_.vpls.peak_density.empty() ? infinity : pass_.vpls.peak_directions;
+    const Rgb f_cos = x.vertex->eval_cos(w, TransportMode::radiance, limit);
+    if (is_black(f_cos)) return;
+    const Ray ray{x.vertex->ray_origin(w), w};
+    MediumState state;
+    PathWeights weights;
+    Rgb emitted(0.0f);
+    const WalkEvent event = walk<false>(pass_.scene, ray, state, weights, emitted, walk_);
+    const Rgb throughput = x.throughput * f_cos * weights.throughput / density;
+    if (event.kind == WalkEvent::Kind::escaped) {
+        if (pass_.sky) direct += throughput * pass_.sky->environment(w);
+        return;
+    }
+    y.vertex = make_vertex(event, ray);
+    if (!y.vertex.connectable() || x.max_vpl_depth < 1) return;
+    y.throughput = throughput, y.max_vpl_depth = x.max_vpl_depth, y.sampler = x.sampler;
+    y.density = uniform_line_pdf * y.vertex.geometric_cosine(w) / std::max(sqr(event.distance), 1e-30f);
+}
+
+/// w_2 of a path with one bounce.
+float EyeBundles::connection_weight(const Found& y, const LightChoice& choice,
+                                    const DirectSample& light) const {
+    if (pass_.techniques == Techniques::bundles) return 1.0f;
+    const lights::LightStart end{choice.emitter, y.vertex.position + light.wi * light.distance, light.normal,
+                                 -light.wi};
+    return one_bounce_weight(
+        pass_.samples, y.density,
+        connection_over_emission(pass_.scene, y.vertex.light_receiver(), y.vertex.hit.geometric_normal, end));
+}
+
+/// Tokuyoshi & Ogaki 2012, the second term of Eq. 3.
+void EyeBundles::connect_lights(TileLight& indirect) {
+    TileLight light{};
+    bool any = false;
+    for (std::size_t i = 0; i < width; ++i) {
+        shadow_.t_max[i] = -1.0f;
+        Found& y = found_[i];
+        if (y.max_vpl_depth < 1) continue;
+        const Vec2 u = y.sampler->next_2d();
+        const auto choice = pass_.scene.choose_light(y.vertex.light_receiver(), y.sampler->next_1d());
+        if (!choice.emitter) continue;
+        const auto sample = choice.emitter->sample_direct(y.vertex.position, u);
+        if (!sample) continue;
+        const Rgb value = y.throughput * y.vertex.eval_cos(sample->wi, TransportMode::radiance) *
+                          sample->weight / choice.probability;
+        if (is_black(value)) continue;
+        float weight = connection_weight(y, choice, *sample);
+        if (weight < rare_weight) {
+            if (!(walk_.rng.next_float() * rare_weight < weight)) continue;
+            weight = rare_weight;
+        }
+        light[i] = value * weight;
+        Ray shadow{y.vertex.ray_origin(sample->wi), sample->wi};
+        shadow.t_max = sample->distance * (sample->delta ? 1.0f : shadow_fraction);
+        PathWeights panes;
+        connect_through_panes(pass_.scene, shadow, panes);
+        light[i] *= panes.throughput;
+        shadow_.origin_x[i] = shadow.origin.x, shadow_.origin_y[i] = shadow.origin.y;
+        shadow_.origin_z[i] = shadow.origin.z, shadow_.t_min[i] = 0.0f;
+        shadow_.direction_x[i] = sample->wi.x, shadow_.direction_y[i] = sample->wi.y;
+        shadow_.direction_z[i] = sample->wi.z;
+        shadow_.t_max[i] = sample->distance * shadow_fraction;
+        any = true, ++walk_.rays.occlusion;
+    }
+    if (!any) return;
+    pass_.scene.find_occluded({&shadow_, 1});
+    for (std::size_t i = 0; i < width; ++i)
+        if (!shadow_.occluded(int(i))) indirect[i] += light[i];
+}
+
+/// Tokuyoshi & Ogaki 2012, Eq. 7, for VPLs of any depth.
+void EyeBundles::join_lights(TileLight& indirect) {
+    alignas(64) float density[width];
+    tile_.clear();
+    for (int i = 0; i < width; ++i) {
+        const Found& y = found_[std::size_t(i)];
+        density[i] = pass_.samples.directions * pass_.samples.joined_share * y.density;
+        if (y.max_vpl_depth > 1) tile_.set(i, y.vertex, y.throughput, {}, Rng(1), y.max_vpl_depth - 1);
+    }
+    const auto first = std::size_t(walk_.rng.next_float() * float(pass_.stride));
+    const lights::VplRange range{std::min(first, pass_.stride - 1), pass_.stride};
+    const lights::GatherContext context{pass_.scene, scratch_, walk_.rays, walk_.tracking, walk_.cancelled};
+    const auto sum = [&](const auto& weight) {
+        const TileLight light = lights::gather(context, pass_.vpls, range, weight, tile_);
+        for (std::size_t i = 0; i < width; ++i) indirect[i] += float(pass_.stride) * light[i];
+    };
+    if (pass_.bound)
+        sum(lights::BoundedGeometry{*pass_.bound});
+    else if (pass_.techniques == Techniques::bundles)
+        sum(lights::UnboundedGeometry{});
+    else
+        sum(AgainstLights{density, pass_.samples.light_share});
+}
+
+}  // namespace mote::gathering

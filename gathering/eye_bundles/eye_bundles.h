@@ -1,0 +1,82 @@
+// Bundles from the eye: parallel rays from the points that the eye sees, along one direction or against it,
+// whichever leaves the surface, and what light the points that they find send back (Tokuyoshi & Ogaki 2012,
+// Secs. 3 and 4).
+//
+// At a point y that a ray from x finds, the light of one light is connected (paths of one bounce, Eq. 3), and
+// a few virtual point lights are joined (two bounces and more, Eq. 7). Weights are those of path_weights.h.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "core/scene/lit_scene.h"
+#include "gathering/eye_bundles/bundle_directions.h"
+#include "gathering/eye_bundles/path_weights.h"
+#include "lights/virtual_lights/vpl_gather.h"
+
+namespace mote::gathering {
+
+/// Which technique makes the paths that both can make.
+enum class Techniques : std::uint8_t { combined, vpls, bundles };
+
+/// A point that the eye sees.
+struct BundleReceiver {
+    const core::ScatteringVertex* vertex = nullptr;  ///< null: an idle lane
+    core::Rgb throughput{0.0f};
+    std::int32_t max_vpl_depth = 0;  ///< of the VPLs that it may gather; a bundle's point stands for one
+    core::Sampler* sampler = nullptr;
+};
+
+/// What bundles do, for a pass.
+struct BundlePass {
+    const core::LitScene& scene;
+    const lights::VplSet& vpls;
+    TechniqueSamples samples;
+    Techniques techniques = Techniques::combined;
+    std::size_t stride = 1;           ///< every so many VPLs are joined to a point, from a random one on
+    std::optional<float> bound = {};  ///< of paths of two bounces and more, as in the paper; nothing: weighed
+    const core::Emitter* sky = nullptr;  ///< whose direct light the bundles find; null: nobody's
+};
+
+using ReceiverArray = std::array<BundleReceiver, lights::ReceiverLanes::width>;
+
+/// Sixteen receivers, one direction after the other.
+class EyeBundles {
+  public:
+    EyeBundles(const BundlePass& pass, lights::GatherScratch& scratch, core::WalkContext& walk)
+        : pass_(pass), scratch_(scratch), walk_(walk) {
+        shadow_.clear();
+    }
+
+    /// Adds the light that direction `line` finds, divided by M p_r: indirect light to `indirect`, that of
+    /// the sky to `direct`. Draws from the receivers' samplers and from the walk's generator.
+    void add(const ReceiverArray& receivers, const BundleDirection& line, lights::TileLight& indirect,
+             lights::TileLight& direct);
+
+  private:
+    static constexpr int width = lights::ReceiverLanes::width;
+
+    /// A point y that a ray found.
+    struct Found {
+        core::ScatteringVertex vertex;
+        core::Rgb throughput{0.0f};  ///< f_x cos_x / (M p_r), and what came before
+        float density = 0.0f;        ///< p_r C(y -> x) / |x-y|^2 [1/m^2]
+        std::int32_t max_vpl_depth = 0;
+        core::Sampler* sampler = nullptr;
+    };
+
+    void trace(const BundleReceiver& x, const core::Vec3& w, float pdf_line, Found& y, core::Rgb& direct);
+    void connect_lights(lights::TileLight& indirect);
+    void join_lights(lights::TileLight& indirect);
+    float connection_weight(const Found& y, const core::LightChoice& choice,
+                            const core::DirectSample& light) const;
+
+    const BundlePass& pass_;
+    lights::GatherScratch& scratch_;
+    core::WalkContext& walk_;
+    core::ShadowPacket shadow_;
+    std::array<Found, lights::ReceiverLanes::width> found_;
+    lights::ReceiverTile tile_;
+};
+
+}  // namespace mote::gathering

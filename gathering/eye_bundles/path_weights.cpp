@@ -1,0 +1,92 @@
+#include "gathering/eye_bundles/path_weights.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+namespace mote::gathering {
+
+using namespace core;
+using lights::VirtualPointLight;
+
+namespace {
+
+const lights::VplDetail* detail_of(const lights::VplSet& vpls, const VirtualPointLight& vpl) {
+    return vpl.detail == VirtualPointLight::no_detail ? nullptr : &vpls.details[vpl.detail];
+}
+
+/// 0 <= ratio <= certain, where 0/0 is 0.
+float ratio_of(float numerator, float denominator) {
+    if (!(numerator > 0.0f)) return 0.0f;
+    return denominator > 0.0f ? std::min(numerator / denominator, certain) : certain;
+}
+
+/// p(z -> y) of neighbouring VPLs of a path, per area at y. 0 where z does not shine on y.
+float step_pdf(const lights::VplSet& vpls, const VirtualPointLight& z, const VirtualPointLight& y) {
+    const Vec3 to_y = y.position - z.position;
+    const float d2 = std::max(glm::dot(to_y, to_y), 1e-30f);
+    const Vec3 direction = to_y / std::sqrt(d2);
+    const lights::VplDetail* detail = detail_of(vpls, z);
+    const float cos_y = std::fabs(glm::dot(y.shading_normal, direction));
+    const float cos_z =
+        detail ? detail->vertex.geometric_cosine(direction) : std::max(0.0f, glm::dot(z.normal, direction));
+    return next_vertex_pdf(detail, direction, cos_y * cos_z / d2, cos_y, d2);
+}
+
+}  // namespace
+
+float connection_over_emission(const LitScene& scene, const LightReceiver& y, const Vec3& normal,
+                               const lights::LightStart& start) {
+    if (!start.emitter) return 0.0f;
+    const Emitter& light = *start.emitter;
+    const EmitterTraits traits = light.traits();
+    const bool far = traits.infinite || traits.delta_direction;
+    Vec3 direction = start.direction;
+    float d2 = 1.0f;
+    if (!far) {
+        const Vec3 to_y = y.position - start.origin;
+        d2 = std::max(glm::dot(to_y, to_y), 1e-30f);
+        direction = to_y / std::sqrt(d2);
+    }
+    // p(z | y): a choice of the light, and of a direction to it, per solid angle; 1 where it has no extent.
+    float connection = scene.light_probability(y, &light);
+    // p(z -> y) of the same z: per area at z, or per solid angle at y as the connection is.
+    const EmissionDensity density =
+        light.pdf_emission(far ? y.position : start.origin, start.normal, direction);
+    float emission = scene.probability_by_power(&light) * density.pdf_area * density.pdf_solid_angle *
+                     std::fabs(glm::dot(normal, direction));
+    if (traits.can_be_hit()) {
+        SurfaceHit hit;
+        hit.position = start.origin, hit.geometric_normal = start.normal, hit.t = std::sqrt(d2);
+        connection *= light.pdf_direct(y.position, -direction, far ? nullptr : &hit);
+        if (!far) connection *= std::fabs(glm::dot(start.normal, direction));  // |cos| / d^2, as below
+    }
+    return ratio_of(connection, traits.delta_position ? emission / d2 : emission);
+}
+
+std::vector<float> rivals_of(const LitScene& scene, const lights::VplSet& vpls,
+                             const TechniqueSamples& samples) {
+    std::vector<float> rivals(vpls.lights.size());
+    const auto rival = [&](std::size_t j) {
+        const VirtualPointLight& y = vpls.lights[j];
+        if (y.depth == 1) {
+            const lights::VplDetail* detail = detail_of(vpls, y);
+            const LightReceiver at =
+                detail ? detail->vertex.light_receiver() : LightReceiver{y.position, y.normal};
+            const float ratio = connection_over_emission(scene, at, y.normal, vpls.starts[y.path]);
+            return ratio_of(samples.directions * ratio, samples.paths * samples.light_share);
+        }
+        // Behind a mirror there is no VPL that bundles could join.
+        if (j == 0 || vpls.lights[j - 1].path != y.path || vpls.lights[j - 1].depth + 1 != y.depth)
+            return 0.0f;
+        return ratio_of(samples.directions * samples.joined_share,
+                        samples.light_share * step_pdf(vpls, vpls.lights[j - 1], y));
+    };
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rivals.size(), 256), [&](const auto& range) {
+        for (std::size_t j = range.begin(); j < range.end(); ++j) rivals[j] = rival(j);
+    });
+    return rivals;
+}
+
+}  // namespace mote::gathering

@@ -1,0 +1,113 @@
+// The weights of two techniques that make the same paths: virtual point lights joined to a receiver x, and
+// points y that a bundle of parallel rays finds from x, joined to a light or to a virtual point light
+// (Tokuyoshi & Ogaki 2012, Sec. 4).
+//
+// A path z .. y, x is made
+//   by the VPL at y           with  N s_1 p(z) p(z -> y)                 p(z -> y) per area at y,
+//   by the bundle             with  M p(z | y) p_r(x -> y) C(y -> x) / |x-y|^2,
+// where z is a point of a light or the VPL before y. If z is a light, the first has the density of its
+// particles, and the second that of next-event estimation at y. If z is a VPL, both have what led to it,
+// which cancels, and the second a share s_2 of them. The balance heuristic of a path needs their ratio alone;
+// what of it depends on y and not on x is one number of the VPL, its `rival` a_j [m^2 sr]:
+//   w_1 = 1 / (1 + a_j p_r C(y -> x) / |x-y|^2).
+// Eqs. 4 and 5 are this for a point light, with the common factor C(y -> x) C(y -> z) / (|x-y|^2 |y-z|^2)
+// left out. Both techniques find the ratio by the same functions, so that the weights of a path add up to 1
+// whatever rounding or roulette does to its density.
+//
+// The second of the two singularities, |z-y| -> 0, is the paper's reason to bound paths of two bounces (Eqs.
+// 7 and 8). Here they are weighed as well: near y the VPL before it has w_2 -> 0, near x the VPL at y has w_1
+// -> 0. Nothing is left out.
+#pragma once
+
+#include <span>
+
+#include "core/scene/lit_scene.h"
+#include "lights/virtual_lights/virtual_point_light.h"
+#include "lights/virtual_lights/vpl_receivers.h"
+
+namespace mote::gathering {
+
+/// A direction serves both ways: lines that are uniform over all directions (Tokuyoshi & Ogaki 2012,
+/// Sec. 3.3). The weights use it for directions of any density: they add up to 1 all the same.
+inline constexpr float uniform_line_pdf = core::inv_two_pi;
+
+/// How many samples a receiver gets from each technique.
+struct TechniqueSamples {
+    float directions = 0.0f;    ///< M
+    float paths = 0.0f;         ///< N, light paths
+    float light_share = 1.0f;   ///< s_1, the chance of a VPL to meet a receiver
+    float joined_share = 0.0f;  ///< s_2, the chance of a VPL to be joined to a point that a bundle found
+};
+
+/// Larger than any ratio of densities that matters, and small enough to be multiplied.
+inline constexpr float certain = 1e30f;
+
+/// p(z | y) by next-event estimation over p(z -> y) of the light's particles [m^2], for a light that `start`
+/// describes (its origin, or any point towards a light at infinity). `normal` is the geometric one at y. 0
+/// where next-event estimation does not find the light, `certain` where particles do not find y.
+float connection_over_emission(const core::LitScene& scene, const core::LightReceiver& y,
+                               const core::Vec3& normal, const lights::LightStart& start);
+
+/// w_2 of a path with one bounce: `found` is p_r C(y -> x) / |x-y|^2 [1/m^2], `ratio` the one above.
+inline float one_bounce_weight(const TechniqueSamples& samples, float found, float ratio) {
+    const float bundle = samples.directions * found * ratio;
+    return bundle / (bundle + samples.paths * samples.light_share);  // Eq. 6 with beta = 1
+}
+
+/// With which density the light path goes on from the VPL z to y, per area at y [1/m^2]: that of its BSDF,
+/// |cos| / pi for a plain one. `g` is G*, with `cos_y` of the shading normal at y; `direction` is z -> y.
+inline float next_vertex_pdf(const lights::VplDetail* z, const core::Vec3& direction, float g, float cos_y,
+                             float distance_squared) {
+    if (!z) return g * core::inv_pi;
+    return z->vertex.pdf_solid_angle(direction, core::TransportMode::power) * cos_y / distance_squared;
+}
+
+/// a_j of every light: 0 where bundles cannot make its paths. Needs VplSet::starts.
+std::vector<float> rivals_of(const core::LitScene& scene, const lights::VplSet& vpls,
+                             const TechniqueSamples& samples);
+
+/// The policy w_1 G* of gathering at receivers (lights/virtual_lights/geometry_weights.h).
+struct AgainstBundles {
+    std::span<const float> rivals;
+
+    struct ForLight {
+        float rival;  ///< a_j p_r
+        float operator()(float g, float d2, float, float cos_y) const {
+            // Tokuyoshi & Ogaki 2012, Eq. 6 with beta = 1. Nothing at all where no shadow ray should be shot.
+            return rival < certain ? g / (1.0f + rival * cos_y / d2) : 0.0f;
+        }
+    };
+    ForLight for_pair(const lights::ReceiverLanes&, const lights::VplSet&, std::size_t index) const {
+        return {rivals[index] < certain ? rivals[index] * uniform_line_pdf : certain};
+    }
+};
+
+/// The policy w_2 G* of joining VPLs z to sixteen points y that a bundle found.
+struct AgainstLights {
+    const float* found;  ///< by lane: M s_2 p_r C(y -> x) / |x-y|^2 [1/m^2]
+    float light_share;   ///< s_1
+
+    struct ForLight {
+        const AgainstLights& all;
+        const lights::ReceiverLanes& y;
+        const lights::VplDetail* z;
+
+        float operator()(float g, float d2, float cos_y, float, int lane) const {
+            core::Vec3 direction(0.0f);
+            if (z) {
+                const core::ScatteringVertex* vertex = y.directional[lane];
+                const core::Vec3 at = vertex ? vertex->position : core::Vec3(y.x[lane], y.y[lane], y.z[lane]);
+                direction = (at - z->vertex.position) / std::sqrt(d2);
+            }
+            const float found = all.found[lane];
+            const float traced = all.light_share * next_vertex_pdf(z, direction, g, cos_y, d2);
+            return g * found / (found + traced + 1e-37f);
+        }
+    };
+    ForLight for_pair(const lights::ReceiverLanes& y, const lights::VplSet& vpls, std::size_t index) const {
+        const std::uint32_t detail = vpls.lights[index].detail;
+        return {*this, y, detail == lights::VirtualPointLight::no_detail ? nullptr : &vpls.details[detail]};
+    }
+};
+
+}  // namespace mote::gathering

@@ -1,0 +1,180 @@
+// `mote_vpl_ray_bundles`: virtual point lights, and bundles of parallel rays from what the eye sees, combined
+// by multiple importance sampling (Tokuyoshi & Ogaki 2012), on surfaces.
+//
+// As `mote_vpl`: every pass traces a fresh set of light paths and gathers their VPLs at the first connectable
+// vertex of every pixel's eye path; direct light is computed apart. Besides, rays leave these vertices along
+// a few directions that all pixels share, and what they find is lit in turn. Where two points are close, VPLs
+// spike and bundles do not; where a small spot is bright, bundles miss it and VPLs do not. Weighed against
+// each other nothing has to be bounded, and the mean is right.
+#include "integrators/eye_path/eye_path_parameters.h"
+#include "integrators/eye_path/transport_layers.h"
+#include "integrators/register_parts.h"
+#include "integrators/vpl_ray_bundles/vpl_bundle_estimator.h"
+
+namespace mote::integrators {
+
+using namespace core;
+using gathering::Techniques;
+namespace {
+
+class MoteVplRayBundles final : public Integrator {
+  public:
+    explicit MoteVplRayBundles(const Properties& p) {
+        settings_.eye = read_eye_path_limits(p);
+        settings_.eye.max_scatterings = 1;  // from then on virtual lights and bundles take over
+        settings_.paths = std::uint32_t(p.get_int_in("paths", 256, 0, std::int64_t(1) << 26));
+        settings_.directions = std::uint32_t(p.get_int_in("directions", 16, 0, 65536));
+        settings_.joined = std::uint32_t(p.get_int_in("joined", 8, 0, 65536));
+        const std::string techniques =
+            p.get_choice("techniques", "combined", {"combined", "vpls", "bundles"});
+        settings_.techniques = techniques == "vpls"      ? Techniques::vpls
+                               : techniques == "bundles" ? Techniques::bundles
+                                                         : Techniques::combined;
+        if (p.has("bound")) {
+            const double bound = p.require_float("bound");
+            if (!(bound > 0.0) || !std::isfinite(float(bound)))
+                throw InputError("bound must be positive and finite", p.where_of("bound"));
+            settings_.bound = float(bound);
+        }
+        settings_.sky = p.get_bool("sky", false);
+        settings_.clamping.enabled = p.get_bool("roughness_clamping", false);
+        settings_.clamping.neighbours = std::uint32_t(p.get_int_in("clamping_neighbours", 16, 1, 1000));
+        settings_.interleaving = int(p.get_int_in("interleaving", 1, 1, 8));
+        settings_.filters = p.get_bool("filter", false);
+        settings_.filter = read_layer_filter(p);
+    }
+
+    std::string type() const override { return "mote_vpl_ray_bundles"; }
+    bool works_on_mean() const override { return settings_.filters; }
+    std::vector<Layer> layers(const Scene&) const override {
+        auto layers = suffixed_transport_layers(false, suffix());
+        layers[std::size_t(Transport::indirect)].squares = settings_.filters;
+        return layers;
+    }
+    Plan plan(const Scene& scene, const Requirements& requirements) const override;
+    std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
+        if (scene.has_media())
+            throw InputError(
+                "mote_vpl_ray_bundles renders surfaces only, and the scene has media; volpath and "
+                "mote_vpl render them");
+        return make_vpl_bundle_estimator(scene, options, settings_);
+    }
+
+  private:
+    /// Of the layers that are not the true transport.
+    std::string suffix() const {
+        if (settings_.clamping.enabled) return "_roughened";
+        return settings_.bound ? "_bounded" : "";
+    }
+    void plan_techniques(Plan& plan) const;
+    void plan_bias(Plan& plan) const;
+    VplBundleSettings settings_;
+};
+
+void MoteVplRayBundles::plan_techniques(Plan& plan) const {
+    plan.run("light paths", std::to_string(settings_.paths) + " a pass", "a fresh set every pass");
+    if (!settings_.has_bundles()) {
+        plan.leave_out("bundles", "no rays leave what the eye sees",
+                       "virtual point lights alone are asked for");
+        return;
+    }
+    plan.run("bundles", std::to_string(settings_.directions) + " directions a pass",
+             settings_.sky ? "half of them by the light of the sky" : "uniform; a line serves both ways");
+    plan.run("weights", settings_.techniques == Techniques::combined ? "balance heuristic" : "bundles alone",
+             settings_.techniques == Techniques::combined
+                 ? "bundles take what is close to the receiver, virtual point lights what is far"
+                 : "asked for: virtual point lights are left what bundles cannot make");
+    plan.run("bounces", std::to_string(settings_.joined) + " virtual point lights for each point of a bundle",
+             settings_.bound ? "bounded" : "weighed against the virtual point light at that point");
+    if (settings_.interleaving > 1)
+        plan.run("interleaving",
+                 "directions and a share of the VPLs for each pixel of " +
+                     std::to_string(settings_.interleaving) + " x " + std::to_string(settings_.interleaving),
+                 "unbiased: noise differs from pixel to pixel, and less work is done");
+}
+
+void MoteVplRayBundles::plan_bias(Plan& plan) const {
+    if (settings_.techniques == Techniques::vpls || !settings_.has_bundles())
+        plan.run("bound", "none", "right in the mean, with splotches around VPLs");
+    if (settings_.bound)
+        plan.miss("short distances", "light of two bounces and more between close points is darkened",
+                  "bound is set; without it these paths are weighed and nothing is missing");
+    if (settings_.joined == 0 && settings_.techniques == Techniques::combined)
+        plan.run("paths of two bounces", "virtual point lights alone", "joined is 0: splotches are left");
+    if (settings_.joined == 0 && settings_.techniques == Techniques::bundles)
+        plan.run("paths of two bounces", "virtual point lights alone", "joined is 0");
+    if (settings_.clamping.enabled)
+        plan.miss("sharp reflections of indirect light", "roughness clamping blurs them",
+                  "asked for: biased; more passes do not sharpen them, more light paths do");
+    if (settings_.filters)
+        plan.run(
+            "filter", "indirect light in image space",
+            "biased by what it smoothes, less with every pass. The noise that is stated, and --noise, are "
+            "those of the passes before it");
+}
+
+Plan MoteVplRayBundles::plan(const Scene& scene, const Requirements& r) const {
+    Plan plan;
+    plan.integrator = type();
+    plan_techniques(plan);
+    plan_bias(plan);
+    plan_choice_of_lights(plan, scene);
+    if (settings_.sky && scene.environment())
+        plan.run("direct light of the sky", "by bundles",
+                 "asked for; that of all other lights by connections");
+    if (r.any_delta())
+        plan.miss(
+            "caustics", "light that reaches a receiver through a delta surface",
+            "neither VPLs nor points of bundles can be connected through mirrors and glass; path renders it");
+    if (r.any_media())
+        plan.miss("the whole picture", "refused: the scene has media",
+                  "bundles are for surfaces; volpath and mote_vpl render media");
+    else
+        plan.leave_out("media", "no code for media runs", "the scene has none");
+    return plan;
+}
+
+}  // namespace
+
+void register_mote_vpl_ray_bundles(Registry& registry) {
+    auto parameters = eye_path_parameters();
+    parameters.push_back({"paths", "integer", "256", "light paths traced in every pass"});
+    parameters.push_back({"directions", "integer", "16",
+                          "lines along which rays leave what the eye sees, in every pass; 0: none"});
+    parameters.push_back(
+        {"joined", "integer", "8",
+         "virtual point lights that each point found by a ray is joined to, for light of two "
+         "bounces and more"});
+    parameters.push_back({"techniques", "string", "combined",
+                          "combined: weighed against each other; vpls or bundles: one alone"});
+    parameters.push_back(
+        {"bound", "float", "none",
+         "bound [1/m^2] on the geometry term of paths of two bounces and more, which are left "
+         "to bundles then, as in the paper; none: they are weighed, and nothing is lost"});
+    parameters.push_back(
+        {"sky", "boolean", "false",
+         "direct light of the sky by bundles too, half of whose directions are drawn by it"});
+    parameters.push_back({"roughness_clamping", "boolean", "false",
+                          "widen glossy lobes to the density of the light that is known: biased"});
+    parameters.push_back(
+        {"clamping_neighbours", "integer", "16", "m': a lobe reaches over so many lights of a pass"});
+    parameters.push_back(
+        {"interleaving", "integer", "1",
+         "n, up to 8: a pixel of n x n has directions of its own, and every n^2-th VPL, which "
+         "counts n^2 times"});
+    parameters.push_back({"filter", "boolean", "false",
+                          "smooth indirect light in image space, as far as noise that differs from pixel to "
+                          "pixel explains its "
+                          "detail: for interleaving"});
+    for (Parameter& p : layer_filter_parameters()) parameters.push_back(std::move(p));
+    registry.add(
+        {Category::integrator, "mote_vpl_ray_bundles",
+         "Virtual point lights combined with bundles of parallel rays from what the eye sees (Tokuyoshi & "
+         "Ogaki "
+         "2012), for scenes without media. Unbiased, without splotches in corners.",
+         parameters,
+         R"(<integrator type="mote_vpl_ray_bundles"><integer name="directions" value="8"/></integrator>)"},
+        [](const Properties& p) { return std::make_shared<MoteVplRayBundles>(p); });
+}
+
+}  // namespace mote::integrators

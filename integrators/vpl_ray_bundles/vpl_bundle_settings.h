@@ -1,0 +1,37 @@
+// What a scene file sets for `mote_vpl_ray_bundles`.
+#pragma once
+
+#include <algorithm>
+#include <optional>
+
+#include "compensation/roughness_clamping.h"
+#include "gathering/eye_bundles/eye_bundles.h"
+#include "integrators/eye_path/eye_path_limits.h"
+#include "integrators/layer_filter/layer_filter.h"
+#include "lights/virtual_lights/light_path.h"
+
+namespace mote::integrators {
+
+struct VplBundleSettings {
+    EyePathLimits eye;  ///< max_depth counts the whole path from light to eye
+    std::uint32_t paths = 256;
+    std::uint32_t directions = 16;  ///< of a pass
+    std::uint32_t joined = 8;       ///< VPLs that are joined to a point that a bundle found
+    gathering::Techniques techniques = gathering::Techniques::combined;
+    std::optional<float> bound;  ///< b [1/m^2] of paths of two bounces and more; nothing: weighed
+    bool sky = false;            ///< direct light of the sky by bundles
+    compensation::RoughnessClamping clamping;
+    int interleaving = 1;  ///< n: a pixel of n x n has every n^2-th VPL, and directions of its own
+    bool filters = false;
+    LayerFilterParameters filter;
+
+    bool has_bundles() const { return techniques != gathering::Techniques::vpls && directions > 0; }
+    lights::LightPathSettings light_paths() const {
+        lights::LightPathSettings s;
+        s.paths = paths, s.rr_depth = eye.rr_depth, s.keep_starts = true;
+        s.max_vertices = eye.max_depth < 0 ? -1 : std::max(0, eye.max_depth - 2);
+        return s;
+    }
+};
+
+}  // namespace mote::integrators
