@@ -47,6 +47,9 @@ class MoteVpl final : public Integrator {
         settings_.lists.size = int(properties.get_int_in("light_lists", 0, 0, 256));
         settings_.interleaving = int(properties.get_int_in("interleaving", 1, 1, 8));
         settings_.upsampling = int(properties.get_int_in("upsampling", 1, 1, 8));
+        settings_.clamping.enabled = properties.get_bool("roughness_clamping", false);
+        settings_.clamping.neighbours =
+            std::uint32_t(properties.get_int_in("clamping_neighbours", 16, 1, 1000));
         settings_.filters = properties.get_bool("filter", false);
         settings_.filter = read_layer_filter(properties);
         if (const auto nested = properties.child_of<Visibility>(Category::visibility))
@@ -198,6 +201,9 @@ Plan MoteVpl::plan(const Scene& scene, const Requirements& r) const {
         plan.run("eye paths", std::to_string(settings_.eye_samples) + " a pixel and pass",
                  settings_.vpls_shared_out() ? "VPLs are shared out among them" : "each meets all VPLs");
     plan_image_space(plan);
+    if (settings_.clamping.enabled)
+        plan.miss("sharp reflections of indirect light", "roughness clamping blurs them",
+                  "asked for: biased; more passes do not sharpen them, more light paths do");
     if (r.any_delta())
         plan.miss("caustics", "light that reaches a receiver through a delta surface",
                   "a VPL cannot be connected through mirrors and glass; volpath renders it");
@@ -233,6 +239,10 @@ void register_mote_vpl(Registry& registry) {
          "texels along an edge of each VPL's picture of the surfaces that it sees, up to 256: "
          "receivers look at the VPLs that see their part of a surface, and at one in 8 of the "
          "others, which count 8 times; 0: at all of them"});
+    parameters.push_back({"roughness_clamping", "boolean", "false",
+                          "widen glossy lobes to the density of the light that is known: biased"});
+    parameters.push_back(
+        {"clamping_neighbours", "integer", "16", "m': a lobe reaches over so many lights of a pass"});
     parameters.push_back({"interleaving", "integer", "1",
                           "n, up to 8: a pixel of n x n gathers every n^2-th VPL, which counts n^2 times"});
     parameters.push_back(

@@ -54,7 +54,12 @@ class VplEstimator final : public Estimator {
 
     bool pass(const PassContext& context, PassImage& image) override {
         if (context.cancelled) return false;
-        const lights::VplSet vpls = trace_lights(context);
+        lights::VplSet vpls = trace_lights(context);
+        if (settings_.clamping.enabled)
+            compensation::clamp_roughness(
+                vpls, settings_.clamping,
+                1.0f / float(settings_.interleaving * settings_.interleaving *
+                             (settings_.vpls_shared_out() ? settings_.eye_samples : 1)));
         counters_.add(vpls.rays, vpls.tracking);
         vpls_ += vpls.lights.size(), paths_ += vpls.paths;
         bytes_ = std::max(bytes_, vpls.memory_bytes());

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "compensation/roughness_clamping.h"
 #include "integrators/eye_path/eye_path_limits.h"
 #include "integrators/layer_filter/layer_filter.h"
 #include "integrators/screen_space_compensation/screen_space_compensation.h"
@@ -22,6 +23,7 @@ struct VplSettings {
     std::optional<ScreenSpaceSettings> screen_space;  ///< after the last pass, on surfaces
     int eye_samples = 1;                              ///< eye paths a pixel and pass
     VisibilitySettings visibility;
+    compensation::RoughnessClamping clamping;
     /// Points in media where the light along an eye ray is gathered, besides the surface behind them; 0: one
     /// collision or the surface, by chance.
     int scattering_points = 8;

@@ -55,7 +55,8 @@ std::string sheet(const std::string& bsdf) {
 std::string integrator(const std::string& type, bool hide) {
     std::string text = "<integrator type='" + type + "'><boolean name='hide_emitters' value='" +
                        (hide ? "true" : "false") + "'/>";
-    if (type == "mote_vpl" || type == "mote_vsl") text += "<integer name='paths' value='4'/>";
+    if (type == "mote_vpl" || type == "mote_vsl" || type == "mote_vpl_ray_bundles")
+        text += "<integer name='paths' value='4'/>";
     if (type == "mote_photon_map") text += "<integer name='photon_paths' value='50'/>";
     return text + "</integrator>";
 }

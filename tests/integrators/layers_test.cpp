@@ -124,10 +124,11 @@ TEST_CASE("a method that is asked for one cell gives it its own mean and traces 
     const auto foggy = foggy_box(), dry = scene_from(box(mixed, ""), 8);
     for (const std::string& type : registry().types(Category::integrator)) {
         if (type == "mote_layers") continue;
-        const bool media = type != "mote_vsl" && type != "path";
+        const bool media = type != "mote_vsl" && type != "mote_vpl_ray_bundles" && type != "path";
         const Scene& scene = media ? *foggy : *dry;
         std::string few;
-        if (type == "mote_vpl" || type == "mote_vsl") few = "<integer name='paths' value='4'/>";
+        if (type == "mote_vpl" || type == "mote_vsl" || type == "mote_vpl_ray_bundles")
+            few = "<integer name='paths' value='4'/>";
         if (type == "mote_epipolar")
             few = "<integer name='lines' value='16'/><integer name='steps' value='8'/>";
         if (type == "mote_single_scattering") few = "<integer name='steps' value='8'/>";
