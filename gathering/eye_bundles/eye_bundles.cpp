@@ -29,26 +29,56 @@ bool any_of(const auto& found) {
 
 }  // namespace
 
-void EyeBundles::add(const ReceiverArray& receivers, const BundleDirection& line, TileLight& indirect,
-                     TileLight& direct) {
+void EyeBundles::add(const ReceiverArray& receivers, std::span<const BundleDirection> lines,
+                     std::size_t index, TileLight& indirect, TileLight& direct) {
+    const BundleDirection& line = lines[index];
+    const float density = pass_.samples.directions * line.pdf_line * (pass_.two_way ? 1.0f : 0.5f);  // M p_r
     for (int side = 0; side < 2; ++side) {
         for (std::size_t i = 0; i < width; ++i) {
             const BundleReceiver& x = receivers[i];
             found_[i].max_vpl_depth = 0;
             if (!x.vertex) continue;
-            const Vec3 w = towards_eye_side(*x.vertex, line.direction);
+            const Vec3 leaving = towards_eye_side(*x.vertex, line.direction),
+                       w = side == 0 ? leaving : -leaving;
             // Only where light comes through a surface are there two directions that count.
-            if (side == 0 || x.vertex->bsdf->traits().transmissive)
-                trace(x, side == 0 ? w : -w, line.pdf_line, found_[i], direct[i]);
+            if (side == 1 && !x.vertex->bsdf->traits().transmissive) continue;
+            if (pass_.two_way || w == line.direction) trace(x, w, density, found_[i], direct[i]);
         }
         if (!any_of(found_)) continue;
         connect_lights(indirect);
+        if (pass_.bounces > 1) go_on(lines, index, indirect);
         if (pass_.samples.joined_share > 0.0f) join_lights(indirect);
     }
 }
 
-void EyeBundles::trace(const BundleReceiver& x, const Vec3& w, float pdf_line, Found& y, Rgb& direct) {
-    const float density = pass_.samples.directions * pdf_line;  // M p_r
+/// Paths from the points that line `first` found, along lines of the same pass chosen at random. A line that
+/// a path has not had yet is as good as a new one, because lines are independent of each other; one that it
+/// had leads straight back.
+void EyeBundles::go_on(std::span<const BundleDirection> lines, std::size_t first, TileLight& indirect) {
+    std::array<std::vector<std::size_t>, width> unused;
+    for (auto& left : unused)
+        for (std::size_t m = 0; m < lines.size(); ++m)
+            if (m != first || pass_.repeats) left.push_back(m);
+    for (int bounce = 2; bounce <= pass_.bounces; ++bounce) {
+        for (std::size_t i = 0; i < width; ++i) {
+            const Found y = found_[i];
+            found_[i].max_vpl_depth = 0;
+            if (y.max_vpl_depth < 2 || unused[i].empty()) continue;
+            const auto drawn =
+                std::min(std::size_t(walk_.rng.next_float() * float(unused[i].size())), unused[i].size() - 1);
+            const BundleDirection& line = lines[unused[i][drawn]];
+            if (!pass_.repeats) std::swap(unused[i][drawn], unused[i].back()), unused[i].pop_back();
+            const BundleReceiver here{&y.vertex, y.throughput, y.max_vpl_depth - 1, y.sampler};
+            Rgb direct(0.0f);
+            trace(here, towards_eye_side(y.vertex, line.direction), line.pdf_line, found_[i], direct);
+        }
+        if (!any_of(found_)) return;
+        connect_lights(indirect);
+    }
+}
+
+/// `pdf_lines`: what the direction's share is divided by, M p_r where there are M [1/sr].
+void EyeBundles::trace(const BundleReceiver& x, const Vec3& w, float pdf_lines, Found& y, Rgb& direct) {
     const float limit = pass_.vpls.peak_density.empty() ? infinity : pass_.vpls.peak_directions;
     const Rgb f_cos = x.vertex->eval_cos(w, TransportMode::radiance, limit);
     if (is_black(f_cos)) return;
@@ -57,7 +87,7 @@ void EyeBundles::trace(const BundleReceiver& x, const Vec3& w, float pdf_line, F
     PathWeights weights;
     Rgb emitted(0.0f);
     const WalkEvent event = walk<false>(pass_.scene, ray, state, weights, emitted, walk_);
-    const Rgb throughput = x.throughput * f_cos * weights.throughput / density;
+    const Rgb throughput = x.throughput * f_cos * weights.throughput / pdf_lines;
     if (event.kind == WalkEvent::Kind::escaped) {
         if (pass_.sky) direct += throughput * pass_.sky->environment(w);
         return;

@@ -36,6 +36,11 @@ struct BundlePass {
     std::size_t stride = 1;           ///< every so many VPLs are joined to a point, from a random one on
     std::optional<float> bound = {};  ///< of paths of two bounces and more, as in the paper; nothing: weighed
     const core::Emitter* sky = nullptr;  ///< whose direct light the bundles find; null: nobody's
+    bool two_way = true;                 ///< false: a direction serves one way, as a shadow map does
+    /// Bounces of paths that choose one of the pass's own lines after the other, at random (the paper's
+    /// Sec. 7); 0: virtual point lights are joined instead.
+    int bounces = 0;
+    bool repeats = false;  ///< such a path may choose a line again: biased (docs/design.md)
 };
 
 using ReceiverArray = std::array<BundleReceiver, lights::ReceiverLanes::width>;
@@ -48,10 +53,10 @@ class EyeBundles {
         shadow_.clear();
     }
 
-    /// Adds the light that direction `line` finds, divided by M p_r: indirect light to `indirect`, that of
-    /// the sky to `direct`. Draws from the receivers' samplers and from the walk's generator.
-    void add(const ReceiverArray& receivers, const BundleDirection& line, lights::TileLight& indirect,
-             lights::TileLight& direct);
+    /// Adds the light that line `index` of the pass finds, divided by M p_r: indirect light to `indirect`,
+    /// that of the sky to `direct`. Draws from the receivers' samplers and from the walk's generator.
+    void add(const ReceiverArray& receivers, std::span<const BundleDirection> lines, std::size_t index,
+             lights::TileLight& indirect, lights::TileLight& direct);
 
   private:
     static constexpr int width = lights::ReceiverLanes::width;
@@ -65,7 +70,8 @@ class EyeBundles {
         core::Sampler* sampler = nullptr;
     };
 
-    void trace(const BundleReceiver& x, const core::Vec3& w, float pdf_line, Found& y, core::Rgb& direct);
+    void trace(const BundleReceiver& x, const core::Vec3& w, float pdf_lines, Found& y, core::Rgb& direct);
+    void go_on(std::span<const BundleDirection> lines, std::size_t first, lights::TileLight& indirect);
     void connect_lights(lights::TileLight& indirect);
     void join_lights(lights::TileLight& indirect);
     float connection_weight(const Found& y, const core::LightChoice& choice,

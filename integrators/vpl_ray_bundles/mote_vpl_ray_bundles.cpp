@@ -22,9 +22,9 @@ class MoteVplRayBundles final : public Integrator {
     explicit MoteVplRayBundles(const Properties& p) {
         settings_.eye = read_eye_path_limits(p);
         settings_.eye.max_scatterings = 1;  // from then on virtual lights and bundles take over
-        settings_.paths = std::uint32_t(p.get_int_in("paths", 256, 0, std::int64_t(1) << 26));
-        settings_.directions = std::uint32_t(p.get_int_in("directions", 16, 0, 65536));
-        settings_.joined = std::uint32_t(p.get_int_in("joined", 8, 0, 65536));
+        settings_.paths = std::uint32_t(p.get_int_in("paths", 64, 0, std::int64_t(1) << 26));
+        settings_.directions = std::uint32_t(p.get_int_in("directions", 8, 0, 65536));
+        settings_.joined = std::uint32_t(p.get_int_in("joined", 4, 0, 65536));
         const std::string techniques =
             p.get_choice("techniques", "combined", {"combined", "vpls", "bundles"});
         settings_.techniques = techniques == "vpls"      ? Techniques::vpls
@@ -37,6 +37,18 @@ class MoteVplRayBundles final : public Integrator {
             settings_.bound = float(bound);
         }
         settings_.sky = p.get_bool("sky", false);
+        settings_.two_way = p.get_bool("two_way", true);
+        settings_.bounces = int(p.get_int_in("bounces", 0, 0, 1000));
+        settings_.repeats = p.get_bool("repeats", false);
+        if (settings_.bounces > 0 && settings_.techniques != Techniques::bundles)
+            throw InputError(
+                "bounces along directions of the same pass are paths of bundles alone: "
+                "techniques=\"bundles\"",
+                p.where_of("bounces"));
+        if (settings_.bounces > int(settings_.directions) && !settings_.repeats)
+            throw InputError(
+                "a path of " + std::to_string(settings_.bounces) + " bounces needs as many directions",
+                p.where_of("bounces"));
         settings_.clamping.enabled = p.get_bool("roughness_clamping", false);
         settings_.clamping.neighbours = std::uint32_t(p.get_int_in("clamping_neighbours", 16, 1, 1000));
         settings_.interleaving = int(p.get_int_in("interleaving", 1, 1, 8));
@@ -84,8 +96,13 @@ void MoteVplRayBundles::plan_techniques(Plan& plan) const {
              settings_.techniques == Techniques::combined
                  ? "bundles take what is close to the receiver, virtual point lights what is far"
                  : "asked for: virtual point lights are left what bundles cannot make");
-    plan.run("bounces", std::to_string(settings_.joined) + " virtual point lights for each point of a bundle",
-             settings_.bound ? "bounded" : "weighed against the virtual point light at that point");
+    if (settings_.bounces > 0)
+        plan.run("bounces", std::to_string(settings_.bounces) + " along directions of the same pass",
+                 "one chosen at random for each: the bundles of a pass are used again");
+    else
+        plan.run("bounces",
+                 std::to_string(settings_.joined) + " virtual point lights for each point of a bundle",
+                 settings_.bound ? "bounded" : "weighed against the virtual point light at that point");
     if (settings_.interleaving > 1)
         plan.run("interleaving",
                  "directions and a share of the VPLs for each pixel of " +
@@ -99,6 +116,11 @@ void MoteVplRayBundles::plan_bias(Plan& plan) const {
     if (settings_.bound)
         plan.miss("short distances", "light of two bounces and more between close points is darkened",
                   "bound is set; without it these paths are weighed and nothing is missing");
+    if (settings_.bounces > 0)
+        plan.miss("light of more bounces", "no more than " + std::to_string(settings_.bounces), "asked for");
+    if (settings_.bounces > 1 && settings_.repeats)
+        plan.miss("independent directions", "a path may take a direction again, and goes straight back then",
+                  "asked for: biased by about one over the number of directions");
     if (settings_.joined == 0 && settings_.techniques == Techniques::combined)
         plan.run("paths of two bounces", "virtual point lights alone", "joined is 0: splotches are left");
     if (settings_.joined == 0 && settings_.techniques == Techniques::bundles)
@@ -138,11 +160,11 @@ Plan MoteVplRayBundles::plan(const Scene& scene, const Requirements& r) const {
 
 void register_mote_vpl_ray_bundles(Registry& registry) {
     auto parameters = eye_path_parameters();
-    parameters.push_back({"paths", "integer", "256", "light paths traced in every pass"});
-    parameters.push_back({"directions", "integer", "16",
+    parameters.push_back({"paths", "integer", "64", "light paths traced in every pass"});
+    parameters.push_back({"directions", "integer", "8",
                           "lines along which rays leave what the eye sees, in every pass; 0: none"});
     parameters.push_back(
-        {"joined", "integer", "8",
+        {"joined", "integer", "4",
          "virtual point lights that each point found by a ray is joined to, for light of two "
          "bounces and more"});
     parameters.push_back({"techniques", "string", "combined",
@@ -154,6 +176,14 @@ void register_mote_vpl_ray_bundles(Registry& registry) {
     parameters.push_back(
         {"sky", "boolean", "false",
          "direct light of the sky by bundles too, half of whose directions are drawn by it"});
+    parameters.push_back({"two_way", "boolean", "true",
+                          "false: a direction serves one way, as a shadow map does, for comparison"});
+    parameters.push_back(
+        {"bounces", "integer", "0",
+         "for bundles alone: bounces of paths along directions of the same pass, chosen at random, "
+         "instead of joined virtual point lights; 0: none"});
+    parameters.push_back({"repeats", "boolean", "false",
+                          "such a path may take a direction again: biased by about one over their number"});
     parameters.push_back({"roughness_clamping", "boolean", "false",
                           "widen glossy lobes to the density of the light that is known: biased"});
     parameters.push_back(
@@ -173,7 +203,7 @@ void register_mote_vpl_ray_bundles(Registry& registry) {
          "Ogaki "
          "2012), for scenes without media. Unbiased, without splotches in corners.",
          parameters,
-         R"(<integrator type="mote_vpl_ray_bundles"><integer name="directions" value="8"/></integrator>)"},
+         R"(<integrator type="mote_vpl_ray_bundles"><integer name="directions" value="16"/></integrator>)"},
         [](const Properties& p) { return std::make_shared<MoteVplRayBundles>(p); });
 }
 

@@ -88,9 +88,11 @@ class VplBundleEstimator final : public Estimator {
     std::vector<gathering::BundleDirection> directions(const PassContext& context, const VplBundlePass& pass,
                                                        int place) const {
         std::vector<gathering::BundleDirection> lines;
+        // Paths that go on along other lines of the set take them for independent ones.
+        const SamplerKind kind = settings_.bounces > 1 ? SamplerKind::independent : options_.sampler;
         if (settings_.has_bundles())
             for (std::uint32_t m = 0; m < settings_.directions; ++m)
-                lines.push_back(gathering::bundle_direction(pass.bundles.sky, options_.sampler, options_.seed,
+                lines.push_back(gathering::bundle_direction(pass.bundles.sky, kind, options_.seed,
                                                             std::uint32_t(place),
                                                             context.index * settings_.directions + m));
         return lines;

@@ -17,7 +17,9 @@ VplBundlePass::VplBundlePass(const LitScene& lit, const VplBundleSettings& setti
     samples.directions = settings.has_bundles() ? float(settings.directions) : 0.0f;
     samples.paths = float(settings.paths), samples.light_share = share;
     const std::size_t lights = vpls.lights.size();
-    if (settings.has_bundles() && settings.joined > 0 && lights > 0) {
+    bundles.two_way = settings.two_way, bundles.bounces = settings.bounces,
+    bundles.repeats = settings.repeats;
+    if (settings.has_bundles() && settings.joined > 0 && settings.bounces == 0 && lights > 0) {
         bundles.stride = (lights + settings.joined - 1) / settings.joined;
         samples.joined_share = 1.0f / float(bundles.stride);
     }
@@ -30,7 +32,8 @@ VplBundlePass::VplBundlePass(const LitScene& lit, const VplBundleSettings& setti
     // What bundles make alone, VPLs leave to them.
     const bool all = settings.techniques == Techniques::bundles;
     for (std::size_t j = 0; j < lights; ++j)
-        if (rivals[j] > 0.0f && (all || (settings.bound && vpls.lights[j].depth > 1)))
+        if ((rivals[j] > 0.0f && (all || (settings.bound && vpls.lights[j].depth > 1))) ||
+            settings.bounces > 0)
             rivals[j] = gathering::certain;
     if (settings.clamping.enabled) {
         compensation::clamp_roughness(vpls, settings.clamping, share);

@@ -14,12 +14,15 @@ namespace mote::integrators {
 
 struct VplBundleSettings {
     EyePathLimits eye;  ///< max_depth counts the whole path from light to eye
-    std::uint32_t paths = 256;
-    std::uint32_t directions = 16;  ///< of a pass
-    std::uint32_t joined = 8;       ///< VPLs that are joined to a point that a bundle found
+    std::uint32_t paths = 64;
+    std::uint32_t directions = 8;  ///< of a pass
+    std::uint32_t joined = 4;      ///< VPLs that are joined to a point that a bundle found
     gathering::Techniques techniques = gathering::Techniques::combined;
     std::optional<float> bound;  ///< b [1/m^2] of paths of two bounces and more; nothing: weighed
     bool sky = false;            ///< direct light of the sky by bundles
+    bool two_way = true;         ///< a direction serves both ways
+    int bounces = 0;             ///< of paths along the pass's own directions, instead of joined VPLs
+    bool repeats = false;        ///< such a path may take a direction again
     compensation::RoughnessClamping clamping;
     int interleaving = 1;  ///< n: a pixel of n x n has every n^2-th VPL, and directions of its own
     bool filters = false;

@@ -73,9 +73,9 @@ void VplBundleTile::gather(const lights::VplRange& share,
         lights::gather(context, pass_.vpls, share, gathering::AgainstBundles{pass_.rivals}, tile_);
     const double middle = thread_cpu_seconds();
     lights::TileLight indirect{}, direct{};
-    for (const auto& line : directions) {
+    for (std::size_t m = 0; m < directions.size(); ++m) {
         walk_.cancelled.check();
-        bundles_.add(receivers_, line, indirect, direct);
+        bundles_.add(receivers_, directions, m, indirect, direct);
     }
     for (std::size_t i = 0; i < std::size_t(width); ++i) {
         lanes_[i].sum[Transport::indirect] += float(share.stride) * light[i] + indirect[i];

@@ -82,14 +82,15 @@ class Points {
             right ? lights::gather(context, vpls, lights::VplRange{}, AgainstBundles{rivals}, tile)
                   : lights::gather(context, vpls, lights::VplRange{}, PlantedWeights{rivals, planted}, tile);
         lights::TileLight direct{};
+        std::array<BundleDirection, directions> lines;
         EyeBundles eye_bundles(bundles, *scratch_, walk);
         if (techniques != Techniques::vpls)
             for (std::uint32_t m = 0; m < directions; ++m) {
-                BundleDirection line =
-                    bundle_direction(nullptr, SamplerKind::independent, 2, 0, index * directions + m);
-                line.pdf_line *= planted.line_pdf;
-                eye_bundles.add(receivers, line, light, direct);
+                lines[m] = bundle_direction(nullptr, SamplerKind::independent, 2, 0, index * directions + m);
+                lines[m].pdf_line *= planted.line_pdf;
             }
+        if (techniques != Techniques::vpls)
+            for (std::size_t m = 0; m < directions; ++m) eye_bundles.add(receivers, lines, m, light, direct);
         return mean(light);
     }
 

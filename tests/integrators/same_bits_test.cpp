@@ -56,6 +56,7 @@ const std::map<std::string, Words> numbers = {
     {"clamping_neighbours", {"", "4"}},
     {"directions", {"3", "0"}},
     {"joined", {"", "2"}},
+    {"bounces", {""}},
     {"bound", {"", "1"}},
     {"lines", {"24"}},
     {"samples", {"2"}},

@@ -30,9 +30,11 @@ TEST_CASE("virtual point lights and ray-bundles render the picture of path", "[b
         std::string wall, settings;
         int max_depth;
     };
-    const auto c = GENERATE(Case{grey, "", 3}, Case{grey, "", 4}, Case{mixed, "", 5},
-                            Case{grey, R"(<integer name="interleaving" value="2"/>)", 5},
-                            Case{grey, R"(<string name="techniques" value="bundles"/>)", 3});
+    const auto c = GENERATE(
+        Case{grey, "", 3}, Case{grey, "", 4}, Case{mixed, "", 5},
+        Case{grey, R"(<integer name="interleaving" value="2"/>)", 5},
+        Case{grey, R"(<string name="techniques" value="bundles"/>)", 3},
+        Case{grey, R"(<string name="techniques" value="bundles"/><integer name="bounces" value="3"/>)", 5});
     const auto scene = scene_from(box(c.wall, ""), 12);
     CAPTURE(c.settings, c.max_depth);
     const auto expected = render_statistics(*scene, *path(c.max_depth), {.block = 4, .passes = 1200});
@@ -81,13 +83,33 @@ TEST_CASE("a bound of paths of two bounces only darkens them", "[bundles]") {
     CHECK(bounded.mean > one_bounded.mean);
 }
 
+// Tokuyoshi & Ogaki 2012, Sec. 7: "randomly select a single ray-bundle". With M lines one path in M of two
+// bounces goes straight back to where it came from.
+TEST_CASE("paths that may take a direction again are biased", "[bundles]") {
+    const auto scene = scene_from(box(grey, ""), 12);
+    const auto mean = [&](const std::string& settings) {
+        const auto found = render_statistics(
+            *scene,
+            *bundles(R"(<string name="techniques" value="bundles"/><integer name="bounces" value="2"/>)" +
+                     settings + depth(4)),
+            {.block = 12, .passes = 600});
+        return found.whole[found.layer("indirect")][1];
+    };
+    const Estimate right = mean(""), biased = mean(R"(<boolean name="repeats" value="true"/>)");
+    CAPTURE(right.mean, biased.mean, right.variance_of_mean);
+    CHECK(std::fabs(right.mean - biased.mean) >
+          4.5 * std::sqrt(right.variance_of_mean + biased.variance_of_mean));
+}
+
 TEST_CASE("mote_vpl_ray_bundles refuses media and wrong settings, and says what it does",
           "[bundles][input]") {
     const auto foggy = scene_from(box(grey, R"(<medium type="homogeneous" name="interior"/>)"));
     CHECK_THROWS_AS(bundles("")->prepare(*foggy, {}), InputError);
     for (const char* wrong :
          {R"(<integer name="directions" value="-1"/>)", R"(<float name="bound" value="0"/>)",
-          R"(<string name="techniques" value="both"/>)", R"(<integer name="joined" value="-3"/>)"})
+          R"(<string name="techniques" value="both"/>)", R"(<integer name="joined" value="-3"/>)",
+          R"(<integer name="bounces" value="2"/>)",
+          R"(<string name="techniques" value="bundles"/><integer name="bounces" value="4"/>)"})
         CHECK_THROWS_AS(bundles(wrong), InputError);
     const auto scene = scene_from(box(grey, ""));
     const auto plan = [&](const std::string& settings) {
