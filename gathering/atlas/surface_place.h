@@ -1,0 +1,16 @@
+// A point of a triangle of the list as the rest of the project knows points: a hit on its shape.
+#pragma once
+
+#include "core/geometry/shape.h"
+#include "gathering/ray_bundles/surface_triangles.h"
+
+namespace mote::gathering {
+
+using ShapeSpan = std::span<const std::shared_ptr<core::Shape>>;
+
+/// The hit at (1 - u - v) c0 + u c1 + v c2. `t` and the rounding error of a ray are not known: leave it
+/// through offset_origin(), whose error is taken from the triangle's size.
+core::SurfaceHit surface_place(const SurfaceTriangles& surfaces, ShapeSpan shapes, std::uint32_t triangle,
+                               const core::Vec2& barycentric);
+
+}  // namespace mote::gathering
