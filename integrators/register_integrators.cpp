@@ -18,6 +18,7 @@ void register_integrators(core::Registry& registry) {
     register_mote_vpl(registry);
     register_mote_vpl_ray_bundles(registry);
     register_mote_photon_map(registry);
+    register_mote_ray_bundles(registry);
     register_mote_vsl(registry);
     register_mote_single_scattering(registry);
     register_mote_epipolar(registry);
