@@ -48,10 +48,25 @@ void ExchangeBatch::run(const BundleDirections& directions, std::uint32_t first,
         hits[i] = bundle.hits.size();
     });
     for (const std::uint64_t h : hits) hits_ += h;
+    find_scale();
+}
+
+void ExchangeBatch::find_scale() {
+    const auto texels = scene_.atlas.texels();
+    std::vector<double> counted(count_);
+    tbb::parallel_for(std::uint32_t(0), count_, [&](std::uint32_t i) {
+        for (const Rgb4& r : from_surface_[i]) counted[i] += double(r.more);
+    });
+    double rays = 0.0, area = 0.0;
+    for (const double c : counted) rays += c;
+    for (const AtlasTexel& t : texels) area += double(t.area);
+    const double uniform =
+        2.0 * double(sqr(spacing_)) * rays / double(count_);  // times pi, as the area below
+    scale_ = uniform > 0.0 ? float(area / uniform) : 1.0f;
 }
 
 float ExchangeBatch::weight(std::uint32_t i, const AtlasTexel& texel) const {
-    const float w = 2.0f * pi * sqr(spacing_) / texel.area;
+    const float w = 2.0f * pi * sqr(spacing_) * scale_ / texel.area;
     if (texel.normal == texel.geometric_normal) return w;
     const Vec3& d = directions_[i];
     const float geometric = glm::dot(texel.geometric_normal, d);

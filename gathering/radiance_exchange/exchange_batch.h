@@ -39,7 +39,9 @@ class ExchangeBatch {
              core::CancelToken cancelled);
 
     std::uint32_t size() const { return count_; }
-    /// The mean over the batch's directions, by Eq. (1) of link_exchange.h.
+    /// The mean over the batch's directions, by Eq. (1) of link_exchange.h, divided by what it makes of a
+    /// uniform radiance in the mean over all surfaces, which is 1 but for how the directions fell. So a
+    /// closed room keeps its power from batch to batch.
     TexelIrradiance mean() const;
     /// The estimate of one texel from direction i alone, emitted and reflected light together, and the
     /// direction that it comes from: the bundle's or the opposite one.
@@ -52,6 +54,7 @@ class ExchangeBatch {
   private:
     /// Per direction and texel: 2 pi s^2 / A, times the shading cosine over the geometric one.
     float weight(std::uint32_t i, const AtlasTexel& texel) const;
+    void find_scale();
 
     ExchangeScene scene_;
     float spacing_;
@@ -60,6 +63,7 @@ class ExchangeBatch {
     Rgb4Vector emitted_;                                 ///< by texel
     std::vector<Rgb4Vector> from_light_, from_surface_;  ///< received, by direction and texel
     std::vector<core::Vec3> directions_;
+    float scale_ = 1.0f;  ///< by which a uniform radiance is kept
     std::uint64_t hits_ = 0;
 };
 

@@ -30,6 +30,11 @@ void send(const SentRadiance& sent, const ReceivedRadiance& received, std::uint3
         if (sent.emitted[from].more != 0.0f) received.emitted[to].add(sent.emitted[from]);
 }
 
+void count(const ReceivedRadiance& received, const HitTexels& hit) {
+    if (hit.near != SurfaceAtlas::none) received.reflected[hit.near].more += 1.0f;
+    if (hit.far != SurfaceAtlas::none) received.reflected[hit.far].more += 1.0f;
+}
+
 template <bool Emission>
 void exchange(const SurfaceAtlas& atlas, const RayBundle& bundle, const SentRadiance& sent,
               const ReceivedRadiance& received) {
@@ -39,10 +44,12 @@ void exchange(const SurfaceAtlas& atlas, const RayBundle& bundle, const SentRadi
         const auto hits = bundle.hits_of(ray);
         if (hits.empty()) continue;
         HitTexels last = texels_of(atlas, hits[0]);
+        count(received, last);
         if constexpr (Emission)
             if (last.near != none) received.emitted[last.near].add(behind);
         for (std::size_t i = 1; i < hits.size(); ++i) {
             const HitTexels here = texels_of(atlas, hits[i]);
+            count(received, here);
             if (last.far != none && here.near != none) {
                 send<Emission>(sent, received, last.far, here.near);
                 send<Emission>(sent, received, here.near, last.far);

@@ -40,7 +40,7 @@ struct SentRadiance {
 
 /// Sums of radiance over the rays that met a texel; zero before.
 struct ReceivedRadiance {
-    Rgb4* reflected;  ///< that had been reflected before
+    Rgb4* reflected;  ///< that had been reflected before; `more` counts the rays
     Rgb4* emitted;    ///< that had not; may be null where nothing is emitted
 };
 

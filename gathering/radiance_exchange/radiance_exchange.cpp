@@ -117,6 +117,7 @@ ArrivingLight Exchange::one_bounce() {
 ArrivingLight exchange_light(const ExchangeScene& scene, const ExchangeSettings& settings,
                              const TexelDirectLight& direct, std::uint64_t key, CancelToken cancelled,
                              ExchangeStatistics& statistics) {
+    if (scene.atlas.size() == 0) return {};
     Exchange exchange(scene, settings, direct, key, cancelled);
     ArrivingLight light =
         settings.transfer == LightTransfer::interleaved ? exchange.interleaved() : exchange.one_bounce();
