@@ -21,20 +21,26 @@ inline double radical_inverse(std::uint32_t base, std::uint64_t index) {
     return result;
 }
 
-/// A sequence of directions, moved by a random shift (Cranley and Patterson 1976) so that each is uniform and
-/// sequences of different keys are independent.
+/// Directions in batches. Batches that follow each other are independent: they belong to different sequences,
+/// each moved by a random shift of its own (Cranley and Patterson 1976), which makes every direction uniform.
+/// A batch goes on where the batch before it in its sequence ended, so all together cover the sphere evenly.
 class BundleDirections {
   public:
-    explicit BundleDirections(std::uint64_t key) : key_(core::hash_keys(key, 0x62756e64ull)) {}
+    static constexpr std::uint32_t sequences = 2;
+
+    BundleDirections(std::uint64_t key, std::uint32_t batch)
+        : key_(core::hash_keys(key, 0x62756e64ull)), batch_(batch) {}
 
     core::Vec3 direction(std::uint32_t i) const {
-        core::Rng rng(key_);
+        const std::uint32_t number = i / batch_;
+        core::Rng rng(core::hash_keys(key_, number % sequences));
         const core::Vec2 shift = rng.next_vec2();
+        const std::uint64_t point = std::uint64_t(number / sequences) * batch_ + i % batch_;
         const auto shifted = [](double x, float s) {
             return float(x + double(s) - std::floor(x + double(s)));
         };
-        const float z = shifted(radical_inverse(2, i), shift.x);  // uniform over the upper half
-        const float phi = 2.0f * core::pi * shifted(radical_inverse(3, i), shift.y);
+        const float z = shifted(radical_inverse(2, point), shift.x);  // uniform over the upper half
+        const float phi = 2.0f * core::pi * shifted(radical_inverse(3, point), shift.y);
         const float r = core::safe_sqrt(1.0f - z * z);
         return glm::normalize(core::Vec3(r * std::cos(phi), r * std::sin(phi), z));
     }
@@ -46,6 +52,7 @@ class BundleDirections {
 
   private:
     std::uint64_t key_;
+    std::uint32_t batch_;
 };
 
 }  // namespace mote::gathering

@@ -22,7 +22,7 @@ class Exchange {
         : scene_(scene),
           settings_(settings),
           sampled_(direct),
-          directions_(key),
+          directions_(key, settings.batch),
           cancelled_(cancelled),
           n_(scene.atlas.size()),
           batch_(scene, 1.0f / (scene.atlas.texels_per_metre() * std::sqrt(settings.rays_per_texel)),

@@ -44,7 +44,7 @@ Rgb4Vector received(const SurfaceAtlas& atlas, const RayBundle& bundle, const Rg
 // <x, T y> = <T x, y> for any radiances x and y; and all power that is sent is received.
 TEST_CASE("the exchange is symmetric, direction by direction", "[exchange]") {
     const ExchangeStage stage(room, {.texels_per_metre = 6.0f});
-    const BundleDirections directions(3);
+    const BundleDirections directions(3, 64);
     const Rgb4Vector x = random_light(stage.atlas.size(), 1), y = random_light(stage.atlas.size(), 2);
     const Rgb4Vector one(stage.atlas.size(), Rgb4{1, 1, 1, 0});
     for (std::uint32_t i = 0; i < 12; ++i) {
@@ -215,7 +215,7 @@ TEST_CASE("the sky of an open floor is what enters bundles from outside", "[exch
 TEST_CASE("Halton directions: half of the sphere, uniform, moved by the key", "[exchange]") {
     Vec3d mean(0.0);
     double square = 0.0;
-    const BundleDirections a(1), b(2);
+    const BundleDirections a(1, 4096), b(2, 4096);
     for (std::uint32_t i = 0; i < 4096; ++i) {
         const Vec3 d = a.direction(i);
         CHECK(d.z >= 0.0f);

@@ -28,6 +28,9 @@ using Words = std::vector<std::string>;
 /// Values of string parameters, by type and name: manual pages give them in prose alone.
 const std::map<std::string, Words> words = {
     {"mote_photon_map.single_scattering", {"sampled", "photons"}},
+    {"mote_ray_bundles.transfer", {"interleaved", "one_bounce"}},
+    {"mote_ray_bundles.direct", {"bundles", "lights"}},
+    {"mote_ray_bundles.view", {"atlas", "final_gathering"}},
     {"mote_vsl.visibility", {"sample", "light"}},
     {"mote_bdpt.heuristic", {"power", "balance", "none"}},
     {"mote_vpl_ray_bundles.techniques", {"combined", "vpls", "bundles"}},
@@ -52,6 +55,13 @@ const std::map<std::string, Words> words = {
 const std::map<std::string, Words> numbers = {
     {"paths", {"40"}},
     {"photon_paths", {"200"}},
+    {"directions", {"12", "4"}},
+    {"batch", {"4", "1"}},
+    {"bounces", {"3", "1"}},
+    {"warm_up", {"1", "0"}},
+    {"texel_budget", {"400"}},
+    {"rays_per_texel", {"", "2"}},
+    {"light_samples", {"1", "3"}},
     {"neighbours", {"5"}},
     {"clamping_neighbours", {"", "4"}},
     {"directions", {"3", "0"}},
