@@ -3,6 +3,8 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <numeric>
+
 namespace mote::gathering {
 
 using namespace core;
@@ -24,7 +26,7 @@ void ExchangeBatch::run(const BundleDirections& directions, std::uint32_t first,
                         CancelToken cancelled) {
     const SurfaceAtlas& atlas = scene_.atlas;
     const std::size_t glossy = scene_.materials.glossy.size();
-    std::vector<std::uint64_t> hits(count_);
+    std::vector<std::uint64_t> hits(count_), met(count_);
     tbb::parallel_for(std::uint32_t(0), count_, [&](std::uint32_t i) {
         const Vec3 d = directions_[i] = directions.direction(first + i);
         const BundleGrid grid =
@@ -44,24 +46,17 @@ void ExchangeBatch::run(const BundleDirections& directions, std::uint32_t first,
                 s.from_ahead = scene_.environment->environment(d),
                 s.from_behind = scene_.environment->environment(-d);
         }
-        exchange_radiance(atlas, bundle, s, r);
+        met[i] = exchange_radiance(atlas, bundle, s, r);
         hits[i] = bundle.hits.size();
     });
     for (const std::uint64_t h : hits) hits_ += h;
-    find_scale();
+    find_scale(double(std::accumulate(met.begin(), met.end(), std::uint64_t(0))));
 }
 
-void ExchangeBatch::find_scale() {
-    const auto texels = scene_.atlas.texels();
-    std::vector<double> counted(count_);
-    tbb::parallel_for(std::uint32_t(0), count_, [&](std::uint32_t i) {
-        for (const Rgb4& r : from_surface_[i]) counted[i] += double(r.more);
-    });
-    double rays = 0.0, area = 0.0;
-    for (const double c : counted) rays += c;
-    for (const AtlasTexel& t : texels) area += double(t.area);
-    const double uniform =
-        2.0 * double(sqr(spacing_)) * rays / double(count_);  // times pi, as the area below
+void ExchangeBatch::find_scale(double met) {
+    double area = 0.0;
+    for (const AtlasTexel& t : scene_.atlas.texels()) area += double(t.area);
+    const double uniform = 2.0 * double(sqr(spacing_)) * met / double(count_);  // times pi, as the area below
     scale_ = uniform > 0.0 ? float(area / uniform) : 1.0f;
 }
 

@@ -47,14 +47,15 @@ class ExchangeBatch {
     /// direction that it comes from: the bundle's or the opposite one.
     core::Rgb irradiance(std::uint32_t i, std::uint32_t texel) const;
     core::Vec3 direction_above(std::uint32_t i, std::uint32_t texel) const;
-    /// Links and hits so far.
+    /// Of all rays so far.
     std::uint64_t hits() const { return hits_; }
     std::size_t memory_bytes() const;
 
   private:
     /// Per direction and texel: 2 pi s^2 / A, times the shading cosine over the geometric one.
     float weight(std::uint32_t i, const AtlasTexel& texel) const;
-    void find_scale();
+    /// From how often the batch's rays met texels.
+    void find_scale(double met);
 
     ExchangeScene scene_;
     float spacing_;

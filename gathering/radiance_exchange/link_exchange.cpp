@@ -30,26 +30,26 @@ void send(const SentRadiance& sent, const ReceivedRadiance& received, std::uint3
         if (sent.emitted[from].more != 0.0f) received.emitted[to].add(sent.emitted[from]);
 }
 
-void count(const ReceivedRadiance& received, const HitTexels& hit) {
-    if (hit.near != SurfaceAtlas::none) received.reflected[hit.near].more += 1.0f;
-    if (hit.far != SurfaceAtlas::none) received.reflected[hit.far].more += 1.0f;
+std::uint64_t sides(const HitTexels& hit) {
+    return std::uint64_t(hit.near != SurfaceAtlas::none) + std::uint64_t(hit.far != SurfaceAtlas::none);
 }
 
 template <bool Emission>
-void exchange(const SurfaceAtlas& atlas, const RayBundle& bundle, const SentRadiance& sent,
-              const ReceivedRadiance& received) {
+std::uint64_t exchange(const SurfaceAtlas& atlas, const RayBundle& bundle, const SentRadiance& sent,
+                       const ReceivedRadiance& received) {
     constexpr std::uint32_t none = SurfaceAtlas::none;
+    std::uint64_t met = 0;
     const Rgb4 ahead = rgb4(sent.from_ahead), behind = rgb4(sent.from_behind);
     for (std::size_t ray = 0; ray + 1 < bundle.first.size(); ++ray) {
         const auto hits = bundle.hits_of(ray);
         if (hits.empty()) continue;
         HitTexels last = texels_of(atlas, hits[0]);
-        count(received, last);
+        met += sides(last);
         if constexpr (Emission)
             if (last.near != none) received.emitted[last.near].add(behind);
         for (std::size_t i = 1; i < hits.size(); ++i) {
             const HitTexels here = texels_of(atlas, hits[i]);
-            count(received, here);
+            met += sides(here);
             if (last.far != none && here.near != none) {
                 send<Emission>(sent, received, last.far, here.near);
                 send<Emission>(sent, received, here.near, last.far);
@@ -59,16 +59,15 @@ void exchange(const SurfaceAtlas& atlas, const RayBundle& bundle, const SentRadi
         if constexpr (Emission)
             if (last.far != none) received.emitted[last.far].add(ahead);
     }
+    return met;
 }
 
 }  // namespace
 
-void exchange_radiance(const SurfaceAtlas& atlas, const RayBundle& bundle, const SentRadiance& sent,
-                       const ReceivedRadiance& received) {
-    if (sent.emitted)
-        exchange<true>(atlas, bundle, sent, received);
-    else
-        exchange<false>(atlas, bundle, sent, received);
+std::uint64_t exchange_radiance(const SurfaceAtlas& atlas, const RayBundle& bundle, const SentRadiance& sent,
+                                const ReceivedRadiance& received) {
+    return sent.emitted ? exchange<true>(atlas, bundle, sent, received)
+                        : exchange<false>(atlas, bundle, sent, received);
 }
 
 }  // namespace mote::gathering

@@ -40,12 +40,12 @@ struct SentRadiance {
 
 /// Sums of radiance over the rays that met a texel; zero before.
 struct ReceivedRadiance {
-    Rgb4* reflected;  ///< that had been reflected before; `more` counts the rays
+    Rgb4* reflected;  ///< that had been reflected before
     Rgb4* emitted;    ///< that had not; may be null where nothing is emitted
 };
 
-/// Adds what every link brings, in the order of the rays.
-void exchange_radiance(const SurfaceAtlas& atlas, const RayBundle& bundle, const SentRadiance& sent,
-                       const ReceivedRadiance& received);
+/// Adds what every link brings, in the order of the rays. Returns how often rays met a texel.
+std::uint64_t exchange_radiance(const SurfaceAtlas& atlas, const RayBundle& bundle, const SentRadiance& sent,
+                                const ReceivedRadiance& received);
 
 }  // namespace mote::gathering
