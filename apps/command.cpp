@@ -69,8 +69,10 @@ void add_scene_options(CLI::App& command, SceneArguments& arguments) {
 void add_render(CLI::App& app, RenderArguments& a, std::function<int()>& action) {
     CLI::App& command = *app.add_subcommand("render", "Render a scene into a layered EXR and a PNG preview");
     add_scene_options(command, a.scene);
-    command.add_option("-o,--output", a.output,
-                       "The EXR file to write, or the PNG beside it (default: the scene's name)");
+    command.add_option(
+        "-o,--output", a.output,
+        "The EXR file to write, or the PNG beside it (default: the scene's name). frames/####.exr: one "
+        "for every value of the -D that runs (t=0:47, t=0:0.5:10, t=1,2,5)");
     command
         .add_option("--passes", a.passes, "Stop after this many passes (default: the scene's sample_count)")
         ->check(whole_number(1, std::uint64_t(1) << 30));
@@ -97,7 +99,7 @@ void add_render(CLI::App& app, RenderArguments& a, std::function<int()>& action)
         "Add a denoised picture, for the eye, and show it in the preview (needs OpenImageDenoise)");
     command.add_flag("--quiet", a.quiet, "No progress, no warnings");
     command.add_flag("-v,--verbose", a.verbose, "Also print the plan and where the time went");
-    command.callback([&a, &action] { action = [&a] { return render_command(a); }; });
+    command.callback([&a, &action] { action = [&a] { return render_sequence(a); }; });
 }
 
 void add_compare(CLI::App& app, CompareArguments& a, std::function<int()>& action) {

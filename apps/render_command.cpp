@@ -96,6 +96,26 @@ std::string hash_of(const core::Scene& scene, const core::Integrator& integrator
     return core::content_hash(scene, settings);
 }
 
+/// Of a sequence: was this very frame finished before?
+bool finished_before(const OutputFiles& files, const RenderArguments& arguments, const std::string& hash) {
+    std::error_code ignored;
+    if (!arguments.of_sequence || !arguments.resume || fs::exists(files.checkpoint, ignored) ||
+        !fs::exists(files.picture, ignored))
+        return false;
+    try {
+        const auto metadata = core::read_exr(files.picture).metadata;
+        const auto is = [&](const char* key, const std::string& value) {
+            const auto it = metadata.find(key);
+            return it != metadata.end() && it->second == value;
+        };
+        return is("sceneHash", hash) && is("seed", std::to_string(arguments.seed)) &&
+               !metadata.contains("partOfFirstPass") &&
+               (!arguments.passes || is("passes", std::to_string(*arguments.passes)));
+    } catch (const core::InputError&) {
+        return false;  // damaged: it is made anew
+    }
+}
+
 // Values that are right and do not fit into the file.
 void warn_of_range(const core::ImageChannels& image, std::uint64_t clamped,
                    std::vector<std::string>& warnings) {
@@ -232,6 +252,10 @@ int render_command(const RenderArguments& arguments) {
     request.checkpoint_at_end = false;
     request.resume = arguments.resume;
     request.content_hash = hash_of(*scene, integrator, arguments.scene);
+    if (finished_before(files, arguments, request.content_hash)) {
+        if (!arguments.quiet) note(core::printable(files.picture) + " is finished");
+        return exit_ok;
+    }
     request.features = arguments.auxiliary ? auxiliary_features(*scene)
                        : arguments.denoise ? features_for_denoising(*scene, loaded.features)
                                            : features_by_name(*scene, loaded.features);

@@ -40,7 +40,7 @@ std::vector<std::pair<std::string, std::string>> split_defines(const std::vector
 core::LoadOptions load_options(const SceneArguments& arguments) {
     core::LoadOptions options;
     options.integrator = arguments.integrator, options.default_integrator = "mote_layers";
-    options.lenient = arguments.lenient;
+    options.lenient = arguments.lenient, options.frame = arguments.frame;
     options.defines = split_defines(arguments.defines);
     return options;
 }

@@ -28,6 +28,7 @@ struct SceneArguments {
     std::string integrator;
     std::vector<std::string> defines;  ///< "name=value"
     bool lenient = false;
+    std::optional<int> frame = {};  ///< of a sequence
 };
 
 struct InfoArguments {
@@ -46,6 +47,7 @@ struct RenderArguments {
     double checkpoint_every = 60.0;
     std::optional<float> exposure;  ///< of the preview [stops]; none: it adapts
     std::string stats;
+    bool of_sequence = false;  ///< a frame that is finished is not rendered again by --resume
     std::vector<std::string> command_line;
 };
 
@@ -88,6 +90,8 @@ const core::Integrator& require_integrator(const core::Scene& scene, const core:
 void warn_about_scene(const core::Scene& scene, const core::LoadReport& report);
 
 int render_command(const RenderArguments& arguments);
+/// A picture for every value of the -D that runs, where the output holds #### (sequence.h).
+int render_sequence(const RenderArguments& arguments);
 int plan_command(const SceneArguments& arguments);
 int info_command(const InfoArguments& arguments);
 int convert_command(const ConvertArguments& arguments);

@@ -6,6 +6,7 @@
 #include "core/loading/element_checks.h"
 #include "core/loading/foreign_integrators.h"
 #include "core/loading/foreign_names.h"
+#include "core/loading/frame_files.h"
 #include "core/loading/gltf_loader.h"
 #include "core/loading/lenient_scene.h"
 #include "core/loading/scene_builder.h"
@@ -39,6 +40,7 @@ void complete_sensors(Element& scene) {
 void prepare(SceneDocument& document, SceneDefines& defines, const Registry& registry,
              const LoadOptions& options, Faults& faults) {
     Element& scene = document.scene;
+    if (options.frame) number_files(scene, *options.frame);
     upgrade_legacy(scene, document.warnings);
     drop_foreign_elements(scene, document.warnings);
     replace_foreign_types(scene, registry, document.warnings);

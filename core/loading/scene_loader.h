@@ -7,6 +7,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -36,6 +37,8 @@ struct LoadOptions {
     std::string default_integrator = {};
     /// What is wrong with the file is left out or approximated, as LoadReport::approximations says.
     bool lenient = false;
+    /// Of a sequence: the number in file names such as smoke.####.vdb.
+    std::optional<int> frame = {};
     LoadReport* report = nullptr;  ///< filled where it is not null
 };
 
