@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <ctime>
+#include <fstream>
 #include <iostream>
 
 #include "core/loading/scene_loader.h"
@@ -39,6 +40,15 @@ double now() {
     return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
 }
 
+/// Memory of this program [B]: "VmRSS:" now, "VmHWM:" at most since forget_peak().
+double memory_of(const std::string& which) {
+    std::ifstream status("/proc/self/status");
+    for (std::string word; status >> word;)
+        if (double kilobytes = 0.0; word == which && status >> kilobytes) return 1024.0 * kilobytes;
+    return 0.0;
+}
+void forget_peak() { std::ofstream("/proc/self/clear_refs") << "5"; }
+
 std::unique_ptr<core::Scene> load(const std::string& file) {
     core::Registry registry;
     core::register_core(registry), media::register_media(registry);
@@ -58,35 +68,39 @@ void measure(const BundleTracer& tracer, const ImperfectBundles& imperfect, cons
              const std::string& form, std::uint32_t side) {
     const core::Bounds3& bounds = tracer.triangles().bounds;
     const float spacing = glm::length(bounds.diagonal()) / float(side);
-    double seconds = 0.0, hits = 0.0, links = 0.0, rays = 0.0, least = core::infinity;
+    double seconds = 0.0, hits = 0.0, links = 0.0, rays = 0.0;
     std::size_t deepest = 0;
     LinkComparison comparison;
+    double size = 0.0, peak = 0.0;
     const std::uint32_t directions = a.directions;
     const bool points = form == "imperfect";
     const BundleSettings settings{points ? BundleForm::automatic : form_of(form), std::size_t(4) << 30, {}};
     for (std::uint32_t i = 0; i <= directions; ++i) {
         const BundleSample sample = bundle_sample(1, i);
         const BundleGrid grid = bundle_grid(sample.direction, bounds, spacing, sample.offset);
-        const double start = now();
+        forget_peak();
+        const double before = memory_of("VmRSS:"), start = now();
         const RayBundle bundle =
             points ? imperfect.trace(grid, i, a.imperfect) : tracer.trace(grid, settings);
         if (i == 0) continue;  // first touches, and the hierarchy
         const double taken = now() - start;
+        peak = std::max(peak, memory_of("VmHWM:") - before),
+        size = std::max(size, double(bundle.memory_bytes()));
         if (points && a.compare) {
             const auto radius = float(imperfect.disc_radius(a.imperfect));
             comparison.add(compare_links(tracer.trace(grid), bundle, radius, a.two_sided));
         }
-        seconds += taken, least = std::min(least, taken);
+        seconds += taken;
         hits += double(bundle.hits.size()), rays += double(grid.rays());
         for_each_link(
             bundle, [&](std::uint32_t) { return a.two_sided; }, [&](auto, auto&, auto&) { links += 1.0; });
         for (std::size_t ray = 0; ray < grid.rays(); ++ray)
             deepest = std::max(deepest, bundle.hits_of(ray).size());
     }
-    std::cout << fmt::format("{},{},{:.0f},{:.0f},{:.0f},{},{:.3f},{:.2f},{:.4f},{:.4f}\n", form, side,
-                             rays / directions, hits / directions, links / directions, deepest,
+    std::cout << fmt::format("{},{},{:.0f},{:.0f},{:.0f},{},{:.3f},{:.2f},{:.4f},{:.4f},{:.1f},{:.1f}\n",
+                             form, side, rays / directions, hits / directions, links / directions, deepest,
                              1e3 * seconds / directions, 1e9 * seconds / std::max(hits, 1.0),
-                             comparison.missing(), comparison.wrong())
+                             comparison.missing(), comparison.wrong(), 1e-6 * size, 1e-6 * peak)
               << std::flush;
 }
 
@@ -114,7 +128,8 @@ int main(int argc, char** argv) {
         std::cerr << triangles.size() << " triangles\n";
         const BundleTracer tracer(triangles);
         const ImperfectBundles imperfect(triangles, a.points);
-        std::cout << "form,side,rays,hits,links,deepest,ms_per_direction,ns_per_hit,missing,wrong\n";
+        std::cout
+            << "form,side,rays,hits,links,deepest,ms_per_direction,ns_per_hit,missing,wrong,MB,peak_MB\n";
         for (const std::uint32_t side : a.sides)
             for (const std::string& form : a.forms) measure(tracer, imperfect, a, form, side);
     } catch (const std::exception& error) {
