@@ -22,15 +22,15 @@ ExchangeBatch::ExchangeBatch(const ExchangeScene& scene, float spacing, std::uin
     }
 }
 
-void ExchangeBatch::run(const BundleDirections& directions, std::uint32_t first, const Sent& sent,
+void ExchangeBatch::run(const BatchDirections& directions, std::uint32_t first, const Sent& sent,
                         CancelToken cancelled) {
     const SurfaceAtlas& atlas = scene_.atlas;
     const std::size_t glossy = scene_.materials.glossy.size();
     std::vector<std::uint64_t> hits(count_), met(count_);
     tbb::parallel_for(std::uint32_t(0), count_, [&](std::uint32_t i) {
-        const Vec3 d = directions_[i] = directions.direction(first + i);
-        const BundleGrid grid =
-            bundle_grid(d, atlas.surfaces().bounds, spacing_, directions.offset(first + i));
+        const BundleSample sample = directions.at(first + i);
+        const Vec3 d = directions_[i] = sample.direction;
+        const BundleGrid grid = bundle_grid(d, atlas.surfaces().bounds, spacing_, sample.offset);
         BundleSettings settings;
         settings.cancelled = cancelled;
         // A thread that waits within must not begin another direction, whose bundle would come on top.

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/scene/emitter.h"
-#include "gathering/radiance_exchange/bundle_directions.h"
+#include "gathering/radiance_exchange/batch_directions.h"
 #include "gathering/radiance_exchange/link_exchange.h"
 #include "gathering/radiance_exchange/texel_materials.h"
 #include "gathering/ray_bundles/bundle_tracer.h"
@@ -35,7 +35,7 @@ class ExchangeBatch {
     };
 
     /// Directions [first, first + size()). Throws Cancelled.
-    void run(const BundleDirections& directions, std::uint32_t first, const Sent& sent,
+    void run(const BatchDirections& directions, std::uint32_t first, const Sent& sent,
              core::CancelToken cancelled);
 
     std::uint32_t size() const { return count_; }

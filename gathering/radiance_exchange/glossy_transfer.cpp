@@ -9,7 +9,7 @@ namespace mote::gathering {
 using namespace core;
 
 void GlossyTransfer::send(ExchangeBatch::Sent& sent, const ExchangeBatch& last,
-                          const TexelDirectLight& sampled, const BundleDirections& directions,
+                          const TexelDirectLight& sampled, const BatchDirections& directions,
                           std::uint32_t b) const {
     const auto& glossy = scene_.materials.glossy;
     if (!on_ || glossy.empty()) return;
@@ -23,7 +23,7 @@ void GlossyTransfer::send(ExchangeBatch::Sent& sent, const ExchangeBatch& last,
         vertex.position = vertex.hit.position, vertex.bsdf = vertex.hit.shape->bsdf.get();
         const Vec3 outside = outward(vertex.hit, t.side);
         for (std::uint32_t next = 0; next < m; ++next) {
-            const Vec3 d = directions.direction(b * m + next);
+            const Vec3 d = directions.at(b * m + next).direction;
             vertex.wo = glm::dot(outside, d) < 0.0f ? -d : d;
             Rgb sum(0.0f);
             // f(w, w') times the irradiance from w, whose cosine is in the number of rays.

@@ -14,7 +14,7 @@ class GlossyTransfer {
     /// Before batch b (from 0): fills sent.glossy, and marks glossy texels in sent.reflected, from what the
     /// last batch received and from sampled direct light.
     void send(ExchangeBatch::Sent& sent, const ExchangeBatch& last, const TexelDirectLight& sampled,
-              const BundleDirections& directions, std::uint32_t b) const;
+              const BatchDirections& directions, std::uint32_t b) const;
 
   private:
     ExchangeScene scene_;

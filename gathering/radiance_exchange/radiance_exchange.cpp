@@ -57,7 +57,7 @@ class Exchange {
     ExchangeScene scene_;
     ExchangeSettings settings_;
     const TexelDirectLight& sampled_;
-    BundleDirections directions_;
+    BatchDirections directions_;
     CancelToken cancelled_;
     std::size_t n_;
     ExchangeBatch batch_;

@@ -30,11 +30,11 @@ enum class LightTransfer : std::uint8_t { interleaved, one_bounce };
 
 struct ExchangeSettings {
     LightTransfer transfer = LightTransfer::interleaved;
-    std::uint32_t directions = 256;  ///< in all
+    std::uint32_t directions = 512;  ///< in all
     std::uint32_t batch = 16;        ///< directions after which sender and receiver are exchanged
     /// Interleaved: batches whose indirect light is sent on, but not counted. After each of them indirect
     /// light is scaled so that its power balances, which is where the slowest part would converge to.
-    std::uint32_t warm_up = 3;
+    std::uint32_t warm_up = 8;
     std::uint32_t bounces = 8;    ///< one bounce at a time: reflections followed, the last towards the eye
     float rays_per_texel = 1.0f;  ///< of a texel seen at right angles
     bool lights = true;           ///< bundles carry the light of area lights and of the environment

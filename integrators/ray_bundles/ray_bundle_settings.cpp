@@ -41,11 +41,11 @@ RayBundleSettings read_ray_bundle_settings(const Properties& p) {
     s.atlas.texel_budget = std::size_t(p.get_int_in("texel_budget", 1 << 16, 1, std::int64_t(1) << 28));
     auto& e = s.exchange;
     e.batch = std::uint32_t(p.get_int_in("batch", 16, 1, 256));
-    e.directions = std::uint32_t(p.get_int_in("directions", 256, 1, 1 << 24));
+    e.directions = std::uint32_t(p.get_int_in("directions", 512, 1, 1 << 24));
     if (e.directions < e.batch)
         throw InputError(fmt::format("directions must not be below batch, which is {}", e.batch),
                          p.where_of("directions"));
-    e.warm_up = std::uint32_t(p.get_int_in("warm_up", 3, 0, 1 << 20));
+    e.warm_up = std::uint32_t(p.get_int_in("warm_up", 8, 0, 1 << 20));
     e.bounces = int(p.get_int_in("bounces", 8, 1, 4096));
     e.rays_per_texel = positive(p, "rays_per_texel", 1.0, false);
     e.transfer = second_of(p, "transfer", "interleaved", "one_bounce")
@@ -64,7 +64,7 @@ std::vector<Parameter> ray_bundle_parameters() {
         {"rr_depth", "integer", "5",
          "depth from which Russian roulette may end a path at surfaces that are not diffuse"},
         hide_emitters_parameter(),
-        {"directions", "integer", "256",
+        {"directions", "integer", "512",
          "directions of a pass; one bounce at a time: of all bounces together"},
         {"batch", "integer", "16",
          "directions after which senders and receivers are exchanged; threads have a direction each"},
@@ -74,7 +74,7 @@ std::vector<Parameter> ray_bundle_parameters() {
          "after the other"},
         {"bounces", "integer", "8",
          "one bounce at a time: reflections that are followed, the last towards the eye"},
-        {"warm_up", "integer", "3", "interleaved: batches at the start whose indirect light is not counted"},
+        {"warm_up", "integer", "8", "interleaved: batches at the start whose indirect light is not counted"},
         {"direct", "string", "bundles",
          "light of area lights and of the environment: carried by 'bundles', or drawn by 'lights' at texels "
          "and "

@@ -44,12 +44,11 @@ Rgb4Vector received(const SurfaceAtlas& atlas, const RayBundle& bundle, const Rg
 // <x, T y> = <T x, y> for any radiances x and y; and all power that is sent is received.
 TEST_CASE("the exchange is symmetric, direction by direction", "[exchange]") {
     const ExchangeStage stage(room, {.texels_per_metre = 6.0f});
-    const BundleDirections directions(3, 64);
     const Rgb4Vector x = random_light(stage.atlas.size(), 1), y = random_light(stage.atlas.size(), 2);
     const Rgb4Vector one(stage.atlas.size(), Rgb4{1, 1, 1, 0});
     for (std::uint32_t i = 0; i < 12; ++i) {
-        const BundleGrid grid =
-            bundle_grid(directions.direction(i), stage.surfaces.bounds, 0.1f, directions.offset(i));
+        const BundleSample sample = bundle_sample(3, i);
+        const BundleGrid grid = bundle_grid(sample.direction, stage.surfaces.bounds, 0.1f, sample.offset);
         const RayBundle bundle = stage.tracer.trace(grid);
         const Rgb4Vector tx = received(stage.atlas, bundle, x), ty = received(stage.atlas, bundle, y);
         CHECK(dot(x, ty) == Approx(dot(tx, y)).epsilon(1e-6));
@@ -171,7 +170,7 @@ TEST_CASE("closed furnace, interleaved and balanced, is E / (1 - rho) up to albe
             const double exact = 0.7 / (1.0 - rho);
             // 1e-3: shading normals of the sphere's triangles, by 1 / 12 of the square of the angle between.
             CHECK(std::fabs(radiance.mean() - exact) < radiance.critical() * radiance.error() + 1e-3 * exact);
-            CHECK(radiance.error() < 1e-2 * exact);
+            CHECK(radiance.z(1.1 * exact) > radiance.critical());
         }
 }
 
@@ -212,23 +211,14 @@ TEST_CASE("the sky of an open floor is what enters bundles from outside", "[exch
     CHECK(red.error() < 0.02);
 }
 
-TEST_CASE("Halton directions: half of the sphere, uniform, moved by the key", "[exchange]") {
-    Vec3d mean(0.0);
-    double square = 0.0;
-    const BundleDirections a(1, 4096), b(2, 4096);
-    for (std::uint32_t i = 0; i < 4096; ++i) {
-        const Vec3 d = a.direction(i);
-        CHECK(d.z >= 0.0f);
-        CHECK(glm::length(d) == Approx(1.0f).epsilon(1e-5));
-        mean += Vec3d(d) / 4096.0, square += double(d.z * d.z) / 4096.0;
+TEST_CASE("batches go on in their own sequence, and have another one than their neighbours", "[exchange]") {
+    const BatchDirections all(1, 8), other(2, 8);
+    for (std::uint32_t i = 0; i < 8; ++i) {
+        CHECK(all.at(16 + i).direction == bundle_sample(hash_keys(1ull, 0u), 8 + i).direction);
+        CHECK(all.at(8 + i).direction == bundle_sample(hash_keys(1ull, 1u), i).direction);
+        CHECK(all.at(i).direction != all.at(8 + i).direction);
+        CHECK(all.at(i).direction != other.at(i).direction);
     }
-    CHECK(mean.z == Approx(0.5).margin(1e-3));
-    CHECK(std::max(std::fabs(mean.x), std::fabs(mean.y)) < 2e-3);
-    CHECK(square == Approx(1.0 / 3.0).margin(1e-3));
-    CHECK(glm::length(a.direction(7) - b.direction(7)) > 1e-3f);
-    CHECK(a.offset(3) != a.offset(4));
-    CHECK(radical_inverse(2, 6) == 0.375);
-    CHECK(radical_inverse(3, 5) == Approx(2.0 / 3 + 1.0 / 9));
 }
 
 TEST_CASE("nothing there: no surface, no texel, no light", "[exchange][degenerate]") {
