@@ -79,7 +79,8 @@ void EyeBundles::go_on(std::span<const BundleDirection> lines, std::size_t first
 
 /// `pdf_lines`: what the direction's share is divided by, M p_r where there are M [1/sr].
 void EyeBundles::trace(const BundleReceiver& x, const Vec3& w, float pdf_lines, Found& y, Rgb& direct) {
-    const float limit = pass_.vpls.peak_density.empty() ? infinity : pass_.vpls.peak_directions;
+    // Tokuyoshi & Ogaki 2012, Eq. 14, for all that a bundle finds.
+    const float limit = pass_.vpls.peak_directions > 0.0f ? pass_.vpls.peak_directions : infinity;
     const Rgb f_cos = x.vertex->eval_cos(w, TransportMode::radiance, limit);
     if (is_black(f_cos)) return;
     const Ray ray{x.vertex->ray_origin(w), w};

@@ -56,7 +56,7 @@ struct VplSet {
     /// Known directions at both ends of a connection, for roughness clamping
     /// (compensation/roughness_clamping.h); without, nothing is clamped.
     std::vector<float> peak_density;  ///< by light: lights per area around it, over m' [1/m^2]
-    float peak_directions = 0.0f;     ///< of receivers that know directions besides, over m' [1/sr]
+    float peak_directions = 0.0f;     ///< of receivers that know directions besides, over m' [1/sr]; 0: none
     std::uint32_t paths = 0;          ///< light paths traced, whether or not they left a VPL
     core::RayCounters rays;
     core::TrackingCounters tracking;
