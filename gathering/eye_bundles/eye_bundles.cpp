@@ -44,11 +44,32 @@ void EyeBundles::add(const ReceiverArray& receivers, std::span<const BundleDirec
             if (side == 1 && !x.vertex->bsdf->traits().transmissive) continue;
             if (pass_.two_way || w == line.direction) trace(x, w, density, found_[i], direct[i]);
         }
-        if (!any_of(found_)) continue;
-        connect_lights(indirect);
-        if (pass_.bounces > 1) go_on(lines, index, indirect);
-        if (pass_.samples.joined_share > 0.0f) join_lights(indirect);
+        light_found_points(lines, index, indirect);
     }
+}
+
+void EyeBundles::add_own_rays(const ReceiverArray& receivers, std::span<const BundleDirection> lines,
+                              TileLight& indirect, TileLight& direct) {
+    for (std::size_t i = 0; i < width; ++i) {
+        const BundleReceiver& x = receivers[i];
+        found_[i].max_vpl_depth = 0;
+        if (!x.vertex || !has_own_ray(*x.vertex)) continue;
+        const Vec2 u = x.sampler->next_2d();
+        const auto drawn = x.vertex->sample(walk_.rng.next_float(), u, TransportMode::radiance);
+        if (!drawn || drawn->delta) continue;  // the eye path itself goes on behind mirrors
+        const float ways = pass_.two_way ? 1.0f : 0.5f;
+        trace(x, drawn->wi, pass_.samples.directions * line_pdf(pass_.sky, drawn->wi) * ways, found_[i],
+              direct[i]);
+    }
+    light_found_points(lines, lines.size(), indirect);
+}
+
+void EyeBundles::light_found_points(std::span<const BundleDirection> lines, std::size_t index,
+                                    TileLight& indirect) {
+    if (!any_of(found_)) return;
+    connect_lights(indirect);
+    if (pass_.bounces > 1) go_on(lines, index, indirect);
+    if (pass_.samples.joined_share > 0.0f) join_lights(indirect);
 }
 
 /// Paths from the points that line `first` found, along lines of the same pass chosen at random. A line that
@@ -68,7 +89,7 @@ void EyeBundles::go_on(std::span<const BundleDirection> lines, std::size_t first
                 std::min(std::size_t(walk_.rng.next_float() * float(unused[i].size())), unused[i].size() - 1);
             const BundleDirection& line = lines[unused[i][drawn]];
             if (!pass_.repeats) std::swap(unused[i][drawn], unused[i].back()), unused[i].pop_back();
-            const BundleReceiver here{&y.vertex, y.throughput, y.max_vpl_depth - 1, y.sampler};
+            const BundleReceiver here{&y.vertex, y.throughput, y.max_vpl_depth - 1, y.sampler, false};
             Rgb direct(0.0f);
             trace(here, towards_eye_side(y.vertex, line.direction), line.pdf_line, found_[i], direct);
         }
@@ -88,7 +109,10 @@ void EyeBundles::trace(const BundleReceiver& x, const Vec3& w, float pdf_lines, 
     PathWeights weights;
     Rgb emitted(0.0f);
     const WalkEvent event = walk<false>(pass_.scene, ray, state, weights, emitted, walk_);
-    const Rgb throughput = x.throughput * f_cos * weights.throughput / pdf_lines;
+    // All of a receiver's directions are weighed by the balance heuristic: f / (M p_r + p_f).
+    const bool own = x.first && has_own_ray(*x.vertex);
+    const float pdf_own = own ? own_ray_pdf(*x.vertex, w, 1.0f) : 0.0f;
+    const Rgb throughput = x.throughput * f_cos * weights.throughput / (pdf_lines + pdf_own);
     if (event.kind == WalkEvent::Kind::escaped) {
         if (pass_.sky) direct += throughput * pass_.sky->environment(w);
         return;
@@ -96,7 +120,8 @@ void EyeBundles::trace(const BundleReceiver& x, const Vec3& w, float pdf_lines, 
     y.vertex = make_vertex(event, ray);
     if (!y.vertex.connectable() || x.max_vpl_depth < 1) return;
     y.throughput = throughput, y.max_vpl_depth = x.max_vpl_depth, y.sampler = x.sampler;
-    y.density = uniform_line_pdf * y.vertex.geometric_cosine(w) / std::max(sqr(event.distance), 1e-30f);
+    y.density = (uniform_line_pdf + pdf_own / pass_.samples.directions) * y.vertex.geometric_cosine(w) /
+                std::max(sqr(event.distance), 1e-30f);
 }
 
 /// w_2 of a path with one bounce.

@@ -25,6 +25,7 @@ struct BundleReceiver {
     core::Rgb throughput{0.0f};
     std::int32_t max_vpl_depth = 0;  ///< of the VPLs that it may gather; a bundle's point stands for one
     core::Sampler* sampler = nullptr;
+    bool first = true;  ///< what the eye sees; false: a point further on, which has lines alone
 };
 
 /// What bundles do, for a pass.
@@ -36,6 +37,7 @@ struct BundlePass {
     std::size_t stride = 1;           ///< every so many VPLs are joined to a point, from a random one on
     std::optional<float> bound = {};  ///< of paths of two bounces and more, as in the paper; nothing: weighed
     const core::Emitter* sky = nullptr;  ///< whose direct light the bundles find; null: nobody's
+    bool own_rays = true;                ///< of glossy receivers: one more direction each, drawn by the BSDF
     bool two_way = true;                 ///< false: a direction serves one way, as a shadow map does
     /// Bounces of paths that choose one of the pass's own lines after the other, at random (the paper's
     /// Sec. 7); 0: virtual point lights are joined instead.
@@ -57,6 +59,9 @@ class EyeBundles {
     /// that of the sky to `direct`. Draws from the receivers' samplers and from the walk's generator.
     void add(const ReceiverArray& receivers, std::span<const BundleDirection> lines, std::size_t index,
              lights::TileLight& indirect, lights::TileLight& direct);
+    /// What the glossy receivers' own rays find, weighed against lines.
+    void add_own_rays(const ReceiverArray& receivers, std::span<const BundleDirection> lines,
+                      lights::TileLight& indirect, lights::TileLight& direct);
 
   private:
     static constexpr int width = lights::ReceiverLanes::width;
@@ -70,6 +75,11 @@ class EyeBundles {
         core::Sampler* sampler = nullptr;
     };
 
+    bool has_own_ray(const core::ScatteringVertex& x) const {
+        return pass_.own_rays && !x.diffuse_reflectance().has_value();
+    }
+    void light_found_points(std::span<const BundleDirection> lines, std::size_t index,
+                            lights::TileLight& indirect);
     void trace(const BundleReceiver& x, const core::Vec3& w, float pdf_lines, Found& y, core::Rgb& direct);
     void go_on(std::span<const BundleDirection> lines, std::size_t first, lights::TileLight& indirect);
     void connect_lights(lights::TileLight& indirect);

@@ -66,6 +66,12 @@ inline float next_vertex_pdf(const lights::VplDetail* z, const core::Vec3& direc
 std::vector<float> rivals_of(const core::LitScene& scene, const lights::VplSet& vpls,
                              const TechniqueSamples& samples);
 
+/// What a glossy receiver's own ray, drawn by its BSDF, adds to the density of a line [1/sr], where there are
+/// M lines: p_f / M. Bundles cannot follow a narrow lobe, and virtual point lights neither.
+inline float own_ray_pdf(const core::ScatteringVertex& x, const core::Vec3& w, float directions) {
+    return x.pdf_solid_angle(w, core::TransportMode::radiance) / directions;
+}
+
 /// The policy w_1 G* of gathering at receivers (lights/virtual_lights/geometry_weights.h).
 struct AgainstBundles {
     std::span<const float> rivals;
@@ -77,8 +83,33 @@ struct AgainstBundles {
             return rival < certain ? g / (1.0f + rival * cos_y / d2) : 0.0f;
         }
     };
-    ForLight for_pair(const lights::ReceiverLanes&, const lights::VplSet&, std::size_t index) const {
-        return {rivals[index] < certain ? rivals[index] * uniform_line_pdf : certain};
+    ForLight for_pair(const lights::ReceiverLanes&, const lights::VplSet&, std::size_t j) const {
+        return {rivals[j] < certain ? rivals[j] * uniform_line_pdf : certain};
+    }
+};
+
+/// The same where glossy receivers have rays of their own.
+struct AgainstBundlesAndOwnRays {
+    std::span<const float> rivals;
+    float directions;  ///< M
+
+    struct ForLight {
+        float rival;  ///< a_j
+        float directions;
+        const lights::ReceiverLanes& x;
+        core::Vec3 y;
+
+        float operator()(float g, float d2, float cos_x, float cos_y, int lane) const {
+            float pdf = uniform_line_pdf;
+            if (const core::ScatteringVertex* vertex = x.directional[lane])
+                pdf += own_ray_pdf(*vertex, (y - vertex->position) / std::sqrt(d2), directions);
+            return AgainstBundles::ForLight{rival < certain ? rival * pdf : certain}(g, d2, cos_x, cos_y);
+        }
+    };
+    ForLight for_pair(const lights::ReceiverLanes& x, const lights::VplSet& vpls, std::size_t j) const {
+        const lights::VirtualPointLight& y = vpls.lights[j];
+        const bool plain = y.detail == lights::VirtualPointLight::no_detail;
+        return {rivals[j], directions, x, plain ? y.position : vpls.details[y.detail].vertex.position};
     }
 };
 

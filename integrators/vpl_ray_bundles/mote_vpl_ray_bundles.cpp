@@ -37,6 +37,7 @@ class MoteVplRayBundles final : public Integrator {
             settings_.bound = float(bound);
         }
         settings_.sky = p.get_bool("sky", false);
+        settings_.own_rays = p.get_bool("own_rays", true);
         settings_.two_way = p.get_bool("two_way", true);
         settings_.bounces = int(p.get_int_in("bounces", 0, 0, 1000));
         settings_.repeats = p.get_bool("repeats", false);
@@ -103,6 +104,8 @@ void MoteVplRayBundles::plan_techniques(Plan& plan) const {
         plan.run("bounces",
                  std::to_string(settings_.joined) + " virtual point lights for each point of a bundle",
                  settings_.bound ? "bounded" : "weighed against the virtual point light at that point");
+    if (settings_.own_rays && settings_.bounces == 0)
+        plan.run("glossy surfaces", "one ray of their own, by the BSDF", "lines do not follow narrow lobes");
     if (settings_.interleaving > 1)
         plan.run("interleaving",
                  "directions and a share of the VPLs for each pixel of " +
@@ -176,6 +179,10 @@ void register_mote_vpl_ray_bundles(Registry& registry) {
     parameters.push_back(
         {"sky", "boolean", "false",
          "direct light of the sky by bundles too, half of whose directions are drawn by it"});
+    parameters.push_back(
+        {"own_rays", "boolean", "true",
+         "a glossy surface also sends one ray by its BSDF, weighed against the lines; false: "
+         "lines alone, as in the paper"});
     parameters.push_back({"two_way", "boolean", "true",
                           "false: a direction serves one way, as a shadow map does, for comparison"});
     parameters.push_back(

@@ -17,6 +17,7 @@ VplBundlePass::VplBundlePass(const LitScene& lit, const VplBundleSettings& setti
     samples.directions = settings.has_bundles() ? float(settings.directions) : 0.0f;
     samples.paths = float(settings.paths), samples.light_share = share;
     const std::size_t lights = vpls.lights.size();
+    bundles.own_rays = settings.own_rays && settings.bounces == 0;
     bundles.two_way = settings.two_way, bundles.bounces = settings.bounces,
     bundles.repeats = settings.repeats;
     if (settings.has_bundles() && settings.joined > 0 && settings.bounces == 0 && lights > 0) {

@@ -20,6 +20,8 @@ struct VplBundlePass {
     VplBundlePass(const VplBundlePass&) = delete;
     VplBundlePass& operator=(const VplBundlePass&) = delete;
 
+    /// M where glossy receivers have rays of their own, else 0.
+    float own_rays() const { return bundles.own_rays ? bundles.samples.directions : 0.0f; }
     /// Whose direct light eye paths look for; null: all.
     const core::LitScene* eye_lights() const { return but_sky ? &*but_sky : nullptr; }
 };

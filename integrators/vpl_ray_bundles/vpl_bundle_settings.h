@@ -20,6 +20,7 @@ struct VplBundleSettings {
     gathering::Techniques techniques = gathering::Techniques::combined;
     std::optional<float> bound;  ///< b [1/m^2] of paths of two bounces and more; nothing: weighed
     bool sky = false;            ///< direct light of the sky by bundles
+    bool own_rays = true;        ///< of glossy receivers, drawn by their BSDFs
     bool two_way = true;         ///< a direction serves both ways
     int bounces = 0;             ///< of paths along the pass's own directions, instead of joined VPLs
     bool repeats = false;        ///< such a path may take a direction again

@@ -69,14 +69,18 @@ void VplBundleTile::gather(const lights::VplRange& share,
                            std::span<const gathering::BundleDirection> directions) {
     const double begin = thread_cpu_seconds();
     const lights::GatherContext context{scene_, scratch_, walk_.rays, walk_.tracking, walk_.cancelled};
+    const bool own_rays = pass_.own_rays() > 0.0f && tile_.any_directional;
     const auto light =
-        lights::gather(context, pass_.vpls, share, gathering::AgainstBundles{pass_.rivals}, tile_);
+        own_rays ? lights::gather(context, pass_.vpls, share,
+                                  gathering::AgainstBundlesAndOwnRays{pass_.rivals, pass_.own_rays()}, tile_)
+                 : lights::gather(context, pass_.vpls, share, gathering::AgainstBundles{pass_.rivals}, tile_);
     const double middle = thread_cpu_seconds();
     lights::TileLight indirect{}, direct{};
     for (std::size_t m = 0; m < directions.size(); ++m) {
         walk_.cancelled.check();
         bundles_.add(receivers_, directions, m, indirect, direct);
     }
+    if (own_rays) bundles_.add_own_rays(receivers_, directions, indirect, direct);
     for (std::size_t i = 0; i < std::size_t(width); ++i) {
         lanes_[i].sum[Transport::indirect] += float(share.stride) * light[i] + indirect[i];
         if (settings_.eye.wanted[Transport::direct]) lanes_[i].sum[Transport::direct] += direct[i];

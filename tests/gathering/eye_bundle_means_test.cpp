@@ -81,6 +81,9 @@ class Points {
         lights::TileLight light =
             right ? lights::gather(context, vpls, lights::VplRange{}, AgainstBundles{rivals}, tile)
                   : lights::gather(context, vpls, lights::VplRange{}, PlantedWeights{rivals, planted}, tile);
+        if (right && techniques != Techniques::vpls)
+            light = lights::gather(context, vpls, lights::VplRange{},
+                                   AgainstBundlesAndOwnRays{rivals, bundles.samples.directions}, tile);
         lights::TileLight direct{};
         std::array<BundleDirection, directions> lines;
         EyeBundles eye_bundles(bundles, *scratch_, walk);
@@ -91,6 +94,7 @@ class Points {
             }
         if (techniques != Techniques::vpls)
             for (std::size_t m = 0; m < directions; ++m) eye_bundles.add(receivers, lines, m, light, direct);
+        if (techniques != Techniques::vpls) eye_bundles.add_own_rays(receivers, lines, light, direct);
         return mean(light);
     }
 

@@ -25,10 +25,11 @@ ScatteringVertex receiver(const Scene& scene, Rng& rng) {
 
 /// The weight that the gather gives to a VPL at a distance: the policy's result over G*.
 double vpl_weight(const AgainstBundles& policy, const lights::VplSet& vpls, std::size_t j, const Vec3& x) {
+    const lights::ReceiverLanes none;
     const Vec3 to_x = x - vpls.lights[j].position;
     const float d2 = glm::dot(to_x, to_x);
     const float cos_y = std::fabs(glm::dot(vpls.lights[j].normal, to_x)) / std::sqrt(d2);
-    return double(policy.for_pair({}, vpls, j)(1.0f, d2, 1.0f, cos_y));
+    return double(policy.for_pair(none, vpls, j)(1.0f, d2, 1.0f, cos_y));
 }
 
 /// y as a ray of a bundle finds it, from x; nothing where something else is in the way.
