@@ -1,0 +1,52 @@
+// One block of a picture as the matrix of its regression.
+#pragma once
+
+#include "screenspace/denoising/block_regression.h"
+#include "screenspace/denoising/least_squares.h"
+
+namespace mote::screenspace {
+
+struct PixelRectangle {
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  ///< without x1 and y1
+    int width() const { return x1 - x0; }
+    int pixels() const { return (x1 - x0) * (y1 - y0); }
+};
+
+/// Of a feature in [-1, 1]: how it was centred and scaled.
+struct FeatureScale {
+    float centre = 0.0f, scale = 0.0f;  ///< (f - centre) * scale; 0 where it does not vary
+};
+/// From the values of the pixels that take part; +-rounding is no variation.
+FeatureScale feature_scale(float lowest, float highest);
+
+/// Columns of features: 1, then each plane, and behind it its square.
+int feature_columns(std::span<const FeaturePlane> features);
+
+class FeatureBlock {
+  public:
+    /// `has_features`: of every pixel of the picture, whether all of its features are finite.
+    FeatureBlock(int picture_width, std::span<const FeaturePlane> features, std::span<const core::Rgb> colour,
+                 std::span<const std::uint8_t> has_features);
+
+    /// Fits a block of the picture to its pixels that have features and a colour. False when there are none.
+    bool fit(const PixelRectangle& block, float noise, std::uint64_t seed);
+    /// The fit at the pixels of a row, for columns x0 to x0 + result.size() of that block.
+    void evaluate(int x0, int y, std::span<core::Rgb> result) const;
+
+  private:
+    void find_scales(const PixelRectangle& block);
+    void fill_features(const PixelRectangle& block);
+    void fill_colours(const PixelRectangle& block);
+    void add_noise(float noise, std::uint64_t seed);
+
+    std::size_t picture_width_;
+    std::span<const FeaturePlane> features_;
+    std::span<const core::Rgb> colour_;
+    std::span<const std::uint8_t> has_features_;
+    TallMatrix matrix_;
+    std::vector<FeatureScale> scales_;
+    std::vector<float> coefficients_;
+    std::vector<std::uint8_t> takes_part_;  ///< of the pixels of the block
+};
+
+}  // namespace mote::screenspace
