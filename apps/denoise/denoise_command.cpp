@@ -1,5 +1,7 @@
-// mote denoise: a picture and, beside its layers, what OpenImageDenoise makes of them.
+// mote denoise: a picture and, beside its layers, what a denoiser makes of them; or a sequence of pictures.
 #include "apps/denoise/denoise_command.h"
+
+#include <tbb/global_control.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -7,7 +9,9 @@
 #include <vector>
 
 #include "apps/command.h"
+#include "apps/denoise/bmfr_sequence.h"
 #include "apps/denoise/denoised_layer.h"
+#include "apps/denoise/frame_files.h"
 #include "apps/number_options.h"
 #include "apps/output_files.h"
 #include "apps/picture_file.h"
@@ -27,29 +31,70 @@ std::string output_of(const DenoiseArguments& a) {
         throw UsageError(
             "the output '" + core::printable(a.output) +
             "' does not end in .exr (a PNG preview of the denoised picture is written beside it)");
+    if (names_frames(a.input) && !names_frames(a.output))
+        throw UsageError("the output '" + core::printable(a.output) +
+                         "' has no # for the number of the frame, as the input has");
     return a.output;
 }
 
-int denoise_command(const DenoiseArguments& a) {
-    const std::string output = output_of(a), preview = fs::path(output).replace_extension(".png").string();
-    check_outputs(std::vector<NamedFile>{{"the picture", output}, {"the preview", preview}},
-                  std::vector<NamedFile>{{"the picture to denoise", a.input}});
-    require_input(a.input);
-    core::ImageChannels image = core::read_exr(a.input);
-    const OidnLibrary library(a.threads);
-    try {
-        add_denoised_layer(image, library);
-    } catch (const core::InputError& error) {
-        throw core::InputError(error.what(), {a.input, 0});
-    }
+/// What is read and where it goes: one picture, or the frames of a sequence in order.
+struct Work {
+    std::string input, output;
+    std::string preview() const { return fs::path(output).replace_extension(".png").string(); }
+};
+
+std::vector<Work> work_of(const DenoiseArguments& a) {
+    const std::string output = output_of(a);
+    if (!names_frames(a.input)) return {{a.input, output}};
+    std::vector<Work> work;
+    for (const FrameFile& frame : find_frames(a.input))
+        work.push_back({frame.path, frame_name(output, frame.number)});
+    return work;
+}
+
+/// A method as what it does to one picture after the other.
+std::function<void(core::ImageChannels&)> denoiser_of(const DenoiseArguments& a) {
+    if (a.method == "oidn")
+        return [library = std::make_shared<OidnLibrary>(a.threads)](core::ImageChannels& image) {
+            add_denoised_layer(image, *library);
+        };
+    return [sequence = std::make_shared<BmfrSequence>(!names_frames(a.input))](core::ImageChannels& image) {
+        sequence->add_denoised_layer(image);
+    };
+}
+
+void write_denoised(const Work& work, core::ImageChannels& image, const DenoiseArguments& a) {
     for (const char* written_anyway : {"pixelAspectRatio", "screenWindowWidth"})
         image.metadata.erase(written_anyway);
-    if (const std::uint64_t clamped = core::write_exr(output, image, a.half))
+    if (const std::uint64_t clamped = core::write_exr(work.output, image, a.half))
         std::fputs(("mote: warning: " + clamped_text(clamped) + "\n").c_str(), stderr);
-    write_preview(preview, denoised_picture(image), a.exposure);
-    if (!a.quiet) {
-        std::fputs(("mote: " + image.metadata.at(denoised_layer) + "\n").c_str(), stderr);
-        std::fputs((output + "\n" + preview + "\n").c_str(), stdout);
+    write_preview(work.preview(), denoised_picture(image), a.exposure);
+    if (a.quiet) return;
+    std::fputs(("mote: " + image.metadata.at(denoised_layer) + "\n").c_str(), stderr);
+    std::fputs((work.output + "\n" + work.preview() + "\n").c_str(), stdout);
+}
+
+int denoise_command(const DenoiseArguments& a) {
+    const std::vector<Work> all = work_of(a);
+    std::vector<NamedFile> outputs, inputs;
+    for (const Work& work : all) {
+        outputs.push_back({"the picture", work.output}), outputs.push_back({"the preview", work.preview()});
+        inputs.push_back({"the picture to denoise", work.input});
+    }
+    check_outputs(outputs, inputs);
+    for (const Work& work : all) require_input(work.input);
+    std::optional<tbb::global_control> threads;
+    if (a.threads > 0) threads.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(a.threads));
+    std::function<void(core::ImageChannels&)> denoise;
+    for (const Work& work : all) {
+        core::ImageChannels image = core::read_exr(work.input);
+        if (!denoise) denoise = denoiser_of(a);
+        try {
+            denoise(image);
+        } catch (const core::InputError& error) {
+            throw core::InputError(error.what(), {work.input, 0});
+        }
+        write_denoised(work, image, a);
     }
     return exit_ok;
 }
@@ -58,10 +103,18 @@ int denoise_command(const DenoiseArguments& a) {
 
 void add_denoise(CLI::App& app, DenoiseArguments& a, std::function<int()>& action) {
     CLI::App& command = *app.add_subcommand(
-        "denoise", "Add a denoised picture, for the eye, to an EXR (needs OpenImageDenoise)");
-    command.add_option("IN", a.input, "An EXR, best one rendered with --denoise or --auxiliary")->required();
-    command.add_option("-o,--output", a.output,
+        "denoise", "Add a denoised picture, for the eye, to an EXR or to each of a sequence");
+    command
+        .add_option("IN", a.input,
+                    "An EXR, best one rendered with --denoise or --auxiliary; a.####.exr: a sequence")
+        ->required();
+    command.add_option("OUT,-o,--output", a.output,
                        "The EXR file to write, with a PNG beside it (default: IN_denoised.exr)");
+    command
+        .add_option("--method", a.method,
+                    "oidn: OpenImageDenoise, where it is installed (default); bmfr: regression on features "
+                    "block by block, with the frames before in sequences")
+        ->check(CLI::IsMember({"oidn", "bmfr"}));
     command
         .add_option("--exposure", a.exposure, "Brighten the preview by this many stops (default: it adapts)")
         ->check(number_between(-100.0, 100.0));

@@ -12,7 +12,8 @@ class App;
 namespace mote::apps {
 
 struct DenoiseArguments {
-    std::string input, output;
+    std::string input, output;      ///< with # for the number of a frame: a sequence
+    std::string method = "oidn";    ///< or "bmfr"
     std::optional<float> exposure;  ///< of the preview [stops]; none: it adapts
     int threads = 0;                ///< 0: one for every core
     bool half = false, quiet = false;

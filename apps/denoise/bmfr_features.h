@@ -1,0 +1,39 @@
+// What a picture's layers know of its pixels, as features of regressions and of reprojection.
+#pragma once
+
+#include <memory>
+
+#include "core/image/image_file.h"
+#include "screenspace/denoising/sequence_denoiser.h"
+
+namespace mote::apps {
+
+/// Owns what the features of a frame refer to. The picture must outlive it.
+class BmfrFeatures {
+  public:
+    explicit BmfrFeatures(const core::ImageChannels& image);
+    BmfrFeatures(const BmfrFeatures&) = delete;
+    BmfrFeatures& operator=(const BmfrFeatures&) = delete;
+
+    std::vector<screenspace::FeaturePlane> of_surfaces() const;  ///< Ns (else N), P and its squares
+    std::vector<screenspace::FeaturePlane> of_media()
+        const;  ///< the place, its squares, Depth, Transmittance
+    std::span<const core::Rgb> albedo() const { return albedo_; }
+    std::span<const core::Vec3> position() const { return position_; }
+    std::span<const core::Vec3> normal() const { return normal_; }
+    std::span<const core::Vec2> motion() const { return motion_; }
+    std::string said() const;  ///< ", with Albedo, Ns and P"
+
+  private:
+    std::vector<float> plane(const std::string& channel) const;
+
+    const core::ImageChannels& image_;
+    std::string normals_;  ///< name of the layer
+    std::vector<core::Rgb> albedo_;
+    std::vector<core::Vec3> position_, normal_;
+    std::vector<core::Vec2> motion_;
+    std::vector<std::vector<float>> surface_planes_;  ///< normal and position, as far as they are known
+    std::vector<float> column_, row_, nearness_, transmittance_;
+};
+
+}  // namespace mote::apps
