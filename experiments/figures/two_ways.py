@@ -52,7 +52,7 @@ def errors(mote, name, size, passes, seeds, references):
         pictures = [render(mote, name, integrator, size, passes[integrator], s, "test") for s in seeds]
         e = [squared_error(p[""], a, b) for p in pictures]
         found[integrator] = {"error": np.mean(e), "sigma": np.std(e, ddof=1) / len(e) ** 0.5,
-                             "seconds": np.mean([p.statistics["seconds"]["render"] for p in pictures]), "pictures": pictures,
+                             "seconds": np.mean([p.cpu for p in pictures]), "pictures": pictures,
                              "rays": np.mean([sum(p.statistics["rays"].values()) for p in pictures]) / passes[integrator]}
     found["reference"] = 0.5 * (a + b)
     return found

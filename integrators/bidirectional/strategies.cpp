@@ -49,7 +49,7 @@ void Strategies<Media>::finish_light_start() {
 
 template <bool Media>
 float Strategies<Media>::worth_a_ray(float weight) {
-    constexpr float worth = 0.1f;
+    constexpr float worth = 0.25f;
     if (settings_.all_connections || !(weight < worth)) return 1.0f;
     const float chance = weight / worth;
     return context_.rng.next_float() < chance ? chance : 0.0f;

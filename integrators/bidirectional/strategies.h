@@ -127,9 +127,10 @@ template <typename Splat>
 void Strategies<Media>::trace_light_path(core::Sampler& sampler, const Splat& splat) {
     light_.vertices.clear();
     const int max_depth = settings_.limits.max_depth;
-    SubpathWalk<Media> walk(scene_, core::TransportMode::power,
-                            {max_depth < 0 ? -1 : std::max(0, max_depth - 1), settings_.limits.rr_depth},
-                            light_, sampler, context_);
+    SubpathWalk<Media> walk(
+        scene_, core::TransportMode::power,
+        {max_depth < 0 ? -1 : std::max(0, max_depth - 1), std::min(2, settings_.limits.rr_depth)}, light_,
+        sampler, context_);
     if (!start_light_path(sampler, walk)) return;
     while (walk.advance()) {
         if (light_.size() == 2) finish_light_start();
