@@ -16,7 +16,7 @@ using namespace core;
 
 namespace {
 
-constexpr std::uint32_t rays_per_band = 4096, points_per_task = 32 * PointPool::block;
+constexpr std::uint32_t rays_per_splat_band = 4096, points_per_task = 32 * PointPool::block;
 constexpr std::uint32_t largest_count = 1u << 24;
 
 /// Splats by the bands of rows that they reach.
@@ -84,7 +84,7 @@ RayBundle ImperfectBundles::trace(const BundleGrid& grid, std::uint64_t set,
     const auto radius = float(disc_radius(settings));
     const std::vector<Splat> splats = this->splats(grid, set, radius);
     const std::uint32_t rows =
-        std::clamp(rays_per_band / std::max(grid.columns, 1u), 1u, std::max(grid.rows, 1u));
+        std::clamp(rays_per_splat_band / std::max(grid.columns, 1u), 1u, std::max(grid.rows, 1u));
     const SplatBins bins(splats, (grid.rows + rows - 1) / rows, rows);
     const double largest_hits =
         pool_.area() * double(sqr(settings.splat_size)) / (double(grid.spacing) * double(grid.spacing));

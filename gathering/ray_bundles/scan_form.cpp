@@ -8,8 +8,8 @@ using namespace core;
 
 namespace {
 
-constexpr std::uint32_t rays_per_band = 8192;  // some hundred kilobytes of hits
-constexpr std::int64_t narrow = 4;             // columns that are tried rather than narrowed down row by row
+constexpr std::uint32_t rays_per_scan_band = 8192;  // some hundred kilobytes of hits
+constexpr std::int64_t narrow = 4;  // columns that are tried rather than narrowed down row by row
 
 /// Where row y runs through the triangle, with room for rounding: rays outside of it cannot hit. What lies
 /// within is put to the rule.
@@ -33,7 +33,8 @@ ScanForm::ScanForm(const SurfaceTriangles& triangles, const TriangleCull& cull, 
     : triangles_(triangles),
       grid_(grid),
       projection_(grid),
-      rows_per_band_(std::clamp(rays_per_band / std::max(grid.columns, 1u), 1u, std::max(grid.rows, 1u))),
+      rows_per_band_(
+          std::clamp(rays_per_scan_band / std::max(grid.columns, 1u), 1u, std::max(grid.rows, 1u))),
       bins_(cull, grid, rows_per_band_, memory_budget, cancelled) {}
 
 void ScanForm::scan_rows(std::uint32_t begin, std::uint32_t end, HitBand& band) const {

@@ -13,11 +13,6 @@ using namespace core;
 
 namespace {
 
-double area_of(const std::array<Vec3, 3>& c) {
-    const double area = 0.5 * glm::length(glm::cross(Vec3d(c[1]) - Vec3d(c[0]), Vec3d(c[2]) - Vec3d(c[0])));
-    return std::isfinite(area) ? area : 0.0;
-}
-
 /// Ten bits of x, each followed by two zeros.
 std::uint32_t spread(std::uint32_t x) {
     x = (x | x << 16) & 0x030000ffu, x = (x | x << 8) & 0x0300f00fu;
@@ -46,8 +41,8 @@ SurfacePoints::SurfacePoints(const SurfaceTriangles& triangles) {
     std::vector<double> areas(triangles.size());
     for (std::uint32_t i = 0; i < triangles.size(); ++i) {
         const auto& c = triangles.corners[i];
-        areas[i] = area_of(c);
-        if (!(areas[i] > 0.0)) continue;
+        areas[i] = triangle_area(c);
+        if (!(areas[i] > 0.0) || !std::isfinite(areas[i])) continue;
         codes[i] = morton_code((c[0] + c[1] + c[2]) / 3.0f, triangles.bounds);
         order_.push_back(i);
     }

@@ -26,6 +26,11 @@ struct SurfaceTriangles {
     std::size_t size() const { return corners.size(); }
 };
 
+inline double triangle_area(const std::array<core::Vec3, 3>& corners) {
+    const core::Vec3d a(corners[0]);
+    return 0.5 * glm::length(glm::cross(core::Vec3d(corners[1]) - a, core::Vec3d(corners[2]) - a));
+}
+
 struct TessellationSettings {
     /// How far a sphere, cylinder, disk or curve may lie off its triangles, as a share of its extent.
     float chord_error = 1e-3f;
