@@ -22,9 +22,10 @@ std::optional<SurfaceAtlas::Blend> SurfaceAtlas::blend(std::uint32_t triangle, f
     const std::uint32_t base = c.base[std::size_t(side)];
     if (base == none) return std::nullopt;
     const Vec2 last(c.last_x, c.last_y);
-    const Vec2 at = glm::clamp(c.corner + u * c.edge_u + v * c.edge_v - 0.5f, Vec2(0.0f), last);
-    const Vec2 low = glm::min(glm::floor(at), glm::max(last - 1.0f, Vec2(0.0f))), f = at - low;
-    const Vec2 high = glm::min(low + 1.0f, last);
+    // Half a cell beyond the outermost middles: up to the border what is linear stays so.
+    const Vec2 at = glm::clamp(c.corner + u * c.edge_u + v * c.edge_v - 0.5f, Vec2(-0.5f), last + 0.5f);
+    const Vec2 low = glm::clamp(glm::floor(at), Vec2(0.0f), glm::max(last - 1.0f, Vec2(0.0f)));
+    const Vec2 high = glm::min(low + 1.0f, last), f = at - low;
     const auto texel = [&](float x, float y) {
         return base + cells_[c.cells + std::uint32_t(y) * (std::uint32_t(c.last_x) + 1) + std::uint32_t(x)];
     };

@@ -65,7 +65,8 @@ class SurfaceAtlas {
         std::array<std::uint32_t, 4> texel;
         std::array<float, 4> weight;
     };
-    /// Bilinear between the middles of cells. Nothing where that side neither reflects nor emits.
+    /// Bilinear between the middles of cells, and linear on from there to the chart's border, where weights
+    /// may be negative. Nothing where that side neither reflects nor emits.
     std::optional<Blend> blend(std::uint32_t triangle, float u, float v, SurfaceSide side) const;
 
     /// How far barycentric coordinates go in a cell's width and in its height.

@@ -20,7 +20,8 @@ class AtlasView {
               const gathering::ArrivingLight& light, const gathering::TexelDirectLight& sampled)
         : atlas_(atlas), locator_(locator), light_(light), sampled_(sampled) {}
 
-    /// On the side of vertex.wo, bilinear between texels. Nothing where the atlas does not know the surface.
+    /// On the side of vertex.wo, bilinear between texels; never negative, where a border is extrapolated to.
+    /// Nothing where the atlas does not know the surface.
     std::optional<PlaceIrradiance> at(const core::ScatteringVertex& vertex) const {
         using gathering::SurfaceSide;
         const auto place = locator_.find(vertex.hit);
@@ -36,6 +37,7 @@ class AtlasView {
             if (!light_.direct.empty()) sum.direct += blend->weight[i] * light_.direct[t];
             if (!sampled_.irradiance.empty()) sum.sampled += blend->weight[i] * sampled_.irradiance[t];
         }
+        for (core::Rgb* e : {&sum.direct, &sum.sampled, &sum.indirect}) *e = glm::max(*e, core::Rgb(0.0f));
         return sum;
     }
 

@@ -151,6 +151,22 @@ TEST_CASE("a place's texel lies there, and blends are linear up to the border", 
     }
 }
 
+TEST_CASE("on a wall blends are linear up to the border", "[atlas]") {
+    const auto shapes = shapes_of(diffuse);
+    const SurfaceTriangles wall = TriangleBuilder().quad({0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}).list();
+    const SurfaceAtlas atlas(wall, shapes, {.texels_per_metre = 5.0f});
+    for (const Vec2& w : {Vec2(0, 0), Vec2(0.5f, 0.5f), Vec2(0.001f, 0.4f), Vec2(1, 0), Vec2(0.3f, 0.3f)}) {
+        const auto blend = atlas.blend(0, w.x, w.y, SurfaceSide::front);
+        REQUIRE(blend);
+        Vec3 mean(0.0f);
+        for (std::size_t k = 0; k < 4; ++k)
+            mean += blend->weight[k] * atlas.texels()[blend->texel[k]].position;
+        const auto& c = wall.corners[0];
+        CHECK(glm::length(mean - ((1.0f - w.x - w.y) * c[0] + w.x * c[1] + w.y * c[2])) < 1e-5f);
+    }
+    CHECK_FALSE(atlas.blend(0, 0.3f, 0.3f, SurfaceSide::back));
+}
+
 TEST_CASE("hits are found again in the list of triangles", "[atlas]") {
     const auto scene = scene_from(R"(<scene version="3.0.0"><shape type="sphere"/>
         <shape type="cube"><transform name="to_world"><translate x="3"/></transform></shape>
