@@ -130,9 +130,9 @@ struct AgainstLights {
                 const core::Vec3 at = vertex ? vertex->position : core::Vec3(y.x[lane], y.y[lane], y.z[lane]);
                 direction = (at - z->vertex.position) / std::sqrt(d2);
             }
-            const float found = all.found[lane];
+            const float by_bundle = all.found[lane];
             const float traced = all.light_share * next_vertex_pdf(z, direction, g, cos_y, d2);
-            return g * found / (found + traced + 1e-37f);
+            return g * by_bundle / (by_bundle + traced + 1e-37f);
         }
     };
     ForLight for_pair(const lights::ReceiverLanes& y, const lights::VplSet& vpls, std::size_t index) const {

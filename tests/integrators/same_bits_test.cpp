@@ -320,14 +320,16 @@ TEST_CASE("every integrator gives the same bits on one thread, and on many after
     }
     // Nothing else is left out.
     for (const std::string& why : refused) UNSCOPED_INFO(why);
-    REQUIRE(refused.size() == 5);
+    REQUIRE(refused.size() == 8);
     const auto count = [&](const std::string& why) {
         return std::count_if(refused.begin(), refused.end(),
                              [&](const std::string& text) { return text.find(why) != std::string::npos; });
     };
     CHECK(count("'media' is an object of the wrong kind") == 1);
-    CHECK(count("renders surfaces only") == 2);                   // alone, and in mote_layers
-    CHECK(count("works on the mean of its whole picture") == 2);  // mote_layers and mote_vpl, in mote_layers
+    // mote_vsl and mote_vpl_ray_bundles, alone and in mote_layers
+    CHECK(count("renders surfaces only") == 4);
+    // mote_layers, mote_vpl and mote_vpl_ray_bundles, in mote_layers
+    CHECK(count("works on the mean of its whole picture") == 3);
 }
 
 TEST_CASE("a pass that knows its threads or its predecessors gives other bits", "[same_bits][planted]") {
