@@ -80,7 +80,7 @@ const std::map<std::string, Words> numbers = {
     {"light_lists", {"", "4"}},
     {"reflective_shadow_maps", {"", "4"}},
     {"points", {"300", "20"}},
-    {"all_points", {"", "1000"}},
+    {"all_points", {"500", "1000"}},
     {"splat", {"", "1"}},
     {"bias", {"", "2"}},
     {"interleaving", {"", "3"}},
@@ -98,6 +98,9 @@ const std::map<std::string, Words> numbers = {
     {"spacing", {"", "2"}},
     {"texels", {"", "0.5"}},
 };
+
+/// Numbers that are tried on the first level alone: what they change is below whoever nests the type.
+const std::set<std::string> first_level_alone = {"light_lists", "reflective_shadow_maps"};
 
 std::string element(const Parameter& p, const std::string& value) {
     return fmt::format(R"(<{} name="{}" value="{}"/>)", p.type, p.name, value);
@@ -152,7 +155,8 @@ std::vector<std::string> values_of(const Manual& manual, const Parameter& p, int
             if (word != p.default_value) result.push_back(element(p, word));
     } else if (const auto category = find_category(p.type)) {
         result = nested(p, *category, nesting);
-    } else if (const auto it = numbers.find(p.name); it != numbers.end()) {
+    } else if (const auto it = numbers.find(p.name);
+               it != numbers.end() && (nesting > 0 || !first_level_alone.contains(p.name))) {
         for (std::size_t i = 1; i < it->second.size(); ++i) result.push_back(element(p, it->second[i]));
     }
     return result;
