@@ -12,7 +12,9 @@
 #include <vector>
 
 #include "core/geometry/ray_counters.h"
+#include "core/math/bounds.h"
 #include "core/objects/cancellation.h"
+#include "core/scene/ray_queries.h"
 #include "lights/virtual_lights/virtual_point_light.h"
 #include "screenspace/visibility/id_picture.h"
 

@@ -38,7 +38,8 @@ Ray ShadowMapView::ray_at(const Vec2& place) const {
         case Kind::parallel:
             break;
     }
-    return {origin + half_extent * (p.x * frame.s + p.y * frame.t), frame.n};
+    const Vec2 xy = half_extent * p;
+    return {origin + xy.x * frame.s + xy.y * frame.t, frame.n};
 }
 
 float ShadowMapView::measure(const Vec2& place) const {

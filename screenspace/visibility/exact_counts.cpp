@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <stdexcept>
+#include <utility>
 
 namespace mote::screenspace {
 

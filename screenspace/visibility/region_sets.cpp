@@ -1,8 +1,10 @@
 #include "screenspace/visibility/region_sets.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <stdexcept>
+#include <utility>
 
 #include "screenspace/visibility/conflict_graph.h"
 
