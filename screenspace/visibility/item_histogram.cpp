@@ -28,8 +28,10 @@ ItemHistogram::ItemHistogram(const IdPicture& picture, const ItemLayout& layout)
 /// histogram. Where there are few of those, each is cut into bands with bins of their own, which are added
 /// up.
 void ItemHistogram::count(const IdPicture& picture) {
-    const int side = layout_.side(), t = layout_.t(), cuts = std::max(1, least_bands / side);
+    const int side = layout_.side(), t = layout_.t();
     const std::size_t bins = std::size_t(layout_.items()) << t;  // of one row of tiles
+    // Copies of more bins than there are pixels would cost more than they save.
+    const int cuts = bins <= picture.items.size() ? std::max(1, least_bands / side) : 1;
     std::vector<std::uint32_t>& all = levels_.front();
     tbb::parallel_for(0, side, [&](int ty) {
         const int top = tile_begin(ty, side, height_), rows = tile_begin(ty + 1, side, height_) - top;
