@@ -7,6 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "screenspace/denoising/refined_regression.h"
 #include "screenspace/denoising/variance_blend.h"
 
 namespace mote::screenspace {
@@ -96,7 +97,9 @@ SequenceDenoiser::LayerResult SequenceDenoiser::denoise(const DenoiserFrame& fra
         regression.offset += block_offset(frame_, regression.block);
         regression.seed += std::uint64_t(frame_);
         const Regression r =
-            block_regression(width, height, layer.features, result.noisy, regression, cancelled);
+            settings_.refine
+                ? refined_regression(width, height, layer.features, result.noisy, regression, 8, cancelled)
+                : block_regression(width, height, layer.features, result.noisy, regression, cancelled);
 
         result.denoised = history.after.add(width, height, pixels, r.colour);
         multiply_back(result.denoised, layer);

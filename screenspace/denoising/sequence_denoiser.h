@@ -31,6 +31,7 @@ struct DenoiserSettings {
     AccumulationSettings before;                       ///< of noisy colours
     AccumulationSettings after{8.0f, core::infinity};  ///< of denoised ones, whose blocks move
     bool regress = true;                               ///< false: accumulation alone
+    bool refine = true;                                ///< in smaller blocks, where they find more than noise
     bool blend = true;                                 ///< by the variance, where it is known
 };
 
