@@ -2,7 +2,7 @@
 //
 // A reflection turns what is left x of a column into (alpha, 0, 0, ...). Of the two signs of alpha = ±|x| the
 // one opposite to x_0 is taken, so that v = x - alpha e_0 adds two numbers of one sign; with the other one v
-// cancels, down to 0 / 0 where x points along e_0 already (Golub & Van Loan 2013, §5.1). Normal equations
+// cancels, down to 0 / 0 where x points along e_0 already (Golub 2013, §5.1). Normal equations
 // would square the condition number, which for positions and their squares leaves single precision nothing.
 #pragma once
 
