@@ -192,8 +192,14 @@ int parse_and_run(int argc, char** argv) {
     convert_app
         .add_option("IN", convert.input, "EXR, PNG, JPEG, HDR, PNM, PFM, BMP or TGA; or a scene: glTF, GLB")
         ->required();
-    convert_app.add_option("OUT", convert.output, "A file that ends in .exr or .png, or in .xml for a scene")
+    convert_app
+        .add_option(
+            "OUT", convert.output,
+            "A file that ends in .exr or .png; in .xml for a scene; for frames/####.exr in .mp4, .webm, .mov "
+            "or .gif (needs ffmpeg)")
         ->required();
+    convert_app.add_option("--rate", convert.rate, "Frames a second of a film (default: 24)")
+        ->check(number_between(0.1, 1000.0));
     add_lenient(convert_app, convert.lenient);
     add_defines(convert_app, convert.defines, "For a scene: camera=NAME, or emission=FACTOR (repeatable)");
     convert_app.add_option("--exposure", convert.exposure, "Brighten by this many stops")

@@ -1,4 +1,5 @@
-// mote convert: pictures to EXR or PNG, glTF scenes to XML (convert_scene.cpp).
+// mote convert: pictures to EXR or PNG, glTF scenes to XML (convert_scene.cpp), sequences to films
+// (convert_sequence.cpp).
 #include <cmath>
 #include <cstdio>
 
@@ -20,9 +21,11 @@ int convert_command(const ConvertArguments& arguments) {
     if (kind == ".xml" || core::is_gltf(arguments.input)) return convert_scene(arguments);
     if (arguments.lenient || !arguments.defines.empty())
         throw UsageError("--lenient and -D are for scenes, not for pictures");
+    if (is_film(kind)) return convert_sequence(arguments);
     if (kind != ".exr" && kind != ".png")
         throw UsageError("'" + core::printable(arguments.output) +
-                         "' ends in neither .exr nor .png (nor, for a glTF scene, .xml)");
+                         "' ends in neither .exr nor .png (nor, for a glTF scene, .xml; for frames/####.exr, "
+                         ".mp4, .webm, .mov or .gif)");
     check_outputs(std::vector<NamedFile>{{"the result", arguments.output}},
                   std::vector<NamedFile>{{"the picture that is converted,", arguments.input}});
     const Bitmap bitmap = read_picture(arguments.input, arguments.layer).bitmap;

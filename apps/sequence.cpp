@@ -8,8 +8,8 @@
 #include <filesystem>
 
 #include "apps/command.h"
+#include "apps/frame_files.h"
 #include "apps/subcommands.h"
-#include "core/loading/frame_files.h"
 #include "core/objects/error.h"
 
 namespace mote::apps {
@@ -70,8 +70,6 @@ RunningParameter running(std::size_t define, const std::vector<double>& values) 
 
 }  // namespace
 
-bool holds_frame_number(const std::string& name) { return core::with_frame_number(name, 0).has_value(); }
-
 std::optional<RunningParameter> running_parameter(const std::vector<std::string>& defines) {
     std::optional<RunningParameter> found;
     for (const char separator : {':', ','}) {
@@ -92,8 +90,8 @@ std::optional<RunningParameter> running_parameter(const std::vector<std::string>
 
 int render_sequence(const RenderArguments& arguments) {
     const auto parameter = running_parameter(arguments.scene.defines);
-    if (!parameter || !holds_frame_number(arguments.output)) return render_command(arguments);
-    if (!arguments.stats.empty() && !holds_frame_number(arguments.stats))
+    if (!parameter || !names_frames(arguments.output)) return render_command(arguments);
+    if (!arguments.stats.empty() && !names_frames(arguments.stats))
         throw UsageError("the statistics of a sequence need #### where the frame's number goes");
     const std::string& define = arguments.scene.defines[parameter->define];
     const std::size_t frames = parameter->values.size();
@@ -103,8 +101,8 @@ int render_sequence(const RenderArguments& arguments) {
         frame.scene.defines[parameter->define] =
             define.substr(0, define.find('=') + 1) + parameter->values[i];
         frame.scene.frame = number;
-        frame.output = *core::with_frame_number(arguments.output, number);
-        if (!arguments.stats.empty()) frame.stats = *core::with_frame_number(arguments.stats, number);
+        frame.output = frame_name(arguments.output, number);
+        if (!arguments.stats.empty()) frame.stats = frame_name(arguments.stats, number);
         frame.seed =
             arguments.seed + std::uint64_t(number);  // noise that stands still would look like texture
         frame.of_sequence = true;

@@ -21,7 +21,4 @@ struct RunningParameter {
 /// the end, or for more than a million frames.
 std::optional<RunningParameter> running_parameter(const std::vector<std::string>& defines);
 
-/// Does the name hold a place for a frame's number: two '#' or more in a row?
-bool holds_frame_number(const std::string& name);
-
 }  // namespace mote::apps

@@ -54,6 +54,7 @@ struct RenderArguments {
 struct ConvertArguments {
     std::string input, output, layer;
     float exposure = 0.0f;
+    double rate = 24.0;  ///< of a film: frames a second
     bool half = false;
     bool lenient = false;              ///< of a scene
     std::vector<std::string> defines;  ///< of a scene: "camera=NAME", "emission=FACTOR"
@@ -95,6 +96,9 @@ int render_sequence(const RenderArguments& arguments);
 int plan_command(const SceneArguments& arguments);
 int info_command(const InfoArguments& arguments);
 int convert_command(const ConvertArguments& arguments);
+/// The part of it that makes a film of a sequence, and the names that ask for one.
+int convert_sequence(const ConvertArguments& arguments);
+bool is_film(const std::string& extension);
 /// The part of it that turns a glTF scene into XML.
 int convert_scene(const ConvertArguments& arguments);
 int compare_command(const CompareArguments& arguments);

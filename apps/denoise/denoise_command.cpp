@@ -11,7 +11,7 @@
 #include "apps/command.h"
 #include "apps/denoise/bmfr_sequence.h"
 #include "apps/denoise/denoised_layer.h"
-#include "apps/denoise/frame_files.h"
+#include "apps/frame_files.h"
 #include "apps/number_options.h"
 #include "apps/output_files.h"
 #include "apps/picture_file.h"
@@ -33,7 +33,7 @@ std::string output_of(const DenoiseArguments& a) {
             "' does not end in .exr (a PNG preview of the denoised picture is written beside it)");
     if (names_frames(a.input) && !names_frames(a.output))
         throw UsageError("the output '" + core::printable(a.output) +
-                         "' has no # for the number of the frame, as the input has");
+                         "' has no #### for the number of the frame, as the input has");
     return a.output;
 }
 

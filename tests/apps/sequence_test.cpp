@@ -126,3 +126,24 @@ TEST_CASE("files of a sequence take the frame's number", "[sequence]") {
     CHECK(missing.exit_code == 1);
     CHECK(missing.err.find("mesh.005.ply") != std::string::npos);
 }
+
+TEST_CASE("frames become a film where there is ffmpeg, and a clear word where there is none", "[sequence]") {
+    const Folder folder;
+    REQUIRE(folder.mote({"-D", "t=0:1", "-o", "frames/####.exr"}).exit_code == 0);
+    const Values convert = {"convert", "frames/####.exr", "film.mp4"};
+    const std::string path = ::getenv("PATH") ? ::getenv("PATH") : "";
+    ::setenv("PATH", folder.path().c_str(), 1);
+    const RunResult without = run_mote(folder, convert);
+    CHECK(without.exit_code == 1);
+    CHECK(without.err.find("ffmpeg") != std::string::npos);
+    // One that keeps what it is given.
+    write_file(folder.file("ffmpeg"), "#!/bin/sh\nfor last; do :; done\nexec /bin/cat > \"$last\"\n");
+    fs::permissions(folder.file("ffmpeg"), fs::perms::owner_all);
+    const RunResult with = run_mote(folder, convert);
+    ::setenv("PATH", path.c_str(), 1);
+    INFO(with.err);
+    CHECK(with.exit_code == 0);
+    CHECK(fs::file_size(folder.file("film.mp4")) == 2 * 24 * 24 * 3);
+    CHECK(run_mote(folder, {"convert", "frames/0000.exr", "film.mp4"}).exit_code == 2);
+    CHECK(run_mote(folder, {"convert", "frames/a####.exr", "film.mp4"}).exit_code == 1);
+}

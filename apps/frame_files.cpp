@@ -1,9 +1,10 @@
-#include "apps/denoise/frame_files.h"
+#include "apps/frame_files.h"
 
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
 
+#include "core/loading/frame_files.h"
 #include "core/objects/error.h"
 
 namespace mote::apps {
@@ -13,31 +14,33 @@ using core::InputError;
 
 namespace {
 
-/// The name before the run of #, its length, and the name behind it.
+/// The name before the number, how many digits it has at least, and the name behind it.
 struct Pattern {
     std::string before, after;
     std::size_t digits = 0;
 
     explicit Pattern(const std::string& name) {
-        const std::size_t first = name.find('#'), end = name.find_first_not_of('#', first);
-        before = name.substr(0, first), after = end == std::string::npos ? "" : name.substr(end);
-        digits = name.size() - before.size() - after.size();
-        if (after.find('#') != std::string::npos)
-            throw InputError("'" + core::printable(name) + "' has two places for the number of the frame");
+        // Two numbers of as many digits as there are # differ in nothing but these.
+        const std::string zeros = *core::with_frame_number(name, 0);
+        std::size_t first = 0;
+        while (first < name.size() && name[first] == zeros[first]) ++first;
+        digits = name.find_first_not_of('#', first) == std::string::npos
+                     ? name.size() - first
+                     : name.find_first_not_of('#', first) - first;
+        before = name.substr(0, first), after = name.substr(first + digits);
     }
 };
 
 }  // namespace
 
 bool names_frames(const std::string& pattern) {
-    return fs::path(pattern).filename().string().find('#') != std::string::npos;
+    return core::with_frame_number(fs::path(pattern).filename().string(), 0).has_value();
 }
 
 std::string frame_name(const std::string& pattern, long number) {
-    const Pattern p(fs::path(pattern).filename().string());
-    std::string digits = std::to_string(number);
-    if (digits.size() < p.digits) digits.insert(0, p.digits - digits.size(), '0');
-    return (fs::path(pattern).parent_path() / (p.before + digits + p.after)).string();
+    const fs::path path(pattern);
+    const auto name = core::with_frame_number(path.filename().string(), int(number));
+    return name ? (path.parent_path() / *name).string() : pattern;
 }
 
 std::vector<FrameFile> find_frames(const std::string& pattern) {

@@ -1,4 +1,5 @@
-// Files of a sequence: names in which a run of # stands for the frame's number, "smoke.####.exr".
+// Pictures of a sequence: names in which the longest run of two # or more stands for the frame's number,
+// "smoke.####.exr" (core/loading/frame_files.h).
 #pragma once
 
 #include <string>
@@ -11,12 +12,11 @@ struct FrameFile {
     std::string path;
 };
 
-/// Whether the file's name (not its folder's) holds a #.
+/// Is there a place for the number in the file's name (not its folder's)?
 bool names_frames(const std::string& pattern);
 /// The name of a frame: as many digits as there are #, filled up with zeros, or more.
 std::string frame_name(const std::string& pattern, long number);
-/// The files that are there, by their numbers. Throws InputError when there are none, and
-/// when # stands in two places.
+/// The files that are there, by their numbers. Throws InputError when there are none.
 std::vector<FrameFile> find_frames(const std::string& pattern);
 
 }  // namespace mote::apps
