@@ -175,11 +175,11 @@ TEST_CASE("virtual point lights and bundles have the mean of paths", "[bundles][
     const int bounces = GENERATE(1, 2);
     Points points(bsdf, light, corner, 0.3f);
     CAPTURE(light, bounces);
-    const Mean expected = mean_of(16000, [&](auto i) { return points.paths(i, bounces); });
+    const Mean expected = mean_of(10000, [&](auto i) { return points.paths(i, bounces); });
     for (const Techniques techniques : {Techniques::combined, Techniques::bundles}) {
         // Bundles alone join lights without a weight: no finite variance for two bounces.
         if (techniques == Techniques::bundles && bounces > 1) continue;
-        const Mean found = mean_of(4000, [&](auto i) { return points.pass(i, bounces, techniques); });
+        const Mean found = mean_of(2500, [&](auto i) { return points.pass(i, bounces, techniques); });
         CAPTURE(int(techniques), expected.value(), found.value());
         CHECK(expected.value() > 0.0);
         CHECK(found.standard_error() < 0.05 * found.value());
@@ -190,9 +190,9 @@ TEST_CASE("virtual point lights and bundles have the mean of paths", "[bundles][
 TEST_CASE("a wrong density of lines, a forgotten cosine and a missing distance are found",
           "[bundles][planted]") {
     Points points(matt, point_by_the_wall, corner, 0.3f);
-    const Mean expected = mean_of(16000, [&](auto i) { return points.paths(i, 1); });
+    const Mean expected = mean_of(10000, [&](auto i) { return points.paths(i, 1); });
     const auto z = [&](const Planted& planted) {
-        return z_between(expected, mean_of(4000, [&](auto i) {
+        return z_between(expected, mean_of(2500, [&](auto i) {
                              return points.pass(i, 1, Techniques::combined, planted);
                          }));
     };

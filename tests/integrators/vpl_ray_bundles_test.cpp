@@ -37,9 +37,9 @@ TEST_CASE("virtual point lights and ray-bundles render the picture of path", "[b
         Case{grey, R"(<string name="techniques" value="bundles"/><integer name="bounces" value="3"/>)", 5});
     const auto scene = scene_from(box(c.wall, ""), 12);
     CAPTURE(c.settings, c.max_depth);
-    const auto expected = render_statistics(*scene, *path(c.max_depth), {.block = 4, .passes = 1200});
+    const auto expected = render_statistics(*scene, *path(c.max_depth), {.block = 4, .passes = 800});
     const auto found = render_statistics(*scene, *bundles(c.settings + depth(c.max_depth)),
-                                         {.block = 4, .passes = 500, .seed = 2});
+                                         {.block = 4, .passes = 300, .seed = 2});
     for (const std::string layer : {"direct", "indirect", "beauty"}) {
         const ZTest test = same_mean(expected, layer, found, layer);
         INFO(layer << ": " << test.report);
@@ -53,9 +53,9 @@ TEST_CASE("the sky's direct light by bundles is that of connections", "[bundles]
     xml.insert(xml.find("<sensor"),
                R"(<emitter type="constant"><rgb name="radiance" value="1, 1.2, 1.5"/></emitter>)");
     const auto scene = scene_from(xml, 12);
-    const auto expected = render_statistics(*scene, *path(3), {.block = 4, .passes = 1200});
+    const auto expected = render_statistics(*scene, *path(3), {.block = 4, .passes = 800});
     const auto found = render_statistics(*scene, *bundles(R"(<boolean name="sky" value="true"/>)" + depth(3)),
-                                         {.block = 4, .passes = 500, .seed = 2});
+                                         {.block = 4, .passes = 300, .seed = 2});
     for (const std::string layer : {"emission", "direct", "indirect"}) {
         const ZTest test = same_mean(expected, layer, found, layer);
         INFO(layer << ": " << test.report);
