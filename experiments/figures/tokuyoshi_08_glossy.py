@@ -73,10 +73,11 @@ def figure(mote, quick, output):
                  f"{both['error']:.1%} and {both['bias'][0]:+.1%}, spherical lights {found['spherical lights']['error']:.1%} and {found['spherical lights']['bias'][0]:+.1%}",
                  both["error"] < 1.1 * found["spherical lights"]["error"] and abs(both["bias"][0]) < abs(found["spherical lights"]["bias"][0]) / 3)
     own = found["with bundles and own rays"]
-    claims.check("a ray of its own for every glossy point, which the paper has not, does better without a bias", f"error {own['error']:.1%}, bias {own['bias'][0]:+.1%} +- {own['bias'][1]:.1%}",
-                 own["error"] < both["error"])
+    claims.check("a ray of its own for every glossy point, which the paper has not, does nearly as well without a bias: within a fifth", f"error {own['error']:.1%}, bias {own['bias'][0]:+.1%} +- {own['bias'][1]:.1%}",
+                 own["error"] < 1.2 * both["error"])
     claims.check("under a sky, with 55 directions: the glossy ball has less error with it", text("error", "sky, none", "sky, roughness clamping"),
-                 found["sky, roughness clamping"]["error"] < found["sky, none"]["error"])
+                 found["sky, roughness clamping"]["error"] < found["sky, none"]["error"],
+                 "spots are gone and so is detail: a lobe over 16 of 55 directions reaches beyond the horizon of the ball's dark lower half")
     write_csv(output.with_suffix(".csv"), ["method", "error", "bias", "bias_standard_error", "brightest_thousandth", "cpu_seconds"], rows)
     draw(box, sky, found, output)
     return claims.exit_code()
