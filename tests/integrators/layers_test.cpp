@@ -124,7 +124,8 @@ TEST_CASE("a method that is asked for one cell gives it its own mean and traces 
     const auto foggy = foggy_box(), dry = scene_from(box(mixed, ""), 8);
     for (const std::string& type : registry().types(Category::integrator)) {
         if (type == "mote_layers") continue;
-        const bool media = type != "mote_vsl" && type != "mote_vpl_ray_bundles" && type != "path";
+        const bool media = type != "mote_vsl" && type != "mote_vpl_ray_bundles" &&
+                           type != "mote_ray_bundles" && type != "path";
         const Scene& scene = media ? *foggy : *dry;
         std::string few;
         if (type == "mote_vpl" || type == "mote_vsl" || type == "mote_vpl_ray_bundles")
@@ -133,6 +134,10 @@ TEST_CASE("a method that is asked for one cell gives it its own mean and traces 
             few = "<integer name='lines' value='16'/><integer name='steps' value='8'/>";
         if (type == "mote_single_scattering") few = "<integer name='steps' value='8'/>";
         if (type == "mote_photon_map") few = "<integer name='photon_paths' value='50'/>";
+        if (type == "mote_ray_bundles")
+            few =
+                "<integer name='directions' value='16'/><integer name='warm_up' value='1'/>"
+                "<integer name='texel_budget' value='2000'/>";
         const auto integrator = integrator_from("<integrator type='" + type + "'>" + few + "</integrator>");
         const auto all = render_statistics(scene, *integrator, {8, 200, 1});
         for (const Layer& layer : integrator->layers(scene)) {
