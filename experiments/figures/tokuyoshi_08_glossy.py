@@ -84,7 +84,7 @@ def figure(mote, quick, output):
 
 
 def draw(box, sky, found, output):
-    height, width = box.truth.shape[:2]
+    height, width = (2 * k for k in box.truth.shape[:2])  # to be read on a wall
     names = [n for n in found if not n.startswith("sky")]
     canvas = Canvas(4 * width + 50, 2 * (height + TITLE) + sky.truth.shape[0] * width // sky.truth.shape[1] + TITLE + 20)
     exposure = 0.6 / np.percentile(luminance(box.truth), 95)
