@@ -36,16 +36,22 @@ def sky_methods(directions):
     return {"sky, none": base, "sky, roughness clamping": base | ROUGH}
 
 
+def most(view, pictures):
+    """The error of all pixels but the worst thousandth, which says how much of it is in a few of them."""
+    squares = np.sort([view.squares(p) for p in pictures], axis=None)
+    return max(0.0, float(squares[:-(len(squares) // 1000)].mean())) ** 0.5
+
+
 def measure(view, methods, seeds, rows):
     found = {}
     for name, settings in methods.items():
         pictures = [view.render(name.replace(",", ""), settings, 1, seed) for seed in seeds]
         mean = np.mean([p[""] for p in pictures], axis=0)
         spikes = float(np.mean([np.percentile(luminance(p[""]) * view.weight ** 0.5, 99.9) for p in pictures]))
-        found[name] = {"picture": pictures[0][""], "error": view.error(pictures), "bias": view.bias(pictures), "spikes": spikes,
-                       "mean": mean, "seconds": float(np.mean([p.cpu for p in pictures]))}
-        rows.append([name, found[name]["error"], *map(float, found[name]["bias"]), spikes, found[name]["seconds"]])
-        print(f"{name}: error {found[name]['error']:.1%}, bias {found[name]['bias'][0]:+.1%} +- {found[name]['bias'][1]:.1%}, "
+        found[name] = {"picture": pictures[0][""], "error": view.error(pictures), "most": most(view, pictures), "bias": view.bias(pictures),
+                       "spikes": spikes, "mean": mean, "seconds": float(np.mean([p.cpu for p in pictures]))}
+        rows.append([name, found[name]["error"], found[name]["most"], *map(float, found[name]["bias"]), spikes, found[name]["seconds"]])
+        print(f"{name}: error {found[name]['error']:.1%}, without the worst thousandth {found[name]['most']:.1%}, bias {found[name]['bias'][0]:+.1%} +- {found[name]['bias'][1]:.1%}, "
               f"brightest thousandth {spikes:.2f}, {found[name]['seconds']:.1f} s")
     return found
 
@@ -60,9 +66,12 @@ def figure(mote, quick, output):
     found |= measure(sky, sky_methods(55), seeds, rows)
     text = lambda key, *names: ", ".join(f"{n} {found[n][key]:.1%}" for n in names)
     rough, free, both = (found[n] for n in ("roughness clamping", "with bundles", "with bundles and roughness clamping"))
+    # The few pixels where it fails are rarer than the pixels of a quick run.
+    rare = None if quick else ("the worst thousandth of its pixels has most of its squared error, and what they meet is open; all others: "
+                               + text("most", "with bundles", "with bundles and roughness clamping", "spherical lights"))
     claims.check("glossy surfaces leave spikes where bundles have taken those of corners; roughness clamping takes a third of the squared error",
                  text("error", "none", "roughness clamping", "with bundles", "with bundles and roughness clamping"),
-                 both["error"] ** 2 < 2 / 3 * free["error"] ** 2)
+                 both["error"] ** 2 < 2 / 3 * free["error"] ** 2, rare)
     claims.check("clamping darkens; roughness clamping loses less of the light",
                  ", ".join(f"{n} {found[n]['bias'][0]:+.1%} +- {found[n]['bias'][1]:.1%}" for n in ("clamping", "roughness clamping")),
                  abs(rough["bias"][0]) < abs(found["clamping"]["bias"][0]))
@@ -71,20 +80,20 @@ def figure(mote, quick, output):
                  rough["seconds"] < 2 * found["none"]["seconds"] < 2 * found["spherical lights"]["seconds"])
     claims.check("with bundles its error is at most that of spherical lights plus a tenth, and its loss of light a third of theirs",
                  f"{both['error']:.1%} and {both['bias'][0]:+.1%}, spherical lights {found['spherical lights']['error']:.1%} and {found['spherical lights']['bias'][0]:+.1%}",
-                 both["error"] < 1.1 * found["spherical lights"]["error"] and abs(both["bias"][0]) < abs(found["spherical lights"]["bias"][0]) / 3)
+                 both["error"] < 1.1 * found["spherical lights"]["error"] and abs(both["bias"][0]) < abs(found["spherical lights"]["bias"][0]) / 3, rare)
     own = found["with bundles and own rays"]
     claims.check("a ray of its own for every glossy point, which the paper has not, does nearly as well without a bias: within a fifth", f"error {own['error']:.1%}, bias {own['bias'][0]:+.1%} +- {own['bias'][1]:.1%}",
                  own["error"] < 1.2 * both["error"])
     claims.check("under a sky, with 55 directions: the glossy ball has less error with it", text("error", "sky, none", "sky, roughness clamping"),
                  found["sky, roughness clamping"]["error"] < found["sky, none"]["error"],
                  "spots are gone and so is detail: a lobe over 16 of 55 directions reaches beyond the horizon of the ball's dark lower half")
-    write_csv(output.with_suffix(".csv"), ["method", "error", "bias", "bias_standard_error", "brightest_thousandth", "cpu_seconds"], rows)
+    write_csv(output.with_suffix(".csv"), ["method", "error", "error_without_the_worst_thousandth", "bias", "bias_standard_error", "brightest_thousandth", "cpu_seconds"], rows)
     draw(box, sky, found, output)
     return claims.exit_code()
 
 
 def draw(box, sky, found, output):
-    height, width = box.truth.shape[:2]
+    height, width = (2 * k for k in box.truth.shape[:2])  # to be read on a wall
     names = [n for n in found if not n.startswith("sky")]
     canvas = Canvas(4 * width + 50, 2 * (height + TITLE) + sky.truth.shape[0] * width // sky.truth.shape[1] + TITLE + 20)
     exposure = 0.6 / np.percentile(luminance(box.truth), 95)
