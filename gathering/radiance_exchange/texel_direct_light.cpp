@@ -14,16 +14,19 @@ namespace {
 constexpr float shadow_fraction = 0.9999f;
 
 /// How far the triangles that stand for a shape may lie below it: twice the chord error of tessellations, for
-/// shapes that are no meshes [m]. Shadow rays meet the shape itself.
+/// shapes that are no meshes [m]. Shadow rays meet the shape itself, so that lights are drawn from above it.
 float depth_below(const Shape& shape) {
     constexpr float chord_error = TessellationSettings{}.chord_error;
     return shape.primitive_count() > 1 ? 0.0f : 2.0f * chord_error * max_component(shape.bounds().diagonal());
 }
 
 /// The irradiance at a place from one light, over the probability of the light and its point.
-TexelLightSample sample_light(const LitScene& lights, const SurfaceHit& hit, const Vec3& outside,
-                              float u_light, const Vec2& u) {
+TexelLightSample sample_light(const LitScene& lights, SurfaceHit hit, const Vec3& outside, float u_light,
+                              const Vec2& u) {
     TexelLightSample none{outside, Rgb(0.0f)};
+    // Distances to lights are from here, too: a shadow ray that begins nearer would reach the light's own
+    // surface.
+    hit.position += depth_below(*hit.shape) * outside;
     const LightChoice choice = lights.choose_light({hit.position, outside}, u_light);
     if (!choice.emitter) return none;
     const auto light = choice.emitter->sample_direct(hit.position, u);
@@ -31,8 +34,7 @@ TexelLightSample sample_light(const LitScene& lights, const SurfaceHit& hit, con
     const Vec3 normal = glm::dot(hit.shading.n, outside) < 0.0f ? -hit.shading.n : hit.shading.n;
     const float cosine = glm::dot(normal, light->wi);
     if (!(cosine > 0.0f)) return none;
-    const Vec3 origin = offset_origin(hit, light->wi) + depth_below(*hit.shape) * outside;
-    const Ray shadow{origin, light->wi, 0.0f, light->distance * shadow_fraction};
+    const Ray shadow{offset_origin(hit, light->wi), light->wi, 0.0f, light->distance * shadow_fraction};
     if (!lights.visible(shadow)) return none;
     return {light->wi, light->weight * cosine / choice.probability};
 }

@@ -211,22 +211,35 @@ TEST_CASE("the sky of an open floor is what enters bundles from outside", "[exch
     CHECK(red.error() < 0.02);
 }
 
-// A ball of radius r at distance d from a lamp of intensity I takes up 2 pi I (1 - sqrt(1 - (r/d)^2)). Its
-// texels lie on triangles inside of it, and must not be in its shadow. 2 %: cosines in the middle of texels,
-// and 0.6 % of the ball's area that its triangles lack.
-TEST_CASE("light of a lamp on the texels of a ball is what its solid angle takes up",
-          "[exchange][analytic]") {
-    const ExchangeStage stage(R"(<scene version="3.0.0"><shape type="sphere"><bsdf type="diffuse"/></shape>
-        <emitter type="point"><point name="position" x="0" y="0" z="3"/><rgb name="intensity" value="5"/></emitter>
-        <sensor type="perspective"/></scene>)",
-                              {.texels_per_metre = 12.0f});
-    const TexelDirectLight light = texel_direct_light(*stage.scene, stage.atlas, stage.materials, 2, 1, {});
+/// What the texels of a diffuse ball of radius 1 at the origin receive from a light [W].
+double power_on_ball(const std::string& light) {
+    const ExchangeStage stage(
+        R"(<scene version="3.0.0"><shape type="sphere"><bsdf type="diffuse"/></shape>)" + light +
+            R"(<sensor type="perspective"/></scene>)",
+        {.texels_per_metre = 12.0f});
+    const TexelDirectLight drawn = texel_direct_light(*stage.scene, stage.atlas, stage.materials, 2, 1, {});
     double power = 0.0;
     for (std::size_t t = 0; t < stage.atlas.size(); ++t)
-        power += double(light.irradiance[t].x * stage.atlas.texels()[t].area);
+        power += double(drawn.irradiance[t].x * stage.atlas.texels()[t].area);
+    return power;
+}
+
+// A ball of radius r at distance d from a lamp of intensity I takes up 2 pi I (1 - sqrt(1 - (r/d)^2)), from a
+// small face of area A and radiance L that looks at it pi L A (r/d)^2. Its texels lie on triangles inside of
+// it, and must not be in its shadow, nor in that of the lamp. 2 %: cosines in the middle of texels, and 0.6 %
+// of the ball's area that its triangles lack.
+TEST_CASE("light of a lamp on the texels of a ball is what its solid angle takes up",
+          "[exchange][lamps][analytic]") {
+    const double power = power_on_ball(
+        R"(<emitter type="point"><point name="position" x="0" y="0" z="3"/><rgb name="intensity" value="5"/></emitter>)");
     const double exact = 2.0 * double(pi) * 5.0 * (1.0 - std::sqrt(1.0 - 1.0 / 9.0));
     CHECK(power == Approx(exact).epsilon(0.02));
     CHECK_FALSE(1.05 * power == Approx(exact).epsilon(0.02));
+    const double of_face =
+        power_on_ball(R"(<shape type="rectangle"><transform name="to_world"><scale value="0.05"/>
+        <rotate x="1" angle="180"/><translate z="3"/></transform>
+        <emitter type="area"><rgb name="radiance" value="500"/></emitter></shape>)");
+    CHECK(of_face == Approx(double(pi) * 500.0 * 0.01 / 9.0).epsilon(0.02));
 }
 
 TEST_CASE("batches go on in their own sequence, and have another one than their neighbours", "[exchange]") {
