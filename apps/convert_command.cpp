@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "apps/command.h"
+#include "apps/frame_files.h"
 #include "apps/output_files.h"
 #include "apps/picture_file.h"
 #include "apps/subcommands.h"
@@ -21,7 +22,7 @@ int convert_command(const ConvertArguments& arguments) {
     if (kind == ".xml" || core::is_gltf(arguments.input)) return convert_scene(arguments);
     if (arguments.lenient || !arguments.defines.empty())
         throw UsageError("--lenient and -D are for scenes, not for pictures");
-    if (is_film(kind)) return convert_sequence(arguments);
+    if (is_film(kind) && names_frames(arguments.input)) return convert_sequence(arguments);
     if (kind != ".exr" && kind != ".png")
         throw UsageError("'" + core::printable(arguments.output) +
                          "' ends in neither .exr nor .png (nor, for a glTF scene, .xml; for frames/####.exr, "

@@ -91,7 +91,6 @@ bool is_film(const std::string& extension) {
 }
 
 int convert_sequence(const ConvertArguments& a) {
-    if (!names_frames(a.input)) throw UsageError("a film needs frames: give them as frames/####.exr");
     const std::vector<FrameFile> frames = find_frames(a.input);
     std::vector<NamedFile> inputs;
     for (const FrameFile& frame : frames) inputs.push_back({"a frame", frame.path});
