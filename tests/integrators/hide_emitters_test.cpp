@@ -58,6 +58,10 @@ std::string integrator(const std::string& type, bool hide) {
     if (type == "mote_vpl" || type == "mote_vsl" || type == "mote_vpl_ray_bundles")
         text += "<integer name='paths' value='4'/>";
     if (type == "mote_photon_map") text += "<integer name='photon_paths' value='50'/>";
+    if (type == "mote_ray_bundles")
+        text +=
+            "<integer name='directions' value='16'/><integer name='warm_up' value='0'/>"
+            "<integer name='texel_budget' value='200'/>";
     return text + "</integrator>";
 }
 
