@@ -332,8 +332,9 @@ TEST_CASE("every integrator gives the same bits on one thread, and on many after
     CHECK(count("'media' is an object of the wrong kind") == 1);
     // mote_vsl and mote_vpl_ray_bundles, alone and in mote_layers
     CHECK(count("renders surfaces only") == 4);
-    // mote_layers, mote_vpl and mote_vpl_ray_bundles, in mote_layers
-    CHECK(count("works on the mean of its whole picture") == 3);
+    CHECK(count("works on the mean of its whole picture") == 2);  // mote_layers and mote_vpl, in mote_layers
+    // mote_vpl_ray_bundles, alone and in mote_layers
+    CHECK(count("bounces along directions of the same pass are paths of bundles alone") == 2);
 }
 
 TEST_CASE("a pass that knows its threads or its predecessors gives other bits", "[same_bits][planted]") {
