@@ -15,6 +15,7 @@
 #include "apps/picture_file.h"
 #include "apps/subcommands.h"
 #include "core/image/exposure.h"
+#include "core/image/srgb.h"
 #include "core/objects/error.h"
 
 extern char** environ;
@@ -78,12 +79,6 @@ class Encoder {
     bool good_ = false;
 };
 
-std::uint8_t srgb_byte(float x) {
-    if (!std::isfinite(x) || x <= 0.0f) return 0;
-    const float s = x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(std::min(x, 1.0f), 1.0f / 2.4f) - 0.055f;
-    return std::uint8_t(std::lround(255.0f * std::min(s, 1.0f)));
-}
-
 }  // namespace
 
 bool is_film(const std::string& extension) {
@@ -119,7 +114,8 @@ int convert_sequence(const ConvertArguments& a) {
         std::vector<std::uint8_t> bytes;
         bytes.reserve(picture.pixels.size() * 3);
         for (const core::Rgb& p : picture.pixels)
-            for (int c = 0; c < 3; ++c) bytes.push_back(srgb_byte(scale * p[c]));
+            for (int c = 0; c < 3; ++c)
+                bytes.push_back(std::isfinite(scale * p[c]) ? core::encode_srgb(scale * p[c]) : 0);
         encoder->write(bytes);
     }
     if (!encoder->finish()) throw core::InputError("ffmpeg could not make the film", {a.output, 0});

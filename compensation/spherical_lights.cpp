@@ -1,5 +1,6 @@
 #include "compensation/spherical_lights.h"
 
+#include "core/scene/shadow_segment.h"
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
@@ -14,8 +15,6 @@ using namespace core;
 
 namespace {
 
-/// Shadow rays stop this much short of their end, so that rounding cannot hit the light's own surface.
-constexpr float shadow_fraction = 0.9999f;
 
 bool is_glossy(const ScatteringVertex& v) { return !v.diffuse_reflectance().has_value(); }
 

@@ -8,18 +8,12 @@
 #include <stdexcept>
 
 #include "core/image/png_text.h"
+#include "core/image/srgb.h"
 #include "core/objects/error.h"
 
 namespace mote::core {
 
 namespace {
-
-// Linear to sRGB (IEC 61966-2-1), rounded to eight bits.
-std::uint8_t encode_srgb(float linear) {
-    const float v = std::clamp(linear, 0.0f, 1.0f);
-    const float s = v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1.0f / 2.4f) - 0.055f;
-    return std::uint8_t(std::lround(255.0f * s));
-}
 
 // Encoded in memory: the writer of PNG files does not notice a full disk, write_file_atomically() does.
 std::vector<std::byte> encode(int width, int height, std::span<const std::uint8_t> rgb, bool srgb,

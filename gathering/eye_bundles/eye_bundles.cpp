@@ -1,5 +1,6 @@
 #include "gathering/eye_bundles/eye_bundles.h"
 
+#include "core/scene/shadow_segment.h"
 #include "core/scene/media_along.h"
 
 namespace mote::gathering {
@@ -9,8 +10,6 @@ using lights::TileLight;
 
 namespace {
 
-/// Shadow rays stop this much short of a light with a surface, which they would hit otherwise.
-constexpr float shadow_fraction = 0.9999f;
 /// Light that weighs less is followed by chance: bundles are many, and most of what they find is far away,
 /// where virtual point lights do better.
 constexpr float rare_weight = 0.1f;

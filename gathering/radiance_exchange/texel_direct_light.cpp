@@ -1,5 +1,6 @@
 #include "gathering/radiance_exchange/texel_direct_light.h"
 
+#include "core/scene/shadow_segment.h"
 #include <tbb/parallel_for.h>
 
 #include "core/math/sampler.h"
@@ -10,8 +11,6 @@ using namespace core;
 
 namespace {
 
-/// Shadow rays stop this much short of the light, whose own surface they would hit otherwise.
-constexpr float shadow_fraction = 0.9999f;
 
 /// How far the triangles that stand for a shape may lie below it: twice the chord error of tessellations, for
 /// shapes that are no meshes [m]. Shadow rays meet the shape itself, so that lights are drawn from above it.

@@ -1,13 +1,10 @@
 #include "integrators/bidirectional/strategies.h"
 
+#include "core/scene/shadow_segment.h"
+
 namespace mote::integrators {
 
 using namespace core;
-
-namespace {
-/// Shadow rays stop this much short of a light, whose own surface they would hit otherwise.
-constexpr float shadow_fraction = 0.9999f;
-}  // namespace
 
 template <bool Media>
 bool Strategies<Media>::start_light_path(Sampler& sampler, SubpathWalk<Media>& walk) {
@@ -19,7 +16,6 @@ bool Strategies<Media>::start_light_path(Sampler& sampler, SubpathWalk<Media>& w
     if (!emission) return false;
     light_start_ = {choice.emitter, emission->origin, emission->normal, -emission->direction};
     const LightEnds::Start start = ends_.start(light_start_);
-    start_density_ = start.light;
     light_.without = choice.emitter->traits().can_be_hit() ? 1.0 : 0.0;
     PathVertex vertex;
     vertex.scattering.position = emission->origin, vertex.light_normal = emission->normal;
@@ -42,9 +38,9 @@ template <bool Media>
 void Strategies<Media>::finish_light_start() {
     PathVertex& first = light_.vertices[1];
     first.connection = 0.0;
-    if (!first.scattering.connectable() || !(start_density_ > 0.0)) return;
+    if (!first.scattering.connectable() || !(light_.vertices[0].density > 0.0)) return;
     const double drawn = ends_.drawn(first.scattering.light_receiver(), light_start_, first.distance_squared);
-    first.connection = weigh(settings_.heuristic, drawn / start_density_);
+    first.connection = weigh(settings_.heuristic, drawn / light_.vertices[0].density);
 }
 
 template <bool Media>

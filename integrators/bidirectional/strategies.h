@@ -119,7 +119,6 @@ class Strategies {
     std::vector<Connection> connections_;
     LightPoint light_start_, light_point_;
     core::Vec3 lens_point_{0.0f};
-    double start_density_ = 0.0;
 };
 
 template <bool Media>

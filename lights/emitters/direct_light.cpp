@@ -1,5 +1,6 @@
 #include "lights/emitters/direct_light.h"
 
+#include "core/scene/shadow_segment.h"
 #include "core/scene/media_along.h"
 
 namespace mote::lights {
@@ -7,8 +8,6 @@ namespace mote::lights {
 using namespace core;
 
 namespace {
-/// Shadow rays stop this much short of the light, whose own surface they would hit otherwise.
-constexpr float shadow_fraction = 0.9999f;
 
 /// What media and panes along the ray leave of the light, by marching. Returns whether anything is left.
 bool march_to_light(const LitScene& scene, const Ray& ray, const MediumState& state, float voxels,

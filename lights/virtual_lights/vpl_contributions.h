@@ -6,6 +6,7 @@
 #pragma once
 
 #include "core/math/vectorize.h"
+#include "core/scene/shadow_segment.h"
 #include "lights/virtual_lights/geometry_weights.h"
 #include "lights/virtual_lights/virtual_point_light.h"
 #include "lights/virtual_lights/vpl_choice.h"
@@ -23,7 +24,7 @@ struct alignas(64) LaneLight {
 
 /// Shadow rays stop this much short of the VPL, so that rounding of the direction cannot hit the VPL's own
 /// surface.
-inline constexpr float shadow_t_max = 0.9999f;
+inline constexpr float shadow_t_max = core::shadow_fraction;
 /// A receiver exactly on a VPL: keeps 1/d^2 finite. Far below any distance that single precision resolves.
 inline constexpr float min_distance_squared = 1e-30f;
 

@@ -1,0 +1,9 @@
+// How far a shadow ray goes towards what it looks for.
+#pragma once
+
+namespace mote::core {
+
+/// Shadow rays stop this share of the way: rounding must not let them hit the surface at their own end.
+inline constexpr float shadow_fraction = 0.9999f;
+
+}  // namespace mote::core
