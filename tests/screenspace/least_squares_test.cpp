@@ -130,6 +130,23 @@ TEST_CASE("Columns that depend on others, or are zero, leave the solution finite
     CHECK(std::all_of(nothing.begin(), nothing.end(), [](float v) { return v == 0.0f; }));
 }
 
+TEST_CASE("A column that depends on others gets the coefficient zero", "[denoising][least_squares]") {
+    // What rounding left of it points anywhere; noise in the colours would be fitted to it with coefficients
+    // of millions.
+    Rng rng(5);
+    const TallMatrix m = filled(64, 4, 1, [&](int r, int c) {
+        const float x = std::sin(0.37f * float(r)), y = std::cos(0.11f * float(r));
+        return c == 0   ? 1.0f
+               : c == 1 ? x
+               : c == 2 ? y
+               : c == 3 ? 0.3f + 0.7f * x - 0.4f * y
+                        : rng.next_float();
+    });
+    const std::vector<float> x = solved(m);
+    CHECK(x[3] == 0.0f);
+    for (const float coefficient : x) CHECK(std::fabs(coefficient) < 1.0f);
+}
+
 TEST_CASE("Squares of positions that are not normalised are found", "[denoising][least_squares][planted]") {
     // A wall of a metre, ten kilometres from the origin: single precision has nothing left of its parabola.
     const auto error = [](double centre, double scale) {
