@@ -1,6 +1,9 @@
 #include "apps/auxiliary_channels.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <map>
 
 #include "core/geometry/bsdf_point.h"
 #include "core/scene/scene.h"
@@ -56,6 +59,22 @@ void add_center_channels(core::ImageChannels& image, const core::Scene& scene) {
     add_vectors(image, "Center.P", g.position);
     add_vectors(image, "Center.N", g.geometric_normal);
     image.add_rgb("Center.DiffuseAlbedo", screenspace::ssbc_surfaces(g).reflectance);
+}
+
+void add_ids(core::ImageChannels& image, const core::Scene& scene) {
+    std::map<const core::Bsdf*, float> materials;
+    for (const auto& shape : scene.shapes())
+        materials.emplace(shape->bsdf.get(), float(materials.size() + 1));
+    const auto width = std::size_t(image.width);
+    std::vector<float> objects(width * std::size_t(image.height), 0.0f), seen = objects;
+    tbb::parallel_for(std::size_t(0), objects.size(), [&](std::size_t p) {
+        const core::Vec2 middle(float(p % width) + 0.5f, float(p / width) + 0.5f);
+        core::Rng rng(core::hash_keys(std::uint64_t(p)));
+        const auto stop = core::first_stop(scene, scene.camera().sample_ray(middle, core::Vec2(0.5f)), rng);
+        if (!stop.hit) return;
+        objects[p] = float(stop.hit->shape->index + 1), seen[p] = materials.at(stop.hit->shape->bsdf.get());
+    });
+    image.add("ObjectId.Y", std::move(objects)), image.add("MaterialId.Y", std::move(seen));
 }
 
 }  // namespace mote::apps

@@ -27,4 +27,9 @@ std::vector<core::HitFeature> features_for_denoising(const core::Scene& scene,
 /// over.
 void add_center_channels(core::ImageChannels& image, const core::Scene& scene);
 
+/// Adds ObjectId.Y and MaterialId.Y: of the first surface that the ray through the middle of the pixel and of
+/// the lens hits, counted from 1 in the order of the scene, 0 where that is nothing. An instance is another
+/// object, the BSDF of several shapes is one material. A mask is met by chance, in all frames alike.
+void add_ids(core::ImageChannels& image, const core::Scene& scene);
+
 }  // namespace mote::apps

@@ -23,6 +23,19 @@ std::vector<double> numbers(const std::string& text) {
 
 }  // namespace
 
+std::string as_lines(const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& name : names) text += name + "\n";
+    return text;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+    std::istringstream stream(text);
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(stream, line);) lines.push_back(line);
+    return lines;
+}
+
 std::string world_to_camera(const core::Camera& camera) {
     // OpenEXR has x to the right, y up, z forward; ours has x to the left. The transpose is written.
     glm::dmat4 flip(1.0);

@@ -9,6 +9,12 @@
 
 namespace mote::apps {
 
+/// Names of the files that the scene was read from, a line each: where none has changed, the picture need not
+/// be made anew.
+inline const char* const scene_files_key = "sceneFiles";
+std::string as_lines(const std::vector<std::string>& names);
+std::vector<std::string> lines_of(const std::string& text);
+
 /// worldToCamera of OpenEXR, 16 numbers: a left-handed camera space, matrices acting on row vectors.
 std::string world_to_camera(const core::Camera& camera);
 

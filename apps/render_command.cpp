@@ -4,10 +4,12 @@
 #include <tbb/info.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <optional>
 
 #include "apps/auxiliary_channels.h"
@@ -88,32 +90,60 @@ void warn_about(const core::Scene& scene, const core::LoadReport& loaded, const 
 }
 
 // What changes the picture besides the contents of files.
-std::string hash_of(const core::Scene& scene, const core::Integrator& integrator,
-                    const SceneArguments& arguments) {
-    std::vector<std::string> settings = {MOTE_VERSION, integrator.type(), arguments.integrator};
+std::vector<std::string> settings_of(const RenderArguments& render, const std::string& integrator) {
+    const SceneArguments& arguments = render.scene;
+    std::vector<std::string> settings = {MOTE_VERSION, integrator, arguments.integrator};
     settings.insert(settings.end(), arguments.defines.begin(), arguments.defines.end());
     if (arguments.lenient) settings.emplace_back("--lenient");
-    return core::content_hash(scene, settings);
+    if (wants_motion(render) && render.sequence->previous) {
+        settings.emplace_back("the frame before");
+        const auto& before = render.sequence->previous->defines;
+        settings.insert(settings.end(), before.begin(), before.end());
+    }
+    return settings;
 }
 
-/// Of a sequence: was this very frame finished before?
-bool finished_before(const OutputFiles& files, const RenderArguments& arguments, const std::string& hash) {
+/// Of a sequence: was this very frame finished before? Asked of its header and of the files that its scene
+/// was read from, before the scene is loaded: if none has changed, no other belongs to it.
+bool finished_before(const OutputFiles& files, const RenderArguments& arguments) {
     std::error_code ignored;
-    if (!arguments.of_sequence || !arguments.resume || fs::exists(files.checkpoint, ignored) ||
+    if (!arguments.sequence || !arguments.resume || fs::exists(files.checkpoint, ignored) ||
         !fs::exists(files.picture, ignored))
         return false;
     try {
-        const auto metadata = core::read_exr(files.picture).metadata;
-        const auto is = [&](const char* key, const std::string& value) {
+        const auto metadata = core::read_exr_metadata(files.picture);
+        const auto entry = [&](const char* key) {
             const auto it = metadata.find(key);
-            return it != metadata.end() && it->second == value;
+            return it != metadata.end() ? it->second : std::string();
         };
-        return is("sceneHash", hash) && is("seed", std::to_string(arguments.seed)) &&
-               !metadata.contains("partOfFirstPass") &&
-               (!arguments.passes || is("passes", std::to_string(*arguments.passes)));
+        const std::vector<std::string> inputs = lines_of(entry(scene_files_key));
+        if (inputs.empty() || metadata.contains("partOfFirstPass")) return false;
+        return entry("sceneHash") ==
+                   core::content_hash(inputs, settings_of(arguments, entry("integrator"))) &&
+               entry("seed") == std::to_string(arguments.seed) &&
+               (!arguments.passes || entry("passes") == std::to_string(*arguments.passes));
     } catch (const core::InputError&) {
-        return false;  // damaged: it is made anew
+        return false;  // damaged, or a file is gone: it is made anew
     }
+}
+
+/// Where shapes and camera were in the frame before; nothing for the first of a sequence.
+const core::PreviousFrame* frame_before(const RenderArguments& arguments, const core::Registry& registry) {
+    if (!wants_motion(arguments) || !arguments.sequence->previous) return nullptr;
+    SequenceFrame& sequence = *arguments.sequence;
+    if (!sequence.before)
+        sequence.before = std::make_unique<core::PreviousFrame>(load(*sequence.previous, registry));
+    return sequence.before.get();
+}
+
+std::vector<core::HitFeature> features_of(const RenderArguments& arguments, const core::Scene& scene,
+                                          const core::LoadReport& loaded, const core::PreviousFrame* before) {
+    if (!arguments.auxiliary)
+        return arguments.denoise ? features_for_denoising(scene, loaded.features)
+                                 : features_by_name(scene, loaded.features);
+    std::vector<core::HitFeature> features = auxiliary_features(scene);
+    if (before) std::ranges::move(core::motion_features(scene, *before), std::back_inserter(features));
+    return features;
 }
 
 // Values that are right and do not fit into the file.
@@ -152,7 +182,8 @@ void write_outputs(const OutputFiles& files, const RenderReport& report, const R
                    const OidnLibrary* denoiser, std::vector<std::string>& warnings) {
     core::ImageChannels image = core::film_image(report.result.film);
     image.metadata = picture_metadata(report);
-    if (arguments.auxiliary) add_center_channels(image, report.scene);
+    if (arguments.sequence) image.metadata[scene_files_key] = as_lines(report.scene.parts().input_files);
+    if (arguments.auxiliary) add_center_channels(image, report.scene), add_ids(image, report.scene);
     const std::span<const std::uint8_t> finished = report.result.finished_pixels;
     if (!finished.empty())  // those that no pass reached are transparent
         image.add("A", std::vector<float>(finished.begin(), finished.end()));
@@ -232,9 +263,14 @@ int render_command(const RenderArguments& arguments) {
     const tbb::global_control thread_limit(tbb::global_control::max_allowed_parallelism,
                                            std::size_t(threads));
 
+    if (finished_before(files, arguments)) {
+        if (!arguments.quiet) note(core::printable(files.picture) + " is finished");
+        return exit_ok;
+    }
+
     const core::Registry registry = make_registry();
     core::LoadReport loaded;
-    const auto scene =
+    auto scene =
         core::with_memory_for("loading the scene", [&] { return load(arguments.scene, registry, &loaded); });
     const core::Integrator& integrator = require_integrator(*scene, registry);
     const core::Plan plan = integrator.plan(*scene, core::find_requirements(*scene));
@@ -251,14 +287,8 @@ int render_command(const RenderArguments& arguments) {
     request.checkpoint_every_seconds = arguments.checkpoint_every;
     request.checkpoint_at_end = false;
     request.resume = arguments.resume;
-    request.content_hash = hash_of(*scene, integrator, arguments.scene);
-    if (finished_before(files, arguments, request.content_hash)) {
-        if (!arguments.quiet) note(core::printable(files.picture) + " is finished");
-        return exit_ok;
-    }
-    request.features = arguments.auxiliary ? auxiliary_features(*scene)
-                       : arguments.denoise ? features_for_denoising(*scene, loaded.features)
-                                           : features_by_name(*scene, loaded.features);
+    request.content_hash = core::content_hash(*scene, settings_of(arguments, integrator.type()));
+    request.features = features_of(arguments, *scene, loaded, frame_before(arguments, registry));
     const double load_seconds = seconds_since(start);
     interruption.end_at_once_while("building");
 
@@ -348,6 +378,7 @@ int render_command(const RenderArguments& arguments) {
     std::error_code ignored;
     fs::remove(files.checkpoint, ignored);  // there may be none
     if (!arguments.quiet) std::fputs(fmt::format("{}\n{}\n", files.picture, files.preview).c_str(), stdout);
+    if (arguments.sequence) arguments.sequence->rendered = std::move(scene);
     return exit_ok;
 }
 

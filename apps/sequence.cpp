@@ -95,6 +95,7 @@ int render_sequence(const RenderArguments& arguments) {
         throw UsageError("the statistics of a sequence need #### where the frame's number goes");
     const std::string& define = arguments.scene.defines[parameter->define];
     const std::size_t frames = parameter->values.size();
+    SequenceFrame sequence;
     for (std::size_t i = 0; i < frames; ++i) {
         const int number = parameter->numbers[i];
         RenderArguments frame = arguments;
@@ -105,7 +106,7 @@ int render_sequence(const RenderArguments& arguments) {
         if (!arguments.stats.empty()) frame.stats = frame_name(arguments.stats, number);
         frame.seed =
             arguments.seed + std::uint64_t(number);  // noise that stands still would look like texture
-        frame.of_sequence = true;
+        frame.sequence = &sequence;
         if (!arguments.quiet)
             std::fputs(fmt::format("mote: frame {} of {}: {}\n", i + 1, frames,
                                    core::printable(frame.scene.defines[parameter->define]))
@@ -119,6 +120,11 @@ int render_sequence(const RenderArguments& arguments) {
                     stderr);
             return code;
         }
+        sequence.previous = frame.scene;
+        sequence.before.reset();
+        if (sequence.rendered && wants_motion(frame))
+            sequence.before = std::make_unique<core::PreviousFrame>(std::move(sequence.rendered));
+        sequence.rendered.reset();
     }
     return exit_ok;
 }

@@ -12,6 +12,7 @@
 #include "core/loading/scene_loader.h"
 #include "core/objects/registry.h"
 #include "core/render/integrator.h"
+#include "core/render/motion_features.h"
 #include "core/scene/scene.h"
 
 namespace mote::apps {
@@ -36,6 +37,14 @@ struct InfoArguments {
     bool lenient = false;  ///< of a scene
 };
 
+/// What a frame of a sequence has to do with the others.
+struct SequenceFrame {
+    std::optional<SceneArguments> previous = {};  ///< the frame before; the first has none
+    std::unique_ptr<core::PreviousFrame> before =
+        {};  ///< that frame, if it is there; else it is loaded when asked for
+    std::unique_ptr<core::Scene> rendered = {};  ///< of this frame, when it is finished
+};
+
 struct RenderArguments {
     SceneArguments scene;
     std::string output;  ///< "": the scene's name with .exr, in the current folder
@@ -47,7 +56,7 @@ struct RenderArguments {
     double checkpoint_every = 60.0;
     std::optional<float> exposure;  ///< of the preview [stops]; none: it adapts
     std::string stats;
-    bool of_sequence = false;  ///< a frame that is finished is not rendered again by --resume
+    SequenceFrame* sequence = nullptr;  ///< a frame that is finished is not rendered again by --resume
     std::vector<std::string> command_line;
 };
 
@@ -91,6 +100,8 @@ const core::Integrator& require_integrator(const core::Scene& scene, const core:
 void warn_about_scene(const core::Scene& scene, const core::LoadReport& report);
 
 int render_command(const RenderArguments& arguments);
+/// Are motion vectors among what is written of a frame, if there is one before it?
+inline bool wants_motion(const RenderArguments& a) { return a.sequence && a.auxiliary; }
 /// A picture for every value of the -D that runs, where the output holds #### (sequence.h).
 int render_sequence(const RenderArguments& arguments);
 int plan_command(const SceneArguments& arguments);

@@ -51,7 +51,14 @@ BmfrFeatures::BmfrFeatures(const ImageChannels& image)
     for (const Rgb& t : image.rgb("Transmittance"))
         transmittance_.push_back(is_finite(t) ? average(t) : 0.0f);
     const std::vector<float> x = plane("MotionVector.X"), y = plane("MotionVector.Y");
-    for (std::size_t p = 0; p < x.size() && p < y.size(); ++p) motion_.emplace_back(x[p], y[p]);
+    for (std::size_t p = 0; p < x.size() && p < y.size(); ++p) {
+        const bool sky = !position_.empty() && !is_finite(position_[p]);
+        motion_.push_back(sky ? Vec2(infinity) : Vec2(x[p], y[p]));
+    }
+    if (!motion_.empty()) previous_position_ = vector_layer(image, "PreviousP");
+    for (std::size_t p = 0; p < previous_position_.size() && p < position_.size(); ++p)
+        if (!is_finite(position_[p])) previous_position_[p] = position_[p];
+    for (const float id : plane("ObjectId.Y")) id_.push_back(id >= 0.0f && id < 4e9f ? std::uint32_t(id) : 0);
 }
 
 std::vector<float> BmfrFeatures::plane(const std::string& channel) const {

@@ -21,7 +21,9 @@ class BmfrFeatures {
     std::span<const core::Rgb> albedo() const { return albedo_; }
     std::span<const core::Vec3> position() const { return position_; }
     std::span<const core::Vec3> normal() const { return normal_; }
-    std::span<const core::Vec2> motion() const { return motion_; }
+    std::span<const core::Vec2> motion() const { return motion_; }  ///< not finite where nothing was hit
+    std::span<const core::Vec3> previous_position() const { return previous_position_; }
+    std::span<const std::uint32_t> id() const { return id_; }
     std::string said() const;  ///< ", with Albedo, Ns and P"
 
   private:
@@ -30,8 +32,9 @@ class BmfrFeatures {
     const core::ImageChannels& image_;
     std::string normals_;  ///< name of the layer
     std::vector<core::Rgb> albedo_;
-    std::vector<core::Vec3> position_, normal_;
+    std::vector<core::Vec3> position_, normal_, previous_position_;
     std::vector<core::Vec2> motion_;
+    std::vector<std::uint32_t> id_;
     std::vector<std::vector<float>> surface_planes_;  ///< normal and position, as far as they are known
     std::vector<float> column_, row_, nearness_, transmittance_;
 };

@@ -69,16 +69,22 @@ void BmfrSequence::add_denoised_layer(ImageChannels& image) {
     const auto camera = frame_camera(image, known.position());
 
     DenoiserFrame frame;
-    frame.features = {image.width, image.height, known.position(), known.normal(), {}, known.motion(), {}};
-    std::vector<Vec2> motion;
+    frame.features = {image.width, image.height, known.position(),         known.normal(),
+                      known.id(),  {},           known.previous_position()};
     bool connected = width_ == image.width && height_ == image.height;
-    if (connected && known.motion().empty()) {
+    std::vector<Vec2> motion(known.motion().begin(), known.motion().end());
+    const auto place = image.metadata.find("worldToCamera");
+    const std::string camera_place = place != image.metadata.end() ? place->second : "";
+    if (!motion.empty()) {
+        // What is infinitely far away stands still where the camera does.
+        if (!camera_place.empty() && camera_place == camera_place_)
+            for (Vec2& m : motion)
+                if (!std::isfinite(m.x)) m = Vec2(0.0f);
+    } else if (connected) {
         connected = camera && camera_;
-        if (connected) {
-            motion = screenspace::camera_motion(known.position(), *camera, *camera_);
-            frame.features.motion = motion;
-        }
+        if (connected) motion = screenspace::camera_motion(known.position(), *camera, *camera_);
     }
+    frame.features.motion = motion;
     frame.layers.push_back({light.surfaces, known.albedo(), known.of_surfaces()});
     if (!light.media.empty()) frame.layers.push_back({light.media, {}, known.of_media()});
     frame.variance = variance;
@@ -99,7 +105,7 @@ void BmfrSequence::add_denoised_layer(ImageChannels& image) {
              ? ", " + std::to_string(denoiser_.filled()) + " pixels that were not finite filled"
              : "") +
         "; all other layers are as they were measured";
-    camera_ = camera, width_ = image.width, height_ = image.height;
+    camera_ = camera, camera_place_ = camera_place, width_ = image.width, height_ = image.height;
 }
 
 }  // namespace mote::apps

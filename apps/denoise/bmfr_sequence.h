@@ -25,6 +25,7 @@ class BmfrSequence {
     bool single_;
     screenspace::SequenceDenoiser denoiser_;
     std::optional<screenspace::FrameCamera> camera_;  ///< of the frame before
+    std::string camera_place_;                        ///< worldToCamera of it
     int width_ = 0, height_ = 0;
     std::size_t layers_ = 0;
 };

@@ -32,7 +32,15 @@ class AnalyticShape : public Shape {
     /// Fills everything of a hit from the point reached at distance t.
     virtual void fill_hit(const Vec3& origin, const Vec3& direction, float t, SurfaceHit& hit) const = 0;
     std::size_t primitive_count() const override { return 1; }
+    /// From a space of the shape's own, in which it is always the same, to the world.
+    virtual Transform unit_to_world() const = 0;
 };
+
+/// An affine map by its axes' images and the origin's.
+inline Transform affine(const Vec3d& x, const Vec3d& y, const Vec3d& z, const Vec3d& origin) {
+    return Transform(
+        glm::dmat4(glm::dvec4(x, 0.0), glm::dvec4(y, 0.0), glm::dvec4(z, 0.0), glm::dvec4(origin, 1.0)));
+}
 
 /// Sphere: centre and radius before the transform, which should be a similarity (see notes). flip_normals
 /// turns the outside in. All three throw InputError for a transform, a radius or an axis that they cannot

@@ -67,6 +67,7 @@ class Cylinder final : public AnalyticShape {
         if (!(float(arcs_->total()) > 0.0f)) throw InputError("the area of the cylinder is out of range");
     }
 
+    Transform unit_to_world() const override { return affine(x_, y_, z_, base_); }
     LineHits line_hits(const Vec3& origin, const Vec3& direction) const override {
         const Vec3d o = to_local_ * (Vec3d(origin) - base_), d = to_local_ * Vec3d(direction);
         const LineHits round = intersect_round(glm::dvec2(o), glm::dvec2(d), 1.0);

@@ -28,6 +28,7 @@ class Disk final : public AnalyticShape {
             throw InputError("the disk's size or place is out of range");
     }
 
+    Transform unit_to_world() const override { return affine(x_axis_, y_axis_, plane_, center_); }
     LineHits line_hits(const Vec3& origin, const Vec3& direction) const override {
         LineHits hits;
         const Vec3d o = Vec3d(origin) - center_, d(direction);

@@ -32,6 +32,10 @@ class Sphere final : public AnalyticShape {
                 "scaled as x is");
     }
 
+    Transform unit_to_world() const override {
+        const glm::dmat3 axes = radius_ * glm::inverse(to_local_);
+        return affine(axes[0], axes[1], axes[2], center_);
+    }
     LineHits line_hits(const Vec3& origin, const Vec3& direction) const override {
         return intersect_round(Vec3d(origin) - center_, Vec3d(direction), radius_);
     }

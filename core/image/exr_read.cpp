@@ -87,12 +87,11 @@ ImageChannels decode(const std::string& path, const ExrSummary& summary) {
     return image;
 }
 
-}  // namespace
-
-ImageChannels read_exr(const std::string& path) {
-    const ExrSummary summary = check_exr_header(path);
+/// What the library throws, as an InputError that names the file once.
+template <typename Read>
+auto with_clear_errors(const std::string& path, const Read& read) {
     try {
-        return decode(path, summary);
+        return read();
     } catch (const InputError& error) {
         throw InputError(error.what(), {path, 0});
     } catch (const std::bad_alloc&) {
@@ -105,6 +104,21 @@ ImageChannels read_exr(const std::string& path) {
             message.erase(0, at + prefix.size());
         throw InputError("damaged OpenEXR file: " + printable(message), {path, 0});
     }
+}
+
+}  // namespace
+
+ImageChannels read_exr(const std::string& path) {
+    const ExrSummary summary = check_exr_header(path);
+    return with_clear_errors(path, [&] { return decode(path, summary); });
+}
+
+std::map<std::string, std::string> read_exr_metadata(const std::string& path) {
+    const ExrSummary summary = check_exr_header(path);
+    return with_clear_errors(path, [&] {
+        Imf::MultiPartInputFile file(path.c_str(), 0);
+        return read_metadata(Imf::InputPart(file, summary.part).header());
+    });
 }
 
 }  // namespace mote::core

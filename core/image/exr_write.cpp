@@ -42,7 +42,10 @@ class MemoryStream final : public Imf::OStream {
 };
 
 // Distances and positions need more than eleven bits.
-bool needs_float(const std::string& name) { return name == "Depth.Z" || name.rfind("P.", 0) == 0; }
+bool needs_float(const std::string& name) {
+    return name == "Depth.Z" || name.starts_with("P.") || name.starts_with("PreviousP.") ||
+           name.ends_with("Id.Y");
+}
 
 constexpr float largest_half = 65504.0f;
 

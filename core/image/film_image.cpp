@@ -21,9 +21,11 @@ void add_auxiliary(ImageChannels& image, const std::string& name, const std::str
                    const std::vector<Rgb>& pixels) {
     if (kind == "Depth") return add_plane(image, name + ".Z", pixels, 0);
     if (kind == "Coverage") return add_plane(image, name + ".Y", pixels, 0);
-    if (kind != "N" && kind != "Ns" && kind != "P") return image.add_rgb(name, pixels);
+    const bool vector = kind == "N" || kind == "Ns" || kind == "P" || kind == "PreviousP";
+    const bool flat = kind == "MotionVector";  // within the picture
+    if (!vector && !flat) return image.add_rgb(name, pixels);
     const char* axes[3] = {".X", ".Y", ".Z"};
-    for (int c = 0; c < 3; ++c) add_plane(image, name + axes[c], pixels, c);
+    for (int c = 0; c < (flat ? 2 : 3); ++c) add_plane(image, name + axes[c], pixels, c);
 }
 
 void add_auxiliary(ImageChannels& image, const Film& film, std::size_t i) {

@@ -31,13 +31,17 @@ std::uint64_t hash_file(const std::string& path, std::uint64_t h) {
 
 }  // namespace
 
-std::string content_hash(const Scene& scene, const std::vector<std::string>& settings) {
+std::string content_hash(std::span<const std::string> files, const std::vector<std::string>& settings) {
     std::uint64_t h = checksum_start;
-    for (const std::string& path : scene.parts().input_files) h = hash_file(path, h);
+    for (const std::string& path : files) h = hash_file(path, h);
     for (const std::string& setting : settings) h = hash_text(setting, h);
     char digits[17];
     std::snprintf(digits, sizeof(digits), "%016llx", static_cast<unsigned long long>(h));
     return digits;
+}
+
+std::string content_hash(const Scene& scene, const std::vector<std::string>& settings) {
+    return content_hash(scene.parts().input_files, settings);
 }
 
 }  // namespace mote::core

@@ -87,5 +87,7 @@ std::unique_ptr<PixelFilter> make_pixel_filter(const std::string& name, float ra
 /// any input of a render changes, but not when its files move. 16 hexadecimal digits. Throws InputError for a
 /// file that cannot be read.
 std::string content_hash(const Scene& scene, const std::vector<std::string>& settings);
+/// The same for the scene's files by their names.
+std::string content_hash(std::span<const std::string> files, const std::vector<std::string>& settings);
 
 }  // namespace mote::core
