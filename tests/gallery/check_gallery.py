@@ -73,7 +73,7 @@ class Table:
                 header = row
             elif header is None:
                 self.claims.append(row)
-            elif len(row) == len(header) and not any(is_number(cell) for cell in row[1:]) and is_header(row):
+            elif not any(is_number(cell) for cell in row[1:]) and is_header(row):
                 header = row  # a second table
             else:
                 self.rows.append((header, row))
