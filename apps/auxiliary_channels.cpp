@@ -6,6 +6,7 @@
 #include <map>
 
 #include "core/geometry/bsdf_point.h"
+#include "core/render/mirrored_features.h"
 #include "core/scene/scene.h"
 #include "screenspace/g_buffer/g_buffer.h"
 #include "screenspace/ssbc/ssbc_surfaces.h"
@@ -34,6 +35,7 @@ std::vector<core::HitFeature> auxiliary_features(const core::Scene& scene) {
     std::vector<core::HitFeature> features = core::first_hit_features(scene);
     features.push_back(
         {{"DiffuseAlbedo", "what the BSDF reflects to all sides alike", true, true}, diffuse_albedo});
+    for (core::HitFeature& mirrored : core::mirrored_features(scene)) features.push_back(std::move(mirrored));
     return features;
 }
 

@@ -13,7 +13,7 @@ namespace {
 /// Colours that are no part of the beauty (core/image/film_image.cpp, apps/auxiliary_channels.h).
 bool is_auxiliary(const std::string& layer) {
     static const std::array<std::string, 4> names{"Albedo", "DiffuseAlbedo", "Transmittance", "Variance"};
-    static const std::array<std::string, 3> beginnings{"Variance.", "Center.", "hidden_light_"};
+    static const std::array<std::string, 4> beginnings{"Variance.", "Center.", "Mirrored.", "hidden_light_"};
     return std::find(names.begin(), names.end(), layer) != names.end() ||
            std::any_of(beginnings.begin(), beginnings.end(),
                        [&](const std::string& b) { return layer.starts_with(b); });

@@ -42,6 +42,11 @@ BmfrFeatures::BmfrFeatures(const ImageChannels& image)
             position_[p] = Vec3(infinity);
     for (int c = 0; c < 3 && !normal_.empty(); ++c) surface_planes_.push_back(component(normal_, c));
     for (int c = 0; c < 3 && !position_.empty(); ++c) surface_planes_.push_back(component(position_, c));
+    // What mirrors show, in their blocks: it does not vary, and takes no part, in others.
+    for (const std::vector<Vec3>& vectors :
+         {vector_layer(image, "Mirrored.Ns"), vector_layer(image, "Mirrored.P"), image.rgb("Mirrored.Albedo"),
+          image.rgb("Mirrored.Emission")})
+        for (int c = 0; c < 3 && !vectors.empty(); ++c) mirrored_planes_.push_back(component(vectors, c));
     const std::size_t pixels = std::size_t(image.width) * std::size_t(image.height);
     for (std::size_t p = 0; p < pixels; ++p) {
         column_.push_back(float(p % std::size_t(image.width)));
@@ -73,6 +78,7 @@ std::vector<FeaturePlane> BmfrFeatures::of_surfaces() const {
     for (std::size_t i = 0; i < surface_planes_.size(); ++i)
         features.push_back({surface_planes_[i], i >= normals});
     if (position_.empty()) features.push_back({column_, true}), features.push_back({row_, true});
+    for (const std::vector<float>& plane : mirrored_planes_) features.push_back({plane, false});
     return features;
 }
 
@@ -88,6 +94,7 @@ std::string BmfrFeatures::said() const {
     if (!albedo_.empty()) names.emplace_back("Albedo");
     if (!normals_.empty()) names.push_back(normals_);
     if (!position_.empty()) names.emplace_back("P");
+    if (!mirrored_planes_.empty()) names.emplace_back("Mirrored");
     return names.empty() ? ", without features" : ", with " + joined(names);
 }
 

@@ -35,7 +35,8 @@ class BmfrFeatures {
     std::vector<core::Vec3> position_, normal_, previous_position_;
     std::vector<core::Vec2> motion_;
     std::vector<std::uint32_t> id_;
-    std::vector<std::vector<float>> surface_planes_;  ///< normal and position, as far as they are known
+    std::vector<std::vector<float>> surface_planes_,
+        mirrored_planes_;  ///< normal and position, as far as they are known
     std::vector<float> column_, row_, nearness_, transmittance_;
 };
 

@@ -21,7 +21,8 @@ void add_auxiliary(ImageChannels& image, const std::string& name, const std::str
                    const std::vector<Rgb>& pixels) {
     if (kind == "Depth") return add_plane(image, name + ".Z", pixels, 0);
     if (kind == "Coverage") return add_plane(image, name + ".Y", pixels, 0);
-    const bool vector = kind == "N" || kind == "Ns" || kind == "P" || kind == "PreviousP";
+    const bool vector = kind == "N" || kind == "Ns" || kind == "P" || kind == "PreviousP" ||
+                        kind.ends_with(".P") || kind.ends_with(".Ns");
     const bool flat = kind == "MotionVector";  // within the picture
     if (!vector && !flat) return image.add_rgb(name, pixels);
     const char* axes[3] = {".X", ".Y", ".Z"};

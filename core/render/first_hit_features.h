@@ -21,12 +21,19 @@
 
 namespace mote::core {
 
+/// What narrow lobes of a first hit show (mirrored_features.h).
+struct MirroredHit {
+    Vec3 position{0.0f}, normal{0.0f};
+    Rgb albedo{0.0f}, emission{0.0f};
+};
+
 struct FirstHit {
     const Scene& scene;
     const Ray& ray;
     const SurfaceHit& hit;
     float stop_chance;  ///< of a mask that stopped the ray there; 1 for all other surfaces
     Rng& rng;           ///< for estimates
+    mutable std::optional<MirroredHit> mirrored{};  ///< made by the first feature that asks for it
 
     Vec3 to_viewer() const { return -ray.direction; }
     /// A normal of the hit, turned to the viewer.

@@ -110,7 +110,7 @@ Regression block_regression(int width, int height, std::span<const FeaturePlane>
             FeatureBlock& block = blocks.local();
             const PixelRectangle cell = grid.cell(i), own = clipped(cell, width, height),
                                  fitted = moved_inside(cell, width, height);
-            const bool any = block.fit(fitted, settings.noise, hash_keys(settings.seed, g, i));
+            const bool any = block.fit(fitted, settings, hash_keys(settings.seed, g, i));
             std::vector<Rgb> row(std::size_t(own.width()));
             for (int y = own.y0; y < own.y1; ++y) {
                 const std::size_t first = std::size_t(y) * std::size_t(width) + std::size_t(own.x0);

@@ -12,6 +12,14 @@
 // set.
 // - The sum of a block is kept: the residual is orthogonal to the 1. Where a fit is negative it becomes zero,
 //   which adds what it was.
+// - Beyond the paper: noise grows with brightness, and in a block that holds a lamp's reflection the error of
+// the bright
+//   pixels, spread over the fit, is many times what dark ones hold. Such blocks are solved a second time with
+//   weights,
+//
+//     minimise over x:  sum_p w_p^2 |b_p - sum_k f_pk x_k|^2,     w_p = 1 / (y_p / y + 0.3)              (2)
+//
+//   y_p being the first fit and y its mean; a factor restores the energy of the block.
 // A pixel whose features are not finite (sky) stays as it is; one whose colour is not finite takes the fit.
 #pragma once
 
@@ -38,6 +46,7 @@ struct RegressionSettings {
     float noise = 1e-2f;        ///< largest, of features in [-1, 1]
     std::uint64_t seed = 0;     ///< of that noise
     bool keep_positive = true;  ///< fits below zero become zero
+    bool weighted = true;       ///< uneven blocks by Eq. (2)
 };
 
 /// The grid of a frame: a fixed order that covers the block evenly.

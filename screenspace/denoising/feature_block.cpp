@@ -10,6 +10,17 @@ namespace mote::screenspace {
 
 using namespace core;
 
+namespace {
+
+// Of weighted fits. A block is uneven where its brightest pixel is so many times its mean; the weight of the
+// darkest is that of a pixel of this share of the mean; and a fit whose energy is further off than this is
+// thrown away. Found on three boxes with reflected lamps and caustics: a floor of 0.2 to 0.4 does as well,
+// 0.03 leaves a fifth more error.
+constexpr float uneven_block = 1.5f, darkest_weight = 0.3f;
+constexpr double most_correction = 4.0;
+
+}  // namespace
+
 FeatureScale feature_scale(float lowest, float highest) {
     // Halves first: the difference of two finite numbers may overflow.
     const float centre = 0.5f * lowest + 0.5f * highest, radius = 0.5f * highest - 0.5f * lowest;
@@ -34,7 +45,7 @@ FeatureBlock::FeatureBlock(int picture_width, std::span<const FeaturePlane> feat
       scales_(features.size()),
       coefficients_(3 * std::size_t(feature_columns(features))) {}
 
-bool FeatureBlock::fit(const PixelRectangle& block, float noise, std::uint64_t seed) {
+bool FeatureBlock::fit(const PixelRectangle& block, const RegressionSettings& settings, std::uint64_t seed) {
     takes_part_.resize(std::size_t(block.pixels()));
     std::size_t row = 0;
     bool any = false;
@@ -45,10 +56,53 @@ bool FeatureBlock::fit(const PixelRectangle& block, float noise, std::uint64_t s
             any = any || takes_part_[row];
         }
     if (!any) return false;
-    matrix_.reset(block.pixels());
-    find_scales(block), fill_features(block), fill_colours(block), add_noise(noise, seed);
+    find_scales(block);
+    fill_matrix(block, settings.noise, seed);
     solve_least_squares(matrix_, coefficients_);
+    if (settings.weighted) fit_weighted(block, settings.noise, seed);
     return true;
+}
+
+void FeatureBlock::fill_matrix(const PixelRectangle& block, float noise, std::uint64_t seed) {
+    matrix_.reset(block.pixels());
+    fill_features(block), fill_colours(block), add_noise(noise, seed);
+}
+
+void FeatureBlock::fit_weighted(const PixelRectangle& block, float noise, std::uint64_t seed) {
+    const std::vector<Rgb> fitted = values_of_fit(block);
+    float brightest = 0.0f;
+    glm::dvec3 energy(0.0);
+    for (const Rgb& value : fitted)
+        brightest = max_of(brightest, average(value)), energy += glm::dvec3(value);
+    const float mean = average(Rgb(energy / double(fitted.size())));
+    if (!(mean > 0.0f) || !(brightest > uneven_block * mean)) return;
+    fill_matrix(block, noise, seed);
+    for (int c = 0; c < matrix_.columns(); ++c) {
+        const std::span<float> column = matrix_.column(c);
+        for (std::size_t row = 0; row < column.size(); ++row)
+            column[row] /= max_of(average(fitted[row]), 0.0f) / mean + darkest_weight;  // Eq. (2)
+    }
+    const std::vector<float> before = coefficients_;
+    solve_least_squares(matrix_, coefficients_);
+    glm::dvec3 kept(0.0);
+    for (const Rgb& value : values_of_fit(block)) kept += glm::dvec3(value);
+    const auto n = std::size_t(matrix_.features());
+    for (std::size_t c = 0; c < 3; ++c) {
+        const double factor = kept[int(c)] > 0.0 ? energy[int(c)] / kept[int(c)] : 0.0;
+        const bool trusted = factor > 1.0 / most_correction && factor < most_correction;
+        for (std::size_t k = c * n; k < (c + 1) * n; ++k)
+            coefficients_[k] = trusted ? coefficients_[k] * float(factor) : before[k];
+    }
+}
+
+std::vector<Rgb> FeatureBlock::values_of_fit(const PixelRectangle& block) const {
+    std::vector<Rgb> fitted(std::size_t(block.pixels()));
+    for (int row = 0; row < block.y1 - block.y0; ++row)
+        evaluate(block.x0, block.y0 + row,
+                 std::span(fitted).subspan(std::size_t(row * block.width()), std::size_t(block.width())));
+    for (std::size_t i = 0; i < fitted.size(); ++i)
+        if (!takes_part_[i]) fitted[i] = Rgb(0.0f);
+    return fitted;
 }
 
 void FeatureBlock::find_scales(const PixelRectangle& block) {

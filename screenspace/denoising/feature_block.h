@@ -29,11 +29,16 @@ class FeatureBlock {
                  std::span<const std::uint8_t> has_features);
 
     /// Fits a block of the picture to its pixels that have features and a colour. False when there are none.
-    bool fit(const PixelRectangle& block, float noise, std::uint64_t seed);
+    /// Takes noise and weights from the settings.
+    bool fit(const PixelRectangle& block, const RegressionSettings& settings, std::uint64_t seed);
     /// The fit at the pixels of a row, for columns x0 to x0 + result.size() of that block.
     void evaluate(int x0, int y, std::span<core::Rgb> result) const;
 
   private:
+    void fill_matrix(const PixelRectangle& block, float noise, std::uint64_t seed);
+    void fit_weighted(const PixelRectangle& block, float noise, std::uint64_t seed);
+    /// Black where a pixel took no part.
+    std::vector<core::Rgb> values_of_fit(const PixelRectangle& block) const;
     void find_scales(const PixelRectangle& block);
     void fill_features(const PixelRectangle& block);
     void fill_colours(const PixelRectangle& block);
