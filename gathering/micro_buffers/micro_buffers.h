@@ -1,0 +1,86 @@
+// Micro-buffers: what a receiver sees of a point hierarchy, in n x n texels over its hemisphere (Engelhardt
+// 2013, Sec. 8.1.2; Ritschel et al. 2009).
+//
+// A walk down the tree ends at nodes that are small beside the texel that they fall on, and at points. Both
+// are discs or spheres that are met by the ray of a texel's middle or not; the nearest along the ray is kept.
+// Points larger than a texel fill several: the thesis's ray casting after the traversal.
+#pragma once
+
+#include <tbb/parallel_for.h>
+
+#include "core/math/frame.h"
+#include "gathering/micro_buffers/hemisphere_texels.h"
+#include "gathering/point_hierarchy/node_radiance.h"
+
+namespace mote::gathering {
+
+struct MicroReceiver {
+    core::Vec3 position{0.0f};  ///< [m]
+    core::Frame frame;  ///< n: the normal on the side that gathers. Turn s and t at random: no banding
+};
+
+/// What the ray of a texel meets first.
+struct MicroTexel {
+    static constexpr std::uint32_t nothing = 0xffffffffu, back_bit = 0x80000000u;
+
+    float distance = core::infinity;  ///< [m]
+    std::uint32_t hit = nothing;      ///< node of PointHierarchy::nodes(), and the side
+
+    bool empty() const { return hit == nothing; }
+    std::uint32_t node() const { return hit & ~back_bit; }
+    bool from_behind() const { return (hit & back_bit) != 0; }
+};
+
+struct MicroBufferSettings {
+    std::uint32_t side = 16;  ///< texels
+    HemisphereMap map = HemisphereMap::cosine;
+    /// A node is not entered whose solid angle is at most this share of its texel's.
+    float cut = 1.0f;
+    /// Whether points fill all texels whose rays meet them (Fig. 8.13), or only the one that they fall on.
+    bool cast_leaves = true;
+};
+
+class MicroBuffers {
+  public:
+    /// Keeps a reference to the hierarchy. Throws InputError for a side of 0 or above 256, or a cut that is
+    /// not positive.
+    explicit MicroBuffers(const PointHierarchy& hierarchy, const MicroBufferSettings& settings = {});
+
+    const PointHierarchy& hierarchy() const { return hierarchy_; }
+    const HemisphereTexels& texels() const { return texels_; }
+    std::uint32_t texels_each() const { return texels_.count(); }
+    /// Fills texels_each() texels for every receiver, one after the other. In one thread.
+    void render(std::span<const MicroReceiver> receivers, std::span<MicroTexel> texels) const;
+    /// visit(i, texels) for every receiver i, from many threads at once; receivers that follow each other
+    /// should be near each other (Morton order, tiles of a picture).
+    template <typename Visit>
+    void for_each(std::span<const MicroReceiver> receivers, const Visit& visit) const {
+        const std::size_t tasks = (receivers.size() + task_size - 1) / task_size;
+        tbb::parallel_for(std::size_t(0), tasks, [&](std::size_t task) {
+            const std::size_t begin = task * task_size, count = std::min(task_size, receivers.size() - begin);
+            std::vector<MicroTexel> texels(count * texels_each());
+            render(receivers.subspan(begin, count), texels);
+            for (std::size_t i = 0; i < count; ++i)
+                visit(begin + i,
+                      std::span<const MicroTexel>(texels).subspan(i * texels_each(), texels_each()));
+        });
+    }
+    static constexpr std::size_t task_size = 16;  ///< receivers that are rendered together
+
+  private:
+    const PointHierarchy& hierarchy_;
+    MicroBufferSettings settings_;
+    HemisphereTexels texels_;
+};
+
+/// Sum of weight times radiance over the texels; texels that meet nothing see `environment`. With
+/// cosine_weights() this is irradiance [W/m^2].
+core::Rgb gathered(std::span<const MicroTexel> texels, std::span<const float> weights,
+                   const NodeRadiance& radiance, const core::Rgb& environment = core::Rgb(0.0f));
+
+/// Irradiance of each receiver [W/m^2], in parallel; the same for any number of threads.
+void gather_irradiance(const MicroBuffers& buffers, const NodeRadiance& radiance,
+                       std::span<const MicroReceiver> receivers, std::span<core::Rgb> irradiance,
+                       const core::Rgb& environment = core::Rgb(0.0f));
+
+}  // namespace mote::gathering

@@ -1,0 +1,82 @@
+// Points on surfaces as a complete binary tree in one array (Engelhardt 2013, Sec. 8.1.1).
+//
+// Points lie along a Morton curve; node i of level l stands for points [i 2^l, (i + 1) 2^l) as far as there
+// are any, so that any number of points has a tree. Levels lie one after the other, leaves first and the root
+// last. Children, and where a walk goes on that does not enter a node, follow from level and index: nothing
+// of it is stored.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/math/vec.h"
+#include "gathering/surface_points/surfels.h"
+
+namespace mote::gathering {
+
+/// What a node stands for lies in a sphere and faces into a cone.
+struct PointNode {
+    core::Vec3 center;  ///< [m]
+    float radius;       ///< holds the discs of all points [m]
+    core::Vec3 axis;    ///< unit: mean normal
+    float cone_cos;  ///< cosine of the largest angle between the axis and a point's normal; -1: any direction
+};
+
+struct NodePlace {
+    std::uint32_t level, index;
+
+    NodePlace first_child() const { return {level - 1, 2 * index}; }
+    /// The first node after this one and all below it. Beyond the tree's end: exists() says no.
+    NodePlace skip() const {
+        const auto up = std::uint32_t(std::countr_zero(index + 1));
+        return {level + up, (index + 1) >> up};
+    }
+};
+
+class PointHierarchy {
+  public:
+    static constexpr std::uint32_t largest_count = 1u << 24;
+    static constexpr std::size_t bytes_per_point = 2 * sizeof(PointNode) + sizeof(std::uint32_t);
+
+    /// Throws InputError for more than 2^24 points or more memory than the budget [B], naming the count that
+    /// fits. Does not refer to the points later. The same for any number of threads.
+    explicit PointHierarchy(const Surfels& surfels, std::size_t memory_budget = std::size_t(1) << 30);
+
+    std::uint32_t points() const { return first_.size() > 1 ? first_[1] : 0; }
+    bool empty() const { return points() == 0; }
+    float disc_radius() const { return disc_radius_; }  ///< of each point [m]
+    double patch() const { return patch_; }             ///< area that each point stands for [m^2]
+    /// order()[i] is the place of leaf i among the surfels.
+    std::span<const std::uint32_t> order() const { return order_; }
+
+    /// All nodes, leaves first: node i is the disc of point order()[i] for i < points().
+    std::span<const PointNode> nodes() const { return nodes_; }
+    std::uint32_t levels() const {
+        return std::uint32_t(first_.size()) - 1;
+    }                                                                         ///< 0 where there are no points
+    std::uint32_t first(std::uint32_t level) const { return first_[level]; }  ///< node index
+    std::uint32_t count(std::uint32_t level) const { return first_[level + 1] - first_[level]; }
+    NodePlace root() const { return {levels() - 1, 0}; }
+    bool exists(const NodePlace& p) const { return p.level < levels() && p.index < count(p.level); }
+    std::uint32_t node_index(const NodePlace& p) const { return first_[p.level] + p.index; }
+    /// How many points are below the node.
+    std::uint32_t points_below(const NodePlace& p) const {
+        return std::min(points() - (p.index << p.level), 1u << p.level);
+    }
+    std::size_t memory_bytes() const {
+        return nodes_.capacity() * sizeof(PointNode) + order_.capacity() * sizeof(std::uint32_t);
+    }
+
+  private:
+    void pull_nodes();
+
+    std::vector<std::uint32_t> first_;  ///< node index at which each level begins, and the number of nodes
+    std::vector<std::uint32_t> order_;
+    std::vector<PointNode> nodes_;
+    float disc_radius_ = 0.0f;
+    double patch_ = 0.0;
+};
+
+}  // namespace mote::gathering
