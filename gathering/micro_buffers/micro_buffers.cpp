@@ -13,8 +13,8 @@ namespace {
 /// Discs are met within this of where the ray starts from behind only, in their radius: a receiver on a
 /// convex surface lies below the discs of its neighbours.
 constexpr float near_back = 1.0f;
-/// Nodes whose normals lie within this cosine are discs, others are spheres.
-constexpr float flat = 0.95f;
+/// A node is a disc where its normals lie within this cosine of their mean; others are entered.
+constexpr float flat = 0.8f;
 
 /// Scalar and plain: one receiver's walk.
 class BufferWalk {
@@ -38,7 +38,8 @@ class BufferWalk {
             const float texel = settings_.map == HemisphereMap::cosine
                                     ? std::sqrt(d2) / std::max(center.z + node.radius, 1e-20f)
                                     : 2.0f;
-            const bool small = r2 * sqr(side) <= settings_.cut * texel * d2 && r2 < d2;
+            const bool small =
+                r2 * sqr(side) <= settings_.cut * texel * d2 && r2 < d2 && node.cone_cos >= flat;
             if (!small && place.level > 0) {
                 place = place.first_child();
                 continue;
@@ -69,16 +70,10 @@ class BufferWalk {
     void test(std::uint32_t texel, std::uint32_t index, const PointNode& node, const Vec3& center,
               const Vec3& axis) {
         const Vec3& w = texels_.directions()[texel];
-        const float facing = glm::dot(axis, w), along = glm::dot(center, w);
-        float t = along;
-        if (node.cone_cos >= flat) {
-            t = glm::dot(axis, center) / facing;
-            const Vec3 off = t * w - center;
-            if (!(t > 0.0f) || !(glm::dot(off, off) <= sqr(node.radius))) return;
-            if (facing > 0.0f && t < near_back * node.radius) return;
-        } else if (!(along > 0.0f) || glm::dot(center, center) - sqr(along) > sqr(node.radius)) {
-            return;
-        }
+        const float facing = glm::dot(axis, w), t = glm::dot(axis, center) / facing;
+        const Vec3 off = t * w - center;
+        if (!(t > 0.0f) || !(glm::dot(off, off) <= sqr(node.radius))) return;
+        if (facing > 0.0f && t < near_back * node.radius) return;
         MicroTexel& nearest = out_[texel];
         if (t < nearest.distance) nearest = {t, index | (facing > 0.0f ? MicroTexel::back_bit : 0u)};
     }

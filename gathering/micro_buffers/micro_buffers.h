@@ -1,8 +1,8 @@
 // Micro-buffers: what a receiver sees of a point hierarchy, in n x n texels over its hemisphere (Engelhardt
 // 2013, Sec. 8.1.2; Ritschel et al. 2009).
 //
-// A walk down the tree ends at nodes that are small beside the texel that they fall on, and at points. Both
-// are discs or spheres that are met by the ray of a texel's middle or not; the nearest along the ray is kept.
+// A walk down the tree ends at nodes that are flat and small beside the texel that they fall on, and at
+// points. Both are discs, which the ray of a texel's middle meets or not; the nearest along the ray is kept.
 // Points larger than a texel fill several: the thesis's ray casting after the traversal.
 #pragma once
 

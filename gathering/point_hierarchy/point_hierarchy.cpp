@@ -42,13 +42,25 @@ PointNode united_nodes(const PointNode& a, const PointNode& b) {
     return node;
 }
 
-std::vector<std::uint32_t> along_morton_curve(std::span<const Vec3> positions) {
+/// Which of the six axes the normal is nearest to.
+std::uint64_t facing(const Vec3& n) {
+    const Vec3 a = glm::abs(n);
+    const int axis = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
+    return std::uint64_t(2 * axis + (n[axis] < 0.0f));
+}
+
+/// Morton curves of the points that face along each axis, one after the other: so that the two sides of a
+/// wall, and walls that meet, are nodes of their own, which are flat.
+std::vector<std::uint32_t> order_of(const Surfels& surfels) {
     Bounds3 bounds;
-    for (const Vec3& p : positions) bounds.extend(p);
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed(positions.size());
-    for (std::uint32_t i = 0; i < positions.size(); ++i) keyed[i] = {morton_code(positions[i], bounds), i};
+    for (const Vec3& p : surfels.positions) bounds.extend(p);
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed(surfels.size());
+    for (std::uint32_t i = 0; i < keyed.size(); ++i) {
+        const std::uint64_t along = morton_code(surfels.positions[i], bounds) >> 3;
+        keyed[i] = {facing(surfels.normals[i]) << 60 | along, i};
+    }
     std::sort(keyed.begin(), keyed.end());
-    std::vector<std::uint32_t> order(positions.size());
+    std::vector<std::uint32_t> order(keyed.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = keyed[i].second;
     return order;
 }
@@ -66,7 +78,7 @@ PointHierarchy::PointHierarchy(const Surfels& surfels, std::size_t memory_budget
     first_.push_back(0);
     for (auto count = std::uint32_t(surfels.size()); count > 0; count = count > 1 ? (count + 1) / 2 : 0)
         first_.push_back(first_.back() + count);
-    order_ = along_morton_curve(surfels.positions);
+    order_ = order_of(surfels);
     nodes_.resize(first_.back());
     for (std::uint32_t i = 0; i < points(); ++i)
         nodes_[i] = {surfels.positions[order_[i]], disc_radius_, surfels.normals[order_[i]], 1.0f};

@@ -1,9 +1,9 @@
 // Points on surfaces as a complete binary tree in one array (Engelhardt 2013, Sec. 8.1.1).
 //
-// Points lie along a Morton curve; node i of level l stands for points [i 2^l, (i + 1) 2^l) as far as there
-// are any, so that any number of points has a tree. Levels lie one after the other, leaves first and the root
-// last. Children, and where a walk goes on that does not enter a node, follow from level and index: nothing
-// of it is stored.
+// Points lie along Morton curves, one for each of six ways that they face; node i of level l stands for
+// points [i 2^l, (i + 1) 2^l) as far as there are any, so that any number of points has a tree. Levels lie
+// one after the other, leaves first and the root last. Children, and where a walk goes on that does not enter
+// a node, follow from level and index: nothing of it is stored.
 #pragma once
 
 #include <bit>
