@@ -12,7 +12,7 @@
 #include <optional>
 
 #include "integrators/eye_path/eye_path.h"
-#include "integrators/virtual_point_lights/shared_pixels.h"
+#include "integrators/eye_path/shared_pixels.h"
 #include "integrators/virtual_point_lights/tile_compensation.h"
 #include "integrators/virtual_point_lights/vpl_pixel.h"
 #include "integrators/virtual_point_lights/vpl_settings.h"
@@ -180,7 +180,7 @@ class EyeTile {
             // Engelhardt 2013, Eq. 10.9: tau sigma_s / p(t) of a receiver in a medium is in the throughput.
             // The print leaves out sigma_s (docs/errata.md).
             if (settings_.eye.wanted[transport_layer(2, path.vertex().on_surface())]) {
-                see_receiver(lane);
+                see_receiver(lane.seen, path);
                 add_receiver(lane, index, path.vertex(), path.throughput(), path.state());
             }
         }
@@ -200,17 +200,6 @@ class EyeTile {
         const bool at_vertex = path.advance(walk_, lane.sum.transport);
         if (at_vertex && path.depth() == 1) lane.seen = see_first_leg(scene_, path, lane.film);
         return at_vertex;
-    }
-    /// The weight of a receiver on the first surface.
-    void see_receiver(Lane& lane) const {
-        const EyePath<Media>& path = *lane.path;
-        if (path.depth() > 1 || !path.vertex().on_surface()) return;
-        screenspace::UpsamplingPoint& surface = lane.seen.surface;
-        const auto reflectance = path.vertex().diffuse_reflectance();
-        surface.shared = reflectance.has_value();
-        surface.modulation = path.throughput() * reflectance.value_or(core::Rgb(1.0f));
-        if (reflectance && !(glm::dot(surface.shading_normal, path.vertex().wo) > 0.0f))
-            surface.modulation = core::Rgb(0.0f);  // as ReceiverTile::set() has it
     }
     /// Does a path whose media let little through go on behind them? By chance, which its weight makes up
     /// for.

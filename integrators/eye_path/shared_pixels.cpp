@@ -1,4 +1,4 @@
-#include "integrators/virtual_point_lights/shared_pixels.h"
+#include "integrators/eye_path/shared_pixels.h"
 
 #include <algorithm>
 #include <iterator>

@@ -1,5 +1,5 @@
-// A pass whose virtual point lights are gathered at a lattice of the pixels alone, and between them found by
-// what neighbours see (screenspace/upsampling): what every pixel sees, and who has to be rendered again.
+// A pass whose light is gathered at a lattice of the pixels alone, and between them found by what neighbours
+// see (screenspace/upsampling): what every pixel sees, and who has to be rendered again.
 #pragma once
 
 #include <array>
@@ -44,6 +44,18 @@ SeenPixel see_first_leg(const core::Scene& scene, const EyePath<Media>& path, co
     p.footprint = std::fmax(glm::distance(at(1, 0), at(0, 0)), glm::distance(at(0, 1), at(0, 0)));
     seen.volume = p;
     return seen;
+}
+
+/// The weight of a receiver at the path's vertex, where that is the first.
+template <bool Media>
+void see_receiver(SeenPixel& seen, const EyePath<Media>& path) {
+    if (path.depth() > 1 || !path.vertex().on_surface()) return;
+    screenspace::UpsamplingPoint& surface = seen.surface;
+    const auto reflectance = path.vertex().diffuse_reflectance();
+    surface.shared = reflectance.has_value();
+    surface.modulation = path.throughput() * reflectance.value_or(core::Rgb(1.0f));
+    if (reflectance && !(glm::dot(surface.shading_normal, path.vertex().wo) > 0.0f))
+        surface.modulation = core::Rgb(0.0f);  // as ReceiverTile::set() has it
 }
 
 class SharedPixels {
