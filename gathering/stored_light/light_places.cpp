@@ -1,0 +1,40 @@
+#include "gathering/stored_light/light_places.h"
+
+#include "core/materials/bsdfs.h"
+#include "core/materials/textures.h"
+#include "gathering/ray_bundles/surface_triangles.h"
+
+namespace mote::gathering {
+
+using namespace core;
+
+namespace {
+
+const Bsdf& white() {
+    static const std::shared_ptr<const Bsdf> bsdf = make_diffuse(make_constant_texture(Rgb(1.0f)));
+    return *bsdf;
+}
+
+/// Twice the chord error of tessellations, for shapes that are no meshes [m].
+float depth_below(const Shape& shape) {
+    constexpr float chord_error = TessellationSettings{}.chord_error;
+    return shape.primitive_count() > 1 ? 0.0f : 2.0f * chord_error * max_component(shape.bounds().diagonal());
+}
+
+}  // namespace
+
+ScatteringVertex white_vertex(const SurfaceHit& hit, bool front) {
+    ScatteringVertex v;
+    v.hit = hit;
+    if (!front) {
+        // Turned over, so that the vertex stands on the front of what it knows.
+        v.hit.geometric_normal = -hit.geometric_normal;
+        v.hit.shading = Frame(-hit.shading.n);
+    }
+    v.hit.position += depth_below(*hit.shape) * v.hit.geometric_normal;
+    v.position = v.hit.position, v.wo = v.hit.geometric_normal;
+    v.bsdf = &white();
+    return v;
+}
+
+}  // namespace mote::gathering

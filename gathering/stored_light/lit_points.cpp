@@ -1,0 +1,72 @@
+#include "gathering/stored_light/lit_points.h"
+
+#include "core/math/random.h"
+#include "gathering/photon_maps/photon_tracer.h"
+#include "lights/virtual_lights/particle_tracer.h"
+
+namespace mote::gathering {
+
+using namespace core;
+
+namespace {
+
+Surfels draw_points(const SurfaceTriangles& surfaces, const LitPointSettings& settings, std::uint64_t key,
+                    CancelToken cancelled) {
+    SurfelSettings s;
+    s.seed = key, s.memory_budget = settings.memory_budget, s.cancelled = cancelled;
+    if (settings.candidates == 0) return stratified_surfels(surfaces, settings.points, s);
+    s.candidates = settings.candidates;
+    return blue_noise_surfels(surfaces, settings.points, s);
+}
+
+void add(std::vector<Rgb>& sum, const std::vector<Rgb>& more) {
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += more[i];
+}
+
+}  // namespace
+
+LitPoints::LitPoints(const LitScene& scene, const SurfaceTriangles& surfaces, ShapeSpan shapes,
+                     const LitPointSettings& settings, const MicroBufferSettings& buffers, std::uint64_t seed,
+                     std::uint32_t pass, SamplerKind sampler, CancelToken cancelled) {
+    const std::uint64_t key = hash_keys(seed, pass, 0x706f696e7473ull);
+    surfels_ = draw_points(surfaces, settings, key, cancelled);
+    hierarchy_.emplace(surfels_, settings.memory_budget);
+    buffers_.emplace(*hierarchy_, buffers);
+    const SurfelSides sides(surfaces, shapes, surfels_);
+    std::vector<Rgb> light = arriving(scene, sides, settings, seed, pass, sampler, cancelled);
+    if (settings.light == StoredLight::radiosity)
+        light = point_radiosity(*hierarchy_, *buffers_, sides, std::move(light),
+                                {std::max(0, settings.bounces - 1), settings.level, key, cancelled});
+    const SurfelSides::Radiance sent = sides.reflected(light);
+    radiance_.emplace(*hierarchy_, sent.front, sent.back);
+    cost_.places = sides.size();
+    cost_.bytes = hierarchy_->memory_bytes() + sides.memory_bytes() +
+                  surfels_.size() * (2 * sizeof(Vec3) + sizeof(SurfacePoint) + 2 * sizeof(Rgb));
+}
+
+std::vector<Rgb> LitPoints::arriving(const LitScene& scene, const SurfelSides& sides,
+                                     const LitPointSettings& settings, std::uint64_t seed, std::uint32_t pass,
+                                     SamplerKind sampler, CancelToken cancelled) {
+    ArrivedLight light = direct_light_at(scene, sides, settings.light_samples,
+                                         hash_keys(seed, pass, 0x6c69676874ull), cancelled);
+    cost_.rays.add(light.rays);
+    if (settings.light == StoredLight::vpls) {
+        const lights::VplSet vpls =
+            lights::trace_light_paths(scene, settings.paths, seed, pass, sampler, cancelled);
+        const ArrivedLight more = vpl_light_at(scene, sides, vpls, settings.bound, cancelled);
+        cost_.rays.add(vpls.rays), cost_.rays.add(more.rays), cost_.tracking.add(vpls.tracking);
+        cost_.light_points = vpls.lights.size();
+        add(light.irradiance, more.irradiance);
+    } else if (settings.light == StoredLight::photons) {
+        PhotonSettings photons;
+        photons.paths = settings.paths;
+        PhotonSet set = trace_photons(scene, photons, seed, pass, sampler, cancelled);
+        cost_.rays.add(set.rays), cost_.tracking.add(set.tracking);
+        cost_.light_points = set.surface.size();
+        const SurfacePhotonMap map(std::move(set.surface));
+        add(light.irradiance, photon_light_at(sides, map, {settings.neighbours, 1.0f}, cancelled).irradiance);
+    }
+    return std::move(light.irradiance);
+}
+
+}  // namespace mote::gathering
