@@ -17,6 +17,7 @@ void register_integrators(core::Registry& registry) {
     register_mote_bdpt(registry);
     register_mote_vpl(registry);
     register_mote_vpl_ray_bundles(registry);
+    register_mote_micro_rendering(registry);
     register_mote_photon_map(registry);
     register_mote_ray_bundles(registry);
     register_mote_vsl(registry);

@@ -16,6 +16,7 @@ void register_volpath(core::Registry& registry);
 void register_mote_bdpt(core::Registry& registry);
 void register_mote_vpl(core::Registry& registry);
 void register_mote_vpl_ray_bundles(core::Registry& registry);
+void register_mote_micro_rendering(core::Registry& registry);
 void register_mote_photon_map(core::Registry& registry);
 void register_mote_ray_bundles(core::Registry& registry);
 void register_mote_vsl(core::Registry& registry);

@@ -1,0 +1,63 @@
+// The eye paths of sixteen pixels, advanced together to their connectable vertices, where each gathers the
+// light of points with a micro-buffer.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "gathering/stored_light/micro_receiver.h"
+#include "integrators/eye_path/shared_pixels.h"
+#include "integrators/micro_rendering/micro_settings.h"
+
+namespace mote::integrators {
+
+class MicroEyeTile {
+  public:
+    static constexpr int side = 4, width = side * side;
+
+    MicroEyeTile(const core::Scene& scene, const MicroSettings& settings, const gathering::LitPoints& points,
+                 core::WalkContext& walk)
+        : scene_(scene),
+          settings_(settings),
+          points_(points),
+          walk_(walk),
+          texels_(std::size_t(width) * points.buffers().texels_each()) {}
+
+    void start(int lane, const EyeRay& eye);
+    void stop(int lane);
+    /// Do lanes to come gather? Else receivers are seen, and nothing arrives at them.
+    void gathers(bool yes) { gathers_ = yes; }
+    /// Follows the eye paths.
+    void run();
+    const TransportSum& sum(int lane) const { return lanes_[std::size_t(lane)].sum; }
+    /// What the lane's eye path met first, after run().
+    const SeenPixel& seen(int lane) const { return lanes_[std::size_t(lane)].seen; }
+    std::uint64_t receivers() const { return receivers_; }  ///< so far
+
+  private:
+    struct Lane {
+        std::optional<EyePath<false>> path;
+        core::Rng rng;  ///< of the path, while other lanes advance
+        TransportSum sum;
+        SeenPixel seen;
+        core::Vec2 film{0.0f};
+        bool alive = false, receives = false;
+    };
+
+    bool advance(Lane& lane);
+    void gather();
+    /// Light of the points that the receiver's path reflects to the eye.
+    core::Rgb reflected(const Lane& lane, const gathering::MicroReceiver& receiver,
+                        std::span<const gathering::MicroTexel> texels) const;
+
+    const core::Scene& scene_;
+    const MicroSettings& settings_;
+    const gathering::LitPoints& points_;
+    core::WalkContext& walk_;
+    std::vector<gathering::MicroTexel> texels_;
+    std::array<Lane, width> lanes_;
+    bool gathers_ = true;
+    std::uint64_t receivers_ = 0;
+};
+
+}  // namespace mote::integrators
