@@ -9,6 +9,7 @@
 #include <tbb/parallel_for.h>
 
 #include "core/math/frame.h"
+#include "gathering/micro_buffers/disc_raster.h"
 #include "gathering/micro_buffers/hemisphere_texels.h"
 #include "gathering/point_hierarchy/node_radiance.h"
 
@@ -33,11 +34,17 @@ struct MicroTexel {
 
 struct MicroBufferSettings {
     std::uint32_t side = 16;  ///< texels
+    /// Each texel is cut into rays x rays parts, with a ray each: the buffer has (side rays)^2 entries, nodes
+    /// are as for side^2.
+    std::uint32_t rays = 1;
     HemisphereMap map = HemisphereMap::cosine;
     /// A node is not entered whose solid angle is at most this share of its texel's.
     float cut = 1.0f;
     /// Whether points fill all texels whose rays meet them (Fig. 8.13), or only the one that they fall on.
     bool cast_leaves = true;
+    /// Whether surfaces are seen from behind. Where all are closed they need not be: less time, and no rim of
+    /// discs that reach beyond an edge.
+    bool back_faces = true;
 };
 
 class MicroBuffers {
@@ -71,6 +78,7 @@ class MicroBuffers {
     const PointHierarchy& hierarchy_;
     MicroBufferSettings settings_;
     HemisphereTexels texels_;
+    RayDirections rays_;
 };
 
 /// Sum of weight times radiance over the texels; texels that meet nothing see `environment`. With

@@ -1,6 +1,6 @@
 // Points on surfaces as a complete binary tree in one array (Engelhardt 2013, Sec. 8.1.1).
 //
-// Points lie along Morton curves, one for each of six ways that they face; node i of level l stands for
+// Points lie in an order in which neighbours are near (point_order.h); node i of level l stands for
 // points [i 2^l, (i + 1) 2^l) as far as there are any, so that any number of points has a tree. Levels lie
 // one after the other, leaves first and the root last. Children, and where a walk goes on that does not enter
 // a node, follow from level and index: nothing of it is stored.
@@ -12,14 +12,14 @@
 #include <vector>
 
 #include "core/math/vec.h"
-#include "gathering/surface_points/surfels.h"
+#include "gathering/point_hierarchy/point_order.h"
 
 namespace mote::gathering {
 
 /// What a node stands for lies in a sphere and faces into a cone.
 struct PointNode {
     core::Vec3 center;  ///< [m]
-    float radius;       ///< holds the discs of all points [m]
+    float radius;       ///< of a ball that holds the discs of all points [m]
     core::Vec3 axis;    ///< unit: mean normal
     float cone_cos;  ///< cosine of the largest angle between the axis and a point's normal; -1: any direction
 };
@@ -35,14 +35,19 @@ struct NodePlace {
     }
 };
 
+struct HierarchySettings {
+    PointOrder order = PointOrder::median;
+    std::size_t memory_budget = std::size_t(1) << 30;  ///< [B]
+};
+
 class PointHierarchy {
   public:
     static constexpr std::uint32_t largest_count = 1u << 24;
     static constexpr std::size_t bytes_per_point = 2 * sizeof(PointNode) + sizeof(std::uint32_t);
 
-    /// Throws InputError for more than 2^24 points or more memory than the budget [B], naming the count that
+    /// Throws InputError for more than 2^24 points or more memory than the budget, naming the count that
     /// fits. Does not refer to the points later. The same for any number of threads.
-    explicit PointHierarchy(const Surfels& surfels, std::size_t memory_budget = std::size_t(1) << 30);
+    explicit PointHierarchy(const Surfels& surfels, const HierarchySettings& settings = {});
 
     std::uint32_t points() const { return first_.size() > 1 ? first_[1] : 0; }
     bool empty() const { return points() == 0; }
@@ -70,8 +75,6 @@ class PointHierarchy {
     }
 
   private:
-    void pull_nodes();
-
     std::vector<std::uint32_t> first_;  ///< node index at which each level begins, and the number of nodes
     std::vector<std::uint32_t> order_;
     std::vector<PointNode> nodes_;

@@ -1,0 +1,162 @@
+#include "gathering/micro_buffers/group_walk.h"
+
+#include <algorithm>
+
+namespace mote::gathering {
+
+using namespace core;
+
+namespace {
+
+constexpr std::uint32_t width = ReceiverLanes::width;
+/// Discs are met from behind beyond this many radii only: a receiver on a convex surface lies below the discs
+/// of its neighbours.
+constexpr float near_back = 1.0f;
+/// A node is a disc where its normals lie within this cosine of their mean; others are entered.
+constexpr float flat = 0.8f;
+/// A flat node that is seen at a slant counts as small as it looks, but not below this.
+constexpr float least_slant = 0.25f;
+
+/// atan on [0, 1] within 1e-5 (Abramowitz & Stegun 1964, 4.4.49).
+inline float arc_tangent(float x) {
+    const float x2 = x * x;
+    return x * (0.9998660f + x2 * (-0.3302995f + x2 * (0.1801410f + x2 * (-0.0851330f + x2 * 0.0208351f))));
+}
+
+class GroupWalk {
+  public:
+    GroupWalk(const PointHierarchy& hierarchy, const MicroBufferSettings& settings, const RayDirections& rays,
+              std::span<const MicroReceiver> receivers)
+        : hierarchy_(hierarchy), settings_(settings), rays_(rays), used_(std::uint32_t(receivers.size())) {
+        for (std::uint32_t i = 0; i < width; ++i) {
+            const MicroReceiver& r = receivers[std::min(i, used_ - 1)];
+            lanes_.x[i] = r.position.x, lanes_.y[i] = r.position.y, lanes_.z[i] = r.position.z;
+            for (int k = 0; k < 3; ++k)
+                lanes_.s[k][i] = r.frame.s[k], lanes_.t[k][i] = r.frame.t[k], lanes_.n[k][i] = r.frame.n[k];
+            lanes_.wake[i] = i < used_ ? 0u : 0xffffffffu;
+        }
+        const float side = float(settings.side);
+        // A ball looks small below this r^2 / d^2; for cosine texels times d / z.
+        threshold_ = settings.cut / (side * side) * (settings.map == HemisphereMap::cosine ? 1.0f : 2.0f);
+    }
+
+    void run(std::size_t stride, float* distances, std::uint32_t* hits) {
+        for (NodePlace place = hierarchy_.root(); hierarchy_.exists(place);) {
+            const std::uint32_t index = hierarchy_.node_index(place);
+            const PointNode& node = hierarchy_.nodes()[index];
+            const bool leaf = place.level == 0;
+            const bool enter = decide(node, place);
+            if (any_taken_) {
+                project(node, leaf && !settings_.cast_leaves);
+                const std::uint32_t each = rays_.side * rays_.side;
+                for (std::uint32_t i = 0; i < used_; ++i)
+                    if (taken_[i]) fill(node, index, i, {distances + i * stride, hits + i * stride}, each);
+            }
+            place = enter ? place.first_child() : place.skip();
+        }
+    }
+
+  private:
+    /// Which lanes take the node, which are done with it; returns whether any must enter it.
+    bool decide(const PointNode& node, const NodePlace& place) {
+        const std::uint32_t begin = place.index << place.level, end = begin + (1u << place.level);
+        const bool leaf = place.level == 0, cosine = settings_.map == HemisphereMap::cosine;
+        const bool whole = node.cone_cos >= flat;
+        const float r = node.radius, r2 = r * r, four_r2 = leaf ? 0.0f : 4.0f * r2;
+        const float cone_sin = node.cone_cos > 0.0f ? safe_sqrt(1.0f - node.cone_cos * node.cone_cos) : 2.0f;
+        const float reach = leaf ? 0.0f : r;
+        const bool fronts = !settings_.back_faces;
+        const float threshold = threshold_;
+        std::int32_t any_enter = 0, any_taken = 0;
+        MOTE_INDEPENDENT_LANES
+        for (std::uint32_t i = 0; i < width; ++i) {
+            const float x = node.center.x - lanes_.x[i], y = node.center.y - lanes_.y[i],
+                        z = node.center.z - lanes_.z[i];
+            const float d2 = x * x + y * y + z * z, d = std::sqrt(d2);
+            const float up = x * lanes_.n[0][i] + y * lanes_.n[1][i] + z * lanes_.n[2][i] + r;
+            const float away = x * node.axis.x + y * node.axis.y + z * node.axis.z;
+            const bool hidden = (up <= 0.0f) | (fronts & (away > d * cone_sin + reach));
+            const float slant = min_of(max_of(std::fabs(away) + cone_sin * d, least_slant * d), d);
+            // r^2 / d^2 * slant / d against the threshold (times d / up).
+            const float size = r2 * slant * (cosine ? up : d), limit = threshold * d2 * d2;
+            const bool small = leaf | (whole & (size <= limit) & (four_r2 < d2));
+            const bool awake = lanes_.wake[i] <= begin;
+            const bool taken = awake & !hidden & small, enter = awake & !hidden & !small;
+            taken_[i] = taken, any_taken |= taken, any_enter |= enter;
+            lanes_.wake[i] = (awake & !enter) ? end : lanes_.wake[i];
+        }
+        any_taken_ = any_taken != 0;
+        return any_enter != 0;
+    }
+
+    /// Where the node is in each lane's frame, and which texels it may reach.
+    void project(const PointNode& node, bool one_texel) {
+        const float side = float(rays_.side), r = node.radius;
+        const bool cosine = settings_.map == HemisphereMap::cosine;
+        MOTE_INDEPENDENT_LANES
+        for (std::uint32_t i = 0; i < width; ++i) {
+            const float x = node.center.x - lanes_.x[i], y = node.center.y - lanes_.y[i],
+                        z = node.center.z - lanes_.z[i];
+            const float cx = x * lanes_.s[0][i] + y * lanes_.s[1][i] + z * lanes_.s[2][i];
+            const float cy = x * lanes_.t[0][i] + y * lanes_.t[1][i] + z * lanes_.t[2][i];
+            const float cz = x * lanes_.n[0][i] + y * lanes_.n[1][i] + z * lanes_.n[2][i];
+            const float d = std::sqrt(cx * cx + cy * cy + cz * cz), over_d = 1.0f / max_of(d, 1e-30f);
+            const float up = max_of(cz, 0.0f) * over_d, flattened = std::sqrt(cx * cx + cy * cy) * over_d;
+            // hemisphere_to_square(): the disc, then the concentric square.
+            const float shrink = cosine ? 1.0f : 1.0f / std::sqrt(1.0f + up);
+            const float ax = std::fabs(cx), ay = std::fabs(cy);
+            const float radius = min_of(flattened * shrink, 1.0f);
+            const float ratio = min_of(ax, ay) / max_of(max_of(ax, ay), 1e-30f);
+            const float across = radius * arc_tangent(ratio) * (4.0f * inv_pi);
+            const float square_x = ax >= ay ? radius : across, square_y = ax >= ay ? across : radius;
+            const float px = side * (0.5f + 0.5f * (cx < 0.0f ? -square_x : square_x));
+            const float py = side * (0.5f + 0.5f * (cy < 0.0f ? -square_y : square_y));
+            // The map stretches a small angle by at most 0.81 sides; what is large may reach anywhere.
+            const float angle = r * over_d;
+            const float reach = one_texel ? 0.49f : (angle < 0.5f ? 0.86f * side * angle : side) + 0.02f;
+            cx_[i] = cx, cy_[i] = cy, cz_[i] = cz;
+            ax_[i] =
+                node.axis.x * lanes_.s[0][i] + node.axis.y * lanes_.s[1][i] + node.axis.z * lanes_.s[2][i];
+            ay_[i] =
+                node.axis.x * lanes_.t[0][i] + node.axis.y * lanes_.t[1][i] + node.axis.z * lanes_.t[2][i];
+            az_[i] =
+                node.axis.x * lanes_.n[0][i] + node.axis.y * lanes_.n[1][i] + node.axis.z * lanes_.n[2][i];
+            // Rays are at i + 1/2: the first at or after px - reach, and the one after the last.
+            x0_[i] = std::int32_t(max_of(px - reach + 0.5f, 0.0f));
+            y0_[i] = std::int32_t(max_of(py - reach + 0.5f, 0.0f));
+            x1_[i] = std::int32_t(min_of(px + reach + 0.5f, side));
+            y1_[i] = std::int32_t(min_of(py + reach + 0.5f, side));
+        }
+    }
+
+    void fill(const PointNode& node, std::uint32_t index, std::uint32_t i, DepthRows out, std::uint32_t) {
+        const LocalDisc disc{{cx_[i], cy_[i], cz_[i]},
+                             {ax_[i], ay_[i], az_[i]},
+                             node.radius,
+                             settings_.back_faces ? near_back * node.radius : infinity,
+                             index};
+        fill_box(rays_, disc, {x0_[i], y0_[i], x1_[i], y1_[i]}, out);
+    }
+
+    const PointHierarchy& hierarchy_;
+    const MicroBufferSettings& settings_;
+    const RayDirections& rays_;
+    std::uint32_t used_;
+    float threshold_;
+    ReceiverLanes lanes_;
+    bool any_taken_ = false;
+    alignas(64) std::int32_t taken_[width];
+    alignas(64) float cx_[width], cy_[width], cz_[width], ax_[width], ay_[width], az_[width];
+    alignas(64) std::int32_t x0_[width], y0_[width], x1_[width], y1_[width];
+};
+
+}  // namespace
+
+void walk_group(const PointHierarchy& hierarchy, const MicroBufferSettings& settings,
+                const RayDirections& rays, std::span<const MicroReceiver> receivers, std::size_t stride,
+                float* distances, std::uint32_t* hits) {
+    if (hierarchy.empty() || receivers.empty()) return;
+    GroupWalk(hierarchy, settings, rays, receivers).run(stride, distances, hits);
+}
+
+}  // namespace mote::gathering
