@@ -30,7 +30,7 @@ LitPoints::LitPoints(const LitScene& scene, const SurfaceTriangles& surfaces, Sh
                      std::uint32_t pass, SamplerKind sampler, CancelToken cancelled) {
     const std::uint64_t key = hash_keys(seed, pass, 0x706f696e7473ull);
     surfels_ = draw_points(surfaces, settings, key, cancelled);
-    hierarchy_.emplace(surfels_, settings.memory_budget);
+    hierarchy_.emplace(surfels_, HierarchySettings{.memory_budget = settings.memory_budget});
     buffers_.emplace(*hierarchy_, buffers);
     const SurfelSides sides(surfaces, shapes, surfels_);
     std::vector<Rgb> light = arriving(scene, sides, settings, seed, pass, sampler, cancelled);

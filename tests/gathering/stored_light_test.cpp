@@ -150,6 +150,30 @@ TEST_CASE("radiosity in a closed furnace is E / (1 - rho)", "[stored_light][radi
     }
 }
 
+// Concentric balls: F_io = 1, F_oi = (r/R)^2, F_oo = 1 - F_oi, and light is even on each. The cut is so fine
+// that buffers see discs alone, of radius r_d, which stand out beyond the true silhouette by r_d^2 / (2 r), a
+// share of r_d^2 / r^2 of the area seen.
+TEST_CASE("radiosity between two balls is the solution of their two equations", "[stored_light][radiosity]") {
+    const double small = 1.0, large = 2.0, rho_i = 0.5, rho_o = 0.8, f = small * small / (large * large);
+    const Stage stage(ball(small, false, rho_i) + ball(large, true, rho_o) + lamp, 5000);
+    const MicroBuffers buffers(stage.hierarchy, {.side = 12, .cut = 0.01f});
+    std::vector<Rgb> arriving(stage.sides.size());
+    const auto inner = [&](std::size_t i) { return glm::length(stage.position(i)) < 1.5f; };
+    for (std::size_t i = 0; i < arriving.size(); ++i) arriving[i] = Rgb(inner(i) ? 1.0f : 0.0f);
+    const auto light = point_radiosity(stage.hierarchy, buffers, stage.sides, arriving, {30, 5, 1, {}});
+    // E_i = 1 + rho_o E_o, E_o = f rho_i E_i + (1 - f) rho_o E_o.
+    const double e_o = f * rho_i / (1.0 - (1.0 - f) * rho_o - f * rho_i * rho_o), e_i = 1.0 + rho_o * e_o;
+    Trials of_inner, of_outer;
+    for (std::size_t i = 0; i < light.size(); ++i) (inner(i) ? of_inner : of_outer).add(double(light[i].x));
+    const double disc = double(stage.surfels.radius) / small;
+    const double gain = 1.0 / (1.0 - rho_o);  // of light that is not taken by the inner ball
+    const double most = gain * disc * disc + 1e-3;
+    CAPTURE(of_inner.mean(), e_i, of_outer.mean(), e_o, most);
+    CHECK(std::fabs(of_inner.mean() / e_i - 1.0) < most);
+    CHECK(std::fabs(of_outer.mean() / e_o - 1.0) < most);
+    CHECK_FALSE(std::fabs(of_outer.mean() / (0.9 * e_o) - 1.0) < most);
+}
+
 TEST_CASE("places gather for those that face their way, and for no others", "[stored_light][radiosity]") {
     const Stage stage(R"(<shape type="cube">)" + white + "</shape>" + lamp, 999);
     const auto all = gathering_places(stage.hierarchy, stage.sides, 0);
