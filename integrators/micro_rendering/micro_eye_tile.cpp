@@ -45,6 +45,7 @@ bool MicroEyeTile::advance(Lane& lane) {
         const bool fits = settings_.eye.max_depth < 0 || path.depth() + 2 <= settings_.eye.max_depth;
         if (fits && settings_.eye.wanted[Transport::indirect]) {
             see_receiver(lane.seen, path);
+            if (settings_.glossy_upsampling && path.depth() == 1) lane.seen.surface.shared = true;
             lane.receives = gathers_;
         }
     }

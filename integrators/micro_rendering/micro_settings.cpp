@@ -47,10 +47,11 @@ MicroSettings read_micro_settings(const Properties& p) {
     s.eye.max_scatterings = 1;  // from then on points take over
     read_points(p, s);
     s.buffers.side = std::uint32_t(p.get_int_in("micro_buffer", 16, 1, 256));
-    s.buffers.cut = float(p.get_float_in("cut", 1.0, 1e-3, 1e6));
+    s.buffers.cut = float(p.get_float_in("cut", 0.25, 1e-3, 1e6));
     s.buffers.cast_leaves = p.get_bool("ray_casting", true);
     if (p.has("bound")) s.bound = float(p.get_float_in("bound", 0.0, 0.0, 1e30));
     s.upsampling = int(p.get_int_in("upsampling", 1, 1, 16));
+    s.glossy_upsampling = p.get_bool("glossy_upsampling", false);
     return s;
 }
 
@@ -61,7 +62,7 @@ std::vector<Parameter> micro_parameters() {
         {"candidates", "integer", "8",
          "for each point: more make points more even; 0: stratified by area alone, which is quick"},
         {"micro_buffer", "integer", "16", "texels along a side of the buffers that receivers gather with"},
-        {"cut", "float", "1",
+        {"cut", "float", "0.25",
          "a group of points is taken as one where it covers less than this share of a texel"},
         {"ray_casting", "boolean", "true",
          "points that are larger than a texel fill all texels whose rays meet them; false: the one that they "
@@ -81,7 +82,10 @@ std::vector<Parameter> micro_parameters() {
         {"neighbours", "integer", "50", "photons: how many an estimate holds"},
         {"upsampling", "integer", "1",
          "n: receivers at one pixel of n x n, whose light neighbours share that see the same surface; others "
-         "are rendered again"}};
+         "are rendered again"},
+        {"glossy_upsampling", "boolean", "false",
+         "upsampling: glossy surfaces share their light, too, as in the thesis; false: they are rendered "
+         "again"}};
     parameters.insert(parameters.end(), own.begin(), own.end());
     return parameters;
 }

@@ -14,6 +14,7 @@ struct MicroSettings {
     gathering::MicroBufferSettings buffers;
     std::optional<float> bound;  ///< of virtual point lights at points [1/m^2]; 0: none, nothing: automatic
     int upsampling = 1;          ///< n: receivers at one pixel of n x n
+    bool glossy_upsampling = false;  ///< glossy receivers, too, share their light with neighbours
 
     /// Bounces of light before a receiver that the eye sees directly; -1: no limit.
     int most_bounces() const { return eye.max_depth < 0 ? -1 : std::max(0, eye.max_depth - 2); }

@@ -58,6 +58,8 @@ std::string integrator(const std::string& type, bool hide) {
     if (type == "mote_vpl" || type == "mote_vsl" || type == "mote_vpl_ray_bundles")
         text += "<integer name='paths' value='4'/>";
     if (type == "mote_photon_map") text += "<integer name='photon_paths' value='50'/>";
+    if (type == "mote_micro_rendering")
+        text += "<integer name='points' value='100'/><integer name='micro_buffer' value='4'/>";
     if (type == "mote_ray_bundles")
         text +=
             "<integer name='directions' value='16'/><integer name='warm_up' value='0'/>"

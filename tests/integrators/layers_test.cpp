@@ -125,7 +125,7 @@ TEST_CASE("a method that is asked for one cell gives it its own mean and traces 
     for (const std::string& type : registry().types(Category::integrator)) {
         if (type == "mote_layers") continue;
         const bool media = type != "mote_vsl" && type != "mote_vpl_ray_bundles" &&
-                           type != "mote_ray_bundles" && type != "path";
+                           type != "mote_ray_bundles" && type != "mote_micro_rendering" && type != "path";
         const Scene& scene = media ? *foggy : *dry;
         std::string few;
         if (type == "mote_vpl" || type == "mote_vsl" || type == "mote_vpl_ray_bundles")
@@ -134,6 +134,8 @@ TEST_CASE("a method that is asked for one cell gives it its own mean and traces 
             few = "<integer name='lines' value='16'/><integer name='steps' value='8'/>";
         if (type == "mote_single_scattering") few = "<integer name='steps' value='8'/>";
         if (type == "mote_photon_map") few = "<integer name='photon_paths' value='50'/>";
+        if (type == "mote_micro_rendering")
+            few = "<integer name='points' value='200'/><integer name='micro_buffer' value='4'/>";
         if (type == "mote_ray_bundles")
             few =
                 "<integer name='directions' value='16'/><integer name='warm_up' value='1'/>"

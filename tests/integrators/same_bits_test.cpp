@@ -34,6 +34,7 @@ const std::map<std::string, Words> words = {
     {"mote_vsl.visibility", {"sample", "light"}},
     {"mote_bdpt.heuristic", {"power", "balance", "none"}},
     {"mote_vpl_ray_bundles.techniques", {"combined", "vpls", "bundles"}},
+    {"mote_micro_rendering.light", {"direct", "vpls", "radiosity", "photons"}},
     {"mote_single_scattering.sampling", {"full", "sub_sampled"}},
     {"mote_single_scattering.lights", {"all", "positional", "other"}},
     {"mote_epipolar.lights", {"all", "positional", "other"}},
@@ -83,6 +84,10 @@ const std::map<std::string, Words> numbers = {
     {"all_points", {"500", "1000"}},
     {"splat", {"", "1"}},
     {"bias", {"", "2"}},
+    {"candidates", {"", "0"}},
+    {"micro_buffer", {"3", "1"}},
+    {"cut", {"", "0.3"}},
+    {"radiosity_level", {"", "0"}},
     {"interleaving", {"", "3"}},
     {"upsampling", {"", "2"}},
     {"strategies", {"", "3"}},
@@ -319,19 +324,20 @@ TEST_CASE("every integrator gives the same bits on one thread, and on many after
         for (const std::string& type : registry().types(Category::integrator)) {
             const int rendered = check_all(*scene, type, refused);
             CHECK((rendered > 0) ==
-                  ((type != "mote_vsl" && type != "mote_vpl_ray_bundles") || !scene->has_media()));
+                  ((type != "mote_vsl" && type != "mote_vpl_ray_bundles" && type != "mote_micro_rendering") ||
+                   !scene->has_media()));
         }
     }
     // Nothing else is left out.
     for (const std::string& why : refused) UNSCOPED_INFO(why);
-    REQUIRE(refused.size() == 9);
+    REQUIRE(refused.size() == 11);
     const auto count = [&](const std::string& why) {
         return std::count_if(refused.begin(), refused.end(),
                              [&](const std::string& text) { return text.find(why) != std::string::npos; });
     };
     CHECK(count("'media' is an object of the wrong kind") == 1);
-    // mote_vsl and mote_vpl_ray_bundles, alone and in mote_layers
-    CHECK(count("renders surfaces only") == 4);
+    // mote_vsl, mote_vpl_ray_bundles and mote_micro_rendering, alone and in mote_layers
+    CHECK(count("renders surfaces only") == 6);
     CHECK(count("works on the mean of its whole picture") == 2);  // mote_layers and mote_vpl, in mote_layers
     // mote_vpl_ray_bundles, alone and in mote_layers
     CHECK(count("bounces along directions of the same pass are paths of bundles alone") == 2);

@@ -134,7 +134,8 @@ double mean_of(const RenderStatistics& render, const std::string& layer) {
 TEST_CASE("one name is as good as another, to the bit, in every integrator", "[naming]") {
     for (const Eye eye : eyes)
         for (const std::string& type : registry().types(core::Category::integrator)) {
-            if (type == "mote_vsl" || type == "mote_vpl_ray_bundles" || type == "mote_ray_bundles")
+            if (type == "mote_vsl" || type == "mote_vpl_ray_bundles" || type == "mote_ray_bundles" ||
+                type == "mote_micro_rendering")
                 continue;  // surfaces only
             // Their defaults trace more light than bits need.
             const std::string few = type == "mote_vpl" ? R"(<integer name="paths" value="8"/>)"
