@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "gathering/micro_buffers/node_rules.h"
+
 namespace mote::gathering {
 
 using namespace core;
@@ -9,11 +11,6 @@ using namespace core;
 namespace {
 
 constexpr std::uint32_t width = ReceiverLanes::width;
-/// Discs are met from behind beyond this many radii only: a receiver on a convex surface lies below the discs
-/// of its neighbours.
-constexpr float near_back = 1.0f;
-/// A node is a disc where its normals lie within this cosine of their mean; others are entered.
-constexpr float flat = 0.8f;
 /// A flat node that is seen at a slant counts as small as it looks, but not below this.
 constexpr float least_slant = 0.25f;
 
@@ -48,9 +45,8 @@ class GroupWalk {
             const bool enter = decide(node, place);
             if (any_taken_) {
                 project(node, leaf && !settings_.cast_leaves);
-                const std::uint32_t each = rays_.side * rays_.side;
                 for (std::uint32_t i = 0; i < used_; ++i)
-                    if (taken_[i]) fill(node, index, i, {distances + i * stride, hits + i * stride}, each);
+                    if (taken_[i]) fill(node, index, i, {distances + i * stride, hits + i * stride});
             }
             place = enter ? place.first_child() : place.skip();
         }
@@ -61,9 +57,9 @@ class GroupWalk {
     bool decide(const PointNode& node, const NodePlace& place) {
         const std::uint32_t begin = place.index << place.level, end = begin + (1u << place.level);
         const bool leaf = place.level == 0, cosine = settings_.map == HemisphereMap::cosine;
-        const bool whole = node.cone_cos >= flat;
+        const bool whole = node.cone_cos >= flat_cosine;
         const float r = node.radius, r2 = r * r, four_r2 = leaf ? 0.0f : 4.0f * r2;
-        const float cone_sin = node.cone_cos > 0.0f ? safe_sqrt(1.0f - node.cone_cos * node.cone_cos) : 2.0f;
+        const float cone_sin = cone_sine(node);
         const float reach = leaf ? 0.0f : r;
         const bool fronts = !settings_.back_faces;
         const float threshold = threshold_;
@@ -91,36 +87,38 @@ class GroupWalk {
 
     /// Where the node is in each lane's frame, and which texels it may reach.
     void project(const PointNode& node, bool one_texel) {
-        const float side = float(rays_.side), r = node.radius;
-        const bool cosine = settings_.map == HemisphereMap::cosine;
+        const float side = float(rays_.side), half = 0.5f * side;
+        const float bend = settings_.map == HemisphereMap::cosine ? 0.0f : 1.0f;
+        // What looks large may reach anywhere.
+        const float per_angle = one_texel ? 0.0f : square_reach * side, beside = one_texel ? 0.49f : 0.02f;
+        const float largest = one_texel ? infinity : 0.5f;
+        const PointNode n = node;
         MOTE_INDEPENDENT_LANES
         for (std::uint32_t i = 0; i < width; ++i) {
-            const float x = node.center.x - lanes_.x[i], y = node.center.y - lanes_.y[i],
-                        z = node.center.z - lanes_.z[i];
+            const float x = n.center.x - lanes_.x[i], y = n.center.y - lanes_.y[i],
+                        z = n.center.z - lanes_.z[i];
             const float cx = x * lanes_.s[0][i] + y * lanes_.s[1][i] + z * lanes_.s[2][i];
             const float cy = x * lanes_.t[0][i] + y * lanes_.t[1][i] + z * lanes_.t[2][i];
             const float cz = x * lanes_.n[0][i] + y * lanes_.n[1][i] + z * lanes_.n[2][i];
-            const float d = std::sqrt(cx * cx + cy * cy + cz * cz), over_d = 1.0f / max_of(d, 1e-30f);
-            const float up = max_of(cz, 0.0f) * over_d, flattened = std::sqrt(cx * cx + cy * cy) * over_d;
-            // hemisphere_to_square(): the disc, then the concentric square.
-            const float shrink = cosine ? 1.0f : 1.0f / std::sqrt(1.0f + up);
-            const float ax = std::fabs(cx), ay = std::fabs(cy);
-            const float radius = min_of(flattened * shrink, 1.0f);
-            const float ratio = min_of(ax, ay) / max_of(max_of(ax, ay), 1e-30f);
-            const float across = radius * arc_tangent(ratio) * (4.0f * inv_pi);
-            const float square_x = ax >= ay ? radius : across, square_y = ax >= ay ? across : radius;
-            const float px = side * (0.5f + 0.5f * (cx < 0.0f ? -square_x : square_x));
-            const float py = side * (0.5f + 0.5f * (cy < 0.0f ? -square_y : square_y));
-            // The map stretches a small angle by at most 0.81 sides; what is large may reach anywhere.
-            const float angle = r * over_d;
-            const float reach = one_texel ? 0.49f : (angle < 0.5f ? 0.86f * side * angle : side) + 0.02f;
             cx_[i] = cx, cy_[i] = cy, cz_[i] = cz;
-            ax_[i] =
-                node.axis.x * lanes_.s[0][i] + node.axis.y * lanes_.s[1][i] + node.axis.z * lanes_.s[2][i];
-            ay_[i] =
-                node.axis.x * lanes_.t[0][i] + node.axis.y * lanes_.t[1][i] + node.axis.z * lanes_.t[2][i];
-            az_[i] =
-                node.axis.x * lanes_.n[0][i] + node.axis.y * lanes_.n[1][i] + node.axis.z * lanes_.n[2][i];
+            ax_[i] = n.axis.x * lanes_.s[0][i] + n.axis.y * lanes_.s[1][i] + n.axis.z * lanes_.s[2][i];
+            ay_[i] = n.axis.x * lanes_.t[0][i] + n.axis.y * lanes_.t[1][i] + n.axis.z * lanes_.t[2][i];
+            az_[i] = n.axis.x * lanes_.n[0][i] + n.axis.y * lanes_.n[1][i] + n.axis.z * lanes_.n[2][i];
+        }
+        MOTE_INDEPENDENT_LANES
+        for (std::uint32_t i = 0; i < width; ++i) {
+            const float cx = cx_[i], cy = cy_[i], cz = cz_[i], flat2 = cx * cx + cy * cy;
+            const float over_d = 1.0f / max_of(std::sqrt(flat2 + cz * cz), 1e-30f);
+            // hemisphere_to_square(): the disc, then the concentric square.
+            const float up = max_of(cz, 0.0f) * over_d;
+            const float radius = min_of(std::sqrt(flat2) * over_d / std::sqrt(1.0f + bend * up), 1.0f);
+            const float ax = std::fabs(cx), ay = std::fabs(cy), longer = max_of(ax, ay);
+            const float across =
+                radius * (4.0f * inv_pi) * arc_tangent(min_of(ax, ay) / max_of(longer, 1e-30f));
+            const float px = half + half * std::copysign(ax < ay ? across : radius, cx);
+            const float py = half + half * std::copysign(ax < ay ? radius : across, cy);
+            const float angle = n.radius * over_d;
+            const float reach = beside + (angle < largest ? per_angle * angle : side);
             // Rays are at i + 1/2: the first at or after px - reach, and the one after the last.
             x0_[i] = std::int32_t(max_of(px - reach + 0.5f, 0.0f));
             y0_[i] = std::int32_t(max_of(py - reach + 0.5f, 0.0f));
@@ -129,7 +127,7 @@ class GroupWalk {
         }
     }
 
-    void fill(const PointNode& node, std::uint32_t index, std::uint32_t i, DepthRows out, std::uint32_t) {
+    void fill(const PointNode& node, std::uint32_t index, std::uint32_t i, DepthRows out) {
         const LocalDisc disc{{cx_[i], cy_[i], cz_[i]},
                              {ax_[i], ay_[i], az_[i]},
                              node.radius,

@@ -4,6 +4,7 @@
 
 #include "core/objects/error.h"
 #include "gathering/micro_buffers/group_walk.h"
+#include "gathering/micro_buffers/warped_walk.h"
 
 namespace mote::gathering {
 
@@ -33,14 +34,45 @@ void MicroBuffers::render(std::span<const MicroReceiver> receivers, std::span<Mi
     }
 }
 
+void MicroBuffers::render_warped(std::span<const MicroReceiver> receivers, std::span<const BrdfWarp> warps,
+                                 std::span<MicroTexel> texels) const {
+    std::vector<float> distances(texels_each() + RayDirections::lanes);
+    std::vector<std::uint32_t> hits(distances.size());
+    RayDirections rays;
+    for (std::size_t i = 0; i < receivers.size(); ++i) {
+        std::fill(distances.begin(), distances.end(), infinity);
+        std::fill(hits.begin(), hits.end(), MicroTexel::nothing);
+        warps[i].fill_directions(texels_.side(), rays);
+        walk_warped(hierarchy_, settings_, warps[i], rays, receivers[i], {distances.data(), hits.data()});
+        for (std::size_t k = 0; k < texels_each(); ++k)
+            texels[i * texels_each() + k] = {distances[k], hits[k]};
+    }
+}
+
+namespace {
+
+template <typename Weight>
+Rgb weighted_sum(std::span<const MicroTexel> texels, std::span<const Weight> weights,
+                 const NodeRadiance& radiance, const Rgb& environment) {
+    Vec3d sum(0.0);
+    for (std::size_t i = 0; i < texels.size(); ++i) {
+        const MicroTexel& t = texels[i];
+        const Rgb& seen = t.empty() ? environment : radiance.of(t.node(), t.from_behind());
+        sum += Vec3d(Vec3(weights[i])) * Vec3d(seen);
+    }
+    return Rgb(sum);
+}
+
+}  // namespace
+
 Rgb gathered(std::span<const MicroTexel> texels, std::span<const float> weights, const NodeRadiance& radiance,
              const Rgb& environment) {
-    Vec3d sum(0.0);
-    for (std::size_t i = 0; i < texels.size(); ++i)
-        sum +=
-            double(weights[i]) *
-            Vec3d(texels[i].empty() ? environment : radiance.of(texels[i].node(), texels[i].from_behind()));
-    return Rgb(sum);
+    return weighted_sum(texels, weights, radiance, environment);
+}
+
+Rgb gathered(std::span<const MicroTexel> texels, std::span<const Rgb> weights, const NodeRadiance& radiance,
+             const Rgb& environment) {
+    return weighted_sum(texels, weights, radiance, environment);
 }
 
 void gather_irradiance(const MicroBuffers& buffers, const NodeRadiance& radiance,

@@ -9,6 +9,7 @@
 #include <tbb/parallel_for.h>
 
 #include "core/math/frame.h"
+#include "gathering/micro_buffers/brdf_warp.h"
 #include "gathering/micro_buffers/disc_raster.h"
 #include "gathering/micro_buffers/hemisphere_texels.h"
 #include "gathering/point_hierarchy/node_radiance.h"
@@ -58,6 +59,11 @@ class MicroBuffers {
     std::uint32_t texels_each() const { return texels_.count(); }
     /// Fills texels_each() texels for every receiver, one after the other. In one thread.
     void render(std::span<const MicroReceiver> receivers, std::span<MicroTexel> texels) const;
+    /// The same with a warped buffer for each receiver: warps[i] belongs to receivers[i], and its
+    /// fill_weights(texels().side(), ...) are the texels' weights. The map of the settings is not used, and
+    /// points fill all texels that they meet.
+    void render_warped(std::span<const MicroReceiver> receivers, std::span<const BrdfWarp> warps,
+                       std::span<MicroTexel> texels) const;
     /// visit(i, texels) for every receiver i, from many threads at once; receivers that follow each other
     /// should be near each other (Morton order, tiles of a picture).
     template <typename Visit>
@@ -84,6 +90,10 @@ class MicroBuffers {
 /// Sum of weight times radiance over the texels; texels that meet nothing see `environment`. With
 /// cosine_weights() this is irradiance [W/m^2].
 core::Rgb gathered(std::span<const MicroTexel> texels, std::span<const float> weights,
+                   const NodeRadiance& radiance, const core::Rgb& environment = core::Rgb(0.0f));
+
+/// The same with the weights of a BrdfWarp: reflected radiance [W/(m^2 sr)].
+core::Rgb gathered(std::span<const MicroTexel> texels, std::span<const core::Rgb> weights,
                    const NodeRadiance& radiance, const core::Rgb& environment = core::Rgb(0.0f));
 
 /// Irradiance of each receiver [W/m^2], in parallel; the same for any number of threads.

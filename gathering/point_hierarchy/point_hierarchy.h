@@ -16,10 +16,10 @@
 
 namespace mote::gathering {
 
-/// What a node stands for lies in a sphere and faces into a cone.
+/// What a node stands for lies in a ball and faces into a cone.
 struct PointNode {
     core::Vec3 center;  ///< [m]
-    float radius;       ///< of a ball that holds the discs of all points [m]
+    float radius;       ///< of a leaf its disc's; of a node, of a ball that reaches beyond its points [m]
     core::Vec3 axis;    ///< unit: mean normal
     float cone_cos;  ///< cosine of the largest angle between the axis and a point's normal; -1: any direction
 };

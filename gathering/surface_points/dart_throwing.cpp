@@ -87,22 +87,24 @@ DartThrow throw_darts(std::span<const Vec3> positions, std::span<const Vec3> nor
     const auto largest = float(std::sqrt(2.0 / std::sqrt(3.0) * area / double(count)));
     PointGrid grid(positions, normals, largest, count);
     std::vector<std::uint32_t> waiting = shuffled(positions.size(), seed);
-    float distance = largest;
-    while (result.chosen.size() < count) {
+    // A candidate that was too near to a point remains so until the distance has shrunk below that.
+    std::vector<float> nearest(positions.size(), infinity);
+    for (float distance = largest; result.chosen.size() < count; distance *= shrink) {
         cancelled.check();
-        std::size_t kept = 0;
         // Coincident candidates remain in the end: they take what places there are.
         if (distance < 1e-3f * largest) distance = 0.0f;
+        std::size_t kept = 0;
         for (const std::uint32_t i : waiting) {
-            if (result.chosen.size() < count && grid.nearest_squared(i, sqr(distance)) >= sqr(distance)) {
-                result.chosen.push_back(i), grid.add(i);
-                result.distance = distance;
-            } else {
+            const bool full = result.chosen.size() == count;
+            if (!full && nearest[i] >= sqr(distance)) nearest[i] = grid.nearest_squared(i, sqr(distance));
+            if (full || nearest[i] < sqr(distance)) {
                 waiting[kept++] = i;
+                continue;
             }
+            result.chosen.push_back(i), grid.add(i);
+            result.distance = distance;
         }
         waiting.resize(kept);
-        distance *= shrink;
     }
     for (const std::uint32_t i : waiting) {
         const float squared = grid.nearest_squared(i, 0.0f);
