@@ -102,11 +102,11 @@ void BrdfWarp::warp_box(const Vec2& lower, const Vec2& upper, Vec2& warped_lower
     }
 }
 
-void BrdfWarp::fill_directions(std::uint32_t side, RayDirections& rays) const {
+void BrdfWarp::fill_directions(std::uint32_t side, const Vec2& place, RayDirections& rays) const {
     rays.resize(side);
     for (std::uint32_t i = 0; i < side * side; ++i) {
-        const Vec2 middle = Vec2(float(i % side) + 0.5f, float(i / side) + 0.5f) / float(side);
-        rays.set(i, square_to_hemisphere(HemisphereMap::cosine, to_cosine_square(middle)));
+        const Vec2 at = (Vec2(float(i % side), float(i / side)) + place) / float(side);
+        rays.set(i, square_to_hemisphere(HemisphereMap::cosine, to_cosine_square(at)));
     }
 }
 

@@ -47,8 +47,8 @@ class BrdfWarp {
     void warp_box(const core::Vec2& lower, const core::Vec2& upper, core::Vec2& warped_lower,
                   core::Vec2& warped_upper) const;
 
-    /// Of the texels' middles, for side x side of them; black warps leave those of the cosine square.
-    void fill_directions(std::uint32_t side, RayDirections& rays) const;
+    /// Of one place in [0, 1)^2 of each of side x side texels; black warps leave those of the cosine square.
+    void fill_directions(std::uint32_t side, const core::Vec2& place, RayDirections& rays) const;
     /// What each texel's radiance counts for: the sum of weight times radiance is reflected radiance. They
     /// sum to integral() in luminance, in other channels as far as texels are smaller than cells.
     void fill_weights(std::uint32_t side, std::span<core::Rgb> weights) const;

@@ -88,6 +88,7 @@ class GroupWalk {
     /// Where the node is in each lane's frame, and which texels it may reach.
     void project(const PointNode& node, bool one_texel) {
         const float side = float(rays_.side), half = 0.5f * side;
+        const float after_x = 1.0f - settings_.place.x, after_y = 1.0f - settings_.place.y;
         const float bend = settings_.map == HemisphereMap::cosine ? 0.0f : 1.0f;
         // What looks large may reach anywhere.
         const float per_angle = one_texel ? 0.0f : square_reach * side, beside = one_texel ? 0.49f : 0.02f;
@@ -119,11 +120,11 @@ class GroupWalk {
             const float py = half + half * std::copysign(ax < ay ? radius : across, cy);
             const float angle = n.radius * over_d;
             const float reach = beside + (angle < largest ? per_angle * angle : side);
-            // Rays are at i + 1/2: the first at or after px - reach, and the one after the last.
-            x0_[i] = std::int32_t(max_of(px - reach + 0.5f, 0.0f));
-            y0_[i] = std::int32_t(max_of(py - reach + 0.5f, 0.0f));
-            x1_[i] = std::int32_t(min_of(px + reach + 0.5f, side));
-            y1_[i] = std::int32_t(min_of(py + reach + 0.5f, side));
+            // Rays are at i + place: the first at or after px - reach, and the one after the last.
+            x0_[i] = std::int32_t(max_of(px - reach + after_x, 0.0f));
+            y0_[i] = std::int32_t(max_of(py - reach + after_y, 0.0f));
+            x1_[i] = std::int32_t(min_of(px + reach + after_x, side));
+            y1_[i] = std::int32_t(min_of(py + reach + after_y, side));
         }
     }
 

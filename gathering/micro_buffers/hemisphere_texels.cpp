@@ -38,7 +38,8 @@ Vec2 hemisphere_to_square(HemisphereMap map, const Vec3& w) {
     return disk_to_square({w.x * scale, w.y * scale});
 }
 
-HemisphereTexels::HemisphereTexels(HemisphereMap map, std::uint32_t side) : map_(map), side_(side) {
+HemisphereTexels::HemisphereTexels(HemisphereMap map, std::uint32_t side, const Vec2& place)
+    : map_(map), side_(side) {
     if (side == 0 || side > 256)
         throw InputError(fmt::format("micro-buffers have 1 to 256 texels a side, not {}", side));
     // Both maps keep areas of one kind; the other kind by Simpson-like midpoints within the texel.
@@ -52,7 +53,7 @@ HemisphereTexels::HemisphereTexels(HemisphereMap map, std::uint32_t side) : map_
             return square_to_hemisphere(map,
                                         Vec2(float((i + x) / double(side)), float((j + y) / double(side))));
         };
-        directions_.push_back(at(0.5, 0.5));
+        directions_.push_back(at(double(place.x), double(place.y)));
         for (std::uint32_t k = 0; k < cuts * cuts; ++k) {
             const double z = double(at((k % cuts + 0.5) / cuts, (k / cuts + 0.5) / cuts).z);
             means[texel] += map == HemisphereMap::cosine ? 1.0 / std::max(z, 1e-6) : z;

@@ -1,7 +1,8 @@
 // The texels of a micro-buffer: a square of n x n over the hemisphere above a receiver.
 //
 // Both maps go through Shirley & Chiu's concentric square, (x, y) of [0, 1]^2. Texel (i, j) is number j n +
-// i; its direction is that of its middle. Directions are local, z is the receiver's normal.
+// i; its direction is that of its middle, or of another place, the same in all texels. Directions are local,
+// z is the receiver's normal.
 #pragma once
 
 #include <cstdint>
@@ -23,8 +24,9 @@ core::Vec2 hemisphere_to_square(HemisphereMap map, const core::Vec3& direction);
 
 class HemisphereTexels {
   public:
-    /// Throws InputError for a side of 0, or above 256.
-    HemisphereTexels(HemisphereMap map, std::uint32_t side);
+    /// `place`: where in each texel its direction lies, in [0, 1)^2. Throws InputError for a side of 0, or
+    /// above 256.
+    HemisphereTexels(HemisphereMap map, std::uint32_t side, const core::Vec2& place = core::Vec2(0.5f));
 
     HemisphereMap map() const { return map_; }
     std::uint32_t side() const { return side_; }

@@ -11,7 +11,9 @@ namespace mote::gathering {
 using namespace core;
 
 MicroBuffers::MicroBuffers(const PointHierarchy& hierarchy, const MicroBufferSettings& settings)
-    : hierarchy_(hierarchy), settings_(settings), texels_(settings.map, settings.side * settings.rays) {
+    : hierarchy_(hierarchy),
+      settings_(settings),
+      texels_(settings.map, settings.side * settings.rays, settings.place) {
     rays_.resize(texels_.side());
     for (std::uint32_t i = 0; i < texels_.count(); ++i) rays_.set(i, texels_.directions()[i]);
 
@@ -42,7 +44,7 @@ void MicroBuffers::render_warped(std::span<const MicroReceiver> receivers, std::
     for (std::size_t i = 0; i < receivers.size(); ++i) {
         std::fill(distances.begin(), distances.end(), infinity);
         std::fill(hits.begin(), hits.end(), MicroTexel::nothing);
-        warps[i].fill_directions(texels_.side(), rays);
+        warps[i].fill_directions(texels_.side(), settings_.place, rays);
         walk_warped(hierarchy_, settings_, warps[i], rays, receivers[i], {distances.data(), hits.data()});
         for (std::size_t k = 0; k < texels_each(); ++k)
             texels[i * texels_each() + k] = {distances[k], hits[k]};

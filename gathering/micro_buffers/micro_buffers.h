@@ -39,6 +39,9 @@ struct MicroBufferSettings {
     /// are as for side^2.
     std::uint32_t rays = 1;
     HemisphereMap map = HemisphereMap::cosine;
+    /// Where in each of these its ray lies, in [0, 1)^2: buffers that are averaged should differ in it, else
+    /// all of them miss the same.
+    core::Vec2 place{0.5f};
     /// A node is not entered whose solid angle is at most this share of its texel's.
     float cut = 1.0f;
     /// Whether points fill all texels whose rays meet them (Fig. 8.13), or only the one that they fall on.

@@ -61,11 +61,11 @@ void walk_warped(const PointHierarchy& hierarchy, const MicroBufferSettings& set
         if (!image.empty()) {
             const LocalDisc disc{center, receiver.frame.to_local(node.axis), node.radius,
                                  settings.back_faces ? near_back * node.radius : infinity, index};
-            const auto first = [&](float x) { return std::int32_t(std::max(x - 0.01f + 0.5f, 0.0f)); };
-            const auto last = [&](float x) { return std::int32_t(std::min(x + 0.01f + 0.5f, side)); };
-            fill_box(rays, disc,
-                     {first(image.lower.x), first(image.lower.y), last(image.upper.x), last(image.upper.y)},
-                     out);
+            // The rays at i + place, as in group_walk.cpp.
+            const Vec2 to_next = Vec2(1.0f) - settings.place;
+            const glm::ivec2 first(glm::max(image.lower - 0.01f + to_next, Vec2(0.0f))),
+                last(glm::min(image.upper + 0.01f + to_next, Vec2(side)));
+            fill_box(rays, disc, {first.x, first.y, last.x, last.y}, out);
         }
         place = after;
     }

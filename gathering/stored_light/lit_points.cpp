@@ -19,6 +19,15 @@ Surfels draw_points(const SurfaceTriangles& surfaces, const LitPointSettings& se
     return blue_noise_surfels(surfaces, settings.points, s);
 }
 
+/// Another one every pass, which together are even (Roberts' sequence: multiples of the powers of one over
+/// the plastic number).
+Vec2 ray_place(std::uint64_t key, std::uint32_t pass) {
+    Rng rng(key);
+    const double x = double(rng.next_float()) + 0.7548776662466927 * pass,
+                 y = double(rng.next_float()) + 0.5698402909980532 * pass;
+    return glm::min(Vec2(float(x - std::floor(x)), float(y - std::floor(y))), Vec2(one_minus_epsilon));
+}
+
 void add(std::vector<Rgb>& sum, const std::vector<Rgb>& more) {
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += more[i];
 }
@@ -31,7 +40,9 @@ LitPoints::LitPoints(const LitScene& scene, const SurfaceTriangles& surfaces, Sh
     const std::uint64_t key = hash_keys(seed, pass, 0x706f696e7473ull);
     surfels_ = draw_points(surfaces, settings, key, cancelled);
     hierarchy_.emplace(surfels_, HierarchySettings{.memory_budget = settings.memory_budget});
-    buffers_.emplace(*hierarchy_, buffers);
+    MicroBufferSettings of_pass = buffers;
+    of_pass.place = ray_place(hash_keys(seed, 0x706c616365ull), pass);
+    buffers_.emplace(*hierarchy_, of_pass);
     const SurfelSides sides(surfaces, shapes, surfels_);
     std::vector<Rgb> light = arriving(scene, sides, settings, seed, pass, sampler, cancelled);
     if (settings.light == StoredLight::radiosity)
