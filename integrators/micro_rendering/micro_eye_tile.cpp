@@ -6,6 +6,13 @@ using namespace core;
 using gathering::MicroReceiver;
 using gathering::MicroTexel;
 
+namespace {
+
+/// Along a side of the table that a BSDF's warp is made of.
+constexpr std::uint32_t warp_cells = 24;
+
+}  // namespace
+
 void MicroEyeTile::start(int index, const EyeRay& eye) {
     Lane& lane = lanes_[std::size_t(index)];
     lane.sum = {}, lane.seen = {}, lane.alive = true, lane.film = eye.film;
@@ -54,44 +61,71 @@ bool MicroEyeTile::advance(Lane& lane) {
 }
 
 void MicroEyeTile::gather() {
-    std::array<MicroReceiver, width> receivers;
-    std::array<Lane*, width> who{};
-    std::size_t count = 0;
-    for (Lane& lane : lanes_)
-        if (lane.receives) {
-            receivers[count] = gathering::micro_receiver(lane.path->vertex(), lane.path->sampler().next_1d());
-            who[count++] = &lane;
-        }
-    if (count == 0) return;
+    std::array<Lane*, width> diffuse{}, glossy{};
+    std::size_t diffuse_count = 0, glossy_count = 0;
+    for (Lane& lane : lanes_) {
+        if (!lane.receives) continue;
+        const bool warped = settings_.warped && !lane.path->vertex().diffuse_reflectance();
+        (warped ? glossy[glossy_count++] : diffuse[diffuse_count++]) = &lane;
+    }
     walk_.cancelled.check();
-    receivers_ += count;
-    const std::size_t each = points_.buffers().texels_each();
-    const auto texels = std::span(texels_).first(count * each);
-    points_.buffers().render(std::span(receivers).first(count), texels);
-    for (std::size_t i = 0; i < count; ++i)
-        who[i]->sum[Transport::indirect] += reflected(*who[i], receivers[i], texels.subspan(i * each, each));
+    receivers_ += diffuse_count + glossy_count;
+    if (diffuse_count > 0) gather_diffuse(std::span(diffuse).first(diffuse_count));
+    if (glossy_count > 0) gather_glossy(std::span(glossy).first(glossy_count));
 }
 
-Rgb MicroEyeTile::reflected(const Lane& lane, const MicroReceiver& receiver,
-                            std::span<const MicroTexel> texels) const {
-    const EyePath<false>& path = *lane.path;
-    const ScatteringVertex& vertex = path.vertex();
-    const auto weights = points_.buffers().texels().cosine_weights();
-    if (const auto reflectance = vertex.diffuse_reflectance()) {
-        if (!(glm::dot(receiver.frame.n, vertex.wo) > 0.0f)) return Rgb(0.0f);  // below the shading normal
-        return path.throughput() * inv_pi * *reflectance *
-               gathering::gathered(texels, weights, points_.radiance());
-    }
-    Rgb sum(0.0f);
+MicroReceiver MicroEyeTile::receiver_of(Lane& lane) {
+    return gathering::micro_receiver(lane.path->vertex(), lane.path->sampler().next_1d());
+}
+
+/// Buffers of equal projected solid angles.
+void MicroEyeTile::gather_diffuse(std::span<Lane* const> lanes) {
+    place_.clear();
+    for (Lane* lane : lanes) place_.push_back(receiver_of(*lane));
+    const std::size_t each = points_.buffers().texels_each();
+    points_.buffers().render(place_, std::span(texels_).first(lanes.size() * each));
+    const auto cosines = points_.buffers().texels().cosine_weights();
     const auto directions = points_.buffers().texels().directions();
-    for (std::size_t i = 0; i < texels.size(); ++i) {
-        if (texels[i].empty()) continue;
-        const Rgb light = points_.radiance().of(texels[i].node(), texels[i].from_behind());
-        if (is_black(light)) continue;
-        sum +=
-            weights[i] * light * vertex.eval(receiver.frame.to_world(directions[i]), TransportMode::radiance);
+    for (std::size_t k = 0; k < lanes.size(); ++k) {
+        const EyePath<false>& path = *lanes[k]->path;
+        const ScatteringVertex& vertex = path.vertex();
+        const auto texels = std::span<const MicroTexel>(texels_).subspan(k * each, each);
+        const auto reflectance = vertex.diffuse_reflectance();
+        Rgb light(0.0f);
+        if (!reflectance) {
+            for (std::size_t i = 0; i < each; ++i)
+                weights_[i] = cosines[i] *
+                              vertex.eval(place_[k].frame.to_world(directions[i]), TransportMode::radiance);
+            light = gathering::gathered(texels, weights_, points_.radiance());
+        } else if (glm::dot(place_[k].frame.n, vertex.wo) >
+                   0.0f) {  // else seen from below the shading normal
+            light = inv_pi * *reflectance * gathering::gathered(texels, cosines, points_.radiance());
+        }
+        lanes[k]->sum[Transport::indirect] += path.throughput() * light;
     }
-    return path.throughput() * sum;
+}
+
+/// Buffers whose texels are small where the BSDF reflects much.
+void MicroEyeTile::gather_glossy(std::span<Lane* const> lanes) {
+    place_.clear(), warps_.clear();
+    for (Lane* lane : lanes) {
+        place_.push_back(receiver_of(*lane));
+        const ScatteringVertex& vertex = lane->path->vertex();
+        const Frame& frame = place_.back().frame;
+        warps_.emplace_back(warp_cells, [&](const Vec3& wi) {
+            return vertex.eval(frame.to_world(wi), TransportMode::radiance);
+        });
+    }
+    const std::size_t each = points_.buffers().texels_each();
+    points_.buffers().render_warped(place_, warps_, std::span(texels_).first(lanes.size() * each));
+    for (std::size_t k = 0; k < lanes.size(); ++k) {
+        if (warps_[k].black()) continue;
+        warps_[k].fill_weights(points_.buffers().texels().side(), weights_);
+        lanes[k]->sum[Transport::indirect] +=
+            lanes[k]->path->throughput() *
+            gathering::gathered(std::span<const MicroTexel>(texels_).subspan(k * each, each), weights_,
+                                points_.radiance());
+    }
 }
 
 }  // namespace mote::integrators

@@ -21,7 +21,8 @@ class MicroEyeTile {
           settings_(settings),
           points_(points),
           walk_(walk),
-          texels_(std::size_t(width) * points.buffers().texels_each()) {}
+          texels_(std::size_t(width) * points.buffers().texels_each()),
+          weights_(points.buffers().texels_each()) {}
 
     void start(int lane, const EyeRay& eye);
     void stop(int lane);
@@ -45,16 +46,20 @@ class MicroEyeTile {
     };
 
     bool advance(Lane& lane);
+    using Receivers = std::vector<gathering::MicroReceiver>;
     void gather();
-    /// Light of the points that the receiver's path reflects to the eye.
-    core::Rgb reflected(const Lane& lane, const gathering::MicroReceiver& receiver,
-                        std::span<const gathering::MicroTexel> texels) const;
+    void gather_diffuse(std::span<Lane* const> lanes);
+    void gather_glossy(std::span<Lane* const> lanes);
+    gathering::MicroReceiver receiver_of(Lane& lane);
 
     const core::Scene& scene_;
     const MicroSettings& settings_;
     const gathering::LitPoints& points_;
     core::WalkContext& walk_;
+    Receivers place_;  ///< of the lanes that gather together
+    std::vector<gathering::BrdfWarp> warps_;
     std::vector<gathering::MicroTexel> texels_;
+    std::vector<core::Rgb> weights_;
     std::array<Lane, width> lanes_;
     bool gathers_ = true;
     std::uint64_t receivers_ = 0;

@@ -49,6 +49,7 @@ MicroSettings read_micro_settings(const Properties& p) {
     s.buffers.side = std::uint32_t(p.get_int_in("micro_buffer", 16, 1, 256));
     s.buffers.cut = float(p.get_float_in("cut", 0.25, 1e-3, 1e6));
     s.buffers.cast_leaves = p.get_bool("ray_casting", true);
+    s.warped = p.get_bool("brdf_warp", true);
     if (p.has("bound")) s.bound = float(p.get_float_in("bound", 0.0, 0.0, 1e30));
     s.upsampling = int(p.get_int_in("upsampling", 1, 1, 16));
     s.glossy_upsampling = p.get_bool("glossy_upsampling", false);
@@ -67,6 +68,8 @@ std::vector<Parameter> micro_parameters() {
         {"ray_casting", "boolean", "true",
          "points that are larger than a texel fill all texels whose rays meet them; false: the one that they "
          "fall on, which leaves holes"},
+        {"brdf_warp", "boolean", "true",
+         "texels of glossy receivers are small where they reflect much; false: the same for all receivers"},
         {"light", "string", "radiosity",
          "light of the points, besides that of lights: 'direct': none, 'vpls': virtual point lights, "
          "'radiosity': other points, 'photons': a photon map"},

@@ -13,6 +13,7 @@ struct MicroSettings {
     gathering::LitPointSettings points;
     gathering::MicroBufferSettings buffers;
     std::optional<float> bound;  ///< of virtual point lights at points [1/m^2]; 0: none, nothing: automatic
+    bool warped = true;          ///< buffers of receivers that are not diffuse follow their BSDF
     int upsampling = 1;          ///< n: receivers at one pixel of n x n
     bool glossy_upsampling = false;  ///< glossy receivers, too, share their light with neighbours
 
