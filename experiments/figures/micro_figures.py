@@ -1,0 +1,67 @@
+"""What the figures of Engelhardt 2013, Ch. 8 share: indirect light by `mote_micro_rendering`, and its error against two
+references of `path`, whose noise cancels out of the squares."""
+from pathlib import Path
+
+import numpy as np
+from bundle_figures import SCENES, with_options
+from renders import luminance
+
+MICRO = {"integrator": "mote_micro_rendering"}
+CORNELL = SCENES.parents[2] / "scenes" / "cornell_box.xml"
+BUNNY = SCENES / "bunny_room.xml"
+GLOSSY = SCENES / "glossy_box.xml"
+
+
+def zoom(width):
+    """How often pixels of a small picture are repeated, so that titles fit above it."""
+    return max(1, -(-300 // width))
+
+
+def micro(**settings):
+    return MICRO | with_options(**settings)
+
+
+class IndirectView:
+    """Indirect light of a scene, seen by one camera: its references, and the errors of pictures (arrays or renders).
+
+    Errors are those of `smooth` pixels, whose neighbours are as bright within a half: what edges look like in a picture
+    of a pass or two is decided by where its eye rays fell, whatever the method."""
+
+    def __init__(self, mote, scene, size, passes, name, depth=None):
+        self.mote, self.scene, self.name = mote, Path(scene), name
+        self.settings = dict(size) | ({} if depth is None else with_options(max_depth=depth))
+        self.references = [self.light(self.render("reference", {"integrator": "path"}, passes, seed)) for seed in (91, 92)]
+        self.truth = np.mean(self.references, axis=0)
+        light = luminance(self.truth)
+        # As mote compare weighs: 1 / (|r|^2 + (m / 10)^2), of neighbours, so that no pixel's own noise is in it.
+        padded = np.pad(light, 2, mode="edge")
+        around = np.mean([padded[i:i + light.shape[0], k:k + light.shape[1]] for i in range(5) for k in range(5)], axis=0)
+        self.weight = 1 / (around ** 2 + (np.median(around) / 10) ** 2)
+        nearby = np.array([padded[1 + i:1 + i + light.shape[0], 1 + k:1 + k + light.shape[1]] for i in range(3) for k in range(3)])
+        self.smooth = nearby.max(axis=0) < 1.5 * nearby.min(axis=0)
+
+    @staticmethod
+    def light(picture):
+        """A layer that a bound has renamed is indirect light all the same."""
+        return picture if isinstance(picture, np.ndarray) else sum(picture[k] for k in picture.layers if k.startswith("indirect"))
+
+    def render(self, name, settings, passes, seed=1, **more):
+        return self.mote.render(self.scene, f"{self.name}_{name}".replace(" ", "_"), self.settings | settings, passes=passes, seed=seed, **more)
+
+    def squares(self, picture):
+        """Of the relative error, by pixel, free of the references' noise in the mean."""
+        p, a, b = (luminance(self.light(x)) for x in (picture, *self.references))
+        return (p - a) * (p - b) * self.weight
+
+    def error(self, picture, region=None):
+        """In a region (a mask of pixels) instead of the smooth ones."""
+        return max(0.0, float(self.squares(picture)[self.smooth if region is None else region].mean())) ** 0.5
+
+    def worst(self, picture, share=0.99):
+        """The relative error that so many of the pixels do not exceed."""
+        return float(np.quantile(np.maximum(self.squares(picture)[self.smooth], 0), share)) ** 0.5
+
+    def ratio(self, picture, region=None):
+        """Of the mean light to the truth's."""
+        p, r = luminance(self.light(picture)), luminance(self.truth)
+        return float(p.mean() / r.mean() if region is None else p[region].mean() / r[region].mean())
