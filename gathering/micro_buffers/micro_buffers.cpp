@@ -17,6 +17,7 @@ MicroBuffers::MicroBuffers(const PointHierarchy& hierarchy, const MicroBufferSet
     rays_.resize(texels_.side());
     for (std::uint32_t i = 0; i < texels_.count(); ++i) rays_.set(i, texels_.directions()[i]);
 
+    if (settings.rays == 0) throw InputError("a texel of micro-buffers needs rays");
     if (!(settings.cut > 0.0f)) throw InputError("the cut of micro-buffers must be positive");
 }
 
