@@ -20,7 +20,10 @@ ROOT = Path(__file__).resolve().parents[2]
 BUNDLES = "mote_vpl_ray_bundles"
 # Shares of 1024 light paths: the same work as 64 for all pixels, with an error that does not hang on a few paths.
 SHARED = {"interleaving": 4, "paths": 1024}
-METHODS = {"combined": (BUNDLES, SHARED), "bundles": (BUNDLES, SHARED | {"techniques": "bundles"}),
+METHODS = {"combined": (BUNDLES, SHARED), "combined, 4 directions": (BUNDLES, SHARED | {"directions": 4}),
+           "combined, paths end": (BUNDLES, SHARED | {"continuation": 0}),
+           "combined, 1 direct": (BUNDLES, SHARED | {"direct_paths": 1}), "bundles, 1 direct":
+           (BUNDLES, SHARED | {"techniques": "bundles", "direct_paths": 1}), "bundles": (BUNDLES, SHARED | {"techniques": "bundles"}),
            "bundles, 16 joined": (BUNDLES, SHARED | {"techniques": "bundles", "joined": 16}),
            "vpls": (BUNDLES, SHARED | {"techniques": "vpls"}),
            "vpls, 4096 paths": (BUNDLES, SHARED | {"techniques": "vpls", "paths": 4096}),
@@ -54,9 +57,9 @@ def render(args, scene, method, passes, seed, output):
     return cpu() - before
 
 
-def error_of(args, picture, references):
-    said = subprocess.run([args.mote, "compare", picture, references[0], "--second", references[1]], check=True,
-                          capture_output=True, text=True).stdout
+def error_of(args, picture, references, layer=None):
+    command = [args.mote, "compare", picture, references[0], "--second", references[1]] + (["--layer", layer] if layer else [])
+    said = subprocess.run(command, check=True, capture_output=True, text=True).stdout
     found = re.search(r"^error\s+([\d.e-]+) % \+- ([\d.e-]+) %, bias ([-+\d.e]+) % \+- ([\d.e-]+)", said, re.M)
     if not found:
         raise RuntimeError(said)
@@ -77,6 +80,7 @@ def main():
     with tempfile.TemporaryDirectory() as temporary:
         folder = args.folder or Path(temporary)
         folder.mkdir(parents=True, exist_ok=True)
+        print("method, passes, error of each seed [%], processor seconds, seconds to 2 %, error of the indirect light alone [%]")
         for name in args.scenes.split(","):
             scene = ROOT / "scenes" / f"{name}.xml"
             if name == "atrium":
@@ -85,18 +89,19 @@ def main():
             for seed, path in zip((101, 102), references):
                 if not path.is_file():
                     render(args, scene, ("path", {}), args.reference, seed, path)
-            print(f"{name}, {args.width} x {args.height}: method, passes, error of each seed [%], processor seconds, to 2 % [s]")
+            print(f"{name}, {args.width} x {args.height}")
             for label, method in METHODS.items():
                 passes = 4 * args.passes if label == "path" else args.passes
-                squares, seconds, errors = [], [], []
+                squares, seconds, errors, indirect = [], [], [], []
                 for seed in range(1, args.seeds + 1):
                     picture = folder / "picture.exr"
                     seconds.append(render(args, scene, method, passes, seed, picture))
                     error = error_of(args, picture, references)
                     errors.append(f"{error[0]:.2f}+-{error[1]:.2f}")
+                    indirect.append(f"{error_of(args, picture, references, 'indirect')[0]:.1f}")
                     squares.append(error[0] ** 2)
                 square, time = sum(squares) / args.seeds, sum(seconds) / args.seeds
-                print(f"  {label:24s} {passes:4d}  {' '.join(errors):30s} {time:8.1f} {time * square / 4:9.0f}", flush=True)
+                print(f"  {label:24s} {passes:4d}  {' '.join(errors):30s} {time:8.1f} {time * square / 4:9.0f}   indirect {' '.join(indirect)}", flush=True)
     return 0
 
 

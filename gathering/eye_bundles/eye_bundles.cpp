@@ -1,7 +1,9 @@
 #include "gathering/eye_bundles/eye_bundles.h"
 
-#include "core/scene/shadow_segment.h"
+#include "core/math/frame.h"
+#include "core/math/warp.h"
 #include "core/scene/media_along.h"
+#include "core/scene/shadow_segment.h"
 
 namespace mote::gathering {
 
@@ -66,9 +68,45 @@ void EyeBundles::add_own_rays(const ReceiverArray& receivers, std::span<const Bu
 void EyeBundles::light_found_points(std::span<const BundleDirection> lines, std::size_t index,
                                     TileLight& indirect) {
     if (!any_of(found_)) return;
-    connect_lights(indirect);
+    light_points(indirect);
     if (pass_.bounces > 1) go_on(lines, index, indirect);
+    while (continue_paths()) light_points(indirect);
+}
+
+void EyeBundles::light_points(TileLight& indirect) {
+    connect_lights(indirect);
     if (pass_.samples.joined_share > 0.0f) join_lights(indirect);
+}
+
+/// Each found point becomes the next one of its path, or none. Returns whether there are any.
+bool EyeBundles::continue_paths() {
+    if (!(pass_.samples.continued > 0.0f)) return false;
+    for (Found& y : found_)
+        if (y.max_vpl_depth > 0 && !continue_path(y)) y.max_vpl_depth = 0;
+    return any_of(found_);
+}
+
+bool EyeBundles::continue_path(Found& y) {
+    const float chance = pass_.samples.continued;
+    if (y.max_vpl_depth < 2 || !may_continue(y.vertex) || !(walk_.rng.next_float() < chance)) return false;
+    const Vec3& n = y.vertex.hit.shading.n;
+    const Vec3 local = square_to_cosine_hemisphere(y.sampler->next_2d());
+    const Vec3 w = Frame(glm::dot(n, y.vertex.wo) < 0.0f ? -n : n).to_world(local);
+    const float pdf = chance * cosine_hemisphere_pdf(local);
+    const Rgb f_cos = y.vertex.eval_cos(w, TransportMode::radiance);
+    if (is_black(f_cos) || !(pdf > 0.0f)) return false;
+    const Ray ray{y.vertex.ray_origin(w), w};
+    MediumState state;
+    PathWeights weights;
+    Rgb emitted(0.0f);
+    const WalkEvent event = walk<false>(pass_.scene, ray, state, weights, emitted, walk_);
+    if (event.kind == WalkEvent::Kind::escaped) return false;
+    const ScatteringVertex next = make_vertex(event, ray);
+    if (!next.connectable()) return false;
+    y.fewer = fewer_than_next(pass_.samples, y.vertex, y.fewer, next);
+    y.vertex = next, y.throughput *= f_cos * weights.throughput / pdf;
+    --y.max_vpl_depth;
+    return true;
 }
 
 /// Paths from the points that line `first` found, along lines of the same pass chosen at random. A line that
@@ -119,18 +157,19 @@ void EyeBundles::trace(const BundleReceiver& x, const Vec3& w, float pdf_lines, 
     y.vertex = make_vertex(event, ray);
     if (!y.vertex.connectable() || x.max_vpl_depth < 1) return;
     y.throughput = throughput, y.max_vpl_depth = x.max_vpl_depth, y.sampler = x.sampler;
-    y.density = (uniform_line_pdf + pdf_own / pass_.samples.directions) * y.vertex.geometric_cosine(w) /
-                std::max(sqr(event.distance), 1e-30f);
+    const float found = (uniform_line_pdf + pdf_own / pass_.samples.directions) *
+                        y.vertex.geometric_cosine(w) / std::max(sqr(event.distance), 1e-30f);
+    y.fewer = fewer_than_one(pass_.samples, found);
 }
 
-/// w_2 of a path with one bounce.
-float EyeBundles::connection_weight(const Found& y, const LightChoice& choice,
-                                    const DirectSample& light) const {
+/// Of a light that is connected to y.
+float EyeBundles::weight_of_connection(const Found& y, const LightChoice& choice,
+                                       const DirectSample& light) const {
     if (pass_.techniques == Techniques::bundles) return 1.0f;
     const lights::LightStart end{choice.emitter, y.vertex.position + light.wi * light.distance, light.normal,
                                  -light.wi};
-    return one_bounce_weight(
-        pass_.samples, y.density,
+    return connection_weight(
+        pass_.samples, y.fewer.from(y.vertex, light.wi),
         connection_over_emission(pass_.scene, y.vertex.light_receiver(), y.vertex.hit.geometric_normal, end));
 }
 
@@ -150,7 +189,7 @@ void EyeBundles::connect_lights(TileLight& indirect) {
         const Rgb value = y.throughput * y.vertex.eval_cos(sample->wi, TransportMode::radiance) *
                           sample->weight / choice.probability;
         if (is_black(value)) continue;
-        float weight = connection_weight(y, choice, *sample);
+        float weight = weight_of_connection(y, choice, *sample);
         if (weight < rare_weight) {
             if (!(walk_.rng.next_float() * rare_weight < weight)) continue;
             weight = rare_weight;
@@ -176,11 +215,11 @@ void EyeBundles::connect_lights(TileLight& indirect) {
 
 /// Tokuyoshi & Ogaki 2012, Eq. 7, for VPLs of any depth.
 void EyeBundles::join_lights(TileLight& indirect) {
-    alignas(64) float density[width];
+    std::array<FewerFound, width> fewer;
     tile_.clear();
     for (int i = 0; i < width; ++i) {
         const Found& y = found_[std::size_t(i)];
-        density[i] = pass_.samples.directions * pass_.samples.joined_share * y.density;
+        fewer[std::size_t(i)] = y.fewer;
         if (y.max_vpl_depth > 1) tile_.set(i, y.vertex, y.throughput, {}, Rng(1), y.max_vpl_depth - 1);
     }
     const auto first = std::size_t(walk_.rng.next_float() * float(pass_.stride));
@@ -195,7 +234,7 @@ void EyeBundles::join_lights(TileLight& indirect) {
     else if (pass_.techniques == Techniques::bundles)
         sum(lights::UnboundedGeometry{});
     else
-        sum(AgainstLights{density, pass_.samples.light_share});
+        sum(AgainstLights{fewer.data(), pass_.rivals, pass_.samples});
 }
 
 }  // namespace mote::gathering

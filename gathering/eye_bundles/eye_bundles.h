@@ -3,7 +3,8 @@
 // Secs. 3 and 4).
 //
 // At a point y that a ray from x finds, the light of one light is connected (paths of one bounce, Eq. 3), and
-// a few virtual point lights are joined (two bounces and more, Eq. 7). Weights are those of path_weights.h.
+// a few virtual point lights are joined (two bounces and more, Eq. 7). From some of them the path goes on, to
+// a next point that is lit alike. Weights are those of path_weights.h.
 #pragma once
 
 #include <array>
@@ -32,6 +33,7 @@ struct BundleReceiver {
 struct BundlePass {
     const core::LitScene& scene;
     const lights::VplSet& vpls;
+    std::span<const float> rivals;  ///< of the VPLs, where techniques are combined
     TechniqueSamples samples;
     Techniques techniques = Techniques::combined;
     std::size_t stride = 1;           ///< every so many VPLs are joined to a point, from a random one on
@@ -70,7 +72,7 @@ class EyeBundles {
     struct Found {
         core::ScatteringVertex vertex;
         core::Rgb throughput{0.0f};  ///< f_x cos_x / (M p_r), and what came before
-        float density = 0.0f;        ///< p_r C(y -> x) / |x-y|^2 [1/m^2]
+        FewerFound fewer;            ///< b_k
         std::int32_t max_vpl_depth = 0;
         core::Sampler* sampler = nullptr;
     };
@@ -82,10 +84,13 @@ class EyeBundles {
                             lights::TileLight& indirect);
     void trace(const BundleReceiver& x, const core::Vec3& w, float pdf_lines, Found& y, core::Rgb& direct);
     void go_on(std::span<const BundleDirection> lines, std::size_t first, lights::TileLight& indirect);
+    void light_points(lights::TileLight& indirect);
+    bool continue_paths();
+    bool continue_path(Found& y);
     void connect_lights(lights::TileLight& indirect);
     void join_lights(lights::TileLight& indirect);
-    float connection_weight(const Found& y, const core::LightChoice& choice,
-                            const core::DirectSample& light) const;
+    float weight_of_connection(const Found& y, const core::LightChoice& choice,
+                               const core::DirectSample& light) const;
 
     const BundlePass& pass_;
     lights::GatherScratch& scratch_;

@@ -22,16 +22,23 @@ float ratio_of(float numerator, float denominator) {
     return denominator > 0.0f ? std::min(numerator / denominator, certain) : certain;
 }
 
-/// p(z -> y) of neighbouring VPLs of a path, per area at y. 0 where z does not shine on y.
-float step_pdf(const lights::VplSet& vpls, const VirtualPointLight& z, const VirtualPointLight& y) {
+/// The step from z to y, neighbouring VPLs of a path, per area.
+struct Step {
+    float light;  ///< p(z -> y); 0 where z does not shine on y
+    float eye;    ///< c e(y -> z)
+};
+Step step_between(const lights::VplSet& vpls, const VirtualPointLight& z, const VirtualPointLight& y,
+                  float continued) {
     const Vec3 to_y = y.position - z.position;
     const float d2 = std::max(glm::dot(to_y, to_y), 1e-30f);
     const Vec3 direction = to_y / std::sqrt(d2);
-    const lights::VplDetail* detail = detail_of(vpls, z);
+    const lights::VplDetail *before = detail_of(vpls, z), *here = detail_of(vpls, y);
     const float cos_y = std::fabs(glm::dot(y.shading_normal, direction));
     const float cos_z =
-        detail ? detail->vertex.geometric_cosine(direction) : std::max(0.0f, glm::dot(z.normal, direction));
-    return next_vertex_pdf(detail, direction, cos_y * cos_z / d2, cos_y, d2);
+        before ? before->vertex.geometric_cosine(direction) : std::max(0.0f, glm::dot(z.normal, direction));
+    const float g = cos_y * cos_z / d2;
+    const bool goes_on = !here || may_continue(here->vertex);
+    return {next_vertex_pdf(before, direction, g, cos_y, d2), goes_on ? continued * continued_pdf(g) : 0.0f};
 }
 
 }  // namespace
@@ -65,27 +72,61 @@ float connection_over_emission(const LitScene& scene, const LightReceiver& y, co
     return ratio_of(connection, traits.delta_position ? emission / d2 : emission);
 }
 
+FewerFound fewer_than_one(const TechniqueSamples& samples, float found) {
+    return {samples.light_share / std::max(samples.directions * found, 1e-30f), 0.0f};
+}
+
+FewerFound fewer_than_next(const TechniqueSamples& samples, const ScatteringVertex& y,
+                           const FewerFound& fewer, const ScatteringVertex& next) {
+    const Vec3 to_next = next.position - y.position;
+    const float d2 = std::max(glm::dot(to_next, to_next), 1e-30f);
+    const Vec3 direction = to_next / std::sqrt(d2);
+    const float cos_y = y.shading_cosine(direction), cos_next = next.geometric_cosine(direction);
+    const float made = std::max(samples.continued * continued_pdf(cos_y * cos_next / d2), 1e-30f);
+    const float by_pdf = fewer.from(y, direction) * cos_y / d2 / made;
+    const float plain = samples.joined_share / made;
+    if (next.diffuse_reflectance()) return {plain + by_pdf * cos_next * inv_pi, 0.0f};
+    return {plain, by_pdf};
+}
+
+namespace {
+
+/// a_j = alone + onward a_{j-1}.
+struct Rival {
+    float alone = 0.0f, onward = 0.0f;
+};
+
+Rival rival_of(const LitScene& scene, const lights::VplSet& vpls, const TechniqueSamples& samples,
+               std::size_t j) {
+    const VirtualPointLight& y = vpls.lights[j];
+    if (y.depth == 1) {
+        const lights::VplDetail* detail = detail_of(vpls, y);
+        const LightReceiver at =
+            detail ? detail->vertex.light_receiver() : LightReceiver{y.position, y.normal};
+        const float ratio = connection_over_emission(scene, at, y.normal, vpls.starts[y.path]);
+        return {ratio_of(samples.directions * ratio, samples.paths * samples.light_share)};
+    }
+    // Behind a mirror there is no VPL that bundles could join.
+    if (j == 0 || vpls.lights[j - 1].path != y.path || vpls.lights[j - 1].depth + 1 != y.depth) return {};
+    const Step step = step_between(vpls, vpls.lights[j - 1], y, samples.continued);
+    return {ratio_of(samples.directions * samples.joined_share, samples.light_share * step.light),
+            ratio_of(step.eye, step.light)};
+}
+
+}  // namespace
+
 std::vector<float> rivals_of(const LitScene& scene, const lights::VplSet& vpls,
                              const TechniqueSamples& samples) {
-    std::vector<float> rivals(vpls.lights.size());
-    const auto rival = [&](std::size_t j) {
-        const VirtualPointLight& y = vpls.lights[j];
-        if (y.depth == 1) {
-            const lights::VplDetail* detail = detail_of(vpls, y);
-            const LightReceiver at =
-                detail ? detail->vertex.light_receiver() : LightReceiver{y.position, y.normal};
-            const float ratio = connection_over_emission(scene, at, y.normal, vpls.starts[y.path]);
-            return ratio_of(samples.directions * ratio, samples.paths * samples.light_share);
-        }
-        // Behind a mirror there is no VPL that bundles could join.
-        if (j == 0 || vpls.lights[j - 1].path != y.path || vpls.lights[j - 1].depth + 1 != y.depth)
-            return 0.0f;
-        return ratio_of(samples.directions * samples.joined_share,
-                        samples.light_share * step_pdf(vpls, vpls.lights[j - 1], y));
-    };
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rivals.size(), 256), [&](const auto& range) {
-        for (std::size_t j = range.begin(); j < range.end(); ++j) rivals[j] = rival(j);
+    std::vector<Rival> of(vpls.lights.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, of.size(), 256), [&](const auto& range) {
+        for (std::size_t j = range.begin(); j < range.end(); ++j) of[j] = rival_of(scene, vpls, samples, j);
     });
+    std::vector<float> rivals(of.size());
+    for (std::size_t j = 0; j < of.size(); ++j) {
+        rivals[j] = of[j].alone;
+        if (of[j].onward > 0.0f) rivals[j] += of[j].onward * rivals[j - 1];  // Eq. (1)
+        rivals[j] = std::min(rivals[j], certain);
+    }
     return rivals;
 }
 

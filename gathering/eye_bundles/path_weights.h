@@ -17,6 +17,20 @@
 // The second of the two singularities, |z-y| -> 0, is the paper's reason to bound paths of two bounces (Eqs.
 // 7 and 8). Here they are weighed as well: near y the VPL before it has w_2 -> 0, near x the VPL at y has w_1
 // -> 0. Nothing is left out.
+//
+// Where both edges are short, in a corner of a corner, neither has small values. So a bundle's path goes on
+// from y with chance c, by a cosine-weighted direction with the density e(y -> z) per area, and what it finds
+// is lit in turn, again and again. A path v_1 .. v_j, x has then j + 1 techniques: its last k vertices are
+// found from x, and the last found is joined to what is before it. The density of the k-th is
+//   k = 0:  s_1                     p(v_1 -> v_2) .. p(v_{j-1} -> v_j)   times what led to v_1,
+//   k > 0:  s_2 M P(x -> v_j) c e(v_j -> v_{j-1}) .. c e(v_{j-k+2} -> v_{j-k+1})  p(v_1 -> v_2) .. p(.. ->
+//   v_{j-k}),
+// with P = p_r C / |x-y|^2 (k = j connects a light instead of joining v_0). Seen from the light path all but
+// the first have the factor P(x -> v_j), and the rest does not depend on x. So a VPL has one rival still,
+//   a_j = (M s_2 / s_1 + c e(v_j -> v_{j-1}) a_{j-1}) / p(v_{j-1} -> v_j),                                (1)
+// and a point y_k that was found has one number, the density of all techniques that find fewer points over
+// its own, but for the last step p(z -> y_k) of the light path and for s_2:
+//   b_1 = s_1 / (M P(x -> y_1)),   b_k = (s_2 + p(y_k -> y_{k-1}) b_{k-1}) / (c e(y_{k-1} -> y_k)). (2)
 #pragma once
 
 #include <span>
@@ -37,6 +51,7 @@ struct TechniqueSamples {
     float paths = 0.0f;         ///< N, light paths
     float light_share = 1.0f;   ///< s_1, the chance of a VPL to meet a receiver
     float joined_share = 0.0f;  ///< s_2, the chance of a VPL to be joined to a point that a bundle found
+    float continued = 0.0f;     ///< c, the chance of a bundle's path to go on from a point
 };
 
 /// Larger than any ratio of densities that matters, and small enough to be multiplied.
@@ -48,12 +63,6 @@ inline constexpr float certain = 1e30f;
 float connection_over_emission(const core::LitScene& scene, const core::LightReceiver& y,
                                const core::Vec3& normal, const lights::LightStart& start);
 
-/// w_2 of a path with one bounce: `found` is p_r C(y -> x) / |x-y|^2 [1/m^2], `ratio` the one above.
-inline float one_bounce_weight(const TechniqueSamples& samples, float found, float ratio) {
-    const float bundle = samples.directions * found * ratio;
-    return bundle / (bundle + samples.paths * samples.light_share);  // Eq. 6 with beta = 1
-}
-
 /// With which density the light path goes on from the VPL z to y, per area at y [1/m^2]: that of its BSDF,
 /// |cos| / pi for a plain one. `g` is G*, with `cos_y` of the shading normal at y; `direction` is z -> y.
 inline float next_vertex_pdf(const lights::VplDetail* z, const core::Vec3& direction, float g, float cos_y,
@@ -62,7 +71,37 @@ inline float next_vertex_pdf(const lights::VplDetail* z, const core::Vec3& direc
     return z->vertex.pdf_solid_angle(direction, core::TransportMode::power) * cos_y / distance_squared;
 }
 
-/// a_j of every light: 0 where bundles cannot make its paths. Needs VplSet::starts.
+/// e(y -> z), the density of a bundle's path that goes on, per area at z [1/m^2], from G* with the shading
+/// cosine at y and the geometric one at z.
+inline float continued_pdf(float g) { return g * core::inv_pi; }
+/// Does a bundle's path go on from here? Where light comes through, the side to go on to would be that of x.
+inline bool may_continue(const core::ScatteringVertex& y) { return !y.bsdf->traits().transmissive; }
+
+/// b_k of Eq. (2) at a point y that a bundle's path found. On a glossy surface a part of it has the density
+/// of light that comes from z and goes on to the point before y.
+struct FewerFound {
+    float plain = 0.0f, by_pdf = 0.0f;
+
+    float from(const core::ScatteringVertex& y, const core::Vec3& towards_z) const {
+        if (by_pdf == 0.0f) return plain;
+        core::ScatteringVertex lit = y;
+        lit.wo = towards_z;
+        return plain + by_pdf * lit.pdf_solid_angle(y.wo, core::TransportMode::power);
+    }
+};
+
+/// b_1; `found` is P(x -> y) [1/m^2].
+FewerFound fewer_than_one(const TechniqueSamples& samples, float found);
+/// b_k at `next`, which a path found from y, where it is `fewer`. Eq. (2).
+FewerFound fewer_than_next(const TechniqueSamples& samples, const core::ScatteringVertex& y,
+                           const FewerFound& fewer, const core::ScatteringVertex& next);
+
+/// The weight of a light that is connected to y: `fewer` is b_k, `ratio` p(z | y) / (p(z) p(z -> y)).
+inline float connection_weight(const TechniqueSamples& samples, float fewer, float ratio) {
+    return ratio / (ratio + samples.paths * fewer + 1e-37f);  // Eq. 6 with beta = 1
+}
+
+/// a_j of every light, Eq. (1): 0 where bundles cannot make its paths. Needs VplSet::starts.
 std::vector<float> rivals_of(const core::LitScene& scene, const lights::VplSet& vpls,
                              const TechniqueSamples& samples);
 
@@ -113,31 +152,41 @@ struct AgainstBundlesAndOwnRays {
     }
 };
 
-/// The policy w_2 G* of joining VPLs z to sixteen points y that a bundle found.
+/// The policy of joining VPLs z to sixteen points y that bundles' paths found: its weight times G*.
 struct AgainstLights {
-    const float* found;  ///< by lane: M s_2 p_r C(y -> x) / |x-y|^2 [1/m^2]
-    float light_share;   ///< s_1
+    const FewerFound* fewer;        ///< b_k, by lane
+    std::span<const float> rivals;  ///< of the VPLs
+    TechniqueSamples samples;
 
     struct ForLight {
         const AgainstLights& all;
         const lights::ReceiverLanes& y;
         const lights::VplDetail* z;
+        core::Vec3 position;  ///< of z
+        float rival;          ///< c s_1 a_z / M
 
         float operator()(float g, float d2, float cos_y, float, int lane) const {
-            core::Vec3 direction(0.0f);
-            if (z) {
-                const core::ScatteringVertex* vertex = y.directional[lane];
-                const core::Vec3 at = vertex ? vertex->position : core::Vec3(y.x[lane], y.y[lane], y.z[lane]);
-                direction = (at - z->vertex.position) / std::sqrt(d2);
+            const core::ScatteringVertex* glossy = y.directional[lane];
+            core::Vec3 direction(0.0f);  // from z to y
+            if (z || glossy) {
+                const core::Vec3 at = glossy ? glossy->position : core::Vec3(y.x[lane], y.y[lane], y.z[lane]);
+                direction = (at - position) / std::sqrt(d2);
             }
-            const float by_bundle = all.found[lane];
-            const float traced = all.light_share * next_vertex_pdf(z, direction, g, cos_y, d2);
-            return g * by_bundle / (by_bundle + traced + 1e-37f);
+            const FewerFound& b = all.fewer[lane];
+            const float fewer = next_vertex_pdf(z, direction, g, cos_y, d2) *
+                                (glossy ? b.from(*glossy, -direction) : b.plain);
+            const float more = glossy && !may_continue(*glossy) ? 0.0f : rival * continued_pdf(g);
+            const float share = all.samples.joined_share;
+            return g * share / (share + fewer + more + 1e-37f);
         }
     };
     ForLight for_pair(const lights::ReceiverLanes& y, const lights::VplSet& vpls, std::size_t index) const {
         const std::uint32_t detail = vpls.lights[index].detail;
-        return {*this, y, detail == lights::VirtualPointLight::no_detail ? nullptr : &vpls.details[detail]};
+        const bool plain = detail == lights::VirtualPointLight::no_detail;
+        const float more = samples.continued * samples.light_share / samples.directions;
+        return {*this, y, plain ? nullptr : &vpls.details[detail],
+                plain ? vpls.lights[index].position : vpls.details[detail].vertex.position,
+                more * rivals[index]};
     }
 };
 

@@ -6,6 +6,8 @@
 // a few directions that all pixels share, and what they find is lit in turn. Where two points are close, VPLs
 // spike and bundles do not; where a small spot is bright, bundles miss it and VPLs do not. Weighed against
 // each other nothing has to be bounded, and the mean is right.
+#include <fmt/format.h>
+
 #include "integrators/eye_path/eye_path_parameters.h"
 #include "integrators/eye_path/transport_layers.h"
 #include "integrators/register_parts.h"
@@ -25,6 +27,10 @@ class MoteVplRayBundles final : public Integrator {
         settings_.paths = std::uint32_t(p.get_int_in("paths", 64, 0, std::int64_t(1) << 26));
         settings_.directions = std::uint32_t(p.get_int_in("directions", 8, 0, 65536));
         settings_.joined = std::uint32_t(p.get_int_in("joined", 4, 0, 65536));
+        settings_.continuation = float(p.get_float("continuation", 0.25));
+        if (!(settings_.continuation >= 0.0f && settings_.continuation < 1.0f))
+            throw InputError("continuation must be at least 0 and below 1", p.where_of("continuation"));
+        settings_.direct_paths = int(p.get_int_in("direct_paths", 0, 0, 4096));
         const std::string techniques =
             p.get_choice("techniques", "combined", {"combined", "vpls", "bundles"});
         settings_.techniques = techniques == "vpls"      ? Techniques::vpls
@@ -85,6 +91,9 @@ class MoteVplRayBundles final : public Integrator {
 };
 
 void MoteVplRayBundles::plan_techniques(Plan& plan) const {
+    plan.run(
+        "direct light", fmt::format("{} eye paths a pixel and pass", settings_.direct_paths_of_pass()),
+        settings_.direct_paths > 0 ? "asked for" : "by the work on indirect light, of the first of them");
     plan.run("light paths", std::to_string(settings_.paths) + " a pass", "a fresh set every pass");
     if (!settings_.has_bundles()) {
         plan.leave_out("bundles", "no rays leave what the eye sees",
@@ -104,6 +113,9 @@ void MoteVplRayBundles::plan_techniques(Plan& plan) const {
         plan.run("bounces",
                  std::to_string(settings_.joined) + " virtual point lights for each point of a bundle",
                  settings_.bound ? "bounded" : "weighed against the virtual point light at that point");
+    if (settings_.continuation_of_pass() > 0.0f)
+        plan.run("paths of bundles", fmt::format("go on by a chance of {:.4g}", settings_.continuation),
+                 "light between surfaces that are close to each other and to the receiver");
     if (settings_.own_rays && settings_.bounces == 0)
         plan.run("glossy surfaces", "one ray of their own, by the BSDF", "lines do not follow narrow lobes");
     if (settings_.interleaving > 1)
@@ -185,6 +197,14 @@ void register_mote_vpl_ray_bundles(Registry& registry) {
          "lines alone, as in the paper"});
     parameters.push_back({"two_way", "boolean", "true",
                           "false: a direction serves one way, as a shadow map does, for comparison"});
+    parameters.push_back({"continuation", "float", "0.25",
+                          "chance of a path that a bundle began to go on from each point that it found; "
+                          "weighed against all other "
+                          "techniques, with techniques=\"combined\" and without a bound alone"});
+    parameters.push_back({"direct_paths", "integer", "0",
+                          "eye paths a pixel and pass whose direct light counts, in the mean; indirect light "
+                          "is gathered for the "
+                          "first of them. 0: as many as the work on indirect light suggests"});
     parameters.push_back(
         {"bounces", "integer", "0",
          "for bundles alone: bounces of paths along directions of the same pass, chosen at random, "

@@ -17,6 +17,9 @@ class VplBundleEstimator final : public Estimator {
         : scene_(scene), options_(options), settings_(settings) {
         settings_.eye.wanted = wanted_transport(options);
         settings_.sky = settings_.sky && settings_.has_bundles() && scene.environment();
+        const bool wants_direct =
+            settings_.eye.wanted[Transport::direct] || settings_.eye.wanted[Transport::emission];
+        eye_paths_ = wants_direct ? settings_.direct_paths_of_pass() : 1;
         if (settings_.filters) filter_.emplace(scene, options, settings_.filter);
     }
 
@@ -110,17 +113,28 @@ class VplBundleEstimator final : public Estimator {
         const auto pixel = [&](int lane) { return std::array{x0 + lane % side * n, y0 + lane / side * n}; };
         for (int lane = 0; lane < VplBundleTile::width; ++lane)
             if (const auto [x, y] = pixel(lane); x < x1 && y < y1)
-                tile.start(lane, make_eye_ray(scene_, options_, context, x, y));
+                tile.start(lane, eye_ray(context, x, y, 0), eye_paths_);
             else
                 tile.stop(lane);
         tile.run({(place + start + context.index) % shares, shares}, lines);
         for (int lane = 0; lane < VplBundleTile::width; ++lane)
-            if (const auto [x, y] = pixel(lane); x < x1 && y < y1) store(tile.sum(lane), image, x, y, false);
+            if (const auto [x, y] = pixel(lane); x < x1 && y < y1) {
+                for (int k = 1; k < eye_paths_; ++k) tile.add_direct(lane, eye_ray(context, x, y, k));
+                store(tile.sum(lane), image, x, y, false);
+            }
+    }
+
+    /// Eye path k of a pixel's in this pass; they are numbered on from pass to pass.
+    EyeRay eye_ray(const PassContext& context, int x, int y, int k) const {
+        const PassContext path{context.index * std::uint32_t(eye_paths_) + std::uint32_t(k), context.filter,
+                               context.cancelled, context.part};
+        return make_eye_ray(scene_, options_, path, x, y);
     }
 
     const Scene& scene_;
     RenderOptions options_;
     VplBundleSettings settings_;
+    int eye_paths_ = 1;                  ///< of a pixel and pass
     std::optional<LayerFilter> filter_;  ///< nothing: pixels stay as they are
     SharedCounters counters_;
     std::mutex time_mutex_;

@@ -11,7 +11,7 @@ VplBundlePass::VplBundlePass(const LitScene& lit, const VplBundleSettings& setti
                              const RenderOptions& options, const PassContext& context)
     : vpls(lights::trace_light_paths(lit, settings.light_paths(), options.seed, context.index,
                                      options.sampler, context.cancelled)),
-      bundles{lit, vpls, {}, settings.techniques} {
+      bundles{lit, vpls, {}, {}, settings.techniques} {
     const float share = 1.0f / float(settings.interleaving * settings.interleaving);
     auto& samples = bundles.samples;
     samples.directions = settings.has_bundles() ? float(settings.directions) : 0.0f;
@@ -29,7 +29,9 @@ VplBundlePass::VplBundlePass(const LitScene& lit, const VplBundleSettings& setti
         bundles.sky = lit.environment();
         but_sky.emplace(lit, std::vector<const Emitter*>{bundles.sky});
     }
+    samples.continued = settings.continuation_of_pass();
     rivals = gathering::rivals_of(lit, vpls, samples);
+    bundles.rivals = rivals;
     // What bundles make alone, VPLs leave to them.
     const bool all = settings.techniques == Techniques::bundles;
     for (std::size_t j = 0; j < lights; ++j)

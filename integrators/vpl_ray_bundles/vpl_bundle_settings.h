@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "compensation/roughness_clamping.h"
@@ -13,10 +14,12 @@
 namespace mote::integrators {
 
 struct VplBundleSettings {
-    EyePathLimits eye;  ///< max_depth counts the whole path from light to eye
+    EyePathLimits eye;     ///< max_depth counts the whole path from light to eye
+    int direct_paths = 0;  ///< of a pixel and pass, that direct light is the mean of; 0: by the other work
     std::uint32_t paths = 64;
     std::uint32_t directions = 8;  ///< of a pass
     std::uint32_t joined = 4;      ///< VPLs that are joined to a point that a bundle found
+    float continuation = 0.25f;    ///< c, of paths that bundles begin
     gathering::Techniques techniques = gathering::Techniques::combined;
     std::optional<float> bound;  ///< b [1/m^2] of paths of two bounces and more; nothing: weighed
     bool sky = false;            ///< direct light of the sky by bundles
@@ -29,6 +32,21 @@ struct VplBundleSettings {
     bool filters = false;
     LayerFilterParameters filter;
 
+    /// As many as make the error of a pass smallest where one path has as much of it in its direct light as
+    /// in its indirect light: the root of how many times as much work the latter is. Times are those of the
+    /// atrium of scenes/, of which only ratios matter: rays one by one, and in packets.
+    int direct_paths_of_pass() const {
+        if (direct_paths > 0) return direct_paths;
+        constexpr float one_ray = 1.0f, packet_ray = 0.05f, eye_path = 3.0f * one_ray, vertices = 2.5f;
+        const float vpls = float(paths) * vertices / float(interleaving * interleaving);
+        const float along = has_bundles() ? float(directions) / (1.0f - continuation_of_pass()) : 0.0f;
+        const float other = vpls * packet_ray + along * (2.0f * one_ray + float(joined) * packet_ray);
+        return std::clamp(int(std::lround(std::sqrt(other / eye_path))), 1, 64);
+    }
+    /// c, where there is anything to weigh such paths against.
+    float continuation_of_pass() const {
+        return techniques == gathering::Techniques::combined && !bound ? continuation : 0.0f;
+    }
     bool has_bundles() const { return techniques != gathering::Techniques::vpls && directions > 0; }
     lights::LightPathSettings light_paths() const {
         lights::LightPathSettings s;

@@ -4,9 +4,9 @@ namespace mote::integrators {
 
 using namespace core;
 
-void VplBundleTile::start(int lane, const EyeRay& eye) {
+void VplBundleTile::start(int lane, const EyeRay& eye, int paths) {
     Lane& l = lanes_[std::size_t(lane)];
-    l.sum = {}, l.alive = true;
+    l.found = l.gathered = {}, l.alive = true, l.paths = float(paths);
     walk_.rng = eye.rng;
     l.path.emplace(scene_, settings_.eye, eye, walk_, pass_.eye_lights());
     l.rng = walk_.rng;
@@ -14,7 +14,26 @@ void VplBundleTile::start(int lane, const EyeRay& eye) {
 
 void VplBundleTile::stop(int lane) {
     Lane& l = lanes_[std::size_t(lane)];
-    l.sum = {}, l.alive = false;
+    l.found = l.gathered = {}, l.alive = false;
+}
+
+void VplBundleTile::add_direct(int lane, const EyeRay& eye) {
+    const double begin = thread_cpu_seconds();
+    EyePathLimits limits = settings_.eye;
+    limits.wanted.of[std::size_t(Transport::indirect)] = false;
+    walk_.rng = eye.rng;
+    EyePath<false> path(scene_, limits, eye, walk_, pass_.eye_lights());
+    TransportSum& sum = lanes_[std::size_t(lane)].found;
+    while (advance(path, sum)) {
+    }
+    time_.eye += thread_cpu_seconds() - begin;
+}
+
+TransportSum VplBundleTile::sum(int lane) const {
+    const Lane& l = lanes_[std::size_t(lane)];
+    TransportSum sum = l.gathered;
+    for (std::size_t i = 0; i < transport_count; ++i) sum.light[i] += l.found.light[i] / l.paths;
+    return sum;
 }
 
 void VplBundleTile::run(const lights::VplRange& share,
@@ -36,22 +55,27 @@ void VplBundleTile::run(const lights::VplRange& share,
     }
 }
 
-/// Follows one eye path to its next vertex; makes it a receiver where it can be connected. Returns whether
-/// there is one.
-bool VplBundleTile::advance(int index) {
-    Lane& lane = lanes_[std::size_t(index)];
-    EyePath<false>& path = *lane.path;
+/// Follows an eye path to its next vertex, and adds the direct light there. Returns whether there is one.
+bool VplBundleTile::advance(EyePath<false>& path, TransportSum& sum) {
     const auto sky_behind = [&](const EyeLeg& leg) {
         // The sky is no light of the eye path then, but is seen.
         if (pass_.bundles.sky && leg.event.kind == WalkEvent::Kind::escaped && path.scatterings() == 0 &&
             !(settings_.eye.hide_emitters && path.depth() == 1))
-            lane.sum[Transport::emission] +=
-                path.throughput() * pass_.bundles.sky->environment(leg.ray.direction);
+            sum[Transport::emission] += path.throughput() * pass_.bundles.sky->environment(leg.ray.direction);
     };
-    if (!path.advance(walk_, lane.sum, sky_behind)) return false;
-    if (!path.vertex().connectable()) return true;
-    if (path.wants_connection()) lane.sum[path.layer_of_connection()] += path.sample_light(walk_);
-    if (settings_.eye.wanted[Transport::indirect] || pass_.bundles.sky) add_receiver(index, path);
+    if (!path.advance(walk_, sum, sky_behind)) return false;
+    if (path.vertex().connectable() && path.wants_connection())
+        sum[path.layer_of_connection()] += path.sample_light(walk_);
+    return true;
+}
+
+/// The first eye path of a pixel; makes its vertex a receiver where it can be connected.
+bool VplBundleTile::advance(int index) {
+    Lane& lane = lanes_[std::size_t(index)];
+    EyePath<false>& path = *lane.path;
+    if (!advance(path, lane.found)) return false;
+    if (path.vertex().connectable() && (settings_.eye.wanted[Transport::indirect] || pass_.bundles.sky))
+        add_receiver(index, path);
     return true;
 }
 
@@ -82,8 +106,8 @@ void VplBundleTile::gather(const lights::VplRange& share,
     }
     if (own_rays) bundles_.add_own_rays(receivers_, directions, indirect, direct);
     for (std::size_t i = 0; i < std::size_t(width); ++i) {
-        lanes_[i].sum[Transport::indirect] += float(share.stride) * light[i] + indirect[i];
-        if (settings_.eye.wanted[Transport::direct]) lanes_[i].sum[Transport::direct] += direct[i];
+        lanes_[i].gathered[Transport::indirect] += float(share.stride) * light[i] + indirect[i];
+        if (settings_.eye.wanted[Transport::direct]) lanes_[i].gathered[Transport::direct] += direct[i];
     }
     time_.vpls += middle - begin, time_.bundles += thread_cpu_seconds() - middle;
 }

@@ -30,22 +30,28 @@ class VplBundleTile {
           walk_(walk),
           bundles_(pass.bundles, scratch, walk) {}
 
-    void start(int lane, const EyeRay& eye);
+    /// The first of a pixel's `paths` eye paths.
+    void start(int lane, const EyeRay& eye, int paths);
+    /// One of the others: its direct light and what it sees of lights.
+    void add_direct(int lane, const EyeRay& eye);
     void stop(int lane);
     /// Follows the eye paths; `share` of the VPLs, and all directions, count for them.
     void run(const lights::VplRange& share, std::span<const gathering::BundleDirection> directions);
-    const TransportSum& sum(int lane) const { return lanes_[std::size_t(lane)].sum; }
+    TransportSum sum(int lane) const;
     const VplBundleTime& time() const { return time_; }
 
   private:
     struct Lane {
         std::optional<EyePath<false>> path;
-        core::Rng rng;  ///< of the path, while other lanes advance
-        TransportSum sum;
+        core::Rng rng;          ///< of the path, while other lanes advance
+        TransportSum found;     ///< by eye paths, all of them together
+        TransportSum gathered;  ///< from virtual point lights and along bundles, for the first
+        float paths = 1.0f;
         bool alive = false;
     };
 
     bool advance(int lane);
+    bool advance(EyePath<false>& path, TransportSum& sum);
     void add_receiver(int lane, const EyePath<false>& path);
     void gather(const lights::VplRange& share, std::span<const gathering::BundleDirection> directions);
 

@@ -20,6 +20,7 @@ constexpr std::uint32_t light_paths = 16, directions = 4;
 struct Planted {
     float line_pdf = 1.0f;  ///< factor on p_r
     bool cosine = true, distance = true;
+    float rival = 1.0f;  ///< factor on the part of rivals that comes from paths that go on
 };
 
 /// w_1 with an error.
@@ -52,15 +53,18 @@ class Points {
     }
 
     /// Of one pass: the mean of all points, in one number.
-    double pass(std::uint32_t index, int max_vpl_depth, Techniques techniques, const Planted& planted = {}) {
+    double pass(std::uint32_t index, int max_vpl_depth, Techniques techniques, const Planted& planted = {},
+                float continued = 0.0f) {
         const lights::LightPathSettings settings{
             .paths = light_paths, .max_vertices = max_vpl_depth, .rr_depth = 5, .keep_starts = true};
         const auto vpls = lights::trace_light_paths(*scene_, settings, 1, index, SamplerKind::independent);
-        BundlePass bundles{*scene_, vpls, {}, techniques};
+        BundlePass bundles{*scene_, vpls, {}, {}, techniques};
         bundles.samples = {techniques == Techniques::vpls ? 0.0f : float(directions), float(light_paths),
-                           1.0f, 0.5f};
+                           1.0f, 0.5f, continued * planted.rival};
         bundles.stride = 2;
         auto rivals = rivals_of(*scene_, vpls, bundles.samples);
+        bundles.samples.continued = continued;
+        bundles.rivals = rivals;
         if (techniques == Techniques::bundles)
             for (float& rival : rivals)
                 if (rival > 0.0f) rival = certain;
@@ -185,6 +189,23 @@ TEST_CASE("virtual point lights and bundles have the mean of paths", "[bundles][
         CHECK(found.standard_error() < 0.05 * found.value());
         CHECK(z_between(expected, found) < critical_z);
     }
+}
+
+TEST_CASE("paths that bundles begin and that go on have the mean of paths", "[bundles][statistics]") {
+    const auto [bsdf, light] = GENERATE(
+        table<std::string, std::string>({{matt, point_by_the_wall}, {shiny, ball_lamp + point_by_the_wall}}));
+    Points points(bsdf, light, corner, 0.3f);
+    const Mean expected = mean_of(8000, [&](auto i) { return points.paths(i, 3); });
+    const auto pass = [&](std::uint32_t i, const Planted& planted) {
+        return points.pass(i, 3, Techniques::combined, planted, 0.6f);
+    };
+    const Mean right = mean_of(3000, [&](auto i) { return pass(i, {}); });
+    CAPTURE(expected.value(), right.value(), expected.standard_error(), right.standard_error());
+    CHECK(right.standard_error() < 0.03 * right.value());
+    CHECK(z_between(expected, right) < critical_z);
+    // VPLs that leave more to such paths than these make, by the same passes.
+    const Mean missing = mean_of(1000, [&](auto i) { return pass(i, {}) - pass(i, {.rival = 2.0f}); });
+    CHECK(missing.value() > critical_z * missing.standard_error());
 }
 
 TEST_CASE("a wrong density of lines, a forgotten cosine and a missing distance are found",

@@ -32,7 +32,8 @@ TEST_CASE("virtual point lights and ray-bundles render the picture of path", "[b
     };
     const auto c = GENERATE(
         Case{grey, "", 3}, Case{grey, "", 4}, Case{mixed, "", 5},
-        Case{grey, R"(<integer name="interleaving" value="2"/>)", 5},
+        Case{grey, R"(<integer name="interleaving" value="2"/><integer name="direct_paths" value="3"/>)", 5},
+        Case{mixed, R"(<float name="continuation" value="0.7"/><integer name="direct_paths" value="1"/>)", 5},
         Case{grey, R"(<string name="techniques" value="bundles"/>)", 3},
         Case{grey, R"(<string name="techniques" value="bundles"/><integer name="bounces" value="3"/>)", 5});
     const auto scene = scene_from(box(c.wall, ""), 12);
