@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 namespace mote::gathering {
 namespace {
@@ -55,17 +56,43 @@ void take_turns(std::span<BundleHit> run, bool front_next) {
     }
 }
 
-void order_coincident(std::span<BundleHit> hits, float tolerance) {
+/// Hits from `begin` on that may coincide with it.
+struct Coincident {
+    std::size_t end;
+    bool both = false;  ///< fronts and backs
+    Coincident(std::span<const BundleHit> hits, std::size_t begin, float tolerance) : end(begin + 1) {
+        for (; end < hits.size() && std::fabs(hits[end].distance - hits[begin].distance) <= tolerance; ++end)
+            both = both || hits[end].from_behind() != hits[begin].from_behind();
+    }
+};
+
+void take_turns_from_the_start(std::span<BundleHit> hits, float tolerance) {
     bool front_next = true;
     for (std::size_t begin = 0; begin < hits.size();) {
-        std::size_t end = begin + 1;
-        bool both = false;
-        for (; end < hits.size() && hits[end].distance - hits[begin].distance <= tolerance; ++end)
-            both = both || hits[end].from_behind() != hits[begin].from_behind();
+        const auto [end, both] = Coincident(hits, begin, tolerance);
         if (both) take_turns(hits.subspan(begin, end - begin), front_next);
         front_next = hits[end - 1].from_behind();
         begin = end;
     }
+}
+
+void reverse(std::span<BundleHit> hits) {
+    std::reverse(hits.begin(), hits.end());
+    for (BundleHit& hit : hits) hit.triangle ^= BundleHit::behind_bit;
+}
+
+/// Which hit is first of all is not known where the first ones coincide: a leaf, or a body on an open floor
+/// that is met from below. Then the other end of the ray tells, if it is better there.
+void order_coincident(std::span<BundleHit> hits, float tolerance) {
+    const bool mixed_first = Coincident(hits, 0, tolerance).both;
+    if (mixed_first) reverse(hits);
+    if (mixed_first && !Coincident(hits, 0, tolerance).both) {
+        take_turns_from_the_start(hits, tolerance);
+        reverse(hits);
+        return;
+    }
+    if (mixed_first) reverse(hits);
+    take_turns_from_the_start(hits, tolerance);
 }
 
 /// What neighbours in order of distance ask for. Without branches, which would mostly be mispredicted.

@@ -177,6 +177,14 @@ TEST_CASE("surfaces that coincide are all there, fronts and backs in turn", "[ra
         TriangleBuilder turned;
         turned.box({1, 1, 1}, {3, 3, 2}, false, 6).box({0, 0, 0}, {4, 4, 1}, false, 0);
         CHECK(order(turned.list(), form) == "4f 5b 10f 11b ");
+        // A box on a floor that is open below, which is met first, from behind; and the same through the
+        // floor of the storey above.
+        TriangleBuilder open;
+        open.quad({0, 0, 1}, {4, 0, 1}, {4, 4, 1}, {0, 4, 1}, 20).box({1, 1, 1}, {3, 3, 2}, false, 6);
+        CHECK(order(open.list(), form) == "20b 10f 11b ");
+        TriangleBuilder below;
+        below.box({1, 1, 1}, {3, 3, 2}, false, 6).quad({0, 0, 1}, {4, 0, 1}, {4, 4, 1}, {0, 4, 1}, 20);
+        CHECK(order(below.list(), form) == "20b 10f 11b ");
         // A leaf: its lower side (0) looks down and is met first, then its upper one (1) from behind.
         TriangleBuilder leaf;
         leaf.quad({0, 4, 0}, {4, 4, 0}, {4, 0, 0}, {0, 0, 0}, 0)

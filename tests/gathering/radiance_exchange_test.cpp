@@ -211,6 +211,33 @@ TEST_CASE("the sky of an open floor is what enters bundles from outside", "[exch
     CHECK(red.error() < 0.02);
 }
 
+// A ray from below meets the floor and the lower side of the body at one distance: in the wrong order the sky
+// below would light the gap between them, and that the floor before it.
+TEST_CASE("no sky comes between an open floor and a body that stands on it", "[exchange][ray_bundles]") {
+    const ExchangeStage stage(R"(<scene version="3.0.0">
+        <shape type="rectangle"><transform name="to_world"><scale value="2"/></transform>
+            <bsdf type="twosided"><bsdf type="diffuse"/></bsdf></shape>
+        <shape type="cube"><transform name="to_world"><scale value="0.5"/><translate z="0.5"/></transform>
+            <bsdf type="diffuse"/></shape>
+        <emitter type="constant"/><sensor type="perspective"/></scene>)",
+                              {.texels_per_metre = 8.0f});
+    ExchangeSettings settings;
+    settings.directions = 128;
+    const ArrivingLight light = stage.solve(settings, 1);
+    double hidden = 0.0, open = 0.0;
+    for (std::size_t t = 0; t < stage.atlas.size(); ++t) {
+        const AtlasTexel& texel = stage.atlas.texels()[t];
+        const double arrives = double(light.direct[t].x + light.indirect[t].x) * double(texel.area);
+        const Vec3& p = texel.position;
+        const bool below = std::fabs(p.z) < 1e-4f && std::max(std::fabs(p.x), std::fabs(p.y)) < 0.4f;
+        // Of the floor the upper side alone: the lower one is in the open.
+        const bool in_gap = below && (texel.normal.z > 0.0f || texel.side == SurfaceSide::front);
+        (in_gap ? hidden : open) += arrives;
+    }
+    CHECK(open > 100.0);
+    CHECK(hidden < 1e-6 * open);
+}
+
 /// What the texels of a diffuse ball of radius 1 at the origin receive from a light [W].
 double power_on_ball(const std::string& light) {
     const ExchangeStage stage(
