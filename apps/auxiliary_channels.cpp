@@ -49,9 +49,11 @@ std::vector<core::HitFeature> features_by_name(const core::Scene& scene, std::sp
     return features;
 }
 
-std::vector<core::HitFeature> features_for_denoising(const core::Scene& scene,
-                                                     std::vector<std::string> asked) {
+std::vector<core::HitFeature> features_for_denoising(const core::Scene& scene, std::vector<std::string> asked,
+                                                     bool regression) {
     for (const char* name : {"Albedo", "Ns"}) asked.emplace_back(name);
+    for (const char* name : {"P", "Depth", "Transmittance"})
+        if (regression) asked.emplace_back(name);
     return features_by_name(scene, asked);
 }
 

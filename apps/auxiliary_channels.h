@@ -17,9 +17,10 @@ std::vector<core::HitFeature> auxiliary_features(const core::Scene& scene);
 /// for none.
 std::vector<core::HitFeature> features_by_name(const core::Scene& scene, std::span<const std::string> asked);
 
-/// What a denoiser asks for: Albedo and Ns, besides `asked`.
-std::vector<core::HitFeature> features_for_denoising(const core::Scene& scene,
-                                                     std::vector<std::string> asked);
+/// What a denoiser asks for: Albedo and Ns, besides `asked`. `regression`: it regresses on P, Depth and
+/// Transmittance as well.
+std::vector<core::HitFeature> features_for_denoising(const core::Scene& scene, std::vector<std::string> asked,
+                                                     bool regression);
 
 /// Adds Center.P, Center.N (geometric, turned to the viewer) and Center.DiffuseAlbedo: what the rays through
 /// the middle of the pixels and of the lens hit, zero where that is nothing. The picture must have the size

@@ -94,9 +94,12 @@ void add_render(CLI::App& app, RenderArguments& a, std::function<int()>& action)
     command.add_flag("--half", a.half, "Write float16 instead of float32");
     command.add_flag("--auxiliary", a.auxiliary,
                      "Also write what is seen: positions, normals, depth, albedo, with variances");
-    command.add_flag(
-        "--denoise", a.denoise,
-        "Add a denoised picture, for the eye, and show it in the preview (needs OpenImageDenoise)");
+    command
+        .add_flag(
+            "--denoise{oidn}", a.denoise,
+            "Add a denoised picture, for the eye, and show it in the preview: by OpenImageDenoise, where it "
+            "is installed; --denoise=bmfr: by regression on features, which needs nothing else")
+        ->check(CLI::IsMember({"oidn", "bmfr"}));
     command.add_flag("--quiet", a.quiet, "No progress, no warnings");
     command.add_flag("-v,--verbose", a.verbose, "Also print the plan and where the time went");
     command.callback([&a, &action] { action = [&a] { return render_sequence(a); }; });

@@ -9,12 +9,15 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <functional>
 #include <iterator>
 #include <optional>
 
 #include "apps/auxiliary_channels.h"
 #include "apps/command.h"
+#include "apps/denoise/bmfr_sequence.h"
 #include "apps/denoise/denoised_layer.h"
+#include "apps/in_scattered_feature.h"
 #include "apps/interruption.h"
 #include "apps/output_files.h"
 #include "apps/picture_file.h"
@@ -139,8 +142,9 @@ const core::PreviousFrame* frame_before(const RenderArguments& arguments, const 
 std::vector<core::HitFeature> features_of(const RenderArguments& arguments, const core::Scene& scene,
                                           const core::LoadReport& loaded, const core::PreviousFrame* before) {
     if (!arguments.auxiliary)
-        return arguments.denoise ? features_for_denoising(scene, loaded.features)
-                                 : features_by_name(scene, loaded.features);
+        return arguments.denoise.empty()
+                   ? features_by_name(scene, loaded.features)
+                   : features_for_denoising(scene, loaded.features, arguments.denoise == "bmfr");
     std::vector<core::HitFeature> features = auxiliary_features(scene);
     if (before) std::ranges::move(core::motion_features(scene, *before), std::back_inserter(features));
     return features;
@@ -157,20 +161,35 @@ void warn_of_range(const core::ImageChannels& image, std::uint64_t clamped,
     if (clamped > 0) warnings.push_back(clamped_text(clamped));
 }
 
+using Denoiser = std::function<void(core::ImageChannels&)>;  ///< adds the layer
+
+/// Empty where none is asked for.
+Denoiser denoiser_of(const RenderArguments& arguments, int threads) {
+    if (arguments.denoise == "oidn")
+        return [library = std::make_shared<OidnLibrary>(threads)](core::ImageChannels& image) {
+            add_denoised_layer(image, *library);
+        };
+    // Frames of a sequence as well: each has the bits that it has alone.
+    if (arguments.denoise == "bmfr")
+        return [](core::ImageChannels& image) { BmfrSequence(true).add_denoised_layer(image); };
+    return {};
+}
+
 /// Adds the denoised layer where there is a whole picture, and time: returns whether it did.
-bool denoise(core::ImageChannels& image, const OidnLibrary* library, const core::RenderResult& result,
-             const std::string& file, std::vector<std::string>& warnings) {
-    if (!library) return false;
+bool denoise(core::ImageChannels& image, const RenderArguments& arguments, const Denoiser& denoiser,
+             const core::RenderResult& result, const std::string& file, std::vector<std::string>& warnings) {
+    if (!denoiser) return false;
     if (!result.finished_pixels.empty() || !result.film.has_passes(1)) {
         note("a part of a picture is not denoised");
         return false;
     }
     if (result.interrupted) {
-        note("not denoised: 'mote denoise " + core::printable(file, 300) + "' does it");
+        note(fmt::format("not denoised: 'mote denoise {}{}' does it",
+                         arguments.denoise == "bmfr" ? "--method bmfr " : "", core::printable(file, 300)));
         return false;
     }
     try {
-        add_denoised_layer(image, *library);
+        denoiser(image);
         return true;
     } catch (const core::InputError& error) {  // the picture is worth more
         warnings.push_back(std::string("not denoised: ") + error.what());
@@ -179,15 +198,18 @@ bool denoise(core::ImageChannels& image, const OidnLibrary* library, const core:
 }
 
 void write_outputs(const OutputFiles& files, const RenderReport& report, const RenderArguments& arguments,
-                   const OidnLibrary* denoiser, std::vector<std::string>& warnings) {
+                   const core::Registry& registry, const Denoiser& denoiser,
+                   std::vector<std::string>& warnings) {
     core::ImageChannels image = core::film_image(report.result.film);
     image.metadata = picture_metadata(report);
     if (arguments.sequence) image.metadata[scene_files_key] = as_lines(report.scene.parts().input_files);
     if (arguments.auxiliary) add_center_channels(image, report.scene), add_ids(image, report.scene);
+    if ((arguments.auxiliary || arguments.denoise == "bmfr") && !report.result.interrupted)
+        add_in_scattered(image, report.scene, registry);
     const std::span<const std::uint8_t> finished = report.result.finished_pixels;
     if (!finished.empty())  // those that no pass reached are transparent
         image.add("A", std::vector<float>(finished.begin(), finished.end()));
-    const bool denoised = denoise(image, denoiser, report.result, files.picture, warnings);
+    const bool denoised = denoise(image, arguments, denoiser, report.result, files.picture, warnings);
     const std::uint64_t clamped =
         core::write_exr(files.picture, image, arguments.half || report.scene.film().half);
     warn_of_range(image, clamped, warnings);
@@ -277,8 +299,7 @@ int render_command(const RenderArguments& arguments) {
     for (const std::string& path : {files.picture, files.preview}) check_writable(path);
     if (!arguments.stats.empty()) check_writable(arguments.stats);
     check_identities(files, arguments, *scene);
-    std::optional<OidnLibrary> denoiser;  // what is missing is said now, not in hours
-    if (arguments.denoise) denoiser.emplace(threads);
+    const Denoiser denoiser = denoiser_of(arguments, threads);  // what is missing is said now, not in hours
 
     core::RenderRequest request;
     request.seed = arguments.seed;
@@ -350,8 +371,7 @@ int render_command(const RenderArguments& arguments) {
                             arguments.command_line,
                             loaded.approximations};
         core::with_memory_for("writing the picture", [&] {
-            write_outputs(files, report, arguments, denoiser ? &*denoiser : nullptr,
-                          result.statistics.warnings);
+            write_outputs(files, report, arguments, registry, denoiser, result.statistics.warnings);
         });
         result.statistics.seconds["write"] = seconds_since(write_start);
         if (!arguments.stats.empty()) {

@@ -52,7 +52,8 @@ struct RenderArguments {
     std::optional<double> seconds, noise;
     std::uint64_t seed = 0;
     int threads = 0;  ///< 0: one for every core
-    bool resume = false, quiet = false, verbose = false, half = false, auxiliary = false, denoise = false;
+    bool resume = false, quiet = false, verbose = false, half = false, auxiliary = false;
+    std::string denoise;  ///< "oidn" or "bmfr"; "": not denoised
     double checkpoint_every = 60.0;
     std::optional<float> exposure;  ///< of the preview [stops]; none: it adapts
     std::string stats;

@@ -12,7 +12,8 @@ namespace {
 
 /// Colours that are no part of the beauty (core/image/film_image.cpp, apps/auxiliary_channels.h).
 bool is_auxiliary(const std::string& layer) {
-    static const std::array<std::string, 4> names{"Albedo", "DiffuseAlbedo", "Transmittance", "Variance"};
+    static const std::array<std::string, 5> names{"Albedo", "DiffuseAlbedo", "Transmittance", "InScattered",
+                                                  "Variance"};
     static const std::array<std::string, 4> beginnings{"Variance.", "Center.", "Mirrored.", "hidden_light_"};
     return std::find(names.begin(), names.end(), layer) != names.end() ||
            std::any_of(beginnings.begin(), beginnings.end(),

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "apps/denoise/beauty_layers.h"
+#include "apps/in_scattered_feature.h"
 
 namespace mote::apps {
 
@@ -55,6 +56,8 @@ BmfrFeatures::BmfrFeatures(const ImageChannels& image)
     if (!depth.empty()) nearness_ = nearness(depth);
     for (const Rgb& t : image.rgb("Transmittance"))
         transmittance_.push_back(is_finite(t) ? average(t) : 0.0f);
+    for (const Rgb& light : in_scattered(image))
+        in_scattered_.push_back(is_finite(light) ? average(light) : 0.0f);
     const std::vector<float> x = plane("MotionVector.X"), y = plane("MotionVector.Y");
     for (std::size_t p = 0; p < x.size() && p < y.size(); ++p) {
         const bool sky = !position_.empty() && !is_finite(position_[p]);
@@ -84,6 +87,10 @@ std::vector<FeaturePlane> BmfrFeatures::of_surfaces() const {
 
 std::vector<FeaturePlane> BmfrFeatures::of_media() const {
     std::vector<FeaturePlane> features{{column_, true}, {row_, true}};
+    if (!in_scattered_.empty()) {  // the others would add little but noise
+        features.push_back({in_scattered_, false});
+        return features;
+    }
     if (!nearness_.empty()) features.push_back({nearness_, true});
     if (!transmittance_.empty()) features.push_back({transmittance_, true});
     return features;
@@ -95,6 +102,7 @@ std::string BmfrFeatures::said() const {
     if (!normals_.empty()) names.push_back(normals_);
     if (!position_.empty()) names.emplace_back("P");
     if (!mirrored_planes_.empty()) names.emplace_back("Mirrored");
+    if (!in_scattered_.empty()) names.emplace_back("in-scattered light");
     return names.empty() ? ", without features" : ", with " + joined(names);
 }
 

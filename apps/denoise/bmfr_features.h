@@ -16,8 +16,8 @@ class BmfrFeatures {
     BmfrFeatures& operator=(const BmfrFeatures&) = delete;
 
     std::vector<screenspace::FeaturePlane> of_surfaces() const;  ///< Ns (else N), P and its squares
-    std::vector<screenspace::FeaturePlane> of_media()
-        const;  ///< the place, its squares, Depth, Transmittance
+    /// The place and its squares, and in-scattered light where it is known, else Depth and Transmittance.
+    std::vector<screenspace::FeaturePlane> of_media() const;
     std::span<const core::Rgb> albedo() const { return albedo_; }
     std::span<const core::Vec3> position() const { return position_; }
     std::span<const core::Vec3> normal() const { return normal_; }
@@ -35,9 +35,9 @@ class BmfrFeatures {
     std::vector<core::Vec3> position_, normal_, previous_position_;
     std::vector<core::Vec2> motion_;
     std::vector<std::uint32_t> id_;
-    std::vector<std::vector<float>> surface_planes_,
-        mirrored_planes_;  ///< normal and position, as far as they are known
-    std::vector<float> column_, row_, nearness_, transmittance_;
+    /// Normal and position, as far as they are known; and of what mirrors show.
+    std::vector<std::vector<float>> surface_planes_, mirrored_planes_;
+    std::vector<float> column_, row_, nearness_, transmittance_, in_scattered_;
 };
 
 }  // namespace mote::apps

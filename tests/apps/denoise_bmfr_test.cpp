@@ -96,6 +96,48 @@ TEST_CASE("The film's variance holds a denoised picture to the mean", "[command]
     CHECK(folder.error("b.exr", "denoised:") < folder.error("a.exr", ""));
 }
 
+TEST_CASE("A render ends with the regression that mote denoise makes", "[command][bmfr]") {
+    const Folder folder;
+    folder.render("a.exr", 2, 1, {"-D", "fog=0.1", "--auxiliary"});
+    folder.render("b.exr", 2, 1, {"-D", "fog=0.1", "--denoise=bmfr"});
+    folder.denoise("a.exr", "c.exr");
+    const ImageChannels at_end = mote::core::read_exr(folder.file("b.exr")),
+                        later = mote::core::read_exr(folder.file("c.exr"));
+    REQUIRE_FALSE(at_end.rgb("denoised").empty());
+    CHECK((at_end.rgb("denoised") == later.rgb("denoised")));
+    CHECK((at_end.rgb("") == later.rgb("")));
+    CHECK(run_mote(folder, {"render", "scene.xml", "--denoise=median"}).exit_code == 2);
+}
+
+TEST_CASE("In-scattered light is a feature of fog with shafts", "[command][bmfr]") {
+    // A spot through the bars of a grille: nothing but that light has its edges.
+    const Folder folder;
+    std::string scene = mote::tests::read_file(folder.file("scene.xml"));
+    std::string bars =
+        R"(<emitter type="spot"><float name="cutoff_angle" value="20"/><rgb name="intensity" value="60"/>
+        <transform name="to_world"><lookat origin="-3, 1.5, 0.5" target="0, 0, 0.5" up="0, 1, 0"/></transform></emitter>)";
+    for (int i = 0; i < 6; ++i)
+        bars += fmt::format(R"(<shape type="rectangle"><transform name="to_world"><scale x="1" y="0.04"/>
+            <rotate y="1" angle="90"/><translate x="-1.4" y="{}" z="0.5"/></transform>
+            <bsdf type="twosided"><bsdf type="diffuse"/></bsdf></shape>)",
+                            0.2 + 0.2 * i);
+    scene.insert(scene.rfind("</scene>"), bars);
+    write_file(folder.file("scene.xml"), scene);
+    const std::vector<std::string> fog{"-D", "fog=0.1", "--auxiliary"};
+    folder.render("a.exr", 16, 1, fog), folder.render("reference.exr", 256, 2, {"-D", "fog=0.1"});
+    ImageChannels image = mote::core::read_exr(folder.file("a.exr")), without;
+    CHECK_FALSE(image.rgb("InScattered").empty());
+    without.width = image.width, without.height = image.height;
+    for (std::size_t c = 0; c < image.names.size(); ++c)
+        if (!image.names[c].starts_with("InScattered.")) without.add(image.names[c], image.channels[c]);
+    mote::core::write_exr(folder.file("b.exr"), without);
+    CHECK(folder.denoise("a.exr", "c.exr").find("in-scattered light") != std::string::npos);
+    CHECK(folder.denoise("b.exr", "d.exr").find("in-scattered light") == std::string::npos);
+    const double with = folder.error("c.exr", "denoised:"), less = folder.error("d.exr", "denoised:");
+    CAPTURE(with, less);
+    CHECK(with < 0.9 * less);
+}
+
 TEST_CASE("A sequence uses the frames before, as the camera moves", "[command][bmfr]") {
     const Folder folder;
     for (int frame = 0; frame < 6; ++frame)
