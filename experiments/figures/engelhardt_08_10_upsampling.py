@@ -60,12 +60,17 @@ def figure(mote, quick, output):
 
 
 def draw(panels, output):
+    """Three panels a row, as high as the first of them."""
     size = lambda image: [k * zoom(image.shape[1]) for k in image.shape[:2]]
-    height, width = (max(size(image)[k] for _, image, _ in panels) for k in (0, 1))
-    canvas = Canvas(3 * (width + 10) + 10, 3 * (height + TITLE + 10) + 10)
-    for k, (text, image, truth) in enumerate(panels):
-        axes = canvas.panel(10 + k % 3 * (width + 10), TITLE + k // 3 * (height + TITLE + 10), *reversed(size(image)))
-        show(axes, image, 0.6 / np.percentile(luminance(truth), 90), text)
+    rows = [panels[k:k + 3] for k in range(0, len(panels), 3)]
+    width = max(size(image)[1] for _, image, _ in panels)
+    canvas = Canvas(3 * (width + 10) + 10, sum(size(row[0][1])[0] + TITLE + 10 for row in rows) + 10)
+    y = TITLE
+    for row in rows:
+        for k, (text, image, truth) in enumerate(row):
+            height, own = size(image)
+            show(canvas.panel(10 + k * (width + 10), y, own, height), image, 0.6 / np.percentile(luminance(truth), 90), text)
+        y += size(row[0][1])[0] + TITLE + 10
     canvas.save(output.with_suffix(".png"))
 
 
