@@ -68,16 +68,22 @@ TEST_CASE("sides of surfels are those that reflect, with what they reflect", "[s
         for (const Rgb& l : light) CHECK(glm::distance(l, Rgb(0.2f, 0.4f, 0.6f)) < 1e-6f);
 }
 
-TEST_CASE("direct light of a point light arrives as its closed form", "[stored_light]") {
-    const Stage stage(
-        fmt::format(fmt::runtime(floor_with), R"(<bsdf type="twosided">)" + white + "</bsdf>") + lamp, 400);
-    const ArrivedLight light = direct_light_at(*stage.scene, stage.sides, 1, 1, {});
-    REQUIRE(stage.sides.size() == 800);
-    for (std::size_t i = 0; i < stage.sides.size(); ++i) {
-        const Vec3 to = Vec3(0.3f, 0.2f, 2.0f) - stage.position(i);
-        const float cosine = stage.sides.back(i) ? 0.0f : glm::normalize(to).z;
-        const Rgb expected = Rgb(3, 2, 1) * cosine / glm::dot(to, to);
-        CHECK(glm::distance(light.irradiance[i], expected) <= 1e-5f * glm::length(expected));
+TEST_CASE("direct light of point lights arrives as its closed form, on either side", "[stored_light]") {
+    const std::string below =
+        R"(<emitter type="point"><point name="position" x="-0.4" y="0.1" z="-1"/><rgb name="intensity" value="3, 2, 1"/></emitter>)";
+    for (const bool back : {false, true}) {
+        const Stage stage(
+            fmt::format(fmt::runtime(floor_with), R"(<bsdf type="twosided">)" + white + "</bsdf>") +
+                (back ? below : lamp),
+            400);
+        const ArrivedLight light = direct_light_at(*stage.scene, stage.sides, 1, 1, {});
+        REQUIRE(stage.sides.size() == 800);
+        for (std::size_t i = 0; i < stage.sides.size(); ++i) {
+            const Vec3 to = (back ? Vec3(-0.4f, 0.1f, -1.0f) : Vec3(0.3f, 0.2f, 2.0f)) - stage.position(i);
+            const float cosine = std::max(0.0f, glm::dot(glm::normalize(to), stage.normal(i)));
+            const Rgb expected = Rgb(3, 2, 1) * cosine / glm::dot(to, to);
+            CHECK(glm::distance(light.irradiance[i], expected) <= 1e-5f * glm::length(expected));
+        }
     }
 }
 

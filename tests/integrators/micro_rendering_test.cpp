@@ -99,6 +99,38 @@ TEST_CASE("micro-rendering has the mean of path, within the size of its points",
     }
 }
 
+// A diffuse floor, lit by a point, in a glossy wall: nothing else sends light to what is seen. The floor is 2
+// by 2, and its discs make it larger by their radius on either side of its border.
+TEST_CASE("glossy receivers have the mean of path, whatever their buffers follow",
+          "[micro_rendering][equality]") {
+    const std::string light =
+        R"(<emitter type="point"><point name="position" x="0" y="0" z="0"/><rgb name="intensity" value="3"/></emitter>)";
+    const std::string floor =
+        R"(<shape type="rectangle"><transform name="to_world"><rotate x="1" angle="-90"/><translate y="-1"/></transform>
+        <bsdf type="diffuse"><rgb name="reflectance" value="0.8, 0.6, 0.4"/></bsdf></shape>)";
+    const std::string wall =
+        R"(<shape type="rectangle"><transform name="to_world"><translate z="-1"/></transform>)";
+    const std::string camera =
+        R"(<sensor type="perspective"><float name="fov" value="24"/><transform name="to_world">
+        <lookat origin="0, 0.4, 3" target="0, -0.1, -1" up="0, 1, 0"/></transform></sensor></scene>)";
+    const auto scene =
+        scene_from("<scene version=\"3.0.0\">" + light + floor + wall + glossy + "</shape>" + camera, 8);
+    const auto expected = render_statistics(*scene, *path(3), {.block = 8, .passes = 600});
+    const int points = 3000;
+    const double disc = std::sqrt(2.0 * 8.0 / (points * 3.14159265)), bias = 2.0 * disc;
+    for (const char* warp : {"true", "false"}) {
+        const auto found = render_statistics(
+            *scene,
+            *micro(word("light", "direct") + fmt::format(R"(<boolean name="brdf_warp" value="{}"/>)", warp),
+                   3, points),
+            {.block = 8, .passes = 8, .seed = 2});
+        const Difference indirect = difference(found, expected, "indirect");
+        CAPTURE(warp, indirect.relative, indirect.error, bias);
+        CHECK(indirect.within(bias));
+        CHECK_FALSE(difference(found, expected, "indirect", 0.7).within(bias));
+    }
+}
+
 TEST_CASE("upsampling gathers at fewer pixels, and at those that have no neighbours alike",
           "[micro_rendering]") {
     const auto scene = scene_from(box(grey, ""), 24), shiny = scene_from(box(glossy, ""), 24);
