@@ -23,8 +23,8 @@ struct LitPointSettings {
     std::uint32_t candidates = 8;  ///< for each point (SurfelSettings); 0: stratified points
     StoredLight light = StoredLight::direct;
     int light_samples = 4;            ///< drawn lights a place
-    int bounces = 4;                  ///< of radiosity, the first from direct light
-    std::uint32_t level = 4;          ///< of radiosity (PointRadiositySettings)
+    int bounces = 6;                  ///< of radiosity, the first from direct light
+    std::uint32_t level = 6;          ///< of radiosity (PointRadiositySettings)
     lights::LightPathSettings paths;  ///< of virtual point lights, or of photons
     float bound = core::infinity;     ///< on G* between a virtual point light and a place [1/m^2]
     std::size_t neighbours = 50;      ///< photons of an estimate

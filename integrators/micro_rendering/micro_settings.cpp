@@ -28,7 +28,7 @@ void read_points(const Properties& p, MicroSettings& s) {
     points.light_samples = int(p.get_int_in("light_samples", 4, 1, 4096));
     points.bounces = int(p.get_int_in("bounces", 6, 1, 1000));
     if (s.most_bounces() >= 0) points.bounces = std::min(points.bounces, s.most_bounces());
-    points.level = std::uint32_t(p.get_int_in("radiosity_level", 4, 0, 24));
+    points.level = std::uint32_t(p.get_int_in("radiosity_level", 6, 0, 24));
     const bool photons = points.light == StoredLight::photons;
     points.paths.paths =
         std::uint32_t(photons ? p.get_int_in("photon_paths", 100000, 1, std::int64_t(1) << 26)
@@ -75,7 +75,7 @@ std::vector<Parameter> micro_parameters() {
          "'radiosity': other points, 'photons': a photon map"},
         {"light_samples", "integer", "4", "lights, and directions, drawn for every point"},
         {"bounces", "integer", "6", "radiosity: reflections between surfaces that are followed"},
-        {"radiosity_level", "integer", "4",
+        {"radiosity_level", "integer", "6",
          "radiosity: one point of 2^level gathers for all of them that face its way"},
         {"paths", "integer", "256", "vpls: light paths of a pass"},
         {"bound", "float", "automatic",
