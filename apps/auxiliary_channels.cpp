@@ -52,7 +52,8 @@ std::vector<core::HitFeature> features_by_name(const core::Scene& scene, std::sp
 std::vector<core::HitFeature> features_for_denoising(const core::Scene& scene, std::vector<std::string> asked,
                                                      bool regression) {
     for (const char* name : {"Albedo", "Ns"}) asked.emplace_back(name);
-    for (const char* name : {"P", "Depth", "Transmittance"})
+    for (const char* name :
+         {"P", "Depth", "Transmittance", "Mirrored.Emission", "Mirrored.Albedo", "Mirrored.P", "Mirrored.Ns"})
         if (regression) asked.emplace_back(name);
     return features_by_name(scene, asked);
 }
