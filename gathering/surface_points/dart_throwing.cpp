@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::uint32_t nothing = 0xffffffffu;
 constexpr float shrink = 0.96f;
+constexpr std::size_t block = 8192;
 
 /// Chosen points in cells of a grid, found by a hash of the cell.
 class PointGrid {
@@ -68,12 +69,14 @@ class PointGrid {
     std::vector<std::uint32_t> heads_, next_;
 };
 
+/// Random order within blocks: candidates come along a curve, and what is near is in the cache.
 std::vector<std::uint32_t> shuffled(std::size_t count, std::uint64_t seed) {
     std::vector<std::uint32_t> order(count);
     std::iota(order.begin(), order.end(), 0u);
     Rng rng(hash_keys(seed, 0x6461727473ull));
-    for (std::size_t i = count; i > 1; --i)
-        std::swap(order[i - 1], order[std::uint64_t(rng.next_u32()) * i >> 32]);
+    for (std::size_t first = 0; first < count; first += block)
+        for (std::size_t i = std::min(block, count - first); i > 1; --i)
+            std::swap(order[first + i - 1], order[first + (std::uint64_t(rng.next_u32()) * i >> 32)]);
     return order;
 }
 

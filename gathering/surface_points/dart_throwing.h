@@ -16,10 +16,11 @@ struct DartThrow {
     float covering_radius = 0.0f;       ///< hardly any place is farther from a chosen point [m]
 };
 
-/// Chooses `count` of the candidates, which are uniform over `area` [m^2] and at least as many. Candidates in
-/// random order become points where no point is nearer than a distance; it begins as the largest that so many
-/// points of a plane could keep, and shrinks whenever all candidates were tried. Only points whose normals
-/// are less than 90 degrees apart keep it: walls have two sides.
+/// Chooses `count` of the candidates, which are uniform over `area` [m^2], at least as many, and should
+/// follow each other along some curve. Candidates in random order become points where no point is nearer than
+/// a distance; it begins as the largest that so many points of a plane could keep, and shrinks whenever all
+/// candidates were tried. Only points whose normals are less than 90 degrees apart keep it: walls have two
+/// sides.
 DartThrow throw_darts(std::span<const core::Vec3> positions, std::span<const core::Vec3> normals,
                       std::size_t count, double area, std::uint64_t seed, core::CancelToken cancelled = {});
 
