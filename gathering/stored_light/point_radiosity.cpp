@@ -12,6 +12,8 @@ namespace {
 
 /// Normals of places that share what one of them gathers differ by less than about 25 degrees.
 constexpr float alike = 0.9f;
+/// Receivers until somebody may want to stop: some tenths of a second.
+constexpr std::size_t between_looks = 2048;
 
 /// The places of each surfel: front and back, or none.
 std::vector<std::array<std::uint32_t, 2>> places_of_surfels(const SurfelSides& sides, std::size_t surfels) {
@@ -68,9 +70,14 @@ std::vector<Rgb> point_radiosity(const PointHierarchy& hierarchy, const MicroBuf
             micro_receiver(sides.vertex(place), Rng(hash_keys(settings.key, place)).next_float()));
     std::vector<Rgb> light = arriving, gathered(receivers.size());
     for (int bounce = 0; bounce < settings.bounces; ++bounce) {
-        settings.cancelled.check();
         const SurfelSides::Radiance sent = sides.reflected(light);
-        gather_irradiance(buffers, NodeRadiance(hierarchy, sent.front, sent.back), receivers, gathered);
+        const NodeRadiance radiance(hierarchy, sent.front, sent.back);
+        for (std::size_t begin = 0; begin < receivers.size(); begin += between_looks) {
+            settings.cancelled.check();
+            const std::size_t count = std::min(between_looks, receivers.size() - begin);
+            gather_irradiance(buffers, radiance, std::span(receivers).subspan(begin, count),
+                              std::span(gathered).subspan(begin, count));
+        }
         for (std::size_t i = 0; i < light.size(); ++i) light[i] = arriving[i] + gathered[places.by[i]];
     }
     return light;
