@@ -3,7 +3,7 @@
 
 Micro-rendering at every pixel and at one pixel of 4 x 4 with bilateral upsampling, buffers of 24 x 24 texels as in the
 thesis, in the Cornell box and in a room with a bunny of 70 thousand triangles. The thesis compares pictures with direct
-light, which is the same for all methods: measured here is indirect light alone. A full run takes some 4 minutes of one
+light, which is the same for all methods: measured here is indirect light alone. A full run takes some 5 minutes of one
 core, --quick half of one.
 
     experiments/figures/engelhardt_08_01_bounce.py [--quick] [--redraw] [--output FOLDER] [--bin FOLDER]
@@ -26,7 +26,7 @@ def figure(mote, quick, output):
     points, passes = (8192, 2) if quick else (65536, 2)
     rows, panels = [], []
     for scene, size in sizes.items():
-        view = IndirectView(mote, scene, size, 128 if quick else 256, scene.stem, depth=3)
+        view = IndirectView(mote, scene, size, 128, scene.stem, depth=3)
         pictures = {name: view.render(name.replace("/", "_"), micro(light="direct", points=points, micro_buffer=24, upsampling=n), passes)
                     for name, n in METHODS.items()}
         path = view.render("path", {"integrator": "path"}, 4)
@@ -39,7 +39,7 @@ def figure(mote, quick, output):
         claims.check(f"{title}: differences are minor: below {LARGEST:.0%}, the mean within {LARGEST_BIAS:.0%}", told,
                      all(error[n] < LARGEST and abs(view.ratio(p) - 1) < LARGEST_BIAS for n, p in pictures.items()))
         claims.check(f"{title}: with bilateral upsampling they are slightly more perceptible", f"{error['every pixel']:.2%} and {error['1/16 of the pixels']:.2%}",
-                     error["every pixel"] < error["1/16 of the pixels"] < 2 * error["every pixel"])
+                     error["every pixel"] < error["1/16 of the pixels"] < 2 * error["every pixel"], differs=None if quick else SMOOTHED)
         claims.check(f"{title}: path tracing takes longer to the same error, of upsampled pictures at the least", ", ".join(f"{s:.1f} times ({n})" for n, s in slower.items()),
                      slower["1/16 of the pixels"] > 1)
         rows += [[title, name, error[name], view.ratio(p) - 1, p.cpu, slower[name]] for name, p in pictures.items()]
@@ -50,6 +50,8 @@ def figure(mote, quick, output):
 
 
 LARGEST, LARGEST_BIAS = 0.15, 0.05
+SMOOTHED = ("away from edges pixels of this size blur nothing, and light that is shared by neighbours is smoother than that of one buffer "
+            "each; with few pixels it holds")
 
 
 def draw(panels, output):
