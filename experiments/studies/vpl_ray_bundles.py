@@ -60,7 +60,7 @@ def render(args, scene, method, passes, seed, output):
 def error_of(args, picture, references, layer=None):
     command = [args.mote, "compare", picture, references[0], "--second", references[1]] + (["--layer", layer] if layer else [])
     said = subprocess.run(command, check=True, capture_output=True, text=True).stdout
-    found = re.search(r"^error\s+([\d.e-]+) % \+- ([\d.e-]+) %, bias ([-+\d.e]+) % \+- ([\d.e-]+)", said, re.M)
+    found = re.search(r"^error\s+([\d.e+-]+) % \+- ([\d.e+-]+) %, bias ([-+\d.e]+) %", said, re.M)
     if not found:
         raise RuntimeError(said)
     return tuple(float(x) for x in found.groups())

@@ -8,12 +8,14 @@
 
 #include "core/math/sampler.h"
 #include "core/scene/emitter.h"
+#include "gathering/ray_bundles/ray_bundle.h"
 
 namespace mote::gathering {
 
 struct BundleDirection {
-    core::Vec3 direction;  ///< unit; the line runs along it and against it
-    float pdf_line;        ///< p_r [1/sr], the same for both ways
+    core::Vec3 direction;             ///< unit; the line runs along it and against it
+    float pdf_line;                   ///< p_r [1/sr], the same for both ways
+    const RayBundle* kept = nullptr;  ///< where its links are looked up; null: they are traced
 };
 
 /// p_r of a direction; `sky` is the light that half of the lines are drawn by, or null.

@@ -43,7 +43,7 @@ void EyeBundles::add(const ReceiverArray& receivers, std::span<const BundleDirec
                        w = side == 0 ? leaving : -leaving;
             // Only where light comes through a surface are there two directions that count.
             if (side == 1 && !x.vertex->bsdf->traits().transmissive) continue;
-            if (pass_.two_way || w == line.direction) trace(x, w, density, found_[i], direct[i]);
+            if (pass_.two_way || w == line.direction) trace(x, w, density, line.kept, found_[i], direct[i]);
         }
         light_found_points(lines, index, indirect);
     }
@@ -59,8 +59,8 @@ void EyeBundles::add_own_rays(const ReceiverArray& receivers, std::span<const Bu
         const auto drawn = x.vertex->sample(walk_.rng.next_float(), u, TransportMode::radiance);
         if (!drawn || drawn->delta) continue;  // the eye path itself goes on behind mirrors
         const float ways = pass_.two_way ? 1.0f : 0.5f;
-        trace(x, drawn->wi, pass_.samples.directions * line_pdf(pass_.sky, drawn->wi) * ways, found_[i],
-              direct[i]);
+        trace(x, drawn->wi, pass_.samples.directions * line_pdf(pass_.sky, drawn->wi) * ways, nullptr,
+              found_[i], direct[i]);
     }
     light_found_points(lines, lines.size(), indirect);
 }
@@ -128,28 +128,47 @@ void EyeBundles::go_on(std::span<const BundleDirection> lines, std::size_t first
             if (!pass_.repeats) std::swap(unused[i][drawn], unused[i].back()), unused[i].pop_back();
             const BundleReceiver here{&y.vertex, y.throughput, y.max_vpl_depth - 1, y.sampler, false};
             Rgb direct(0.0f);
-            trace(here, towards_eye_side(y.vertex, line.direction), line.pdf_line, found_[i], direct);
+            trace(here, towards_eye_side(y.vertex, line.direction), line.pdf_line, line.kept, found_[i],
+                  direct);
         }
         if (!any_of(found_)) return;
         connect_lights(indirect);
     }
 }
 
+/// What lies along the ray from x: as a kept bundle has it, or as a ray finds it.
+WalkEvent EyeBundles::look(const ScatteringVertex& x, const Ray& ray, const RayBundle* kept,
+                           Rgb& throughput) {
+    WalkEvent event;
+    const auto end = kept ? pass_.links->next(*kept, x, ray.direction) : std::nullopt;
+    if (!end) {
+        MediumState state;
+        PathWeights weights;
+        Rgb emitted(0.0f);
+        event = walk<false>(pass_.scene, ray, state, weights, emitted, walk_);
+        throughput *= weights.throughput;
+        return event;
+    }
+    event.kind = end->hit ? WalkEvent::Kind::surface : WalkEvent::Kind::escaped;
+    if (end->hit) event.hit = *end->hit;
+    event.distance = end->distance;
+    return event;
+}
+
 /// `pdf_lines`: what the direction's share is divided by, M p_r where there are M [1/sr].
-void EyeBundles::trace(const BundleReceiver& x, const Vec3& w, float pdf_lines, Found& y, Rgb& direct) {
+void EyeBundles::trace(const BundleReceiver& x, const Vec3& w, float pdf_lines, const RayBundle* kept,
+                       Found& y, Rgb& direct) {
     // Tokuyoshi & Ogaki 2012, Eq. 14, for all that a bundle finds.
     const float limit = pass_.vpls.peak_directions > 0.0f ? pass_.vpls.peak_directions : infinity;
     const Rgb f_cos = x.vertex->eval_cos(w, TransportMode::radiance, limit);
     if (is_black(f_cos)) return;
     const Ray ray{x.vertex->ray_origin(w), w};
-    MediumState state;
-    PathWeights weights;
-    Rgb emitted(0.0f);
-    const WalkEvent event = walk<false>(pass_.scene, ray, state, weights, emitted, walk_);
+    Rgb before = x.throughput * f_cos;
+    const WalkEvent event = look(*x.vertex, ray, kept, before);
     // All of a receiver's directions are weighed by the balance heuristic: f / (M p_r + p_f).
     const bool own = x.first && has_own_ray(*x.vertex);
     const float pdf_own = own ? own_ray_pdf(*x.vertex, w, 1.0f) : 0.0f;
-    const Rgb throughput = x.throughput * f_cos * weights.throughput / (pdf_lines + pdf_own);
+    const Rgb throughput = before / (pdf_lines + pdf_own);
     if (event.kind == WalkEvent::Kind::escaped) {
         if (pass_.sky) direct += throughput * pass_.sky->environment(w);
         return;

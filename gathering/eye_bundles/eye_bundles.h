@@ -12,6 +12,7 @@
 
 #include "core/scene/lit_scene.h"
 #include "gathering/eye_bundles/bundle_directions.h"
+#include "gathering/eye_bundles/kept_links.h"
 #include "gathering/eye_bundles/path_weights.h"
 #include "lights/virtual_lights/vpl_gather.h"
 
@@ -44,7 +45,8 @@ struct BundlePass {
     /// Bounces of paths that choose one of the pass's own lines after the other, at random (the paper's
     /// Sec. 7); 0: virtual point lights are joined instead.
     int bounces = 0;
-    bool repeats = false;  ///< such a path may choose a line again: biased (docs/design.md)
+    bool repeats = false;              ///< such a path may choose a line again: biased (docs/design.md)
+    const KeptLinks* links = nullptr;  ///< of lines with kept bundles
 };
 
 using ReceiverArray = std::array<BundleReceiver, lights::ReceiverLanes::width>;
@@ -82,7 +84,10 @@ class EyeBundles {
     }
     void light_found_points(std::span<const BundleDirection> lines, std::size_t index,
                             lights::TileLight& indirect);
-    void trace(const BundleReceiver& x, const core::Vec3& w, float pdf_lines, Found& y, core::Rgb& direct);
+    void trace(const BundleReceiver& x, const core::Vec3& w, float pdf_lines, const RayBundle* kept, Found& y,
+               core::Rgb& direct);
+    core::WalkEvent look(const core::ScatteringVertex& x, const core::Ray& ray, const RayBundle* kept,
+                         core::Rgb& throughput);
     void go_on(std::span<const BundleDirection> lines, std::size_t first, lights::TileLight& indirect);
     void light_points(lights::TileLight& indirect);
     bool continue_paths();

@@ -82,11 +82,13 @@ FewerFound fewer_than_next(const TechniqueSamples& samples, const ScatteringVert
     const float d2 = std::max(glm::dot(to_next, to_next), 1e-30f);
     const Vec3 direction = to_next / std::sqrt(d2);
     const float cos_y = y.shading_cosine(direction), cos_next = next.geometric_cosine(direction);
-    const float made = std::max(samples.continued * continued_pdf(cos_y * cos_next / d2), 1e-30f);
-    const float by_pdf = fewer.from(y, direction) * cos_y / d2 / made;
-    const float plain = samples.joined_share / made;
-    if (next.diffuse_reflectance()) return {plain + by_pdf * cos_next * inv_pi, 0.0f};
-    return {plain, by_pdf};
+    const float made = samples.continued * continued_pdf(cos_y * cos_next / d2);
+    const float plain = std::min(samples.joined_share / std::max(made, 1e-30f), certain);
+    // p(next -> y) b / (c e(y -> next)): |y - next| and the cosine at y are in both, and for a plain surface
+    // that at next, too. No quotient of what may be 0, where the points are one.
+    const float onward = std::min(fewer.from(y, direction) / samples.continued, certain);
+    if (next.diffuse_reflectance()) return {plain + onward, 0.0f};
+    return {plain, onward * pi / std::max(cos_next, 1e-6f)};
 }
 
 namespace {

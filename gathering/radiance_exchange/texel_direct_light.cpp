@@ -1,23 +1,16 @@
 #include "gathering/radiance_exchange/texel_direct_light.h"
 
-#include "core/scene/shadow_segment.h"
 #include <tbb/parallel_for.h>
+#include "core/scene/shadow_segment.h"
 
 #include "core/math/sampler.h"
+#include "gathering/atlas/surface_place.h"
 
 namespace mote::gathering {
 
 using namespace core;
 
 namespace {
-
-
-/// How far the triangles that stand for a shape may lie below it: twice the chord error of tessellations, for
-/// shapes that are no meshes [m]. Shadow rays meet the shape itself, so that lights are drawn from above it.
-float depth_below(const Shape& shape) {
-    constexpr float chord_error = TessellationSettings{}.chord_error;
-    return shape.primitive_count() > 1 ? 0.0f : 2.0f * chord_error * max_component(shape.bounds().diagonal());
-}
 
 /// The irradiance at a place from one light, over the probability of the light and its point.
 TexelLightSample sample_light(const LitScene& lights, SurfaceHit hit, const Vec3& outside, float u_light,

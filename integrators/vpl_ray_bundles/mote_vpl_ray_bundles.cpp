@@ -19,6 +19,12 @@ using namespace core;
 using gathering::Techniques;
 namespace {
 
+float non_negative(const Properties& p, const std::string& name, double usual) {
+    const double x = p.get_float(name, usual);
+    if (!(x >= 0.0 && x < 1e6)) throw InputError(name + " must be 0 or more and below 1e6", p.where_of(name));
+    return float(x);
+}
+
 class MoteVplRayBundles final : public Integrator {
   public:
     explicit MoteVplRayBundles(const Properties& p) {
@@ -47,6 +53,13 @@ class MoteVplRayBundles final : public Integrator {
         settings_.two_way = p.get_bool("two_way", true);
         settings_.bounces = int(p.get_int_in("bounces", 0, 0, 1000));
         settings_.repeats = p.get_bool("repeats", false);
+        const std::string links = p.get_choice("links", "rays", {"rays", "grid", "imperfect"});
+        settings_.keeps_links = links != "rays", settings_.links.imperfect = links == "imperfect";
+        settings_.links.spacing = non_negative(p, "link_spacing", 0.0);
+        settings_.links.points = std::uint32_t(p.get_int_in("link_points", 16384, 1, 1 << 24));
+        settings_.links.splat_size = non_negative(p, "splat_size", 1.4);
+        if (settings_.links.splat_size == 0.0f)
+            throw InputError("splat_size must be above 0", p.where_of("splat_size"));
         if (settings_.bounces > 0 && settings_.techniques != Techniques::bundles)
             throw InputError(
                 "bounces along directions of the same pass are paths of bundles alone: "
@@ -76,6 +89,10 @@ class MoteVplRayBundles final : public Integrator {
             throw InputError(
                 "mote_vpl_ray_bundles renders surfaces only, and the scene has media; volpath and "
                 "mote_vpl render them");
+        if (settings_.keeps_links && scene.has_panes())
+            throw InputError(
+                "links of bundles that are kept know no panes or masks, and the scene has some: "
+                "links=\"rays\"");
         return make_vpl_bundle_estimator(scene, options, settings_);
     }
 
@@ -133,6 +150,13 @@ void MoteVplRayBundles::plan_bias(Plan& plan) const {
                   "bound is set; without it these paths are weighed and nothing is missing");
     if (settings_.bounces > 0)
         plan.miss("light of more bounces", "no more than " + std::to_string(settings_.bounces), "asked for");
+    if (settings_.keeps_links)
+        plan.miss(
+            "links of bundles",
+            settings_.links.imperfect ? "those of a grid through discs around points" : "those of a grid",
+            settings_.links.imperfect
+                ? "asked for: holes between discs let light through, and edges move by up to a disc"
+                : "asked for: edges and contacts move by up to half a spacing of its rays");
     if (settings_.bounces > 1 && settings_.repeats)
         plan.miss("independent directions", "a path may take a direction again, and goes straight back then",
                   "asked for: biased by about one over the number of directions");
@@ -211,6 +235,15 @@ void register_mote_vpl_ray_bundles(Registry& registry) {
          "instead of joined virtual point lights; 0: none"});
     parameters.push_back({"repeats", "boolean", "false",
                           "such a path may take a direction again: biased by about one over their number"});
+    parameters.push_back(
+        {"links", "string", "rays",
+         "what a line finds: by 'rays' of each point, exact; looked up in bundles that are kept, "
+         "through the triangles ('grid') or through discs around points ('imperfect')"});
+    parameters.push_back({"link_spacing", "float", "0",
+                          "between the rays of kept bundles [m]; 0: 1/256 of the scene's diagonal"});
+    parameters.push_back({"link_points", "integer", "16384", "of an imperfect bundle"});
+    parameters.push_back({"splat_size", "float", "1.4",
+                          "radius of their discs; at 1 they have the area of all surfaces together"});
     parameters.push_back({"roughness_clamping", "boolean", "false",
                           "widen glossy lobes to the density of the light that is known: biased"});
     parameters.push_back(

@@ -20,6 +20,8 @@ class VplBundleEstimator final : public Estimator {
         const bool wants_direct =
             settings_.eye.wanted[Transport::direct] || settings_.eye.wanted[Transport::emission];
         eye_paths_ = wants_direct ? settings_.direct_paths_of_pass() : 1;
+        if (settings_.keeps_links && settings_.has_bundles())
+            links_ = std::make_unique<gathering::KeptLinks>(scene.shapes(), settings_.links);
         if (settings_.filters) filter_.emplace(scene, options, settings_.filter);
     }
 
@@ -34,11 +36,12 @@ class VplBundleEstimator final : public Estimator {
     bool pass(const PassContext& context, PassImage& image) override {
         if (context.cancelled) return false;
         const double begin = process_cpu_seconds();
-        const VplBundlePass pass(scene_, settings_, options_, context);
+        const VplBundlePass pass(scene_, settings_, links_.get(), options_, context);
         light_seconds_ += process_cpu_seconds() - begin;
         counters_.add(pass.vpls.rays, pass.vpls.tracking);
         vpls_ += pass.vpls.lights.size(), paths_ += pass.vpls.paths;
-        bytes_ = std::max(bytes_, pass.vpls.memory_bytes() + pass.rivals.size() * sizeof(float));
+        bytes_ = std::max(bytes_,
+                          pass.vpls.memory_bytes() + pass.rivals.size() * sizeof(float) + pass.kept_bytes());
         return for_each_tile(
             options_.width, options_.height, tile_size(), context.cancelled,
             [&](int x0, int y0, int x1, int y1) { render_tile(context, pass, image, x0, y0, x1, y1); });
@@ -75,7 +78,7 @@ class VplBundleEstimator final : public Estimator {
         const auto tile = std::make_unique<VplBundleTile>(scene_, settings_, pass, *scratch, walk);
         const int n = settings_.interleaving, side = VplBundleTile::side * n;
         for (int place = 0; place < n * n; ++place) {
-            const auto lines = directions(context, pass, place);
+            const auto& lines = pass.lines[std::size_t(place)];
             for (int y = y0; y < y1; y += side)
                 for (int x = x0; x < x1; x += side) {
                     if (context.cancelled) return;
@@ -85,20 +88,6 @@ class VplBundleEstimator final : public Estimator {
         counters_.add(walk.rays, walk.tracking);
         const std::lock_guard lock(time_mutex_);
         time_.eye += tile->time().eye, time_.vpls += tile->time().vpls, time_.bundles += tile->time().bundles;
-    }
-
-    /// Of the pixels at one place in their block of n x n.
-    std::vector<gathering::BundleDirection> directions(const PassContext& context, const VplBundlePass& pass,
-                                                       int place) const {
-        std::vector<gathering::BundleDirection> lines;
-        // Paths that go on along other lines of the set take them for independent ones.
-        const SamplerKind kind = settings_.bounces > 1 ? SamplerKind::independent : options_.sampler;
-        if (settings_.has_bundles())
-            for (std::uint32_t m = 0; m < settings_.directions; ++m)
-                lines.push_back(gathering::bundle_direction(pass.bundles.sky, kind, options_.seed,
-                                                            std::uint32_t(place),
-                                                            context.index * settings_.directions + m));
-        return lines;
     }
 
     /// Pixels from (x0, y0) on, n apart. They go round the n^2 shares of the VPLs from pass to pass.
@@ -134,8 +123,9 @@ class VplBundleEstimator final : public Estimator {
     const Scene& scene_;
     RenderOptions options_;
     VplBundleSettings settings_;
-    int eye_paths_ = 1;                  ///< of a pixel and pass
-    std::optional<LayerFilter> filter_;  ///< nothing: pixels stay as they are
+    int eye_paths_ = 1;                                  ///< of a pixel and pass
+    std::unique_ptr<const gathering::KeptLinks> links_;  ///< null: rays are traced
+    std::optional<LayerFilter> filter_;                  ///< nothing: pixels stay as they are
     SharedCounters counters_;
     std::mutex time_mutex_;
     VplBundleTime time_;

@@ -8,7 +8,8 @@ using namespace core;
 using gathering::Techniques;
 
 VplBundlePass::VplBundlePass(const LitScene& lit, const VplBundleSettings& settings,
-                             const RenderOptions& options, const PassContext& context)
+                             const gathering::KeptLinks* links, const RenderOptions& options,
+                             const PassContext& context)
     : vpls(lights::trace_light_paths(lit, settings.light_paths(), options.seed, context.index,
                                      options.sampler, context.cancelled)),
       bundles{lit, vpls, {}, {}, settings.techniques} {
@@ -29,6 +30,9 @@ VplBundlePass::VplBundlePass(const LitScene& lit, const VplBundleSettings& setti
         bundles.sky = lit.environment();
         but_sky.emplace(lit, std::vector<const Emitter*>{bundles.sky});
     }
+    bundles.links = links;
+    draw_lines(settings, options, context);
+    if (links) keep_links(options, context);
     samples.continued = settings.continuation_of_pass();
     rivals = gathering::rivals_of(lit, vpls, samples);
     bundles.rivals = rivals;
@@ -43,6 +47,32 @@ VplBundlePass::VplBundlePass(const LitScene& lit, const VplBundleSettings& setti
         vpls.peak_directions =
             samples.directions * gathering::uniform_line_pdf / float(settings.clamping.neighbours);
     }
+}
+
+/// Of the pixels at one place in their block of n x n.
+void VplBundlePass::draw_lines(const VplBundleSettings& settings, const RenderOptions& options,
+                               const PassContext& context) {
+    const int n = settings.interleaving;
+    lines.resize(std::size_t(n) * std::size_t(n));
+    if (!settings.has_bundles()) return;
+    // Paths that go on along other lines of the set take them for independent ones.
+    const SamplerKind kind = settings.bounces > 1 ? SamplerKind::independent : options.sampler;
+    for (std::size_t place = 0; place < lines.size(); ++place)
+        for (std::uint32_t m = 0; m < settings.directions; ++m)
+            lines[place].push_back(gathering::bundle_direction(bundles.sky, kind, options.seed,
+                                                               std::uint32_t(place),
+                                                               context.index * settings.directions + m));
+}
+
+void VplBundlePass::keep_links(const RenderOptions& options, const PassContext& context) {
+    const std::size_t count = lines.size() * lines[0].size();
+    kept.reserve(count);
+    for (auto& of_place : lines)
+        for (gathering::BundleDirection& line : of_place) {
+            const std::uint64_t number = hash_keys(options.seed, context.index, kept.size());
+            kept.push_back(bundles.links->bundle(line.direction, number, count, context.cancelled));
+            line.kept = &kept.back();
+        }
 }
 
 }  // namespace mote::integrators

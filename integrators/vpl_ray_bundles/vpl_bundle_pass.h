@@ -12,18 +12,33 @@ struct VplBundlePass {
     lights::VplSet vpls;
     std::vector<float> rivals;  ///< a_j (gathering/eye_bundles/path_weights.h)
     gathering::BundlePass bundles;
+    /// By place in a block of interleaved pixels, y after x.
+    std::vector<std::vector<gathering::BundleDirection>> lines;
+    std::vector<gathering::RayBundle> kept;      ///< of all lines, where they are looked up
     std::optional<lights::OtherLights> but_sky;  ///< where bundles find the sky's direct light
 
-    /// Throws core::Cancelled.
+    /// `links`: null where rays are traced. Throws core::Cancelled; InputError where kept bundles exceed
+    /// their budget.
     VplBundlePass(const core::LitScene& lit, const VplBundleSettings& settings,
-                  const core::RenderOptions& options, const core::PassContext& context);
+                  const gathering::KeptLinks* links, const core::RenderOptions& options,
+                  const core::PassContext& context);
     VplBundlePass(const VplBundlePass&) = delete;
     VplBundlePass& operator=(const VplBundlePass&) = delete;
 
     /// M where glossy receivers have rays of their own, else 0.
     float own_rays() const { return bundles.own_rays ? bundles.samples.directions : 0.0f; }
+    std::size_t kept_bytes() const {
+        std::size_t sum = 0;
+        for (const auto& bundle : kept) sum += bundle.memory_bytes();
+        return sum;
+    }
     /// Whose direct light eye paths look for; null: all.
     const core::LitScene* eye_lights() const { return but_sky ? &*but_sky : nullptr; }
+
+  private:
+    void draw_lines(const VplBundleSettings& settings, const core::RenderOptions& options,
+                    const core::PassContext& context);
+    void keep_links(const core::RenderOptions& options, const core::PassContext& context);
 };
 
 }  // namespace mote::integrators

@@ -27,6 +27,8 @@ struct VplBundleSettings {
     bool two_way = true;         ///< a direction serves both ways
     int bounces = 0;             ///< of paths along the pass's own directions, instead of joined VPLs
     bool repeats = false;        ///< such a path may take a direction again
+    bool keeps_links = false;    ///< bundles are grids, that are looked up
+    gathering::KeptLinkSettings links;
     compensation::RoughnessClamping clamping;
     int interleaving = 1;  ///< n: a pixel of n x n has every n^2-th VPL, and directions of its own
     bool filters = false;

@@ -102,12 +102,46 @@ TEST_CASE("paths that may take a direction again are biased", "[bundles]") {
           4.5 * std::sqrt(right.variance_of_mean + biased.variance_of_mean));
 }
 
+// A grid moves contacts by half a spacing at most, and discs leave holes: what that costs in the mean is
+// bounded by what was measured, 0.1 and 2 % of the room's indirect light, with room for the noise of these
+// passes.
+TEST_CASE("bundles that are looked up have the light of rays, within what grids and discs cost",
+          "[bundles][statistics]") {
+    const auto scene = scene_from(box(grey, ""), 12);
+    const auto mean = [&](const std::string& settings) {
+        const auto found =
+            render_statistics(*scene, *bundles(settings + depth(4)), {.block = 12, .passes = 150});
+        return found.whole[found.layer("indirect")][1];
+    };
+    const Estimate rays = mean("");
+    const auto links = [](const std::string& kind, const std::string& more) {
+        return R"(<string name="links" value=")" + kind + "\"/>" + more;
+    };
+    const Estimate grid = mean(links("grid", ""));
+    const Estimate discs = mean(links("imperfect", R"(<integer name="link_points" value="16384"/>)"));
+    // Far too coarse: half of the room between two rays.
+    const Estimate coarse = mean(links("grid", R"(<float name="link_spacing" value="0.7"/>)"));
+    const auto within = [&](const Estimate& found, double bias) {
+        const double sigma = std::sqrt(rays.variance_of_mean + found.variance_of_mean);
+        return std::fabs(found.mean - rays.mean) < bias * rays.mean + 4.5 * sigma;
+    };
+    CAPTURE(rays.mean, grid.mean, discs.mean, coarse.mean, std::sqrt(rays.variance_of_mean));
+    CHECK(std::sqrt(rays.variance_of_mean) < 0.02 * rays.mean);
+    CHECK(within(grid, 0.005));
+    CHECK(within(discs, 0.04));
+    CHECK(grid.mean != rays.mean);
+    CHECK(discs.mean != grid.mean);
+    CHECK(coarse.mean != grid.mean);
+}
+
 TEST_CASE("mote_vpl_ray_bundles refuses media and wrong settings, and says what it does",
           "[bundles][input]") {
     const auto foggy = scene_from(box(grey, R"(<medium type="homogeneous" name="interior"/>)"));
     CHECK_THROWS_AS(bundles("")->prepare(*foggy, {}), InputError);
     for (const char* wrong :
          {R"(<integer name="directions" value="-1"/>)", R"(<float name="bound" value="0"/>)",
+          R"(<float name="continuation" value="1"/>)", R"(<string name="links" value="grids"/>)",
+          R"(<float name="splat_size" value="0"/>)", R"(<float name="link_spacing" value="-1"/>)",
           R"(<string name="techniques" value="both"/>)", R"(<integer name="joined" value="-3"/>)",
           R"(<integer name="bounces" value="2"/>)",
           R"(<string name="techniques" value="bundles"/><integer name="bounces" value="4"/>)"})
@@ -119,6 +153,10 @@ TEST_CASE("mote_vpl_ray_bundles refuses media and wrong settings, and says what 
     CHECK(plan("").find("balance heuristic") != std::string::npos);
     CHECK(plan(R"(<boolean name="roughness_clamping" value="true"/>)").find("blurs them") !=
           std::string::npos);
+    CHECK(plan(R"(<string name="links" value="imperfect"/>)").find("holes between discs") !=
+          std::string::npos);
+    CHECK(plan("").find("go on by a chance") != std::string::npos);
+    CHECK(plan(R"(<float name="bound" value="2"/>)").find("go on by a chance") == std::string::npos);
     CHECK(plan(R"(<float name="bound" value="2"/>)").find("darkened") != std::string::npos);
     CHECK(bundles("")->plan(*foggy, find_requirements(*foggy)).to_text().find("refused") !=
           std::string::npos);
