@@ -290,7 +290,9 @@ int render_command(const RenderArguments& arguments) {
         return exit_ok;
     }
 
-    const core::Registry registry = make_registry();
+    std::optional<core::Registry> own;
+    if (!arguments.sequence) own = make_registry();
+    const core::Registry& registry = arguments.sequence ? arguments.sequence->registry : *own;
     core::LoadReport loaded;
     auto scene =
         core::with_memory_for("loading the scene", [&] { return load(arguments.scene, registry, &loaded); });

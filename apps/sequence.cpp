@@ -95,7 +95,7 @@ int render_sequence(const RenderArguments& arguments) {
         throw UsageError("the statistics of a sequence need #### where the frame's number goes");
     const std::string& define = arguments.scene.defines[parameter->define];
     const std::size_t frames = parameter->values.size();
-    SequenceFrame sequence;
+    SequenceFrame sequence{make_registry()};
     for (std::size_t i = 0; i < frames; ++i) {
         const int number = parameter->numbers[i];
         RenderArguments frame = arguments;
@@ -122,7 +122,9 @@ int render_sequence(const RenderArguments& arguments) {
         }
         sequence.previous = frame.scene;
         sequence.before.reset();
-        if (sequence.rendered && wants_motion(frame))
+        // Also without motion: meshes that the next frame has as well are kept as long as somebody holds
+        // them.
+        if (sequence.rendered)
             sequence.before = std::make_unique<core::PreviousFrame>(std::move(sequence.rendered));
         sequence.rendered.reset();
     }

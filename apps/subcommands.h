@@ -39,6 +39,7 @@ struct InfoArguments {
 
 /// What a frame of a sequence has to do with the others.
 struct SequenceFrame {
+    core::Registry registry;                      ///< of all frames: it keeps meshes that do not change
     std::optional<SceneArguments> previous = {};  ///< the frame before; the first has none
     std::unique_ptr<core::PreviousFrame> before =
         {};  ///< that frame, if it is there; else it is loaded when asked for

@@ -6,14 +6,14 @@
 namespace mote::core {
 
 const MeshAttribute* TriangleMesh::find_attribute(std::string_view name) const {
-    for (const MeshAttribute& attribute : data_.attributes)
+    for (const MeshAttribute& attribute : built_->data.attributes)
         if (attribute.name == name) return &attribute;
     return nullptr;
 }
 
 Rgb TriangleMesh::attribute_at(const MeshAttribute& attribute, std::uint32_t primitive, const Vec2& b) const {
     if (attribute.of_faces) return attribute.values[primitive];
-    const auto& corner = data_.triangles[primitive];
+    const auto& corner = built_->data.triangles[primitive];
     return (1.0f - b.x - b.y) * attribute.values[corner[0]] + b.x * attribute.values[corner[1]] +
            b.y * attribute.values[corner[2]];
 }
@@ -28,8 +28,8 @@ Rgb TriangleMesh::attribute_mean(std::string_view name) const {
     if (!found) return Rgb(0.0f);
     // Linear over a triangle: the value at its centre is its mean.
     Vec3d sum(0.0);
-    for (std::uint32_t i = 0; i < data_.triangles.size(); ++i)
-        sum += double(area_distribution_.probability(i)) * Vec3d(attribute_at(*found, i, Vec2(1.0f / 3.0f)));
+    for (std::uint32_t i = 0; i < built_->data.triangles.size(); ++i)
+        sum += double(built_->area_distribution.probability(i)) * Vec3d(attribute_at(*found, i, Vec2(1.0f / 3.0f)));
     return Rgb(sum);
 }
 

@@ -40,39 +40,42 @@ struct Corners {
 
 }  // namespace
 
-TriangleMesh::TriangleMesh(MeshData data) : data_(std::move(data)) {
-    check_mesh(data_, {});
-    closed_ = is_closed(data_);  // before dropping: a needle may hold a seam together
-    if (const std::size_t dropped = drop_degenerate_triangles(data_); dropped > 0)
+TriangleMesh::TriangleMesh(MeshData given) {
+    const auto built = std::make_shared<Built>();
+    MeshData& data = built->data = std::move(given);
+    check_mesh(data, {});
+    built->closed = is_closed(data);  // before dropping: a needle may hold a seam together
+    if (const std::size_t dropped = drop_degenerate_triangles(data); dropped > 0)
         notes.push_back(std::to_string(dropped) + " degenerate triangle" + (dropped == 1 ? "" : "s") +
                         " dropped");
-    if (data_.triangles.empty()) throw InputError("the mesh has no triangle with an area");
+    if (data.triangles.empty()) throw InputError("the mesh has no triangle with an area");
 
     // Embree reads 16 bytes for every vertex, so four bytes behind the last one must be ours.
-    data_.positions.reserve(data_.positions.size() + 1);
+    data.positions.reserve(data.positions.size() + 1);
 
-    corners_.reserve(data_.triangles.size());
-    for (const auto& [a, b, c] : data_.triangles)
-        corners_.push_back({data_.positions[a], data_.positions[b], data_.positions[c]});
+    built->corners.reserve(data.triangles.size());
+    for (const auto& [a, b, c] : data.triangles)
+        built->corners.push_back({data.positions[a], data.positions[b], data.positions[c]});
     std::vector<float> areas;
-    areas.reserve(data_.triangles.size());
+    areas.reserve(data.triangles.size());
     double sum = 0.0, largest = 0.0;
-    for (std::uint32_t i = 0; i < data_.triangles.size(); ++i) {
-        const double area = 0.5 * Corners(corners_[i]).length;
+    for (std::uint32_t i = 0; i < data.triangles.size(); ++i) {
+        const double area = 0.5 * Corners(built->corners[i]).length;
         sum += area, largest = std::max(largest, area);
-        for (const std::uint32_t vertex : data_.triangles[i]) bounds_.extend(data_.positions[vertex]);
+        for (const std::uint32_t vertex : data.triangles[i]) built->bounds.extend(data.positions[vertex]);
     }
-    area_ = float(sum);
-    if (!(area_ > std::numeric_limits<float>::min()) || !std::isfinite(area_))
+    built->area = float(sum);
+    if (!(built->area > std::numeric_limits<float>::min()) || !std::isfinite(built->area))
         throw InputError("the area of the mesh is out of range");
     // Relative to the largest, so that tiny triangles do not underflow.
-    for (std::uint32_t i = 0; i < data_.triangles.size(); ++i)
-        areas.push_back(float(0.5 * Corners(corners_[i]).length / largest));
-    area_distribution_ = Distribution1D(areas);
+    for (std::uint32_t i = 0; i < data.triangles.size(); ++i)
+        areas.push_back(float(0.5 * Corners(built->corners[i]).length / largest));
+    built->area_distribution = Distribution1D(areas);
+    built_ = built;
 }
 
 void TriangleMesh::fill_hit(std::uint32_t primitive, float u, float v, SurfaceHit& hit) const {
-    const Corners corners(corners_[primitive]);
+    const Corners corners(built_->corners[primitive]);
     hit.position = corners.point(u, v);
     hit.geometric_normal = corners.normal();
     hit.error = corners.error(hit.position, hit.geometric_normal);
@@ -86,29 +89,30 @@ void TriangleMesh::fill_hit(std::uint32_t primitive, float u, float v, SurfaceHi
 
 DirectionCone TriangleMesh::normals() const {
     Vec3d sum(0.0);  // twice the area's vector; zero for closed meshes
-    for (const auto& corner : corners_) sum += Corners(corner).cross;
+    for (const auto& corner : built_->corners) sum += Corners(corner).cross;
     const double length = glm::length(sum);
-    if (!(length > 1e-3 * double(area_))) return DirectionCone::all();
+    if (!(length > 1e-3 * double(built_->area))) return DirectionCone::all();
     const Vec3 axis(sum / length);
     float least = 1.0f;
-    for (const auto& corner : corners_) least = std::min(least, glm::dot(axis, Corners(corner).normal()));
+    for (const auto& corner : built_->corners)
+        least = std::min(least, glm::dot(axis, Corners(corner).normal()));
     return {axis, AngleOf::cosine(least).in_radians()};
 }
 
 float TriangleMesh::support(const Vec3& direction) const {
-    const Vec3 center = bounds_.center();
+    const Vec3 center = built_->bounds.center();
     float farthest = -infinity;
-    for (const auto& corners : data_.triangles)
+    for (const auto& corners : built_->data.triangles)
         for (const std::uint32_t corner : corners)
-            farthest = std::max(farthest, glm::dot(direction, data_.positions[corner] - center));
+            farthest = std::max(farthest, glm::dot(direction, built_->data.positions[corner] - center));
     return farthest;
 }
 
 Vec3 TriangleMesh::shading_normal(std::uint32_t primitive, float u, float v, const Vec3& geometric) const {
-    if (data_.normals.empty()) return geometric;
-    const auto& corner = data_.triangles[primitive];
-    const Vec3 n = (1.0f - u - v) * data_.normals[corner[0]] + u * data_.normals[corner[1]] +
-                   v * data_.normals[corner[2]];
+    if (built_->data.normals.empty()) return geometric;
+    const auto& corner = built_->data.triangles[primitive];
+    const Vec3 n = (1.0f - u - v) * built_->data.normals[corner[0]] + u * built_->data.normals[corner[1]] +
+                   v * built_->data.normals[corner[2]];
     const float length_squared = glm::dot(n, n);
     // Opposite normals cancel somewhere in between; there the direction is noise.
     if (!(length_squared > 1e-8f)) return geometric;
@@ -117,14 +121,14 @@ Vec3 TriangleMesh::shading_normal(std::uint32_t primitive, float u, float v, con
 }
 
 void TriangleMesh::fill_derivatives(std::uint32_t primitive, SurfaceHit& hit) const {
-    const Corners corners(corners_[primitive]);
+    const Corners corners(built_->corners[primitive]);
     hit.dp_du = Vec3(corners.e1), hit.dp_dv = Vec3(corners.e2);  // by barycentric coordinates
-    if (data_.uvs.empty()) return;
+    if (built_->data.uvs.empty()) return;
     const Frame any(hit.geometric_normal);
     hit.dp_du = any.s, hit.dp_dv = any.t;
-    const auto& [a, b, c] = data_.triangles[primitive];
-    const glm::dvec2 uv0(data_.uvs[a]), uv1 = glm::dvec2(data_.uvs[b]) - uv0,
-                                        uv2 = glm::dvec2(data_.uvs[c]) - uv0;
+    const auto& [a, b, c] = built_->data.triangles[primitive];
+    const glm::dvec2 uv0(built_->data.uvs[a]), uv1 = glm::dvec2(built_->data.uvs[b]) - uv0,
+                                               uv2 = glm::dvec2(built_->data.uvs[c]) - uv0;
     // Of p = p0 + b1 e1 + b2 e2 and uv = uv0 + b1 uv1 + b2 uv2.
     const double determinant = uv1.x * uv2.y - uv1.y * uv2.x;
     const Vec3 dp_du((uv2.y * corners.e1 - uv1.y * corners.e2) / determinant);
@@ -134,22 +138,23 @@ void TriangleMesh::fill_derivatives(std::uint32_t primitive, SurfaceHit& hit) co
 
 TextureCoordinates TriangleMesh::texture_coordinates(std::uint32_t primitive, float u, float v) const {
     TextureCoordinates result(u, v);
-    if (!data_.uvs.empty()) {
-        const auto& corner = data_.triangles[primitive];
-        result = (1.0f - u - v) * data_.uvs[corner[0]] + u * data_.uvs[corner[1]] + v * data_.uvs[corner[2]];
+    if (!built_->data.uvs.empty()) {
+        const auto& corner = built_->data.triangles[primitive];
+        result = (1.0f - u - v) * built_->data.uvs[corner[0]] + u * built_->data.uvs[corner[1]] +
+                 v * built_->data.uvs[corner[2]];
     }
-    if (!data_.attributes.empty())
+    if (!built_->data.attributes.empty())
         result.attributes = this, result.primitive = primitive, result.barycentric = {u, v};
     return result;
 }
 
 ShapeSample TriangleMesh::sample_area(const Vec2& u) const {
-    const auto chosen = area_distribution_.sample_discrete(u.x);
+    const auto chosen = built_->area_distribution.sample_discrete(u.x);
     const auto primitive = std::uint32_t(chosen.index);
     const Vec2 b = square_to_triangle({chosen.remapped, u.y});
-    const Corners corners(corners_[primitive]);
+    const Corners corners(built_->corners[primitive]);
     const Vec3 position = corners.point(b.x, b.y), normal = corners.normal();
-    return {position, normal, texture_coordinates(primitive, b.x, b.y), 1.0f / area_,
+    return {position, normal, texture_coordinates(primitive, b.x, b.y), 1.0f / built_->area,
             corners.error(position, normal)};
 }
 

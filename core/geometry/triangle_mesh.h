@@ -31,18 +31,26 @@ class TriangleMesh final : public Shape, private SurfaceAttributes {
     /// notes.
     explicit TriangleMesh(MeshData data);
 
-    const MeshData& data() const { return data_; }
+    /// A shape of the same triangles, which both hold: in memory once. Nothing is attached to `other` yet.
+    TriangleMesh(const TriangleMesh& other) = default;
+
+    /// Shapes that hold its triangles, this one among them.
+    long holders() const { return built_.use_count(); }
+
+    const MeshData& data() const { return built_->data; }
     /// Fills everything of a hit but t, from the barycentric coordinates (u, v) that Embree reports.
     void fill_hit(std::uint32_t primitive, float u, float v, SurfaceHit& hit) const;
 
-    Bounds3 bounds() const override { return bounds_; }
+    Bounds3 bounds() const override { return built_->bounds; }
     DirectionCone normals() const override;
     float support(const Vec3& direction) const override;
-    float area() const override { return area_; }
+    float area() const override { return built_->area; }
     ShapeSample sample_area(const Vec2& u) const override;
-    bool closed() const override { return closed_; }
-    std::size_t primitive_count() const override { return data_.triangles.size(); }
-    const SurfaceAttributes* attributes() const override { return data_.attributes.empty() ? nullptr : this; }
+    bool closed() const override { return built_->closed; }
+    std::size_t primitive_count() const override { return built_->data.triangles.size(); }
+    const SurfaceAttributes* attributes() const override {
+        return built_->data.attributes.empty() ? nullptr : this;
+    }
 
   private:
     Vec3 shading_normal(std::uint32_t primitive, float u, float v, const Vec3& geometric) const;
@@ -57,13 +65,17 @@ class TriangleMesh final : public Shape, private SurfaceAttributes {
     const MeshAttribute* find_attribute(std::string_view name) const;
     Rgb attribute_at(const MeshAttribute& attribute, std::uint32_t primitive, const Vec2& b) const;
 
-    MeshData data_;
-    Bounds3 bounds_;
-    /// Positions by triangle: a hit then costs one cache miss instead of two that wait for each other.
-    std::vector<std::array<Vec3, 3>> corners_;
-    Distribution1D area_distribution_;  ///< areas relative to the largest
-    float area_ = 0.0f;
-    bool closed_ = false;
+    /// What triangles and vertices alone determine; it does not change.
+    struct Built {
+        MeshData data;
+        Bounds3 bounds;
+        /// Positions by triangle: a hit then costs one cache miss instead of two that wait for each other.
+        std::vector<std::array<Vec3, 3>> corners;
+        Distribution1D area_distribution;  ///< areas relative to the largest
+        float area = 0.0f;
+        bool closed = false;
+    };
+    std::shared_ptr<const Built> built_;
 };
 
 /// Applies a transform to positions and normals (in double precision) and keeps the orientation of the faces:
