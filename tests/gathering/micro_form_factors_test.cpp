@@ -114,6 +114,27 @@ TEST_CASE("form factors of parallel plates by micro-buffers", "[micro_buffers][f
     }
 }
 
+TEST_CASE("a near plate hides a far one", "[micro_buffers][form_factors]") {
+    TriangleBuilder plates;
+    plates.quad({-2, 2, 1}, {2, 2, 1}, {2, -2, 1}, {-2, -2, 1}, 0);
+    plates.quad({0.3f, 0.7f, 0.5f}, {0.7f, 0.7f, 0.5f}, {0.7f, 0.3f, 0.5f}, {0.3f, 0.3f, 0.5f}, 1);
+    const FromTheFloor scene(plates.list(), 40000);
+    const NodeRadiance far = scene.lit(0);
+    const auto from = FromTheFloor::receivers(256, 3);
+    std::vector<Rgb> e(from.size());
+    gather_irradiance(MicroBuffers(scene.hierarchy, {.side = 32, .cut = 0.25f}), far, from, e);
+    double mean = 0.0, exact = 0.0, hidden = 0.0;
+    for (std::size_t i = 0; i < from.size(); ++i) {
+        const double x = from[i].position.x, y = from[i].position.y;
+        const double near = element_to_rectangle(0.3 - x, 0.7 - x, 0.3 - y, 0.7 - y, 0.5);
+        exact += (element_to_rectangle(-2 - x, 2 - x, -2 - y, 2 - y, 1.0) - near) / 256.0;
+        hidden += near / 256.0, mean += double(e[i].x) / M_PI / 256.0;
+    }
+    // Both plates are wider by a radius of their discs, and half a node.
+    INFO(mean << ", exact " << exact << ", hidden " << hidden);
+    CHECK(std::fabs(mean - exact) < 0.2 * hidden);
+}
+
 TEST_CASE("the error of micro-buffers falls with texels, points and the cut",
           "[micro_buffers][form_factors]") {
     // Texels: one place for each of n^2 cells, cut by an edge: n^-1.5 where cells are cut at random.
