@@ -21,10 +21,10 @@ DEPTH = 6
 
 def figure(mote, quick, output):
     claims = Claims()
-    size = {"resx": 48, "resy": 48} if quick else {"resx": 192, "resy": 192}
+    size = {"resx": 48, "resy": 48} if quick else {"resx": 144, "resy": 144}
     points, buffer, paths, photons = (4096, 12, 32, 4000) if quick else (32768, 16, 64, 10000)
     fine = dict(points=points, micro_buffer=buffer)
-    reference_passes = 200 if quick else 400
+    reference_passes = 200
     view = IndirectView(mote, CORNELL, size, reference_passes, "all", depth=DEPTH)
     pairs = {"virtual point lights": (view.render("vpls", {"integrator": "mote_vpl"} | with_options(paths=paths, bounded=False), 1),
                                       view.render("gathered_vpls", micro(light="vpls", paths=paths, bound=0, **fine), 1)),
