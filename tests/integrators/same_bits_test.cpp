@@ -34,6 +34,7 @@ const std::map<std::string, Words> words = {
     {"mote_vsl.visibility", {"sample", "light"}},
     {"mote_bdpt.heuristic", {"power", "balance", "none"}},
     {"mote_vpl_ray_bundles.techniques", {"combined", "vpls", "bundles"}},
+    {"mote_vpl_ray_bundles.links", {"rays", "grid", "imperfect"}},
     {"mote_micro_rendering.light", {"direct", "vpls", "radiosity", "photons"}},
     {"mote_single_scattering.sampling", {"full", "sub_sampled"}},
     {"mote_single_scattering.lights", {"all", "positional", "other"}},
