@@ -93,18 +93,15 @@ bool EyeBundles::continue_path(Found& y) {
     const Vec3 local = square_to_cosine_hemisphere(y.sampler->next_2d());
     const Vec3 w = Frame(glm::dot(n, y.vertex.wo) < 0.0f ? -n : n).to_world(local);
     const float pdf = chance * cosine_hemisphere_pdf(local);
-    const Rgb f_cos = y.vertex.eval_cos(w, TransportMode::radiance);
-    if (is_black(f_cos) || !(pdf > 0.0f)) return false;
+    Rgb scattered = y.vertex.eval_cos(w, TransportMode::radiance);
+    if (is_black(scattered) || !(pdf > 0.0f)) return false;
     const Ray ray{y.vertex.ray_origin(w), w};
-    MediumState state;
-    PathWeights weights;
-    Rgb emitted(0.0f);
-    const WalkEvent event = walk<false>(pass_.scene, ray, state, weights, emitted, walk_);
+    const WalkEvent event = look(y.vertex, ray, nullptr, scattered);
     if (event.kind == WalkEvent::Kind::escaped) return false;
     const ScatteringVertex next = make_vertex(event, ray);
     if (!next.connectable()) return false;
     y.fewer = fewer_than_next(pass_.samples, y.vertex, y.fewer, next);
-    y.vertex = next, y.throughput *= f_cos * weights.throughput / pdf;
+    y.vertex = next, y.throughput *= scattered / pdf;
     --y.max_vpl_depth;
     return true;
 }
