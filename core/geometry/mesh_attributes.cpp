@@ -29,7 +29,8 @@ Rgb TriangleMesh::attribute_mean(std::string_view name) const {
     // Linear over a triangle: the value at its centre is its mean.
     Vec3d sum(0.0);
     for (std::uint32_t i = 0; i < built_->data.triangles.size(); ++i)
-        sum += double(built_->area_distribution.probability(i)) * Vec3d(attribute_at(*found, i, Vec2(1.0f / 3.0f)));
+        sum += double(built_->area_distribution.probability(i)) *
+               Vec3d(attribute_at(*found, i, Vec2(1.0f / 3.0f)));
     return Rgb(sum);
 }
 
