@@ -5,7 +5,7 @@ The poster has 128 x 128 rays and 16384 points a direction on a GPU, where imper
 ones here are the faster of two forms, on one core; errors are shares of links (front to front or back, both sides send): of
 the exact bundle's, those that the imperfect one misses, and of its own those that are not there. Stand-ins for the animated
 scene, which is not public: atrium (263,000 triangles) and city (825,000). Exit code 0: all is as documented; 1: it is not;
-2: wrong usage, or the program is missing. A full run takes two minutes, --quick 40 s.
+2: wrong usage, or the program is missing. A full run takes three minutes, --quick 40 s.
 
     tools/build_release.sh mote_study_ray_bundles
     experiments/figures/tokuyoshi_b_imperfect.py [--quick] [--output FOLDER] [--bin FOLDER]
@@ -37,7 +37,7 @@ def measure(times, scene, side, points, splat, directions):
 
 
 def figure(times, quick, output):
-    directions = 8 if quick else 48
+    directions = 8 if quick else 192
     sizes = SIZES[1:4:2] if quick else SIZES
     rows = []
     for scene in SCENES:
