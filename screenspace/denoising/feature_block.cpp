@@ -69,6 +69,7 @@ void FeatureBlock::fill_matrix(const PixelRectangle& block, float noise, std::ui
 }
 
 void FeatureBlock::fit_weighted(const PixelRectangle& block, float noise, std::uint64_t seed) {
+    if (!may_be_uneven(block)) return;
     const std::vector<Rgb> fitted = values_of_fit(block);
     float brightest = 0.0f;
     glm::dvec3 energy(0.0);
@@ -93,6 +94,17 @@ void FeatureBlock::fit_weighted(const PixelRectangle& block, float noise, std::u
         for (std::size_t k = c * n; k < (c + 1) * n; ++k)
             coefficients_[k] = trusted ? coefficients_[k] * float(factor) : before[k];
     }
+}
+
+bool FeatureBlock::may_be_uneven(const PixelRectangle& block) const {
+    // Features lie in [-1, 1], so no value of the fit is above the sum of its coefficients' sizes. Its mean
+    // is that of the colours, but for the noise in features, for which there is a tenth of room.
+    double bound = 0.0;
+    const auto n = std::size_t(matrix_.features());
+    for (std::size_t k = 0; k < coefficients_.size(); ++k)
+        bound += double(k % n == 0 ? coefficients_[k] : std::fabs(coefficients_[k])) / 3.0;
+    const double mean = double(average(Rgb(energy_ / double(block.pixels()))));
+    return bound > 0.9 * double(uneven_block) * mean;
 }
 
 std::vector<Rgb> FeatureBlock::values_of_fit(const PixelRectangle& block) const {
@@ -143,11 +155,13 @@ void FeatureBlock::fill_colours(const PixelRectangle& block) {
     const std::span<float> r = matrix_.column(matrix_.features()), g = matrix_.column(matrix_.features() + 1),
                            b = matrix_.column(matrix_.features() + 2);
     std::size_t row = 0;
+    energy_ = glm::dvec3(0.0);
     for (int y = block.y0; y < block.y1; ++y)
         for (int x = block.x0; x < block.x1; ++x, ++row) {
             const Rgb c =
                 takes_part_[row] ? colour_[std::size_t(y) * picture_width_ + std::size_t(x)] : Rgb(0.0f);
             r[row] = c.x, g[row] = c.y, b[row] = c.z;
+            energy_ += glm::dvec3(c);
         }
 }
 

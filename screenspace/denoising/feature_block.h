@@ -37,6 +37,8 @@ class FeatureBlock {
   private:
     void fill_matrix(const PixelRectangle& block, float noise, std::uint64_t seed);
     void fit_weighted(const PixelRectangle& block, float noise, std::uint64_t seed);
+    /// False where Eq. (2) has nothing to do, known from the coefficients alone.
+    bool may_be_uneven(const PixelRectangle& block) const;
     /// Black where a pixel took no part.
     std::vector<core::Rgb> values_of_fit(const PixelRectangle& block) const;
     void find_scales(const PixelRectangle& block);
@@ -51,6 +53,7 @@ class FeatureBlock {
     TallMatrix matrix_;
     std::vector<FeatureScale> scales_;
     std::vector<float> coefficients_;
+    glm::dvec3 energy_{0.0};                ///< sum of the colours that take part
     std::vector<std::uint8_t> takes_part_;  ///< of the pixels of the block
 };
 
