@@ -34,7 +34,7 @@ std::optional<BsdfSample> narrow_sample(const SurfaceHit& hit, const Vec3& wo, f
 
 Ray onwards(const SurfaceHit& hit, const BsdfSample& sample) {
     const Vec3 direction = hit.shading.to_world(sample.wi);
-    return Ray(offset_origin(hit, direction), direction);
+    return {offset_origin(hit, direction), direction};
 }
 
 /// Follows narrow lobes from `ray` on, and adds what is seen at their end.

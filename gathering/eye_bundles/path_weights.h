@@ -173,11 +173,11 @@ struct AgainstLights {
                 direction = (at - position) / std::sqrt(d2);
             }
             const FewerFound& b = all.fewer[lane];
-            const float fewer = next_vertex_pdf(z, direction, g, cos_y, d2) *
-                                (glossy ? b.from(*glossy, -direction) : b.plain);
+            const float fewer_found = next_vertex_pdf(z, direction, g, cos_y, d2) *
+                                      (glossy ? b.from(*glossy, -direction) : b.plain);
             const float more = glossy && !may_continue(*glossy) ? 0.0f : rival * continued_pdf(g);
             const float share = all.samples.joined_share;
-            return g * share / (share + fewer + more + 1e-37f);
+            return g * share / (share + fewer_found + more + 1e-37f);
         }
     };
     ForLight for_pair(const lights::ReceiverLanes& y, const lights::VplSet& vpls, std::size_t index) const {
