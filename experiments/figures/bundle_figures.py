@@ -3,7 +3,7 @@ references of `path`, whose noise cancels out of the squares."""
 from pathlib import Path
 
 import numpy as np
-from renders import luminance
+from renders import error_weight, luminance
 
 SCENES = Path(__file__).resolve().parent / "scenes"
 BUNDLES = {"integrator": "mote_vpl_ray_bundles"}
@@ -21,11 +21,7 @@ class View:
         self.depth = {} if depth is None else with_options(max_depth=depth)
         self.references = [self.render("reference", {"integrator": "path"}, passes, seed) for seed in (91, 92)]
         self.truth = np.mean([r[""] for r in self.references], axis=0)
-        light = luminance(self.truth)
-        # As mote compare weighs: 1 / (|r|^2 + (m / 10)^2), of neighbours, so that no pixel's own noise is in it.
-        padded = np.pad(light, 2, mode="edge")
-        around = np.mean([padded[i:i + light.shape[0], k:k + light.shape[1]] for i in range(5) for k in range(5)], axis=0)
-        self.weight = 1 / (around ** 2 + (np.median(around) / 10) ** 2)
+        self.weight = error_weight(luminance(self.truth))
 
     def render(self, name, settings, passes, seed=1):
         return self.mote.render(self.scene, f"{self.name}_{name}".replace(" ", "_"), self.settings | self.depth | settings, passes=passes, seed=seed)

@@ -5,7 +5,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
-from renders import luminance, show
+from renders import around, luminance, show
 
 ROOM = Path(__file__).resolve().parent / "scenes" / "sky_room.xml"
 BUNDLES = {"integrator": "mote_ray_bundles", "integrator.eye_samples": 1}
@@ -24,9 +24,8 @@ def error_of_two(picture, references, layer=""):
     """The same against two references of other seeds: free of the noise of both, which neither weighs nor counts."""
     x, a, b = (p[layer] for p in (picture, *references))
     light = ((a + b) ** 2).mean(axis=2) / 4
-    padded = np.pad(light, 2, mode="edge")
-    around = np.mean([padded[i:i + light.shape[0], k:k + light.shape[1]] for i in range(5) for k in range(5)], axis=0)
-    weight = 1 / (around + np.median(around[around > 0]) / 100)
+    mean = around(light).mean(axis=0)
+    weight = 1 / (mean + np.median(mean[mean > 0]) / 100)
     return max(0.0, (weight * ((x - a) * (x - b)).mean(axis=2)).sum() / (weight * light).sum()) ** 0.5
 
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 from bundle_figures import SCENES, with_options
-from renders import luminance
+from renders import around, error_weight, luminance
 
 MICRO = {"integrator": "mote_micro_rendering"}
 CORNELL = SCENES.parents[2] / "scenes" / "cornell_box.xml"
@@ -33,11 +33,7 @@ class IndirectView:
         self.references = [self.light(self.render("reference", {"integrator": "path"}, passes, seed)) for seed in (91, 92)]
         self.truth = np.mean(self.references, axis=0)
         light = luminance(self.truth)
-        # As mote compare weighs: 1 / (|r|^2 + (m / 10)^2), of neighbours, so that no pixel's own noise is in it.
-        padded = np.pad(light, 2, mode="edge")
-        around = np.mean([padded[i:i + light.shape[0], k:k + light.shape[1]] for i in range(5) for k in range(5)], axis=0)
-        self.weight = 1 / (around ** 2 + (np.median(around) / 10) ** 2)
-        nearby = np.array([padded[1 + i:1 + i + light.shape[0], 1 + k:1 + k + light.shape[1]] for i in range(3) for k in range(3)])
+        self.weight, nearby = error_weight(light), around(light, 1)
         self.smooth = nearby.max(axis=0) < 1.5 * nearby.min(axis=0)
 
     @staticmethod

@@ -110,6 +110,19 @@ def luminance(image):
     return image @ np.array([0.2126, 0.7152, 0.0722])
 
 
+def around(plane, radius=2):
+    """Every pixel's neighbours within so many pixels, itself among them, one after the other: a plane each."""
+    padded, (height, width) = np.pad(plane, radius, mode="edge"), plane.shape
+    steps = range(2 * radius + 1)
+    return np.array([padded[i:i + height, k:k + width] for i in steps for k in steps])
+
+
+def error_weight(light):
+    """As mote compare weighs, 1 / (|r|^2 + (m / 10)^2), but of means of 5 x 5 neighbours: no pixel's own noise is in it."""
+    mean = around(light).mean(axis=0)
+    return 1 / (mean ** 2 + (np.median(mean) / 10) ** 2)
+
+
 def mean_and_error(values):
     """Of independent values along the first axis: their mean, and its standard error."""
     values = np.asarray(values, dtype=float)
