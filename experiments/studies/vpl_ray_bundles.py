@@ -2,7 +2,7 @@
 """Virtual point lights, bundles from the eye, and both weighed against each other: processor time to an error of 2 %.
 
 Usage: vpl_ray_bundles.py [--mote build/release/bin/mote] [--scenes cornell_box,atrium] [--width 640] [--height 400]
-                          [--passes N] [--seeds N] [--reference PASSES] [--folder FOLDER]
+                          [--passes N] [--seeds N] [--reference PASSES] [--folder FOLDER] [--methods "combined;bundles;vpls"]
 Each technique is rendered with a few passes and several seeds, and its error found against two pictures of `path`
 (`mote compare --second`, free of the noise of both). The time to 2 % is extrapolated: the square of the error falls as one
 over the number of passes. That flatters techniques alone, whose squares have no mean: a few passes seldom meet
@@ -75,8 +75,12 @@ def main():
     parser.add_argument("--passes", type=int, default=8)
     parser.add_argument("--seeds", type=int, default=2)
     parser.add_argument("--reference", type=int, default=48, help="passes of each of the two")
+    parser.add_argument("--methods", help="all, unless named here, separated by ';'")
     parser.add_argument("--folder", type=Path, help="keeps pictures, and takes references that are there")
     args = parser.parse_args()
+    chosen = args.methods.split(";") if args.methods else list(METHODS)
+    if unknown := set(chosen) - set(METHODS):
+        parser.error(f"no method {', '.join(sorted(unknown))}; there are {', '.join(METHODS)}")
     with tempfile.TemporaryDirectory() as temporary:
         folder = args.folder or Path(temporary)
         folder.mkdir(parents=True, exist_ok=True)
@@ -90,7 +94,8 @@ def main():
                 if not path.is_file():
                     render(args, scene, ("path", {}), args.reference, seed, path)
             print(f"{name}, {args.width} x {args.height}")
-            for label, method in METHODS.items():
+            for label in chosen:
+                method = METHODS[label]
                 passes = 4 * args.passes if label == "path" else args.passes
                 squares, seconds, errors, indirect = [], [], [], []
                 for seed in range(1, args.seeds + 1):
