@@ -2,7 +2,7 @@
 """Glossy surfaces that light others, against a glossy bounce towards the eye alone: Hermes 2010, Fig. 8.
 
 With the next direction known, glossy texels send on what they received; without, they are dark to all but the eye, and the light
-that they throw on floor, block and each other is missing. A full run takes about 5 minutes, --quick less than one.
+that they throw on floor, block and each other is missing. A full run takes about 6 minutes, --quick less than one.
 
     experiments/figures/hermes_08_glossy.py [--quick] [--redraw] [--output FOLDER] [--bin FOLDER]
 """
@@ -24,7 +24,7 @@ def figure(mote, quick, output):
     settings = {"integrator.texel_budget": 8192 if quick else 32768, "integrator.eye_samples": 16, "integrator.directions": 256}
     for glossy in [False, True]:
         p = mote.render(SCENE, f"glossy_{glossy}", size | BUNDLES | settings | {"integrator.glossy_transfer": glossy},
-                        passes=2 if quick else 12)
+                        passes=2 if quick else 96)
         found[glossy] = p
         rows.append([glossy, p.cpu, error(p, reference), bias(p, reference, "indirect")])
         print(f"glossy transfer {glossy}: {p.cpu:.1f} s, error {rows[-1][2]:.2%}, indirect light {rows[-1][3]:+.2%}")
