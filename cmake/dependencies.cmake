@@ -1,5 +1,8 @@
 # Everything mote is built on, from Debian 12's packages (see ./quickstart for their names).
 
+if(NOT PROJECT_IS_TOP_LEVEL)
+  set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)  # whoever adds mote to his project links what mote links
+endif()
 find_package(Threads REQUIRED)
 # TBB comes before OpenVDB: Debian's FindOpenVDB defines TBB::tbb itself, and TBB's config then refuses.
 find_package(TBB CONFIG REQUIRED)
@@ -21,7 +24,9 @@ find_package(ZLIB REQUIRED)
 find_package(assimp CONFIG REQUIRED)
 find_package(nlohmann_json CONFIG REQUIRED)
 find_package(fmt CONFIG REQUIRED)
-find_package(CLI11 CONFIG REQUIRED)
+if(MOTE_BUILD_APPS)
+  find_package(CLI11 CONFIG REQUIRED)
+endif()
 
 find_package(embree 4 CONFIG QUIET)
 if(NOT embree_FOUND)

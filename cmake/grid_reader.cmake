@@ -2,7 +2,7 @@
 # targets that compile OpenVDB's headers, tens of seconds each.
 
 function(mote_openvdb_program name source)
-  add_executable(${name} ${CMAKE_SOURCE_DIR}/${source})
+  add_executable(${name} ${PROJECT_SOURCE_DIR}/${source})
   target_link_libraries(${name} PRIVATE mote_options OpenVDB::openvdb TBB::tbb mote_nanovdb nlohmann_json::nlohmann_json)
 endfunction()
 
@@ -12,7 +12,6 @@ if(MOTE_SANITIZE)
 endif()
 add_dependencies(mote_media mote_grid_reader)
 target_compile_definitions(mote_media PRIVATE MOTE_GRID_READER_FOLDER="${CMAKE_RUNTIME_OUTPUT_DIRECTORY}")
-target_link_libraries(mote_media PRIVATE ${CMAKE_DL_LIBS})
 
 if(MOTE_BUILD_TESTS)
   mote_openvdb_program(mote_test_grid_writer tests/media/tools/main_write_test_grids.cpp)

@@ -28,6 +28,10 @@
 
 extern char** environ;  // NOLINT: declared by POSIX for posix_spawn
 
+/// Defined in programs that link static libraries of the installed package (cmake/mote-config.cmake.in); else
+/// null.
+extern "C" __attribute__((weak)) const char* const mote_grid_reader_folder;
+
 namespace mote::media {
 
 namespace fs = std::filesystem;
@@ -174,7 +178,9 @@ std::string grid_reader_path() {
     if (::dladdr(reinterpret_cast<const void*>(&grid_reader_path), &library) != 0 && library.dli_fname)
         folders.push_back(fs::absolute(library.dli_fname, error).parent_path());
     const std::size_t count = folders.size();
-    for (std::size_t i = 0; i < count; ++i) folders.push_back(folders[i] / "../libexec/mote");
+    for (std::size_t i = 0; i < count; ++i)
+        for (const char* up : {"../libexec/mote", "../../libexec/mote"}) folders.push_back(folders[i] / up);
+    if (const char* const* installed = &mote_grid_reader_folder) folders.emplace_back(*installed);
 #ifdef MOTE_GRID_READER_FOLDER
     folders.emplace_back(MOTE_GRID_READER_FOLDER);
 #endif

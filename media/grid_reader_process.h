@@ -39,8 +39,10 @@ struct GridReaderAnswer {
 GridReaderAnswer run_grid_reader(const std::string& mode, const std::string& path,
                                  const std::string& grid_name, const VdbLoadOptions& options);
 
-/// Where the helper is: the environment variable MOTE_GRID_READER, or `mote_grid_reader` beside this program,
-/// beside the library that holds this code, in ../libexec/mote, or where it was built.
+/// Where the helper is: the environment variable MOTE_GRID_READER, or `mote_grid_reader` beside this program
+/// or the library that holds this code, in ../libexec/mote or ../../libexec/mote from there, where the CMake
+/// package says that it was installed, or where it was built. Throws InputError that says what to set where
+/// it is in none of them.
 std::string grid_reader_path();
 
 }  // namespace mote::media

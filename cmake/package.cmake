@@ -1,0 +1,72 @@
+# The package: what `cmake --install` puts where, what find_package(mote) finds, and the .deb files of CPack.
+# docs/design.md, "The package", says why it is as it is.
+
+# The components, from the ground up: one library each. Another library of mote that others may link gets its place
+# here, its folder of headers below if it has one of its own, and what it stands on in NEEDS_name.
+set(mote_package_components core_runtime core media lights picture_lights compensation gathering screenspace integrators)
+set(NEEDS_core core_runtime)
+set(NEEDS_media core_runtime)
+set(NEEDS_lights media)
+set(NEEDS_picture_lights lights core)
+set(NEEDS_compensation lights)
+set(NEEDS_gathering lights)
+set(NEEDS_screenspace core lights)
+set(NEEDS_integrators picture_lights compensation gathering screenspace)
+set(mote_package_folders core media lights compensation gathering screenspace integrators)
+
+# ---- Headers as others include them, in build/.../include/mote
+set(mote_include ${PROJECT_BINARY_DIR}/include/mote)
+configure_file(${PROJECT_SOURCE_DIR}/cmake/version.h.in ${mote_include}/version.h @ONLY)
+list(JOIN mote_package_folders "\\;" escaped_folders)
+set(write_headers ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -DOUT=${mote_include} -DFOLDERS=${escaped_folders}
+    -P ${PROJECT_SOURCE_DIR}/cmake/package_headers.cmake)
+add_custom_target(mote_package_headers COMMAND ${write_headers} VERBATIM)
+if(NOT PROJECT_IS_TOP_LEVEL)
+  add_dependencies(mote_core_runtime mote_package_headers)  # so they are there before a guest's files are compiled
+endif()
+
+if(NOT MOTE_INSTALL)
+  return()
+endif()
+include(CMakePackageConfigHelpers)
+
+# ---- The command, and the helper program that the library and the command start
+if(MOTE_BUILD_APPS)
+  install(TARGETS mote RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT mote)
+endif()
+set(mote_helper_folder ${CMAKE_INSTALL_LIBEXECDIR}/mote)
+install(TARGETS mote_grid_reader RUNTIME DESTINATION ${mote_helper_folder} COMPONENT mote)
+install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT mote)
+
+# ---- Libraries and headers
+install(CODE "execute_process(COMMAND ${CMAKE_COMMAND} \"-DSOURCE=${PROJECT_SOURCE_DIR}\" \"-DOUT=${mote_include}\"
+  \"-DFOLDERS=${mote_package_folders}\" -P \"${PROJECT_SOURCE_DIR}/cmake/package_headers.cmake\"
+  COMMAND_ERROR_IS_FATAL ANY)" COMPONENT dev)
+install(DIRECTORY ${mote_include} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
+
+set(mote_cmake_folder ${CMAKE_INSTALL_LIBDIR}/cmake/mote)
+set(libraries_component dev)
+if(MOTE_SHARED)
+  set(libraries_component mote)
+endif()
+set(mote_package_needs "")
+foreach(component ${mote_package_components})
+  set(targets mote_${component})
+  if(component STREQUAL "core_runtime")
+    set_target_properties(mote_api PROPERTIES EXPORT_NAME api)
+    list(APPEND targets mote_api)
+  endif()
+  install(TARGETS ${targets} EXPORT mote-${component}
+          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev
+          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${libraries_component} NAMELINK_COMPONENT dev
+          INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  install(EXPORT mote-${component} NAMESPACE mote:: FILE mote-${component}.cmake DESTINATION ${mote_cmake_folder}
+          COMPONENT dev)
+  string(APPEND mote_package_needs "set(mote_${component}_needs ${NEEDS_${component}})\n")
+endforeach()
+configure_package_config_file(cmake/mote-config.cmake.in ${PROJECT_BINARY_DIR}/mote-config.cmake
+  INSTALL_DESTINATION ${mote_cmake_folder} PATH_VARS mote_helper_folder)
+# While the major version is 0 the minor one counts as major.
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/mote-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/mote-config.cmake ${PROJECT_BINARY_DIR}/mote-config-version.cmake
+        DESTINATION ${mote_cmake_folder} COMPONENT dev)
