@@ -1,0 +1,97 @@
+// Somebody else's scene from a handful of functions: what algorithms ask (ray_queries.h, lit_scene.h),
+// answered by callbacks of the renderer that has the scene.
+//
+// The least is one function, the first hit. What is left empty follows from the others or is absent. One
+// medium may fill space; renderers with boundaries between media implement RayQueries themselves. Functions
+// are called from many threads at once.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/math/distribution.h"
+#include "core/scene/lit_scene.h"
+
+namespace mote::core {
+
+/// A surface of another renderer: it has a BSDF, and no geometry that mote would ask for. Hits point to it,
+/// so it must outlive whatever is made of them.
+class ForeignSurface final : public Shape {
+  public:
+    /// `surface_bsdf` is not null.
+    explicit ForeignSurface(std::shared_ptr<Bsdf> surface_bsdf) { bsdf = std::move(surface_bsdf); }
+    /// What a ray met here at the distance t [m]; `geometric_normal` is unit, outwards. `error`: how far
+    /// along it the point may lie off the surface [m]; rays that leave start so much farther out.
+    SurfaceHit hit(const Ray& ray, float t, const Vec3& geometric_normal, float error = 0.0f) const;
+
+    /// Of no extent, as all that follows: a foreign surface is never drawn from.
+    Bounds3 bounds() const override { return {}; }
+    float area() const override { return 0.0f; }                              ///< zero
+    ShapeSample sample_area(const Vec2& /*u*/) const override { return {}; }  ///< of no use
+    bool closed() const override { return false; }                            ///< false
+    std::size_t primitive_count() const override { return 0; }                ///< zero
+};
+
+/// The functions, and what else algorithms want to know. Rays are segments: only t in (t_min, t_max) counts.
+struct SceneCallbacks {
+    /// The closest surface, with its `shape` and the shape's BSDF. Empty: there is no surface.
+    std::function<std::optional<SurfaceHit>(const Ray&)> first_hit = {};
+    /// Is there no surface? Empty: as first_hit says.
+    std::function<bool(const Ray&)> visible = {};
+    /// The same for sixteen segments at a time: sets t_max to -infinity where a surface is in the way. Lanes
+    /// with t_max < t_min ask for nothing. Empty: visible() for each lane.
+    std::function<void(std::span<ShadowPacket>)> find_occluded = {};
+    /// The transmittance between two points per channel, or an estimate of it without bias; surfaces are not
+    /// looked at. Empty: that of `medium`, 1 without.
+    std::function<Rgb(const Vec3& from, const Vec3& to)> transmittance = {};
+    /// Fills all of space within its own bounds; null: vacuum. Its emission is not among the lights unless
+    /// its emitter is one of them.
+    std::shared_ptr<Medium> medium = {};
+    /// All lights; light paths start at them. May be empty for algorithms that ask for none.
+    std::vector<std::shared_ptr<Emitter>> emitters = {};
+    /// Holds everything with a surface and all lights that have a position [m].
+    Bounds3 bounds = {};
+};
+
+/// The scene that the callbacks describe. Lights are chosen by their power.
+class CallbackScene final : public LitScene {
+  public:
+    /// Throws InputError when the bounds are empty, or when a light's power is negative or not finite.
+    explicit CallbackScene(SceneCallbacks callbacks);
+
+    std::optional<SurfaceHit> first_hit(const Ray& ray) const override;
+    bool visible(const Ray& segment) const override;
+    void find_occluded(std::span<ShadowPacket> packets) const override;
+    bool attenuates() const override { return calls_.medium || calls_.transmittance; }
+    Rgb transmittance(const Vec3& from, const Vec3& to, const MediumState& state, Rng& rng,
+                      TrackingCounters& counters) const override;
+    const Medium* connect(const Ray& ray, const MediumState& state, PathWeights& weights, Rng& rng,
+                          TrackingCounters& counters) const override;
+    bool has_boundaries() const override { return false; }
+    void boundaries_along(const Ray& /*ray*/, std::vector<SurfaceHit>& hits) const override { hits.clear(); }
+    std::span<const std::shared_ptr<Medium>> media() const override {
+        return {&calls_.medium, calls_.medium ? std::size_t(1) : 0};
+    }
+    Bounds3 medium_extent(const Medium& medium) const override;
+    Bounds3 bounds() const override { return calls_.bounds; }
+
+    std::span<const std::shared_ptr<Emitter>> emitters() const override { return calls_.emitters; }
+    const Emitter* environment() const override { return environment_; }
+    LightChoice choose_light(const LightReceiver& receiver, float u) const override;
+    float light_probability(const LightReceiver& receiver, const Emitter* emitter) const override;
+    LightChoice choose_emitter_by_power(float u, float* remapped = nullptr) const override;
+    float probability_by_power(const Emitter* emitter) const override;
+    MediumState emitter_medium_state(const Emitter& emitter, const EmissionSample& sample) const override;
+
+    /// The media at any point: what the walks and maps of mote want to be told where they begin.
+    MediumState medium_state() const;
+
+  private:
+    SceneCallbacks calls_;
+    const Emitter* environment_ = nullptr;
+    Distribution1D by_power_;
+};
+
+}  // namespace mote::core
