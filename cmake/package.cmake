@@ -17,8 +17,8 @@ set(mote_package_folders core media lights compensation gathering screenspace in
 # ---- Headers as others include them, in build/.../include/mote
 set(mote_include ${PROJECT_BINARY_DIR}/include/mote)
 configure_file(${PROJECT_SOURCE_DIR}/cmake/version.h.in ${mote_include}/version.h @ONLY)
-list(JOIN mote_package_folders "\\;" escaped_folders)
-set(write_headers ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -DOUT=${mote_include} -DFOLDERS=${escaped_folders}
+list(JOIN mote_package_folders "|" package_folders)
+set(write_headers ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -DOUT=${mote_include} -DFOLDERS=${package_folders}
     -P ${PROJECT_SOURCE_DIR}/cmake/package_headers.cmake)
 add_custom_target(mote_package_headers COMMAND ${write_headers} VERBATIM)
 if(NOT PROJECT_IS_TOP_LEVEL)
@@ -40,7 +40,7 @@ install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR}
 
 # ---- Libraries and headers
 install(CODE "execute_process(COMMAND ${CMAKE_COMMAND} \"-DSOURCE=${PROJECT_SOURCE_DIR}\" \"-DOUT=${mote_include}\"
-  \"-DFOLDERS=${mote_package_folders}\" -P \"${PROJECT_SOURCE_DIR}/cmake/package_headers.cmake\"
+  \"-DFOLDERS=${package_folders}\" -P \"${PROJECT_SOURCE_DIR}/cmake/package_headers.cmake\"
   COMMAND_ERROR_IS_FATAL ANY)" COMPONENT dev)
 install(DIRECTORY ${mote_include} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
 

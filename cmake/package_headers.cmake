@@ -1,19 +1,27 @@
-# cmake -DSOURCE=<mote's folder> -DOUT=<folder> "-DFOLDERS=core;media;..." -P cmake/package_headers.cmake
+# cmake -DSOURCE=<mote's folder> -DOUT=<folder> "-DFOLDERS=core|media|..." -P cmake/package_headers.cmake
 #
-# Writes the headers of the folders to OUT as others include them: in them "core/math/ray.h" becomes
-# "mote/core/math/ray.h", so that OUT's parent is all that a consumer's include path needs and no folder called `core`
-# gets into it. Within mote the short form stays. What did not change is not touched; what is gone is removed.
+# Writes the public headers (cmake/public_headers.txt), and all that they include of the folders, to OUT as others
+# include them: in them "core/math/ray.h" becomes "mote/core/math/ray.h", so that OUT's parent is all that a consumer's
+# include path needs and no folder called `core` gets into it. Within mote the short form stays. What did not change is
+# not touched; what is gone is removed.
 
 cmake_minimum_required(VERSION 3.22)
-string(REPLACE ";" "|" any_folder "${FOLDERS}")
+file(STRINGS ${SOURCE}/cmake/public_headers.txt todo REGEX "^[^#]")
 set(headers "")
-foreach(folder ${FOLDERS})
-  file(GLOB_RECURSE found RELATIVE ${SOURCE} ${SOURCE}/${folder}/*.h)
-  list(APPEND headers ${found})
-endforeach()
-foreach(header ${headers})
+while(todo)
+  list(POP_FRONT todo header)
+  if(header IN_LIST headers)
+    continue()
+  endif()
+  if(NOT header MATCHES "^(${FOLDERS})/" OR NOT EXISTS ${SOURCE}/${header})
+    message(FATAL_ERROR "cmake/public_headers.txt: ${header} is no header of the package, or one includes it")
+  endif()
+  list(APPEND headers ${header})
   file(READ ${SOURCE}/${header} text)
-  string(REGEX REPLACE "#include \"((${any_folder})/[^\"]+)\"" "#include \"mote/\\1\"" text "${text}")
+  string(REGEX MATCHALL "#include \"[^\"]+\"" included "${text}")
+  list(TRANSFORM included REPLACE "#include \"([^\"]+)\"" "\\1")
+  list(APPEND todo ${included})
+  string(REGEX REPLACE "#include \"((${FOLDERS})/[^\"]+)\"" "#include \"mote/\\1\"" text "${text}")
   set(before "")
   if(EXISTS ${OUT}/${header})
     file(READ ${OUT}/${header} before)
@@ -21,7 +29,7 @@ foreach(header ${headers})
   if(NOT text STREQUAL before)
     file(WRITE ${OUT}/${header} "${text}")
   endif()
-endforeach()
+endwhile()
 
 file(GLOB_RECURSE written RELATIVE ${OUT} ${OUT}/*.h)
 list(REMOVE_ITEM written ${headers} version.h)

@@ -82,8 +82,8 @@ int main() {
         lights::ReceiverTile tile;
         for (int lane = 0; lane < lights::ReceiverLanes::width; ++lane) {
             const Ray ray = to_wall(rng);
-            core::WalkEvent arrived{core::WalkEvent::Kind::surface};
-            arrived.hit = *scene.first_hit(ray);
+            core::WalkEvent arrived;
+            arrived.kind = core::WalkEvent::Kind::surface, arrived.hit = *scene.first_hit(ray);
             tile.set(lane, core::make_vertex(arrived, ray), Rgb(1.0f), {}, rng, 1000);
         }
         for (const Rgb& radiance : lights::gather({scene, scratch, rays, tracking}, vpls, lights::VplRange{},

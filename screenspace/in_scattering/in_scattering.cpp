@@ -6,29 +6,11 @@
 #include "core/scene/media_along.h"
 #include "core/scene/scene.h"
 #include "screenspace/in_scattering/eye_media.h"
+#include "screenspace/in_scattering/eye_view.h"
 
 namespace mote::screenspace {
 
 using namespace core;
-
-namespace {
-
-/// Where a medium can be: the closed shapes it fills, or everywhere when something names it as outside.
-Bounds3 extent(const Scene& scene, const Medium& medium) {
-    Bounds3 box;
-    bool everywhere = scene.outermost_medium() == &medium;
-    for (const auto& shape : scene.shapes()) {
-        everywhere |=
-            shape->exterior.get() == &medium || (shape->interior.get() == &medium && !shape->closed());
-        if (shape->interior.get() == &medium) box.extend(shape->bounds());
-    }
-    const Bounds3 own = medium.bounds();
-    if (everywhere) return own;
-    box.lower = glm::max(box.lower, own.lower), box.upper = glm::min(box.upper, own.upper);
-    return box;
-}
-
-}  // namespace
 
 void find_segments(const RayQueries& scene, const Ray& ray, const MediumState& state,
                    std::vector<MediumSegment>& segments, WalkContext& walk) {
@@ -79,14 +61,16 @@ Rgb transmittance_of_media(const Ray& ray, const std::vector<MediumSegment>& seg
 
 InScattering::InScattering(const Scene& scene, const Emitter& light, const MarchSettings& settings,
                            const MarchAccelerations& accelerations)
-    : scene_(scene), light_(light), settings_(settings), accelerations_(accelerations) {
-    const auto position = Scene::light_position(light);
+    : InScattering(scene, scattering_extent(scene), light, settings, accelerations) {}
+
+InScattering::InScattering(const RayQueries& scene, const Bounds3& scattering, const Emitter& light,
+                           const MarchSettings& settings, const MarchAccelerations& accelerations)
+    : scene_(scene), light_(light), settings_(settings), accelerations_(accelerations), media_(scattering) {
+    const auto position = LitScene::light_position(light);
     if (!position) throw std::invalid_argument("in-scattering along rays: the light has no position");
     if (settings.steps < 1) throw std::invalid_argument("in-scattering along rays: at least one step");
     position_ = *position;
     if (const auto* spot = dynamic_cast<const lights::ConeLight*>(&light)) cone_ = spot->cone();
-    for (const auto& medium : scene.media())
-        if (medium->traits().scattering && !medium->traits().empty) media_.extend(extent(scene, *medium));
     if (!accelerations.space) return;
     if (const auto analytic = AnalyticLight::of(light)) analytic_light_.emplace(*analytic);
     for (const auto& medium : scene.media())

@@ -98,7 +98,12 @@ class EyeMedia;
 
 class InScattering {
   public:
-    /// The light must have a position (Scene::light_position). Keeps references to both.
+    /// `scattering` holds every point where a medium scatters light [m] (scattering_extent()). The light must
+    /// have a position (LitScene::light_position), else std::invalid_argument is thrown. Keeps references to
+    /// scene and light.
+    InScattering(const core::RayQueries& scene, const core::Bounds3& scattering, const core::Emitter& light,
+                 const MarchSettings& settings, const MarchAccelerations& accelerations = {});
+    /// The same, with what a Scene knows of its media.
     InScattering(const core::Scene& scene, const core::Emitter& light, const MarchSettings& settings,
                  const MarchAccelerations& accelerations = {});
 

@@ -8,6 +8,9 @@ namespace mote::screenspace {
 
 using namespace core;
 
+InScatteringRays::InScatteringRays(const Scene& scene, const InScattering& light, const Vec2& u_lens)
+    : InScatteringRays(scene, eye_view(scene), light, u_lens) {}
+
 RayEnd lit_end(const InScattering& light, const Ray& ray, const FirstSurface& surface) {
     Ray to_surface = ray;
     to_surface.t_max = std::min(ray.t_max, surface.distance);
@@ -33,7 +36,7 @@ class InScatteringRays::Task final : public InScatteringTask {
     }
 
     Ray ray(const Vec2d& film) override {
-        return source_.scene_.camera().sample_ray(Vec2(film), source_.u_lens_);
+        return source_.eye_.camera.sample_ray(Vec2(film), source_.u_lens_);
     }
     RayEnd end_of(const Vec2d& film) override {
         const Ray eye = ray(film);
@@ -48,7 +51,7 @@ class InScatteringRays::Task final : public InScatteringTask {
         eye.t_max = std::min(eye.t_max, end.distance);
         scratch_.walk.rng =
             Rng(hash_keys(std::bit_cast<std::uint64_t>(film.x), std::bit_cast<std::uint64_t>(film.y)));
-        return source_.light_.march(eye, source_.scene_.eye_medium_state(eye), scratch_);
+        return source_.light_.march(eye, source_.eye_.media(eye), scratch_);
     }
 
   private:

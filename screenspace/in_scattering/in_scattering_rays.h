@@ -4,6 +4,7 @@
 
 #include <mutex>
 
+#include "screenspace/in_scattering/eye_view.h"
 #include "screenspace/in_scattering/in_scattering.h"
 
 namespace mote::screenspace {
@@ -11,8 +12,11 @@ namespace mote::screenspace {
 /// Keeps references to scene and light march. All rays pass the point `u_lens` of the lens.
 class InScatteringRays final : public InScatteringSource {
   public:
-    InScatteringRays(const core::Scene& scene, const InScattering& light, const core::Vec2& u_lens)
-        : scene_(scene), light_(light), u_lens_(u_lens) {}
+    InScatteringRays(const core::RayQueries& scene, EyeView eye, const InScattering& light,
+                     const core::Vec2& u_lens)
+        : scene_(scene), eye_(std::move(eye)), light_(light), u_lens_(u_lens) {}
+    /// Through the scene's own camera.
+    InScatteringRays(const core::Scene& scene, const InScattering& light, const core::Vec2& u_lens);
     std::unique_ptr<InScatteringTask> start() const override;
 
     /// What all tasks that have ended did; call it when none is running.
@@ -24,7 +28,8 @@ class InScatteringRays final : public InScatteringSource {
 
   private:
     class Task;
-    const core::Scene& scene_;
+    const core::RayQueries& scene_;
+    EyeView eye_;
     const InScattering& light_;
     core::Vec2 u_lens_;
     mutable std::mutex mutex_;

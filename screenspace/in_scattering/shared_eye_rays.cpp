@@ -22,7 +22,7 @@ class SharedEyeRays::Task final : public SharedRayTask {
     }
 
     Ray ray(const Vec2d& film) override {
-        return source_.scene_.camera().sample_ray(Vec2(film), source_.u_lens_);
+        return source_.eye_.camera.sample_ray(Vec2(film), source_.u_lens_);
     }
     std::array<RayEnd, 2> ends_of(const Crossing& crossing) override {
         const Ray eye = ray(crossing.film);
@@ -35,7 +35,7 @@ class SharedEyeRays::Task final : public SharedRayTask {
         scratch_.walk.rng = Rng(hash_keys(std::bit_cast<std::uint64_t>(crossing.film.x),
                                           std::bit_cast<std::uint64_t>(crossing.film.y)));
         Ray eye = ray(crossing.film);
-        const MediumState state = source_.scene_.eye_medium_state(eye);
+        const MediumState state = source_.eye_.media(eye);
         const float reach = eye.t_max;
         eye.t_max = std::min(reach, std::max(ends[0].distance, ends[1].distance));
         const EyeMedia media(source_.scene_, eye, state, source_.voxels_, scratch_.walk);
@@ -55,6 +55,10 @@ class SharedEyeRays::Task final : public SharedRayTask {
     const SharedEyeRays& source_;
     MarchScratch scratch_;
 };
+
+SharedEyeRays::SharedEyeRays(const Scene& scene, std::span<const InScattering* const> lights, float voxels,
+                             const Vec2& u_lens)
+    : SharedEyeRays(scene, eye_view(scene), lights, voxels, u_lens) {}
 
 std::unique_ptr<SharedRayTask> SharedEyeRays::start() const { return std::make_unique<Task>(*this); }
 

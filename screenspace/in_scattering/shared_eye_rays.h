@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include "screenspace/epipolar/epipolar_crossings.h"
+#include "screenspace/in_scattering/eye_view.h"
 #include "screenspace/in_scattering/in_scattering.h"
 
 namespace mote::screenspace {
@@ -15,9 +16,12 @@ namespace mote::screenspace {
 /// steps of `voxels`.
 class SharedEyeRays final : public SharedRaySource {
   public:
+    SharedEyeRays(const core::RayQueries& scene, EyeView eye, std::span<const InScattering* const> lights,
+                  float voxels, const core::Vec2& u_lens)
+        : scene_(scene), eye_(std::move(eye)), lights_(lights), voxels_(voxels), u_lens_(u_lens) {}
+    /// Through the scene's own camera.
     SharedEyeRays(const core::Scene& scene, std::span<const InScattering* const> lights, float voxels,
-                  const core::Vec2& u_lens)
-        : scene_(scene), lights_(lights), voxels_(voxels), u_lens_(u_lens) {}
+                  const core::Vec2& u_lens);
     std::unique_ptr<SharedRayTask> start() const override;
 
     /// What all tasks that have ended did; call it when none is running. A ray counts once for each light.
@@ -25,7 +29,8 @@ class SharedEyeRays final : public SharedRaySource {
 
   private:
     class Task;
-    const core::Scene& scene_;
+    const core::RayQueries& scene_;
+    EyeView eye_;
     std::span<const InScattering* const> lights_;
     float voxels_;
     core::Vec2 u_lens_;

@@ -1,0 +1,166 @@
+"""Installs the package into the build folder, moves it, and does with it what a consumer does.
+
+Examples are built and run, layouts compared, the helper program looked for, flags of a project that adds mote to itself
+looked through. --headers compiles each installed public header on its own as well (a minute of processor time).
+"""
+import argparse
+import json
+import os
+import re
+import resource
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+parser = argparse.ArgumentParser(description=__doc__)
+parser.add_argument("--source", type=Path, required=True)
+parser.add_argument("--build", type=Path, required=True)
+parser.add_argument("--compiler", default="c++")
+parser.add_argument("--headers", action="store_true")
+arguments = parser.parse_args()
+here = Path(__file__).resolve().parent
+work = arguments.build / "package_test"
+ccache = shutil.which("ccache")
+launcher = [f"-DCMAKE_CXX_COMPILER_LAUNCHER={ccache}"] if ccache else []
+environment = {k: v for k, v in os.environ.items() if not k.startswith("MOTE_GRID") and k != "CXXFLAGS"}
+
+
+def fail(what):
+    sys.exit(f"package: {what}")
+
+
+def run(*command, **options):
+    done = subprocess.run([str(c) for c in command], text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                          env=environment, **options)
+    if done.returncode != 0:
+        fail(f"{' '.join(map(str, command))}\n{done.stdout[-6000:]}\nended with {done.returncode}")
+    return done.stdout
+
+
+def seconds():
+    children = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return children.ru_utime + children.ru_stime
+
+
+def same_layouts(inside, outside):
+    return inside == outside and inside.count("\n") > 30
+
+
+def install():
+    """The package in a folder that it was not installed to."""
+    for folder in ("installed", "moved"):
+        shutil.rmtree(work / folder, ignore_errors=True)
+    run("cmake", "--install", arguments.build, "--prefix", work / "installed")
+    (work / "installed").rename(work / "moved")
+    return work / "moved"
+
+
+def check_headers(include):
+    """What installed headers include of mote is installed, and no name of mote is without its `mote/`."""
+    headers = sorted(include.rglob("*.h"))
+    for header in headers:
+        for line in re.findall(r'#include "([^"]+)"', header.read_text()):
+            if not line.startswith("mote/") or not (include / line).exists():
+                fail(f"{header} includes {line}")
+        for private in re.findall(r"#include <((?:fmt|nlohmann|nanovdb|openvdb|OpenEXR|OpenImageIO|pugixml)[^>]*)>",
+                                  header.read_text()):
+            fail(f"{header} includes {private}, which is private")
+    stray = [p.name for p in include.iterdir() if p.name != "mote"]
+    if stray:
+        fail(f"{stray} beside mote/ among the headers")
+    return len(headers)
+
+
+def public_headers():
+    lines = (arguments.source / "cmake/public_headers.txt").read_text().splitlines()
+    return [line for line in lines if line and not line.startswith("#")]
+
+
+def build_consumer(prefix):
+    consumer, build = work / "consumer", work / "consumer_build"
+    shutil.rmtree(build, ignore_errors=True)
+    shutil.copytree(here / "consumer", consumer, dirs_exist_ok=True)
+    text = "".join(f"#include <mote/{header}>\n" for header in public_headers())
+    (consumer / "all_headers.cpp").write_text(text + "#include <mote/version.h>\n")
+    run("cmake", "-S", consumer, "-B", build, "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={prefix}",
+        f"-DMOTE_EXAMPLES={arguments.source}/examples", f"-DCMAKE_CXX_COMPILER={arguments.compiler}",
+        "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON",
+        *launcher)
+    run("cmake", "--build", build)
+    return build
+
+
+def check_flags(commands, of):
+    """No flag of mote's own compilation reaches others; what decides layouts does."""
+    entries = [e["command"] for e in json.loads(commands.read_text()) if e["file"].endswith(of)]
+    if not entries:
+        fail(f"{commands} does not hold {of}")
+    for command in entries:
+        for flag in ("-march", "-Wshadow", "-Wpedantic", "-fno-math-errno", "FMT_SHARED", "nanovdb", "openvdb"):
+            if flag in command:
+                fail(f"{flag} reaches {of}: {command}")
+        if re.search(rf"(-I|-isystem )\s*{re.escape(str(arguments.source))}(\s|$)", command):
+            fail(f"mote's own folder is on the include path of {of}: {command}")
+        if "-DGLM_FORCE_CTOR_INIT" not in command:
+            fail(f"{of} would have other vectors than mote: {command}")
+
+
+def check_examples(build, prefix):
+    examples = build / "examples"
+    room = work / "room.exr"
+    run(prefix / "bin/mote", "render", arguments.source / "examples/ssbc/room.xml", "--passes", 4, "--auxiliary",
+        "--quiet", "-o", room)
+    for folder in sorted(p for p in (arguments.source / "examples").iterdir() if p.is_dir()):
+        more = [room, work / "compensated.exr"] if folder.name == "ssbc" else []
+        print(f"{folder.name}: {run(examples / folder.name / folder.name, *more).splitlines()[-1]}")
+
+
+def check_helper(build, prefix):
+    found = Path(run(build / "where").strip()).resolve()
+    if found != (prefix / "libexec/mote/mote_grid_reader").resolve():
+        fail(f"the helper of the moved package was found in {found}")
+    environment["MOTE_GRID_READER"] = "/somewhere/else"
+    if run(build / "where").strip() != "/somewhere/else":
+        fail("MOTE_GRID_READER does not come first")
+    del environment["MOTE_GRID_READER"]
+
+
+def check_guest():
+    """The libraries in another project: configured, and one file of it compiled."""
+    build = work / "guest"
+    shutil.rmtree(build, ignore_errors=True)
+    run("cmake", "-S", here / "guest", "-B", build, "-G", "Ninja", f"-DMOTE_SOURCE={arguments.source}",
+        f"-DCMAKE_CXX_COMPILER={arguments.compiler}", "-DCMAKE_CXX_FLAGS=-Wall -Wextra", *launcher)
+    check_flags(build / "compile_commands.json", "guest.cpp")
+    run("cmake", "--build", build, "--target", "mote_package_headers")
+    entry = next(e for e in json.loads((build / "compile_commands.json").read_text()) if "guest.cpp" in e["file"])
+    run("sh", "-c", entry["command"].replace(" -o ", " -fsyntax-only -o "), cwd=entry["directory"])
+
+
+def check_each_header(include):
+    for header in public_headers():
+        run(arguments.compiler, "-std=c++20", "-DGLM_FORCE_CTOR_INIT", f"-I{include}", "-fsyntax-only", "-Wall",
+            "-Wextra", "-Werror", "-x", "c++", "-", input=f"#include <mote/{header}>\n")
+
+
+work.mkdir(exist_ok=True)
+prefix = install()
+count = check_headers(prefix / "include")
+version = run(prefix / "bin/mote", "--version").strip()
+build = build_consumer(prefix)
+check_flags(build / "compile_commands.json", "all_headers.cpp")
+layouts = run(build / "layouts")
+inside = run(arguments.build / "bin/mote_package_layouts")
+if not same_layouts(inside, layouts):
+    fail(f"layouts differ:\n{inside}\n{layouts}")
+if same_layouts(inside, layouts.replace("alignment 64", "alignment 32")):
+    fail("a planted difference of layouts is not seen")
+if version.split()[-1] != layouts.split()[1]:
+    fail(f"the command says {version}, the headers {layouts.split()[1]}")
+check_examples(build, prefix)
+check_helper(build, prefix)
+check_guest()
+if arguments.headers:
+    check_each_header(prefix / "include")
+print(f"{count} headers installed; {seconds():.1f} processor seconds")
