@@ -70,3 +70,30 @@ configure_package_config_file(cmake/mote-config.cmake.in ${PROJECT_BINARY_DIR}/m
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/mote-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/mote-config.cmake ${PROJECT_BINARY_DIR}/mote-config-version.cmake
         DESTINATION ${mote_cmake_folder} COMPONENT dev)
+
+# ---- `cpack -G DEB` in the build folder: mote_..._amd64.deb with the command, mote-dev_..._amd64.deb with the libraries.
+# What mote needs of the system dpkg-shlibdeps finds in the binaries; what mote-dev's headers and static libraries ask
+# of those who link them is written here.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME mote)
+set(CPACK_PACKAGE_VENDOR mote)
+set(CPACK_PACKAGE_CONTACT "The mote authors <mote@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "Many-light rendering and participating media")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_COMPONENTS_ALL mote dev)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_MOTE_PACKAGE_NAME mote)
+set(CPACK_DEBIAN_MOTE_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_DEV_PACKAGE_NAME mote-dev)
+set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "mote (= ${PROJECT_VERSION}), libembree-dev, libglm-dev, libtbb-dev, libfmt-dev, \
+libpugixml-dev, libopenexr-dev, libimath-dev, python3-imath, libopenimageio-dev, openimageio-tools, libassimp-dev, \
+zlib1g-dev")
+set(CPACK_COMPONENT_MOTE_DESCRIPTION "The mote command: renders scenes with many-light methods, path tracing and
+participating media, and compares pictures.")
+set(CPACK_COMPONENT_DEV_DESCRIPTION "Libraries, headers and the CMake package of mote, for renderers and programs that
+call its algorithms.")
+include(CPack)
