@@ -1,8 +1,9 @@
-# mote_folder(NAME [FOLDERS folders...] [FILES regex] [WITHOUT regex] PUBLIC libs... PRIVATE libs... [INTERNAL libs...]
-#             [ALONE regexes...] [COMMAND_LINE regex]): the library mote_NAME of every .cpp below NAME/, or below the
-# folders, whose path matches FILES and does not match WITHOUT. Executables that live beside a library (main_*.cpp)
-# are left out. INTERNAL: what only its own compilation needs (options, libraries of headers), and no program that
-# links it. ALONE and COMMAND_LINE: see mote_sources in units.cmake. Others call it mote::NAME (package.cmake).
+# mote_folder(NAME [STATIC] [FOLDERS folders...] [FILES regex] [WITHOUT regex] PUBLIC libs... PRIVATE libs...
+#             [INTERNAL libs...] [ALONE regexes...] [COMMAND_LINE regex]): the library mote_NAME of every .cpp below
+# NAME/, or below the folders, whose path matches FILES and does not match WITHOUT. Executables that live beside a
+# library (main_*.cpp) are left out. STATIC: also where the others are shared. INTERNAL: what only its own compilation
+# needs (options, libraries of headers), and no program that links it. ALONE and COMMAND_LINE: see mote_sources in
+# units.cmake. Others call it mote::NAME (package.cmake).
 
 # What mote's own files are compiled with. It stays inside: libraries take it by $<BUILD_INTERFACE:...>, privately.
 add_library(mote_options INTERFACE)
@@ -40,7 +41,7 @@ if(NOT PROJECT_IS_TOP_LEVEL)
 endif()
 
 function(mote_folder name)
-  cmake_parse_arguments(ARG "" "COMMAND_LINE;FILES;WITHOUT" "FOLDERS;PUBLIC;PRIVATE;INTERNAL;ALONE" ${ARGN})
+  cmake_parse_arguments(ARG "STATIC" "COMMAND_LINE;FILES;WITHOUT" "FOLDERS;PUBLIC;PRIVATE;INTERNAL;ALONE" ${ARGN})
   if(NOT ARG_FOLDERS)
     set(ARG_FOLDERS ${name})
   endif()
@@ -53,7 +54,11 @@ function(mote_folder name)
   if(ARG_WITHOUT)
     list(FILTER sources EXCLUDE REGEX "${ARG_WITHOUT}")
   endif()
-  add_library(mote_${name} ${MOTE_LIBRARY_TYPE})
+  if(ARG_STATIC)
+    add_library(mote_${name} STATIC)
+  else()
+    add_library(mote_${name} ${MOTE_LIBRARY_TYPE})
+  endif()
   add_library(mote::${name} ALIAS mote_${name})
   set_target_properties(mote_${name} PROPERTIES EXPORT_NAME ${name} DEFINE_SYMBOL "" VERSION ${PROJECT_VERSION}
                         SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
