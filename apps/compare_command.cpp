@@ -9,17 +9,18 @@
 #include <optional>
 
 #include "apps/command.h"
-#include "apps/denoise/denoised_layer.h"
 #include "apps/difference_picture.h"
-#include "apps/number_or_null.h"
 #include "apps/output_files.h"
 #include "apps/picture_file.h"
-#include "apps/reference_metadata.h"
 #include "apps/subcommands.h"
 #include "core/image/error_map.h"
 #include "core/image/metrics.h"
 #include "core/image/reference_pair.h"
 #include "core/objects/error.h"
+#include "session/compare.h"
+#include "session/denoise/denoised_layer.h"
+#include "session/number_or_null.h"
+#include "session/reference_metadata.h"
 
 namespace mote::apps {
 
@@ -69,7 +70,6 @@ struct References {
         return {first.bitmap.pixels, second->bitmap.pixels, first.variance, second->variance};
     }
     const std::vector<core::Rgb>& pixels() const { return second ? mean.picture : first.bitmap.pixels; }
-    const std::vector<core::Rgb>& variance() const { return second ? mean.variance : first.variance; }
 };
 
 References read_references(const CompareArguments& arguments, const std::string& layer) {
@@ -84,16 +84,11 @@ References read_references(const CompareArguments& arguments, const std::string&
     return r;
 }
 
-ImageMetrics measure(const PictureFile& image, const References& references) {
-    const core::Bitmap& a = image.bitmap;
-    ImageMetrics m = core::compare_images(a.pixels, references.pixels(), a.width, a.height,
-                                          {image.variance, references.variance()});
-    if (!references.second || m.non_finite_either > 0) return m;
-    const core::RelativeError e =
-        core::relative_error(a.pixels, references.pair(), a.width, a.height, image.variance);
-    m.error = e.error, m.error_standard_error = e.error_standard_error, m.bias = e.bias;
-    if (!image.variance.empty()) m.bias_standard_error = e.bias_standard_error, m.noise = e.noise;
-    return m;
+ImageMetrics measured(const PictureFile& image, const References& references) {
+    const int width = image.bitmap.width, height = image.bitmap.height;
+    const MeasuredPicture picture{image.bitmap.pixels, image.variance};
+    if (references.second) return measure(picture, references.pair(), references.mean, width, height);
+    return measure(picture, {references.first.bitmap.pixels, references.first.variance}, width, height);
 }
 
 json mean_json(const std::array<double, 3>& rgb, double average) {
@@ -222,7 +217,7 @@ int compare_command(const CompareArguments& arguments) {
     }
     for (const std::string& warning : warnings)
         std::fputs(("mote: warning: " + warning + "\n").c_str(), stderr);
-    const ImageMetrics metrics = measure(image, references);
+    const ImageMetrics metrics = measured(image, references);
     if (!arguments.map.empty())
         core::write_png(arguments.map, a.width, a.height, core::error_map(a.pixels, r.pixels));
     std::string difference;

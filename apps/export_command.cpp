@@ -9,8 +9,8 @@ namespace mote::apps {
 
 int export_command(const ExportArguments& arguments) {
     const core::Registry registry = make_registry();
-    core::SceneDocument document =
-        core::load_scene_elements(arguments.scene.scene, registry, load_options(arguments.scene));
+    core::SceneDocument document = core::load_scene_elements(arguments.scene.scene, registry,
+                                                             load_options(scene_changes(arguments.scene)));
     for (const std::string& text : document.approximations) std::printf("--lenient: %s\n", text.c_str());
     const MitsubaExport result = export_to_mitsuba(std::move(document), registry, arguments.scene.scene,
                                                    arguments.max_grid_megabytes * 1'000'000);

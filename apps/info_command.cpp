@@ -8,7 +8,6 @@
 
 #include "apps/command.h"
 #include "apps/picture_file.h"
-#include "apps/placement_notes.h"
 #include "apps/subcommands.h"
 #include "core/geometry/triangle_mesh.h"
 #include "core/gltf/gltf_scene.h"
@@ -17,6 +16,7 @@
 #include "core/objects/error.h"
 #include "media/vdb_grid.h"
 #include "media/vol_file.h"
+#include "session/placement_notes.h"
 
 namespace mote::apps {
 

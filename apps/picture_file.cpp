@@ -6,11 +6,13 @@
 #include <filesystem>
 #include <fstream>
 
-#include "apps/reference_metadata.h"
 #include "core/image/whole_file.h"
 #include "core/objects/error.h"
+#include "session/reference_metadata.h"
 
 namespace mote::apps {
+
+using namespace session;
 
 using core::ImageChannels, core::InputError;
 

@@ -13,26 +13,26 @@
 #include <iterator>
 #include <optional>
 
-#include "apps/auxiliary_channels.h"
 #include "apps/command.h"
-#include "apps/denoise/bmfr_sequence.h"
-#include "apps/denoise/denoised_layer.h"
-#include "apps/in_scattered_feature.h"
 #include "apps/interruption.h"
 #include "apps/output_files.h"
 #include "apps/picture_file.h"
 #include "apps/preview.h"
 #include "apps/progress_line.h"
-#include "apps/reference_metadata.h"
-#include "apps/render_report.h"
 #include "apps/subcommands.h"
-#include "apps/usable_threads.h"
 #include "core/image/film_image.h"
 #include "core/image/image_file.h"
 #include "core/objects/error.h"
 #include "core/objects/memory_error.h"
 #include "core/render/render_driver.h"
 #include "core/render/stop_clock.h"
+#include "session/auxiliary_channels.h"
+#include "session/denoise/bmfr_sequence.h"
+#include "session/denoise/denoised_layer.h"
+#include "session/in_scattered_feature.h"
+#include "session/reference_metadata.h"
+#include "session/render_report.h"
+#include "session/usable_threads.h"
 
 namespace mote::apps {
 
@@ -94,10 +94,7 @@ void warn_about(const core::Scene& scene, const core::LoadReport& loaded, const 
 
 // What changes the picture besides the contents of files.
 std::vector<std::string> settings_of(const RenderArguments& render, const std::string& integrator) {
-    const SceneArguments& arguments = render.scene;
-    std::vector<std::string> settings = {MOTE_VERSION, integrator, arguments.integrator};
-    settings.insert(settings.end(), arguments.defines.begin(), arguments.defines.end());
-    if (arguments.lenient) settings.emplace_back("--lenient");
+    std::vector<std::string> settings = render_settings(scene_changes(render.scene), integrator);
     if (wants_motion(render) && render.sequence->previous) {
         settings.emplace_back("the frame before");
         const auto& before = render.sequence->previous->defines;
@@ -141,12 +138,10 @@ const core::PreviousFrame* frame_before(const RenderArguments& arguments, const 
 
 std::vector<core::HitFeature> features_of(const RenderArguments& arguments, const core::Scene& scene,
                                           const core::LoadReport& loaded, const core::PreviousFrame* before) {
-    if (!arguments.auxiliary)
-        return arguments.denoise.empty()
-                   ? features_by_name(scene, loaded.features)
-                   : features_for_denoising(scene, loaded.features, arguments.denoise == "bmfr");
-    std::vector<core::HitFeature> features = auxiliary_features(scene);
-    if (before) std::ranges::move(core::motion_features(scene, *before), std::back_inserter(features));
+    std::vector<core::HitFeature> features =
+        wanted_features(scene, loaded.features, arguments.auxiliary, arguments.denoise);
+    if (before && arguments.auxiliary)
+        std::ranges::move(core::motion_features(scene, *before), std::back_inserter(features));
     return features;
 }
 
@@ -200,15 +195,10 @@ bool denoise(core::ImageChannels& image, const RenderArguments& arguments, const
 void write_outputs(const OutputFiles& files, const RenderReport& report, const RenderArguments& arguments,
                    const core::Registry& registry, const Denoiser& denoiser,
                    std::vector<std::string>& warnings) {
-    core::ImageChannels image = core::film_image(report.result.film);
-    image.metadata = picture_metadata(report);
+    core::ImageChannels image = make_picture(
+        report, registry, {arguments.auxiliary, arguments.auxiliary || arguments.denoise == "bmfr"});
     if (arguments.sequence) image.metadata[scene_files_key] = as_lines(report.scene.parts().input_files);
-    if (arguments.auxiliary) add_center_channels(image, report.scene), add_ids(image, report.scene);
-    if ((arguments.auxiliary || arguments.denoise == "bmfr") && !report.result.interrupted)
-        add_in_scattered(image, report.scene, registry);
     const std::span<const std::uint8_t> finished = report.result.finished_pixels;
-    if (!finished.empty())  // those that no pass reached are transparent
-        image.add("A", std::vector<float>(finished.begin(), finished.end()));
     const bool denoised = denoise(image, arguments, denoiser, report.result, files.picture, warnings);
     const std::uint64_t clamped =
         core::write_exr(files.picture, image, arguments.half || report.scene.film().half);

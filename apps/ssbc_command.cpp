@@ -11,11 +11,12 @@
 #include "apps/number_options.h"
 #include "apps/output_files.h"
 #include "apps/picture_file.h"
-#include "apps/reference_metadata.h"
 #include "core/image/image_file.h"
 #include "core/objects/error.h"
 #include "core/scene/scene.h"
 #include "screenspace/g_buffer/g_buffer.h"
+#include "session/picture_compensation.h"
+#include "session/reference_metadata.h"
 
 namespace mote::apps {
 
@@ -24,28 +25,10 @@ namespace {
 using core::ImageChannels, core::InputError, core::Rgb;
 using screenspace::SsbcPicture, screenspace::SsbcResult;
 
-const char* const added_layer = "compensation_surface";
-
 float bound_of(const ImageChannels& image, const SsbcArguments& a) {
-    if (a.bound > 0.0f) return a.bound;
-    if (const auto entry = image.metadata.find("bound"); entry != image.metadata.end()) {
-        const float bound = std::strtof(entry->second.c_str(), nullptr);
-        if (bound > 0.0f && std::isfinite(bound)) return bound;
-    }
+    const float bound = a.bound > 0.0f ? a.bound : session::bound_of(image);
+    if (bound > 0.0f) return bound;
     throw InputError("the picture does not say with which bound it was rendered: give --bound", {a.input, 0});
-}
-
-/// Takes the compensation of a picture out of its beauty.
-void take_out(ImageChannels& image) {
-    const std::vector<Rgb> before = image.rgb(added_layer);
-    for (std::size_t k = image.names.size(); k-- > 0;) {
-        const std::string& name = image.names[k];
-        if (const auto c = std::string("RGB").find(name); name.size() == 1 && c != std::string::npos)
-            for (std::size_t i = 0; i < before.size(); ++i) image.channels[k][i] -= before[i][int(c)];
-        if (!name.starts_with(std::string(added_layer) + ".")) continue;
-        image.names.erase(image.names.begin() + std::ptrdiff_t(k));
-        image.channels.erase(image.channels.begin() + std::ptrdiff_t(k));
-    }
 }
 
 /// The scene with a film of the picture's size: a picture may have been rendered with another than the file
@@ -72,11 +55,11 @@ void check_scene(const ImageChannels& image, const core::Scene& scene, const Ssb
 
 SsbcPicture read(ImageChannels& image, const SsbcArguments& a) {
     if (a.replace)
-        take_out(image);
-    else if (image.find(std::string(added_layer) + ".R"))
-        throw InputError(
-            std::string("the picture holds a layer '") + added_layer + "' already (--replace takes it out)",
-            {a.input, 0});
+        take_out_compensation(image);
+    else if (is_compensated(image))
+        throw InputError(std::string("the picture holds a layer '") + compensation_layer +
+                             "' already (--replace takes it out)",
+                         {a.input, 0});
     try {
         if (a.layers > 1 && a.scene.scene.empty())
             throw InputError("several layers need --scene: a picture holds no surfaces behind others");
@@ -96,16 +79,6 @@ SsbcPicture read(ImageChannels& image, const SsbcArguments& a) {
         if (!error.where().file.empty()) throw;
         throw InputError(error.what(), {a.input, 0});
     }
-}
-
-/// Adds the compensation to the beauty, and as a layer.
-void add_to(ImageChannels& image, const std::vector<Rgb>& compensation) {
-    for (int c = 0; c < 3; ++c)
-        for (std::size_t k = 0; k < image.names.size(); ++k)
-            if (image.names[k] == std::string(1, "RGB"[c]))
-                for (std::size_t i = 0; i < compensation.size(); ++i)
-                    image.channels[k][i] += compensation[i][c];
-    image.add_rgb(added_layer, compensation);
 }
 
 Rgb mean(std::span<const Rgb> pixels) {
@@ -144,7 +117,7 @@ int ssbc_command(const SsbcArguments& a) {
     const auto begin = std::chrono::steady_clock::now();
     const SsbcResult result = compensate(picture.surfaces, picture.light, picture.hidden, settings);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    add_to(image, result.compensation);
+    add_compensation(image, result.compensation);
     for (const char* written_anyway : {"pixelAspectRatio", "screenWindowWidth"})
         image.metadata.erase(written_anyway);
     image.metadata["ssbc"] = fmt::format("bound {:.9g}, steps {}", bound, settings.steps);

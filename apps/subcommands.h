@@ -14,8 +14,12 @@
 #include "core/render/integrator.h"
 #include "core/render/motion_features.h"
 #include "core/scene/scene.h"
+#include "session/loaded_scene.h"
+#include "session/registry.h"
 
 namespace mote::apps {
+
+using namespace session;  // what the commands do; what they say is here
 
 /// The command line is at fault: exit code 2.
 class UsageError : public std::runtime_error {
@@ -87,17 +91,14 @@ struct ExportArguments {
     std::uint64_t max_grid_megabytes = 2000;
 };
 
-core::Registry make_registry();
+/// Throws UsageError for a malformed definition.
+SceneChanges scene_changes(const SceneArguments& arguments);
 /// The definitions as names and values. Throws UsageError for a malformed one.
-core::LoadOptions load_options(const SceneArguments& arguments);
 std::vector<std::pair<std::string, std::string>> split_defines(const std::vector<std::string>& defines);
 /// Loads the scene with everything that the command line changes. Throws InputError, or UsageError for a
 /// malformed definition.
 std::unique_ptr<core::Scene> load(const SceneArguments& arguments, const core::Registry& registry,
                                   core::LoadReport* report = nullptr);
-/// The integrator to run. Throws InputError when the scene names none.
-const core::Integrator& require_integrator(const core::Scene& scene, const core::Registry& registry);
-
 /// What --lenient left out or approximated and everything else worth a warning, a line each on stderr.
 void warn_about_scene(const core::Scene& scene, const core::LoadReport& report);
 

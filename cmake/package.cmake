@@ -3,7 +3,7 @@
 
 # The components, from the ground up: one library each. Another library of mote that others may link gets its place
 # here, its folder of headers below if it has one of its own, and what it stands on in NEEDS_name.
-set(mote_package_components core_runtime core media lights picture_lights compensation gathering screenspace integrators)
+set(mote_package_components core_runtime core media lights picture_lights compensation gathering screenspace integrators session)
 set(NEEDS_core core_runtime)
 set(NEEDS_media core_runtime)
 set(NEEDS_lights media)
@@ -12,7 +12,8 @@ set(NEEDS_compensation lights)
 set(NEEDS_gathering lights)
 set(NEEDS_screenspace core lights)
 set(NEEDS_integrators picture_lights compensation gathering screenspace)
-set(mote_package_folders core media lights compensation gathering screenspace integrators)
+set(NEEDS_session integrators)
+set(mote_package_folders core media lights compensation gathering screenspace integrators session)
 
 # ---- Headers as others include them, in build/.../include/mote
 set(mote_include ${PROJECT_BINARY_DIR}/include/mote)

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "apps/command.h"
-#include "apps/denoise/bmfr_sequence.h"
-#include "apps/denoise/denoised_layer.h"
+#include "session/denoise/bmfr_sequence.h"
+#include "session/denoise/denoised_layer.h"
 #include "apps/frame_files.h"
 #include "apps/number_options.h"
 #include "apps/output_files.h"

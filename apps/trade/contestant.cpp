@@ -5,15 +5,17 @@
 #include <filesystem>
 #include <limits>
 
-#include "apps/render_report.h"
 #include "core/image/image_file.h"
 #include "core/image/metrics.h"
 #include "core/image/relative_error.h"
 #include "core/image/whole_file.h"
 #include "core/objects/error.h"
 #include "core/render/cpu_clock.h"
+#include "session/render_report.h"
 
 namespace mote::apps::trade {
+
+using namespace session;
 
 namespace {
 

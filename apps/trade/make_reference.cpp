@@ -12,13 +12,13 @@
 #include "apps/output_files.h"
 #include "apps/preview.h"
 #include "apps/progress_line.h"
-#include "apps/reference_metadata.h"
-#include "apps/render_report.h"
 #include "apps/trade/reference.h"
 #include "apps/trade/trade_command.h"
 #include "core/image/film_image.h"
 #include "core/loading/integrator_maker.h"
 #include "core/objects/error.h"
+#include "session/reference_metadata.h"
+#include "session/render_report.h"
 
 namespace mote::apps::trade {
 

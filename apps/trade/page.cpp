@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/render_report.h"
 #include "apps/trade/draw.h"
 #include "apps/trade/methods_file.h"
 #include "apps/trade/packed_picture.h"
@@ -12,8 +11,11 @@
 #include "apps/trade/plot.h"
 #include "core/image/image_file.h"
 #include "core/objects/error.h"
+#include "session/render_report.h"
 
 namespace mote::apps::trade {
+
+using namespace session;
 
 namespace {
 

@@ -1,4 +1,5 @@
-// Every check of a reference; apps/reference_metadata.h says what `mote` writes into its pictures for them.
+// Every check of a reference; session/reference_metadata.h says what `mote` writes into its pictures for
+// them.
 #include "apps/trade/reference.h"
 
 #include <fmt/format.h>
@@ -8,11 +9,13 @@
 #include <filesystem>
 #include <sstream>
 
-#include "apps/reference_metadata.h"
 #include "core/image/metrics.h"
 #include "core/objects/error.h"
+#include "session/reference_metadata.h"
 
 namespace mote::apps::trade {
+
+using namespace session;
 
 namespace {
 

@@ -8,10 +8,12 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "apps/render_report.h"
 #include "core/image/film_image.h"
+#include "session/render_report.h"
 
 namespace mote::apps::trade {
+
+using namespace session;
 
 namespace {
 

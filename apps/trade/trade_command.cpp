@@ -11,17 +11,17 @@
 #include <optional>
 
 #include "apps/command.h"
-#include "apps/denoise/denoised_layer.h"
 #include "apps/number_options.h"
 #include "apps/output_files.h"
-#include "apps/reference_metadata.h"
-#include "apps/render_report.h"
 #include "apps/trade/default_methods.h"
 #include "apps/trade/draw.h"
 #include "apps/trade/run.h"
 #include "core/image/checksum.h"
 #include "core/loading/scene_element.h"
 #include "core/objects/error.h"
+#include "session/denoise/denoised_layer.h"
+#include "session/reference_metadata.h"
+#include "session/render_report.h"
 
 namespace mote::apps {
 

@@ -4,7 +4,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "apps/reference_metadata.h"
+#include "session/reference_metadata.h"
 #include "apps/trade/methods_file.h"
 #include "apps/trade/record.h"
 #include "apps/trade/reference.h"

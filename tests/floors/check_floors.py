@@ -17,6 +17,7 @@ FLOORS = [
     ["lights"],
     ["compensation", "screenspace", "gathering"],
     ["integrators"],
+    ["session"],
     ["apps", "python", "plugins"],
     ["experiments"],
 ]

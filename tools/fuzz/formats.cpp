@@ -5,7 +5,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "apps/reference_metadata.h"
+#include "session/reference_metadata.h"
 #include "apps/trade/methods_file.h"
 #include "apps/trade/record.h"
 #include "apps/trade/reference.h"
@@ -145,7 +145,7 @@ std::vector<Format> formats() {
     const auto registry = make_registry();
     const std::shared_ptr<const core::Scene> scene =
         core::load_scene_from_string(small_scene, ".", *registry);
-    const std::string camera = apps::world_to_camera(scene->camera());
+    const std::string camera = session::world_to_camera(scene->camera());
     const auto pictures = [camera] { return exr_seeds(camera); };
 
     std::vector<Format> all;

@@ -1,0 +1,41 @@
+// What the camera sees besides light: layers of the render for denoisers, channels at pixel centres for
+// `mote ssbc`.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "core/image/image_file.h"
+#include "core/render/first_hit_features.h"
+
+namespace mote::session {
+
+/// core::first_hit_features(), and DiffuseAlbedo: what the BSDF reflects to all sides alike.
+std::vector<core::HitFeature> auxiliary_features(const core::Scene& scene);
+
+/// Those of them with these names (which a scene file asks for by an integrator `aov`), and Coverage; none
+/// for none.
+std::vector<core::HitFeature> features_by_name(const core::Scene& scene, std::span<const std::string> asked);
+
+/// What a denoiser asks for: Albedo and Ns, besides `asked`. `regression`: it regresses on P, Depth and
+/// Transmittance as well.
+std::vector<core::HitFeature> features_for_denoising(const core::Scene& scene, std::vector<std::string> asked,
+                                                     bool regression);
+
+/// What is written of the first hit besides light: all of it (`auxiliary`), or what a denoiser asks for
+/// ("oidn", "bmfr"; "": none), with those that the scene `asked` for by name.
+std::vector<core::HitFeature> wanted_features(const core::Scene& scene, const std::vector<std::string>& asked,
+                                              bool auxiliary, const std::string& denoise);
+
+/// Adds Center.P, Center.N (geometric, turned to the viewer) and Center.DiffuseAlbedo: what the rays through
+/// the middle of the pixels and of the lens hit, zero where that is nothing. The picture must have the size
+/// of the scene's film. Methods in the space of the picture need sharp edges, which the features are filtered
+/// over.
+void add_center_channels(core::ImageChannels& image, const core::Scene& scene);
+
+/// Adds ObjectId.Y and MaterialId.Y: of the first surface that the ray through the middle of the pixel and of
+/// the lens hits, counted from 1 in the order of the scene, 0 where that is nothing. An instance is another
+/// object, the BSDF of several shapes is one material. A mask is met by chance, in all frames alike.
+void add_ids(core::ImageChannels& image, const core::Scene& scene);
+
+}  // namespace mote::session

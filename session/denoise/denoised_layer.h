@@ -1,0 +1,30 @@
+// The layer `denoised` of a picture: for the eye. Everything else in the picture stays as it was measured.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "core/image/image_file.h"
+#include "session/denoise/oidn_library.h"
+
+namespace mote::session {
+
+/// The layer, and the entry of the metadata that says how it was made.
+inline const std::string denoised_layer = "denoised";
+
+/// Adds the layer: the sum of the layers that make up the beauty, each denoised by itself, with Albedo and Ns
+/// (first_hit_features.h) where the picture has them. Emission, which has no noise but at edges, stays as it
+/// is. Where the layers do not add up to the beauty, as in pictures of other programs, it is denoised as a
+/// whole. Throws InputError where there is no beauty, where the picture has such a layer already, and where
+/// the library fails.
+void add_denoised_layer(core::ImageChannels& image, const OidnLibrary& library);
+
+/// The denoised layer with its metadata, as a picture of its own.
+core::ImageChannels denoised_picture(const core::ImageChannels& image);
+
+/// What to say where a picture is measured that holds such a layer; "" where it does not. `layer`: that is
+/// measured, "" for the beauty.
+std::string denoised_doubt(const std::map<std::string, std::string>& metadata, const std::string& path,
+                           const std::string& layer);
+
+}  // namespace mote::session

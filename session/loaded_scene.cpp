@@ -1,0 +1,116 @@
+#include "session/loaded_scene.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "core/image/checksum.h"
+#include "core/loading/scene_making.h"
+#include "core/objects/memory_error.h"
+#include "core/render/render_driver.h"
+#include "session/placement_notes.h"
+#include "session/reference_metadata.h"
+#include "session/registry.h"
+
+namespace mote::session {
+
+core::LoadOptions load_options(const SceneChanges& changes) {
+    core::LoadOptions options;
+    options.integrator = changes.integrator, options.default_integrator = "mote_layers";
+    options.lenient = changes.lenient, options.frame = changes.frame;
+    options.defines = changes.defines;
+    return options;
+}
+
+std::vector<std::string> define_texts(const SceneChanges& changes) {
+    std::vector<std::string> texts;
+    for (const auto& [name, value] : changes.defines) texts.push_back(name + "=" + value);
+    return texts;
+}
+
+std::vector<std::string> render_settings(const SceneChanges& changes, const std::string& integrator) {
+    std::vector<std::string> settings = {MOTE_VERSION, integrator, changes.integrator};
+    for (const std::string& define : define_texts(changes)) settings.push_back(define);
+    if (changes.lenient) settings.emplace_back("--lenient");
+    return settings;
+}
+
+template <typename Load>
+void LoadedScene::load(const SceneChanges& changes, const Load& load_now) {
+    const auto begin = std::chrono::steady_clock::now();
+    changes_ = changes;
+    core::LoadOptions options = load_options(changes);
+    options.report = &report_;
+    scene_ = core::with_memory_for("loading the scene", [&] { return load_now(options); });
+    load_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+LoadedScene LoadedScene::from_file(const std::string& path, const SceneChanges& changes) {
+    LoadedScene loaded;
+    loaded.registry_ = std::make_shared<const core::Registry>(make_registry());
+    loaded.load(changes, [&](const core::LoadOptions& options) {
+        return core::load_scene(path, *loaded.registry_, options);
+    });
+    return loaded;
+}
+
+LoadedScene LoadedScene::from_text(const std::string& xml, const std::string& folder,
+                                   const SceneChanges& changes, const std::string& name) {
+    LoadedScene loaded;
+    loaded.registry_ = std::make_shared<const core::Registry>(make_registry());
+    loaded.source_ = fmt::format("{:016x}", core::checksum(std::as_bytes(std::span(xml))));
+    loaded.load(changes, [&](const core::LoadOptions& options) {
+        return core::load_scene_from_string(xml, folder, *loaded.registry_, options, name);
+    });
+    return loaded;
+}
+
+LoadedScene LoadedScene::from_tree(const SceneTree& tree, const SceneChanges& changes) {
+    LoadedScene loaded;
+    core::Registry registry = make_registry();
+    register_arrays(registry, tree.array_store());
+    loaded.registry_ = std::make_shared<const core::Registry>(std::move(registry));
+    loaded.source_ = tree.checksum();
+    loaded.load(changes, [&](const core::LoadOptions& options) {
+        core::SceneDefines defines(options.defines);
+        return core::make_scene(tree.document(), defines, *loaded.registry_, options, tree.name());
+    });
+    return loaded;
+}
+
+const core::Integrator& LoadedScene::integrator() const { return require_integrator(*scene_, *registry_); }
+
+core::Plan LoadedScene::plan() const { return integrator().plan(*scene_, core::find_requirements(*scene_)); }
+
+std::vector<std::string> LoadedScene::warnings() const { return scene_warnings(*scene_, report_); }
+
+std::string LoadedScene::scene_hash() const {
+    std::vector<std::string> settings = render_settings(changes_, integrator().type());
+    if (!source_.empty()) settings.push_back(source_);
+    return core::content_hash(*scene_, settings);
+}
+
+std::string LoadedScene::scene_content() const {
+    std::vector<std::string> defines = define_texts(changes_);
+    if (!source_.empty()) defines.push_back(source_);
+    return session::scene_content(*scene_, defines);
+}
+
+const core::Integrator& require_integrator(const core::Scene& scene, const core::Registry& registry) {
+    if (scene.integrator()) return *scene.integrator();
+    std::string known;
+    for (const std::string& type : registry.types(core::Category::integrator))
+        known += (known.empty() ? "" : ", ") + type;
+    throw core::InputError("the scene names no integrator: choose one with --integrator (" + known + ")",
+                           {scene.parts().file, 0});
+}
+
+std::vector<std::string> scene_warnings(const core::Scene& scene, const core::LoadReport& report) {
+    std::vector<std::string> lines;
+    for (const std::string& text : report.approximations) lines.push_back("--lenient: " + text);
+    for (const std::string& text : scene.parts().warnings) lines.push_back("warning: " + text);
+    for (const std::string& text : placement_notes(scene)) lines.push_back("warning: " + text);
+    return lines;
+}
+
+}  // namespace mote::session

@@ -1,0 +1,73 @@
+// A scene with the parts that it was made of: from a file, from text, or built in memory.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/loading/scene_loader.h"
+#include "core/render/integrator.h"
+#include "core/scene/scene.h"
+#include "session/scene_tree.h"
+
+namespace mote::session {
+
+/// What is changed of a scene when it is loaded, as on the command line.
+struct SceneChanges {
+    std::string integrator;  ///< this type instead of the scene's; "": its own
+    std::vector<std::pair<std::string, std::string>> defines;  ///< -D name=value
+    bool lenient = false;                                      ///< leave out or approximate what is wrong
+    std::optional<int> frame = {};                             ///< of a sequence: the number in file names
+};
+
+/// The options of the loader for them. A scene without an integrator gets `mote_layers`.
+core::LoadOptions load_options(const SceneChanges& changes);
+/// "name=value" of each definition.
+std::vector<std::string> define_texts(const SceneChanges& changes);
+/// What determines the bits of a picture besides the contents of the scene's files: for core::content_hash().
+std::vector<std::string> render_settings(const SceneChanges& changes, const std::string& integrator);
+
+class LoadedScene {
+  public:
+    /// All throw InputError, or SceneErrors with all that is wrong. A path may name XML, glTF or GLB.
+    static LoadedScene from_file(const std::string& path, const SceneChanges& changes = {});
+    /// Relative file names are looked up in `folder`; `name` stands for the file in messages.
+    static LoadedScene from_text(const std::string& xml, const std::string& folder,
+                                 const SceneChanges& changes = {}, const std::string& name = "<string>");
+    static LoadedScene from_tree(const SceneTree& tree, const SceneChanges& changes = {});
+
+    const core::Scene& scene() const { return *scene_; }
+    const core::Registry& registry() const { return *registry_; }
+    const core::LoadReport& report() const { return report_; }
+    const SceneChanges& changes() const { return changes_; }
+    /// Throws InputError where the scene names none.
+    const core::Integrator& integrator() const;
+    core::Plan plan() const;
+    /// What was left out or approximated, and everything else worth a warning.
+    std::vector<std::string> warnings() const;
+    double load_seconds() const { return load_seconds_; }  ///< wall time
+    /// core::content_hash() of everything that determines the bits of the picture, and of the scene alone.
+    std::string scene_hash() const;
+    std::string scene_content() const;
+
+  private:
+    LoadedScene() = default;
+    template <typename Load>
+    void load(const SceneChanges& changes, const Load& load_now);
+
+    std::shared_ptr<const core::Registry> registry_;
+    std::shared_ptr<const core::Scene> scene_;
+    core::LoadReport report_;
+    SceneChanges changes_;
+    std::string source_;  ///< what stands for the contents of a file where there is none
+    double load_seconds_ = 0.0;
+};
+
+/// The integrator of a scene. Throws InputError that lists those there are when the scene names none.
+const core::Integrator& require_integrator(const core::Scene& scene, const core::Registry& registry);
+/// All that is worth a warning about a scene: each begins with "--lenient: " or "warning: ".
+std::vector<std::string> scene_warnings(const core::Scene& scene, const core::LoadReport& report);
+
+}  // namespace mote::session

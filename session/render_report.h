@@ -1,0 +1,49 @@
+// What a render says about itself: metadata of the picture, and stats.json.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/image/image_file.h"
+#include "core/objects/registry.h"
+#include "core/render/render_driver.h"
+#include "core/scene/scene.h"
+
+namespace mote::session {
+
+/// Everything that is known when a render has ended.
+struct RenderReport {
+    const core::Scene& scene;
+    const core::Plan& plan;
+    const core::RenderResult& result;
+    std::string scene_hash;     ///< of everything that determines the bits of the picture
+    std::string scene_content;  ///< of the scene alone (session/reference_metadata.h)
+    std::uint64_t seed;
+    int threads;
+    std::vector<std::string> command_line;
+    std::vector<std::string> approximations = {};  ///< what leniency left out or replaced
+};
+
+/// The command line as a shell would take it.
+std::string quoted(const std::vector<std::string>& command_line);
+/// Largest resident size of this process so far.
+std::size_t peak_memory_bytes();
+std::string git_hash();
+/// Of the first pass, where it is a part (RenderResult::finished_pixels); else 1.
+double finished_share(const core::RenderResult& result);
+
+/// What is added to the layers of a film.
+struct PictureExtras {
+    bool auxiliary = false;     ///< channels at pixel centres, and numbers of objects and materials
+    bool in_scattered = false;  ///< what light of media is regressed on (session/in_scattered_feature.h)
+};
+/// The picture as it is written: layers, variances, metadata, extras. An interrupted one has no in-scattered
+/// light; one of a part of the first pass says in A which pixels are finished.
+core::ImageChannels make_picture(const RenderReport& report, const core::Registry& registry,
+                                 const PictureExtras& extras);
+
+std::map<std::string, std::string> picture_metadata(const RenderReport& report);
+std::string statistics_json(const RenderReport& report);
+
+}  // namespace mote::session
