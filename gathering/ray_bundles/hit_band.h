@@ -1,9 +1,9 @@
 // Hits of neighbouring rows of a bundle's rays, found in any order, and put in order.
 #pragma once
 
-#include <span>
 #include <vector>
 
+#include "gathering/ray_bundles/hit_order.h"
 #include "gathering/ray_bundles/ray_bundle.h"
 
 namespace mote::gathering {
@@ -14,31 +14,40 @@ struct OrderedBand {
     std::vector<BundleHit> hits;
 };
 
-/// How the hits of a ray are put in order beyond their distances [m].
-struct HitOrder {
-    /// Hits this near to each other take turns between front and back, as RayBundle says.
-    float coincident = 0.0f;
-    /// Of hits from the same side this near to each other, without one from the other side between them, the
-    /// first stands for all; 0: none does.
-    float merged = 0.0f;
-};
-
 class HitBand {
   public:
-    void clear() { found_.clear(); }
-    /// `ray` counts from the band's first.
-    void add(std::uint32_t ray, const BundleHit& hit) { found_.push_back({ray, hit}); }
-    std::size_t size() const { return found_.size(); }
+    /// Where hits go that are found several at a time, each coordinate by itself.
+    struct Room {
+        std::uint32_t* ray;
+        float* distance;
+        HitPlace* place;
+    };
+
+    void clear() { size_ = 0; }
+    /// `ray` counts from the band's first. Throws InputError beyond 2^31 hits.
+    void add(std::uint32_t ray, const BundleHit& hit) {
+        const Room to = room(1);
+        *to.ray = ray, *to.distance = hit.distance, *to.place = {hit.triangle, hit.u16, hit.v16};
+        ++size_;
+    }
+    /// For up to `count` hits more, of which those count that added() is told of.
+    Room room(std::size_t count) {
+        if (size_ + count > room_) grow(count);
+        return {&rays_[size_], &distances_[size_], &places_[size_]};
+    }
+    void added(std::size_t count) { size_ += count; }
+    std::size_t size() const { return size_; }
     /// The hits of `rays` rays. The result depends on the hits alone, not on the order of add().
     OrderedBand ordered(std::uint32_t rays, const HitOrder& order);
 
   private:
-    struct Found {
-        std::uint32_t ray;
-        BundleHit hit;
-    };
-    std::vector<Found> found_;
-    std::vector<BundleHit> by_ray_, in_order_;
+    void grow(std::size_t count);
+
+    std::size_t size_ = 0, room_ = 0;
+    std::vector<std::uint32_t> rays_;
+    std::vector<float> distances_;
+    std::vector<HitPlace> places_;
+    std::vector<HitKey> by_ray_, in_order_;
     std::vector<std::uint32_t> next_;  // by ray: where its next hit goes
 };
 

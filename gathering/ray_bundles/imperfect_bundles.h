@@ -10,7 +10,7 @@
 
 #include "core/objects/cancellation.h"
 #include "gathering/ray_bundles/bundle_assembly.h"
-#include "gathering/ray_bundles/splats.h"
+#include "gathering/ray_bundles/point_pool.h"
 
 namespace mote::gathering {
 
@@ -40,8 +40,6 @@ class ImperfectBundles {
     std::size_t memory_bytes() const { return pool_.memory_bytes(); }
 
   private:
-    std::vector<Splat> splats(const BundleGrid& grid, std::uint64_t set, float radius) const;
-
     core::Bounds3 bounds_;
     PointPool pool_;
     mutable BandScratch scratch_;

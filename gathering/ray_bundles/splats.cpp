@@ -5,6 +5,7 @@
 
 #include "core/math/vectorize.h"
 #include "gathering/ray_bundles/bundle_projection.h"
+#include "gathering/ray_bundles/lanes.h"
 
 namespace mote::gathering {
 
@@ -12,7 +13,7 @@ using namespace core;
 
 namespace {
 
-constexpr int lanes = int(PointPool::block);
+constexpr int lanes = SplatBlock::lanes;
 
 /// What the grid is to single precision, which counts from the middle of the surfaces.
 struct GridAxes {
@@ -28,18 +29,14 @@ struct Columns {
     Vec3 vector(std::size_t first, int i) const { return {of[first][i], of[first + 1][i], of[first + 2][i]}; }
 };
 
-/// Splats by value, a block of each.
-struct SplatBlock {
-    alignas(32) float x[lanes], y[lanes], lean[lanes], width[lanes], narrowing[lanes];
-    alignas(32) float distance[3][lanes], u[3][lanes], v[3][lanes], first_row[lanes], last_row[lanes],
-        along[lanes];
-};
-
-void make_block(const Columns& c, const GridAxes& g, SplatBlock& out) {
+void make_block(const Columns& c, const std::uint32_t* triangles, int count, const GridAxes& g,
+                SplatBlock& out) {
     MOTE_INDEPENDENT_LANES
     for (int i = 0; i < lanes; ++i) {
         const Vec3 center = c.vector(PointPool::center_x, i), n = c.vector(PointPool::normal_x, i);
-        const float right = glm::dot(n, g.right), up = glm::dot(n, g.up), along = glm::dot(n, g.along);
+        const float right = glm::dot(n, g.right), up = glm::dot(n, g.up), across = glm::dot(n, g.along);
+        const bool on_edge = across * across <= 1e-10f;
+        const float along = on_edge ? 1.0f : across;
         const float alpha = right / along, beta = up / along, s = g.spacing;
         const float y = glm::dot(center, g.up) / s + g.shift.y;
         // a dx^2 + 2 b dx dy + c dy^2 <= reach^2, where b = alpha beta, c = 1 + beta^2.
@@ -48,95 +45,134 @@ void make_block(const Columns& c, const GridAxes& g, SplatBlock& out) {
         out.lean[i] = -alpha * beta * inverse_a;
         out.width[i] = g.reach * g.reach * inverse_a;
         out.narrowing[i] = (a + beta * beta) * inverse_a * inverse_a;
-        out.distance[0][i] = glm::dot(center, g.along) + g.shift.z;
-        out.distance[1][i] = -s * alpha, out.distance[2][i] = -s * beta;
+        out.distance.at[i] = glm::dot(center, g.along) + g.shift.z;
+        out.distance.by_x[i] = -s * alpha, out.distance.by_y[i] = -s * beta;
         const Vec3 by_x = s * (g.right - alpha * g.along), by_y = s * (g.up - beta * g.along);
         const Vec3 grow_u = c.vector(PointPool::grow_u_x, i), grow_v = c.vector(PointPool::grow_v_x, i);
-        out.u[0][i] = c.of[PointPool::u][i], out.u[1][i] = glm::dot(grow_u, by_x),
-        out.u[2][i] = glm::dot(grow_u, by_y);
-        out.v[0][i] = c.of[PointPool::v][i], out.v[1][i] = glm::dot(grow_v, by_x),
-        out.v[2][i] = glm::dot(grow_v, by_y);
+        out.u.at[i] = c.of[PointPool::u][i], out.u.by_x[i] = glm::dot(grow_u, by_x),
+        out.u.by_y[i] = glm::dot(grow_u, by_y);
+        out.v.at[i] = c.of[PointPool::v][i], out.v.by_x[i] = glm::dot(grow_v, by_x),
+        out.v.by_y[i] = glm::dot(grow_v, by_y);
         const float height = g.reach * std::sqrt(max_of(0.0f, 1.0f - up * up));
-        out.first_row[i] = std::ceil(clamped(y - height, 0.0f, g.rows));
-        const float last = std::floor(clamped(y + height, -1.0f, g.rows - 1.0f));
-        out.last_row[i] = along * along > 1e-10f ? last : -1.0f;
-        out.along[i] = along;
+        out.first_row[i] = std::int32_t(std::ceil(clamped(y - height, 0.0f, g.rows)));
+        const auto last = std::int32_t(std::floor(clamped(y + height, -1.0f, g.rows - 1.0f)));
+        const bool none = on_edge | (i >= count);
+        out.last_row[i] = none ? -1 : last;
+        out.triangle[i] = triangles[i] | (across > 0.0f ? BundleHit::behind_bit : 0u);
     }
 }
 
-Splat splat_of(const SplatBlock& b, int i, std::uint32_t triangle) {
-    return {b.x[i],
-            b.y[i],
-            b.lean[i],
-            b.width[i],
-            b.narrowing[i],
-            {b.distance[0][i], b.distance[1][i], b.distance[2][i]},
-            {b.u[0][i], b.u[1][i], b.u[2][i]},
-            {b.v[0][i], b.v[1][i], b.v[2][i]},
-            std::int32_t(b.first_row[i]),
-            std::int32_t(b.last_row[i]),
-            b.along[i] > 0.0f ? triangle | BundleHit::behind_bit : triangle};
-}
+/// One row of each disc: its first ray, how many rays, and the planes at the first.
+struct RowLanes {
+    alignas(32) float distance[lanes], u[lanes], v[lanes];
+    alignas(32) std::int32_t first[lanes], count[lanes], row[lanes];
 
-/// The rays of a splat's rows, and its planes at column 0 of them: eight rows at a time.
-struct RowBlock {
-    static constexpr int rows = 8;
-    alignas(32) float distance[rows], u[rows], v[rows];
-    alignas(32) std::int32_t first[rows], last[rows];
-
-    RowBlock(const Splat& s, std::int32_t row, float last_column) {
+    /// The k-th row of each that lies in [begin, end), from which rows are counted.
+    RowLanes(const SplatBlock& s, std::int32_t k, std::int32_t begin, std::int32_t end, float last_column) {
         MOTE_INDEPENDENT_LANES
-        for (int i = 0; i < rows; ++i) {
-            const float dy = float(row + i) - s.y, middle = s.x + s.lean * dy;
-            const float half = std::sqrt(max_of(0.0f, s.width - s.narrowing * dy * dy));
-            first[i] = std::int32_t(std::ceil(max_of(middle - half, 0.0f)));
-            last[i] = std::int32_t(std::floor(min_of(middle + half, last_column)));
-            distance[i] = s.distance.at + s.distance.by_y * dy - s.distance.by_x * s.x;
-            u[i] = s.u.at + s.u.by_y * dy - s.u.by_x * s.x;
-            v[i] = s.v.at + s.v.by_y * dy - s.v.by_x * s.x;
+        for (int i = 0; i < lanes; ++i) {
+            const std::int32_t top = s.first_row[i] > begin ? s.first_row[i] : begin;
+            const std::int32_t bottom = s.last_row[i] < end - 1 ? s.last_row[i] : end - 1;
+            const float dy = float(top + k) - s.y[i], middle = s.x[i] + s.lean[i] * dy;
+            const float half = std::sqrt(max_of(0.0f, s.width[i] - s.narrowing[i] * dy * dy));
+            const float left = std::ceil(max_of(middle - half, 0.0f));
+            const float right = std::floor(clamped(middle + half, -1.0f, last_column));
+            const float many = top + k <= bottom ? max_of(right - left + 1.0f, 0.0f) : 0.0f,
+                        dx = left - s.x[i];
+            row[i] = top + k - begin;
+            first[i] = std::int32_t(min_of(left, last_column)), count[i] = std::int32_t(many);
+            distance[i] = s.distance.at[i] + s.distance.by_y[i] * dy + s.distance.by_x[i] * dx;
+            u[i] = s.u.at[i] + s.u.by_y[i] * dy + s.u.by_x[i] * dx;
+            v[i] = s.v.at[i] + s.v.by_y[i] * dy + s.v.by_x[i] * dx;
         }
     }
 };
 
+/// Which discs have rays in a row; returns how many.
+int lanes_with_rays(const RowLanes& rows, int* with) {
+    int found = 0;
+    for (int i = 0; i < lanes; ++i) with[found] = i, found += rows.count[i] > 0 ? 1 : 0;
+    return found;
+}
+
+/// Leaves out what a ray passes before its origin; returns how many are left.
+int keep_in_front(const HitBand::Room& to, int count) {
+    int kept = 0;
+    for (int k = 0; k < count; ++k) {
+        if (!(to.distance[k] > 0.0f)) continue;
+        to.ray[kept] = to.ray[k], to.distance[kept] = to.distance[k];
+        to.place[kept] = to.place[k], ++kept;
+    }
+    return kept;
+}
+
+constexpr int step = 8;  ///< rays that are made at once, though there may be fewer
+
+/// To [0, upper].
+void clamp(Float8& x, const Float8& upper) {
+    const Float8 zero{};
+    x = x > zero ? x : zero;
+    x = x < upper ? x : upper;
+}
+
+void add_rays(const SplatBlock& s, const RowLanes& rows, int i, std::uint32_t columns, HitBand& band) {
+    const std::int32_t first = rows.row[i] * std::int32_t(columns) + rows.first[i], all = rows.count[i];
+    const auto triangle = std::int64_t(s.triangle[i]);
+    for (int done = 0; done < all; done += step) {
+        const Float8 dx = Float8{0, 1, 2, 3, 4, 5, 6, 7} + float(done), most = Float8{} + 65535.0f;
+        const Float8 distance = rows.distance[i] + dx * s.distance.by_x[i];
+        Float8 u = rows.u[i] + dx * s.u.by_x[i], v = rows.v[i] + dx * s.v.by_x[i];
+        clamp(u, most), clamp(v, most - u);
+        const HitBand::Room to = band.room(step);
+        store(Int8{0, 1, 2, 3, 4, 5, 6, 7} + (first + done), to.ray);
+        store(distance, to.distance);
+        const Int8 uv = __builtin_convertvector(u, Int8) | __builtin_convertvector(v, Int8) << 16;
+        std::int32_t each[step];
+        store(uv, each);
+        for (int k = 0; k < step; k += 4) {
+            Int4 four;
+            load(each + k, four);
+            store(__builtin_convertvector(four, Long4) << 32 | triangle, to.place + k);
+        }
+        const int count = std::min(all - done, step);
+        const float ends = min_of(distance[0], distance[count - 1]);
+        band.added(std::size_t(ends > 0.0f ? count : keep_in_front(to, count)));
+    }
+}
+
 }  // namespace
 
-void make_splats(const PointPool& pool, std::uint32_t set, std::uint32_t begin, const BundleGrid& grid,
-                 float radius, std::span<Splat> splats) {
+void make_splats(const PointPool& pool, std::uint32_t set, std::uint32_t begin, std::uint32_t end,
+                 const BundleGrid& grid, float radius, SplatBlock& splats) {
     const GridAxes axes{grid.right,      grid.up,
                         grid.direction,  Vec3(BundleProjection(grid)(pool.middle())),
                         grid.spacing,    radius / grid.spacing,
                         float(grid.rows)};
-    SplatBlock block;
-    for (std::size_t first = 0; first < splats.size(); first += lanes) {
-        Columns columns;
-        for (int k = 0; k < PointPool::columns; ++k)
-            columns.of[k] = pool.column(set, PointPool::Column(k)) + begin + first;
-        make_block(columns, axes, block);
-        const std::uint32_t* triangles = pool.triangles(set) + begin + first;
-        const auto count = int(std::min(std::size_t(lanes), splats.size() - first));
-        for (int i = 0; i < count; ++i) splats[first + std::size_t(i)] = splat_of(block, i, triangles[i]);
+    Columns columns;
+    for (int k = 0; k < PointPool::columns; ++k)
+        columns.of[k] = pool.column(set, PointPool::Column(k)) + begin;
+    make_block(columns, pool.triangles(set) + begin, int(std::min<std::uint32_t>(end - begin, lanes)), axes,
+               splats);
+    splats.top = std::int32_t(grid.rows), splats.bottom = -1;
+    for (int i = 0; i < lanes; ++i) {
+        const bool none = splats.first_row[i] > splats.last_row[i];
+        splats.top = std::min(splats.top, none ? splats.top : splats.first_row[i]);
+        splats.bottom = std::max(splats.bottom, none ? -1 : splats.last_row[i]);
     }
 }
 
-void splat_rows(const Splat& s, const BundleGrid& grid, std::uint32_t begin, std::uint32_t end,
+void splat_rows(const SplatBlock& s, const BundleGrid& grid, std::uint32_t begin, std::uint32_t end,
                 HitBand& band) {
     const float last_column = float(grid.columns) - 1.0f;
-    const std::int32_t last_row = std::min(s.last_row, std::int32_t(end) - 1);
-    for (std::int32_t top = std::max(s.first_row, std::int32_t(begin)); top <= last_row;
-         top += RowBlock::rows) {
-        const RowBlock rows(s, top, last_column);
-        const int count = std::min(RowBlock::rows, last_row - top + 1);
-        for (int i = 0; i < count; ++i) {
-            const std::uint32_t ray = (std::uint32_t(top + i) - begin) * grid.columns;
-            for (std::int32_t column = rows.first[i]; column <= rows.last[i]; ++column) {
-                const float x = float(column), distance = rows.distance[i] + x * s.distance.by_x;
-                if (!(distance > 0.0f)) continue;
-                const float u = clamped(rows.u[i] + x * s.u.by_x, 0.0f, 65535.0f);
-                const float v = clamped(rows.v[i] + x * s.v.by_x, 0.0f, 65535.0f - u);
-                band.add(ray + std::uint32_t(column), {distance, s.triangle, std::uint16_t(std::int32_t(u)),
-                                                       std::uint16_t(std::int32_t(v))});
-            }
-        }
+    const auto from = std::int32_t(begin), to = std::int32_t(end);
+    std::int32_t most = 0;  // rows of a disc
+    for (int i = 0; i < lanes; ++i)
+        most = std::max(most, std::min(s.last_row[i], to - 1) - std::max(s.first_row[i], from) + 1);
+    int with[lanes];
+    for (std::int32_t k = 0; k < most; ++k) {
+        const RowLanes rows(s, k, from, to, last_column);
+        const int found = lanes_with_rays(rows, with);
+        for (int j = 0; j < found; ++j) add_rays(s, rows, with[j], grid.columns, band);
     }
 }
 

@@ -102,6 +102,21 @@ TEST_CASE("discs have the area that they stand for, in the plane of their triang
     }
 }
 
+TEST_CASE("a set of points that ends within a block has as many discs as points", "[imperfect]") {
+    const SurfaceTriangles room = furnished_room();
+    const ImperfectBundles imperfect(room, 70, 64);
+    const BundleTracer exact(room);
+    tests::SeedMean ratio;
+    for (std::uint32_t i = 0; i < 64; ++i) {
+        const BundleGrid grid = grid_of(room, i, 0.1f);
+        const RayBundle bundle = imperfect.trace(grid, i, {.splat_size = 0.8f, .merge = 0.0f});
+        ratio.add(double(bundle.hits.size()) / double(exact.trace(grid).hits.size()));
+    }
+    INFO(ratio.mean() << " +- " << ratio.error());
+    CHECK(std::fabs(ratio.z(0.64)) < 4.5);
+    CHECK(std::fabs(ratio.z(0.64 * 128.0 / 70.0)) > 4.5);  // the whole of the last block
+}
+
 TEST_CASE("imperfect bundles approach exact ones with more points", "[imperfect]") {
     const SurfaceTriangles room = furnished_room();
     const LinkComparison few = error_with(room, 512, 1.6f), some = error_with(room, 4096, 1.6f),
@@ -163,6 +178,6 @@ TEST_CASE("imperfect bundles at the extremes", "[imperfect]") {
     for (const float size : {1e-4f, 1.0f, 100.0f}) {
         const RayBundle bundle = imperfect.trace(along, 0, {.splat_size = size});
         for (const BundleHit& hit : bundle.hits)
-            CHECK((is_finite(hit.distance) && hit.u16 + hit.v16 <= 65535));
+            CHECK((is_finite(hit.distance) && hit.distance > 0.0f && hit.u16 + hit.v16 <= 65535));
     }
 }

@@ -1,0 +1,154 @@
+#include "gathering/ray_bundles/hit_order.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "gathering/ray_bundles/lanes.h"
+
+namespace mote::gathering {
+namespace {
+
+/// Hits that rounding may have exchanged take turns: a front after a back, and first of all.
+void take_turns(std::span<HitKey> run, bool front_next) {
+    std::vector<HitKey> fronts, backs;
+    for (const HitKey& hit : run) (hit.from_behind() ? backs : fronts).push_back(hit);
+    auto front = fronts.begin(), back = backs.begin();
+    for (HitKey& hit : run) {
+        const bool takes_front = back == backs.end() || (front_next && front != fronts.end());
+        hit = takes_front ? *front++ : *back++;
+        front_next = !takes_front;
+    }
+}
+
+/// Hits from `begin` on that may coincide with it.
+struct Coincident {
+    std::size_t end;
+    bool both = false;  ///< fronts and backs
+    Coincident(std::span<const HitKey> hits, std::size_t begin, float tolerance) : end(begin + 1) {
+        const float distance = hits[begin].distance();
+        for (; end < hits.size() && std::fabs(hits[end].distance() - distance) <= tolerance; ++end)
+            both = both || hits[end].from_behind() != hits[begin].from_behind();
+    }
+};
+
+void take_turns_from_the_start(std::span<HitKey> hits, float tolerance) {
+    bool front_next = true;
+    for (std::size_t begin = 0; begin < hits.size();) {
+        const auto [end, both] = Coincident(hits, begin, tolerance);
+        if (both) take_turns(hits.subspan(begin, end - begin), front_next);
+        front_next = hits[end - 1].from_behind();
+        begin = end;
+    }
+}
+
+void reverse(std::span<HitKey> hits) {
+    std::reverse(hits.begin(), hits.end());
+    for (HitKey& hit : hits) hit.turn();
+}
+
+/// Which hit is first of all is not known where the first ones coincide: a leaf, or a body on an open floor
+/// that is met from below. Then the other end of the ray tells, if it is better there.
+void order_coincident(std::span<HitKey> hits, float tolerance) {
+    const bool mixed_first = Coincident(hits, 0, tolerance).both;
+    if (mixed_first) reverse(hits);
+    if (mixed_first && !Coincident(hits, 0, tolerance).both) {
+        take_turns_from_the_start(hits, tolerance);
+        reverse(hits);
+        return;
+    }
+    if (mixed_first) reverse(hits);
+    take_turns_from_the_start(hits, tolerance);
+}
+
+/// Hits by distance that are equally far go by their triangles, then their sides.
+void order_equal(std::span<HitKey> hits, const HitPlace* places) {
+    const auto is_before = [&](const HitKey& a, const HitKey& b) {
+        if (a.distance() != b.distance()) return a.distance() < b.distance();
+        return std::rotl(places[a.number()].triangle, 1) < std::rotl(places[b.number()].triangle, 1);
+    };
+    for (std::size_t i = 1; i < hits.size(); ++i)
+        for (std::size_t j = i; j > 0 && is_before(hits[j], hits[j - 1]); --j)
+            std::swap(hits[j], hits[j - 1]);
+}
+
+/// What neighbours in order of distance ask for. Without branches, which would mostly be mispredicted.
+struct Neighbours {
+    std::uint32_t equal = 0;       ///< 1: two are equally far
+    std::uint32_t coincident = 0;  ///< 1: a front and a back are within the tolerance
+    Neighbours(std::span<const HitKey> hits, float tolerance) {
+        for (std::size_t i = 1; i < hits.size(); ++i) {
+            const float gap = hits[i].distance() - hits[i - 1].distance();
+            equal |= std::uint32_t(gap == 0.0f);
+            coincident |= std::uint32_t(gap <= tolerance) & (hits[i].side() ^ hits[i - 1].side());
+        }
+    }
+};
+
+/// How many are left, in front.
+std::uint32_t merge(std::span<HitKey> hits, float merged) {
+    std::uint32_t kept = 1, side = hits[0].side();
+    float limit = hits[0].distance() + merged;
+    for (std::size_t i = 1; i < hits.size(); ++i) {
+        const HitKey hit = hits[i];
+        const float distance = hit.distance();
+        const std::uint32_t keeps = (hit.side() ^ side) | std::uint32_t(distance > limit);
+        hits[kept] = hit, kept += keeps;
+        const float limits[2] = {limit, distance + merged};  // compilers make branches of more direct forms
+        limit = limits[keeps], side = hit.side();
+    }
+    return kept;
+}
+
+/// Every hit goes where as many are nearer as places come before. All pairs are compared, without a branch,
+/// and as if there were `most` of them: counts that differ from ray to ray would be mispredicted.
+template <int vectors>
+void put_by_rank(const HitKey* keys, int count, HitKey* sorted) {
+    constexpr int most = 4 * vectors;
+    const Long4 behind = Long4{} + std::numeric_limits<std::int64_t>::max();
+    alignas(32) std::int64_t all[most], ranks[most];
+    Long4 key[vectors], rank[vectors];
+    for (int v = 0; v < vectors; ++v) {
+        const Long4 is_hit = Long4{0, 1, 2, 3} + std::int64_t(4 * v) < Long4{} + std::int64_t(count);
+        load(keys + 4 * v, key[v]);
+        key[v] = is_hit ? key[v] : behind, rank[v] = Long4{};
+        store(key[v], all + 4 * v);
+    }
+    for (int j = 0; j < most; ++j)
+        for (int v = 0; v < vectors; ++v) rank[v] -= Long4{} + all[j] < key[v];
+    for (int v = 0; v < vectors; ++v) store(rank[v], ranks + 4 * v);
+    for (int i = 0; i < most; ++i) sorted[ranks[i]].bits = all[i];  // what is no hit goes behind the last
+}
+
+void sort_by_distance(std::span<const HitKey> keys, std::size_t readable, HitKey* sorted) {
+    const std::size_t count = keys.size();
+    if (count == 1) {
+        sorted[0] = keys[0];
+    } else if (count <= 4 && readable >= 4) {
+        put_by_rank<1>(keys.data(), int(count), sorted);
+    } else if (count <= 8 && readable >= 8) {
+        put_by_rank<2>(keys.data(), int(count), sorted);
+    } else if (count <= 16 && readable >= 16) {
+        put_by_rank<4>(keys.data(), int(count), sorted);
+    } else if (count <= 32 && readable >= 32) {
+        put_by_rank<8>(keys.data(), int(count), sorted);
+    } else {
+        std::copy(keys.begin(), keys.end(), sorted);
+        std::sort(sorted, sorted + count, [](HitKey a, HitKey b) { return a.bits < b.bits; });
+    }
+}
+
+}  // namespace
+
+std::uint32_t order_hits(std::span<const HitKey> keys, std::size_t readable, const HitOrder& order,
+                         const HitPlace* places, HitKey* ordered) {
+    sort_by_distance(keys, readable, ordered);
+    const std::span<HitKey> hits(ordered, keys.size());
+    const Neighbours neighbours(hits, order.coincident);
+    if (neighbours.equal != 0) order_equal(hits, places);
+    if (neighbours.coincident != 0) order_coincident(hits, order.coincident);
+    return order.merged > 0.0f ? merge(hits, order.merged) : std::uint32_t(hits.size());
+}
+
+}  // namespace mote::gathering

@@ -1,0 +1,47 @@
+// The hits of one ray in the order in which light meets them.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <span>
+
+namespace mote::gathering {
+
+/// How the hits of a ray are put in order beyond their distances [m].
+struct HitOrder {
+    /// Hits this near to each other take turns between front and back, as RayBundle says.
+    float coincident = 0.0f;
+    /// Of hits from the same side this near to each other, without one from the other side between them, the
+    /// first stands for all; 0: none does.
+    float merged = 0.0f;
+};
+
+/// What order depends on, in one number: the distance (not negative, so that its bits are in its order), the
+/// side, and the hit's number among those of its band, below 2^31.
+struct HitKey {
+    std::int64_t bits;
+
+    static HitKey of(float distance, bool from_behind, std::uint32_t number) {
+        return {std::int64_t(std::bit_cast<std::uint32_t>(distance)) << 32 | std::int64_t(from_behind) << 31 |
+                std::int64_t(number)};
+    }
+    float distance() const { return std::bit_cast<float>(std::uint32_t(bits >> 32)); }
+    std::uint32_t side() const { return std::uint32_t(bits) >> 31; }  ///< 1: from behind
+    bool from_behind() const { return side() != 0; }
+    std::uint32_t number() const { return std::uint32_t(bits) & 0x7fffffffu; }
+    void turn() { bits ^= std::int64_t(1) << 31; }
+};
+
+/// Where a hit lies on its triangle: BundleHit without the distance.
+struct HitPlace {
+    std::uint32_t triangle;
+    std::uint16_t u16, v16;
+};
+
+/// Puts the hits of a ray in order and merges them; what is left goes to `ordered`, which has room for all of
+/// them and one more. `places`, by number, say who is first of two that are equally far. Returns how many are
+/// left. From `keys` on `readable` may be read, though only keys.size() are this ray's.
+std::uint32_t order_hits(std::span<const HitKey> keys, std::size_t readable, const HitOrder& order,
+                         const HitPlace* places, HitKey* ordered);
+
+}  // namespace mote::gathering
