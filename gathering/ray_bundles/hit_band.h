@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "gathering/ray_bundles/hit_order.h"
-#include "gathering/ray_bundles/ray_bundle.h"
 
 namespace mote::gathering {
 
@@ -16,37 +15,28 @@ struct OrderedBand {
 
 class HitBand {
   public:
-    /// Where hits go that are found several at a time, each coordinate by itself.
-    struct Room {
-        std::uint32_t* ray;
-        float* distance;
-        HitPlace* place;
-    };
+    HitBand() = default;
+    HitBand(const HitBand&) = delete;
+    HitBand& operator=(const HitBand&) = delete;
 
-    void clear() { size_ = 0; }
+    void clear() { end_ = found_.data(); }
     /// `ray` counts from the band's first. Throws InputError beyond 2^31 hits.
-    void add(std::uint32_t ray, const BundleHit& hit) {
-        const Room to = room(1);
-        *to.ray = ray, *to.distance = hit.distance, *to.place = {hit.triangle, hit.u16, hit.v16};
-        ++size_;
+    void add(std::uint32_t ray, const BundleHit& hit) { *room(1) = {ray, hit}, ++end_; }
+    /// Where up to `count` hits more may be written, of which those count that added() is told of.
+    FoundHit* room(std::ptrdiff_t count) {
+        if (room_end_ - end_ < count) grow(std::size_t(count));
+        return end_;
     }
-    /// For up to `count` hits more, of which those count that added() is told of.
-    Room room(std::size_t count) {
-        if (size_ + count > room_) grow(count);
-        return {&rays_[size_], &distances_[size_], &places_[size_]};
-    }
-    void added(std::size_t count) { size_ += count; }
-    std::size_t size() const { return size_; }
+    void added(int count) { end_ += count; }
+    std::size_t size() const { return std::size_t(end_ - found_.data()); }
     /// The hits of `rays` rays. The result depends on the hits alone, not on the order of add().
     OrderedBand ordered(std::uint32_t rays, const HitOrder& order);
 
   private:
     void grow(std::size_t count);
 
-    std::size_t size_ = 0, room_ = 0;
-    std::vector<std::uint32_t> rays_;
-    std::vector<float> distances_;
-    std::vector<HitPlace> places_;
+    std::vector<FoundHit> found_;
+    FoundHit *end_ = nullptr, *room_end_ = nullptr;  // of those that count, and of all
     std::vector<HitKey> by_ray_, in_order_;
     std::vector<std::uint32_t> next_;  // by ray: where its next hit goes
 };

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <span>
 
+#include "gathering/ray_bundles/ray_bundle.h"
+
 namespace mote::gathering {
 
 /// How the hits of a ray are put in order beyond their distances [m].
@@ -32,16 +34,17 @@ struct HitKey {
     void turn() { bits ^= std::int64_t(1) << 31; }
 };
 
-/// Where a hit lies on its triangle: BundleHit without the distance.
-struct HitPlace {
-    std::uint32_t triangle;
-    std::uint16_t u16, v16;
+/// A hit of a band of rays; `ray` counts from the band's first.
+struct FoundHit {
+    std::uint32_t ray;
+    BundleHit hit;
 };
+static_assert(sizeof(FoundHit) == 16);
 
 /// Puts the hits of a ray in order and merges them; what is left goes to `ordered`, which has room for all of
-/// them and one more. `places`, by number, say who is first of two that are equally far. Returns how many are
-/// left. From `keys` on `readable` may be read, though only keys.size() are this ray's.
+/// them and one more. Of two that are equally far the triangles of `found`, by number, say who is first.
+/// Returns how many are left. From `keys` on `readable` may be read, though only keys.size() are this ray's.
 std::uint32_t order_hits(std::span<const HitKey> keys, std::size_t readable, const HitOrder& order,
-                         const HitPlace* places, HitKey* ordered);
+                         const FoundHit* found, HitKey* ordered);
 
 }  // namespace mote::gathering

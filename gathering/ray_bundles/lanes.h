@@ -7,8 +7,8 @@
 namespace mote::gathering {
 
 using Float8 = float __attribute__((vector_size(32)));
-using Int4 = std::int32_t __attribute__((vector_size(16)));
 using Int8 = std::int32_t __attribute__((vector_size(32)));
+using Double4 = double __attribute__((vector_size(32)));
 using Long4 = std::int64_t __attribute__((vector_size(32)));
 
 // By reference: how vectors are passed by value depends on the processor that is compiled for.

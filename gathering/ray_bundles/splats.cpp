@@ -96,14 +96,10 @@ int lanes_with_rays(const RowLanes& rows, int* with) {
 }
 
 /// Leaves out what a ray passes before its origin; returns how many are left.
-int keep_in_front(const HitBand::Room& to, int count) {
-    int kept = 0;
-    for (int k = 0; k < count; ++k) {
-        if (!(to.distance[k] > 0.0f)) continue;
-        to.ray[kept] = to.ray[k], to.distance[kept] = to.distance[k];
-        to.place[kept] = to.place[k], ++kept;
-    }
-    return kept;
+int keep_in_front(FoundHit* hits, int count) {
+    return int(
+        std::remove_if(hits, hits + count, [](const FoundHit& f) { return !(f.hit.distance > 0.0f); }) -
+        hits);
 }
 
 constexpr int step = 8;  ///< rays that are made at once, though there may be fewer
@@ -115,28 +111,33 @@ void clamp(Float8& x, const Float8& upper) {
     x = x < upper ? x : upper;
 }
 
+/// Every other entry from each.
+void interleave(const Int8& even, const Int8& odd, Int8& first, Int8& second) {
+    first = __builtin_shufflevector(even, odd, 0, 8, 1, 9, 2, 10, 3, 11);
+    second = __builtin_shufflevector(even, odd, 4, 12, 5, 13, 6, 14, 7, 15);
+}
+
 void add_rays(const SplatBlock& s, const RowLanes& rows, int i, std::uint32_t columns, HitBand& band) {
+    const Int8 to_right = {0, 1, 2, 3, 4, 5, 6, 7}, triangle = Int8{} + std::int32_t(s.triangle[i]);
     const std::int32_t first = rows.row[i] * std::int32_t(columns) + rows.first[i], all = rows.count[i];
-    const auto triangle = std::int64_t(s.triangle[i]);
     for (int done = 0; done < all; done += step) {
-        const Float8 dx = Float8{0, 1, 2, 3, 4, 5, 6, 7} + float(done), most = Float8{} + 65535.0f;
+        const Int8 ray = to_right + (first + done);
+        const Float8 dx = __builtin_convertvector(to_right + done, Float8), most = Float8{} + 65535.0f;
         const Float8 distance = rows.distance[i] + dx * s.distance.by_x[i];
         Float8 u = rows.u[i] + dx * s.u.by_x[i], v = rows.v[i] + dx * s.v.by_x[i];
         clamp(u, most), clamp(v, most - u);
-        const HitBand::Room to = band.room(step);
-        store(Int8{0, 1, 2, 3, 4, 5, 6, 7} + (first + done), to.ray);
-        store(distance, to.distance);
         const Int8 uv = __builtin_convertvector(u, Int8) | __builtin_convertvector(v, Int8) << 16;
-        std::int32_t each[step];
-        store(uv, each);
-        for (int k = 0; k < step; k += 4) {
-            Int4 four;
-            load(each + k, four);
-            store(__builtin_convertvector(four, Long4) << 32 | triangle, to.place + k);
-        }
+        // From four numbers of each hit to one hit after the other.
+        Int8 distance_bits, ray_triangle[2], distance_uv[2], hits[4];
+        load(&distance, distance_bits);
+        interleave(ray, triangle, ray_triangle[0], ray_triangle[1]);
+        interleave(distance_bits, uv, distance_uv[0], distance_uv[1]);
+        for (int k = 0; k < 2; ++k) interleave(ray_triangle[k], distance_uv[k], hits[2 * k], hits[2 * k + 1]);
+        FoundHit* to = band.room(step);
+        store(hits, to);
         const int count = std::min(all - done, step);
         const float ends = min_of(distance[0], distance[count - 1]);
-        band.added(std::size_t(ends > 0.0f ? count : keep_in_front(to, count)));
+        band.added(ends > 0.0f ? count : keep_in_front(to, count));
     }
 }
 
