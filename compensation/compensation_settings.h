@@ -32,27 +32,31 @@ enum class LocalTransmittance : std::uint8_t {
 };
 
 struct CompensationSettings {
-    bool enabled = false;
-    bool surfaces = true, media = true;  ///< of receivers on surfaces; in media
-    Strategy strategy = Strategy::one_to_n;
-    Placement placement = Placement::free_path;
-    LocalTransmittance transmittance = LocalTransmittance::exact;
+    bool enabled = false;                                          ///< else the bound's loss stays
+    bool surfaces = true, media = true;                            ///< of receivers on surfaces; in media
+    Strategy strategy = Strategy::one_to_n;                        ///< how VPLs meet vertices
+    Placement placement = Placement::free_path;                    ///< of vertices in media
+    LocalTransmittance transmittance = LocalTransmittance::exact;  ///< between a receiver and its vertex
     /// Rays from receivers in media look for surfaces and for boundaries between media. From surfaces they
     /// always do, since they would find nothing to reflect light else.
     bool local_visibility = true;
     int depth = -1;  ///< steps of the recursion; -1: no limit
 
+    /// Is its mean that of the whole light?
     bool exact() const {
         return enabled && surfaces && media && depth < 0 && local_visibility &&
                transmittance == LocalTransmittance::exact;
     }
+    /// As in scene files.
     std::string strategy_name() const;
 };
 
 /// A nested <compensation> of a scene file.
 class Compensation : public core::Object {
   public:
+    /// Of settings, as scene files nest it.
     explicit Compensation(const CompensationSettings& settings) : settings_(settings) {}
+    /// As given.
     const CompensationSettings& settings() const { return settings_; }
 
   private:

@@ -21,7 +21,7 @@ namespace mote::compensation {
 struct ResidualPath {
     core::ScatteringVertex vertex;  ///< the receiver y; after a step the vertex z, whose wo points back to y
     core::MediumState state;        ///< media at the vertex, on the side of wo
-    core::PathWeights weights;
+    core::PathWeights weights;      ///< of the path so far, without the light that it finds
     /// Mean extinction around the vertex [1/m], where steps ask for it and a medium is near; found once,
     /// since many steps may start from one receiver.
     std::optional<core::Rgb> mean_extinction;
@@ -31,6 +31,7 @@ struct ResidualPath {
     core::Rgb throughput() const { return weights.throughput / core::average(weights.unidirectional); }
 };
 
+/// The steps for one bound.
 class ResidualTransport {
   public:
     /// Finds the mean extinction of every medium where the settings need it. `bound` is b [1/m^2], above 0.
@@ -46,9 +47,9 @@ class ResidualTransport {
     template <bool Media>
     bool step(ResidualPath& path, core::WalkContext& context) const;
 
-    float bound() const { return bound_; }
+    float bound() const { return bound_; }    ///< b [1/m^2]
     float radius() const { return radius_; }  ///< of the bounding region between points in a medium [m]
-    std::size_t memory_bytes() const;
+    std::size_t memory_bytes() const;         ///< of what is known of the media
 
   private:
     /// The end of a ray of at most the bounding radius, found in one of two ways.

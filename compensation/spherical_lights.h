@@ -26,15 +26,17 @@
 namespace mote::compensation {
 
 struct SphericalLight {
-    const lights::VirtualPointLight& vpl;
-    const lights::VplDetail* detail;  ///< null where the VPL is one colour
-    float radius;                     ///< [m]
+    const lights::VirtualPointLight& vpl;  ///< that it stands for
+    const lights::VplDetail* detail;       ///< null where the VPL is one colour
+    float radius;                          ///< [m]
 
+    /// Keeps references into the set; `r` is its radius [m].
     SphericalLight(const lights::VplSet& set, std::size_t index, float r)
         : vpl(set.lights[index]),
           detail(vpl.detail == lights::VirtualPointLight::no_detail ? nullptr : &set.details[vpl.detail]),
           radius(r) {}
 
+    /// Of the sphere, on the surface [m].
     core::Vec3 centre() const { return detail ? detail->vertex.position : vpl.position; }
     /// alpha_j f(y_j, w_j, -w) |cos_y| for a receiver that sees the light in direction w.
     core::Rgb intensity_cos(const core::Vec3& w) const;
@@ -49,7 +51,9 @@ std::vector<float> sphere_radii(const lights::VplSet& set, std::uint32_t neighbo
 
 /// How the samples for one light are shared among the techniques. A diffuse BSDF has no technique of its own.
 struct SampleCounts {
+    /// By the sphere's solid angle, by the BSDF of the receiver, by that of the light.
     int cone, receiver, light;
+    /// Shares them out among the techniques that have something to draw.
     SampleCounts(int samples, bool glossy_receiver, bool glossy_light);
 };
 
@@ -68,11 +72,12 @@ enum class SphereVisibility : std::uint8_t {
     per_light
 };
 
+/// How spheres are gathered.
 struct SphericalGather {
-    std::uint32_t neighbours = 10;
-    float radius_scale = 1.0f;
-    int samples = 4;  ///< a light
-    SphereVisibility visibility = SphereVisibility::per_sample;
+    std::uint32_t neighbours = 10;  ///< the distance of the farthest of them is the radius
+    float radius_scale = 1.0f;      ///< multiplies it
+    int samples = 4;                ///< a light
+    SphereVisibility visibility = SphereVisibility::per_sample;  ///< where shadow rays go
 };
 
 /// The light of all spheres at `receiver`, a vertex on a surface of a scene without media. VPLs deeper than

@@ -16,26 +16,27 @@ namespace mote::compensation {
 
 /// A receiver of the tile that is to be compensated.
 struct CompensatedReceiver {
-    ResidualPath path;
-    core::Rng rng;
+    ResidualPath path;               ///< from the receiver on
+    core::Rng rng;                   ///< of the lane
     std::int32_t max_vpl_depth = 0;  ///< of VPLs at the receiver itself; 0: an idle lane
 };
+/// The sixteen lanes of a tile.
 using CompensatedTile = std::array<CompensatedReceiver, lights::ReceiverLanes::width>;
 
 /// Memory that one task reuses, and what it counted.
 struct VplCompensationScratch {
-    lights::ReceiverTile tile;
-    std::array<ResidualPath, lights::ReceiverLanes::width> paths;
-    std::uint64_t vertices = 0;
+    lights::ReceiverTile tile;                                     ///< the vertices that VPLs are gathered at
+    std::array<ResidualPath, lights::ReceiverLanes::width> paths;  ///< of the steps, by lane
+    std::uint64_t vertices = 0;                                    ///< that steps have made
 };
 
 /// What is asked for: the light of the VPLs of `range`, over `steps` steps at most (-1: no limit).
 struct VplCompensation {
-    const ResidualTransport& transport;
-    Strategy strategy;
-    int steps;
-    const lights::VplSet& vpls;
-    lights::VplRange range;
+    const ResidualTransport& transport;  ///< takes the steps
+    Strategy strategy;                   ///< how VPLs meet vertices
+    int steps;                           ///< at most; -1: no limit
+    const lights::VplSet& vpls;          ///< whose light is brought back
+    lights::VplRange range;              ///< of them
 };
 
 /// Compensation from the VPLs per lane. Vertices are gathered by `gather`, which counts where `context` does.

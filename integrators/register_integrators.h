@@ -7,6 +7,7 @@ class Registry;
 
 namespace mote::integrators {
 
+/// Every integrator.
 void register_integrators(core::Registry& registry);
 
 }  // namespace mote::integrators

@@ -7,6 +7,7 @@ class Registry;
 
 namespace mote::lights {
 
+/// Every light.
 void register_lights(core::Registry& registry);
 
 }  // namespace mote::lights

@@ -15,10 +15,11 @@ struct VdbLoadOptions;
 class AlignedBuffer {
   public:
     AlignedBuffer() = default;
+    /// Of so many bytes, not set.
     explicit AlignedBuffer(std::size_t size);
-    std::byte* data() { return bytes_.get(); }
-    const std::byte* data() const { return bytes_.get(); }
-    std::size_t size() const { return size_; }
+    std::byte* data() { return bytes_.get(); }              ///< the first byte, or null
+    const std::byte* data() const { return bytes_.get(); }  ///< the first byte, or null
+    std::size_t size() const { return size_; }              ///< [bytes]
 
   private:
     static constexpr std::align_val_t alignment{64};
@@ -29,6 +30,7 @@ class AlignedBuffer {
     std::size_t size_ = 0;
 };
 
+/// What the helper program says.
 struct GridReaderAnswer {
     std::string text;      ///< JSON, see grid_reader_protocol.h
     AlignedBuffer buffer;  ///< the NanoVDB grid; empty for "list"

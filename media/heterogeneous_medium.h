@@ -21,11 +21,11 @@ class Volume;
 
 /// Everything about a medium except the grid of its extinction.
 struct MediumParts {
-    float scale = 1.0f;                    ///< multiplies the grid's values to give sigma_t [1/m]
-    std::shared_ptr<const Volume> albedo;  ///< single-scattering albedo, 0 to 1
-    std::shared_ptr<core::PhaseFunction> phase;
-    Emission emission;
-    TrackingSettings tracking;
+    float scale = 1.0f;                          ///< multiplies the grid's values to give sigma_t [1/m]
+    std::shared_ptr<const Volume> albedo;        ///< single-scattering albedo, 0 to 1
+    std::shared_ptr<core::PhaseFunction> phase;  ///< not null
+    Emission emission;                           ///< how it glows
+    TrackingSettings tracking;                   ///< which estimators
     /// Tentative collisions of one segment after which a walk is ended and counted as a fallback:
     /// transmittances take the rest by ray marching, a path that looks for a collision is lost (throughput
     /// 0), which darkens, rather than spins. 2^24 take 0.8 s; they pass an optical depth of 16 in a
@@ -34,6 +34,7 @@ struct MediumParts {
     float plant_majorant_factor = 1.0f;  ///< for tests that need a wrong majorant; 1 in every other use
 };
 
+/// What media over grids share.
 class HeterogeneousMedium : public core::Medium {
   public:
     const core::PhaseFunction& phase() const override { return *parts_.phase; }
@@ -71,19 +72,20 @@ class HeterogeneousMedium : public core::Medium {
                                             core::TrackingCounters& counters) const = 0;
 
   protected:
+    /// Of all but the grid.
     explicit HeterogeneousMedium(MediumParts parts);
     core::Rgb albedo_at(const core::Vec3& p) const;
     /// Nothing scatters and nothing glows: the transmittance says everything.
     bool absorbs_alone() const { return absorbs_alone_; }
 
-    MediumParts parts_;
-    std::optional<core::Rgb> constant_albedo_;
-    bool emissive_, absorbs_alone_;
-    TransmittanceEstimator estimator_ = TransmittanceEstimator::ratio_tracking;
-    float voxel_size_ = core::infinity;
+    MediumParts parts_;                         ///< as given
+    std::optional<core::Rgb> constant_albedo_;  ///< where it is the same everywhere
+    bool emissive_, absorbs_alone_;             ///< does it glow; does it do nothing but absorb?
+    TransmittanceEstimator estimator_ = TransmittanceEstimator::ratio_tracking;  ///< of connections
+    float voxel_size_ = core::infinity;                                          ///< of the grid [m]
     std::shared_ptr<MediumEmitter> emitter_;  ///< null until make_emitter()
 };
 
-void register_heterogeneous_medium(core::Registry& registry);
+void register_heterogeneous_medium(core::Registry& registry);  ///< <medium type="heterogeneous">.
 
 }  // namespace mote::media

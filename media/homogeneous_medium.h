@@ -9,6 +9,7 @@ class Registry;
 
 namespace mote::media {
 
+/// Constant coefficients.
 class HomogeneousMedium final : public core::Medium {
   public:
     /// Coefficients in 1/m; `emitted_radiance` is the L_e [W/(m^2 sr)] that sigma_a multiplies. Throws
@@ -30,6 +31,7 @@ class HomogeneousMedium final : public core::Medium {
     std::optional<float> sample_collision(const core::Ray& ray, core::PathWeights& weights,
                                           core::Rgb& emitted, core::Rng& rng,
                                           core::TrackingCounters& counters) const override;
+    /// In closed form; see Medium::scatter_along().
     void scatter_along(const core::Ray& ray, core::PathWeights& weights, core::Rgb& emitted,
                        core::ScatteringPoints& points, core::Rng& rng,
                        core::TrackingCounters& counters) const override;
@@ -47,6 +49,6 @@ class HomogeneousMedium final : public core::Medium {
     std::shared_ptr<core::PhaseFunction> phase_;
 };
 
-void register_homogeneous_medium(core::Registry& registry);
+void register_homogeneous_medium(core::Registry& registry);  ///< <medium type="homogeneous">.
 
 }  // namespace mote::media

@@ -9,6 +9,7 @@ class Registry;
 
 namespace mote::media {
 
+/// 1 / (4 pi).
 class IsotropicPhase final : public core::PhaseFunction {
   public:
     core::Rgb eval(const core::Vec3&, const core::Vec3&) const override {
@@ -21,6 +22,7 @@ class IsotropicPhase final : public core::PhaseFunction {
     std::optional<float> henyey_greenstein() const override { return 0.0f; }
 };
 
+/// With the mean cosine g (Henyey & Greenstein 1941).
 class HenyeyGreensteinPhase final : public core::PhaseFunction {
   public:
     /// Throws InputError unless -1 < g < 1.
@@ -36,7 +38,7 @@ class HenyeyGreensteinPhase final : public core::PhaseFunction {
     float g_;
 };
 
-void register_isotropic_phase(core::Registry& registry);
-void register_hg_phase(core::Registry& registry);
+void register_isotropic_phase(core::Registry& registry);  ///< <phase type="isotropic">.
+void register_hg_phase(core::Registry& registry);         ///< <phase type="hg">.
 
 }  // namespace mote::media

@@ -7,6 +7,7 @@ class Registry;
 
 namespace mote::media {
 
+/// Every medium, volume and phase function.
 void register_media(core::Registry& registry);
 
 }  // namespace mote::media

@@ -8,21 +8,22 @@ namespace mote::core {
 /// Sixteen shadow rays as a structure of arrays, in Embree's own layout. Inactive lanes have t_max < t_min.
 /// After they were traced an occluded lane has t_max = -infinity.
 struct alignas(64) ShadowPacket {
-    static constexpr int width = 16;
-    float origin_x[width], origin_y[width], origin_z[width];
-    float t_min[width];
+    static constexpr int width = 16;                          ///< lanes
+    float origin_x[width], origin_y[width], origin_z[width];  ///< of the segments [m]
+    float t_min[width];  ///< where the segment begins, in lengths of its direction
     float direction_x[width], direction_y[width], direction_z[width];  ///< need not have unit length
-    float time[width];
-    float t_max[width];
-    std::uint32_t mask[width];
-    std::uint32_t id[width];
-    std::uint32_t flags[width];
+    float time[width];                                                 ///< of Embree's, 0
+    float t_max[width];          ///< where it ends; -infinity: something is in the way
+    std::uint32_t mask[width];   ///< of Embree's, all bits set
+    std::uint32_t id[width];     ///< of the lane
+    std::uint32_t flags[width];  ///< of Embree's, 0
 
     /// Sets what the caller never needs to touch again (time, mask, id, flags).
     void clear() {
         for (int lane = 0; lane < width; ++lane)
             time[lane] = 0.0f, mask[lane] = 0xffffffffu, id[lane] = std::uint32_t(lane), flags[lane] = 0;
     }
+    /// After it was traced: is something in the way?
     bool occluded(int lane) const { return t_max[lane] < 0.0f; }
 };
 

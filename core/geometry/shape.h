@@ -22,12 +22,12 @@ class Shape;
 
 /// What a ray found. `position` lies on the shape up to rounding; leave it through offset_origin().
 struct SurfaceHit {
-    float t = 0.0f;
-    Vec3 position{0, 0, 0};
+    float t = 0.0f;                  ///< distance along the ray [m]
+    Vec3 position{0, 0, 0};          ///< on the shape [m]
     Vec3 geometric_normal{0, 0, 1};  ///< unit; the side it points to is the shape's outside
     Frame shading;                   ///< n is the interpolated normal, on the geometric normal's side
-    TextureCoordinates uv;
-    const Shape* shape = nullptr;
+    TextureCoordinates uv;           ///< where textures are looked up
+    const Shape* shape = nullptr;    ///< that was hit
     /// Derivatives of the position by the texture coordinates [m]; only where Shape::tangent_matters.
     Vec3 dp_du{0.0f}, dp_dv{0.0f};
     std::uint32_t primitive = 0;  ///< triangle index; 0 for analytic shapes
@@ -36,19 +36,20 @@ struct SurfaceHit {
 
 /// A point drawn on a shape.
 struct ShapeSample {
-    Vec3 position;
-    Vec3 normal;  ///< geometric, unit
-    TextureCoordinates uv;
-    float pdf_area;  ///< [1/m^2]
-    float error = 0.0f;
+    Vec3 position;          ///< on the shape [m]
+    Vec3 normal;            ///< geometric, unit
+    TextureCoordinates uv;  ///< where textures are looked up
+    float pdf_area;         ///< [1/m^2]
+    float error = 0.0f;     ///< as SurfaceHit::error
 };
 
+/// A surface with its material, and what lies on its two sides.
 class Shape : public Object {
   public:
-    std::shared_ptr<Bsdf> bsdf;
-    std::shared_ptr<Emitter> emitter;  ///< area light, or null
-    std::shared_ptr<Medium> interior, exterior;
-    SourceLocation exterior_where;  ///< where the scene file names the exterior
+    std::shared_ptr<Bsdf> bsdf;                  ///< how it scatters; not null in a scene
+    std::shared_ptr<Emitter> emitter;            ///< area light, or null
+    std::shared_ptr<Medium> interior, exterior;  ///< behind and before it; null: vacuum
+    SourceLocation exterior_where;               ///< where the scene file names the exterior
     bool has_medium_boundary =
         false;  ///< interior or exterior was named (vacuum counts when the other is named)
     /// Such a boundary with a border, as a window of a room: it parts the outside of all closed shapes.
@@ -59,6 +60,7 @@ class Shape : public Object {
     std::uint32_t index = 0;         ///< position in Scene::shapes
     std::vector<std::string> notes;  ///< what was repaired at load, e.g. "12 degenerate triangles dropped"
 
+    /// Holds every point of it [m].
     virtual Bounds3 bounds() const = 0;
     /// Holds all geometric normals.
     virtual DirectionCone normals() const { return DirectionCone::all(); }
@@ -67,6 +69,7 @@ class Shape : public Object {
     virtual float support(const Vec3& direction) const {
         return 0.5f * glm::dot(glm::abs(direction), bounds().diagonal());
     }
+    /// Of its surface [m^2].
     virtual float area() const = 0;
     /// Uniform by area.
     virtual ShapeSample sample_area(const Vec2& u) const = 0;
@@ -86,6 +89,7 @@ class Shape : public Object {
 /// The origin for a ray leaving `position` in `direction`, moved off the surface to the direction's side far
 /// enough that the ray cannot hit the surface it starts on.
 Vec3 offset_origin(const Vec3& position, const Vec3& geometric_normal, float error, const Vec3& direction);
+/// The same for a point that a ray found.
 inline Vec3 offset_origin(const SurfaceHit& hit, const Vec3& direction) {
     return offset_origin(hit.position, hit.geometric_normal, hit.error, direction);
 }

@@ -11,19 +11,21 @@ namespace mote::core {
 
 /// Values of vertices or faces beyond what a mesh is made of, see SurfaceAttributes.
 struct MeshAttribute {
-    std::string name;  ///< begins with "vertex_" or "face_"
-    bool of_faces = false;
+    std::string name;         ///< begins with "vertex_" or "face_"
+    bool of_faces = false;    ///< one value a triangle, not a vertex
     std::vector<Rgb> values;  ///< one a vertex or triangle; three times the same where there is one number
 };
 
+/// What a mesh is made of.
 struct MeshData {
-    std::vector<Vec3> positions;
-    std::vector<Vec3> normals;  ///< per vertex, or empty: geometric normals are used
-    std::vector<Vec2> uvs;      ///< per vertex, or empty: barycentric coordinates are used
-    std::vector<std::array<std::uint32_t, 3>> triangles;
-    std::vector<MeshAttribute> attributes = {};
+    std::vector<Vec3> positions;  ///< of the vertices [m]
+    std::vector<Vec3> normals;    ///< per vertex, or empty: geometric normals are used
+    std::vector<Vec2> uvs;        ///< per vertex, or empty: barycentric coordinates are used
+    std::vector<std::array<std::uint32_t, 3>> triangles;  ///< three vertices each
+    std::vector<MeshAttribute> attributes = {};           ///< that textures may ask for
 };
 
+/// Triangles as one shape; its data does not change.
 class TriangleMesh final : public Shape, private SurfaceAttributes {
   public:
     /// Takes the data as it is (world space). Throws InputError for an index out of range, a position that is
@@ -37,6 +39,7 @@ class TriangleMesh final : public Shape, private SurfaceAttributes {
     /// Shapes that hold its triangles, this one among them.
     long holders() const { return built_.use_count(); }
 
+    /// What it was made of.
     const MeshData& data() const { return built_->data; }
     /// Fills everything of a hit but t, from the barycentric coordinates (u, v) that Embree reports.
     void fill_hit(std::uint32_t primitive, float u, float v, SurfaceHit& hit) const;
@@ -84,6 +87,7 @@ void transform_mesh(MeshData& data, const Transform& to_world);
 
 /// [-1,1]^2 facing +z, and [-1,1]^3 facing outwards, as Mitsuba 3 has them.
 MeshData make_rectangle();
+/// The same for the cube.
 MeshData make_cube();
 
 /// Reads OBJ, PLY and what else assimp reads. Throws InputError naming the file. `flip_v` follows Mitsuba:

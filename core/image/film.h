@@ -20,20 +20,20 @@ namespace mote::core {
 
 class Film {
   public:
-    static constexpr std::uint32_t block_size = 16;
+    static constexpr std::uint32_t block_size = 16;  ///< passes
 
     /// `all_squares`: keep the sum of squares of every layer, not of the beauty and of those that ask for it.
     /// Throws std::invalid_argument when two layers have one name, a Layer::where names none or one of
     /// another part, or a part has no layer.
     Film(int width, int height, std::vector<Layer> layers, bool all_squares = false);
 
-    int width() const { return width_; }
-    int height() const { return height_; }
-    std::size_t pixels() const { return std::size_t(width_) * std::size_t(height_); }
-    std::span<const Layer> layers() const { return layers_; }
-    std::size_t parts() const { return parts_.size(); }
-    std::uint32_t pass_count() const;  ///< of all parts together
-    std::uint32_t pass_count(std::size_t part) const { return parts_.at(part).passes; }
+    int width() const { return width_; }                                               ///< [pixels]
+    int height() const { return height_; }                                             ///< [pixels]
+    std::size_t pixels() const { return std::size_t(width_) * std::size_t(height_); }  ///< width times height
+    std::span<const Layer> layers() const { return layers_; }  ///< all of them, in order
+    std::size_t parts() const { return parts_.size(); }        ///< how many
+    std::uint32_t pass_count() const;                          ///< of all parts together
+    std::uint32_t pass_count(std::size_t part) const { return parts_.at(part).passes; }  ///< of one part
     /// Has every part so many passes? A picture is complete with one.
     bool has_passes(std::uint32_t passes) const;
     /// The layers of a part, in order: those of the images of its passes.
@@ -70,8 +70,8 @@ class Film {
     void set_mean(std::size_t layer, std::span<const Rgb> values, std::span<const float> variance = {});
     /// What set_mean() has put in place of the passes' mean; empty where it has not.
     struct Replacement {
-        std::vector<Rgb> mean;
-        std::vector<float> variance;
+        std::vector<Rgb> mean;        ///< by pixel; empty: that of the passes
+        std::vector<float> variance;  ///< of that mean, by pixel; empty: not known
     };
     using Replacements = std::vector<Replacement>;  ///< [layer]
     /// Puts others there, or none, and returns what was there.
@@ -79,13 +79,14 @@ class Film {
     /// The noise of the beauty, Eq. (4) of core/image/relative_error.h: the error that the passes so far are
     /// expected to have left, but for the bias of post-processes. Infinity for n < 2.
     double noise() const { return gain_and_noise().noise; }
+    /// What the passes say of the picture's noise.
     struct GainAndNoise {
         /// Passes are Sobol points: how much smaller the variance of the mean is, over the whole picture,
         /// than beauty_variance_of_mean() says, which takes them for independent. 1 for n < 2.
         double gain = 1.0;
         double noise = std::numeric_limits<double>::infinity();
     };
-    GainAndNoise gain_and_noise() const;
+    GainAndNoise gain_and_noise() const;  ///< noise() and what it is computed with
 
     /// The bits of the film, for checkpoints: sums, counts, block state, and a checksum.
     std::vector<std::byte> serialize() const;

@@ -13,11 +13,12 @@ namespace mote::core {
 
 /// A picture of named float channels, row by row from the top.
 struct ImageChannels {
-    int width = 0, height = 0;
-    std::vector<std::string> names;            ///< "R", "G", "B", "direct.R", "Depth.Z"
-    std::vector<std::vector<float>> channels;  ///< one plane per name
-    std::map<std::string, std::string> metadata;
+    int width = 0, height = 0;                    ///< [pixels]
+    std::vector<std::string> names;               ///< "R", "G", "B", "direct.R", "Depth.Z"
+    std::vector<std::vector<float>> channels;     ///< one plane per name
+    std::map<std::string, std::string> metadata;  ///< attributes of the file, as text
 
+    /// A channel: width * height values.
     void add(const std::string& name, std::vector<float> plane);
     /// Splits an RGB plane into layer.R, layer.G, layer.B (or R, G, B for an empty layer name).
     void add_rgb(const std::string& layer, std::span<const Rgb> pixels);
@@ -43,8 +44,8 @@ std::vector<std::byte> encode_png(int width, int height, std::span<const std::ui
 
 /// Any bitmap that OpenImageIO reads, as linear RGB; 8-bit files are taken as sRGB unless `raw`.
 struct Bitmap {
-    int width = 0, height = 0;
-    std::vector<Rgb> pixels;  ///< row by row from the top
+    int width = 0, height = 0;  ///< [pixels]
+    std::vector<Rgb> pixels;    ///< row by row from the top
 };
 /// Throws InputError naming the file when it is damaged, larger than `max_pixels` or unreadable.
 Bitmap read_bitmap(const std::string& path, bool raw, std::size_t max_pixels = std::size_t(1) << 28);

@@ -15,7 +15,7 @@
 namespace mote::core {
 
 struct ImageMetrics {
-    std::size_t pixels = 0;
+    std::size_t pixels = 0;  ///< of each picture
     /// Pixels with a NaN or an infinity in a channel. `either`: in one picture or in both.
     std::size_t non_finite_image = 0, non_finite_reference = 0, non_finite_either = 0;
     std::array<double, 3> mean_image{}, mean_reference{};  ///< per channel
@@ -28,12 +28,13 @@ struct ImageMetrics {
     double mean_difference = 0.0, mean_difference_standard_error = 0.0;
     double ssim = 0.0;
 
+    /// Of all pixels, in [0, 1].
     double non_finite_share() const { return pixels == 0 ? 0.0 : double(non_finite_either) / double(pixels); }
 };
 
 /// Variances of the means of both pictures, pixel by pixel; empty where they are not known.
 struct KnownVariances {
-    std::span<const Rgb> image, reference;
+    std::span<const Rgb> image, reference;  ///< by pixel, or empty
 };
 
 /// Both pictures row by row, width * height pixels. Throws std::invalid_argument when a size does not fit or
@@ -51,9 +52,9 @@ double mean_ssim(std::span<const double> image, std::span<const double> referenc
 
 /// One metric that is a single number.
 struct MetricDefinition {
-    const char* name;        ///< as in JSON
-    const char* definition;  ///< one line
-    double ImageMetrics::*value;
+    const char* name;             ///< as in JSON
+    const char* definition;       ///< one line
+    double ImageMetrics::*value;  ///< where it is kept
 };
 /// All of them, in the order in which they are printed.
 std::span<const MetricDefinition> metric_definitions();

@@ -25,6 +25,7 @@ struct LoadReport {
     std::vector<std::string> features;        ///< layers of the first hit that the file asks for
 };
 
+/// What the caller changes in a scene, and how strictly it is read.
 struct LoadOptions {
     /// -D name=value: `name` is a $parameter of the file, or a path such as "integrator.paths" or
     /// "film.width". One that nothing used is an error.
@@ -42,6 +43,7 @@ struct LoadOptions {
     LoadReport* report = nullptr;  ///< filled where it is not null
 };
 
+/// The scene of a file, XML or glTF. Throws InputError; SceneErrors where several faults were found.
 std::unique_ptr<Scene> load_scene(const std::string& path, const Registry& registry,
                                   const LoadOptions& options = {});
 /// The first two steps alone, for those who write scenes: elements in today's words, every -D applied,

@@ -26,22 +26,23 @@ struct BsdfTraits {
     bool smooth = false;        ///< has a part that eval() sees (non-delta)
     bool delta = false;         ///< has a part that only sample() can produce
     bool transmissive = false;  ///< lets light through
-    bool null = false;     ///< the surface is invisible: light passes straight (a boundary between media)
-    bool pane = false;     ///< a part of the light passes straight on: see straight_passage()
-    bool tints = false;    ///< a pane, and what passes it straight on changes its colour
-    bool diffuse = false;  ///< exactly Lambertian reflection: diffuse_reflectance() says all
-    bool textured = false;
+    bool null = false;         ///< the surface is invisible: light passes straight (a boundary between media)
+    bool pane = false;         ///< a part of the light passes straight on: see straight_passage()
+    bool tints = false;        ///< a pane, and what passes it straight on changes its colour
+    bool diffuse = false;      ///< exactly Lambertian reflection: diffuse_reflectance() says all
+    bool textured = false;     ///< varies with the texture coordinates
     bool anisotropic = false;  ///< looks different when turned about the normal
 
     /// Light goes straight on, all of it or a part: such a surface stops no connection.
     bool passes_straight() const { return null || pane; }
 };
 
+/// A direction drawn for a viewer.
 struct BsdfSample {
-    Vec3 wi;                ///< local
-    Rgb weight;             ///< f * |cos(wi)| / pdf; for a delta part, the weight of that part
-    float pdf_solid_angle;  ///< density of wi over the smooth part; 0 for a delta part
-    bool delta = false;
+    Vec3 wi;                   ///< local
+    Rgb weight;                ///< f * |cos(wi)| / pdf; for a delta part, the weight of that part
+    float pdf_solid_angle;     ///< density of wi over the smooth part; 0 for a delta part
+    bool delta = false;        ///< of a part that only sample() produces
     bool transmitted = false;  ///< wi lies on the other side of the surface
     float eta = 1.0f;          ///< relative index of refraction along the path (for Russian roulette)
 };
@@ -50,13 +51,13 @@ struct BsdfSample {
 struct StraightPassage {
     float stops = 1.0f;  ///< probability that sample() scatters a path: where u_lobe is below this
     Rgb weight{0.0f};    ///< of a path that was let pass
-    float probability() const { return 1.0f - stops; }
-    Rgb transmittance() const { return probability() * weight; }
+    float probability() const { return 1.0f - stops; }            ///< that a path passes
+    Rgb transmittance() const { return probability() * weight; }  ///< of a connection
 };
 
 /// Where on the surface: textures are looked up here.
 struct BsdfPoint {
-    TextureCoordinates uv;
+    TextureCoordinates uv;  ///< where textures are looked up
     // In the local frame, for BSDFs that bend it; zero where they are not known, and nothing is bent then.
     Vec3 dp_du{0.0f}, dp_dv{0.0f};  ///< derivatives of the position by the texture coordinates [m]
     Vec3 geometric_normal{0.0f, 0.0f, 1.0f};
@@ -66,8 +67,10 @@ struct BsdfPoint {
     float peak_limit = infinity;
 };
 
+/// How a surface scatters light; see the top of this file for directions.
 class Bsdf : public Object {
   public:
+    /// Which parts it has.
     virtual BsdfTraits traits() const = 0;
 
     /// Smooth part of the BSDF [1/sr], without cosine. Zero for delta parts.

@@ -11,6 +11,7 @@ namespace mote::core {
 
 class Texture : public Object {
   public:
+    /// The value at a place.
     virtual Rgb eval(const TextureCoordinates& uv) const = 0;
     /// One number, where a roughness or a weight is asked for: a picture's luminance.
     virtual float scalar(const TextureCoordinates& uv) const { return luminance(eval(uv)); }

@@ -8,23 +8,27 @@
 namespace mote::core {
 
 struct Bounds3 {
-    Vec3 lower{infinity, infinity, infinity};
-    Vec3 upper{-infinity, -infinity, -infinity};
+    Vec3 lower{infinity, infinity, infinity};     ///< corner [m]
+    Vec3 upper{-infinity, -infinity, -infinity};  ///< corner [m]
 
+    /// Holds no point.
     bool empty() const { return !(lower.x <= upper.x && lower.y <= upper.y && lower.z <= upper.z); }
-    void extend(const Vec3& p) { lower = glm::min(lower, p), upper = glm::max(upper, p); }
+    void extend(const Vec3& p) { lower = glm::min(lower, p), upper = glm::max(upper, p); }  ///< to hold p
+    /// To hold b.
     void extend(const Bounds3& b) { lower = glm::min(lower, b.lower), upper = glm::max(upper, b.upper); }
-    Vec3 diagonal() const { return upper - lower; }
-    Vec3 center() const { return 0.5f * lower + 0.5f * upper; }
+    Vec3 diagonal() const { return upper - lower; }              ///< from lower to upper [m]
+    Vec3 center() const { return 0.5f * lower + 0.5f * upper; }  ///< of a box that is not empty [m]
     /// Radius of the sphere around center() that holds the box.
     float radius() const { return empty() ? 0.0f : 0.5f * glm::length(diagonal()); }
+    /// Its border counts.
     bool contains(const Vec3& p) const {
         return glm::all(glm::greaterThanEqual(p, lower)) && glm::all(glm::lessThanEqual(p, upper));
     }
 };
 
+/// A part of a ray.
 struct Interval {
-    float t0, t1;
+    float t0, t1;  ///< its ends along the ray [m]
 };
 
 /// The part of the ray's (t_min, t_max) inside the box, or nothing. Directions with zero components are fine.

@@ -6,9 +6,10 @@
 namespace mote::core {
 
 struct Frame {
-    Vec3 s{1, 0, 0}, t{0, 1, 0}, n{0, 0, 1};
+    Vec3 s{1, 0, 0}, t{0, 1, 0}, n{0, 0, 1};  ///< local x, y, z as the world sees them
 
     Frame() = default;
+    /// Of three axes, orthonormal.
     Frame(const Vec3& s_, const Vec3& t_, const Vec3& n_) : s(s_), t(t_), n(n_) {}
     /// Any frame around the unit vector n, without branches or singularities (Duff et al. 2017).
     explicit Frame(const Vec3& normal) : n(normal) {
@@ -29,17 +30,19 @@ struct Frame {
         t = glm::cross(n, s);
     }
 
+    /// From the world.
     Vec3 to_local(const Vec3& v) const { return {glm::dot(v, s), glm::dot(v, t), glm::dot(v, n)}; }
-    Vec3 to_world(const Vec3& v) const { return s * v.x + t * v.y + n * v.z; }
+    Vec3 to_world(const Vec3& v) const { return s * v.x + t * v.y + n * v.z; }  ///< from local coordinates
 };
 
 // Trigonometry of a unit direction in the local frame.
 inline float cos_theta(const Vec3& w) { return w.z; }
-inline float abs_cos_theta(const Vec3& w) { return std::fabs(w.z); }
-inline float cos2_theta(const Vec3& w) { return w.z * w.z; }
-inline float sin2_theta(const Vec3& w) { return std::fmax(0.0f, 1.0f - w.z * w.z); }
-inline float sin_theta(const Vec3& w) { return std::sqrt(sin2_theta(w)); }
-inline float tan2_theta(const Vec3& w) { return sin2_theta(w) / cos2_theta(w); }
+inline float abs_cos_theta(const Vec3& w) { return std::fabs(w.z); }  ///< |cos| to the frame's n
+inline float cos2_theta(const Vec3& w) { return w.z * w.z; }          ///< cos^2
+inline float sin2_theta(const Vec3& w) { return std::fmax(0.0f, 1.0f - w.z * w.z); }  ///< sin^2
+inline float sin_theta(const Vec3& w) { return std::sqrt(sin2_theta(w)); }            ///< sin, never negative
+inline float tan2_theta(const Vec3& w) { return sin2_theta(w) / cos2_theta(w); }      ///< tan^2
+/// On one side of the surface.
 inline bool same_hemisphere(const Vec3& a, const Vec3& b) { return a.z * b.z > 0.0f; }
 /// Mirror of w about the normal of the local frame.
 inline Vec3 reflect_local(const Vec3& w) { return {-w.x, -w.y, w.z}; }

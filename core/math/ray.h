@@ -6,11 +6,12 @@
 namespace mote::core {
 
 struct Ray {
-    Vec3 origin{0, 0, 0};
-    Vec3 direction{0, 0, 1};
-    float t_min = 0.0f;
-    float t_max = infinity;
+    Vec3 origin{0, 0, 0};     ///< [m]
+    Vec3 direction{0, 0, 1};  ///< unit
+    float t_min = 0.0f;       ///< where the segment begins [m]
+    float t_max = infinity;   ///< where it ends [m]
 
+    /// The point at distance t.
     Vec3 at(float t) const { return origin + t * direction; }
 };
 

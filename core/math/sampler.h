@@ -11,6 +11,7 @@
 
 namespace mote::core {
 
+/// Independent numbers, or Owen-scrambled Sobol points.
 enum class SamplerKind : std::uint8_t { independent, sobol };
 
 class Sampler {
@@ -20,7 +21,9 @@ class Sampler {
             std::uint32_t stream = 0)
         : kind_(kind), pass_(pass), key_(hash_keys(seed, item, stream)) {}
 
+    /// The next number in [0, 1); takes a pair of dimensions.
     float next_1d() { return next_2d().x; }
+    /// The next point in [0, 1)^2.
     Vec2 next_2d() {
         const std::uint32_t d = dimension_++;
         return kind_ == SamplerKind::sobol ? sobol(d) : independent(d);

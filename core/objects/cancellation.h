@@ -11,13 +11,16 @@ namespace mote::core {
 /// Thrown where work was asked to stop. No std::exception: it is nobody's error.
 struct Cancelled {};
 
+/// Asks a flag of somebody else's whether work is to stop.
 class CancelToken {
   public:
     CancelToken() = default;  ///< never
     /// The flag must outlive the token.
     CancelToken(const std::atomic<bool>& flag) : flag_(&flag) {}  // NOLINT: a flag is a token
 
+    /// Has the flag been set?
     bool requested() const { return flag_ && flag_->load(std::memory_order_relaxed); }
+    /// Throws Cancelled where it has.
     void check() const {
         if (requested()) throw Cancelled();
     }

@@ -10,15 +10,16 @@
 namespace mote::core {
 
 struct SourceLocation {
-    std::string file;
-    int line = 0;  ///< 1-based; 0 when there is none
+    std::string file;  ///< "" where there is none
+    int line = 0;      ///< 1-based; 0 when there is none
 };
 
 /// The input is at fault: what() is one line "file:line: message". Leads to exit code 1.
 class InputError : public std::runtime_error {
   public:
+    /// `message` is one sentence that says what is wrong, and what would be right.
     explicit InputError(const std::string& message, const SourceLocation& where = {});
-    const SourceLocation& where() const { return where_; }
+    const SourceLocation& where() const { return where_; }  ///< the place in the input
 
   private:
     SourceLocation where_;

@@ -23,19 +23,21 @@ class Properties;
 /// transform, texture (an rgb, a float or a nested texture), volume, or the name of a category for a nested
 /// object.
 struct Parameter {
-    std::string name, type, default_value, description;
+    std::string name, type, default_value, description;  ///< as the page shows them
 };
 
 /// The manual page and the factory of one type.
 struct Manual {
-    Category category;
-    std::string type, summary;
-    std::vector<Parameter> parameters;
-    std::string example;  ///< one XML element, parsed by a test
+    Category category;                  ///< what it is
+    std::string type, summary;          ///< its name, and a sentence
+    std::vector<Parameter> parameters;  ///< rows of the page
+    std::string example;                ///< one XML element, parsed by a test
 };
 
+/// Makes an object of its parameters; throws InputError.
 using Factory = std::function<std::shared_ptr<Object>(const Properties&)>;
 
+/// The types of all categories, by name.
 class Registry {
   public:
     /// Throws std::logic_error when (category, type) is there already.
@@ -44,6 +46,7 @@ class Registry {
     const Manual* find(Category category, const std::string& type) const;
     /// Throws std::out_of_range when unknown.
     const Factory& factory(Category category, const std::string& type) const;
+    /// Names in alphabetical order.
     std::vector<std::string> types(Category category) const;
     std::vector<const Manual*> manuals() const;
 
@@ -57,12 +60,16 @@ class Registry {
 
 /// Registers everything in core/: calls the three below, and adds film, samplers and filters.
 void register_core(Registry& registry);
+/// BSDFs and textures: core/materials/register_materials.cpp.
 void register_materials(Registry& registry);  // core/materials/register_materials.cpp
-void register_geometry(Registry& registry);   // core/geometry/register_geometry.cpp
-void register_sensors(Registry& registry);    // core/cameras/register_sensors.cpp
+/// Shapes: core/geometry/register_geometry.cpp.
+void register_geometry(Registry& registry);  // core/geometry/register_geometry.cpp
+/// Cameras: core/cameras/register_sensors.cpp.
+void register_sensors(Registry& registry);  // core/cameras/register_sensors.cpp
 
 /// "bsdf", "texture", ... and back; nothing for an unknown word.
 const std::string& category_name(Category category);
+/// Of a word.
 std::optional<Category> find_category(std::string_view name);
 
 }  // namespace mote::core

@@ -33,14 +33,15 @@ class Film;
 class Scene;
 
 struct RenderOptions {
-    std::uint64_t seed = 0;
-    int width = 0, height = 0;
-    SamplerKind sampler = SamplerKind::sobol;
-    CancelToken cancelled = {};  ///< prepare() may throw Cancelled when it asks for it
+    std::uint64_t seed = 0;                    ///< of all random numbers
+    int width = 0, height = 0;                 ///< of the film [pixels]
+    SamplerKind sampler = SamplerKind::sobol;  ///< of eye and light paths
+    CancelToken cancelled = {};                ///< prepare() may throw Cancelled when it asks for it
     /// The cells of the transport (Layer::transport) that are wanted; empty: all. The layers of the others
     /// may hold anything, and nothing should be spent on them.
     std::vector<std::string> cells = {};
 
+    /// Is this cell of the transport asked for?
     bool wants(const std::string& cell) const {
         return cells.empty() || std::find(cells.begin(), cells.end(), cell) != cells.end();
     }
@@ -60,13 +61,15 @@ class PixelFilter {
     virtual float radius() const = 0;
 };
 
+/// One pass.
 struct PassContext {
-    std::uint32_t index;  ///< which pass, of its part
-    const PixelFilter& filter;
+    std::uint32_t index;                 ///< which pass, of its part
+    const PixelFilter& filter;           ///< where samples fall
     const std::atomic<bool>& cancelled;  ///< a cancelled pass returns false or throws Cancelled
     std::size_t part = 0;                ///< of the picture (Layer::part)
 };
 
+/// A method at work on one view.
 class Estimator {
   public:
     virtual ~Estimator() = default;
@@ -84,13 +87,16 @@ class Estimator {
     virtual void add_statistics(Statistics& /*statistics*/) const {}
 };
 
+/// A method with its parameters.
 class Integrator : public Object {
   public:
+    /// As in scene files.
     virtual std::string type() const = 0;
     /// Does Estimator::finish() read and write layers of the film? Then it must be the film's only method.
     virtual bool works_on_mean() const { return false; }
     /// The layers it fills, in order; those that are not auxiliary add up to the beauty.
     virtual std::vector<Layer> layers(const Scene& scene) const = 0;
+    /// What will run for this scene, and why.
     virtual Plan plan(const Scene& scene, const Requirements& requirements) const = 0;
     virtual std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const = 0;
 };

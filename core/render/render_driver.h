@@ -23,25 +23,27 @@ struct StopRule {
     std::optional<double> noise;    ///< Film::noise() of the finished picture, looked at from 8 passes on
 };
 
+/// Told after every pass.
 struct RenderProgress {
-    std::uint32_t passes, passes_of_this_run;  ///< the first holds those of a checkpoint too
-    std::optional<std::uint32_t> passes_wanted;
-    double seconds, seconds_left;  ///< seconds_left < 0: unknown
+    std::uint32_t passes, passes_of_this_run;    ///< the first holds those of a checkpoint too
+    std::optional<std::uint32_t> passes_wanted;  ///< where a number was asked for
+    double seconds, seconds_left;                ///< seconds_left < 0: unknown
     /// Film::noise() of the finished picture; infinity: not known yet. Refreshed twice a second at most; what
     /// Estimator::finish() takes from it is that of the last preview.
     double noise;
 };
 
+/// What is to be rendered, when it stops, who is told.
 struct RenderRequest {
-    std::uint64_t seed = 0;
-    StopRule stop;
-    std::string checkpoint_path;  ///< "" for none
-    double checkpoint_every_seconds = 60.0;
-    bool checkpoint_at_end = true;  ///< also after the last pass; an interrupted render always writes one
-    bool resume = false;            ///< continue from checkpoint_path; from the start where there is none
-    std::string content_hash;       ///< of the scene, its files and the options that change the picture
-    bool all_squares = false;
-    std::vector<HitFeature> features;         ///< become layers of the film, behind those of the integrator
+    std::uint64_t seed = 0;                  ///< of all random numbers
+    StopRule stop;                           ///< when it ends
+    std::string checkpoint_path;             ///< "" for none
+    double checkpoint_every_seconds = 60.0;  ///< wall time between checkpoints
+    bool checkpoint_at_end = true;     ///< also after the last pass; an interrupted render always writes one
+    bool resume = false;               ///< continue from checkpoint_path; from the start where there is none
+    std::string content_hash;          ///< of the scene, its files and the options that change the picture
+    bool all_squares = false;          ///< the film keeps variances of all layers
+    std::vector<HitFeature> features;  ///< become layers of the film, behind those of the integrator
     std::function<bool(const Film&)> enough;  ///< a rule of the caller's, asked where the noise rule looks
     std::function<void(const RenderProgress&)> progress;  ///< called after every pass; may be empty
     /// Shown the picture so far, as Estimator::finish() leaves it, as soon as every part has a pass, after
@@ -59,10 +61,11 @@ struct RenderRequest {
     bool keep_part_of_first_pass = false;
 };
 
+/// The picture and what it took.
 struct RenderResult {
-    Film film;
-    Statistics statistics;
-    bool interrupted = false;
+    Film film;                     ///< sums over passes
+    Statistics statistics;         ///< counts and times
+    bool interrupted = false;      ///< before a stop rule held
     std::uint32_t resumed_at = 0;  ///< pass index the checkpoint held
     /// Interrupted, and there was no time for Estimator::finish(): what it changes is as the last preview had
     /// it, of so many passes; of 0, as the passes left it.

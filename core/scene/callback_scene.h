@@ -69,7 +69,7 @@ class CallbackScene final : public LitScene {
                       TrackingCounters& counters) const override;
     const Medium* connect(const Ray& ray, const MediumState& state, PathWeights& weights, Rng& rng,
                           TrackingCounters& counters) const override;
-    bool has_boundaries() const override { return false; }
+    bool has_boundaries() const override { return false; }  ///< false
     void boundaries_along(const Ray& /*ray*/, std::vector<SurfaceHit>& hits) const override { hits.clear(); }
     std::span<const std::shared_ptr<Medium>> media() const override {
         return {&calls_.medium, calls_.medium ? std::size_t(1) : 0};
@@ -77,6 +77,7 @@ class CallbackScene final : public LitScene {
     Bounds3 medium_extent(const Medium& medium) const override;
     Bounds3 bounds() const override { return calls_.bounds; }
 
+    /// SceneCallbacks::emitters.
     std::span<const std::shared_ptr<Emitter>> emitters() const override { return calls_.emitters; }
     const Emitter* environment() const override { return environment_; }
     LightChoice choose_light(const LightReceiver& receiver, float u) const override;

@@ -30,7 +30,7 @@ struct CameraTraits {
 
 /// The importance of a ray that leaves the camera.
 struct RayImportance {
-    Vec2 film_position;
+    Vec2 film_position;  ///< [pixels]
     float importance;  ///< W_e [pixels / (m^2 sr)]; without the part of the measure that is a delta, and for
                        ///< parallel rays per area perpendicular to them [pixels / m^2]
     float pdf_area;    ///< of the origin on the lens [1/m^2]; 1 for a delta position. Parallel rays: per area
@@ -41,23 +41,25 @@ struct RayImportance {
 
 /// A connection from a point of the scene to the camera: the counterpart of DirectSample.
 struct CameraSample {
-    Vec3 wi;         ///< unit, from the point to the camera
-    float distance;  ///< to `origin` [m]
-    Vec3 origin;     ///< where the ray through the point starts
-    float t_min;     ///< the near clipping plane, in distance from `origin`: nothing nearer hides or dims
-    Vec2 film_position;
+    Vec3 wi;             ///< unit, from the point to the camera
+    float distance;      ///< to `origin` [m]
+    Vec3 origin;         ///< where the ray through the point starts
+    float t_min;         ///< the near clipping plane, in distance from `origin`: nothing nearer hides or dims
+    Vec2 film_position;  ///< [pixels]
     float weight;  ///< W_e / pdf, with the cosine at the camera where there is no pdf; without visibility,
                    ///< transmittance and the point's own cosine
     float pdf_solid_angle;  ///< at the point; 0 for delta cameras (then weight is the full value)
-    bool delta = false;
+    bool delta = false;     ///< the camera is a pinhole
 };
 
+/// Where eye rays begin and go, and its adjoint.
 class Camera : public Object {
   public:
     /// The ray through `film_position`; `u_lens` chooses the point on a lens. t_min and t_max hold the near
     /// and far clipping planes. The weight of every ray is 1.
     virtual Ray sample_ray(const Vec2& film_position, const Vec2& u_lens) const = 0;
 
+    /// Which parts are deltas.
     virtual CameraTraits traits() const = 0;
 
     /// The importance of a ray from `origin` on the lens, unit `direction` into the scene. A delta part is

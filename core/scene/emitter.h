@@ -15,16 +15,17 @@ class Medium;
 class Shape;
 struct SurfaceHit;
 
+/// What a light is; `environment` surrounds the scene.
 enum class EmitterKind : std::uint8_t { point, spot, directional, area, environment, medium };
 
 struct EmitterTraits {
-    EmitterKind kind = EmitterKind::point;
-    bool delta_position = false;   ///< point-like: cannot be hit
-    bool delta_direction = false;  ///< parallel light: cannot be hit
-    bool infinite = false;         ///< surrounds the scene
-    bool textured = false;
+    EmitterKind kind = EmitterKind::point;  ///< what it is
+    bool delta_position = false;            ///< point-like: cannot be hit
+    bool delta_direction = false;           ///< parallel light: cannot be hit
+    bool infinite = false;                  ///< surrounds the scene
+    bool textured = false;                  ///< its light varies by a picture
     bool direct = true;  ///< false: receivers never choose it; found by their scattering directions alone
-    bool can_be_hit() const { return !delta_position && !delta_direction; }
+    bool can_be_hit() const { return !delta_position && !delta_direction; }  ///< can a ray find it?
 };
 
 /// A connection from a reference point to the light.
@@ -35,8 +36,8 @@ struct DirectSample {
                      ///< receiver's cosine
     float pdf_solid_angle;  ///< at the reference point; 0 for delta lights (then weight is the full value);
                             ///< for a point in a medium per solid angle and length [1/(sr m)]
-    bool delta = false;
-    Vec3 normal{0, 0, 0};  ///< of the light's surface; zero where there is none
+    bool delta = false;     ///< no ray could have found it
+    Vec3 normal{0, 0, 0};   ///< of the light's surface; zero where there is none
     /// Density along the ray with which a walk in direction wi finds this point: of emission in a medium,
     /// where it makes a direction's density one per solid angle and length [1/m]; else 1.
     float line_density = 1.0f;
@@ -46,14 +47,14 @@ struct DirectSample {
 
 /// The start of a light particle.
 struct EmissionSample {
-    Vec3 origin;
+    Vec3 origin;     ///< [m]
     Vec3 direction;  ///< unit, away from the light
     Vec3 normal;     ///< of the light's surface at the origin; zero where there is none
     Rgb weight;      ///< L_e * |cos| / (pdf_area * pdf_solid_angle): the power carried by the particle [W]
     float pdf_area;  ///< of the origin; 1 for a delta position. Lights at infinity: over the disk they start
                      ///< from. Media: per volume [1/m^3]
-    float pdf_solid_angle;  ///< of the direction; 1 for a delta direction
-    const Shape* shape = nullptr;
+    float pdf_solid_angle;           ///< of the direction; 1 for a delta direction
+    const Shape* shape = nullptr;    ///< whose surface it leaves, or null
     const Medium* inside = nullptr;  ///< the particle counts only where this medium is the one at its origin
 };
 
@@ -63,8 +64,10 @@ struct EmissionDensity {
     float pdf_solid_angle = 0.0f;  ///< of the direction, given the origin
 };
 
+/// A light.
 class Emitter : public Object {
   public:
+    /// What it is.
     virtual EmitterTraits traits() const = 0;
 
     /// Called once when the scene is complete: bounding sphere of everything. Lights at infinity need it.

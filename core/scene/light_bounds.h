@@ -8,7 +8,7 @@
 namespace mote::core {
 
 struct LightBounds {
-    Bounds3 box;
+    Bounds3 box;                                   ///< holds the light [m]
     DirectionCone normals = DirectionCone::all();  ///< of the light's surface, or the axis of a spot
     float reach = 0.5f * pi;  ///< light leaves within this angle of a normal; at most a right angle
     /// Where all normals are one, and reach is a right angle: how far behind the box's centre, against the
@@ -22,8 +22,8 @@ LightBounds united(const LightBounds& a, const LightBounds& b);
 
 /// Where light is asked for.
 struct LightReceiver {
-    Vec3 position{0, 0, 0};
-    Vec3 normal{0, 0, 0};  ///< unit, on the side from which light counts; zero: it counts from all sides
+    Vec3 position{0, 0, 0};  ///< [m]
+    Vec3 normal{0, 0, 0};    ///< unit, on the side from which light counts; zero: it counts from all sides
 };
 
 /// A part of a ray, along which light is scattered.

@@ -19,13 +19,14 @@ class LightTree {
     /// At most 2^28 lights, of intensity above 0.
     explicit LightTree(std::span<const LightBounds> lights);
 
-    bool empty() const { return leaves_.empty(); }
-    std::size_t size() const { return leaves_.size(); }
-    int depth() const { return depth_; }  ///< nodes on the longest way down
+    bool empty() const { return leaves_.empty(); }       ///< no light
+    std::size_t size() const { return leaves_.size(); }  ///< lights
+    int depth() const { return depth_; }                 ///< nodes on the longest way down
 
+    /// A light drawn.
     struct Choice {
-        std::uint32_t light;
-        double probability;
+        std::uint32_t light;  ///< index into the list that the tree was made of
+        double probability;   ///< of this draw
     };
     /// Precondition: !empty(). `where` is a LightReceiver or a LightSegment; u in [0, 1).
     template <typename Where>

@@ -9,12 +9,14 @@ namespace mote::core {
 
 /// A light drawn from the scene.
 struct LightChoice {
-    const Emitter* emitter;
-    float probability;
+    const Emitter* emitter;  ///< null: none
+    float probability;       ///< of this choice
 };
 
+/// RayQueries with lights.
 class LitScene : public RayQueries {
   public:
+    /// All lights.
     virtual std::span<const std::shared_ptr<Emitter>> emitters() const = 0;
     /// The light at infinity with a picture, or null.
     virtual const Emitter* environment() const = 0;

@@ -22,6 +22,7 @@ struct TrackingCounters {
     std::uint64_t lookups = 0;     ///< density lookups
     std::uint64_t collisions = 0;  ///< tentative collisions, real and null
     std::uint64_t fallbacks = 0;   ///< walks that hit the step limit and were ended
+    /// Adds what another task counted.
     void add(const TrackingCounters& o) {
         lookups += o.lookups, collisions += o.collisions, fallbacks += o.fallbacks;
     }
@@ -32,22 +33,24 @@ struct TrackingCounters {
 ///   throughput * L / average(unidirectional + light)            where light sampling could (balance
 ///   heuristic).
 struct PathWeights {
-    Rgb throughput{1.0f};
+    Rgb throughput{1.0f};      ///< weight of the light found at the end, before the division above
     Rgb unidirectional{1.0f};  ///< pdf_c / pdf_hero of the path as sampled, per channel c
     Rgb light{0.0f};    ///< the same with the last vertex found by light sampling; black where it cannot be
     int hero = 0;       ///< the channel that drives distance sampling: 0, 1 or 2
     Vec3 vertex{0.0f};  ///< where the path scattered last, and light sampling would start from
 };
 
+/// At a point.
 struct MediumCoefficients {
     Rgb sigma_t{0.0f};   ///< extinction [1/m]
     Rgb sigma_s{0.0f};   ///< scattering [1/m]
     Rgb emission{0.0f};  ///< sigma_a * L_e [W/(m^3 sr)]
 };
 
+/// What a medium asks of those who render it.
 struct MediumTraits {
-    bool homogeneous = false;
-    bool emissive = false;
+    bool homogeneous = false;     ///< the same everywhere
+    bool emissive = false;        ///< glows
     bool isotropic = true;        ///< phase function
     bool chromatic = false;       ///< extinction differs between channels
     bool scattering = true;       ///< false: sigma_s is zero everywhere
@@ -61,14 +64,18 @@ struct MediumTraits {
 class Emitter;
 class ScatteringPoints;
 
+/// What fills space and takes, scatters or emits light.
 class Medium : public Object {
   public:
+    /// Of the whole medium.
     virtual MediumTraits traits() const = 0;
     virtual const PhaseFunction& phase() const = 0;
+    /// At a point of the world.
     virtual MediumCoefficients coefficients(const Vec3& p) const = 0;
 
     /// Upper bound of the extinction anywhere (largest channel) [1/m], and where the medium is not vacuum.
     virtual float majorant() const = 0;
+    /// Vacuum outside [m].
     virtual Bounds3 bounds() const = 0;
 
     /// Delta tracking along the ray from t_min to t_max. Returns the distance of a real collision, with
@@ -112,7 +119,7 @@ class Medium : public Object {
     /// Steps of `voxels` voxels [m]; of a medium that varies but names no voxel size, `default_steps` to a
     /// segment of `length` metres; infinity for homogeneous media, which need none.
     virtual float marching_step(float voxels, float length) const;
-    static constexpr int default_steps = 256;
+    static constexpr int default_steps = 256;  ///< of marching_step()
 
     /// Its emission within `box` as a light, to be drawn from; null where there is none. From then on
     /// sample_collision() weighs the emission it meets against that light.

@@ -19,21 +19,25 @@ namespace mote::core {
 class Medium;
 class Shape;
 
+/// The shapes around a point, and the medium there.
 class MediumState {
   public:
     static constexpr int capacity = 8;  ///< nesting depth; deeper scenes are refused at load
 
     /// The medium at this point, or null for vacuum.
     const Medium* current() const { return current_; }
-    const Medium* outside() const { return outside_; }
+    const Medium* outside() const { return outside_; }  ///< outside of all shapes, or null
 
+    /// The medium outside of all shapes; null: vacuum.
     void set_outside(const Medium* medium);
     /// Crosses the surface of `shape` in `direction` (shapes without media change nothing).
     void cross(const Shape& shape, const Vec3& geometric_normal, const Vec3& direction);
+    /// From outside to inside.
     void enter(const Shape& shape);
     void leave(const Shape& shape);
+    /// Is the point inside of it?
     bool inside(const Shape& shape) const;
-    bool inside_any() const { return count_ > 0; }
+    bool inside_any() const { return count_ > 0; }  ///< of any shape
     /// True when more than `capacity` shapes were entered; the state is no longer reliable.
     bool overflow() const { return overflow_; }
 

@@ -12,17 +12,21 @@
 
 namespace mote::core {
 
+/// A direction drawn for a viewer.
 struct PhaseSample {
-    Vec3 wi;
-    Rgb weight;  ///< value / pdf
-    float pdf_solid_angle;
+    Vec3 wi;                ///< unit, away from the point
+    Rgb weight;             ///< value / pdf
+    float pdf_solid_angle;  ///< [1/sr]
 };
 
+/// How a medium scatters at a point.
 class PhaseFunction : public Object {
   public:
+    /// Its value [1/sr].
     virtual Rgb eval(const Vec3& wo, const Vec3& wi) const = 0;
     /// Density of sample() choosing wi given wo. The reverse density is this with the directions exchanged.
     virtual float pdf_solid_angle(const Vec3& wo, const Vec3& wi) const = 0;
+    /// Draws wi for wo from a point of the unit square.
     virtual PhaseSample sample(const Vec3& wo, const Vec2& u) const = 0;
     virtual bool isotropic() const = 0;
     /// Mean cosine of the scattering angle (0 for isotropic, > 0 forward).

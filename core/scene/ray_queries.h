@@ -20,6 +20,7 @@
 
 namespace mote::core {
 
+/// A scene as algorithms see it.
 class RayQueries {
   public:
     virtual ~RayQueries() = default;
@@ -43,6 +44,7 @@ class RayQueries {
     virtual const Medium* connect(const Ray& ray, const MediumState& state, PathWeights& weights, Rng& rng,
                                   TrackingCounters& counters) const = 0;
 
+    /// Are there any surfaces that light passes straight?
     virtual bool has_boundaries() const = 0;
     /// All boundaries within (t_min, t_max), sorted by distance. Clears `hits` first. What lies between them
     /// is found by for_each_part() (media_along.h).
@@ -55,6 +57,7 @@ class RayQueries {
             [](const void* v, const SurfaceHit& hit) { return bool((*static_cast<const Visit*>(v))(hit)); },
             &visit);
     }
+    /// A function that is called with `visit`; false stops it.
     using BoundaryVisitor = bool (*)(const void* visit, const SurfaceHit& hit);
     /// What for_each_boundary() stands on; worth overriding where it need not take memory.
     virtual void visit_boundaries(const Ray& ray, BoundaryVisitor visitor, const void* visit) const {
@@ -65,11 +68,12 @@ class RayQueries {
     }
     /// Are there panes among the boundaries, which reflect a part of the light? (Bsdf::straight_passage)
     virtual bool has_panes() const { return false; }
+    /// Do any of them change its colour?
     virtual bool has_coloured_panes() const { return false; }
 
     /// Every medium that a ray can meet.
     virtual std::span<const std::shared_ptr<Medium>> media() const = 0;
-    bool has_media() const { return !media().empty(); }
+    bool has_media() const { return !media().empty(); }  ///< is there any?
     /// Where a medium can be met: inside the shapes that hold it, or anywhere when something names it as
     /// outside.
     virtual Bounds3 medium_extent(const Medium& medium) const = 0;

@@ -15,16 +15,18 @@
 
 namespace mote::core {
 
+/// A direction drawn at a vertex.
 struct ScatterSample {
-    Vec3 wi;                ///< world
-    Rgb weight;             ///< f* C* / pdf
-    float pdf_solid_angle;  ///< 0 for a delta part
-    float eta = 1.0f;
-    bool delta = false, transmitted = false;
+    Vec3 wi;                                  ///< world
+    Rgb weight;                               ///< f* C* / pdf
+    float pdf_solid_angle;                    ///< 0 for a delta part
+    float eta = 1.0f;                         ///< relative index of refraction along the path
+    bool delta = false, transmitted = false;  ///< of a delta part; to the other side of the surface
 };
 
+/// A point where a path scatters.
 struct ScatteringVertex {
-    Vec3 position;
+    Vec3 position;                         ///< [m]
     Vec3 wo;                               ///< unit, away from the vertex, towards where the path came from
     const Bsdf* bsdf = nullptr;            ///< surface
     const PhaseFunction* phase = nullptr;  ///< medium
@@ -33,8 +35,8 @@ struct ScatteringVertex {
     /// passes the pane is no part of what the vertex scatters, and the rest counts by this chance.
     float stop_chance = 1.0f;
 
-    bool on_surface() const { return bsdf != nullptr; }
-    BsdfPoint bsdf_point() const { return core::bsdf_point(hit); }
+    bool on_surface() const { return bsdf != nullptr; }             ///< or in a medium
+    BsdfPoint bsdf_point() const { return core::bsdf_point(hit); }  ///< where on the surface
 
     /// f*(wo, wi) [1/sr], without cosine. Zero where shading and geometric normal disagree on the side, so
     /// that no light leaks through smooth-shaded surfaces. `peak_limit`: BsdfPoint::peak_limit.
@@ -43,6 +45,7 @@ struct ScatteringVertex {
     Rgb eval_cos(const Vec3& wi, TransportMode mode, float peak_limit = infinity) const;
     /// Density of sample() choosing wi, per solid angle.
     float pdf_solid_angle(const Vec3& wi, TransportMode mode) const;
+    /// Draws a direction; nothing where the path ends.
     std::optional<ScatterSample> sample(float u_lobe, const Vec2& u, TransportMode mode) const;
 
     /// On a surface: its reflectance where it is Lambertian and nothing else, seen from wo's side.

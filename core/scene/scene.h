@@ -25,7 +25,7 @@ struct Element;
 
 /// What the film of a scene file asks for.
 struct FilmSettings {
-    int width = 768, height = 576;
+    int width = 768, height = 576;    ///< [pixels]
     bool half = false;                ///< write float16
     std::string filter = "gaussian";  ///< box, tent, gaussian
     float filter_radius = 2.0f;       ///< pixels
@@ -34,15 +34,16 @@ struct FilmSettings {
     int sample_count = 16;            ///< passes when the command line does not say
 };
 
+/// RayQueries and lights by Embree; does not change once it is built.
 class Scene final : public LitScene {
   public:
     /// Builds the ray tracer and the light tables. Throws InputError when there is nothing to see or no
     /// light.
     struct Parts {
-        std::vector<std::shared_ptr<Shape>> shapes;
-        std::vector<std::shared_ptr<Emitter>> emitters;  ///< all lights, those of shapes included
-        std::vector<std::shared_ptr<Medium>> media;
-        std::shared_ptr<Camera> camera;
+        std::vector<std::shared_ptr<Shape>> shapes;         ///< in the order of the file
+        std::vector<std::shared_ptr<Emitter>> emitters;     ///< all lights, those of shapes included
+        std::vector<std::shared_ptr<Medium>> media;         ///< those of shapes and camera need not be listed
+        std::shared_ptr<Camera> camera;                     ///< not null
         std::shared_ptr<Integrator> integrator;             ///< the one the file names, or null
         std::shared_ptr<const Element> integrator_element;  ///< its text, or null
         /// The texts of further integrators, each of another type: what the scene sets for these methods.
@@ -52,18 +53,21 @@ class Scene final : public LitScene {
         std::vector<std::string> input_files;  ///< every file read, for the content hash
         std::vector<std::string> warnings;
     };
+    /// Throws InputError for parts that are missing.
     explicit Scene(Parts parts);
     ~Scene() override;
 
+    /// In the order of the file.
     std::span<const std::shared_ptr<Shape>> shapes() const { return parts_.shapes; }
     std::span<const std::shared_ptr<Emitter>> emitters() const override { return parts_.emitters; }
     std::span<const std::shared_ptr<Medium>> media() const override { return parts_.media; }
-    const Camera& camera() const { return *parts_.camera; }
+    const Camera& camera() const { return *parts_.camera; }  ///< of the scene
+    /// The one that the file names, or null.
     const Integrator* integrator() const { return parts_.integrator.get(); }
-    const FilmSettings& film() const { return parts_.film; }
-    FilmSettings& film() { return parts_.film; }
-    const Parts& parts() const { return parts_; }
-    const RayTracer& rays() const { return *rays_; }
+    const FilmSettings& film() const { return parts_.film; }  ///< what the file asks for
+    FilmSettings& film() { return parts_.film; }              ///< may be changed before a render
+    const Parts& parts() const { return parts_; }             ///< what it was made of
+    const RayTracer& rays() const { return *rays_; }          ///< its shapes in Embree
 
     std::optional<SurfaceHit> first_hit(const Ray& ray) const override;
     bool visible(const Ray& segment) const override;
@@ -81,7 +85,7 @@ class Scene final : public LitScene {
     /// By the light hierarchy; see scene_lights.cpp.
     LightChoice choose_light(const LightReceiver& receiver, float u) const override;
     float light_probability(const LightReceiver& receiver, const Emitter* emitter) const override;
-    const LightTree& light_tree() const { return *light_tree_; }
+    const LightTree& light_tree() const { return *light_tree_; }  ///< the hierarchy of lights with a place
     /// Proportional to power.
     LightChoice choose_emitter_by_power(float u, float* remapped = nullptr) const override;
     float probability_by_power(const Emitter* emitter) const override;

@@ -13,12 +13,13 @@ namespace mote::gathering {
 struct BundleGrid {
     core::Vec3 direction{0, 0, 1};           ///< unit
     core::Vec3 right{1, 0, 0}, up{0, 1, 0};  ///< right x up = direction
-    core::Vec3 origin{0, 0, 0};
-    float spacing = 1.0f;  ///< [m]
-    std::uint32_t columns = 0, rows = 0;
+    core::Vec3 origin{0, 0, 0};              ///< of the grid's corner [m]
+    float spacing = 1.0f;                    ///< [m]
+    std::uint32_t columns = 0, rows = 0;     ///< of rays
 
-    std::size_t rays() const { return std::size_t(columns) * rows; }
-    float ray_area() const { return spacing * spacing; }  ///< [m^2]
+    std::size_t rays() const { return std::size_t(columns) * rows; }  ///< all of them
+    float ray_area() const { return spacing * spacing; }              ///< [m^2]
+    /// Where a ray of the grid begins [m].
     core::Vec3 ray_origin(std::uint32_t x, std::uint32_t y) const {
         return origin + spacing * ((float(x) + 0.5f) * right + (float(y) + 0.5f) * up);
     }

@@ -18,18 +18,21 @@ namespace mote::gathering {
 class RayForm;
 class TriangleCull;
 
+/// How hits are found.
 enum class BundleForm : std::uint8_t {
     automatic,  ///< the one that should be faster
-    rays,
-    scan  ///< rays where sorting the triangles takes more than the budget
+    rays,       ///< packets of rays through a hierarchy
+    scan        ///< rays where sorting the triangles takes more than the budget
 };
 
+/// Of one bundle.
 struct BundleSettings {
-    BundleForm form = BundleForm::automatic;
+    BundleForm form = BundleForm::automatic;           ///< how hits are found
     std::size_t memory_budget = std::size_t(1) << 30;  ///< of the bundle's hits [B]
-    core::CancelToken cancelled = {};
+    core::CancelToken cancelled = {};                  ///< thrown at
 };
 
+/// Traces bundles through one list of triangles.
 class BundleTracer {
   public:
     /// Keeps a reference to the triangles. Throws InputError for a corner that is not finite or beyond 1e18,
@@ -39,7 +42,7 @@ class BundleTracer {
     BundleTracer(const BundleTracer&) = delete;
     BundleTracer& operator=(const BundleTracer&) = delete;
 
-    const SurfaceTriangles& triangles() const { return triangles_; }
+    const SurfaceTriangles& triangles() const { return triangles_; }  ///< those that it was made of
     /// All hits of every ray from its origin on, in order. Parallel within, safe from many threads, the same
     /// bits for any number of them. Throws InputError where the hits exceed the budget, Cancelled when asked
     /// to stop.

@@ -19,26 +19,29 @@ struct BundleHit {
     std::uint32_t triangle;  ///< index into SurfaceTriangles; the highest bit says: from behind
     std::uint16_t u16, v16;  ///< u() and v() in units of 1 / 65535; their sum is at most 1
 
-    static constexpr std::uint32_t behind_bit = 0x80000000u;
-    std::uint32_t index() const { return triangle & ~behind_bit; }
-    bool from_behind() const { return (triangle & behind_bit) != 0; }
+    static constexpr std::uint32_t behind_bit = 0x80000000u;           ///< of `triangle`
+    std::uint32_t index() const { return triangle & ~behind_bit; }     ///< of the triangle
+    bool from_behind() const { return (triangle & behind_bit) != 0; }  ///< was its back hit?
     /// Barycentric: (1 - u - v) c0 + u c1 + v c2.
     float u() const { return float(u16) * (1.0f / 65535.0f); }
-    float v() const { return float(v16) * (1.0f / 65535.0f); }
+    float v() const { return float(v16) * (1.0f / 65535.0f); }  ///< of c2
 };
 static_assert(sizeof(BundleHit) == 12);
 
+/// The hits of a bundle, ray by ray.
 struct RayBundle {
-    BundleGrid grid;
+    BundleGrid grid;                   ///< its rays
     std::vector<std::uint32_t> first;  ///< by ray, and one more: hits of ray i are [first[i], first[i + 1])
     /// Of each ray by distance. Where surfaces coincide to rounding, fronts and backs take turns, as they
     /// would if nothing were rounded: a body that stands on a floor hides it, and a leaf of two coincident
     /// sides is seen from both.
     std::vector<BundleHit> hits;
 
+    /// Of one ray, by distance.
     std::span<const BundleHit> hits_of(std::size_t ray) const {
         return {hits.data() + first[ray], first[ray + 1] - first[ray]};
     }
+    /// Of the hits.
     std::size_t memory_bytes() const {
         return first.capacity() * sizeof(std::uint32_t) + hits.capacity() * sizeof(BundleHit);
     }
@@ -58,6 +61,7 @@ void for_each_link(const RayBundle& bundle, const UsesBack& uses_back, const Vis
         }
     }
 }
+/// The same where no back sends or receives.
 template <typename Visit>
 void for_each_link(const RayBundle& bundle, const Visit& visit) {
     for_each_link(

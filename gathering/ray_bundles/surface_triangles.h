@@ -21,16 +21,18 @@ struct SurfaceTriangles {
     std::vector<std::array<core::Vec2, 3>> uvs;      ///< texture coordinates of the corners
     std::vector<std::uint32_t> shape;                ///< index into the scene's shapes
     std::vector<std::uint32_t> primitive;            ///< of the shape: SurfaceHit::primitive
-    core::Bounds3 bounds;
+    core::Bounds3 bounds;                            ///< of all corners [m]
 
-    std::size_t size() const { return corners.size(); }
+    std::size_t size() const { return corners.size(); }  ///< triangles
 };
 
+/// [m^2].
 inline double triangle_area(const std::array<core::Vec3, 3>& corners) {
     const core::Vec3d a(corners[0]);
     return 0.5 * glm::length(glm::cross(core::Vec3d(corners[1]) - a, core::Vec3d(corners[2]) - a));
 }
 
+/// How curved shapes become triangles.
 struct TessellationSettings {
     /// How far a sphere, cylinder, disk or curve may lie off its triangles, as a share of its extent.
     float chord_error = 1e-3f;

@@ -23,23 +23,25 @@ std::shared_ptr<core::Emitter> make_point_light(const core::Vec3d& position, con
 /// A cone around +z of to_world: full intensity [W/sr] inside `beam_width`, falling linearly in the angle to
 /// zero at `cutoff_angle`. The texture, where there is one, is projected through the cone and multiplies.
 struct SpotSettings {
-    core::Transform to_world{};
-    core::Rgb intensity{1.0f};
-    double cutoff_angle = 20.0 * 3.14159265358979323846 / 180.0;
-    double beam_width = 15.0 * 3.14159265358979323846 / 180.0;
-    std::shared_ptr<core::Texture> texture{};
+    core::Transform to_world{};                                   ///< of the cone
+    core::Rgb intensity{1.0f};                                    ///< [W/sr]
+    double cutoff_angle = 20.0 * 3.14159265358979323846 / 180.0;  ///< [radians]
+    double beam_width = 15.0 * 3.14159265358979323846 / 180.0;    ///< [radians]
+    std::shared_ptr<core::Texture> texture{};                     ///< may be null
 };
+/// A cone of light.
 std::shared_ptr<core::Emitter> make_spot_light(const SpotSettings& settings);
 
 /// A picture thrown along +z of to_world (which must not scale): on a surface that faces the projector at
 /// distance 1 it gives the irradiance pi times `scale` times `irradiance` [W/m^2]. Null: white.
 struct ProjectorSettings {
-    core::Transform to_world{};
-    std::shared_ptr<core::Texture> irradiance{};
-    float scale = 1.0f;
+    core::Transform to_world{};                   ///< of the projector
+    std::shared_ptr<core::Texture> irradiance{};  ///< the picture
+    float scale = 1.0f;                           ///< of the picture
     double tan_half_fov_x =
         0.5;  ///< half the picture's width at distance 1; the height follows from its aspect
 };
+/// A projector.
 std::shared_ptr<core::Emitter> make_projector_light(const ProjectorSettings& settings);
 
 /// Parallel light; `irradiance` [W/m^2] is what a surface facing the light receives.

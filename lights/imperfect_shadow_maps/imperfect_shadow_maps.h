@@ -37,6 +37,7 @@ struct ImperfectMapSettings {
     std::size_t bytes() const { return std::size_t(size + 2) * std::size_t(size + 2) * sizeof(float); }
 };
 
+/// Small maps of many lights.
 class ImperfectShadowMaps {
   public:
     /// Maps of all lights of a set, on the threads of TBB; `key` says which points go into which map. The
@@ -44,8 +45,8 @@ class ImperfectShadowMaps {
     void build(const SurfacePoints& points, const VplSet& vpls, const ImperfectMapSettings& settings,
                std::uint64_t key, core::CancelToken cancelled = {});
 
-    std::size_t count() const { return views_.size(); }
-    std::size_t memory_bytes() const { return inverse_.size() * sizeof(float); }
+    std::size_t count() const { return views_.size(); }                           ///< maps
+    std::size_t memory_bytes() const { return inverse_.size() * sizeof(float); }  ///< of the maps
 
     /// 1 for each receiver that the light reaches, else 0.
     void look_up(std::size_t light, const ReceiverLanes& receivers, float* visible) const;

@@ -11,9 +11,11 @@ namespace mote::lights {
 /// generators where the scene attenuates light.
 class ImperfectVisibility {
   public:
+    /// Keeps references to all three.
     ImperfectVisibility(const GatherContext& context, ReceiverTile& tile, const ImperfectShadowMaps& maps)
         : context_(context), tile_(tile), maps_(maps) {}
 
+    /// As gather_pairs() calls it.
     void operator()(std::span<core::ShadowPacket> packets, std::span<LaneLight> light) {
         context_.cancelled.check();
         alignas(64) float visible[ReceiverLanes::width];
@@ -26,7 +28,7 @@ class ImperfectVisibility {
         attenuate_free(context_, tile_, packets, light);
         lookups_ += packets.size() * ReceiverLanes::width;
     }
-    std::uint64_t lookups() const { return lookups_; }
+    std::uint64_t lookups() const { return lookups_; }  ///< in maps, so far
 
   private:
     const GatherContext& context_;

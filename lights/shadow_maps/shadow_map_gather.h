@@ -14,6 +14,7 @@ namespace mote::lights {
 /// The receivers of a part of the picture, filled by one task.
 class ReceiverStore {
   public:
+    /// Sixteen receivers and where they are seen.
     struct Tile : ReceiverLanes {
         std::int32_t column, row;  ///< pixel of the first lane; lanes go on in rows of four
         std::int32_t spacing;      ///< pixels from lane to lane
@@ -23,10 +24,12 @@ class ReceiverStore {
     /// Keeps receivers whose light counts `scale` times. Copies what they point to.
     void add(const ReceiverLanes& receivers, int column, int row, int spacing, const VplRange& range,
              float scale);
+    /// Forgets all tiles and keeps the memory.
     void clear();
 
-    const std::vector<Tile>& tiles() const { return tiles_; }
-    std::size_t receivers() const { return receivers_; }
+    const std::vector<Tile>& tiles() const { return tiles_; }  ///< in the order in which they were added
+    std::size_t receivers() const { return receivers_; }       ///< lanes that are not idle
+    /// Of the tiles.
     std::size_t memory_bytes() const {
         return tiles_.capacity() * sizeof(Tile) + vertices_.size() * sizeof(core::ScatteringVertex);
     }
@@ -39,23 +42,26 @@ class ReceiverStore {
 
 /// A VPL and the map of what it sees, or of one side of it.
 struct MappedVpl {
-    std::size_t index;
-    const VolumetricShadowMap* map;
+    std::size_t index;               ///< of the light
+    const VolumetricShadowMap* map;  ///< of what it sees
 };
 
 /// The views that hold all light of a VPL: one, or two where it shines to both sides of a surface.
 struct VplViews {
-    std::array<ShadowMapView, 2> view;
-    int count;
+    std::array<ShadowMapView, 2> view;  ///< of which the first `count` are used
+    int count;                          ///< 1 or 2
 };
+/// The views of a light whose maps have `size`^2 texels.
 VplViews views_of(const VplSet& vpls, std::size_t index, int size);
 
 /// V* from the map of the one light that is gathered.
 class MappedVisibility {
   public:
+    /// Keeps a reference to the map.
     explicit MappedVisibility(const VolumetricShadowMap& map) : map_(map) {}
+    /// As gather_pairs() calls it.
     void operator()(std::span<core::ShadowPacket> packets, std::span<LaneLight> light);
-    std::uint64_t lookups() const { return lookups_; }
+    std::uint64_t lookups() const { return lookups_; }  ///< in the map, so far
 
   private:
     const VolumetricShadowMap& map_;
@@ -84,7 +90,7 @@ class ShadowMapGather {
             lookups_ += visibility.lookups();
         }
     }
-    std::uint64_t lookups() const { return lookups_; }
+    std::uint64_t lookups() const { return lookups_; }  ///< in maps, so far
 
   private:
     GatherScratch scratch_;

@@ -13,26 +13,30 @@
 
 namespace mote::lights {
 
+/// The rays of a map and their inverse.
 struct ShadowMapView {
+    /// See the top of this file.
     enum class Kind : std::uint8_t { octahedral, hemispherical, perspective, parallel };
 
-    Kind kind = Kind::octahedral;
-    core::Vec3 origin{0.0f};  ///< of the light; parallel: centre of the square that rays start from
-    core::Frame frame;        ///< n: up of the map, axis of a spot or of parallel light
+    Kind kind = Kind::octahedral;  ///< how places and rays belong together
+    core::Vec3 origin{0.0f};       ///< of the light; parallel: centre of the square that rays start from
+    core::Frame frame;             ///< n: up of the map, axis of a spot or of parallel light
     float half_extent =
         1.0f;       ///< perspective: tangent of half the angle; parallel: half the square's edge [m]
     int size = 64;  ///< texels along an edge
 
+    /// Of light to all sides; `size` texels along an edge.
     static ShadowMapView of_point(const core::Vec3& position, int size);
     /// `normal` on the lit side.
     static ShadowMapView of_surface(const core::Vec3& position, const core::Vec3& normal, int size);
+    /// Of a cone around `axis` (unit), [radians] from it.
     static ShadowMapView of_spot(const core::Vec3& position, const core::Vec3& axis, float cutoff_radians,
                                  int size);
     /// Light that travels along `direction` over everything within `radius` of `center`.
     static ShadowMapView of_parallel(const core::Vec3& direction, const core::Vec3& center, float radius,
                                      int size);
 
-    int texels() const { return size * size; }
+    int texels() const { return size * size; }  ///< size^2
     /// The ray through a texel's centre; `t` is the distance from the light, or from the plane of a parallel
     /// one.
     core::Ray ray(int texel) const;

@@ -24,19 +24,22 @@
 
 namespace mote::lights {
 
+/// What a map holds.
 struct ShadowMapSettings {
+    /// See the top of this file.
     enum class Storage : std::uint8_t { intervals, nodes };
-    Storage storage = Storage::intervals;
+    Storage storage = Storage::intervals;  ///< of the transmittance along a ray
     int intervals = 35;  ///< between entry and exit (35 fill 96 bytes); nodes are chosen from as many
     int nodes = 12;      ///< kept in each texel
     float step = 1.0f;   ///< of ray marching, in voxels of the medium
-    std::size_t max_bytes = std::size_t(1) << 30;
+    std::size_t max_bytes = std::size_t(1) << 30;  ///< of one map
 
     /// Bytes of a map of `size`^2 texels.
     std::size_t bytes(int size, bool chromatic) const;
     /// Throws InputError when a map would exceed max_bytes, with the largest size that would not.
     void check(int size, bool chromatic) const;
 
+    /// Numbers a texel and channel.
     std::size_t values() const {
         return storage == Storage::intervals ? std::size_t(intervals) + 1 : std::size_t(nodes);
     }
@@ -47,11 +50,12 @@ bool needs_chromatic_maps(const core::RayQueries& scene);
 
 /// Sixteen points, and the transmittance per channel from the light to each.
 struct alignas(64) ShadowLookup {
-    static constexpr int width = 16;
-    float x[width], y[width], z[width];
-    float r[width], g[width], b[width];
+    static constexpr int width = 16;     ///< points
+    float x[width], y[width], z[width];  ///< [m]
+    float r[width], g[width], b[width];  ///< transmittance per channel, [0, 1]
 };
 
+/// The map of one light.
 class VolumetricShadowMap {
   public:
     /// Traces and marches all texels in parallel; takes memory only when it grows. `at_light` holds the media
@@ -64,11 +68,12 @@ class VolumetricShadowMap {
     /// not reach. Points within about a texel behind a surface count as on it. Many packets in one call hide
     /// the time that memory takes.
     void look_up(std::span<ShadowLookup> packets) const;
+    /// The same for one point.
     core::Rgb transmittance(const core::Vec3& p) const;
 
-    const ShadowMapView& view() const { return view_; }
-    std::size_t memory_bytes() const { return records_.capacity() * sizeof(Block); }
-    const core::RayCounters& rays() const { return rays_; }  ///< of the last build
+    const ShadowMapView& view() const { return view_; }                               ///< of the last build
+    std::size_t memory_bytes() const { return records_.capacity() * sizeof(Block); }  ///< of the texels
+    const core::RayCounters& rays() const { return rays_; }                           ///< of the last build
 
     /// What a texel's piece of memory begins with. After it follow, at intervals, the values of all channels
     /// one after the other; as nodes, their distances first.

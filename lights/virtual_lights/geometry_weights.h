@@ -22,18 +22,20 @@ float weigh(const Weight& weight, float g, float d2, float cos_x, float cos_y, [
 
 /// All of G*.
 struct UnboundedGeometry {
+    /// G*.
     float operator()(float g, float, float, float) const { return g; }
 };
 
 /// min(G*, b) (Engelhardt 2013, Sec. 10.1.3); `bound` is b [1/m^2], infinity for all.
 struct BoundedGeometry {
-    float bound;
-    float operator()(float g, float, float, float) const { return core::min_of(g, bound); }
+    float bound;                                                                             ///< b [1/m^2]
+    float operator()(float g, float, float, float) const { return core::min_of(g, bound); }  ///< at most b
 };
 
 /// max(0, G* - b) = B* G*: what BoundedGeometry leaves out (Eq. 10.10 with the bound that it does not print).
 struct ResidualGeometry {
-    float bound;
+    float bound;  ///< b [1/m^2]
+    /// What is above b.
     float operator()(float g, float, float, float) const { return core::max_of(0.0f, g - bound); }
 };
 

@@ -11,9 +11,9 @@ namespace mote::lights {
 
 /// How a path begins: a particle, and its power over the number of paths [W].
 struct LightPathStart {
-    const core::Emitter* emitter;
-    core::EmissionSample emission;
-    core::Rgb power;
+    const core::Emitter* emitter;   ///< where it begins
+    core::EmissionSample emission;  ///< the particle
+    core::Rgb power;                ///< over the number of paths [W]
 };
 
 /// Begins paths otherwise than by drawing a light by its power.

@@ -13,26 +13,29 @@
 
 namespace mote::lights {
 
+/// One light of 64 bytes.
 struct VirtualPointLight {
-    static constexpr std::uint32_t no_detail = 0xffffffffu;
+    static constexpr std::uint32_t no_detail =
+        0xffffffffu;  ///< of a light that is the same in all directions
 
     core::Vec3 position;  ///< moved off the surface to its lit side, ready to be the end of a shadow ray
-    std::uint32_t detail = no_detail;
+    std::uint32_t detail = no_detail;    ///< index into VplSet::details
     core::Vec3 normal{0, 0, 0};          ///< geometric, on the lit side; zero in a medium
     std::uint32_t depth = 1;             ///< vertices on the light path after the light: 1 for the first hit
     core::Vec3 shading_normal{0, 0, 0};  ///< on the lit side; zero in a medium
     std::uint32_t path = 0;              ///< index of the light path
     core::Rgb intensity{
         0.0f};  ///< I_j without detail [W/(sr m^2) on a surface's area measure]; with one: alpha / paths
-    std::uint32_t reserved = 0;
+    std::uint32_t reserved = 0;  ///< to fill the line
 
+    /// Or in a medium.
     bool on_surface() const { return normal.x != 0.0f || normal.y != 0.0f || normal.z != 0.0f; }
 };
 static_assert(sizeof(VirtualPointLight) <= 64, "a diffuse or isotropic VPL fits one cache line");
 
 /// What a directional VPL keeps: its vertex, whose `wo` points back to where the light came from.
 struct VplDetail {
-    core::ScatteringVertex vertex;
+    core::ScatteringVertex vertex;  ///< where it stands
 
     /// f*(x <- y <- y') with the adjoint correction of a shading normal; `to_receiver` is unit length.
     /// `peak_limit`: BsdfPoint::peak_limit.
@@ -47,8 +50,8 @@ struct LightStart {
 
 /// The VPLs of one set of light paths, in path order.
 struct VplSet {
-    std::vector<VirtualPointLight> lights;
-    std::vector<VplDetail> details;
+    std::vector<VirtualPointLight> lights;  ///< in the order of their paths
+    std::vector<VplDetail> details;         ///< of those that look different from different sides
     /// Media at every light, on the side that its light came from; none where the scene has no media.
     std::vector<core::MediumState> states;
     /// By path: where it began. Only where LightPathSettings::keep_starts asks for it.
@@ -58,9 +61,10 @@ struct VplSet {
     std::vector<float> peak_density;  ///< by light: lights per area around it, over m' [1/m^2]
     float peak_directions = 0.0f;     ///< of receivers that know directions besides, over m' [1/sr]; 0: none
     std::uint32_t paths = 0;          ///< light paths traced, whether or not they left a VPL
-    core::RayCounters rays;
-    core::TrackingCounters tracking;
+    core::RayCounters rays;           ///< that the paths took
+    core::TrackingCounters tracking;  ///< the same in media
 
+    /// Of all lists.
     std::size_t memory_bytes() const {
         return lights.size() * sizeof(VirtualPointLight) + details.size() * sizeof(VplDetail) +
                states.size() * sizeof(core::MediumState) + starts.size() * sizeof(LightStart) +

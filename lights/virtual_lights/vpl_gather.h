@@ -21,9 +21,9 @@ namespace mote::lights {
 
 /// Memory that one task reuses between tiles: a batch of lights at receivers, with the rays between them.
 struct GatherScratch {
-    static constexpr std::size_t batch = 32;
-    std::array<core::ShadowPacket, batch> packets;
-    std::array<LaneLight, batch> light;
+    static constexpr std::size_t batch = 32;        ///< pairs of a light and a tile
+    std::array<core::ShadowPacket, batch> packets;  ///< of shadow rays
+    std::array<LaneLight, batch> light;             ///< what arrives where nothing is in the way
 
     GatherScratch() {
         for (core::ShadowPacket& packet : packets) packet.clear();
@@ -53,10 +53,10 @@ void gather_pairs(const VplSet& vpls, const Pairs& pairs, const Weight& weight, 
 
 /// What gathering by rays works with and counts in.
 struct GatherContext {
-    const core::RayQueries& scene;
-    GatherScratch& scratch;
-    core::RayCounters& rays;
-    core::TrackingCounters& tracking;
+    const core::RayQueries& scene;     ///< what lies between
+    GatherScratch& scratch;            ///< of this task
+    core::RayCounters& rays;           ///< counted up
+    core::TrackingCounters& tracking;  ///< counted up
     core::CancelToken cancelled = {};  ///< thrown at, a batch at a time
 };
 
@@ -64,7 +64,9 @@ struct GatherContext {
 /// attenuates light. Draws from the tile's generators.
 class TracedVisibility {
   public:
+    /// Keeps references to both.
     TracedVisibility(const GatherContext& context, ReceiverTile& tile) : context_(context), tile_(tile) {}
+    /// As gather_pairs() calls it.
     void operator()(std::span<core::ShadowPacket> packets, std::span<LaneLight> light);
 
   private:
@@ -77,16 +79,20 @@ class TracedVisibility {
 void attenuate_free(const GatherContext& context, ReceiverTile& tile,
                     std::span<const core::ShadowPacket> packets, std::span<LaneLight> light);
 
+/// Light by lane.
 using TileLight = std::array<core::Rgb, ReceiverLanes::width>;
 
 /// Sixteen sums.
 struct alignas(64) TileSum {
+    /// By lane.
     float r[ReceiverLanes::width] = {}, g[ReceiverLanes::width] = {}, b[ReceiverLanes::width] = {};
 
+    /// Lane by lane.
     void add(const LaneLight& light) {
         for (int i = 0; i < ReceiverLanes::width; ++i)
             r[i] += light.r[i], g[i] += light.g[i], b[i] += light.b[i];
     }
+    /// The sums by lane.
     TileLight value() const {
         TileLight sum;
         for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = {r[i], g[i], b[i]};

@@ -11,7 +11,7 @@ namespace mote::lights {
 
 /// Where sixteen receivers stand and what they make of light: all that a connection needs but its visibility.
 struct alignas(64) ReceiverLanes {
-    static constexpr int width = core::ShadowPacket::width;
+    static constexpr int width = core::ShadowPacket::width;  ///< lanes
 
     // Position moved off the surface towards the viewer: the start of shadow rays.
     float x[width] = {}, y[width] = {}, z[width] = {};
@@ -24,13 +24,15 @@ struct alignas(64) ReceiverLanes {
     std::int32_t max_vpl_depth[width] = {};  ///< VPLs deeper than this are left out; 0 for an idle lane
 
     const core::ScatteringVertex* directional[width] = {};  ///< set where f* depends on direction
-    bool any_directional = false;
-    bool any_active = false;
+    bool any_directional = false;                           ///< is one of them set?
+    bool any_active = false;                                ///< is a lane not idle?
 
-    core::Vec3 position(int i) const { return {x[i], y[i], z[i]}; }
+    core::Vec3 position(int i) const { return {x[i], y[i], z[i]}; }  ///< of a lane [m]
+    /// Of a lane, unit or zero.
     core::Vec3 geometric_normal(int i) const { return {geometric_x[i], geometric_y[i], geometric_z[i]}; }
 };
 
+/// Receivers with the media around them.
 struct alignas(64) ReceiverTile : ReceiverLanes {
     core::MediumState state[width];  ///< media at the receiver
     core::Rng rng[width];            ///< for transmittance estimates
@@ -39,6 +41,7 @@ struct alignas(64) ReceiverTile : ReceiverLanes {
     /// depends on direction.
     void set(int lane, const core::ScatteringVertex& vertex, const core::Rgb& throughput,
              const core::MediumState& medium_state, const core::Rng& tracking_rng, std::int32_t max_depth);
+    /// All lanes idle.
     void clear();
 };
 

@@ -34,10 +34,11 @@ namespace mote::screenspace {
 
 /// A number for every pixel, row by row from the top.
 struct FeaturePlane {
-    std::span<const float> values;
-    bool squared = false;  ///< its square is a feature as well
+    std::span<const float> values;  ///< by pixel
+    bool squared = false;           ///< its square is a feature as well
 };
 
+/// Of block_regression().
 struct RegressionSettings {
     int block = 32;            ///< side [pixels]
     core::Vec2i offset{0, 0};  ///< of the blocks' grid, other ones in every frame
@@ -52,9 +53,10 @@ struct RegressionSettings {
 /// The grid of a frame: a fixed order that covers the block evenly.
 core::Vec2i block_offset(int frame, int block = 32);
 
+/// What block_regression() makes.
 struct Regression {
-    std::vector<core::Rgb> colour;
-    std::uint64_t filled = 0;  ///< pixels that were not finite
+    std::vector<core::Rgb> colour;  ///< by pixel
+    std::uint64_t filled = 0;       ///< pixels that were not finite
 };
 
 /// The same for any number of threads. Throws std::invalid_argument when sizes differ or the picture is

@@ -13,21 +13,24 @@
 
 namespace mote::screenspace {
 
+/// One layer of a frame; the layers are denoised apart.
 struct DenoiserLayer {
     std::span<const core::Rgb> colour;   ///< radiance
     std::span<const core::Rgb> albedo;   ///< divided out and multiplied back; empty: nothing is
     std::vector<FeaturePlane> features;  ///< of the regression
 };
 
+/// One frame of a sequence.
 struct DenoiserFrame {
-    FrameFeatures features;  ///< for reprojection
-    std::vector<DenoiserLayer> layers;
+    FrameFeatures features;               ///< for reprojection
+    std::vector<DenoiserLayer> layers;    ///< that add up to the picture
     std::span<const core::Rgb> variance;  ///< of the layers' sum; empty: not known
 };
 
+/// Of all frames.
 struct DenoiserSettings {
-    RegressionSettings regression;  ///< its offset and seed are those of the frame
-    RejectionSettings rejection;
+    RegressionSettings regression;                     ///< its offset and seed are those of the frame
+    RejectionSettings rejection;                       ///< which pixels of the frame before are taken
     AccumulationSettings before;                       ///< of noisy colours
     AccumulationSettings after{8.0f, core::infinity};  ///< of denoised ones, whose blocks move
     bool regress = true;                               ///< false: accumulation alone
@@ -35,8 +38,10 @@ struct DenoiserSettings {
     bool blend = true;                                 ///< by the variance, where it is known
 };
 
+/// Denoises frames one after the other.
 class SequenceDenoiser {
   public:
+    /// Before the first frame.
     explicit SequenceDenoiser(const DenoiserSettings& settings = {});
 
     /// The next frame, which has the layers of those before it. `connected` false: nothing is taken from

@@ -18,24 +18,27 @@
 namespace mote::screenspace {
 
 using core::Vec3d;
+/// A place on the film [pixels].
 using Vec2d = glm::dvec2;
 
 /// A rectangle of the film [pixels].
 struct FilmRectangle {
-    Vec2d lower{0.0}, upper{1.0};
-    double width() const { return upper.x - lower.x; }
-    double height() const { return upper.y - lower.y; }
-    double perimeter() const { return 2.0 * (width() + height()); }
+    Vec2d lower{0.0}, upper{1.0};                                    ///< corners
+    double width() const { return upper.x - lower.x; }               ///< [pixels]
+    double height() const { return upper.y - lower.y; }              ///< [pixels]
+    double perimeter() const { return 2.0 * (width() + height()); }  ///< [pixels]
 };
 
+/// One line.
 struct EpipolarLine {
     Vec2d start, end;  ///< start is the end nearer to the light's projection
-    double length() const { return glm::length(end - start); }
-    Vec2d at(double share) const { return start + share * (end - start); }
+    double length() const { return glm::length(end - start); }              ///< [pixels]
+    Vec2d at(double share) const { return start + share * (end - start); }  ///< between start and end
     /// Share of the line at the foot of the perpendicular from p, in [0, 1].
     double project(const Vec2d& p) const;
 };
 
+/// All lines of a light.
 class EpipolarLines {
   public:
     /// `count` lines for the whole border, those that are not visible included, shifted by the share `offset`
@@ -44,15 +47,16 @@ class EpipolarLines {
     /// std::invalid_argument unless count > 0, the rectangle has an area and the point is not the eye's.
     EpipolarLines(const FilmPoint& light, const FilmRectangle& frame, int count, double offset);
 
-    std::span<const EpipolarLine> lines() const { return lines_; }
+    std::span<const EpipolarLine> lines() const { return lines_; }  ///< around the border
     /// The two lines that p lies between; both the same where there is no other.
     struct Pair {
-        std::size_t before, after;
+        std::size_t before, after;  ///< indices of lines
     };
+    /// Of a place on the film.
     Pair around(Vec2d p) const;
     /// The line next to i, one further in the direction of `step` (-1 or 1); nothing beyond the last.
     std::optional<std::size_t> next(std::size_t i, int step) const;
-    bool light_inside() const { return inside_; }
+    bool light_inside() const { return inside_; }  ///< is its projection within the rectangle?
 
   private:
     Vec2d away_from_light(const Vec2d& p) const;

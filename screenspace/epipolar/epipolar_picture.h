@@ -15,11 +15,13 @@
 
 namespace mote::screenspace {
 
+/// What it took.
 struct PictureCounts {
-    std::uint64_t lines = 0, texels = 0, marched = 0;
-    std::size_t bytes = 0;
+    std::uint64_t lines = 0, texels = 0, marched = 0;  ///< lines, their texels, rays marched
+    std::size_t bytes = 0;                             ///< of memory, at most
 };
 
+/// The lines of a light over a picture, sampled.
 class EpipolarPicture {
   public:
     /// Runs body(i) for i in [0, count), in parallel or not; every body is independent of the others.
@@ -34,10 +36,12 @@ class EpipolarPicture {
     /// The light scattered into the ray through `film`, whose end is `end`.
     std::optional<core::Rgb> light_at(const Vec2d& film, const RayEnd& end, InScatteringTask& task) const;
 
-    const EpipolarLines& lines() const { return lines_; }
+    const EpipolarLines& lines() const { return lines_; }  ///< all lines
+    /// With their light, in the order of lines().
     std::span<const SampledLine> sampled() const { return sampled_; }
-    SampledLine& line(std::size_t i) { return sampled_[i]; }
-    const LineSampling& settings() const { return settings_; }
+    SampledLine& line(std::size_t i) { return sampled_[i]; }    ///< to add samples to
+    const LineSampling& settings() const { return settings_; }  ///< as given
+    /// So far.
     PictureCounts counts() const;
     /// Where rays were marched.
     std::vector<Vec2d> marched_at() const;

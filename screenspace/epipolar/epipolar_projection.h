@@ -14,9 +14,10 @@ namespace mote::screenspace {
 /// direction on the film. All three are zero for a point that no direction of the film leads to: the eye
 /// itself.
 struct FilmPoint {
-    double x = 0.0, y = 0.0, w = 0.0;
+    double x = 0.0, y = 0.0, w = 0.0;  ///< homogeneous
 };
 
+/// The inverse of a camera's rays.
 class FilmProjection {
   public:
     /// Film of width * height pixels, seen through the point `u_lens` of the lens.

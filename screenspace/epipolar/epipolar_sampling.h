@@ -15,6 +15,7 @@
 
 namespace mote::screenspace {
 
+/// How densely rays are marched.
 struct LineSampling {
     int initial = 16;  ///< samples spread over the lit part, at least 2
     int cap = 1024;    ///< samples of one line, at most
@@ -33,12 +34,14 @@ struct LineTexel {
     bool surface = false, known = false, marched = false;  ///< known: light is set; false beyond the cap
 };
 
+/// A ray that was marched.
 struct LineSample {
     float texel;       ///< whole, but where a line of another light crosses (epipolar_crossings.h)
     float weight;      ///< RayEnd::weight
     MarchedRay light;  ///< its radiance over that weight
 };
 
+/// A line with its texels.
 class SampledLine {
   public:
     /// Finds the runs, and where spread samples are wanted.
@@ -46,12 +49,13 @@ class SampledLine {
 
     /// `count` places at first + i * spacing, in texels; not all of them need be lit.
     struct Spread {
-        double first = 0.0, spacing = 1.0;
-        int count = 0;
-        double place(int i) const { return first + i * spacing; }
+        double first = 0.0, spacing = 1.0;                         ///< [texels]
+        int count = 0;                                             ///< of places
+        double place(int i) const { return first + i * spacing; }  ///< of the i-th [texels]
+        /// The place nearest to a texel.
         int nearest(double texel) const { return int(std::lround((texel - first) / spacing)); }
     };
-    const Spread& spread() const { return spread_; }
+    const Spread& spread() const { return spread_; }  ///< the evenly spread samples
     /// Is this place between texels of one run, or on one?
     bool lit(double texel) const;
     /// Is this texel the first of its run, or the last? It is marched then, spread sample or not.
@@ -65,10 +69,11 @@ class SampledLine {
     /// samples.
     void finish(const LineSampling& settings, float mean, InScatteringTask& task);
 
-    const EpipolarLine& line() const { return line_; }
-    const std::vector<LineTexel>& texels() const { return texels_; }
-    const std::vector<LineSample>& samples() const { return samples_; }
-    std::size_t marched() const { return marched_; }
+    const EpipolarLine& line() const { return line_; }                   ///< on the film
+    const std::vector<LineTexel>& texels() const { return texels_; }     ///< from its start to its end
+    const std::vector<LineSample>& samples() const { return samples_; }  ///< until finish()
+    std::size_t marched() const { return marched_; }                     ///< rays
+    /// Where a texel lies [pixels].
     Vec2d film(double texel) const;
     std::size_t memory_bytes() const;
 

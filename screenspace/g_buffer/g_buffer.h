@@ -23,7 +23,7 @@ struct SurfaceHit;
 namespace mote::screenspace {
 
 struct GBuffer {
-    int width = 0, height = 0;
+    int width = 0, height = 0;  ///< [pixels]
 
     std::vector<float> distance;       ///< along the ray to the surface [m]; infinity where it misses
     std::vector<core::Vec3> position;  ///< [m]; zero where the ray misses, as all of the following
@@ -41,7 +41,9 @@ struct GBuffer {
     /// All misses. Throws std::invalid_argument unless both sizes are positive.
     GBuffer(int width, int height);
 
+    /// Of a pixel.
     std::size_t index(int x, int y) const { return std::size_t(y) * std::size_t(width) + std::size_t(x); }
+    /// Width times height.
     std::size_t pixel_count() const { return std::size_t(width) * std::size_t(height); }
     /// Area of the surface behind the pixel, exact for a planar patch: solid angle * distance^2 / cosine
     /// [m^2]. Zero where the ray misses; the cosine is kept above 1e-4.

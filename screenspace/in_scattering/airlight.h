@@ -23,7 +23,7 @@ struct PassingRay {
     double nearest;   ///< along the ray, of the point nearest to the light [m]
     double distance;  ///< of that point from the light: h [m]
 
-    PassingRay(const core::Ray& ray, const core::Vec3& light);
+    PassingRay(const core::Ray& ray, const core::Vec3& light);  ///< `light`: its position [m].
     /// From that point to t, as seen from the light [radians].
     double angle(double t) const { return std::atan2(t - nearest, distance); }
     /// Where angle() is `a` [m along the ray].

@@ -17,7 +17,7 @@ namespace mote::screenspace {
 
 /// A camera in its surroundings. Keeps a reference to the camera.
 struct EyeView {
-    const core::Camera& camera;
+    const core::Camera& camera;  ///< of the picture
     std::function<core::MediumState(const core::Ray&)>
         media;  ///< at ray.t_min of an eye ray, from any thread
 };

@@ -28,13 +28,14 @@ class Scene;
 
 namespace mote::screenspace {
 
+/// Steps of equal angles as seen from the light, or of equal length.
 enum class MarchRule : std::uint8_t { equiangular, uniform };
 
 struct MarchSettings {
-    int steps = 64;  ///< a ray
-    MarchRule rule = MarchRule::equiangular;
-    float offset = 0.5f;  ///< of all steps, in [0, 1)
-    float voxels = 1.0f;  ///< step of optical depths through grids, in voxels
+    int steps = 64;                           ///< a ray
+    MarchRule rule = MarchRule::equiangular;  ///< how steps are spread
+    float offset = 0.5f;                      ///< of all steps, in [0, 1)
+    float voxels = 1.0f;                      ///< step of optical depths through grids, in voxels
 };
 
 /// What can stand in for steps and shadow rays. Not owned.
@@ -45,11 +46,12 @@ struct MarchAccelerations {
 
 /// Steps along a part of a ray.
 struct StepRule {
-    MarchRule rule;
-    PassingRay passing;
-    double t0, t1;
-    double a0, a1;  ///< as seen from the light [radians]
+    MarchRule rule;      ///< how steps are spread
+    PassingRay passing;  ///< how the ray passes the light
+    double t0, t1;       ///< ends of the part [m]
+    double a0, a1;       ///< as seen from the light [radians]
 
+    /// For the part of a ray from `from` to `to` [m].
     StepRule(MarchRule r, const core::Ray& ray, const core::Vec3& light, double from, double to)
         : rule(r), passing(ray, light), t0(from), t1(to), a0(passing.angle(from)), a1(passing.angle(to)) {}
     /// Where the march has come to after a share of its steps.
@@ -61,21 +63,21 @@ struct StepRule {
 /// The part of a ray in one medium, and the media there.
 struct MediumSegment {
     const core::Medium* medium;  ///< null: vacuum
-    float t0, t1;
-    core::MediumState state;
-    core::Rgb panes{1.0f};  ///< transmittance of the panes right before it
+    float t0, t1;                ///< its ends [m]
+    core::MediumState state;     ///< media in it
+    core::Rgb panes{1.0f};       ///< transmittance of the panes right before it
 };
 
 /// Generator, counters and memory of one thread.
 struct MarchScratch {
-    core::WalkContext walk;
-    std::vector<MediumSegment> eye, shadow;
-    std::vector<float> distances;  ///< of the steps, ascending [m]
-    std::vector<char> lit;         ///< steps that the light reaches
-    std::vector<core::ShadowPacket> packets;
-    std::vector<lights::ShadowLookup> lookups;
-    std::uint64_t rays = 0, steps = 0;
-    std::uint64_t unoccluded = 0;  ///< rays that needed no step, because nothing was in the way
+    core::WalkContext walk;                     ///< generator and counters
+    std::vector<MediumSegment> eye, shadow;     ///< parts of the eye ray, and of the way to the light
+    std::vector<float> distances;               ///< of the steps, ascending [m]
+    std::vector<char> lit;                      ///< steps that the light reaches
+    std::vector<core::ShadowPacket> packets;    ///< from steps to the light
+    std::vector<lights::ShadowLookup> lookups;  ///< of steps in a map
+    std::uint64_t rays = 0, steps = 0;          ///< so far
+    std::uint64_t unoccluded = 0;               ///< rays that needed no step, because nothing was in the way
 };
 
 /// Cuts ray.t_min to ray.t_max at the boundaries between media and at panes; `state` holds those at t_min.
@@ -96,6 +98,7 @@ core::Rgb transmittance_of_media(const core::Ray& ray, const std::vector<MediumS
 
 class EyeMedia;
 
+/// One light's march along any ray.
 class InScattering {
   public:
     /// `scattering` holds every point where a medium scatters light [m] (scattering_extent()). The light must
@@ -107,7 +110,7 @@ class InScattering {
     InScattering(const core::Scene& scene, const core::Emitter& light, const MarchSettings& settings,
                  const MarchAccelerations& accelerations = {});
 
-    const core::Vec3& light_position() const { return position_; }
+    const core::Vec3& light_position() const { return position_; }  ///< [m]
     /// The part of the ray that the light can reach and where there are media: box and cone, no visibility.
     std::optional<core::Interval> lit_part(const core::Ray& ray) const;
     /// The integral of 1/d^2 over a part of the ray, where d is the distance from the light [1/m].

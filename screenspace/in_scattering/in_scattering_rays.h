@@ -12,6 +12,7 @@ namespace mote::screenspace {
 /// Keeps references to scene and light march. All rays pass the point `u_lens` of the lens.
 class InScatteringRays final : public InScatteringSource {
   public:
+    /// Through any camera.
     InScatteringRays(const core::RayQueries& scene, EyeView eye, const InScattering& light,
                      const core::Vec2& u_lens)
         : scene_(scene), eye_(std::move(eye)), light_(light), u_lens_(u_lens) {}
@@ -21,10 +22,10 @@ class InScatteringRays final : public InScatteringSource {
 
     /// What all tasks that have ended did; call it when none is running.
     const core::RayCounters& rays() const { return rays_; }
-    const core::TrackingCounters& tracking() const { return tracking_; }
-    std::uint64_t marched() const { return marched_; }
-    std::uint64_t steps() const { return steps_; }
-    std::uint64_t unoccluded() const { return unoccluded_; }  ///< rays that needed none
+    const core::TrackingCounters& tracking() const { return tracking_; }  ///< the same in media
+    std::uint64_t marched() const { return marched_; }                    ///< rays
+    std::uint64_t steps() const { return steps_; }                        ///< of all rays
+    std::uint64_t unoccluded() const { return unoccluded_; }              ///< rays that needed none
 
   private:
     class Task;

@@ -22,12 +22,12 @@ struct RayEnd {
     /// interpolate light over weight, which neither the light's closeness nor the length of the ray changes.
     float weight = 1.0f;
     core::Vec3 position{0.0f}, normal{0.0f};  ///< of that surface; normal: geometric, unit, either side
-    bool dark() const { return !(distance > 0.0f); }
+    bool dark() const { return !(distance > 0.0f); }  ///< can nothing be scattered into the ray?
 };
 
 /// One ray marched to its end.
 struct MarchedRay {
-    core::Rgb radiance{0.0f};
+    core::Rgb radiance{0.0f};       ///< scattered into the ray [W/(m^2 sr)]
     core::Rgb transmittance{1.0f};  ///< of the media, up to the end
 };
 
@@ -35,14 +35,17 @@ struct MarchedRay {
 class InScatteringTask {
   public:
     virtual ~InScatteringTask() = default;
+    /// Through a place of the film.
     virtual core::Ray ray(const Vec2d& film) = 0;
     virtual RayEnd end_of(const Vec2d& film) = 0;
     virtual MarchedRay march(const Vec2d& film, const RayEnd& end) = 0;  ///< what all the trouble is to avoid
 };
 
+/// Gives each thread its task.
 class InScatteringSource {
   public:
     virtual ~InScatteringSource() = default;
+    /// For one thread; called from any.
     virtual std::unique_ptr<InScatteringTask> start() const = 0;
 };
 

@@ -22,19 +22,20 @@
 
 namespace mote::screenspace {
 
+/// How light is brought back.
 struct SsbcSettings {
     float bound = 0.0f;  ///< b [1/m^2] that the picture was rendered with; 0: with no indirect light at all
     int steps = 2;       ///< how often T_r is applied, at least once
 
-    bool hierarchical = true;  ///< false: sum over all pixels, for reference; quadratic in their number
-    RefinementRules refinement{};
+    bool hierarchical = true;      ///< false: sum over all pixels, for reference; quadratic in their number
+    RefinementRules refinement{};  ///< which nodes of the pyramid are summed
     float discontinuity_angle = 0.44f;  ///< [rad] see SurfacePyramid
     /// Pixels whose normal is farther than this from the view send less, quadratically down to nothing at a
     /// right angle: they are long strips, which one sample stands badly for. pi/2: none do.
     float grazing_angle = 80.0f * core::pi / 180.0f;  ///< [rad]
 
     bool half_resolution = false;  ///< gather at one pixel of four, see ssbc_upsampling.h
-    UpsamplingRules upsampling{};
+    UpsamplingRules upsampling{};  ///< where pixels are evaluated again
     /// Shadow rays between receivers and what they sum: no longer in screen space, to measure what is lost
     /// without. Null: light passes everything. Must outlive the call.
     const ResidualVisibility* visibility = nullptr;
@@ -44,6 +45,7 @@ struct SsbcSettings {
     void check() const;
 };
 
+/// What compensate() finds.
 struct SsbcResult {
     std::vector<core::Rgb> compensation;  ///< to be added to the picture; zero where pixels take no part
     SumCounts counts;                     ///< over all steps

@@ -20,8 +20,9 @@
 
 namespace mote::screenspace {
 
+/// Surfaces that the picture does not show.
 struct HiddenSide {
-    SsbcSurfaces surfaces;
+    SsbcSurfaces surfaces;             ///< of the size of the picture
     std::vector<core::Rgb> reflected;  ///< radiance that it reflects, one entry a pixel
 };
 
@@ -30,14 +31,15 @@ std::vector<SsbcSurfaces> hidden_sides(std::span<const GBuffer> layers);
 
 /// How many sides n layers hide, and what they are called: "1_back", "2", "2_back", ...
 constexpr std::size_t hidden_side_count(int layers) { return layers > 1 ? 2 * std::size_t(layers) - 1 : 0; }
+/// Of one side, counted from 0.
 std::string hidden_side_name(std::size_t side);
 
 /// Pictures of one size below each other in a tall one.
 struct SideLayout {
     int height = 0;  ///< of each
     int pitch = 0;   ///< rows from the top of one to that of the next
-    int sides = 1;
-    int total_height() const { return (sides - 1) * pitch + height; }
+    int sides = 1;   ///< pictures
+    int total_height() const { return (sides - 1) * pitch + height; }  ///< of the tall picture [pixels]
 };
 
 /// Far enough apart for nodes of the levels that are summed to belong to one side.

@@ -21,11 +21,12 @@ struct SsbcChannels {
     std::vector<std::string> light;
 };
 
+/// A picture as compensate() wants it.
 struct SsbcPicture {
-    SsbcSurfaces surfaces;
+    SsbcSurfaces surfaces;           ///< that it shows
     std::vector<HiddenSide> hidden;  ///< what the picture does not show, where it is known
-    std::vector<core::Rgb> light;
-    std::string light_from;  ///< the layers that were taken for it, in words
+    std::vector<core::Rgb> light;    ///< that they reflect, by pixel
+    std::string light_from;          ///< the layers that were taken for it, in words
 };
 
 /// The light that surfaces reflect. Throws InputError naming the layers that are missing.

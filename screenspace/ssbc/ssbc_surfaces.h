@@ -22,8 +22,9 @@ struct GBuffer;
 /// the base of a plastic, next to nothing of a metal, nothing of a mirror or glass.
 core::Rgb diffuse_reflectance(const core::Bsdf& bsdf, const core::BsdfPoint& p, const core::Vec3& wo);
 
+/// One patch a pixel.
 struct SsbcSurfaces {
-    int width = 0, height = 0;
+    int width = 0, height = 0;           ///< [pixels]
     std::vector<core::Vec3> position;    ///< [m]
     std::vector<core::Vec3> normal;      ///< unit, turned to the viewer
     std::vector<float> facing;           ///< cosine between the normal and the way to the viewer, [0, 1]
@@ -33,6 +34,7 @@ struct SsbcSurfaces {
     SsbcSurfaces() = default;
     /// No surface anywhere. Throws std::invalid_argument unless both sizes are positive.
     SsbcSurfaces(int width, int height);
+    /// Width times height.
     std::size_t pixel_count() const { return std::size_t(width) * std::size_t(height); }
     /// Enters the patch of a pixel, or nothing when it takes no part: without diffuse reflectance, or where
     /// position, normal or area is not finite. `to_viewer` need not have unit length, nor need the normal,
