@@ -26,6 +26,19 @@ if(NOT PROJECT_IS_TOP_LEVEL)
   add_dependencies(mote_core_runtime mote_package_headers)  # so they are there before a guest's files are compiled
 endif()
 
+# ---- The reference of the public headers, by Doxygen: build target `reference`, in build/.../reference/html
+find_program(MOTE_DOXYGEN doxygen)
+find_package(Python3 QUIET COMPONENTS Interpreter)
+if(MOTE_DOXYGEN AND Python3_EXECUTABLE AND PROJECT_IS_TOP_LEVEL)
+  configure_file(${PROJECT_SOURCE_DIR}/docs/reference/Doxyfile.in ${PROJECT_BINARY_DIR}/reference/Doxyfile @ONLY)
+  add_custom_target(reference
+    COMMAND ${CMAKE_COMMAND} -E rm -rf ${PROJECT_BINARY_DIR}/reference/headers
+    COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/docs/reference/house_style.py ${PROJECT_SOURCE_DIR}
+            ${PROJECT_BINARY_DIR}/reference/headers
+    COMMAND ${MOTE_DOXYGEN} ${PROJECT_BINARY_DIR}/reference/Doxyfile
+    COMMENT "Reference of the public headers" VERBATIM)
+endif()
+
 if(NOT MOTE_INSTALL)
   return()
 endif()

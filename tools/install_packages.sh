@@ -23,6 +23,7 @@ packages=(
   catch2 libbenchmark-dev                             # tests and benchmarks
   python3-numpy python3-matplotlib                    # the figures of experiments/figures
   glmark2-data                                        # a real bunny and horse
+  doxygen                                             # the reference of the library (19 MB; left out where missing)
 )
 
 if [[ "${1:-}" == --fuzz ]]; then
