@@ -29,7 +29,8 @@ std::vector<Element> inherited_values(const Scene& scene, const std::string& typ
 bool is_path_of_object(const std::string& name, const Manual& manual) {
     if (name.find('.') != std::string::npos) return true;
     return std::any_of(manual.parameters.begin(), manual.parameters.end(), [&](const Parameter& p) {
-        return p.name == name && (p.type == "compensation" || p.type == "visibility");
+        return p.name == name &&
+               (p.type == "compensation" || p.type == "visibility" || p.type == "selection");
     });
 }
 

@@ -172,6 +172,8 @@ std::string heading(Category category) {
             return "Compensation of the bound";
         case Category::visibility:
             return "Visibility";
+        case Category::selection:
+            return "Selection of virtual point lights";
     }
     return "";
 }

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/materials/texture_coordinates.h"
+#include "core/math/direction_cone.h"
 #include "core/math/vec.h"
 #include "core/objects/object.h"
 
@@ -75,6 +76,12 @@ class Bsdf : public Object {
 
     /// Smooth part of the BSDF [1/sr], without cosine. Zero for delta parts.
     virtual Rgb eval(const BsdfPoint& p, const Vec3& wo, const Vec3& wi, TransportMode mode) const = 0;
+
+    /// At least eval() of any wi in a (local) cone, whatever the mode, without a peak_limit [1/sr]: for
+    /// whoever must know what a group of lights could send at most. Infinity: nothing is known.
+    virtual Rgb eval_bound(const BsdfPoint&, const Vec3& /*wo*/, const DirectionCone& /*wi*/) const {
+        return Rgb(infinity);
+    }
 
     /// Density of sample() choosing wi given wo, per solid angle, over the smooth part, and including the
     /// chance of choosing the smooth part at all.

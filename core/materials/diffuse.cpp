@@ -1,5 +1,6 @@
 // BSDF "diffuse": Lambertian reflection on the side of the normal, black on the other.
 #include "core/materials/bsdfs.h"
+#include "core/materials/lobe_bounds.h"
 #include "core/materials/register_materials.h"
 #include "core/materials/texture_slot.h"
 #include "core/materials/textures.h"
@@ -19,6 +20,9 @@ class Diffuse final : public Bsdf {
     Rgb eval(const BsdfPoint& p, const Vec3& wo, const Vec3& wi, TransportMode) const override {
         if (!(wo.z > 0.0f && wi.z > 0.0f)) return Rgb(0.0f);
         return reflectance_.eval(p.uv) * inv_pi;
+    }
+    Rgb eval_bound(const BsdfPoint& p, const Vec3& wo, const DirectionCone& wi) const override {
+        return wo.z > 0.0f && reaches_up(wi) ? reflectance_.eval(p.uv) * inv_pi : Rgb(0.0f);
     }
     float pdf_solid_angle(const BsdfPoint&, const Vec3& wo, const Vec3& wi, TransportMode) const override {
         return wo.z > 0.0f ? cosine_hemisphere_pdf(wi) : 0.0f;

@@ -1,6 +1,7 @@
 // BSDF "roughconductor": reflection by a metallic microsurface (Walter 2007), single scattering.
 #include "core/materials/bsdfs.h"
 #include "core/materials/fresnel.h"
+#include "core/materials/lobe_bounds.h"
 #include "core/materials/microfacet_manual.h"
 #include "core/materials/register_materials.h"
 #include "core/materials/texture_slot.h"
@@ -29,6 +30,11 @@ class RoughConductor final : public Bsdf {
         const Rgb weight = specular_.eval(p.uv) * fresnel(wo, m) /
                            (4.0f * facets.projected_area(wo) * facets.projected_area(wi));
         return weight * facets.widened(max_component(weight) * wi.z, p.peak_limit).density(m);
+    }
+    /// With a Fresnel reflectance of 1.
+    Rgb eval_bound(const BsdfPoint& p, const Vec3& wo, const DirectionCone& wi) const override {
+        if (!(wo.z > 0.0f && reaches_up(wi))) return Rgb(0.0f);
+        return specular_.eval(p.uv) * LobeBound(roughness_.at(p.uv), wo, wi).facets();
     }
     /// Walter 2007, Eq. 38 with the Jacobian of Eq. 14, for visible normals: <wo, m> D / A(wo) / (4 <wo, m>).
     float pdf_solid_angle(const BsdfPoint& p, const Vec3& wo, const Vec3& wi, TransportMode) const override {

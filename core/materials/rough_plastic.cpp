@@ -6,6 +6,7 @@
 // it came from there: white plastic is white.
 #include "core/materials/bsdfs.h"
 #include "core/materials/fresnel.h"
+#include "core/materials/lobe_bounds.h"
 #include "core/materials/microfacet_manual.h"
 #include "core/materials/register_materials.h"
 #include "core/materials/rough_transmittance.h"
@@ -46,6 +47,13 @@ class RoughPlastic final : public Bsdf {
         const Rgb weight = specular_.eval(p.uv) *
                            (f / (4.0f * microfacet_.projected_area(wo) * microfacet_.projected_area(wi)));
         return result + weight * microfacet_.widened(max_component(weight) * wi.z, p.peak_limit).density(m);
+    }
+    /// With a transmittance of 1 where the light enters.
+    Rgb eval_bound(const BsdfPoint& p, const Vec3& wo, const DirectionCone& wi) const override {
+        if (!(wo.z > 0.0f && reaches_up(wi))) return Rgb(0.0f);
+        const LobeBound lobe(microfacet_, wo, wi);
+        return base(p) * (transmittance_(wo.z) * inv_eta2_ * inv_pi) +
+               specular_.eval(p.uv) * (lobe.facets() * dielectric_bound(lobe.least_cosine(), eta_));
     }
     float pdf_solid_angle(const BsdfPoint&, const Vec3& wo, const Vec3& wi, TransportMode) const override {
         if (!(wo.z > 0.0f && wi.z > 0.0f)) return 0.0f;

@@ -32,6 +32,10 @@ class TwoSided final : public Bsdf {
         if (wo.z > 0.0f) return front_->eval(p, wo, wi, mode);
         return back_->eval(p, mirrored(wo), mirrored(wi), mode);
     }
+    Rgb eval_bound(const BsdfPoint& p, const Vec3& wo, const DirectionCone& wi) const override {
+        if (wo.z > 0.0f) return front_->eval_bound(p, wo, wi);
+        return back_->eval_bound(p, mirrored(wo), {mirrored(wi.axis), wi.angle});
+    }
     float pdf_solid_angle(const BsdfPoint& p, const Vec3& wo, const Vec3& wi,
                           TransportMode mode) const override {
         if (wo.z > 0.0f) return front_->pdf_solid_angle(p, wo, wi, mode);

@@ -27,8 +27,9 @@ enum class Category {
     volume,
     integrator,
     compensation,
-    visibility
+    visibility,
+    selection
 };
-inline constexpr int category_count = int(Category::visibility) + 1;
+inline constexpr int category_count = int(Category::selection) + 1;
 
 }  // namespace mote::core

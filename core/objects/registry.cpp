@@ -11,8 +11,8 @@ namespace {
 
 const std::array<std::string, category_count>& category_names() {
     static const std::array<std::string, category_count> names = {
-        "bsdf",    "texture", "shape", "emitter", "sensor",     "film",         "rfilter",
-        "sampler", "medium",  "phase", "volume",  "integrator", "compensation", "visibility"};
+        "bsdf",   "texture", "shape",  "emitter",    "sensor",       "film",       "rfilter",  "sampler",
+        "medium", "phase",   "volume", "integrator", "compensation", "visibility", "selection"};
     return names;
 }
 
