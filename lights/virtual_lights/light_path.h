@@ -21,6 +21,7 @@ struct LightPathSettings {
     int max_vertices = -1;  ///< vertices on a light path after the light, delta ones included; -1: no limit
     int rr_depth = 5;       ///< Russian roulette after this many vertices
     bool keep_starts = false;  ///< of trace_light_paths(): VplSet::starts
+    bool keep_states = true;   ///< of trace_light_paths(), in media: VplSet::states
 };
 
 /// Share of the path's first power that is left; never below 1/20, so that one dark bounce does not end it.

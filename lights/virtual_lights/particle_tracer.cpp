@@ -44,7 +44,8 @@ VplSet trace_chunk(const LitScene& scene, const LightPathSettings& settings, std
         const auto leave_vpl = [&](const ScatteringVertex& vertex, const Rgb& alpha, int depth,
                                    const MediumState& state) {
             append_vpl(set, vertex, alpha, std::uint32_t(depth), path);
-            if (scene.has_media() && set.states.size() < set.lights.size()) set.states.push_back(state);
+            if (settings.keep_states && scene.has_media() && set.states.size() < set.lights.size())
+                set.states.push_back(state);
         };
         if (scene.has_media())
             follow<true>(scene, settings, starts, path, sampler, context, leave_vpl, keep_start);

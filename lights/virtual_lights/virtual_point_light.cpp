@@ -6,8 +6,7 @@ using namespace core;
 
 namespace {
 
-/// |wi.ns| / |wi.ng|: the light's end of the adjoint correction. The other end, |wo.ng|, is the cosine in G*.
-float incoming_correction(const ScatteringVertex& v) {
+float correction_of(const ScatteringVertex& v) {
     if (!v.on_surface()) return 1.0f;
     const float geometric = std::fabs(glm::dot(v.wo, v.hit.geometric_normal));
     return geometric > 0.0f ? std::fabs(glm::dot(v.wo, v.hit.shading.n)) / geometric : 0.0f;
@@ -15,8 +14,10 @@ float incoming_correction(const ScatteringVertex& v) {
 
 }  // namespace
 
+float VplDetail::incoming_correction() const { return correction_of(vertex); }
+
 Rgb VplDetail::eval(const Vec3& to_receiver, float peak_limit) const {
-    return vertex.eval(to_receiver, TransportMode::power, peak_limit) * incoming_correction(vertex);
+    return vertex.eval(to_receiver, TransportMode::power, peak_limit) * incoming_correction();
 }
 
 MediumState VplSet::state_towards(std::size_t light, const Vec3& direction) const {
@@ -46,7 +47,7 @@ void append_vpl(VplSet& set, const ScatteringVertex& vertex, const Rgb& alpha, s
             // The light must also arrive above the shading normal, or a diffuse surface reflects nothing.
             if (glm::dot(vpl.shading_normal, vertex.wo) <= 0.0f) return;
             // f* is a constant, and I_j one colour (Engelhardt 2013, Eq. 10.3).
-            vpl.intensity *= *reflectance * inv_pi * incoming_correction(vertex);
+            vpl.intensity *= *reflectance * inv_pi * correction_of(vertex);
         }
     } else {
         plain = vertex.phase->isotropic();

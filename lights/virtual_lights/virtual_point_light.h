@@ -40,6 +40,9 @@ struct VplDetail {
     /// f*(x <- y <- y') with the adjoint correction of a shading normal; `to_receiver` is unit length.
     /// `peak_limit`: BsdfPoint::peak_limit.
     core::Rgb eval(const core::Vec3& to_receiver, float peak_limit = core::infinity) const;
+    /// The correction in eval(), the light's end of it: |wi.ns| / |wi.ng|. The other end, |wo.ng|, is the
+    /// cosine in G*.
+    float incoming_correction() const;
 };
 
 /// Where a light path began. For lights at infinity any origin on the path's ray will do.

@@ -8,16 +8,6 @@ namespace {
 
 constexpr int width = ReceiverLanes::width;
 
-std::uint64_t count_rays(std::span<const ShadowPacket> packets) {
-    std::uint64_t rays = 0;
-    for (const ShadowPacket& packet : packets) {
-        int active = 0;
-        for (int i = 0; i < width; ++i) active += packet.t_max[i] > 0.0f ? 1 : 0;
-        rays += std::uint64_t(active);
-    }
-    return rays;
-}
-
 void attenuate(const GatherContext& context, ReceiverTile& tile, const ShadowPacket& packet,
                LaneLight& light) {
     for (int i = 0; i < width; ++i) {
@@ -33,6 +23,16 @@ void attenuate(const GatherContext& context, ReceiverTile& tile, const ShadowPac
 }
 
 }  // namespace
+
+std::uint64_t count_rays(std::span<const ShadowPacket> packets) {
+    std::uint64_t rays = 0;
+    for (const ShadowPacket& packet : packets) {
+        int active = 0;
+        for (int i = 0; i < width; ++i) active += packet.t_max[i] > 0.0f ? 1 : 0;
+        rays += std::uint64_t(active);
+    }
+    return rays;
+}
 
 void attenuate_free(const GatherContext& context, ReceiverTile& tile, std::span<const ShadowPacket> packets,
                     std::span<LaneLight> light) {

@@ -74,6 +74,9 @@ class TracedVisibility {
     ReceiverTile& tile_;
 };
 
+/// How many segments of the packets are to be looked at.
+std::uint64_t count_rays(std::span<const core::ShadowPacket> packets);
+
 /// Takes the light of occluded lanes away, whose t_max is below 0, and of all others what is lost between
 /// receiver and light, an estimate that draws from the tile's generators.
 void attenuate_free(const GatherContext& context, ReceiverTile& tile,

@@ -1,0 +1,126 @@
+#include "lights/selection/cluster_bounds.h"
+
+#include "core/math/vectorize.h"
+#include "lights/selection/vertex_bounds.h"
+#include "lights/virtual_lights/vpl_contributions.h"
+
+namespace mote::lights {
+
+using namespace core;
+
+namespace {
+
+constexpr int width = ReceiverLanes::width;
+/// What rounding may add to a cosine, and to the product.
+constexpr float cosine_slack = 4e-6f, slack = 1.0f + 1e-4f;
+
+/// The largest cosine between any axis of a cone (cosine and sine of its half angle) and any direction whose
+/// component along the cone's axis is at most z, of a length between near and far.
+inline float largest_cosine(float z, float inv_near, float inv_far, float cos_angle, float sin_angle) {
+    const float c = min_of(z * (z > 0.0f ? inv_near : inv_far) + cosine_slack, 1.0f);
+    const float s = std::sqrt(max_of(1.0f - c * c, 0.0f));
+    return c >= cos_angle ? 1.0f : c * cos_angle + s * sin_angle;
+}
+
+/// 4 pi times Henyey-Greenstein's function at most, for |g| of [low, high] and a cosine of at most c to the
+/// preferred direction. 1 + g^2 - 2 g c is least at g = c.
+inline float largest_lobe(float low, float high, float c) {
+    const float g = min_of(max_of(c, low), high);
+    const float d = max_of((1.0f - g) * (1.0f - g) + 2.0f * g * max_of(1.0f - c, 0.0f), 1e-12f);
+    return (1.0f - low * low) / (d * std::sqrt(d));
+}
+
+struct Distances {
+    bool nearest;  ///< of the nearest points of the boxes; else of their middles
+};
+
+/// Bsdf::eval_bound() of glossy lanes, with the cone of the directions in which the group is seen.
+void apply_glossy(const LightNode& node, const ReceiverBounds& x, LaneValues& out) {
+    const Vec3 middle = 0.5f * node.lower + 0.5f * node.upper;
+    const float radius = 0.5f * std::sqrt(node.diagonal2());
+    for (int i = 0; i < width; ++i) {
+        if (!x.glossy[i] || !(out.value[std::size_t(i)] > 0.0f)) continue;
+        const Vec3 d = middle - Vec3(x.lower_x[i], x.lower_y[i], x.lower_z[i]);
+        const float length = glm::length(d);
+        const bool outside = length > 1.0001f * radius;
+        const DirectionCone cone =
+            outside ? DirectionCone{d / length, std::asin(std::min(1.0f, radius / length)) + 1e-4f}
+                    : DirectionCone::all();
+        const Rgb most = eval_bound(*x.glossy[i], cone);
+        // weight.energy is what the lanes have by now; channels of f* are joined by the largest.
+        out.value[std::size_t(i)] *= max_component(most);
+    }
+}
+
+template <bool Nearest>
+LaneValues light_of(const LightNode& node, const ReceiverBounds& x, float bound) {
+    LaneValues out;
+    const Vec3 axis = node.axis();
+    const float ax = axis.x, ay = axis.y, az = axis.z, cos_y_cone = node.cos_angle;
+    const float sin_y_cone = safe_sqrt(1.0f - sqr(cos_y_cone));
+    const float lx = node.lower.x, ly = node.lower.y, lz = node.lower.z;
+    const float ux = node.upper.x, uy = node.upper.y, uz = node.upper.z;
+    const float er = node.energy.x, eg = node.energy.y, eb = node.energy.z;
+    const float y_has_cosine = node.kind == LightKind::surface ? 1.0f : 0.0f;
+    const float g_low = float(node.g_low) * (1.0f / 65535.0f),
+                g_high = float(node.g_high) * (1.0f / 65535.0f);
+    const bool y_has_lobe = node.kind == LightKind::volume && node.g_high > 0;
+    const float least_d2 = max_of(0.25f * node.diagonal2(), min_distance_squared);
+    const float peak = Nearest && node.kind != LightKind::volume ? node.peak : 1.0f;
+    const auto depth = std::int32_t(node.least_depth);
+    const float own_bound = bound;
+    float cosine_x[width], cosine_y[width];
+    MOTE_INDEPENDENT_LANES
+    for (int i = 0; i < width; ++i) {
+        // The box of y - x.
+        const float x0 = lx - x.upper_x[i], y0 = ly - x.upper_y[i], z0 = lz - x.upper_z[i];
+        const float x1 = ux - x.lower_x[i], y1 = uy - x.lower_y[i], z1 = uz - x.lower_z[i];
+        const float nx = max_of(max_of(x0, -x1), 0.0f), ny = max_of(max_of(y0, -y1), 0.0f);
+        const float nz = max_of(max_of(z0, -z1), 0.0f);
+        const float fx = max_of(-x0, x1), fy = max_of(-y0, y1), fz = max_of(-z0, z1);
+        const float near2 = max_of(nx * nx + ny * ny + nz * nz, min_distance_squared);
+        const float far2 = max_of(fx * fx + fy * fy + fz * fz, min_distance_squared);
+        const float inv_near = 1.0f / std::sqrt(near2), inv_far = 1.0f / std::sqrt(far2);
+        const float to_light = max_of(x.axis_x[i] * x0, x.axis_x[i] * x1) +
+                               max_of(x.axis_y[i] * y0, x.axis_y[i] * y1) +
+                               max_of(x.axis_z[i] * z0, x.axis_z[i] * z1);
+        const float to_receiver =
+            max_of(-ax * x0, -ax * x1) + max_of(-ay * y0, -ay * y1) + max_of(-az * z0, -az * z1);
+        const float cx = largest_cosine(to_light, inv_near, inv_far, x.cos_angle[i], x.sin_angle[i]);
+        const float cy = largest_cosine(to_receiver, inv_near, inv_far, cos_y_cone, sin_y_cone);
+        const float c_x = x.has_cosine[i] > 0.0f ? max_of(cx, 0.0f) : 1.0f;
+        const float c_y = y_has_cosine > 0.0f ? max_of(cy, 0.0f) : 1.0f;
+        float d2 = near2;
+        if constexpr (!Nearest) {
+            const float mx = 0.5f * (x0 + x1), my = 0.5f * (y0 + y1), mz = 0.5f * (z0 + z1);
+            d2 = max_of(mx * mx + my * my + mz * mz, least_d2);
+        }
+        const float g = min_of(c_x * c_y / d2, own_bound);
+        const float light = (x.weight_r[i] * er + x.weight_g[i] * eg + x.weight_b[i] * eb) * (1.0f / 3.0f);
+        const bool none = depth > x.max_vpl_depth[i] || !(light > 0.0f) || !(g > 0.0f);
+        out.value[std::size_t(i)] = none ? 0.0f : slack * peak * light * g;
+        cosine_x[i] = cx, cosine_y[i] = cy;
+    }
+    if (y_has_lobe)
+        for (int i = 0; i < width; ++i)
+            out.value[std::size_t(i)] *= slack * largest_lobe(g_low, g_high, cosine_y[i]);
+    if (x.any_lobe)
+        for (int i = 0; i < width; ++i)
+            out.value[std::size_t(i)] *=
+                x.g_high[i] > 0.0f ? slack * largest_lobe(x.g_low[i], x.g_high[i], cosine_x[i]) : 1.0f;
+    return out;
+}
+
+}  // namespace
+
+LaneValues most_light(const LightNode& node, const ReceiverBounds& receivers, float bound) {
+    LaneValues out = light_of<true>(node, receivers, bound);
+    if (receivers.any_glossy) apply_glossy(node, receivers, out);
+    return out;
+}
+
+LaneValues expected_light(const LightNode& node, const ReceiverBounds& receivers, float bound) {
+    return light_of<false>(node, receivers, bound);
+}
+
+}  // namespace mote::lights

@@ -1,0 +1,79 @@
+// A binary hierarchy over lights: groups of lights of like place and direction, from one of all lights down
+// to single ones (Walter et al. 2005, Sec. 3.1).
+//
+// Splits follow the surface area orientation heuristic of Estevez and Kulla 2018 with the size of a group
+// that Walter et al. 2005 give (their Eq. 2), over sixteen bins along the longest side of positions and of
+// directions. Surfaces and media are parted at the root. Where nothing tells lights apart they are halved, so
+// 2^20 of them in one place are 20 levels deep.
+//
+// One flat array in the order of a walk: a group of n lights has its node, then the n_l - 1 nodes of its
+// left part, then the n_r - 1 nodes of its right part. So every group knows its place, and threads build
+// disjoint parts. The bits do not depend on the number of threads.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "lights/selection/light_node.h"
+
+namespace mote::lights {
+
+/// A group of lights: where its node lies, and which part of the order it is.
+struct LightCluster {
+    std::uint32_t node = 0, first = 0, count = 0;
+    bool single() const { return count == 1; }
+};
+
+class LightHierarchy {
+  public:
+    LightHierarchy() = default;
+    /// Lights of energy 0 are left out. `seed` draws the representatives. `max_bytes` is for memory_bytes()
+    /// of all lights and what building takes besides; throws core::InputError where it does not suffice, and
+    /// for energies that are negative or not finite. Keeps a reference to the leaves.
+    explicit LightHierarchy(const LightLeaves& leaves, std::uint64_t seed = 0,
+                            std::size_t max_bytes = std::size_t(-1));
+
+    bool empty() const { return order_.empty(); }
+    std::size_t size() const { return order_.size(); }  ///< lights of energy above 0
+    LightCluster root() const { return {0, 0, std::uint32_t(order_.size())}; }
+    /// Precondition: !single().
+    LightCluster left(const LightCluster& c) const {
+        return {c.node + 1, c.first, nodes_[c.node].left_count};
+    }
+    LightCluster right(const LightCluster& c) const {
+        const std::uint32_t n = nodes_[c.node].left_count;
+        return {c.node + n, c.first + n, c.count - n};
+    }
+    /// What is known of a group. Of a single light its leaves say it.
+    LightNode node(const LightCluster& c) const {
+        return c.single() ? leaves_->leaf(order_[c.first]) : nodes_[c.node];
+    }
+    /// average(E) of a group.
+    float weight(const LightCluster& c) const {
+        return c.single() ? weights_[c.first] : nodes_[c.node].weight();
+    }
+    /// The light that stands for a group: that of its left or of its right part. Its place in the order.
+    std::uint32_t representative(const LightCluster& c) const {
+        return c.single() ? c.first : nodes_[c.node].representative;
+    }
+    /// The light at a place in the order, and its average(E).
+    std::uint32_t light_at(std::uint32_t place) const { return order_[place]; }
+    float weight_at(std::uint32_t place) const { return weights_[place]; }
+
+    /// The lights of a group.
+    std::span<const std::uint32_t> lights(const LightCluster& c) const {
+        return std::span(order_).subspan(c.first, c.count);
+    }
+    std::size_t memory_bytes() const {
+        return nodes_.size() * sizeof(LightNode) + order_.size() * (sizeof(std::uint32_t) + sizeof(float));
+    }
+    static constexpr std::size_t bytes_a_light = sizeof(LightNode) + sizeof(std::uint32_t) + sizeof(float);
+
+  private:
+    const LightLeaves* leaves_ = nullptr;
+    std::vector<LightNode> nodes_;      ///< inner ones
+    std::vector<std::uint32_t> order_;  ///< lights
+    std::vector<float> weights_;        ///< average(E) in this order
+};
+
+}  // namespace mote::lights

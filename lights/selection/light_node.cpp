@@ -1,0 +1,20 @@
+#include "lights/selection/light_node.h"
+
+namespace mote::lights {
+
+using namespace core;
+
+LightNode united(const LightNode& a, const LightNode& b) {
+    LightNode n;
+    n.lower = glm::min(a.lower, b.lower), n.upper = glm::max(a.upper, b.upper);
+    n.energy = a.energy + b.energy;
+    n.peak = std::max(a.peak, b.peak);
+    n.g_low = std::min(a.g_low, b.g_low), n.g_high = std::max(a.g_high, b.g_high);
+    n.least_depth = std::min(a.least_depth, b.least_depth);
+    n.kind = a.kind == b.kind ? a.kind : LightKind::mixed;
+    // Cones hold the error of their code already; what is added once more is 0.01 degrees a level.
+    n.set_cone(n.kind == LightKind::mixed ? DirectionCone::all() : core::united(a.cone(), b.cone()));
+    return n;
+}
+
+}  // namespace mote::lights

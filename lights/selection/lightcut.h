@@ -1,0 +1,89 @@
+// Lightcuts (Walter et al. 2005) and multidimensional lightcuts (Walter et al. 2006): the light of all
+// virtual point lights at all points of a tile's pixels, from a few pairs of groups.
+//
+// A pair of a group of points and a group of lights is estimated by one pair that stands for it, with shadow
+// rays, and its error is at most what it could send at most (most_light()). The pair of the largest error,
+// relative to the pixel, is parted, at its lights or at its points, until no error is above `threshold` times
+// the sum of all estimates of its pixel, or the cut has `max_cut` pairs. One part inherits the estimate.
+//
+// The cut is one for the sixteen pixels of a tile, each of which must be content: so shadow rays stay
+// packets. Pairs are parted in batches, the worst first. With a threshold of 0 the sum is that of all pairs.
+#pragma once
+
+#include <vector>
+
+#include "lights/selection/cluster_bounds.h"
+#include "lights/selection/gather_points.h"
+#include "lights/selection/light_hierarchy.h"
+#include "lights/virtual_lights/vpl_gather.h"
+
+namespace mote::lights {
+
+struct LightcutSettings {
+    float threshold = 0.02f;       ///< of the pixel's light that one pair's error may be
+    std::uint32_t max_cut = 1000;  ///< pairs of a tile
+};
+
+struct LightcutCounters {
+    std::uint64_t cuts = 0, pairs = 0, evaluated = 0;  ///< pairs: of all cuts; evaluated: on the way to them
+    std::uint64_t at_limit = 0;                        ///< cuts that max_cut ended
+
+    void add(const LightcutCounters& other) {
+        cuts += other.cuts, pairs += other.pairs, evaluated += other.evaluated, at_limit += other.at_limit;
+    }
+};
+
+class Lightcut {
+  public:
+    Lightcut(const VplSet& vpls, const LightHierarchy& lights, float bound, const LightcutSettings& settings)
+        : vpls_(vpls), lights_(lights), bound_{bound}, settings_(settings) {}
+
+    using Light = std::array<TileLight, 2>;  ///< by GatherKind
+    /// Shadow rays are traced, and the media between cross out light, with the generators of `points`.
+    Light gather(const GatherContext& context, GatherPoints& points);
+    const LightcutCounters& counters() const { return counters_; }
+
+  private:
+    static constexpr int width = ReceiverLanes::width;
+    struct Pair {
+        std::uint32_t group;
+        LightCluster lights;
+        GatherKind kind;
+    };
+    struct alignas(64) Estimate {
+        float r[width], g[width], b[width];
+    };
+
+    void add_pair(GatherPoints& points, const Pair& pair);
+    void evaluate(const GatherContext& context, GatherPoints& points);
+    void resolve(const GatherContext& context, GatherPoints& points);
+    void find_worst(std::size_t& count);
+    void part(GatherPoints& points, std::size_t index);
+    void part_lights(GatherPoints& points, std::size_t index);
+    void part_points(GatherPoints& points, std::size_t index);
+    void set_pair(GatherPoints& points, std::size_t index, const Pair& pair);
+    void scale_estimate(std::size_t index, float scale);
+    void add_to_total(const Estimate& e, double sign);
+
+    const VplSet& vpls_;
+    const LightHierarchy& lights_;
+    BoundedGeometry bound_;
+    LightcutSettings settings_;
+    LightcutCounters counters_;
+
+    // The cut, by pair.
+    std::vector<Pair> pairs_;
+    std::vector<LaneValues> errors_;
+    std::vector<Estimate> estimates_;
+    std::vector<std::uint32_t> waiting_;  ///< pairs without an estimate
+    std::array<std::uint32_t, GatherScratch::batch> batch_{};
+    std::size_t in_batch_ = 0;
+    struct Worst {
+        float error;
+        std::uint32_t pair;
+    };
+    std::vector<Worst> worst_;
+    std::array<double, ReceiverLanes::width> total_{};  ///< averages of the channels
+};
+
+}  // namespace mote::lights

@@ -1,0 +1,300 @@
+// Lights drawn by a hierarchy: probabilities add up to 1 whatever the scale and the depth, means are those of
+// all lights, and sets that are no sets are dealt with.
+#include "core/objects/error.h"
+#include "lights/selection/light_sampler.h"
+#include "tests/lights/random_lights.h"
+#include "tests/support/catch.h"
+
+using namespace mote;
+using namespace mote::core;
+using namespace mote::tests;
+using lights::LightHierarchy, lights::ReceiverBounds, lights::VplLeaves, lights::WeightedVpl;
+
+namespace {
+
+lights::VirtualPointLight light_at(const Vec3& position, const Vec3& normal = Vec3(0.0f)) {
+    lights::VirtualPointLight vpl;
+    vpl.position = position, vpl.normal = vpl.shading_normal = normal;
+    vpl.intensity = Rgb(0.5f, 1.0f, 2.0f);
+    return vpl;
+}
+
+/// Sixteen diffuse receivers around a point, facing up.
+struct Floor {
+    std::shared_ptr<Bsdf> bsdf = make_diffuse(nullptr);
+    std::array<ScatteringVertex, 16> vertices;
+    lights::ReceiverTile tile;
+
+    explicit Floor(const Vec3& middle, float spacing) {
+        for (std::size_t i = 0; i < 16; ++i) {
+            ScatteringVertex& v = vertices[i];
+            v.position = middle + spacing * Vec3(float(i % 4), float(i / 4), 0.0f);
+            v.wo = {0, 0, 1}, v.bsdf = bsdf.get(), v.hit.position = v.position;
+            tile.set(int(i), v, Rgb(1.0f), MediumState{}, Rng(i), 1000);
+        }
+    }
+};
+
+/// Of all lights: their sum.
+double check_probabilities(const LightHierarchy& tree, const ReceiverBounds& receivers, float bound) {
+    double sum = 0.0;
+    for (const double p : lights::probabilities(tree, tree.root(), receivers, bound)) {
+        if (!(p >= 0.0 && p <= 1.0)) FAIL_CHECK(p << " is no probability");
+        sum += p;
+    }
+    return sum;
+}
+
+double light_of(const lights::VplSet& set, std::span<const WeightedVpl> drawn,
+                const lights::ReceiverTile& tile) {
+    double sum = 0.0;
+    for (const WeightedVpl& light : drawn)
+        for (const double v : sent(set, light.index, tile, infinity)) sum += double(light.weight) * v;
+    return sum;
+}
+
+struct Mean {
+    double mean, error;
+};
+template <typename Draw>
+Mean mean_of(int draws, const Draw& draw) {
+    double sum = 0.0, squares = 0.0;
+    for (int k = 0; k < draws; ++k) {
+        const double x = draw();
+        sum += x, squares += x * x;
+    }
+    const double mean = sum / draws;
+    return {mean, std::sqrt(std::max(0.0, squares / draws - mean * mean) / (draws - 1.0))};
+}
+
+}  // namespace
+
+TEST_CASE("Probabilities of all lights add up to 1, in any scale", "[light_selection][sampling]") {
+    const Materials materials;
+    Rng rng(3);
+    for (const Lights kind : {Lights::plain, Lights::glossy, Lights::isotropic, Lights::lobes, Lights::all}) {
+        auto set = random_lights(rng, materials, kind, 1000, 2.0f, 3.0f);
+        Floor floor(Vec3(0.1f, 0.0f, -0.7f), 0.05f);
+        const auto probabilities_of = [&](const lights::VplSet& vpls, const Floor& x) {
+            const VplLeaves leaves(vpls);
+            const LightHierarchy tree(leaves);
+            REQUIRE(tree.size() == 1000);
+            std::vector<double> by_light(1000);
+            const auto p = lights::probabilities(tree, tree.root(), ReceiverBounds(x.tile), infinity);
+            for (std::uint32_t i = 0; i < 1000; ++i) by_light[tree.light_at(i)] = p[i];
+            return by_light;
+        };
+        const auto p = probabilities_of(set, floor);
+        for (const float scale : {1000.0f, 0.001f}) {
+            auto scaled = set;
+            for (auto& vpl : scaled.lights) vpl.position *= scale;
+            for (auto& detail : scaled.details) detail.vertex.position *= scale;
+            const auto q = probabilities_of(scaled, Floor(scale * Vec3(0.1f, 0.0f, -0.7f), scale * 0.05f));
+            double sum = 0.0, moved = 0.0;
+            for (std::size_t j = 0; j < 1000; ++j) sum += q[j], moved += std::fabs(p[j] - q[j]);
+            CHECK(sum == Approx(1.0).epsilon(1e-12));
+            CHECK(moved < 1e-3);
+        }
+    }
+}
+
+TEST_CASE("Lights at distances 2^-i, and a million in one place", "[light_selection][sampling]") {
+    lights::VplSet powers, many;
+    for (int i = 0; i < 120; ++i)
+        powers.lights.push_back(light_at({std::ldexp(1.0f, -i), 0.0f, 1.0f}, {0, 0, -1}));
+    many.lights.assign(std::size_t(1) << 20, light_at({0.3f, 0.2f, 1.0f}));
+    const Floor floor(Vec3(0.0f), 1e-3f);
+    const ReceiverBounds receivers(floor.tile);
+    lights::LightSampler sampler;
+    Rng rng(1);
+    for (const lights::VplSet* set : {&powers, &many}) {
+        const VplLeaves leaves(*set);
+        const LightHierarchy tree(leaves);
+        CHECK(tree.size() == set->lights.size());
+        CHECK(check_probabilities(tree, receivers, infinity) == Approx(1.0).epsilon(1e-9));
+        double all = 0.0;
+        if (set == &many)
+            for (const double v : sent(*set, 0, floor.tile, infinity)) all += v * double(set->lights.size());
+        else
+            for (std::size_t j = 0; j < set->lights.size(); ++j)
+                for (const double v : sent(*set, j, floor.tile, infinity)) all += v;
+        // These are nearly all alike, and so nearly any draw has the sum.
+        for (const bool cut : {false, true}) {
+            const auto drawn = cut ? sampler.by_cut(tree, receivers, infinity, 64, rng)
+                                   : sampler.by_tree(tree, receivers, infinity, 64, rng);
+            CHECK(light_of(*set, drawn, floor.tile) == Approx(all).epsilon(0.02));
+        }
+    }
+    // A chain of groups deeper than 32, where nothing but depth tells lights apart: 2^-i from the receiver.
+    lights::VplSet deep;
+    for (int i = 0; i < 120; ++i) deep.lights.push_back(light_at({0.0f, 0.0f, std::ldexp(1.0f, -i)}));
+    const VplLeaves leaves(deep);
+    const LightHierarchy tree(leaves);
+    const Floor below(Vec3(0.0f, 0.0f, -1.0f), 1e-6f);
+    CHECK(check_probabilities(tree, ReceiverBounds(below.tile), infinity) == Approx(1.0).epsilon(1e-9));
+    const Floor on_them(Vec3(0.0f), 0.0f);
+    CHECK(check_probabilities(tree, ReceiverBounds(on_them.tile), infinity) == Approx(1.0).epsilon(1e-9));
+}
+
+TEST_CASE("Lights drawn by the tree and by a cut have the mean of all",
+          "[light_selection][sampling][statistics]") {
+    constexpr double critical = 3.3;  // two-sided, 0.1 %: of twenty tests one in fifty fails for no reason
+    const Materials materials;
+    Rng rng(4);
+    lights::LightSampler sampler;
+    for (const Lights kind : {Lights::plain, Lights::glossy, Lights::isotropic, Lights::lobes, Lights::all}) {
+        const auto set = random_lights(rng, materials, kind, 500, 1.0f, 0.5f);
+        const VplLeaves leaves(set);
+        const LightHierarchy tree(leaves);
+        const Floor floor(Vec3(0.5f, -1.0f, -1.5f), 0.1f);
+        const ReceiverBounds receivers(floor.tile);
+        double all = 0.0;
+        for (std::size_t j = 0; j < set.lights.size(); ++j)
+            for (const double v : sent(set, j, floor.tile, infinity)) all += v;
+        REQUIRE(all > 0.0);
+        for (const bool cut : {false, true}) {
+            const auto draw = [&] {
+                const auto drawn = cut ? sampler.by_cut(tree, receivers, infinity, 64, rng)
+                                       : sampler.by_tree(tree, receivers, infinity, 64, rng);
+                return light_of(set, drawn, floor.tile);
+            };
+            const Mean found = mean_of(1500, draw);
+            INFO("kind " << int(kind) << ", cut " << cut << ": " << found.mean << " +- " << found.error
+                         << " of " << all);
+            CHECK(std::fabs(found.mean - all) < critical * found.error);
+            // Errors of weights that are planted are found.
+            const double power = critical * found.error / all;
+            // Groups of all kinds know little of each: there errors are larger.
+            const double planted = kind == Lights::all ? 0.5 : 0.1;
+            CHECK(power < 0.7 * planted);
+            for (const double wrong : {1.0 - planted, 1.0 + planted})
+                CHECK(std::fabs(wrong * found.mean - all) > critical * found.error);
+        }
+    }
+}
+
+TEST_CASE("More lights, less noise", "[light_selection][sampling][statistics]") {
+    const Materials materials;
+    Rng rng(6);
+    lights::LightSampler sampler;
+    const auto set = random_lights(rng, materials, Lights::plain, 5000, 2.0f, 3.0f);
+    const VplLeaves leaves(set);
+    const LightHierarchy tree(leaves);
+    const Floor floor(Vec3(0.5f, -1.0f, -1.5f), 0.1f);
+    const ReceiverBounds receivers(floor.tile);
+    for (const bool cut : {false, true}) {
+        const auto error = [&](std::uint32_t n) {
+            return mean_of(1000,
+                           [&] {
+                               return light_of(set,
+                                               cut ? sampler.by_cut(tree, receivers, infinity, n, rng)
+                                                   : sampler.by_tree(tree, receivers, infinity, n, rng),
+                                               floor.tile);
+                           })
+                .error;
+        };
+        CHECK(error(64) < 0.5 * error(4));  // independent draws: 0.25
+    }
+}
+
+TEST_CASE("Every node holds what is below it, and one array holds all", "[light_selection]") {
+    const Materials materials;
+    Rng rng(8);
+    const auto set = random_lights(rng, materials, Lights::all, 3000, 2.0f, 3.0f);
+    const VplLeaves leaves(set);
+    const LightHierarchy tree(leaves, 5), again(leaves, 5), other(leaves, 6);
+    CHECK(tree.memory_bytes() <=
+          150 * set.lights.size() - set.lights.size() * sizeof(lights::VirtualPointLight));
+    std::vector<int> seen(set.lights.size());
+    std::size_t wrong = 0, representatives_differ = 0;
+    const auto visit = [&](const auto& self, const lights::LightCluster& c) -> void {
+        const lights::LightNode node = tree.node(c);
+        const std::uint32_t place = tree.representative(c);
+        wrong += place < c.first || place >= c.first + c.count;
+        wrong += place != again.representative(c);
+        representatives_differ += place != other.representative(c);
+        Rgb energy(0.0f);
+        for (const std::uint32_t light : tree.lights(c)) {
+            const auto leaf = leaves.leaf(light);
+            energy += leaf.energy;
+            wrong += !glm::all(glm::lessThanEqual(node.lower, leaf.lower)) ||
+                     !glm::all(glm::greaterThanEqual(node.upper, leaf.upper)) || leaf.peak > node.peak ||
+                     leaf.least_depth < node.least_depth;
+        }
+        for (int k = 0; k < 3; ++k) wrong += std::fabs(energy[k] - node.energy[k]) > 1e-3f * energy[k];
+        if (c.single()) {
+            ++seen[tree.light_at(c.first)];
+            return;
+        }
+        self(self, tree.left(c)), self(self, tree.right(c));
+    };
+    visit(visit, tree.root());
+    CHECK(wrong == 0);
+    CHECK(representatives_differ > 100);
+    for (const int count : seen) CHECK(count == 1);
+}
+
+TEST_CASE("Representatives are drawn in proportion to their energy", "[light_selection][statistics]") {
+    lights::VplSet set;
+    for (int j = 0; j < 6; ++j) {
+        set.lights.push_back(light_at({float(j), 0.0f, 0.0f}));
+        set.lights.back().intensity = Rgb(float(j + 1));
+    }
+    const VplLeaves leaves(set);
+    std::array<double, 6> count{};
+    constexpr int draws = 21000;
+    for (int seed = 0; seed < draws; ++seed) {
+        const LightHierarchy tree(leaves, std::uint64_t(seed));
+        count[tree.light_at(tree.representative(tree.root()))] += 1.0;
+    }
+    double chi2 = 0.0;
+    for (int j = 0; j < 6; ++j) {
+        const double expected = draws * double(j + 1) / 21.0;
+        chi2 += sqr(count[std::size_t(j)] - expected) / expected;
+    }
+    CHECK(chi2 < 20.5);  // 5 degrees of freedom, 0.1 %
+}
+
+TEST_CASE("No lights, one light, dark ones, and more than memory holds", "[light_selection][extremes]") {
+    const Floor floor(Vec3(0.0f), 0.1f);
+    const ReceiverBounds receivers(floor.tile);
+    lights::LightSampler sampler;
+    Rng rng(1);
+    lights::VplSet set;
+    const VplLeaves leaves(set);
+    CHECK(LightHierarchy(leaves).empty());
+    CHECK(sampler.by_tree(LightHierarchy(leaves), receivers, 1.0f, 4, rng).empty());
+    CHECK(sampler.by_cut(LightHierarchy(leaves), receivers, 1.0f, 4, rng).empty());
+
+    set.lights.push_back(light_at({0.0f, 0.0f, 1.0f}));
+    const LightHierarchy one(leaves);
+    REQUIRE(one.size() == 1);
+    const auto drawn = sampler.by_tree(one, receivers, 1.0f, 4, rng);
+    REQUIRE(drawn.size() == 1);
+    CHECK(drawn[0].weight == 1.0f);
+    CHECK(sampler.by_cut(one, receivers, 1.0f, 4, rng).size() == 1);
+
+    set.lights.assign(100, light_at({0.0f, 0.0f, 1.0f}));
+    for (auto& vpl : set.lights) vpl.intensity = Rgb(0.0f);
+    CHECK(LightHierarchy(leaves).empty());
+    set.lights[70].intensity = Rgb(1e-30f);
+    CHECK(LightHierarchy(leaves).size() == 1);
+    set.lights[70].intensity = Rgb(infinity);
+    CHECK_THROWS_AS(LightHierarchy(leaves), InputError);
+    set.lights[70].intensity = Rgb(-1.0f);
+    CHECK_THROWS_AS(LightHierarchy(leaves), InputError);
+
+    // A receiver on a light: finite weights.
+    set.lights[70] = light_at(floor.tile.position(3));
+    set.lights[71] = light_at({0.0f, 0.0f, 1.0f});
+    const LightHierarchy two(leaves);
+    for (const WeightedVpl& light : sampler.by_tree(two, receivers, infinity, 64, rng))
+        CHECK(std::isfinite(light.weight));
+
+    /// 2^24 lights that are never made: asked for nothing but their number.
+    struct Many final : lights::LightLeaves {
+        std::size_t size() const override { return std::size_t(1) << 24; }
+        lights::LightNode leaf(std::uint32_t) const override { return {}; }
+    };
+    CHECK_THROWS_AS(LightHierarchy(Many(), 0, std::size_t(1) << 30), InputError);
+}

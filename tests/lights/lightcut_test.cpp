@@ -1,0 +1,168 @@
+// Lightcuts: all lights to rounding where the threshold is 0, within the threshold of them else, over one
+// point a pixel and over many.
+#include "lights/selection/lightcut.h"
+#include "core/scene/scene.h"
+#include "lights/selection/vertex_bounds.h"
+#include "lights/virtual_lights/particle_tracer.h"
+#include "media/phase_functions.h"
+#include "tests/lights/closed_box.h"
+#include "tests/support/catch.h"
+#include "tests/support/render_statistics.h"
+
+using namespace mote;
+using namespace mote::core;
+using lights::GatherKind, lights::GatherPoints, lights::LightcutSettings, lights::TileLight;
+
+namespace {
+
+/// A room with an obstacle, its VPLs, and points seen along sixteen rays: in the air, and on the walls.
+struct Room {
+    static constexpr int points = 6;  ///< in the air along each ray
+    std::unique_ptr<Scene> scene;
+    lights::VplSet vpls;
+    media::IsotropicPhase isotropic;
+    media::HenyeyGreensteinPhase forward{0.6f};
+    std::array<std::array<ScatteringVertex, 16>, points + 1> vertices;
+    std::array<lights::ReceiverTile, points + 1> tiles;  ///< the last: on walls
+    std::unique_ptr<lights::GatherScratch> scratch = std::make_unique<lights::GatherScratch>();
+    RayCounters rays;
+    TrackingCounters tracking;
+
+    Room(const std::string& bsdf, std::uint32_t paths)
+        : scene(tests::scene_from(tests::closed_box(bsdf, obstacle))),
+          vpls(lights::trace_light_paths(*scene, {.paths = paths}, 7, 0, SamplerKind::sobol)) {
+        Rng rng(3);
+        for (int i = 0; i < 16; ++i) {
+            const Vec3 towards(1.0f, 0.1f * float(i % 4) - 0.2f, 0.1f * float(i / 4) - 0.3f);
+            const Ray ray{{-0.9f, 0.0f, 0.4f}, glm::normalize(towards)};
+            WalkContext context;
+            PathWeights weights;
+            MediumState state;
+            Rgb emitted;
+            const WalkEvent event = walk<false>(*scene, ray, state, weights, emitted, context);
+            for (int n = 0; n <= points; ++n) {
+                ScatteringVertex& v = vertices[std::size_t(n)][std::size_t(i)];
+                if (n == points) {
+                    v = make_vertex(event, ray);
+                } else {
+                    v.position = ray.at(event.hit.t * (float(n) + 0.5f) / float(points));
+                    v.wo = -ray.direction;
+                    v.phase = i % 2 ? static_cast<const PhaseFunction*>(&forward) : &isotropic;
+                }
+                const Rgb throughput = n == points ? Rgb(0.6f) : Rgb(0.1f + 0.02f * float(n));
+                tiles[std::size_t(n)].set(i, v, throughput, state, rng, n == 2 ? 3 : 1000);
+            }
+        }
+    }
+    lights::GatherContext context() { return {*scene, *scratch, rays, tracking}; }
+
+    /// All lights at all points, by kind of point.
+    lights::Lightcut::Light all(float bound) {
+        lights::Lightcut::Light sum{};
+        for (int n = 0; n <= points; ++n) {
+            const TileLight light = lights::gather(context(), vpls, lights::VplRange{},
+                                                   lights::BoundedGeometry{bound}, tiles[std::size_t(n)]);
+            for (std::size_t i = 0; i < 16; ++i) sum[n == points ? 0 : 1][i] += light[i];
+        }
+        return sum;
+    }
+    lights::Lightcut::Light cut(float bound, const LightcutSettings& settings, std::uint64_t seed = 1) {
+        const lights::VplLeaves leaves(vpls);
+        const lights::LightHierarchy tree(leaves, seed);
+        lights::Lightcut cut(vpls, tree, bound, settings);
+        GatherPoints gather;
+        for (int n = 0; n <= points; ++n)
+            gather.add(tiles[std::size_t(n)], n == points ? GatherKind::surface : GatherKind::medium);
+        Rng rng(seed);
+        gather.build(rng);
+        const auto light = cut.gather(context(), gather);
+        counters = cut.counters();
+        return light;
+    }
+    lights::LightcutCounters counters;
+
+    static inline const std::string obstacle = R"(<shape type="cube"><transform name="to_world">
+        <scale x="0.05" y="0.6" z="0.5"/><translate x="0.2" y="-0.3"/></transform>
+        <bsdf type="diffuse"/></shape>)";
+};
+
+}  // namespace
+
+TEST_CASE("A lightcut with a threshold of 0 is the light of all", "[light_selection][lightcuts]") {
+    for (const std::string& material : {tests::diffuse, tests::glossy})
+        for (const float bound : {0.2f, infinity}) {
+            Room room(material, 100);
+            const auto all = room.all(bound), cut = room.cut(bound, {0.0f, 1u << 30});
+            const auto too_few = room.cut(bound, {0.0f, 40});
+            bool differ = false;
+            for (std::size_t kind = 0; kind < 2; ++kind)
+                for (std::size_t i = 0; i < 16; ++i)
+                    for (int c = 0; c < 3; ++c) {
+                        CHECK(cut[kind][i][c] == Approx(all[kind][i][c]).epsilon(2e-5));
+                        differ |= std::fabs(too_few[kind][i][c] - all[kind][i][c]) > 1e-2f * all[kind][i][c];
+                    }
+            CHECK(differ);
+            CHECK(room.counters.pairs <= 40);
+            CHECK(room.counters.at_limit == 1);
+        }
+}
+
+TEST_CASE("A lightcut's error is what its threshold lets it be", "[light_selection][lightcuts]") {
+    Room room(tests::diffuse, 3000);
+    const auto all = room.all(20.0f);
+    // Root of the mean square over pixels and over who stands for groups. A threshold holds for one group.
+    const auto relative_error = [&](float threshold) {
+        double squares = 0.0;
+        for (std::uint64_t seed = 1; seed < 4; ++seed) {
+            const auto cut = room.cut(20.0f, {threshold, 1u << 30}, seed);
+            for (std::size_t i = 0; i < 16; ++i) {
+                const double right = double(average(all[0][i] + all[1][i]));
+                squares += sqr(double(average(cut[0][i] + cut[1][i])) / right - 1.0);
+            }
+        }
+        return std::sqrt(squares / 48.0);
+    };
+    const double fine = relative_error(0.005f), middle = relative_error(0.02f), coarse = relative_error(0.3f);
+    const auto pairs = room.counters.pairs;
+    INFO("errors " << fine << ", " << middle << ", " << coarse << "; " << room.vpls.lights.size()
+                   << " lights, pairs " << pairs);
+    // Errors of some hundred groups add up, those of the points of a ray with one sign: one light stands for
+    // all.
+    CHECK(fine < middle);
+    CHECK(middle < coarse);
+    CHECK(middle < 0.1);
+    CHECK(pairs < 7 * room.vpls.lights.size() / 20);
+    // A lightcut of every point alone looks at more than one of all points of the pixels.
+    room.cut(20.0f, {0.02f, 1u << 30});
+    const auto together = room.counters.pairs;
+    const lights::VplLeaves leaves(room.vpls);
+    const lights::LightHierarchy tree(leaves, 1);
+    lights::Lightcut alone(room.vpls, tree, 20.0f, {0.02f, 1u << 30});
+    for (const auto& tile : room.tiles) {
+        GatherPoints points;
+        Rng rng(1);
+        points.add(tile, GatherKind::medium);
+        points.build(rng);
+        alone.gather(room.context(), points);
+    }
+    CHECK(together < alone.counters().pairs);
+}
+
+TEST_CASE("Lightcuts without lights, of one light, and at a light",
+          "[light_selection][lightcuts][extremes]") {
+    Room room(tests::diffuse, 20);
+    const auto set = room.vpls;
+    for (const std::size_t count : {0, 1, 2}) {
+        room.vpls = set;
+        room.vpls.lights.resize(count);
+        const auto all = room.all(1.0f), cut = room.cut(1.0f, {});
+        for (std::size_t i = 0; i < 16; ++i) CHECK(cut[0][i].y == Approx(all[0][i].y).epsilon(1e-5));
+    }
+    // Receivers in the places of lights in the air, unbounded: whatever comes of it is a number.
+    room.vpls = set;
+    for (auto& vpl : room.vpls.lights) vpl.normal = vpl.shading_normal = Vec3(0.0f);
+    for (std::size_t j = 0; j < room.vpls.lights.size(); ++j)
+        room.vpls.lights[j].position = room.tiles[0].position(int(j % 16));
+    for (const auto& kind : room.cut(100.0f, {}))
+        for (const Rgb& light : kind) CHECK(std::isfinite(light.y));
+}
