@@ -3,6 +3,7 @@
 #include "compensation/compensation_settings.h"
 #include "integrators/register_parts.h"
 #include "integrators/screen_space_compensation/screen_space_compensation.h"
+#include "integrators/virtual_point_lights/vpl_selection.h"
 #include "integrators/virtual_point_lights/vpl_visibility.h"
 
 namespace mote::integrators {
@@ -11,6 +12,7 @@ void register_integrators(core::Registry& registry) {
     compensation::register_compensation(registry);
     register_screen_space_compensation(registry);
     register_visibility(registry);
+    register_selection(registry);
     register_mote_layers(registry);
     register_path(registry);
     register_volpath(registry);

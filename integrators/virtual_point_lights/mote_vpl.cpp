@@ -54,6 +54,9 @@ class MoteVpl final : public Integrator {
         settings_.filter = read_layer_filter(properties);
         if (const auto nested = properties.child_of<Visibility>(Category::visibility))
             settings_.visibility = nested->settings();
+        if (const auto nested = properties.child_of<Selection>(Category::selection))
+            settings_.selection = nested->settings();
+        check_selection();
         if (settings_.upsampling > 1) check_upsampling(properties);
     }
 
@@ -88,6 +91,8 @@ class MoteVpl final : public Integrator {
     }
     void read_compensation(const Properties& properties);
     void check_upsampling(const Properties& properties) const;
+    void check_selection() const;
+    void plan_choice_of_vpls(Plan& plan, const Scene& scene) const;
     void plan_bound(Plan& plan, const Bounds3& surfaces) const;
     void plan_light_paths(Plan& plan, const Scene& scene) const;
     void plan_image_space(Plan& plan) const;
@@ -115,6 +120,32 @@ void MoteVpl::check_upsampling(const Properties& properties) const {
     if (against)
         throw InputError(std::string("upsampling does not go together with ") + against,
                          properties.where_of("upsampling"));
+}
+
+void MoteVpl::check_selection() const {
+    const SelectionSettings& s = settings_.selection;
+    if (!s.by_hierarchy()) return;
+    const char* against = settings_.interleaving > 1                   ? "interleaving"
+                          : settings_.lists.size > 0                   ? "light_lists"
+                          : settings_.compensates()                    ? "compensation"
+                          : settings_.clamping.enabled                 ? "roughness_clamping"
+                          : settings_.visibility.shadow_maps           ? "shadow maps"
+                          : settings_.visibility.imperfect && s.cuts() ? "imperfect shadow maps"
+                                                                       : nullptr;
+    if (against)
+        throw InputError(
+            std::string("a selection of VPLs by a hierarchy does not go together with ") + against, s.where);
+}
+
+/// A light path leaves some three VPLs.
+void MoteVpl::plan_choice_of_vpls(Plan& plan, const Scene& scene) const {
+    const double pixels = double(scene.film().width) * double(scene.film().height);
+    const double lattice = double(settings_.upsampling * settings_.upsampling);
+    const int points = scene.has_media() && settings_.scattering_points > 0
+                           ? 1 + std::min(settings_.scattering_points, 2)
+                           : 1;
+    plan_selection(plan, settings_.selection,
+                   {3.0 * double(settings_.paths), pixels * settings_.eye_samples / lattice, points});
 }
 
 void MoteVpl::plan_light_paths(Plan& plan, const Scene& scene) const {
@@ -181,6 +212,7 @@ Plan MoteVpl::plan(const Scene& scene, const Requirements& r) const {
                  "every surface is diffuse and every medium isotropic");
     const double pixels = double(scene.film().width) * double(scene.film().height);
     plan_visibility(plan, scene, settings_.visibility, pixels * settings_.eye_samples);
+    plan_choice_of_vpls(plan, scene);
     plan_media(plan, r);
     if (r.any_media() && settings_.scattering_points == 0)
         plan.run("eye rays", "one distance by tracking per pixel and pass", "Engelhardt 2013, Eq. 10.9");
@@ -230,6 +262,9 @@ void register_mote_vpl(Registry& registry) {
     parameters.push_back(
         {"visibility", "visibility", "traced",
          "what stands between VPLs and receivers: traced, shadow_map, imperfect_shadow_map"});
+    parameters.push_back({"selection", "selection", "all",
+                          "the VPLs that receivers look at: all, lightcuts, multidimensional_lightcuts, "
+                          "stochastic_lightcuts, light_tree"});
     parameters.push_back({"scattering_points", "integer", "8",
                           "points in media where the light of each eye ray is gathered, besides the surface "
                           "behind them, up to 64; 0: "

@@ -10,6 +10,7 @@
 #include "integrators/screen_space_compensation/hidden_light.h"
 #include "integrators/virtual_point_lights/vpl_eye_tile.h"
 #include "integrators/virtual_point_lights/vpl_shadow_maps.h"
+#include "lights/selection/vertex_bounds.h"
 #include "lights/virtual_lights/reflective_shadow_maps.h"
 
 namespace mote::integrators {
@@ -64,6 +65,7 @@ class VplEstimator final : public Estimator {
         vpls_ += vpls.lights.size(), paths_ += vpls.paths;
         bytes_ = std::max(bytes_, vpls.memory_bytes());
         if (settings_.visibility.imperfect) make_imperfect_maps(vpls, context);
+        make_hierarchy(vpls, context);
         if (settings_.lists.size > 0 && !maps_) make_lists(vpls, context.cancelled);
         const int columns = (options_.width + tile_size_ - 1) / tile_size_;
         const int rows = (options_.height + tile_size_ - 1) / tile_size_;
@@ -100,6 +102,16 @@ class VplEstimator final : public Estimator {
             statistics.lookups["imperfect_shadow_maps"] += imperfect_lookups_;
         }
         if (settings_.lists.size > 0) statistics.seconds["light_lists"] = list_seconds_;
+        if (settings_.selection.by_hierarchy()) {
+            statistics.seconds["light_hierarchy"] = hierarchy_seconds_;
+            statistics.values["light_hierarchy_bytes"] = double(hierarchy_bytes_);
+        }
+        if (cuts_.cuts > 0) {
+            statistics.values["lightcuts"] = double(cuts_.cuts);
+            statistics.values["lightcut_pairs"] = double(cuts_.pairs);
+            statistics.values["lightcut_pairs_evaluated"] = double(cuts_.evaluated);
+            statistics.values["lightcuts_at_limit"] = double(cuts_.at_limit);
+        }
         if (filter_) {
             statistics.seconds["filter_features"] = filter_->feature_seconds();
             statistics.seconds["filter"] = filter_->filter_seconds();
@@ -146,6 +158,16 @@ class VplEstimator final : public Estimator {
         counters_.add(lists_->rays(), {});
     }
 
+    void make_hierarchy(const lights::VplSet& vpls, const PassContext& context) {
+        hierarchy_.reset();
+        if (!settings_.selection.by_hierarchy()) return;
+        const auto begin = std::chrono::steady_clock::now();
+        leaves_.emplace(vpls);
+        hierarchy_.emplace(*leaves_, hash_keys(options_.seed, context.index), settings_.selection.max_bytes);
+        hierarchy_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        hierarchy_bytes_ = std::max(hierarchy_bytes_, hierarchy_->memory_bytes());
+    }
+
     struct Box {
         int x0, y0, x1, y1;
     };
@@ -164,11 +186,12 @@ class VplEstimator final : public Estimator {
             EyeShadowMaps{.lights = maps_ ? maps_->of_lights() : nullptr,
                           .receivers = store,
                           .imperfect = settings_.visibility.imperfect ? &imperfect_ : nullptr},
-            EyeLightLists{&items_, lists_ ? &*lists_ : nullptr});
+            EyeLightLists{&items_, lists_ ? &*lists_ : nullptr}, hierarchy_ ? &*hierarchy_ : nullptr);
         render(*tile);
         counters_.add(walk.rays, walk.tracking);
         const std::lock_guard lock(cost_mutex_);
         imperfect_lookups_ += tile->imperfect_lookups();
+        cuts_.add(tile->cut_counters());
         cost_.vertices += tile->compensation_cost().vertices;
         cost_.seconds += tile->compensation_cost().seconds;
     }
@@ -262,6 +285,7 @@ class VplEstimator final : public Estimator {
                 tile.run({sample + samples * share, samples * shares}, float(samples * shares));
             else
                 tile.run({share, shares}, float(shares));
+            if (sample + 1 == samples) tile.gather_collected();
             for (std::size_t lane = 0; lane < lanes.size(); ++lane)
                 sums[lane].add(tile.sum(int(lane)), 1.0f / float(samples));
         }
@@ -298,6 +322,11 @@ class VplEstimator final : public Estimator {
     float bound_;
     int tile_size_;
     SurfaceItems items_;
+    std::optional<lights::VplLeaves> leaves_;
+    std::optional<lights::LightHierarchy> hierarchy_;  ///< of this pass; nothing: all lights are looked at
+    double hierarchy_seconds_ = 0.0;
+    std::size_t hierarchy_bytes_ = 0;
+    lights::LightcutCounters cuts_;
     std::optional<VplLightLists> lists_;  ///< of this pass; nothing: all lights are looked at
     double list_seconds_ = 0.0;
     std::optional<lights::ReflectiveShadowMaps> reflective_;  ///< nothing: lights draw their paths

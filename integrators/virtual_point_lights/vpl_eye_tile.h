@@ -14,6 +14,7 @@
 #include "integrators/eye_path/eye_path.h"
 #include "integrators/eye_path/shared_pixels.h"
 #include "integrators/virtual_point_lights/tile_compensation.h"
+#include "integrators/virtual_point_lights/tile_selection.h"
 #include "integrators/virtual_point_lights/vpl_pixel.h"
 #include "integrators/virtual_point_lights/vpl_settings.h"
 #include "lights/virtual_lights/particle_tracer.h"
@@ -30,7 +31,8 @@ class EyeTile {
 
     EyeTile(const core::Scene& scene, const VplSettings& settings, float bound, const lights::VplSet& vpls,
             const compensation::ResidualTransport* transport, lights::GatherScratch& scratch,
-            core::WalkContext& walk, const EyeShadowMaps& maps = {}, const EyeLightLists& lists = {})
+            core::WalkContext& walk, const EyeShadowMaps& maps = {}, const EyeLightLists& lists = {},
+            const lights::LightHierarchy* hierarchy = nullptr)
         : scene_(scene),
           settings_(settings),
           bound_(bound),
@@ -39,6 +41,7 @@ class EyeTile {
           walk_(walk),
           maps_(maps),
           lists_(lists),
+          selection_(settings.selection, hierarchy, vpls, bound),
           compensation_(scene, settings.compensation, transport, vpls, scratch, walk) {}
 
     void start(int lane, const EyeRay& eye) {
@@ -61,6 +64,7 @@ class EyeTile {
     void gathers(bool yes) { gathers_ = yes; }
     CompensationCost compensation_cost() const { return compensation_.cost(); }
     std::uint64_t imperfect_lookups() const { return imperfect_lookups_; }
+    lights::LightcutCounters cut_counters() const { return selection_.counters(); }
 
     /// Of the lanes to come: where they lie in the picture, `spacing` pixels apart, and how much receivers
     /// that are stored count.
@@ -84,6 +88,16 @@ class EyeTile {
         }
     }
 
+    /// Gathers at all points since the last call, where they wait for each other: of several eye paths, whose
+    /// light is a sum.
+    void gather_collected() {
+        if (!selection_.collects()) return;
+        const auto light = selection_.gather_points(context(), walk_.rng.next_u32());
+        for (std::size_t i = 0; i < lanes_.size(); ++i)
+            for (const bool surface : {true, false})
+                lanes_[i].sum.transport[transport_layer(2, surface)] += light[surface ? 0 : 1][i];
+    }
+
   private:
     struct Lane {
         std::optional<EyePath<Media>> path;
@@ -104,6 +118,8 @@ class EyeTile {
         if (maps_.receivers)
             maps_.receivers->add(receivers_, maps_.column, maps_.row, maps_.spacing, range,
                                  vpl_scale * maps_.scale);
+        else if (selection_.active())
+            light = gather_selected();
         else if (lists_.lists)
             light = gather_lights(listed(range));
         else
@@ -117,13 +133,30 @@ class EyeTile {
         }
     }
 
+    lights::GatherContext context() {
+        return {scene_, scratch_, walk_.rays, walk_.tracking, walk_.cancelled};
+    }
+
+    /// By the hierarchy; nothing yet where points wait for each other.
+    lights::TileLight gather_selected() {
+        if (!receivers_.any_active) return {};
+        if (selection_.collects()) {
+            selection_.collect(
+                receivers_, [&](int i) { return lanes_[std::size_t(i)].receiver == ReceiverKind::surface; });
+            return {};
+        }
+        const std::uint64_t key = walk_.rng.next_u32();
+        if (selection_.cuts()) return selection_.cut(context(), receivers_, key);
+        return gather_lights(selection_.drawn(receivers_, key));
+    }
+
     template <typename Lights>
     lights::TileLight gather_lights(const Lights& choice) {
-        const lights::GatherContext context{scene_, scratch_, walk_.rays, walk_.tracking, walk_.cancelled};
+        const lights::GatherContext own = context();
         const lights::BoundedGeometry weight{bound_};
-        if (!maps_.imperfect) return lights::gather(context, vpls_, choice, weight, receivers_);
-        lights::ImperfectVisibility visibility(context, receivers_, *maps_.imperfect);
-        const auto light = lights::gather_with(context, vpls_, choice, weight, receivers_, visibility);
+        if (!maps_.imperfect) return lights::gather(own, vpls_, choice, weight, receivers_);
+        lights::ImperfectVisibility visibility(own, receivers_, *maps_.imperfect);
+        const auto light = lights::gather_with(own, vpls_, choice, weight, receivers_, visibility);
         imperfect_lookups_ += visibility.lookups();
         return light;
     }
@@ -153,7 +186,8 @@ class EyeTile {
         if (std::all_of(lanes_.begin(), lanes_.end(), [](const Lane& lane) { return lane.points.empty(); }))
             return;
         const auto count = std::size_t(settings_.scattering_points);
-        const std::size_t receivers = std::min(count, most_receivers), spacing = count / receivers;
+        const std::size_t most = selection_.collects() ? count : most_receivers;
+        const std::size_t receivers = std::min(count, most), spacing = count / receivers;
         for (std::size_t n = 0; n < count; ++n) {
             const bool receives = n % spacing == 0 && n / spacing < receivers;
             receivers_.clear();
@@ -161,8 +195,10 @@ class EyeTile {
                 if (Lane& lane = lanes_[std::size_t(i)]; !lane.points.empty())
                     at_point(lane, i, lane.points[n], receives ? float(count) / float(receivers) : 0.0f);
             if (receives)
-                gather({range.first + n / spacing * range.stride, range.stride * receivers, range.end},
-                       vpl_scale * float(receivers));
+                gather(selection_.active() ? range
+                                           : lights::VplRange{range.first + n / spacing * range.stride,
+                                                              range.stride * receivers, range.end},
+                       selection_.active() ? vpl_scale : vpl_scale * float(receivers));
         }
     }
 
@@ -262,6 +298,7 @@ class EyeTile {
     EyeLightLists lists_;
     std::vector<std::uint64_t> list_;  ///< of a tile
     std::uint64_t imperfect_lookups_ = 0;
+    TileSelection selection_;
     TileCompensation<Media> compensation_;
     std::array<Lane, lights::ReceiverTile::width> lanes_;
     lights::ReceiverTile receivers_;

@@ -9,6 +9,7 @@
 #include "integrators/layer_filter/layer_filter.h"
 #include "integrators/screen_space_compensation/screen_space_compensation.h"
 #include "integrators/virtual_point_lights/vpl_light_lists.h"
+#include "integrators/virtual_point_lights/vpl_selection.h"
 #include "integrators/virtual_point_lights/vpl_visibility.h"
 #include "lights/virtual_lights/light_path.h"
 
@@ -23,6 +24,7 @@ struct VplSettings {
     std::optional<ScreenSpaceSettings> screen_space;  ///< after the last pass, on surfaces
     int eye_samples = 1;                              ///< eye paths a pixel and pass
     VisibilitySettings visibility;
+    SelectionSettings selection;
     compensation::RoughnessClamping clamping;
     /// Points in media where the light along an eye ray is gathered, besides the surface behind them; 0: one
     /// collision or the surface, by chance.
@@ -42,6 +44,7 @@ struct VplSettings {
     bool compensates() const { return compensation.enabled || screen_space.has_value(); }
     /// VPLs are shared out among the eye paths of a pixel, instead of all of them meeting every one.
     bool vpls_shared_out() const {
+        if (selection.by_hierarchy()) return false;
         return !compensation.enabled || compensation.strategy == compensation::Strategy::one_to_one;
     }
 
@@ -56,6 +59,7 @@ struct VplSettings {
     lights::LightPathSettings light_paths() const {
         lights::LightPathSettings s;
         s.paths = paths, s.rr_depth = eye.rr_depth;
+        s.keep_states = !selection.by_hierarchy();  // rays begin at receivers
         s.max_vertices = eye.max_depth < 0 ? -1 : std::max(0, eye.max_depth - 2);
         return s;
     }

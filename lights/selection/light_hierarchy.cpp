@@ -192,7 +192,7 @@ LightHierarchy::LightHierarchy(const LightLeaves& leaves, std::uint64_t seed, st
     const std::size_t needed = leaves.size() * (bytes_a_light + sizeof(Item));
     if (leaves.size() > (std::size_t(1) << 31) || needed > max_bytes)
         throw InputError(fmt::format(
-            "a hierarchy over {} lights takes {:.0f} MB while it is built, and may take {:.0f} MB",
+            "a hierarchy over {} lights takes {:.3g} MB while it is built, and may take {:.3g} MB",
             leaves.size(), double(needed) * 1e-6, double(max_bytes) * 1e-6));
     std::vector<Item> items = items_of(leaves);
     if (items.empty()) return;

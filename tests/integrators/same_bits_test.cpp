@@ -103,6 +103,8 @@ const std::map<std::string, Words> numbers = {
     {"tolerance", {"", "0"}},
     {"spacing", {"", "2"}},
     {"texels", {"", "0.5"}},
+    {"threshold", {"", "0"}},
+    {"max_cut", {"", "7"}},
 };
 
 /// Numbers that are tried on the first level alone: what they change is below whoever nests the type.

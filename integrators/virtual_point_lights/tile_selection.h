@@ -1,0 +1,76 @@
+// The light of selected virtual point lights at the receivers of a tile, with what selecting works with.
+#pragma once
+
+#include "integrators/virtual_point_lights/vpl_selection.h"
+#include "lights/selection/light_sampler.h"
+
+namespace mote::integrators {
+
+class TileSelection {
+  public:
+    /// `hierarchy` null: all lights are looked at, and nothing here does anything.
+    TileSelection(const SelectionSettings& settings, const lights::LightHierarchy* hierarchy,
+                  const lights::VplSet& vpls, float bound)
+        : settings_(settings), hierarchy_(hierarchy), bound_(bound) {
+        if (hierarchy_ && settings.cuts()) cut_.emplace(vpls, *hierarchy_, bound, settings.cut);
+    }
+
+    bool active() const { return hierarchy_ != nullptr; }
+    bool collects() const { return active() && settings_.collects(); }
+    bool cuts() const { return cut_.has_value(); }
+
+    /// Unbiased: lights for all receivers of a tile. `key` determines what is drawn.
+    lights::DrawnVpls drawn(const lights::ReceiverLanes& receivers, std::uint64_t key) {
+        const lights::ReceiverBounds bounds(receivers);
+        core::Rng rng(core::hash_keys(key, draws));
+        if (settings_.kind == SelectionSettings::Kind::stochastic)
+            return {sampler_.by_cut(*hierarchy_, bounds, bound_, settings_.samples, rng)};
+        return {sampler_.by_tree(*hierarchy_, bounds, bound_, settings_.samples, rng)};
+    }
+
+    /// Lightcuts at one tile.
+    lights::TileLight cut(const lights::GatherContext& context, const lights::ReceiverTile& receivers,
+                          std::uint64_t key) {
+        points_.clear();
+        points_.add(receivers, lights::GatherKind::surface);
+        return gather_points(context, key)[0];
+    }
+
+    /// Remembers points of a pixel, until gather_points(). `is_surface(lane)` tells the kinds apart.
+    template <typename IsSurface>
+    void collect(const lights::ReceiverTile& receivers, const IsSurface& is_surface) {
+        using lights::GatherKind;
+        for (const GatherKind kind : {GatherKind::surface, GatherKind::medium}) {
+            lights::ReceiverTile tile = receivers;
+            tile.any_active = tile.any_directional = false;
+            for (int i = 0; i < lights::ReceiverTile::width; ++i)
+                if (tile.max_vpl_depth[i] != 0 && is_surface(i) == (kind == GatherKind::surface))
+                    tile.any_active = true, tile.any_directional |= tile.directional[i] != nullptr;
+                else
+                    tile.max_vpl_depth[i] = 0, tile.directional[i] = nullptr;
+            points_.add(tile, kind);
+        }
+    }
+    /// Multidimensional lightcuts over all points since the last call, by kind.
+    lights::Lightcut::Light gather_points(const lights::GatherContext& context, std::uint64_t key) {
+        core::Rng rng(core::hash_keys(key, draws));
+        points_.build(rng);
+        const auto light = cut_->gather(context, points_);
+        points_.clear();
+        return light;
+    }
+
+    lights::LightcutCounters counters() const { return cut_ ? cut_->counters() : lights::LightcutCounters{}; }
+
+  private:
+    static constexpr std::uint64_t draws = 0x73656c656374ull;  ///< apart from what eye paths draw
+
+    const SelectionSettings& settings_;
+    const lights::LightHierarchy* hierarchy_;
+    float bound_;
+    lights::LightSampler sampler_;
+    lights::GatherPoints points_;
+    std::optional<lights::Lightcut> cut_;
+};
+
+}  // namespace mote::integrators

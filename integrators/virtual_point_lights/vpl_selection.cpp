@@ -1,0 +1,127 @@
+#include "integrators/virtual_point_lights/vpl_selection.h"
+
+#include <fmt/format.h>
+
+#include "core/objects/properties.h"
+
+namespace mote::integrators {
+
+using namespace core;
+
+namespace {
+
+using Kind = SelectionSettings::Kind;
+
+/// Nanoseconds of a shadow ray in a packet, as brute force spends them: for an estimate of its time.
+constexpr double ray_nanoseconds = 60.0;
+
+SelectionSettings common(const Properties& p, Kind kind) {
+    SelectionSettings s;
+    s.kind = kind;
+    s.max_bytes = std::size_t(1e6 * p.get_float_in("max_megabytes", 4096.0, 1e-3, 1e7));
+    s.where = p.where;
+    return s;
+}
+
+std::shared_ptr<Object> make_cut(const Properties& p, Kind kind) {
+    SelectionSettings s = common(p, kind);
+    s.cut.threshold = float(p.get_float_in("threshold", 0.02, 0.0, 1.0));
+    s.cut.max_cut = std::uint32_t(p.get_int_in("max_cut", 1000, 1, 1 << 28));
+    return std::make_shared<Selection>(s);
+}
+
+std::shared_ptr<Object> make_drawn(const Properties& p, Kind kind) {
+    SelectionSettings s = common(p, kind);
+    s.samples = std::uint32_t(p.get_int_in("samples", s.samples, 1, 1 << 20));
+    return std::make_shared<Selection>(s);
+}
+
+const Parameter most_megabytes{"max_megabytes", "float", "4096",
+                               "of the hierarchy while it is built; larger ones are refused"};
+const std::vector<Parameter> cut_parameters{
+    {"threshold", "float", "0.02",
+     "share of a pixel's light that the error of one group may be; 0: all VPLs"},
+    {"max_cut", "integer", "1000", "groups that a tile of 4 x 4 pixels is lit by at most"},
+    most_megabytes};
+const std::vector<Parameter> drawn_parameters{
+    {"samples", "integer", "64", "lights drawn for each tile of 4 x 4 pixels"}, most_megabytes};
+
+std::string example(const std::string& type) { return "<selection type=\"" + type + "\"/>"; }
+
+/// What is best here, and why.
+std::pair<std::string, std::string> recommended(const GatherSize& size) {
+    constexpr double few_lights = 500.0;
+    const double seconds = size.vpls * size.receivers * size.points * ray_nanoseconds * 1e-9;
+    if (size.vpls < few_lights)
+        return {"all", fmt::format("{:.0f} VPLs are fewer than a hierarchy would look at", size.vpls)};
+    const std::string why = fmt::format(
+        "about {:.2g} VPLs at {:.2g} receivers are {:.2g} shadow rays, {:.0f} s of processor time", size.vpls,
+        size.receivers * size.points, size.vpls * size.receivers * size.points, seconds);
+    if (size.points > 1)
+        return {"stochastic_lightcuts, or multidimensional_lightcuts for a picture of one pass",
+                why + "; points along a ray share a cut"};
+    return {"stochastic_lightcuts, or lightcuts for a picture of one pass", why};
+}
+
+std::string chosen(const SelectionSettings& s) {
+    const std::string cut =
+        fmt::format("threshold {:g} %, at most {} groups", 100.0 * double(s.cut.threshold), s.cut.max_cut);
+    switch (s.kind) {
+        case Kind::all:
+            return "all VPLs at every receiver";
+        case Kind::lightcuts:
+            return "lightcuts, " + cut;
+        case Kind::multidimensional:
+            return "multidimensional lightcuts, " + cut;
+        case Kind::stochastic:
+            return fmt::format("stochastic lightcuts, {} lights a tile", s.samples);
+        case Kind::light_tree:
+            return fmt::format("{} lights a tile, drawn by the light hierarchy", s.samples);
+    }
+    return "";
+}
+
+}  // namespace
+
+void plan_selection(Plan& plan, const SelectionSettings& s, const GatherSize& size) {
+    plan.run("selection", chosen(s),
+             s.cuts()           ? "biased by at most the threshold for each group; one cut a tile of 4 x 4"
+             : s.by_hierarchy() ? "unbiased; the same lights for a tile of 4 x 4"
+                                : "exact, time grows with the number of VPLs");
+    const auto [best, why] = recommended(size);
+    plan.run("selection for this scene", best, why);
+    if (s.by_hierarchy())
+        plan.run("memory of the light hierarchy",
+                 fmt::format("{:.1f} MB", size.vpls * double(lights::LightHierarchy::bytes_a_light) * 1e-6),
+                 "72 bytes a VPL, besides its own");
+}
+
+void register_selection(Registry& registry) {
+    const auto add = [&](const std::string& type, const std::string& summary,
+                         const std::vector<Parameter>& parameters, auto make, Kind kind) {
+        registry.add({Category::selection, type, summary, parameters, example(type)},
+                     [make, kind](const Properties& p) { return make(p, kind); });
+    };
+    registry.add({Category::selection,
+                  "all",
+                  "All virtual point lights at every receiver: brute force.",
+                  {},
+                  example("all")},
+                 [](const Properties&) { return std::make_shared<Selection>(SelectionSettings{}); });
+    add("lightcuts",
+        "Groups of lights, each by one light that stands for it, as small as their largest error wants: "
+        "biased "
+        "within its threshold.",
+        cut_parameters, make_cut, Kind::lightcuts);
+    add("multidimensional_lightcuts",
+        "Lightcuts over all points of a pixel at once: along its eye rays through media, on the surface "
+        "behind "
+        "them, and of all its eye paths.",
+        cut_parameters, make_cut, Kind::multidimensional);
+    add("stochastic_lightcuts", "One light drawn anew from each group of a cut: unbiased.", drawn_parameters,
+        make_drawn, Kind::stochastic);
+    add("light_tree", "Lights drawn by the hierarchy in proportion to what they may send: unbiased.",
+        drawn_parameters, make_drawn, Kind::light_tree);
+}
+
+}  // namespace mote::integrators
