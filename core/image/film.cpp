@@ -1,5 +1,4 @@
-// The sums of a film: one pass at a time into the open block, sixteen passes to a block, blocks in index
-// order.
+// The sums of a film, which take one pass at a time, or all those of another film.
 #include "core/image/film.h"
 
 #include <tbb/blocked_range.h>
@@ -7,11 +6,13 @@
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <functional>
 #include <map>
 #include <stdexcept>
+#include <string>
+
+#include "core/objects/error.h"
 
 namespace mote::core {
 
@@ -42,19 +43,52 @@ bool pixel_is_finite(const PassImage& image, std::size_t pixel) {
 
 }  // namespace
 
-void Film::Sums::close_block() {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, total.size(), 3 * grain), [&](const auto& range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) {
-            total[i] += block[i];
-            block[i] = 0.0;
-        }
-    });
+std::uint32_t Film::Part::complete_blocks(std::size_t k) const {
+    const std::uint64_t before = (std::uint64_t(first) + (1ull << (k + 1)) - 1) >> (k + 1);
+    const std::uint64_t end = std::uint64_t(first + passes) >> (k + 1);
+    return std::uint32_t(end - std::min(before, end));
 }
+
+/// A block of passes behind those that a part has: joined with those before it to the largest aligned blocks,
+/// as a binary counter carries.
+class Film::NewBlock {
+  public:
+    NewBlock(Part& part, std::uint32_t level, std::size_t pixels) : part_(part), level_(level) {
+        std::vector<Block>& blocks = part.blocks;
+        for (; joins_ < blocks.size(); ++joins_) {
+            const Block& before = blocks[blocks.size() - 1 - joins_];
+            if (before.level != level + joins_ || (before.first >> before.level) % 2 == 1) break;
+        }
+        while (part.half_squares.size() < level + joins_) part.half_squares.emplace_back(pixels);
+        if (joins_ == 0) blocks.push_back({part.first + part.passes, level, std::vector<float>(pixels)});
+        target_ = blocks.size() - std::max<std::size_t>(joins_, 1);
+    }
+    /// Its sum of a pixel.
+    void put(std::size_t pixel, float sum) {
+        for (std::size_t k = 0; k < joins_; ++k) {
+            const float before = part_.blocks[part_.blocks.size() - 1 - k].sums[pixel];
+            part_.half_squares[level_ + k].add(pixel, (before - sum) * (before - sum));
+            sum += before;
+        }
+        part_.blocks[target_].sums[pixel] = sum;
+    }
+    /// After all pixels.
+    void finish() {
+        part_.blocks[target_].level = level_ + std::uint32_t(joins_);
+        part_.blocks.resize(target_ + 1);
+        part_.passes += 1u << level_;
+    }
+
+  private:
+    Part& part_;
+    std::uint32_t level_;
+    std::size_t joins_ = 0, target_ = 0;
+};
 
 Film::Film(int width, int height, std::vector<Layer> layers, bool all_squares)
     : width_(width), height_(height), layers_(std::move(layers)), all_squares_(all_squares) {
     if (width < 1 || height < 1) throw std::invalid_argument("a film needs at least one pixel");
-    sums_.assign(layers_.size(), Sums(3 * pixels()));
+    sums_.assign(layers_.size(), ExactSums(3 * pixels()));
     for (const Layer& layer : layers_)
         layer_squares_.emplace_back(all_squares_ || layer.squares ? 3 * pixels() : 0);
     replaced_.resize(layers_.size());
@@ -95,6 +129,17 @@ std::uint32_t Film::pass_count() const {
     return count;
 }
 
+std::uint32_t Film::first_pass() const {
+    std::uint32_t first = 0;
+    for (const Part& part : parts_) first += part.first;
+    return first;
+}
+
+void Film::begin_at(std::size_t part, std::uint32_t first) {
+    if (pass_count(part) > 0) throw std::logic_error("the film has passes already");
+    parts_.at(part).first = first;
+}
+
 bool Film::has_passes(std::uint32_t passes) const {
     return std::all_of(parts_.begin(), parts_.end(), [&](const Part& part) { return part.passes >= passes; });
 }
@@ -104,7 +149,7 @@ double Film::passes_of(std::size_t layer, std::size_t pixel) const {
     return where < layers_.size() ? sums_[where].at(3 * pixel) : double(parts_[layers_[layer].part].passes);
 }
 
-void Film::add_pixel(const PassImage& image, Part& part, std::size_t pixel) {
+float Film::add_pixel(const PassImage& image, Part& part, std::size_t pixel) {
     double beauty[3] = {0.0, 0.0, 0.0};
     for (std::size_t of_image = 0; of_image < part.layers.size(); ++of_image) {
         const std::size_t layer = part.layers[of_image];
@@ -112,62 +157,84 @@ void Film::add_pixel(const PassImage& image, Part& part, std::size_t pixel) {
         for (int c = 0; c < 3; ++c) {
             const double v = value[c];
             const std::size_t i = 3 * pixel + std::size_t(c);
-            sums_[layer].block[i] += v;
-            if (has_squares(layer)) layer_squares_[layer].block[i] += v * v;
+            sums_[layer].add(i, v);
+            if (has_squares(layer)) layer_squares_[layer].add(i, v * v);
             if (!layers_[layer].auxiliary) beauty[c] += v;
         }
     }
-    for (int c = 0; c < 3; ++c)
-        part.beauty_squares.block[3 * pixel + std::size_t(c)] += beauty[c] * beauty[c];
-    add_to_halves(part, pixel, float((beauty[0] + beauty[1] + beauty[2]) / 3.0));
+    for (int c = 0; c < 3; ++c) part.beauty_squares.add(3 * pixel + std::size_t(c), beauty[c] * beauty[c]);
+    return float((beauty[0] + beauty[1] + beauty[2]) / 3.0);
 }
 
-// A binary counter: a pass closes as many blocks as the count before it ends in ones.
-void Film::add_to_halves(Part& part, std::size_t pixel, float sum) {
-    const auto closed = std::size_t(std::countr_one(part.passes));
-    for (std::size_t k = 0; k < closed; ++k) {
-        const float first = part.halves[k].open[pixel];
-        part.halves[k].squares[pixel] += (first - sum) * (first - sum);
-        sum += first;
-    }
-    part.halves[closed].open[pixel] = sum;
-}
-
-void Film::close_block(Part& part) {
-    for (const std::size_t layer : part.layers)
-        sums_[layer].close_block(), layer_squares_[layer].close_block();
-    part.beauty_squares.close_block();
+void Film::check_room(const Part& part, std::uint32_t more) const {
+    if (more > most_passes - part.passes)
+        throw InputError("a film holds at most " + std::to_string(most_passes) + " passes");
 }
 
 void Film::add_pass(const PassImage& image, std::size_t index, double work) {
     Part& part = parts_.at(index);
     if (image.width() != width_ || image.height() != height_ || image.layers() != part.layers.size())
         throw std::invalid_argument("the pass does not fit the film");
+    check_room(part, 1);
     for (Replacement& replaced : replaced_) replaced = {};
 
-    if (std::size_t(std::countr_one(part.passes)) == part.halves.size())
-        part.halves.push_back({std::vector<float>(pixels()), std::vector<float>(pixels(), 0.0f)});
+    NewBlock block(part, 0, pixels());
     // Pixels are independent of each other, so the order of tasks does not matter to any bit.
     non_finite_ += tbb::parallel_reduce(
         tbb::blocked_range<std::size_t>(0, pixels(), grain), std::uint64_t(0),
         [&](const auto& range, std::uint64_t dropped) {
             for (std::size_t pixel = range.begin(); pixel < range.end(); ++pixel) {
                 if (pixel_is_finite(image, pixel))
-                    add_pixel(image, part, pixel);
+                    block.put(pixel, add_pixel(image, part, pixel));
                 else
-                    add_to_halves(part, pixel, 0.0f), ++dropped;
+                    block.put(pixel, 0.0f), ++dropped;
             }
             return dropped;
         },
         std::plus<>());
     part.work += work;
-    if (++part.passes % block_size == 0) close_block(part);
+    block.finish();
+}
+
+void Film::add(const Film& next) {
+    bool fits = next.width_ == width_ && next.height_ == height_ && next.layers_.size() == layers_.size() &&
+                next.parts() == parts() && next.all_squares_ == all_squares_;
+    for (std::size_t i = 0; fits && i < layers_.size(); ++i)
+        fits = layers_[i].name == next.layers_[i].name && layers_[i].part == next.layers_[i].part &&
+               has_squares(i) == next.has_squares(i);
+    for (std::size_t i = 0; fits && i < parts(); ++i) fits = next_pass(i) == next.first_pass(i);
+    if (!fits) throw std::invalid_argument("the film does not continue this one");
+    for (std::size_t i = 0; i < parts(); ++i) check_room(parts_[i], next.parts_[i].passes);
+    for (Replacement& replaced : replaced_) replaced = {};
+
+    const auto add_sums = [](ExactSums& sums, const ExactSums& more) {
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, more.size(), 3 * grain), [&](const auto& range) {
+            for (std::size_t i = range.begin(); i < range.end(); ++i) sums.add(i, more);
+        });
+    };
+    for (std::size_t i = 0; i < layers_.size(); ++i)
+        add_sums(sums_[i], next.sums_[i]), add_sums(layer_squares_[i], next.layer_squares_[i]);
+    for (std::size_t i = 0; i < parts(); ++i) {
+        Part& part = parts_[i];
+        const Part& more = next.parts_[i];
+        add_sums(part.beauty_squares, more.beauty_squares);
+        while (part.half_squares.size() < more.half_squares.size()) part.half_squares.emplace_back(pixels());
+        for (std::size_t k = 0; k < more.half_squares.size(); ++k)
+            add_sums(part.half_squares[k], more.half_squares[k]);
+        for (const Block& of_more : more.blocks) {
+            NewBlock block(part, of_more.level, pixels());
+            for_each_pixel(pixels(), [&](std::size_t p) { block.put(p, of_more.sums[p]); });
+            block.finish();
+        }
+        part.work += more.work;
+    }
+    non_finite_ += next.non_finite_;
 }
 
 std::vector<Rgb> Film::mean(std::size_t layer) const {
     if (!replaced_.at(layer).mean.empty()) return replaced_[layer].mean;
     std::vector<Rgb> result(pixels(), Rgb(0.0f));
-    const Sums& sums = sums_[layer];
+    const ExactSums& sums = sums_[layer];
     for_each_pixel(pixels(), [&](std::size_t p) {
         const double n = passes_of(layer, p);
         if (n == 0.0) return;
@@ -186,7 +253,7 @@ std::vector<Rgb> Film::beauty() const {
     return result;
 }
 
-std::vector<Rgb> Film::variance_of_mean(std::span<const std::size_t> layers, const Sums& squares) const {
+std::vector<Rgb> Film::variance_of_mean(std::span<const std::size_t> layers, const ExactSums& squares) const {
     std::vector<Rgb> result(pixels(), Rgb(0.0f));
     if (layers.empty()) return result;
     const double passes = parts_[layers_[layers.front()].part].passes;

@@ -1,7 +1,8 @@
-// The running sum of every layer of a picture, in double precision.
+// The running sum of every layer of a picture.
 //
-// Passes are summed in blocks of `block_size`, and blocks are added in index order, so that the bits of the
-// result depend on the pass count alone: not on interruptions, nor on which machine rendered which block.
+// Sums are exact to the digits that they keep (exact_sums.h), so that the bits of the result depend on which
+// passes it holds alone: not on interruptions, nor on which machine rendered which of them. A film may begin
+// with a later pass than the first, and films of passes that follow each other are added up (add()).
 //
 // A picture may have several parts (Layer::part), each with passes of its own, as many as it needs: the mean
 // of a layer is its sum over the passes of its part, and the variance of the beauty the sum over its parts,
@@ -14,13 +15,14 @@
 #include <string>
 #include <vector>
 
+#include "core/image/exact_sums.h"
 #include "core/image/pass_image.h"
 
 namespace mote::core {
 
 class Film {
   public:
-    static constexpr std::uint32_t block_size = 16;  ///< passes
+    static constexpr std::uint32_t most_passes = ExactSums::most_terms;  ///< of a part
 
     /// `all_squares`: keep the sum of squares of every layer, not of the beauty and of those that ask for it.
     /// Throws std::invalid_argument when two layers have one name, a Layer::where names none or one of
@@ -32,8 +34,16 @@ class Film {
     std::size_t pixels() const { return std::size_t(width_) * std::size_t(height_); }  ///< width times height
     std::span<const Layer> layers() const { return layers_; }  ///< all of them, in order
     std::size_t parts() const { return parts_.size(); }        ///< how many
+    bool keeps_all_squares() const { return all_squares_; }    ///< as the constructor was told
     std::uint32_t pass_count() const;                          ///< of all parts together
     std::uint32_t pass_count(std::size_t part) const { return parts_.at(part).passes; }  ///< of one part
+    /// Index of the first pass of a part that the film holds, or will hold, and of the one after the last.
+    std::uint32_t first_pass(std::size_t part) const { return parts_.at(part).first; }
+    std::uint32_t next_pass(std::size_t part) const { return parts_[part].first + pass_count(part); }
+    /// Of all parts together: 0 for a film that holds all passes so far.
+    std::uint32_t first_pass() const;
+    /// Lets a part of a film without passes begin with this pass.
+    void begin_at(std::size_t part, std::uint32_t first);
     /// Has every part so many passes? A picture is complete with one.
     bool has_passes(std::uint32_t passes) const;
     /// The layers of a part, in order: those of the images of its passes.
@@ -45,8 +55,12 @@ class Film {
     std::uint64_t non_finite() const { return non_finite_; }
 
     /// Adds the next pass of a part. Must be called in index order. `work` is what it cost, in any unit: the
-    /// film keeps the sum. Undoes set_mean().
+    /// film keeps the sum. Undoes set_mean(). Throws InputError beyond most_passes.
     void add_pass(const PassImage& image, std::size_t part = 0, double work = 0.0);
+    /// Adds the passes that follow, of a film with the same size and layers: to the same bits as if they had
+    /// been added here one by one. Throws std::invalid_argument where the parts of `next` do not begin where
+    /// these end. Undoes set_mean().
+    void add(const Film& next);
 
     /// Mean over passes of one layer, as float. Over the passes of Layer::where, zero where there are none.
     std::vector<Rgb> mean(std::size_t layer) const;
@@ -59,7 +73,7 @@ class Film {
     /// The share of a part in that.
     std::vector<Rgb> part_variance_of_mean(std::size_t part) const;
     /// Does the film know the variance of a layer?
-    bool has_squares(std::size_t layer) const { return !layer_squares_.at(layer).total.empty(); }
+    bool has_squares(std::size_t layer) const { return !layer_squares_.at(layer).empty(); }
     /// The same for a layer, over the passes of Layer::where; needs has_squares(layer).
     std::vector<Rgb> layer_variance_of_mean(std::size_t layer) const;
     /// Replaces what mean() returns for a layer, for post-processes (Estimator::finish). The sums, and with
@@ -88,39 +102,35 @@ class Film {
     };
     GainAndNoise gain_and_noise() const;  ///< noise() and what it is computed with
 
-    /// The bits of the film, for checkpoints: sums, counts, block state, and a checksum.
+    /// The bits of the film, for checkpoints: sums, counts, open blocks, and a checksum.
     std::vector<std::byte> serialize() const;
     /// Throws InputError when the bytes are damaged or do not fit this film's size and layers; the film is
     /// unchanged then.
     void deserialize(std::span<const std::byte> bytes);
 
   private:
-    /// [pixel * channels + channel]: `total` holds finished blocks, `block` the one that is open.
-    struct Sums {
-        std::vector<double> total, block;
-        explicit Sums(std::size_t size) : total(size, 0.0), block(size, 0.0) {}
-        double at(std::size_t i) const { return total[i] + block[i]; }
-        void close_block();
-    };
-    /// Of every aligned block of 2^(k+1) passes: how its halves differ, in the mean of the beauty's channels.
-    struct Halves {
-        std::vector<float> open;     ///< sum over the first half, where the second is not complete yet
-        std::vector<float> squares;  ///< (difference of the halves' sums)^2, summed over complete blocks
+    /// 2^level passes from `first` on, a multiple of that: the sum of the mean of the beauty's channels.
+    struct Block {
+        std::uint32_t first = 0, level = 0;
+        std::vector<float> sums;
     };
     struct Part {
-        std::uint32_t passes = 0;
+        std::uint32_t first = 0, passes = 0;
         double work = 0.0;
-        Sums beauty_squares;                     ///< three channels
-        std::vector<Halves> halves;              ///< [k] of its beauty; as many as `passes` has bits
+        ExactSums beauty_squares;                ///< three channels
+        std::vector<Block> blocks;               ///< the largest that its passes consist of, in order
+        std::vector<ExactSums> half_squares;     ///< [k]: how the halves of blocks of 2^(k+1) differ, squared
         std::vector<std::size_t> layers;         ///< in order
         std::vector<std::size_t> beauty_layers;  ///< those that are not auxiliary, in order
         explicit Part(std::size_t pixels) : beauty_squares(3 * pixels) {}
+        /// How many blocks of 2^(k+1) passes are complete.
+        std::uint32_t complete_blocks(std::size_t k) const;
     };
+    class NewBlock;
     void find_parts();
     void find_where();
-    void add_pixel(const PassImage& image, Part& part, std::size_t pixel);
-    static void add_to_halves(Part& part, std::size_t pixel, float sum);
-    void close_block(Part& part);
+    float add_pixel(const PassImage& image, Part& part, std::size_t pixel);
+    void check_room(const Part& part, std::uint32_t more) const;
     std::vector<Rgb> mean_of_passes() const;  ///< of the beauty, whatever set_mean() says
     bool has_replaced_variance() const;
     /// Of the beauty as it is shown: what set_mean() says of a layer in place of its passes' variance.
@@ -129,7 +139,7 @@ class Film {
     double shown_sum(const Part& part, double of_passes, std::span<const double> weights) const;
     /// d[k] of core/image/sobol_gain.h.
     std::vector<double> differences(const Part& part, std::span<const double> weights) const;
-    std::vector<Rgb> variance_of_mean(std::span<const std::size_t> layers, const Sums& squares) const;
+    std::vector<Rgb> variance_of_mean(std::span<const std::size_t> layers, const ExactSums& squares) const;
     /// How many passes the mean of a layer is over, for a pixel.
     double passes_of(std::size_t layer, std::size_t pixel) const;
     template <typename AnyFilm, typename Body>
@@ -140,9 +150,9 @@ class Film {
     bool all_squares_;
     std::uint64_t non_finite_ = 0;
     std::vector<Part> parts_;
-    std::vector<Sums> sums_;           ///< one per layer, three channels
-    std::vector<Sums> layer_squares_;  ///< one per layer, empty where not kept
-    std::vector<std::size_t> where_;   ///< index of Layer::where, or that of no layer
+    std::vector<ExactSums> sums_;           ///< one per layer: [3 pixel + channel]
+    std::vector<ExactSums> layer_squares_;  ///< one per layer, empty where not kept
+    std::vector<std::size_t> where_;        ///< index of Layer::where, or that of no layer
     Replacements replaced_;
 };
 

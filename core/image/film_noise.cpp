@@ -13,10 +13,10 @@ namespace mote::core {
 
 std::vector<double> Film::differences(const Part& part, std::span<const double> weights) const {
     std::vector<double> d;
-    for (std::size_t k = 0; part.passes >> (k + 1) > 0; ++k) {
+    for (std::size_t k = 0; part.complete_blocks(k) > 0; ++k) {
         double squares = 0.0;
-        for (std::size_t p = 0; p < pixels(); ++p) squares += weights[p] * double(part.halves[k].squares[p]);
-        d.push_back(squares / (part.passes >> (k + 1)) / std::exp2(double(k) + 2.0));
+        for (std::size_t p = 0; p < pixels(); ++p) squares += weights[p] * part.half_squares[k].at(p);
+        d.push_back(squares / part.complete_blocks(k) / std::exp2(double(k) + 2.0));
     }
     return d;
 }
@@ -93,7 +93,9 @@ Film::GainAndNoise Film::gain_and_noise() const {
         if (!(squares > 0.0)) continue;
         const std::vector<double> d = differences(parts_[i], weights.weight);
         // A filter weighs the errors of pixels, which are independent: what it leaves is as much smaller.
-        const double gain = sobol_gain(d, parts_[i].passes, sum * sum / squares);
+        // Where the film begins later, blocks are fewer: what they cannot say of longer ones is not counted.
+        const auto passes = std::uint32_t(std::min<std::uint64_t>(parts_[i].passes, (2ull << d.size()) - 1));
+        const double gain = sobol_gain(d, passes, sum * sum / squares);
         independent += sum, expected += gain * sum;
         shown += gain * (replaced ? shown_sum(parts_[i], sum, weights.weight) : sum);
     }

@@ -1,12 +1,10 @@
 // The bits of a film as bytes: header, a head for each part, packed sums (packed_numbers.h), checksum.
-// Little-endian, as every machine this runs on.
-//
-// Before the first block of a part is complete all totals are zero, and right after a block the open one is:
-// these are not written, for a film takes hundreds of megabytes.
+// Little-endian, as every machine this runs on. Which blocks of passes there are follows from their numbers.
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -21,40 +19,39 @@ namespace {
 
 struct Header {
     std::array<char, 8> magic = {'m', 'o', 't', 'e', 'f', 'i', 'l', 'm'};
-    std::uint32_t version = 3;
+    std::uint32_t version = 4;
     std::uint32_t width = 0, height = 0, layers = 0, all_squares = 0, parts = 0;
     std::uint64_t non_finite = 0;
 };
 static_assert(sizeof(Header) == 40, "the header has no padding whose bytes could vary");
 struct PartHeader {
-    std::uint64_t passes = 0;
+    std::uint32_t first = 0, passes = 0;
     double work = 0.0;
 };
 
-bool has_totals(std::uint32_t passes) { return passes >= Film::block_size; }
-bool has_blocks(std::uint32_t passes) { return passes % Film::block_size != 0; }
-// Of blocks of 2^(k+1) passes: is half of one there, and has one been complete?
-bool is_open(std::uint32_t passes, std::size_t k) { return (passes >> k) % 2 == 1; }
-bool is_closed(std::uint32_t passes, std::size_t k) { return std::uint64_t(passes) >> (k + 1) > 0; }
+/// Calls body(first, level) for the largest aligned blocks that passes consist of, in order.
+template <typename Body>
+void for_each_block(std::uint64_t first, std::uint64_t passes, const Body& body) {
+    for (const std::uint64_t end = first + passes; first < end;) {
+        const auto fits = std::uint32_t(std::bit_width(end - first) - 1);
+        const std::uint32_t level =
+            first == 0 ? fits : std::min(fits, std::uint32_t(std::countr_zero(first)));
+        body(std::uint32_t(first), level);
+        first += 1ull << level;
+    }
+}
 
 }  // namespace
 
-/// Every array that the film of so many passes has, in the order of the file.
+/// Every array that the film has, in the order of the file.
 template <typename AnyFilm, typename Body>
 void Film::for_each_array(AnyFilm& film, const Body& body) {
-    const auto of_sums = [&](auto& sums, std::uint32_t passes) {
-        if (has_totals(passes)) body(sums.total);
-        if (has_blocks(passes)) body(sums.block);
-    };
-    const auto passes_of = [&](std::size_t layer) { return film.parts_[film.layers_[layer].part].passes; };
-    for (std::size_t i = 0; i < film.layers_.size(); ++i) of_sums(film.sums_[i], passes_of(i));
-    for (std::size_t i = 0; i < film.layers_.size(); ++i) of_sums(film.layer_squares_[i], passes_of(i));
+    for (auto& sums : film.sums_) ExactSums::for_each_array(sums, body);
+    for (auto& sums : film.layer_squares_) ExactSums::for_each_array(sums, body);
     for (auto& part : film.parts_) {
-        of_sums(part.beauty_squares, part.passes);
-        for (std::size_t k = 0; k < part.halves.size(); ++k) {
-            if (is_open(part.passes, k)) body(part.halves[k].open);
-            if (is_closed(part.passes, k)) body(part.halves[k].squares);
-        }
+        ExactSums::for_each_array(part.beauty_squares, body);
+        for (auto& block : part.blocks) body(block.sums);
+        for (auto& sums : part.half_squares) ExactSums::for_each_array(sums, body);
     }
 }
 
@@ -65,7 +62,7 @@ std::vector<std::byte> Film::serialize() const {
     header.parts = std::uint32_t(parts_.size()), header.non_finite = non_finite_;
 
     std::vector<PartHeader> heads;
-    for (const Part& part : parts_) heads.push_back({part.passes, part.work});
+    for (const Part& part : parts_) heads.push_back({part.first, part.passes, part.work});
     const std::size_t head_bytes = heads.size() * sizeof(PartHeader);
     std::vector<Packing> packings;
     std::size_t size = sizeof(header) + head_bytes + sizeof(std::uint64_t);
@@ -114,52 +111,46 @@ void Film::deserialize(std::span<const std::byte> bytes) {
         throw InputError("the film is damaged: its length is wrong");
     std::memcpy(heads.data(), content.data() + sizeof(header), head_bytes);
 
-    // Nothing is changed before it is known that all of it is there: but for passes and halves, which say
-    // what `all` is, and are exchanged again where it is not.
-    std::vector<std::pair<std::uint32_t, std::vector<Halves>>> states;
-    for (const PartHeader& head : heads) {
-        states.emplace_back(std::uint32_t(head.passes), 0);
-        for (std::size_t k = 0; k < std::size_t(std::bit_width(states.back().first)); ++k)
-            states.back().second.push_back(
-                {std::vector<float>(pixels()), std::vector<float>(pixels(), 0.0f)});
+    for (const PartHeader& head : heads)
+        if (head.passes > most_passes || head.first > std::numeric_limits<std::uint32_t>::max() - most_passes)
+            throw InputError("the film is damaged: it has too many passes");
+
+    // Into a film of its own: this one is changed when all is known to be right.
+    Film read(width_, height_, layers_, all_squares_);
+    read.non_finite_ = header.non_finite;
+    for (std::size_t i = 0; i < heads.size(); ++i) {
+        Part& part = read.parts_[i];
+        part.first = heads[i].first, part.passes = heads[i].passes, part.work = heads[i].work;
+        for_each_block(part.first, part.passes, [&](std::uint32_t first, std::uint32_t level) {
+            part.blocks.push_back({first, level, std::vector<float>(pixels())});
+        });
+        while (part.complete_blocks(part.half_squares.size()) > 0) part.half_squares.emplace_back(pixels());
     }
-    const auto exchange_states = [&] {
-        for (std::size_t i = 0; i < parts_.size(); ++i)
-            std::swap(parts_[i].passes, states[i].first), std::swap(parts_[i].halves, states[i].second);
-    };
-    exchange_states();
     std::vector<Packing> packings;
     auto rest = content.subspan(sizeof(header) + head_bytes);
     bool fits = true;
-    for_each_array(*this, [&](const auto& numbers) {
+    for_each_array(read, [&](const auto& numbers) {
         auto packing = fits ? read_packing(rest, numbers.size(), sizeof(numbers[0])) : std::nullopt;
         fits = packing.has_value();
         if (!fits) return;
         rest = rest.subspan(packing->size);
         packings.push_back(std::move(*packing));
     });
-    if (!fits || !rest.empty()) {
-        exchange_states();
-        throw InputError("the film is damaged: its length is wrong");
-    }
-    const auto clear_absent = [&](Sums& sums, std::uint32_t passes) {
-        if (!has_totals(passes)) std::fill(sums.total.begin(), sums.total.end(), 0.0);
-        if (!has_blocks(passes)) std::fill(sums.block.begin(), sums.block.end(), 0.0);
-    };
-    for (std::size_t i = 0; i < layers_.size(); ++i) {
-        clear_absent(sums_[i], parts_[layers_[i].part].passes);
-        clear_absent(layer_squares_[i], parts_[layers_[i].part].passes);
-    }
-    for (std::size_t i = 0; i < parts_.size(); ++i)
-        clear_absent(parts_[i].beauty_squares, parts_[i].passes), parts_[i].work = heads[i].work;
+    if (!fits || !rest.empty()) throw InputError("the film is damaged: its length is wrong");
     const std::byte* from = content.data() + sizeof(header) + head_bytes;
     auto packing = packings.begin();
-    for_each_array(*this, [&](auto& numbers) {
+    for_each_array(read, [&](auto& numbers) {
         unpack(from, *packing, std::span(numbers));
         from += packing++->size;
     });
-    non_finite_ = header.non_finite;
-    for (Replacement& replaced : replaced_) replaced = {};
+    const auto places_exist = [](const ExactSums& sums) { return sums.places_exist(); };
+    fits = std::ranges::all_of(read.sums_, places_exist) &&
+           std::ranges::all_of(read.layer_squares_, places_exist);
+    for (const Part& part : read.parts_)
+        fits = fits && part.beauty_squares.places_exist() &&
+               std::ranges::all_of(part.half_squares, places_exist);
+    if (!fits) throw InputError("the film is damaged: it holds a number that cannot be");
+    *this = std::move(read);
 }
 
 }  // namespace mote::core

@@ -1,8 +1,9 @@
-// Arrays of float or double as fewer bytes: low bytes that are zero in all of 256 neighbours are left out.
+// Arrays of numbers as fewer bytes: bytes that say nothing in all of 256 neighbours are left out.
 //
-// Sums of a few passes are doubles whose last bits are empty, and whole rows of a picture may be black. A
-// checkpoint that is written when somebody pressed Ctrl-C has about half the bytes for it. Layout: for each
-// group of 256 numbers how many high bytes are kept (0 to 4 or 8), then those of all numbers in order,
+// Low bytes are zero where sums are those of a few floats, or rows of a picture are black; high bytes of
+// small whole numbers repeat the sign. A checkpoint that is written when somebody pressed Ctrl-C has about
+// half the bytes for it. Layout: for each group of 256 numbers one byte, how many bytes of each are kept (0
+// to 8) plus 16 times how many zero bytes there were below them; then the kept bytes of all numbers in order,
 // little-endian.
 #pragma once
 
@@ -15,11 +16,12 @@
 namespace mote::core {
 
 struct Packing {
-    std::vector<std::uint8_t> kept;   ///< bytes of each number, for every group
-    std::vector<std::size_t> offset;  ///< where a group begins, behind `kept`
+    std::vector<std::uint8_t> heads;  ///< of each group, as in the file
+    std::vector<std::size_t> offset;  ///< where a group begins, behind `heads`
     std::size_t size = 0;             ///< bytes of all
 };
 
+/// T: float, std::int64_t or std::uint8_t.
 template <typename T>
 Packing packing_of(std::span<const T> numbers);
 /// `to`: packing.size bytes.

@@ -1,6 +1,7 @@
 // Packed numbers come back to the bit, take no more than they must, and lying heads are refused.
 #include "core/image/packed_numbers.h"
 
+#include <array>
 #include <bit>
 #include <limits>
 
@@ -22,8 +23,8 @@ std::size_t there_and_back(const std::vector<T>& numbers) {
     std::vector<T> back(numbers.size(), T(7));
     unpack(bytes.data(), *read, std::span(back));
     for (std::size_t i = 0; i < numbers.size(); ++i) {
-        using Bits = std::conditional_t<sizeof(T) == 8, std::uint64_t, std::uint32_t>;
-        REQUIRE(std::bit_cast<Bits>(back[i]) == std::bit_cast<Bits>(numbers[i]));
+        const auto bytes_of = [](const T& x) { return std::bit_cast<std::array<std::byte, sizeof(T)>>(x); };
+        REQUIRE(bytes_of(back[i]) == bytes_of(numbers[i]));
     }
     return packing.size;
 }
@@ -34,14 +35,20 @@ TEST_CASE("Packed numbers are the same bits again", "[film][packed]") {
     Rng rng(1);
     for (const std::size_t count : {0u, 1u, 255u, 256u, 257u, 5000u}) {
         const std::size_t groups = (count + 255) / 256;
-        std::vector<double> numbers(count, 0.0);
+        std::vector<std::int64_t> numbers(count, 0);
         CHECK(there_and_back(numbers) == groups);
-        for (double& x : numbers) x = double(rng.next_float());  // 24 of 53 bits: three bytes are empty
-        CHECK(there_and_back(numbers) <= groups + 5 * count);
-        for (double& x : numbers)
-            x = std::bit_cast<double>(std::uint64_t(rng.next_u32()) << 32 |
-                                      rng.next_u32());  // NaN and infinity as well
+        for (std::int64_t& x : numbers) x = (std::int64_t(rng.next_u32() >> 9) - (1 << 22)) * (1 << 16);
+        CHECK(there_and_back(numbers) <= groups + 3 * count);  // 23 bits and two empty bytes below them
+        for (std::int64_t& x : numbers) x = rng.next_u32() % 2 == 0 ? 127 : -128;
+        CHECK(there_and_back(numbers) == groups + count);
+        for (std::int64_t& x : numbers)
+            x = std::int64_t(std::uint64_t(rng.next_u32()) << 32 | rng.next_u32());
         there_and_back(numbers);
+        for (std::int64_t& x : numbers)
+            x = std::numeric_limits<std::int64_t>::min() + std::int64_t(rng.next_u32() % 2);
+        there_and_back(numbers);
+        std::vector<std::uint8_t> small(count, 26);
+        CHECK(there_and_back(small) == groups + count);
         std::vector<float> singles(count, -0.0f);
         CHECK(there_and_back(singles) == groups + count);
         for (float& x : singles) x = rng.next_float() - 0.5f;
@@ -50,13 +57,13 @@ TEST_CASE("Packed numbers are the same bits again", "[film][packed]") {
 }
 
 TEST_CASE("Heads of packed numbers that cannot be are refused", "[film][packed]") {
-    const std::vector<double> numbers(300, 1.0 / 3.0);
-    const Packing packing = packing_of(std::span<const double>(numbers));
+    const std::vector<float> numbers(300, 1.0f / 3.0f);
+    const Packing packing = packing_of(std::span<const float>(numbers));
     std::vector<std::byte> bytes(packing.size);
-    pack(std::span<const double>(numbers), packing, bytes.data());
-    CHECK(read_packing(bytes, 300, 8));
-    CHECK_FALSE(read_packing(std::span(bytes).first(bytes.size() - 1), 300, 8));
-    CHECK_FALSE(read_packing(std::span(bytes).first(1), 300, 8));
-    bytes[1] = std::byte(9);
-    CHECK_FALSE(read_packing(bytes, 300, 8));
+    pack(std::span<const float>(numbers), packing, bytes.data());
+    CHECK(read_packing(bytes, 300, 4));
+    CHECK_FALSE(read_packing(std::span(bytes).first(bytes.size() - 1), 300, 4));
+    CHECK_FALSE(read_packing(std::span(bytes).first(1), 300, 4));
+    bytes[1] = std::byte(0x23) /* 3 bytes kept, 2 below them */;
+    CHECK_FALSE(read_packing(bytes, 300, 4));
 }

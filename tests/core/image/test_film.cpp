@@ -1,4 +1,4 @@
-// The film: sums to the exact bits, blocks, noise, non-finite pixels, serialisation.
+// The film: exact sums, films that are added up, noise, non-finite pixels, serialisation.
 #include <cmath>
 #include <limits>
 
@@ -29,34 +29,71 @@ Film film_of(int width, int height, std::uint32_t passes, bool all_squares = fal
     return film;
 }
 
-// What the documentation promises: blocks of sixteen summed in doubles, blocks added in order.
-double block_sum(std::uint32_t passes, std::size_t layer, std::size_t pixel, int channel, int power,
-                 int width, int height) {
-    double total = 0.0, block = 0.0;
-    for (std::uint32_t i = 0; i < passes; ++i) {
-        const PassImage image = random_pass(width, height, i);
-        const double v = image.layer(layer)[pixel][channel];
-        block += power == 2 ? v * v : v;
-        if (i % 16 == 15) total += block, block = 0.0;
-    }
-    return total + block;
+Film film_of_range(int width, int height, std::uint32_t first, std::uint32_t end, bool all_squares = false) {
+    Film film(width, height, layers, all_squares);
+    film.begin_at(0, first);
+    for (std::uint32_t i = first; i < end; ++i) film.add_pass(random_pass(width, height, i));
+    return film;
 }
 
 }  // namespace
 
-TEST_CASE("A film sums passes in blocks of sixteen, to the exact bits", "[film]") {
-    REQUIRE(Film::block_size == 16);
+TEST_CASE("A film's means are those of exact sums", "[film]") {
     const int w = 7, h = 5;
     for (const std::uint32_t passes : {1u, 15u, 16u, 17u, 40u}) {
         const Film film = film_of(w, h, passes);
         REQUIRE(film.pass_count() == passes);
+        std::vector<PassImage> images;
+        for (std::uint32_t i = 0; i < passes; ++i) images.push_back(random_pass(w, h, i));
         for (const std::size_t layer : {0u, 1u, 2u}) {
             const auto mean = film.mean(layer);
             for (const std::size_t pixel : {0u, 13u, 34u})
-                for (int c = 0; c < 3; ++c)
-                    CHECK(mean[pixel][c] == float(block_sum(passes, layer, pixel, c, 1, w, h) / passes));
+                for (int c = 0; c < 3; ++c) {
+                    long double sum = 0.0L;  // 64 bits: floats of 2^-4 to 2^5 add up without rounding
+                    for (const PassImage& image : images) sum += image.layer(layer)[pixel][c];
+                    CHECK(mean[pixel][c] == float(double(sum) / passes));
+                }
         }
     }
+}
+
+TEST_CASE("Films of passes that follow each other add up to the film of all, in any grouping",
+          "[film][ranges]") {
+    const int w = 5, h = 4;
+    constexpr std::uint32_t n = 23;
+    const auto whole = film_of(w, h, n, true);
+    const auto part = [&](std::uint32_t first, std::uint32_t end) {
+        return film_of_range(w, h, first, end, true);
+    };
+    const auto bits = whole.serialize();
+    for (std::uint32_t a = 0; a <= n; ++a)
+        for (const std::uint32_t b : {a, (a + n) / 2, n}) {
+            Film left = part(0, a), right = part(a, b);
+            right.add(part(b, n));  // the right ones first
+            left.add(right);
+            REQUIRE(left.serialize() == bits);
+        }
+    Film one_by_one(w, h, layers, true);
+    for (std::uint32_t i = 0; i < n; ++i) one_by_one.add(part(i, i + 1));
+    CHECK(one_by_one.serialize() == bits);
+    CHECK(one_by_one.noise() == whole.noise());
+    CHECK(one_by_one.beauty() == whole.beauty());
+
+    Film film = part(0, 6);
+    CHECK_THROWS_AS(film.add(part(7, 9)), std::invalid_argument);                 // a gap
+    CHECK_THROWS_AS(film.add(part(5, 9)), std::invalid_argument);                 // an overlap
+    CHECK_THROWS_AS(film.add(film_of_range(w, h, 6, 9)), std::invalid_argument);  // other squares
+    CHECK_THROWS_AS(film.begin_at(0, 3), std::logic_error);
+    CHECK(film.serialize() == part(0, 6).serialize());
+    // A film that begins later is a film: it can be written, read again, continued, and has a noise.
+    Film late = part(6, 11), copy(w, h, layers, true);
+    copy.deserialize(late.serialize());
+    CHECK(copy.first_pass() == 6);
+    for (Film* f : {&late, &copy}) f->add_pass(random_pass(w, h, 11));
+    CHECK(copy.serialize() == late.serialize());
+    CHECK(std::isfinite(late.noise()));
+    film.add(copy);
+    CHECK(film.serialize() == part(0, 12).serialize());
 }
 
 TEST_CASE("The beauty is the float sum of the layers that are not auxiliary", "[film]") {
