@@ -1,7 +1,6 @@
 // Checkpoints: everything needed to continue a render to the very same bits, in one file.
 //
-// Little-endian: magic, version, size of the head, seed, picture size, layer names, content hash, size of the
-// film; a checksum of this head; the film, which holds its own checksum.
+// A head (headed_file.h) with the seed, the picture's size, the layers' names and the content hash; the film.
 #pragma once
 
 #include <cstdint>

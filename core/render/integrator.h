@@ -78,6 +78,9 @@ class Estimator {
     virtual bool pass(const PassContext& context, PassImage& image) = 0;
     /// Which part has the next pass. Of the film alone, so that it is the same after an interruption.
     virtual std::size_t next_part(const Film& /*film*/) const { return 0; }
+    /// Which part has the pass of this number, counted over all parts, before any pass was made. Throws
+    /// InputError where that depends on what passes find: such a picture cannot be shared out by passes.
+    virtual std::size_t part_of_pass(std::uint32_t /*number*/) const { return 0; }
     /// Post-processes on the mean, after the last pass and for previews. May throw Cancelled.
     virtual void finish(Film& /*film*/, CancelToken /*cancelled*/) {}
     /// Does finish() tell the film what it leaves of the variance (Film::set_mean)? Then the noise is that of

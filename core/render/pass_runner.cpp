@@ -66,7 +66,7 @@ bool PassRunner::run_pass(const std::atomic<bool>& cancelled) {
     part_ = estimator_->next_part(film_);
     PassImage& image = images_.at(part_);
     image.clear();
-    const PassContext context{film_.pass_count(part_), *filter_, cancelled, part_};
+    const PassContext context{film_.next_pass(part_), *filter_, cancelled, part_};
     const double work = counted_work();
     const auto ends = [&] {
         try {

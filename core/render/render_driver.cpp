@@ -39,7 +39,7 @@ class PassLoop {
     }
     /// Estimator::finish() of the picture.
     void finish_picture(const std::string& type) {
-        if (result_.film.pass_count() == 0 || !result_.finished_pixels.empty()) return;
+        if (result_.film.pass_count() == 0 || !result_.finished_pixels.empty() || request_.range) return;
         const Clock::time_point begin = Clock::now();
         try {
             if (!result_.interrupted)
@@ -121,6 +121,7 @@ class PassLoop {
     bool interrupted() const { return cancelled_flag().load(std::memory_order_relaxed); }
 
     bool is_done() const {
+        if (request_.range) return state_.passes >= request_.range->end - request_.range->first;
         if (!result_.film.has_passes(1)) return false;
         return must_stop(stop_, state_) || (request_.enough && state_.passes >= noise_rule_from &&
                                             noise_is_due(state_.passes) && request_.enough(result_.film));
@@ -215,13 +216,13 @@ class PassLoop {
     Clock::time_point noise_time_ = start_, checkpoint_time_ = start_;
 };
 
-/// Sums in double precision, twice; halves of blocks of up to 2^10 passes, and the pass, in single.
+/// Exact sums; blocks of up to 2^10 passes and what their halves differ by; the pass, in single precision.
 double film_bytes(const FilmSettings& film, std::span<const Layer> layers, bool all_squares) {
     double planes = 1.0;  // of the beauty's squares
     for (const Layer& layer : layers) planes += all_squares || layer.squares ? 2.0 : 1.0;
     const double pixels = double(film.width) * double(film.height);
-    return pixels * (planes * 3.0 * 2.0 * sizeof(double) + 10.0 * 2.0 * sizeof(float) +
-                     double(layers.size()) * sizeof(Rgb));
+    const double sum = 2.0 * sizeof(std::int64_t) + 1.0;
+    return pixels * (planes * 3.0 * sum + 10.0 * (sum + sizeof(float)) + double(layers.size()) * sizeof(Rgb));
 }
 
 void resume(const RenderRequest& request, RenderResult& result) {
@@ -233,6 +234,24 @@ void resume(const RenderRequest& request, RenderResult& result) {
                                              "': rendering from the start");
 }
 
+/// Lets an empty film begin with the range; one that was resumed must do so already.
+void begin_range(const PassRange& range, const Estimator& estimator, Film& film) {
+    std::vector<std::uint32_t> first(film.parts(), 0);
+    if (film.parts() == 1)
+        first[0] = range.first;
+    else
+        for (std::uint32_t pass = 0; pass < range.first; ++pass) ++first.at(estimator.part_of_pass(pass));
+    for (std::size_t part = 0; part < film.parts(); ++part) {
+        if (film.pass_count() == 0)
+            film.begin_at(part, first[part]);
+        else if (film.first_pass(part) != first[part])
+            throw InputError("cannot resume: this checkpoint holds passes from " +
+                             std::to_string(film.first_pass()) + " on, not from " +
+                             std::to_string(range.first));
+    }
+    estimator.part_of_pass(range.first);  // also of the first pass it must be known
+}
+
 }  // namespace
 
 RenderResult render(const Scene& scene, const Integrator& integrator, const RenderRequest& request) {
@@ -240,6 +259,7 @@ RenderResult render(const Scene& scene, const Integrator& integrator, const Rend
     StopRule stop = request.stop;
     if (!stop.passes && !stop.seconds && !stop.noise && !request.enough)
         stop.passes = std::uint32_t(settings.sample_count);
+    if (request.range) stop = {request.range->end - request.range->first, {}, {}};
     const std::vector<Layer> layers = film_layers(scene, integrator, request.features);
     const double bytes = film_bytes(settings, layers, request.all_squares);
     const std::string film_of = "a film of " + std::to_string(settings.width) + " x " +
@@ -248,7 +268,11 @@ RenderResult render(const Scene& scene, const Integrator& integrator, const Rend
     RenderResult result = with_memory_for(film_of, [&] {
         return RenderResult{Film(settings.width, settings.height, layers, request.all_squares), {}, false, 0};
     });
+    if (request.begin_with) result.film.add(*request.begin_with);
     if (request.resume) resume(request, result);  // before the work of prepare(): it may be refused
+    if (!request.range && result.film.first_pass() > 0)
+        throw InputError("cannot resume: this checkpoint holds passes from " +
+                         std::to_string(result.film.first_pass()) + " on, those before are missing");
 
     const CancelToken token = request.interrupted ? CancelToken(*request.interrupted) : CancelToken();
     std::optional<PassRunner> runner;
@@ -261,6 +285,7 @@ RenderResult render(const Scene& scene, const Integrator& integrator, const Rend
         return result;
     }
     result.statistics.seconds["build"] = runner->build_seconds();
+    if (request.range) begin_range(*request.range, runner->estimator(), result.film);
     if (request.building_is_over) request.building_is_over();
 
     PassLoop loop(request, stop, *runner, result);

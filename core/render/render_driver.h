@@ -23,6 +23,11 @@ struct StopRule {
     std::optional<double> noise;    ///< Film::noise() of the finished picture, looked at from 8 passes on
 };
 
+/// Passes first .. end - 1 of a picture, counted over all parts: one share of a render on several machines.
+struct PassRange {
+    std::uint32_t first = 0, end = 0;  ///< index of the first, and behind the last
+};
+
 /// Told after every pass.
 struct RenderProgress {
     std::uint32_t passes, passes_of_this_run;    ///< the first holds those of a checkpoint too
@@ -35,8 +40,11 @@ struct RenderProgress {
 
 /// What is to be rendered, when it stops, who is told.
 struct RenderRequest {
-    std::uint64_t seed = 0;                  ///< of all random numbers
-    StopRule stop;                           ///< when it ends
+    std::uint64_t seed = 0;  ///< of all random numbers
+    StopRule stop;           ///< when it ends
+    /// These passes alone, whatever `stop` says. Estimator::finish() is for who has the others too.
+    std::optional<PassRange> range;
+    const Film* begin_with = nullptr;        ///< passes that were rendered elsewhere, from the first on
     std::string checkpoint_path;             ///< "" for none
     double checkpoint_every_seconds = 60.0;  ///< wall time between checkpoints
     bool checkpoint_at_end = true;     ///< also after the last pass; an interrupted render always writes one
@@ -79,8 +87,9 @@ struct RenderResult {
 inline constexpr double most_finish_seconds = 1.0;
 
 /// Renders until a stop rule holds. When interrupted, the running pass is dropped and everything before it
-/// kept. Throws InputError when a checkpoint does not belong to this render or is damaged. One that cannot be
-/// written is a warning and another try later: the one before it stays intact.
+/// kept. Throws InputError when a range of passes is asked for and the integrator cannot tell which those
+/// are, and when a checkpoint does not belong to this render or is damaged. One that cannot be written is a
+/// warning and another try later: the one before it stays intact.
 RenderResult render(const Scene& scene, const Integrator& integrator, const RenderRequest& request);
 
 /// The filter of a film as a distribution of offsets. Throws InputError for an unknown name.

@@ -5,6 +5,7 @@
 
 #include "core/image/film.h"
 #include "core/math/random.h"
+#include "core/objects/error.h"
 #include "core/scene/scene.h"
 #include "integrators/layers/pass_schedule.h"
 
@@ -23,11 +24,25 @@ std::uint64_t seed_of_part(std::uint64_t seed, std::size_t part) {
 /// root.
 constexpr double left_by_filter = 1.0 / 50.0;
 
+std::string shares_wanted(std::size_t parts) {
+    return "mote_layers gives its " + std::to_string(parts) +
+           " methods passes by the noise that it has seen, so nobody knows beforehand which method has which "
+           "pass: "
+           "integrator.shares with " +
+           std::to_string(parts) +
+           " numbers, passes of each in a round, makes it known ('parts' of --stats of a short render say "
+           "how many "
+           "each wants)";
+}
+
 class LayersEstimator final : public Estimator {
   public:
     LayersEstimator(const Scene& scene, const RenderOptions& options, const std::vector<LayerMethod>& methods,
-                    const FilterPlan& filter)
+                    const FilterPlan& filter, const std::vector<std::uint32_t>& shares)
         : filtered_(filter.layers) {
+        for (std::size_t part = 0; part < shares.size(); ++part)
+            round_.insert(round_.end(), shares[part], part);
+
         if (!filtered_.empty()) filter_.emplace(scene, options, filter.parameters);
         std::size_t layer = 0;
         for (std::size_t i = 0; i < methods.size(); ++i) {
@@ -46,7 +61,16 @@ class LayersEstimator final : public Estimator {
         }
     }
 
-    std::size_t next_part(const Film& film) const override { return integrators::next_part(film, left_); }
+    std::size_t next_part(const Film& film) const override {
+        if (round_.empty()) return integrators::next_part(film, left_);
+        return part_of_pass(film.first_pass() + film.pass_count());
+    }
+
+    std::size_t part_of_pass(std::uint32_t number) const override {
+        if (parts_.size() == 1) return 0;
+        if (round_.empty()) throw InputError(shares_wanted(parts_.size()));
+        return round_[number % round_.size()];
+    }
 
     bool pass(const PassContext& context, PassImage& image) override {
         Part& part = parts_.at(context.part);
@@ -77,7 +101,8 @@ class LayersEstimator final : public Estimator {
         PassImage image;                ///< with all its layers
     };
     std::vector<Part> parts_;
-    std::vector<double> left_;  ///< of the variance of each part, after filtering
+    std::vector<double> left_;        ///< of the variance of each part, after filtering
+    std::vector<std::size_t> round_;  ///< the part of each pass of a round; empty: next_part() of the film
     std::vector<LayerFilter::Choice> filtered_;
     std::optional<LayerFilter> filter_;
 };
@@ -86,8 +111,9 @@ class LayersEstimator final : public Estimator {
 
 std::unique_ptr<Estimator> make_layers_estimator(const Scene& scene, const RenderOptions& options,
                                                  const std::vector<LayerMethod>& methods,
-                                                 const FilterPlan& filter) {
-    return std::make_unique<LayersEstimator>(scene, options, methods, filter);
+                                                 const FilterPlan& filter,
+                                                 const std::vector<std::uint32_t>& shares) {
+    return std::make_unique<LayersEstimator>(scene, options, methods, filter, shares);
 }
 
 }  // namespace mote::integrators

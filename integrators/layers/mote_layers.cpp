@@ -5,6 +5,8 @@
 // choose.
 #include <fmt/format.h>
 
+#include <charconv>
+
 #include "integrators/eye_path/eye_path_parameters.h"
 #include "integrators/layers/layers_estimator.h"
 #include "integrators/register_parts.h"
@@ -52,6 +54,7 @@ class MoteLayers final : public Integrator {
     explicit MoteLayers(const Properties& properties)
         : limits_(read_eye_path_limits(properties)), filter_(read_layer_filter(properties)) {
         filters_ = properties.get_bool("filter", true);
+        read_shares(properties);
         for (const Properties::Child& child : properties.children) {
             const auto integrator = std::dynamic_pointer_cast<const Integrator>(child.object);
             if (!integrator) continue;
@@ -80,10 +83,26 @@ class MoteLayers final : public Integrator {
         const std::vector<Layer> all = layers_of(scene, chosen);
         for (std::size_t i = 0; filters_ && i < all.size(); ++i)
             if (const auto kind = filtered_kind(all[i])) filter.layers.push_back({i, *kind});
-        return make_layers_estimator(scene, options, chosen, filter);
+        if (!shares_.empty() && shares_.size() != chosen.size())
+            throw InputError(
+                fmt::format("mote_layers: shares has {} numbers, and there are {} methods (see 'mote plan')",
+                            shares_.size(), chosen.size()));
+        return make_layers_estimator(scene, options, chosen, filter, shares_);
     }
 
   private:
+    void read_shares(const Properties& properties) {
+        const std::string text = properties.get_string("shares", "");
+        constexpr std::uint32_t most = 1000;
+        for (const std::string& word : split_names(text)) {
+            std::uint32_t share = 0;
+            const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), share);
+            if (error != std::errc() || end != word.data() + word.size() || share < 1 || share > most)
+                throw InputError("shares '" + printable(text) +
+                                 "': expected whole numbers from 1 to 1000, such as '3, 1'");
+            shares_.push_back(share);
+        }
+    }
     /// The kept layers of every method, each a part.
     std::vector<Layer> layers_of(const Scene& scene, const std::vector<LayerMethod>& chosen) const {
         std::vector<Layer> layers;
@@ -105,6 +124,7 @@ class MoteLayers final : public Integrator {
     EyePathLimits limits_;
     LayerFilterParameters filter_;
     bool filters_ = true;
+    std::vector<std::uint32_t> shares_;  ///< of passes, one a method; empty: as many as each needs
     std::vector<LayerMethod> asked_for_;
 };
 
@@ -122,7 +142,8 @@ Plan MoteLayers::plan(const Scene& scene, const Requirements& requirements) cons
     for (const LayerMethod& method : chosen)
         plan.run(joined(method.cells), method.integrator->type(), method.reason);
     plan.run("passes", fmt::format("shared out among {} methods", chosen.size()),
-             "to the one whose next pass takes the most error for its rays and lookups");
+             shares_.empty() ? "to the one whose next pass takes the most error for its rays and lookups"
+                             : "shares says how many each has in a round");
     std::vector<std::string> filtered;
     for (const Layer& layer : layers_of(scene, chosen))
         if (filters_ && filtered_kind(layer)) filtered.push_back(layer.name);
@@ -151,6 +172,10 @@ void register_mote_layers(Registry& registry) {
          "smooth indirect light and multiple scattering in image space, as far as noise explains "
          "their detail"});
     for (Parameter& p : layer_filter_parameters()) parameters.push_back(std::move(p));
+    parameters.push_back(
+        {"shares", "string", "as many as reduce the error fastest",
+         "passes of each method in a round, such as '3, 1' (docs/cluster.md): passes are known "
+         "beforehand, which several machines need"});
     parameters.push_back(
         {"integrator", "integrator", "chosen by the scene",
          "any number: each fills the cells that its name lists, of emission, direct, indirect, "

@@ -1,4 +1,5 @@
-// One thread or many, in one go or interrupted and resumed: the same bits, for everything that is registered.
+// One thread or many, in one go or interrupted and resumed, on one machine or two: the same bits, for
+// everything that is registered.
 //
 // The settings are walked through by the manual pages: every integrator with its defaults, then with one
 // parameter changed at a time, and with every pair of nested objects (compensation and visibility). Whatever
@@ -35,6 +36,7 @@ const std::map<std::string, Words> words = {
     {"mote_bdpt.heuristic", {"power", "balance", "none"}},
     {"mote_vpl_ray_bundles.techniques", {"combined", "vpls", "bundles"}},
     {"mote_vpl_ray_bundles.links", {"rays", "grid", "imperfect"}},
+    {"mote_layers.shares", {"3", "2, 1", "1, 2, 1"}},
     {"mote_micro_rendering.light", {"direct", "vpls", "radiosity", "photons"}},
     {"mote_single_scattering.sampling", {"full", "sub_sampled"}},
     {"mote_single_scattering.lights", {"all", "positional", "other"}},
@@ -236,6 +238,36 @@ Bits resumed(const Scene& scene, const Integrator& integrator, int threads) {
     });
 }
 
+/// Passes 0 .. 4 by two machines, added up.
+Bits merged(const Scene& scene, const Integrator& integrator) {
+    const auto part = [&](std::uint32_t first, std::uint32_t end, int threads) {
+        RenderRequest r = request();
+        r.range = PassRange{first, end};
+        return on_threads(threads, [&] { return render(scene, integrator, r).film; });
+    };
+    Film film = part(0, 2, 1);
+    film.add(part(2, 5, 4));
+    RenderRequest rest = request();
+    rest.stop.passes = 5, rest.begin_with = &film;
+    return bits(render(scene, integrator, rest).film);
+}
+
+/// Where passes go to methods by what was seen before, ranges are refused in words.
+void check_ranges(const Scene& scene, const Integrator& integrator) {
+    RenderRequest all = request();
+    all.stop.passes = 5;
+    const Film whole = render(scene, integrator, all).film;
+    try {
+        const Bits together = merged(scene, integrator);
+        CHECK((bits(whole) == together));
+    } catch (const InputError& error) {
+        CHECK(integrator.type() == "mote_layers");
+        CHECK(whole.parts() > 1);
+        CHECK(std::string(error.what()).find("integrator.shares with " + std::to_string(whole.parts())) !=
+              std::string::npos);
+    }
+}
+
 constexpr int edge = 20;  ///< of the picture: four tiles
 
 /// The box with three kinds of lights, and a card with holes and bent normals.
@@ -278,6 +310,8 @@ int check_all(const Scene& scene, const std::string& type, std::set<std::string>
             INFO("in one go on four threads the same: " << (one == straight(scene, *integrator, 4)));
             CHECK(same);
         }
+        if (rendered == 0 || s.xml().find("\"shares\"") != std::string::npos)
+            check_ranges(scene, *integrator);
         if (rendered++ == 0) CHECK_FALSE((one == straight(scene, *integrator, 1, 6)));
     }
     return rendered;
@@ -333,11 +367,12 @@ TEST_CASE("every integrator gives the same bits on one thread, and on many after
     }
     // Nothing else is left out.
     for (const std::string& why : refused) UNSCOPED_INFO(why);
-    REQUIRE(refused.size() == 11);
+    REQUIRE(refused.size() == 11 + 4);
     const auto count = [&](const std::string& why) {
         return std::count_if(refused.begin(), refused.end(),
                              [&](const std::string& text) { return text.find(why) != std::string::npos; });
     };
+    CHECK(count("mote_layers: shares has") == 4);  // two methods, or three, and other numbers of shares
     CHECK(count("'media' is an object of the wrong kind") == 1);
     // mote_vsl, mote_vpl_ray_bundles and mote_micro_rendering, alone and in mote_layers
     CHECK(count("renders surfaces only") == 6);

@@ -1,0 +1,72 @@
+#include "core/render/partial_film.h"
+
+#include <stdexcept>
+
+#include "core/image/whole_file.h"
+#include "core/objects/error.h"
+#include "core/render/headed_file.h"
+
+namespace mote::core {
+
+namespace {
+
+constexpr FileKind partial_file{{'m', 'o', 't', 'e', 'p', 'a', 'r', 't'}, 1, "a partial film of mote"};
+constexpr std::uint32_t most_layers = 10000, most_edge = 1u << 20;
+
+PartialFilm read_from(std::span<const std::byte> bytes) {
+    HeadedFile file = read_headed_file(bytes, partial_file);
+    ByteReader& reader = file.fields;
+    std::string about = reader.text();
+    const auto width = reader.number<std::uint32_t>(), height = reader.number<std::uint32_t>();
+    const bool all_squares = reader.number<std::uint8_t>() != 0;
+    const auto count = reader.number<std::uint32_t>();
+    if (width > most_edge || height > most_edge || count > most_layers)
+        throw InputError("damaged (its size cannot be)");
+    std::vector<Layer> layers(count);
+    for (Layer& layer : layers) {
+        layer.name = reader.text(), layer.description = reader.text();
+        layer.auxiliary = reader.number<std::uint8_t>() != 0,
+        layer.squares = reader.number<std::uint8_t>() != 0;
+        layer.where = reader.text(), layer.cell = reader.text();
+        layer.part = reader.number<std::uint32_t>();
+        if (layer.part >= count) throw InputError("damaged (a layer of no part)");
+    }
+    try {
+        PartialFilm partial{std::move(about), Film(int(width), int(height), std::move(layers), all_squares)};
+        partial.film.deserialize(file.film);
+        return partial;
+    } catch (const std::invalid_argument& error) {  // of the film's constructor
+        throw InputError(std::string("damaged: ") + error.what());
+    } catch (const InputError& error) {
+        throw InputError(std::string("damaged: ") + error.what());
+    }
+}
+
+}  // namespace
+
+void write_partial_film(const std::string& path, const PartialFilm& partial) {
+    const Film& film = partial.film;
+    ByteWriter head;
+    head.text(partial.about);
+    head.number(std::uint32_t(film.width())), head.number(std::uint32_t(film.height()));
+    head.number(std::uint8_t(film.keeps_all_squares()));
+    head.number(std::uint32_t(film.layers().size()));
+    for (const Layer& layer : film.layers()) {
+        head.text(layer.name), head.text(layer.description);
+        head.number(std::uint8_t(layer.auxiliary)), head.number(std::uint8_t(layer.squares));
+        head.text(layer.where), head.text(layer.cell);
+        head.number(std::uint32_t(layer.part));
+    }
+    write_headed_file(path, partial_file, head, film.serialize());
+}
+
+PartialFilm read_partial_film(const std::string& path) {
+    const std::vector<std::byte> bytes = read_whole_file(path);
+    try {
+        return read_from(bytes);
+    } catch (const InputError& error) {
+        throw InputError(std::string("this file is ") + error.what(), {path, 0});
+    }
+}
+
+}  // namespace mote::core
