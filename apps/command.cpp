@@ -91,6 +91,10 @@ void add_render(CLI::App& app, RenderArguments& a, std::function<int()>& action)
     command
         .add_option("--exposure", a.exposure, "Brighten the preview by this many stops (default: it adapts)")
         ->check(number_between(-100.0, 100.0));
+    command
+        .add_option("--pass-range", a.pass_range,
+                    "Render passes A to B - 1 alone, into a partial film for 'mote merge' (docs/cluster.md)")
+        ->type_name("A:B");
     command.add_flag("--half", a.half, "Write float16 instead of float32");
     command.add_flag("--auxiliary", a.auxiliary,
                      "Also write what is seen: positions, normals, depth, albedo, with variances");
@@ -103,6 +107,26 @@ void add_render(CLI::App& app, RenderArguments& a, std::function<int()>& action)
     command.add_flag("--quiet", a.quiet, "No progress, no warnings");
     command.add_flag("-v,--verbose", a.verbose, "Also print the plan and where the time went");
     command.callback([&a, &action] { action = [&a] { return render_sequence(a); }; });
+}
+
+void add_merge(CLI::App& app, MergeArguments& a, std::function<int()>& action) {
+    CLI::App& command = *app.add_subcommand("merge", "Add up partial films of 'mote render --pass-range'");
+    command.add_option("PART", a.parts, "The partial films, in any order")->required();
+    command
+        .add_option("-o,--output", a.output,
+                    "The EXR file to write, or the PNG beside it; a .film is a partial film again")
+        ->required();
+    command.add_option("--scene", a.scene,
+                       "The scene file, where it is not where the parts were rendered from");
+    command.add_option("-t,--threads", a.threads, "Number of threads (default: one for every core)")
+        ->check(whole_number(0, 4096));
+    command.add_option("--stats", a.stats, "Write statistics to this JSON file");
+    command
+        .add_option("--exposure", a.exposure, "Brighten the preview by this many stops (default: it adapts)")
+        ->check(number_between(-100.0, 100.0));
+    command.add_flag("--half", a.half, "Write float16 instead of float32");
+    command.add_flag("--quiet", a.quiet, "No progress, no warnings");
+    command.callback([&a, &action] { action = [&a] { return merge_command(a); }; });
 }
 
 void add_compare(CLI::App& app, CompareArguments& a, std::function<int()>& action) {
@@ -214,6 +238,10 @@ int parse_and_run(int argc, char** argv) {
     TradeArguments trade;
     trade.command_line = render.command_line;
     add_trade(app, trade, action);
+
+    MergeArguments merge;
+    merge.command_line = render.command_line;
+    add_merge(app, merge, action);
 
     CompareArguments compare;
     add_compare(app, compare, action);

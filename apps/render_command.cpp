@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
@@ -16,6 +17,7 @@
 #include "apps/command.h"
 #include "apps/interruption.h"
 #include "apps/output_files.h"
+#include "apps/partial_render.h"
 #include "apps/picture_file.h"
 #include "apps/preview.h"
 #include "apps/progress_line.h"
@@ -47,11 +49,42 @@ double seconds_since(Clock::time_point start) {
 
 void note(const std::string& text) { std::fputs(fmt::format("mote: {}\n", text).c_str(), stderr); }
 
+/// `picture` is a partial film where a range of passes is asked for; it has no preview then.
 struct OutputFiles {
     std::string picture, preview, checkpoint;
 };
 
-OutputFiles output_files(const RenderArguments& arguments) {
+std::optional<core::PassRange> pass_range(const RenderArguments& arguments) {
+    const std::string& text = arguments.pass_range;
+    if (text.empty()) return std::nullopt;
+    core::PassRange range;
+    const char* const end = text.data() + text.size();
+    const auto first = std::from_chars(text.data(), end, range.first);
+    const bool colon = first.ec == std::errc() && first.ptr != end && *first.ptr == ':';
+    const auto last = std::from_chars(colon ? first.ptr + 1 : end, end, range.end);
+    if (last.ec != std::errc() || last.ptr != end || range.first >= range.end ||
+        range.end > core::Film::most_passes)
+        throw UsageError(fmt::format("--pass-range {}: expected A:B, passes A to B - 1, with A < B <= {}",
+                                     core::printable(text), core::Film::most_passes));
+    if (arguments.passes || arguments.seconds || arguments.noise)
+        throw UsageError(
+            "--pass-range says which passes are rendered: --passes, --time and --noise do not go with it");
+    return range;
+}
+
+OutputFiles output_files(const RenderArguments& arguments, const std::optional<core::PassRange>& range) {
+    if (range) {
+        std::string film = arguments.output;
+        if (film.empty())
+            film = fs::path(arguments.scene.scene)
+                       .filename()
+                       .replace_extension(fmt::format(".{}-{}.film", range->first, range->end))
+                       .string();
+        if (extension_of(film) != ".film")
+            throw UsageError("the output '" + core::printable(film) +
+                             "' of --pass-range does not end in .film ('mote merge' makes the picture)");
+        return {film, "", film + ".checkpoint"};
+    }
     std::string picture = arguments.output;
     if (picture.empty())
         picture = fs::path(arguments.scene.scene).filename().replace_extension(".exr").string();
@@ -210,6 +243,24 @@ void write_outputs(const OutputFiles& files, const RenderReport& report, const R
                          arguments.exposure ? "" : " (--exposure fixes it)"));
 }
 
+/// The passes of a range as a partial film. The scene has its whole name, for whoever merges it elsewhere.
+void write_range(const std::string& path, const RenderArguments& arguments, const core::PassRange& range,
+                 const RenderReport& report) {
+    MergedFilm partial{
+        report.result.film, arguments, report.plan.integrator, report.scene_hash, report.result.statistics,
+        range.first,        range.end};
+    partial.render.scene.scene = fs::absolute(arguments.scene.scene).string();
+    write_partial(path, partial);
+}
+
+/// Films that are merged must be of this scene: it may have changed since.
+void check_merged(const MergedFilm& merged, const core::RenderRequest& request) {
+    if (merged.content_hash != request.content_hash)
+        throw core::InputError(
+            "the partial films are of another render: the scene, a file that it names, or the version "
+            "of mote has changed since");
+}
+
 void print_times(const core::Statistics& statistics) {
     for (const auto& [name, seconds] : statistics.seconds)
         std::fputs(fmt::format("  {:12} {:9.3f} s\n", name, seconds).c_str(), stderr);
@@ -237,7 +288,7 @@ int report_interruption(const RenderArguments& arguments, const OutputFiles& fil
                         "alpha 0; there is "
                         "nothing to resume",
                         files.picture, 100.0 * finished_share(result)));
-    } else if (!result.film.has_passes(1)) {
+    } else if (arguments.pass_range.empty() && !result.film.has_passes(1)) {
         std::string missing;
         for (const core::Layer& layer : result.film.layers())
             if (result.film.pass_count(layer.part) == 0)
@@ -251,8 +302,12 @@ int report_interruption(const RenderArguments& arguments, const OutputFiles& fil
     } else {
         std::vector<std::string> command = arguments.command_line;
         if (!arguments.resume) command.emplace_back("--resume");
-        note(fmt::format("interrupted after {} passes: {} holds the picture so far", result.film.pass_count(),
-                         files.picture));
+        if (arguments.pass_range.empty())
+            note(fmt::format("interrupted after {} passes: {} holds the picture so far",
+                             result.film.pass_count(), files.picture));
+        else
+            note(fmt::format("interrupted after {} passes of the range: {} is not written",
+                             result.film.pass_count(), files.picture));
         note("continue with: " + quoted(command));
         if (result.finished_for) note(unfinished_text(result));
     }
@@ -262,7 +317,8 @@ int report_interruption(const RenderArguments& arguments, const OutputFiles& fil
 }  // namespace
 
 int render_command(const RenderArguments& arguments) {
-    const OutputFiles files = output_files(arguments);
+    const std::optional<core::PassRange> range = pass_range(arguments);
+    const OutputFiles files = output_files(arguments, range);
     const Clock::time_point start = Clock::now();
     Interruption interruption;
     interruption.end_at_once_while("loading the scene");
@@ -288,7 +344,8 @@ int render_command(const RenderArguments& arguments) {
         core::with_memory_for("loading the scene", [&] { return load(arguments.scene, registry, &loaded); });
     const core::Integrator& integrator = require_integrator(*scene, registry);
     const core::Plan plan = integrator.plan(*scene, core::find_requirements(*scene));
-    for (const std::string& path : {files.picture, files.preview}) check_writable(path);
+    check_writable(files.picture);
+    if (!range) check_writable(files.preview);
     if (!arguments.stats.empty()) check_writable(arguments.stats);
     check_identities(files, arguments, *scene);
     const Denoiser denoiser = denoiser_of(arguments, threads);  // what is missing is said now, not in hours
@@ -296,12 +353,15 @@ int render_command(const RenderArguments& arguments) {
     core::RenderRequest request;
     request.seed = arguments.seed;
     request.stop = {arguments.passes, arguments.seconds, arguments.noise};
+    request.range = range;
     request.checkpoint_path = files.checkpoint;
     request.checkpoint_every_seconds = arguments.checkpoint_every;
     request.checkpoint_at_end = false;
     request.resume = arguments.resume;
     request.content_hash = core::content_hash(*scene, settings_of(arguments, integrator.type()));
     request.features = features_of(arguments, *scene, loaded, frame_before(arguments, registry));
+    if (arguments.merged) check_merged(*arguments.merged, request);
+    if (arguments.merged) request.begin_with = &arguments.merged->film;
     const double load_seconds = seconds_since(start);
     interruption.end_at_once_while("building");
 
@@ -319,7 +379,7 @@ int render_command(const RenderArguments& arguments) {
         arguments.quiet);
     request.interrupted = &interruption.flag(), request.time_is_over = &interruption.time_is_over();
     request.seconds_before = load_seconds;
-    request.keep_part_of_first_pass = true;
+    request.keep_part_of_first_pass = !range;
     request.building_is_over = [&] {
         // A pass may end a second late (stop_clock.h); what takes longer is cut off.
         if (arguments.seconds)
@@ -328,12 +388,13 @@ int render_command(const RenderArguments& arguments) {
         interruption.end_at_once_while(nullptr);
     };
     request.passes_are_over = [&] { interruption.forget_time(); };
-    request.preview = [&](const core::Film& film) {
-        core::ImageChannels image;
-        image.width = film.width(), image.height = film.height();
-        image.add_rgb("", film.beauty());
-        write_preview(files.preview, image, arguments.exposure);
-    };
+    if (!range)
+        request.preview = [&](const core::Film& film) {
+            core::ImageChannels image;
+            image.width = film.width(), image.height = film.height();
+            image.add_rgb("", film.beauty());
+            write_preview(files.preview, image, arguments.exposure);
+        };
     request.checkpoint_failed = [&](const std::string& why) {
         if (!arguments.quiet) note("warning: " + why + "; it is tried again");
     };
@@ -348,6 +409,7 @@ int render_command(const RenderArguments& arguments) {
     }();
     progress.end();
     result.statistics.seconds["load"] = load_seconds;
+    if (arguments.merged) add_statistics(result.statistics, arguments.merged->statistics);
 
     if (result.film.pass_count() == 0 && !result.interrupted)
         throw core::InputError("--time is over before the first pixel was complete: there is no picture");
@@ -363,7 +425,10 @@ int render_command(const RenderArguments& arguments) {
                             arguments.command_line,
                             loaded.approximations};
         core::with_memory_for("writing the picture", [&] {
-            write_outputs(files, report, arguments, registry, denoiser, result.statistics.warnings);
+            if (!range)
+                write_outputs(files, report, arguments, registry, denoiser, result.statistics.warnings);
+            else if (!result.interrupted)
+                write_range(files.picture, arguments, *range, report);
         });
         result.statistics.seconds["write"] = seconds_since(write_start);
         if (!arguments.stats.empty()) {
@@ -389,7 +454,8 @@ int render_command(const RenderArguments& arguments) {
 
     std::error_code ignored;
     fs::remove(files.checkpoint, ignored);  // there may be none
-    if (!arguments.quiet) std::fputs(fmt::format("{}\n{}\n", files.picture, files.preview).c_str(), stdout);
+    if (!arguments.quiet)
+        std::fputs(fmt::format("{}\n{}{}", files.picture, files.preview, range ? "" : "\n").c_str(), stdout);
     if (arguments.sequence) arguments.sequence->rendered = std::move(scene);
     return exit_ok;
 }

@@ -91,6 +91,9 @@ std::optional<RunningParameter> running_parameter(const std::vector<std::string>
 int render_sequence(const RenderArguments& arguments) {
     const auto parameter = running_parameter(arguments.scene.defines);
     if (!parameter || !names_frames(arguments.output)) return render_command(arguments);
+    if (!arguments.pass_range.empty())
+        throw UsageError(
+            "--pass-range is for one picture: frames of a sequence are shared out by their numbers");
     if (!arguments.stats.empty() && !names_frames(arguments.stats))
         throw UsageError("the statistics of a sequence need #### where the frame's number goes");
     const std::string& define = arguments.scene.defines[parameter->define];

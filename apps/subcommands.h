@@ -50,6 +50,8 @@ struct SequenceFrame {
     std::unique_ptr<core::Scene> rendered = {};  ///< of this frame, when it is finished
 };
 
+struct MergedFilm;
+
 struct RenderArguments {
     SceneArguments scene;
     std::string output;  ///< "": the scene's name with .exr, in the current folder
@@ -62,7 +64,20 @@ struct RenderArguments {
     double checkpoint_every = 60.0;
     std::optional<float> exposure;  ///< of the preview [stops]; none: it adapts
     std::string stats;
-    SequenceFrame* sequence = nullptr;  ///< a frame that is finished is not rendered again by --resume
+    std::string pass_range;              ///< "A:B": only these passes, into a partial film; "": a picture
+    const MergedFilm* merged = nullptr;  ///< passes that are there already (`mote merge`)
+    SequenceFrame* sequence = nullptr;   ///< a frame that is finished is not rendered again by --resume
+    std::vector<std::string> command_line;
+};
+
+struct MergeArguments {
+    std::vector<std::string> parts;  ///< partial films
+    std::string output;              ///< a picture, or a partial film
+    std::string scene;               ///< "": where it was when the parts were rendered
+    std::string stats;
+    int threads = 0;
+    bool quiet = false, half = false;
+    std::optional<float> exposure;
     std::vector<std::string> command_line;
 };
 
@@ -107,6 +122,7 @@ int render_command(const RenderArguments& arguments);
 inline bool wants_motion(const RenderArguments& a) { return a.sequence && a.auxiliary; }
 /// A picture for every value of the -D that runs, where the output holds #### (sequence.h).
 int render_sequence(const RenderArguments& arguments);
+int merge_command(const MergeArguments& arguments);
 int plan_command(const SceneArguments& arguments);
 int info_command(const InfoArguments& arguments);
 int convert_command(const ConvertArguments& arguments);

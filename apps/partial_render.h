@@ -1,0 +1,34 @@
+// What a partial film says of the render that it is a share of (`mote render --pass-range`, `mote merge`).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "apps/subcommands.h"
+#include "core/image/film.h"
+#include "core/render/statistics.h"
+
+namespace mote::apps {
+
+/// Passes that were rendered elsewhere, added up, and what they have in common.
+struct MergedFilm {
+    core::Film film;
+    RenderArguments render;            ///< as they were rendered: scene, definitions, layers, seed
+    std::string integrator;            ///< its type
+    std::string content_hash;          ///< of the scene's files and of what changes the picture
+    core::Statistics statistics;       ///< of all
+    std::uint32_t first = 0, end = 0;  ///< passes, counted over all parts
+};
+
+/// Writes the passes as a partial film. Throws InputError when that fails.
+void write_partial(const std::string& path, const MergedFilm& partial);
+
+/// Reads partial films and adds them up in the order of their passes. Throws InputError that names the file
+/// when one cannot be read, when two are of different renders (and in what), and where passes are missing or
+/// there twice.
+MergedFilm merge_partials(const std::vector<std::string>& paths);
+
+/// Adds the counts of one run to those of another; of values that are no counts the last counts.
+void add_statistics(core::Statistics& sum, const core::Statistics& more);
+
+}  // namespace mote::apps
