@@ -1,6 +1,7 @@
 // Parsing the command line, and turning what went wrong into one line and an exit code.
 #include "apps/command.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -18,6 +19,7 @@
 #include "apps/number_options.h"
 #include "apps/ssbc_command.h"
 #include "apps/subcommands.h"
+#include "apps/tev_viewer.h"
 #include "apps/trade/trade_command.h"
 #include "core/loading/faults.h"
 #include "core/objects/error.h"
@@ -104,6 +106,8 @@ void add_render(CLI::App& app, RenderArguments& a, std::function<int()>& action)
             "Add a denoised picture, for the eye, and show it in the preview: by OpenImageDenoise, where it "
             "is installed; --denoise=bmfr: by regression on features, which needs nothing else")
         ->check(CLI::IsMember({"oidn", "bmfr"}));
+    command.add_flag(fmt::format("--tev{{{}}}", TevViewer::default_address), a.tev,
+                     "Show the picture so far in the viewer tev, which may run elsewhere (--tev=HOST:PORT)");
     command.add_flag("--quiet", a.quiet, "No progress, no warnings");
     command.add_flag("-v,--verbose", a.verbose, "Also print the plan and where the time went");
     command.callback([&a, &action] { action = [&a] { return render_sequence(a); }; });

@@ -22,6 +22,7 @@
 #include "apps/preview.h"
 #include "apps/progress_line.h"
 #include "apps/subcommands.h"
+#include "apps/tev_viewer.h"
 #include "core/image/film_image.h"
 #include "core/image/image_file.h"
 #include "core/objects/error.h"
@@ -388,12 +389,19 @@ int render_command(const RenderArguments& arguments) {
         interruption.end_at_once_while(nullptr);
     };
     request.passes_are_over = [&] { interruption.forget_time(); };
-    if (!range)
+    std::optional<TevViewer> viewer;
+    if (!arguments.tev.empty())
+        viewer.emplace(arguments.tev, files.picture, scene->film().width, scene->film().height);
+    if (!range || viewer)
         request.preview = [&](const core::Film& film) {
-            core::ImageChannels image;
-            image.width = film.width(), image.height = film.height();
-            image.add_rgb("", film.beauty());
-            write_preview(files.preview, image, arguments.exposure);
+            std::vector<core::Rgb> picture = film.beauty();
+            if (!range) {
+                core::ImageChannels image;
+                image.width = film.width(), image.height = film.height();
+                image.add_rgb("", picture);
+                write_preview(files.preview, image, arguments.exposure);
+            }
+            if (viewer) viewer->show(std::move(picture));
         };
     request.checkpoint_failed = [&](const std::string& why) {
         if (!arguments.quiet) note("warning: " + why + "; it is tried again");
@@ -409,6 +417,7 @@ int render_command(const RenderArguments& arguments) {
     }();
     progress.end();
     result.statistics.seconds["load"] = load_seconds;
+    if (viewer) viewer->show(result.film.beauty());
     if (arguments.merged) add_statistics(result.statistics, arguments.merged->statistics);
 
     if (result.film.pass_count() == 0 && !result.interrupted)

@@ -64,6 +64,7 @@ struct RenderArguments {
     double checkpoint_every = 60.0;
     std::optional<float> exposure;  ///< of the preview [stops]; none: it adapts
     std::string stats;
+    std::string tev;                     ///< address of a viewer; "": none
     std::string pass_range;              ///< "A:B": only these passes, into a partial film; "": a picture
     const MergedFilm* merged = nullptr;  ///< passes that are there already (`mote merge`)
     SequenceFrame* sequence = nullptr;   ///< a frame that is finished is not rendered again by --resume
