@@ -39,6 +39,29 @@ void sort_channels(LayerChannels& layer) {
     layer = std::move(sorted);
 }
 
+bool holds_vectors(const std::string& layer) {
+    const auto dot = layer.rfind('.');
+    const std::string last = dot == std::string::npos ? layer : layer.substr(dot + 1);
+    return last == "P" || last == "N" || last == "Ns";
+}
+
+/// The names of a layer's channels in a picture.
+std::vector<std::string> channel_names(const std::string& layer, int channels) {
+    if (channels == 1) return {layer == alpha_layer ? "A" : layer + (layer == "Depth" ? ".Z" : ".Y")};
+    const std::string prefix = layer == beauty_layer ? "" : layer + ".";
+    std::vector<std::string> names;
+    for (const char c : std::string(holds_vectors(layer) ? "XYZ" : "RGB")) names.push_back(prefix + c);
+    return names;
+}
+
+void remove_layer(core::ImageChannels& image, const std::string& name) {
+    for (std::size_t k = image.names.size(); k-- > 0;) {
+        if (split(image.names[k]).layer != name) continue;
+        image.names.erase(image.names.begin() + std::ptrdiff_t(k));
+        image.channels.erase(image.channels.begin() + std::ptrdiff_t(k));
+    }
+}
+
 }  // namespace
 
 std::vector<LayerChannels> layers_of(const core::ImageChannels& image) {
@@ -62,6 +85,27 @@ LayerChannels find_layer(const core::ImageChannels& image, const std::string& na
     }
     throw core::InputError("there is no layer '" + core::printable(name) + "'" +
                            core::suggestion(name, known));
+}
+
+void set_layer(core::ImageChannels& image, const std::string& name, int width, int height, int channels,
+               std::span<const float> values) {
+    if (channels != 1 && channels != 3)
+        throw core::InputError("a layer has one channel or three, not " + std::to_string(channels));
+    if (width < 1 || height < 1) throw core::InputError("a picture has at least one pixel");
+    if (!image.names.empty() && (image.width != width || image.height != height))
+        throw core::InputError("the layer '" + core::printable(name) + "' has " + std::to_string(width) +
+                               " x " + std::to_string(height) + " pixels, the picture " +
+                               std::to_string(image.width) + " x " + std::to_string(image.height));
+    const std::size_t pixels = std::size_t(width) * std::size_t(height), n = std::size_t(channels);
+    if (values.size() != pixels * n) throw std::invalid_argument("a buffer that does not fit its layer");
+    remove_layer(image, name);
+    image.width = width, image.height = height;
+    const std::vector<std::string> names = channel_names(name, channels);
+    for (std::size_t c = 0; c < n; ++c) {
+        std::vector<float> plane(pixels);
+        for (std::size_t p = 0; p < pixels; ++p) plane[p] = values[p * n + c];
+        image.add(names[c], std::move(plane));
+    }
 }
 
 void copy_layer(const core::ImageChannels& image, const LayerChannels& layer, std::span<float> values) {

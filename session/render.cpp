@@ -1,7 +1,6 @@
 #include "session/render.h"
 
 #include <tbb/info.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -11,6 +10,7 @@
 #include "core/objects/memory_error.h"
 #include "core/render/stop_clock.h"
 #include "session/auxiliary_channels.h"
+#include "session/borrowed_arena.h"
 #include "session/denoise/bmfr_sequence.h"
 #include "session/denoise/denoised_layer.h"
 #include "session/render_report.h"
@@ -51,7 +51,7 @@ class RenderWork {
           hash_(scene.scene_hash()) {}
 
     Rendered run() {
-        tbb::task_arena arena(threads_);
+        BorrowedArena arena(threads_);
         return arena.execute([&] { return render_here(); });
     }
 

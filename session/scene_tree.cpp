@@ -29,6 +29,15 @@ SceneTree::SceneTree(std::string name, std::string folder)
     scene_.set("version", "3.0.0");
 }
 
+void SceneTree::place(const std::string& name, const std::string& folder) {
+    const auto move = [&](auto&& self, Element& e) -> void {
+        e.where.file.replace(0, name_.size(), name), e.folder = folder;
+        for (Element& child : e.children) self(self, child);
+    };
+    move(move, scene_);
+    name_ = name, folder_ = folder;
+}
+
 Element& SceneTree::open() {
     Element* e = &scene_;
     for (const std::size_t child : path_) e = &e->children[child];

@@ -18,6 +18,8 @@ class SceneTree {
     /// `name` stands for the file in messages, with the names of the objects behind it: "scene.floor.bsdf".
     /// Relative file names are looked up in `folder`.
     explicit SceneTree(std::string name = "scene", std::string folder = "");
+    /// The same, for what is in it already.
+    void place(const std::string& name, const std::string& folder);
 
     /// Opens an object inside the one that is open: <category type="type" name="name" id="id">. Empty: no
     /// such attribute; `label` is what messages call it, its name where that is empty. Throws InputError for

@@ -1,7 +1,12 @@
 #include "session/denoise/denoised_layer.h"
 
+#include <tbb/info.h>
 #include "core/objects/error.h"
+
+#include "core/objects/error.h"
+#include "session/borrowed_arena.h"
 #include "session/denoise/beauty_layers.h"
+#include "session/denoise/bmfr_sequence.h"
 
 namespace mote::session {
 
@@ -37,6 +42,16 @@ void add_denoised_layer(ImageChannels& image, const OidnLibrary& library) {
         "the layer '" + denoised_layer + "', by OpenImageDenoise " + library.version() + ": " + joined(done) +
         (albedo.empty() ? ", without features" : ", with Albedo") +
         (albedo.empty() || normal.empty() ? "" : " and Ns") + "; all other layers are as they were measured";
+}
+
+void add_denoised(ImageChannels& image, const std::string& method, int threads) {
+    const std::vector<std::string> known = {"oidn", "bmfr"};
+    if (method == "oidn") return add_denoised_layer(image, OidnLibrary(threads));
+    if (method != "bmfr")
+        throw core::InputError("there is no denoiser '" + core::printable(method) + "'" +
+                               core::suggestion(method, known));
+    BorrowedArena arena(threads > 0 ? threads : tbb::info::default_concurrency());
+    arena.execute([&] { BmfrSequence(true).add_denoised_layer(image); });
 }
 
 ImageChannels denoised_picture(const ImageChannels& image) {

@@ -19,6 +19,10 @@ inline const std::string denoised_layer = "denoised";
 /// the library fails.
 void add_denoised_layer(core::ImageChannels& image, const OidnLibrary& library);
 
+/// The same by a method's name, "oidn" or "bmfr" (bmfr_sequence.h). `threads` 0: as many as there are cores.
+/// Throws InputError likewise, and for another name.
+void add_denoised(core::ImageChannels& image, const std::string& method, int threads);
+
 /// The denoised layer with its metadata, as a picture of its own.
 core::ImageChannels denoised_picture(const core::ImageChannels& image);
 

@@ -1,0 +1,411 @@
+/* The C interface from C99: scenes, renders, layers, errors, cancelling, threads, arrays, and the bits of the
+ * command. Usage: interface_test MOTE FOLDER: the command, and a folder to write into. */
+#define _POSIX_C_SOURCE 200809L
+#include <math.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include "check.h"
+#include "plugins/c/mote.h"
+
+static mote_scene* loaded(const char* xml, const mote_load_options* options) {
+    mote_scene* scene = mote_scene_new();
+    CHECK(mote_scene_load_text(scene, xml, options) == MOTE_OK);
+    if (*mote_scene_error(scene)) fprintf(stderr, "%s\n", mote_scene_error(scene));
+    return scene;
+}
+
+static mote_render_options passes(uint32_t count) {
+    mote_render_options options;
+    memset(&options, 0, sizeof options);
+    options.struct_size = sizeof options;
+    options.passes = count, options.seed = 7;
+    return options;
+}
+
+/* A layer in memory of its own; the caller frees it. */
+static float* layer_of(mote_picture* picture, const char* name, size_t* count) {
+    const int channels = mote_picture_layer_channels(picture, name);
+    float* values;
+    *count = (size_t)mote_picture_width(picture) * (size_t)mote_picture_height(picture) * (size_t)channels;
+    values = malloc(*count * sizeof(float) + 1);
+    CHECK(channels > 0 && mote_picture_read(picture, name, values, *count) == MOTE_OK);
+    return values;
+}
+
+static void test_version(void) {
+    CHECK(mote_version_number() == MOTE_VERSION_NUMBER);
+    CHECK(strlen(mote_version()) >= 5);
+    CHECK(strcmp(mote_status_name(MOTE_INPUT_ERROR), "MOTE_INPUT_ERROR") == 0);
+}
+
+static void test_render(void) {
+    mote_scene* scene = loaded(small_scene, NULL);
+    mote_picture* picture = mote_picture_new();
+    const mote_render_options options = passes(2);
+    size_t i, count;
+    float sum = 0.0f, *values;
+    CHECK(mote_scene_width(scene) == 40 && mote_scene_height(scene) == 30);
+    CHECK(strstr(mote_scene_plan(scene), "mote_vpl") != NULL);
+    CHECK(mote_render(scene, &options, picture) == MOTE_OK);
+    mote_scene_free(scene); /* the picture stays */
+    CHECK(mote_picture_passes(picture) == 2 && !mote_picture_interrupted(picture));
+    CHECK(strcmp(mote_picture_layer_name(picture, 0), "beauty") == 0);
+    CHECK(mote_picture_layer_name(picture, mote_picture_layer_count(picture)) == NULL);
+    CHECK(mote_picture_layer_channels(picture, "direct") == 3 &&
+          mote_picture_layer_channels(picture, "no") == 0);
+    CHECK(strcmp(mote_picture_metadata(picture, "seed"), "7") == 0);
+    CHECK(mote_picture_metadata(picture, "nothing") == NULL);
+    CHECK(strstr(mote_picture_statistics(picture), "\"passes\": 2") != NULL);
+    values = layer_of(picture, "beauty", &count);
+    CHECK(count == 40 * 30 * 3);
+    for (i = 0; i < count; ++i) sum += values[i];
+    CHECK(sum > 0.0f && isfinite(sum));
+    CHECK(mote_picture_read(picture, "beauty", values, count - 1) == MOTE_BUFFER_TOO_SMALL);
+    CHECK(mote_picture_read(picture, "beuaty", values, count) == MOTE_INPUT_ERROR);
+    CHECK(strstr(mote_picture_error(picture), "did you mean 'beauty'") != NULL);
+    free(values);
+    mote_picture_free(picture);
+}
+
+static void test_errors(void) {
+    mote_scene* scene = mote_scene_new();
+    mote_picture* picture = mote_picture_new();
+    mote_render_options options = passes(1);
+    mote_load_options load;
+    struct {
+        mote_render_options known;
+        int further[4];
+    } newer;
+    CHECK(mote_scene_load_text(scene, "<scene version=\"3.0.0\">\n\n<shape type=\"sphre\"/></scene>", NULL) ==
+          MOTE_INPUT_ERROR);
+    CHECK(mote_scene_error_line(scene) == 3 && strcmp(mote_scene_error_file(scene), "<string>") == 0);
+    CHECK(strstr(mote_scene_error(scene), "did you mean 'sphere'") != NULL);
+    CHECK(mote_scene_error_count(scene) == 1 && mote_scene_error_at(scene, 1) == NULL);
+    CHECK(mote_scene_load_text(scene, "<scene", NULL) == MOTE_INPUT_ERROR);
+    CHECK(mote_scene_load_file(scene, "/nowhere.xml", NULL) == MOTE_INPUT_ERROR);
+    CHECK(strcmp(mote_scene_error_file(scene), "") == 0 && strstr(mote_scene_error(scene), "nowhere.xml"));
+    CHECK(mote_scene_load_text(scene, NULL, NULL) == MOTE_INVALID_ARGUMENT);
+    CHECK(strstr(mote_scene_error(scene), "null") != NULL);
+    CHECK(mote_scene_load_text(NULL, small_scene, NULL) == MOTE_INVALID_ARGUMENT);
+    CHECK(mote_render(scene, &options, picture) == MOTE_INVALID_ARGUMENT); /* nothing is loaded */
+    CHECK(mote_render(NULL, &options, picture) == MOTE_INVALID_ARGUMENT);
+    CHECK(mote_render(scene, &options, NULL) == MOTE_INVALID_ARGUMENT);
+    memset(&load, 0, sizeof load);
+    CHECK(mote_scene_load_text(scene, small_scene, &load) == MOTE_INVALID_ARGUMENT);
+    CHECK(strstr(mote_scene_error(scene), "struct_size") != NULL);
+    load.struct_size = sizeof load, load.integrator = "mote_vlp";
+    CHECK(mote_scene_load_text(scene, small_scene, &load) == MOTE_INPUT_ERROR);
+    CHECK(mote_scene_load_text(scene, small_scene, NULL) == MOTE_OK && !*mote_scene_error(scene));
+    options.threads = -1;
+    CHECK(mote_render(scene, &options, picture) == MOTE_INVALID_ARGUMENT);
+    options.threads = 0, options.denoise = "bmrf";
+    CHECK(mote_render(scene, &options, picture) == MOTE_INPUT_ERROR);
+    CHECK(strstr(mote_picture_error(picture), "did you mean 'bmfr'") != NULL);
+    memset(&newer, 0, sizeof newer); /* of a newer header: what is not known must be zero */
+    newer.known = passes(1), newer.known.struct_size = sizeof newer;
+    CHECK(mote_render(scene, &newer.known, picture) == MOTE_OK);
+    newer.further[3] = 1;
+    CHECK(mote_render(scene, &newer.known, picture) == MOTE_INVALID_ARGUMENT);
+    mote_scene_free(scene), mote_scene_free(NULL);
+    mote_picture_free(picture), mote_picture_free(NULL);
+}
+
+typedef struct Watch {
+    double begin, asked;
+    uint32_t passes;
+    int previews;
+} Watch;
+static int after_a_moment(void* user) {
+    Watch* watch = user;
+    if (watch->asked == 0.0 && seconds() - watch->begin > 0.4) watch->asked = seconds();
+    return watch->asked > 0.0;
+}
+static void watch_progress(void* user, const mote_progress* progress) {
+    ((Watch*)user)->passes = progress->passes;
+}
+static void watch_preview(void* user, int width, int height, const float* rgb) {
+    ((Watch*)user)->previews += width == 40 && height == 30 && isfinite(rgb[0]);
+}
+
+static void test_cancel(void) {
+    mote_scene* scene = loaded(small_scene, NULL);
+    mote_picture* picture = mote_picture_new();
+    mote_render_options options = passes(1u << 29);
+    Watch watch = {0.0, 0.0, 0, 0};
+    watch.begin = seconds();
+    options.user = &watch, options.cancelled = after_a_moment, options.progress = watch_progress;
+    options.preview = watch_preview;
+    CHECK(mote_render(scene, &options, picture) == MOTE_OK);
+    CHECK(seconds() - watch.asked < 2.0);
+    CHECK(mote_picture_interrupted(picture) && mote_picture_passes(picture) > 0);
+    CHECK(watch.passes > 0 && watch.passes <= mote_picture_passes(picture) && watch.previews > 0);
+    CHECK(mote_picture_layer_channels(picture, "beauty") == 3);
+    mote_scene_free(scene);
+    mote_picture_free(picture);
+}
+
+static void test_seconds(void) {
+    mote_scene* scene = loaded(small_scene, NULL);
+    mote_picture* picture = mote_picture_new();
+    mote_render_options options = passes(0);
+    const double begin = seconds();
+    options.seconds = 0.3;
+    CHECK(mote_render(scene, &options, picture) == MOTE_OK);
+    CHECK(seconds() - begin < 2.3 && mote_picture_passes(picture) > 0 && !mote_picture_interrupted(picture));
+    mote_scene_free(scene);
+    mote_picture_free(picture);
+}
+
+static void* render_twice(void* unused) {
+    int i;
+    (void)unused;
+    mote_picture* picture = mote_picture_new();
+    mote_scene* scene = mote_scene_new();
+    const mote_render_options options = passes(3);
+    for (i = 0; i < 2; ++i) {
+        const mote_status load = mote_scene_load_text(scene, small_scene, NULL);
+        if (load != MOTE_OK || mote_render(scene, &options, picture) != MOTE_OK) break;
+    }
+    mote_scene_free(scene);
+    return picture;
+}
+
+static void test_threads(void) {
+    pthread_t threads[2];
+    void* pictures[2];
+    float* values[2];
+    size_t count = 0;
+    int i;
+    for (i = 0; i < 2; ++i) CHECK(pthread_create(&threads[i], NULL, render_twice, NULL) == 0);
+    for (i = 0; i < 2; ++i) pthread_join(threads[i], &pictures[i]);
+    for (i = 0; i < 2; ++i) values[i] = layer_of(pictures[i], "beauty", &count);
+    CHECK(count == 3600 && memcmp(values[0], values[1], count * sizeof(float)) == 0);
+    for (i = 0; i < 2; ++i) free(values[i]), mote_picture_free(pictures[i]);
+}
+
+static void compare_layers(mote_picture* ours, mote_picture* theirs) {
+    size_t i, a, b;
+    CHECK(mote_picture_layer_count(ours) == mote_picture_layer_count(theirs) &&
+          mote_picture_layer_count(ours) > 2);
+    for (i = 0; i < mote_picture_layer_count(ours); ++i) {
+        const char* name = mote_picture_layer_name(ours, i);
+        float *x = layer_of(ours, name, &a), *y = layer_of(theirs, name, &b);
+        CHECK(a == b && memcmp(x, y, a * sizeof(float)) == 0);
+        free(x), free(y);
+    }
+}
+
+/* The bits of the command, also of a definition and of another integrator. */
+static void test_bits(const char* mote, const char* folder) {
+    const char *names[] = {"paths", "film.width"}, *values[] = {"32", "24"};
+    char scene_path[4096], picture_path[4096], command[16384];
+    mote_scene* scene = mote_scene_new();
+    mote_picture *ours = mote_picture_new(), *theirs = mote_picture_new();
+    mote_load_options load;
+    mote_render_options options = passes(3);
+    FILE* file;
+    snprintf(scene_path, sizeof scene_path, "%s/c_interface.xml", folder);
+    snprintf(picture_path, sizeof picture_path, "%s/c_interface.exr", folder);
+    snprintf(command, sizeof command,
+             "'%s' render '%s' -o '%s' --passes 3 --seed 7 -D paths=32 -D film.width=24 --auxiliary --quiet "
+             "> /dev/null",
+             mote, scene_path, picture_path);
+    file = fopen(scene_path, "w");
+    CHECK(file != NULL);
+    if (!file) return;
+    fputs(small_scene, file);
+    fclose(file);
+    memset(&load, 0, sizeof load);
+    load.struct_size = sizeof load, load.define_names = names, load.define_values = values,
+    load.define_count = 2;
+    CHECK(mote_scene_load_file(scene, scene_path, &load) == MOTE_OK);
+    options.auxiliary = 1, options.threads = 1;
+    CHECK(mote_render(scene, &options, ours) == MOTE_OK && mote_picture_width(ours) == 24);
+    CHECK(system(command) == 0);
+    CHECK(mote_picture_load(theirs, picture_path) == MOTE_OK);
+    compare_layers(ours, theirs);
+    CHECK(strcmp(mote_picture_metadata(ours, "sceneHash"), mote_picture_metadata(theirs, "sceneHash")) == 0);
+    mote_scene_free(scene);
+    mote_picture_free(ours), mote_picture_free(theirs);
+}
+
+/* The small scene again, from arrays: a floor of two triangles, and a cube of fog. */
+static void describe(mote_scene* scene, float top) {
+    static const float positions[] = {-3, 0, -3, 3, 0, -3, 3, 0, 3, -3, 0, 3};
+    static const uint32_t triangles[] = {0, 2, 1, 0, 3, 2};
+    const double look[16] = {-1, 0, 0, 0, 0, 1, 0, 1, 0, 0, -1, 4, 0, 0, 0, 1};
+    float density[8];
+    mote_mesh mesh;
+    mote_grid grid;
+    int i;
+    for (i = 0; i < 8; ++i) density[i] = i < 4 ? 1.0f : top;
+    memset(&mesh, 0, sizeof mesh), memset(&grid, 0, sizeof grid);
+    mesh.struct_size = sizeof mesh, mesh.positions = positions, mesh.vertex_count = 4;
+    mesh.triangles = triangles, mesh.triangle_count = 2;
+    grid.struct_size = sizeof grid, grid.values = density, grid.width = grid.height = grid.depth = 2;
+    CHECK(mote_scene_add_mesh(scene, "floor", &mesh) == MOTE_OK);
+    CHECK(mote_scene_add_grid(scene, "fog", &grid) == MOTE_OK);
+    mote_scene_begin(scene, "integrator", "volpath", NULL, NULL), mote_scene_end(scene);
+    mote_scene_begin(scene, "sensor", "perspective", NULL, NULL);
+    mote_scene_set_float(scene, "fov", 50);
+    mote_scene_set_transform(scene, "to_world", look);
+    mote_scene_begin(scene, "film", "hdrfilm", NULL, NULL);
+    mote_scene_set_integer(scene, "width", 20), mote_scene_set_integer(scene, "height", 16);
+    mote_scene_end(scene), mote_scene_end(scene);
+    mote_scene_begin(scene, "bsdf", "diffuse", NULL, "white");
+    mote_scene_set_rgb(scene, "reflectance", 0.8, 0.8, 0.8);
+    mote_scene_end(scene);
+    mote_scene_begin(scene, "shape", "arraymesh", NULL, NULL);
+    mote_scene_set_string(scene, "array", "floor");
+    mote_scene_refer(scene, "white", NULL);
+    mote_scene_end(scene);
+    mote_scene_begin(scene, "shape", "cube", NULL, NULL);
+    mote_scene_begin(scene, "bsdf", "null", NULL, NULL), mote_scene_end(scene);
+    mote_scene_begin(scene, "medium", "heterogeneous", "interior", NULL);
+    mote_scene_begin(scene, "volume", "arraygrid", "sigma_t", NULL);
+    mote_scene_set_string(scene, "array", "fog");
+    mote_scene_end(scene), mote_scene_end(scene), mote_scene_end(scene);
+    mote_scene_begin(scene, "emitter", "point", NULL, NULL);
+    mote_scene_set_point(scene, "position", 1, 3, 2);
+    mote_scene_end(scene);
+}
+
+static float mean_of_arrays(float top) {
+    mote_scene* scene = mote_scene_new();
+    mote_picture* picture = mote_picture_new();
+    const mote_render_options options = passes(4);
+    float sum = 0.0f, *values;
+    size_t i, count;
+    describe(scene, top);
+    CHECK(mote_scene_build(scene, NULL) == MOTE_OK);
+    if (*mote_scene_error(scene)) fprintf(stderr, "%s\n", mote_scene_error(scene));
+    CHECK(mote_render(scene, &options, picture) == MOTE_OK);
+    values = layer_of(picture, "beauty", &count);
+    for (i = 0; i < count; ++i) sum += values[i];
+    free(values);
+    mote_scene_free(scene);
+    mote_picture_free(picture);
+    return sum / (float)count;
+}
+
+static void test_arrays(void) {
+    mote_scene* scene = mote_scene_new();
+    static const float nowhere[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    static const uint32_t beyond[] = {0, 1, 3};
+    mote_mesh mesh;
+    CHECK(mean_of_arrays(1.0f) > 0.0f);
+    CHECK(mean_of_arrays(1.0f) == mean_of_arrays(1.0f));
+    CHECK(mean_of_arrays(1.0f) != mean_of_arrays(2.0f)); /* the grid is looked at */
+    memset(&mesh, 0, sizeof mesh);
+    mesh.struct_size = sizeof mesh, mesh.positions = nowhere, mesh.vertex_count = 3;
+    mesh.triangles = beyond, mesh.triangle_count = 1;
+    CHECK(mote_scene_add_mesh(scene, "bad", &mesh) == MOTE_INPUT_ERROR);
+    CHECK(strstr(mote_scene_error(scene), "array 'bad'") != NULL);
+    CHECK(mote_scene_begin(scene, "shpae", "sphere", NULL, NULL) == MOTE_INPUT_ERROR);
+    CHECK(strstr(mote_scene_error(scene), "did you mean 'shape'") != NULL);
+    CHECK(mote_scene_end(scene) == MOTE_INPUT_ERROR);
+    describe(scene, 1.0f);
+    mote_scene_begin(scene, "shape", "sphere", NULL, "ball");
+    mote_scene_set_float(scene, "raduis", 1.0);
+    CHECK(mote_scene_build(scene, NULL) == MOTE_INPUT_ERROR); /* the sphere is open */
+    describe(scene, 1.0f);
+    mote_scene_begin(scene, "shape", "sphere", NULL, "ball");
+    mote_scene_set_float(scene, "raduis", 1.0), mote_scene_end(scene);
+    CHECK(mote_scene_build(scene, NULL) == MOTE_INPUT_ERROR);
+    CHECK(strcmp(mote_scene_error_file(scene), "scene.ball") == 0);
+    CHECK(strstr(mote_scene_error(scene), "did you mean 'radius'") != NULL);
+    mote_scene_free(scene);
+}
+
+static void test_algorithms(void) {
+    mote_scene* scene = loaded(small_scene, NULL);
+    mote_picture *picture = mote_picture_new(), *plain = mote_picture_new();
+    mote_render_options options = passes(4);
+    mote_metrics metrics;
+    mote_ssbc_options ssbc;
+    size_t count, i;
+    float *before, *after, *added, *names[4];
+    static const char* const needed[] = {"beauty", "Center.P", "Center.N", "Center.DiffuseAlbedo"};
+    double largest = 0.0;
+    options.auxiliary = 1;
+    CHECK(mote_render(scene, &options, picture) == MOTE_OK);
+    /* The same from plain buffers. */
+    for (i = 0; i < 4; ++i) {
+        names[i] = layer_of(picture, needed[i], &count);
+        CHECK(mote_picture_write(plain, needed[i], 40, 30, 3, names[i]) == MOTE_OK);
+    }
+    CHECK(mote_picture_write(plain, "wrong", 41, 30, 1, names[0]) == MOTE_INPUT_ERROR);
+    mote_picture_set_metadata(plain, "worldToCamera", mote_picture_metadata(picture, "worldToCamera"));
+    CHECK(mote_picture_compensate(plain, NULL) == MOTE_INPUT_ERROR); /* no bound */
+    memset(&ssbc, 0, sizeof ssbc);
+    ssbc.struct_size = sizeof ssbc, ssbc.bound = 0.5;
+    CHECK(mote_picture_compensate(plain, &ssbc) == MOTE_OK);
+    before = names[0], after = layer_of(plain, "beauty", &count);
+    added = layer_of(plain, "compensation_surface", &count);
+    for (i = 0; i < count; ++i) {
+        CHECK(after[i] == before[i] + added[i]);
+        largest = added[i] > largest ? added[i] : largest;
+    }
+    CHECK(largest > 0.0);
+    metrics.struct_size = sizeof metrics;
+    CHECK(mote_compare(after, before, 40, 30, NULL, NULL, &metrics) == MOTE_OK);
+    CHECK(metrics.error > 0.0 && metrics.bias > 0.0 && metrics.mse > 0.0 && metrics.non_finite == 0);
+    CHECK(mote_compare(before, before, 40, 30, NULL, NULL, &metrics) == MOTE_OK && metrics.mse == 0.0);
+    metrics.struct_size = 8;
+    CHECK(mote_compare(before, before, 40, 30, NULL, NULL, &metrics) == MOTE_INVALID_ARGUMENT);
+    CHECK(mote_picture_denoise(picture, "bmfr", 1) == MOTE_OK);
+    CHECK(mote_picture_layer_channels(picture, "denoised") == 3);
+    CHECK(mote_picture_denoise(picture, "bmfr", 1) == MOTE_INPUT_ERROR); /* it is already */
+    for (i = 0; i < 4; ++i) free(names[i]);
+    free(after), free(added);
+    mote_scene_free(scene);
+    mote_picture_free(picture), mote_picture_free(plain);
+}
+
+/* Resident pages of this process. */
+static long resident(void) {
+    long all = 0, in_memory = 0;
+    FILE* file = fopen("/proc/self/statm", "r");
+    if (!file) return 0;
+    if (fscanf(file, "%ld %ld", &all, &in_memory) != 2) in_memory = 0;
+    fclose(file);
+    return in_memory;
+}
+
+/* A hundred renders, loaded anew each time: what the last seventy leave behind is less than a page each. */
+static void test_leaks(void) {
+    long after_thirty = 0, after_all;
+    int i;
+    for (i = 0; i < 100; ++i) {
+        mote_scene* scene = loaded(small_scene, NULL);
+        mote_picture* picture = mote_picture_new();
+        const mote_render_options options = passes(1);
+        CHECK(mote_render(scene, &options, picture) == MOTE_OK);
+        mote_scene_free(scene);
+        mote_picture_free(picture);
+        if (i == 29) after_thirty = resident();
+    }
+    after_all = resident();
+    printf("%ld pages after 30 renders, %ld after 100\n", after_thirty, after_all);
+#if !defined(MOTE_SANITIZED)
+    CHECK((after_all - after_thirty) * sysconf(_SC_PAGESIZE) < 70 * 4096L);
+#endif
+}
+
+int main(int argc, char** argv) {
+    if (argc != 3) return 2;
+    test_version();
+    test_render();
+    test_errors();
+    test_cancel();
+    test_seconds();
+    test_threads();
+    test_bits(argv[1], argv[2]);
+    test_arrays();
+    test_algorithms();
+    test_leaks();
+    printf("%d checks, %d failures\n", checks, failures);
+    return failures > 0;
+}
