@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "apps/render_report.h"
+#include "session/render_report.h"
 #include "core/objects/error.h"
 #include "core/render/partial_film.h"
 

@@ -1,0 +1,141 @@
+// Scenes: built element by element, loaded, and asked what they will do; and the manual pages.
+#include "python/bindings/bindings.h"
+#include "session/registry.h"
+
+namespace mote::python {
+
+namespace {
+
+using session::LoadedScene, session::SceneTree;
+
+void add_mesh(SceneTree& tree, const std::string& name, const Floats& positions, const Indices& triangles,
+              const std::optional<Floats>& normals, const std::optional<Floats>& uvs) {
+    const auto rows = [](const auto& array, std::size_t columns, const char* what) {
+        if (array.ndim() != 2 || array.shape(1) != columns)
+            throw std::invalid_argument(std::string(what) + " have the shape (n, " + std::to_string(columns) + ")");
+        return array.shape(0);
+    };
+    core::MeshData mesh;
+    for (std::size_t i = 0, n = rows(positions, 3, "positions"); i < n; ++i)
+        mesh.positions.emplace_back(positions.data()[3 * i], positions.data()[3 * i + 1], positions.data()[3 * i + 2]);
+    for (std::size_t i = 0, n = rows(triangles, 3, "triangles"); i < n; ++i)
+        mesh.triangles.push_back({triangles.data()[3 * i], triangles.data()[3 * i + 1], triangles.data()[3 * i + 2]});
+    for (std::size_t i = 0, n = normals ? rows(*normals, 3, "normals") : 0; i < n; ++i)
+        mesh.normals.emplace_back(normals->data()[3 * i], normals->data()[3 * i + 1], normals->data()[3 * i + 2]);
+    for (std::size_t i = 0, n = uvs ? rows(*uvs, 2, "uvs") : 0; i < n; ++i)
+        mesh.uvs.emplace_back(uvs->data()[2 * i], uvs->data()[2 * i + 1]);
+    tree.arrays().add_mesh(name, std::move(mesh));
+}
+
+void add_grid(SceneTree& tree, const std::string& name, const Floats& values, const std::vector<float>& lower,
+              const std::vector<float>& upper) {
+    if ((values.ndim() != 3 && values.ndim() != 4) || lower.size() != 3 || upper.size() != 3)
+        throw std::invalid_argument("a grid has the shape (depth, height, width) or (depth, height, width, channels)");
+    media::VolFile grid;
+    grid.resolution = {int(values.shape(2)), int(values.shape(1)), int(values.shape(0))};
+    grid.channels = values.ndim() == 4 ? int(values.shape(3)) : 1;
+    grid.bounds.lower = {lower[0], lower[1], lower[2]}, grid.bounds.upper = {upper[0], upper[1], upper[2]};
+    grid.values.assign(values.data(), values.data() + values.size());
+    tree.arrays().add_grid(name, std::move(grid));
+}
+
+using Defines = std::vector<std::pair<std::string, std::string>>;
+
+/// Loading takes long: other threads of Python go on meanwhile.
+template <typename Load>
+LoadedScene load(const std::string& integrator, const Defines& defines, bool lenient, const Load& load_now) {
+    const session::SceneChanges changes{integrator, defines, lenient};
+    const nb::gil_scoped_release others_go_on;
+    LoadedScene loaded = load_now(changes);
+    loaded.integrator();  // what is missing is said now
+    return loaded;
+}
+
+nb::list entries(const std::vector<core::PlanEntry>& list) {
+    nb::list result;
+    for (const core::PlanEntry& e : list) {
+        nb::dict d;
+        d["topic"] = e.topic, d["choice"] = e.choice, d["reason"] = e.reason, d["cure"] = e.cure;
+        result.append(d);
+    }
+    return result;
+}
+
+/// [(category, type, [(parameter, type)])] of everything that a scene can name.
+std::vector<std::pair<std::pair<std::string, std::string>, std::vector<std::pair<std::string, std::string>>>> manuals() {
+    core::Registry registry = session::make_registry();
+    session::register_arrays(registry, std::make_shared<session::ArrayStore>());
+    decltype(manuals()) result;
+    for (const core::Manual* manual : registry.manuals()) {
+        std::vector<std::pair<std::string, std::string>> parameters;
+        for (const core::Parameter& p : manual->parameters) parameters.emplace_back(p.name, p.type);
+        result.push_back({{core::category_name(manual->category), manual->type}, parameters});
+    }
+    return result;
+}
+
+}  // namespace
+
+void bind_scenes(nb::module_& m) {
+    nb::class_<SceneTree>(m, "Tree", "A scene that is being built, element by element.")
+        .def(nb::init<std::string, std::string>(), nb::arg("name"), nb::arg("folder"))
+        .def("begin", &SceneTree::begin, nb::arg("category"), nb::arg("type"), nb::arg("name"), nb::arg("id"),
+             nb::arg("label"))
+        .def("end", &SceneTree::end)
+        .def("value", &SceneTree::value, nb::arg("kind"), nb::arg("name"), nb::arg("text"))
+        .def("number", &SceneTree::number, nb::arg("name"), nb::arg("number"))
+        .def("triple", &SceneTree::triple, nb::arg("kind"), nb::arg("name"), nb::arg("x"), nb::arg("y"), nb::arg("z"))
+        .def(
+            "transform",
+            [](SceneTree& tree, const std::string& name, const std::vector<double>& rows) {
+                tree.transform(name, rows);
+            },
+            nb::arg("name"), nb::arg("rows"))
+        .def("reference", &SceneTree::reference, nb::arg("id"), nb::arg("name"))
+        .def("add_mesh", &add_mesh, nb::arg("name"), nb::arg("positions"), nb::arg("triangles"),
+             nb::arg("normals").none(), nb::arg("uvs").none())
+        .def("add_grid", &add_grid, nb::arg("name"), nb::arg("values"), nb::arg("lower"), nb::arg("upper"));
+
+    nb::class_<LoadedScene>(m, "LoadedScene", "A scene that is ready to be rendered.")
+        .def_static(
+            "from_file",
+            [](const std::string& path, const std::string& integrator, const Defines& defines, bool lenient) {
+                return load(integrator, defines, lenient,
+                            [&](const auto& changes) { return LoadedScene::from_file(path, changes); });
+            },
+            nb::arg("path"), nb::arg("integrator"), nb::arg("defines"), nb::arg("lenient"))
+        .def_static(
+            "from_text",
+            [](const std::string& xml, const std::string& folder, const std::string& name,
+               const std::string& integrator, const Defines& defines, bool lenient) {
+                return load(integrator, defines, lenient,
+                            [&](const auto& changes) { return LoadedScene::from_text(xml, folder, changes, name); });
+            },
+            nb::arg("xml"), nb::arg("folder"), nb::arg("name"), nb::arg("integrator"), nb::arg("defines"),
+            nb::arg("lenient"))
+        .def_static(
+            "from_tree",
+            [](const SceneTree& tree, const std::string& integrator, const Defines& defines, bool lenient) {
+                return load(integrator, defines, lenient,
+                            [&](const auto& changes) { return LoadedScene::from_tree(tree, changes); });
+            },
+            nb::arg("tree"), nb::arg("integrator"), nb::arg("defines"), nb::arg("lenient"))
+        .def_prop_ro("width", [](const LoadedScene& s) { return s.scene().film().width; })
+        .def_prop_ro("height", [](const LoadedScene& s) { return s.scene().film().height; })
+        .def_prop_ro("sample_count", [](const LoadedScene& s) { return s.scene().film().sample_count; })
+        .def_prop_ro("integrator", [](const LoadedScene& s) { return s.integrator().type(); })
+        .def_prop_ro("files", [](const LoadedScene& s) { return s.scene().parts().input_files; })
+        .def_prop_ro("warnings", &LoadedScene::warnings)
+        .def_prop_ro("hash", &LoadedScene::scene_hash)
+        .def("plan_text", [](const LoadedScene& s) { return s.plan().to_text(); })
+        .def("plan", [](const LoadedScene& s) {
+            const core::Plan plan = s.plan();
+            nb::dict d;
+            d["integrator"] = plan.integrator, d["runs"] = entries(plan.runs);
+            d["left_out"] = entries(plan.left_out), d["missing"] = entries(plan.missing);
+            return d;
+        });
+    m.def("manuals", &manuals);
+}
+
+}  // namespace mote::python

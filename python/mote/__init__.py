@@ -1,0 +1,20 @@
+"""mote: many-light rendering and participating media.
+
+    import mote
+    scene = mote.load("scene.xml", paths=256)            # a file, with its $parameters; or mote.Scene({...})
+    picture = mote.render(scene, passes=16, seed=1)
+    picture["beauty"]                                    # float32 array (height, width, 3), radiance in W/(m^2 sr)
+
+A render has the same bits as that of the command `mote render` with the same scene, seed and passes.
+"""
+from ._errors import Error
+from ._mote import version as __version__
+from ._picture import Picture
+from ._rendering import render
+from ._scene import Scene, load, load_string
+from ._measuring import compare, denoise, metric_definitions, ssbc
+from ._trade import trade
+from ._transform import ScalarTransform4f, Transform
+
+__all__ = ["Error", "Picture", "ScalarTransform4f", "Scene", "Transform", "compare", "denoise", "load", "load_string",
+           "metric_definitions", "render", "ssbc", "trade"]

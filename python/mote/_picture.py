@@ -1,0 +1,136 @@
+"""Pictures: layers by name as NumPy arrays."""
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Dict, Iterator, List, Optional, Union
+
+import numpy as np
+
+from . import _errors, _mote  # noqa: F401  (errors are registered first)
+
+
+class Picture(Mapping):
+    """Layers by name: picture["beauty"], picture["direct"], ...; list(picture) are their names.
+
+    A layer is a float32 array (height, width, channels), or (height, width) where it has one channel, row by row from
+    the top. Light is radiance in W/(m^2 sr), R, G, B; positions P and distances Depth are in metres, normals N and Ns
+    unit vectors in world space; "Variance" is that of the mean of the beauty, "Variance.NAME" that of another layer.
+    Where a render was interrupted in its first pass, "alpha" is 1 for the pixels that are finished.
+
+    Picture({"beauty": array, ...}, {"worldToCamera": ...}) makes one of arrays of one's own.
+    """
+
+    def __init__(self, layers: Optional[Mapping] = None, metadata: Optional[Mapping] = None) -> None:
+        self._picture = _mote.Picture()
+        self._cache: Dict[str, np.ndarray] = {}
+        for name, values in (layers or {}).items():
+            self[name] = values
+        for name, text in (metadata or {}).items():
+            self._picture.set_metadata(name, str(text))
+
+    @classmethod
+    def _of(cls, inner: _mote.Picture) -> Picture:
+        picture = cls()
+        picture._picture = inner
+        return picture
+
+    @classmethod
+    def load(cls, path: Union[str, Path]) -> Picture:
+        """Reads an OpenEXR file. Raises mote.Error."""
+        return cls._of(_mote.Picture.read(str(path)))
+
+    def save(self, path: Union[str, Path], half: bool = False) -> None:
+        """Writes an OpenEXR file, as float32 or (half) float16. Raises mote.Error."""
+        self._picture.save(str(path), half)
+
+    def copy(self) -> Picture:
+        return Picture._of(self._picture.copy())
+
+    # Layers, as a mapping.
+    def __getitem__(self, name: str) -> np.ndarray:
+        if name not in self._cache:
+            if name not in self:
+                try:
+                    self._picture.read_layer(name)
+                except _errors.Error as error:
+                    raise KeyError(str(error)) from None
+            self._cache[name] = self._picture.read_layer(name)
+        return self._cache[name]
+
+    def __setitem__(self, name: str, values: Any) -> None:
+        """Adds or replaces a layer of 1 or 3 channels. Raises mote.Error for another size than the picture's."""
+        array = np.ascontiguousarray(values, dtype=np.float32)
+        self._picture.write_layer(name, array[:, :, np.newaxis] if array.ndim == 2 else array)
+        self._cache.pop(name, None)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.layers)
+
+    def __len__(self) -> int:
+        return len(self.layers)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.layers
+
+    @property
+    def layers(self) -> List[str]:
+        """Names of the layers, in the order of the file."""
+        return [name for name, _ in self._picture.layers()]
+
+    @property
+    def channels(self) -> Dict[str, List[str]]:
+        """Of every layer the names of its channels: {"beauty": ["R", "G", "B"], "Depth": ["Z"], ...}."""
+        return dict(self._picture.layers())
+
+    # What is known of it.
+    @property
+    def width(self) -> int:
+        return self._picture.width
+
+    @property
+    def height(self) -> int:
+        return self._picture.height
+
+    @property
+    def passes(self) -> int:
+        """How many were added up; 0 where only a part of the first was, or it was not rendered."""
+        return self._picture.passes
+
+    @property
+    def noise(self) -> float:
+        """The relative error that the passes are expected to have left (docs/testing.md); infinity: not known."""
+        return self._picture.noise
+
+    @property
+    def interrupted(self) -> bool:
+        return self._picture.interrupted
+
+    @property
+    def metadata(self) -> Dict[str, str]:
+        """A copy of what the file says about itself: seed, passes, integrator, sceneHash, worldToCamera, ..."""
+        return self._picture.metadata
+
+    @property
+    def statistics(self) -> Dict[str, Any]:
+        """What `mote render --stats` writes: seconds, rays, plan, ...; empty for a picture that was not rendered."""
+        text = self._picture.statistics
+        return json.loads(text) if text else {}
+
+    @property
+    def warnings(self) -> List[str]:
+        return self._picture.warnings
+
+    def png(self, layer: str = "beauty", exposure: Optional[float] = None) -> bytes:
+        """A PNG file of a layer. `exposure` in stops; none: it adapts to the picture."""
+        return self._picture.png(layer, exposure)
+
+    def _repr_png_(self) -> Optional[bytes]:
+        return self.png() if "beauty" in self else None
+
+    def __repr__(self) -> str:
+        noise = f", noise {100 * self.noise:.2g} %" if math.isfinite(self.noise) else ""
+        return (f"<mote.Picture {self.width} x {self.height}, {self.passes} passes{noise}"
+                f"{', interrupted' if self.interrupted else ''}: {', '.join(self.layers)}>")

@@ -1,0 +1,108 @@
+"""Scenes: from a file, from text, from a dictionary."""
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any, Dict, List, Mapping, Optional, Union
+
+from . import _errors, _mote  # noqa: F401  (errors are registered first)
+from ._scene_dict import texts_of, tree_of
+
+
+class Plan(dict):
+    """What an integrator will run on a scene, and why: {"integrator", "runs", "left_out", "missing"}, lists of
+    {"topic", "choice", "reason", "cure"}. str(plan) is the table that `mote plan` prints."""
+
+    def __init__(self, entries: Mapping[str, Any], text: str) -> None:
+        super().__init__(entries)
+        self._text = text
+
+    def __str__(self) -> str:
+        return self._text
+
+
+class Scene:
+    """A scene that is ready to be rendered.
+
+    Scene({"type": "scene", "floor": {"type": "rectangle", "bsdf": {...}}, ...}) builds one of a dictionary in the
+    manner of Mitsuba's: nested objects with a "type", transforms as mote.Transform or 4 x 4 matrices, colours as three
+    numbers or {"type": "rgb", "value": [...]}, {"type": "ref", "id": ...} for an object that stands directly in the
+    scene. Besides Mitsuba's types: {"type": "arraymesh", "positions": (n, 3), "triangles": (m, 3), "normals": (n, 3),
+    "uvs": (n, 2)} and {"type": "arraygrid", "data": (depth, height, width) or (depth, height, width, 3),
+    "bounds": (lower, upper)}, a density grid in the unit cube of its `to_world` (or, with use_grid_bbox, in `bounds`).
+
+    integrator: this type instead of the scene's. define: what -D sets of a scene, {"film.width": 640}.
+    lenient: leave out or approximate what is wrong, and say so in `warnings`. folder: where relative file names are
+    looked up. Raises mote.Error.
+    """
+
+    def __init__(self, scene: Mapping[str, Any], *, integrator: str = "", define: Optional[Mapping[str, Any]] = None,
+                 lenient: bool = False, folder: Union[str, Path] = "") -> None:
+        tree = tree_of(scene, str(folder) or os.getcwd())
+        self._scene = _mote.LoadedScene.from_tree(tree, integrator, texts_of(define or {}), lenient)
+        self.path = ""
+
+    @classmethod
+    def _of(cls, inner: _mote.LoadedScene, path: str) -> Scene:
+        scene = cls.__new__(cls)
+        scene._scene, scene.path = inner, path
+        return scene
+
+    def plan(self) -> Plan:
+        """What will run, with the reason for every choice."""
+        return Plan(self._scene.plan(), self._scene.plan_text())
+
+    @property
+    def width(self) -> int:
+        """Of the film [pixels]."""
+        return self._scene.width
+
+    @property
+    def height(self) -> int:
+        return self._scene.height
+
+    @property
+    def sample_count(self) -> int:
+        """Passes of a render that nobody says when to end."""
+        return self._scene.sample_count
+
+    @property
+    def integrator(self) -> str:
+        return self._scene.integrator
+
+    @property
+    def files(self) -> List[str]:
+        """All that were read."""
+        return self._scene.files
+
+    @property
+    def warnings(self) -> List[str]:
+        return self._scene.warnings
+
+    @property
+    def hash(self) -> str:
+        """Of all that determines a picture besides seed and passes: the `sceneHash` of its metadata."""
+        return self._scene.hash
+
+    def __repr__(self) -> str:
+        return f"<mote.Scene {self.path or 'of a dictionary'}: {self.width} x {self.height}, {self.integrator}>"
+
+
+def load(path: Union[str, Path], *, integrator: str = "", define: Optional[Mapping[str, Any]] = None,
+         lenient: bool = False, **parameters: Any) -> Scene:
+    """A scene file (docs/scene-format.md), glTF or GLB.
+
+    parameters: as -D NAME=VALUE, load("scene.xml", paths=256); `define` holds those whose names are paths, such as
+    {"integrator.paths": 256} (film__width=64 is the same as {"film.width": 64}). integrator: this type instead of the
+    scene's. lenient: leave out or approximate what is wrong. Raises mote.Error with .file and .line.
+    """
+    defines: Dict[str, Any] = {**(define or {}), **parameters}
+    return Scene._of(_mote.LoadedScene.from_file(str(path), integrator, texts_of(defines), lenient), str(path))
+
+
+def load_string(xml: str, *, folder: Union[str, Path] = "", name: str = "<string>", integrator: str = "",
+                define: Optional[Mapping[str, Any]] = None, lenient: bool = False, **parameters: Any) -> Scene:
+    """The same of a scene file's text; relative file names are looked up in `folder`."""
+    defines: Dict[str, Any] = {**(define or {}), **parameters}
+    inner = _mote.LoadedScene.from_text(xml, str(folder) or os.getcwd(), name, integrator, texts_of(defines), lenient)
+    return Scene._of(inner, name)

@@ -1,0 +1,53 @@
+"""Error against time, for several methods: `mote trade`, run as a process of its own."""
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+from pathlib import Path
+from typing import Any, Dict, List, Mapping, Optional, Union
+
+from ._errors import Error
+from ._scene_dict import texts_of
+
+
+def _command() -> str:
+    """The program: $MOTE, beside this package (as wheels and build trees have it), or on the path."""
+    here = Path(__file__).resolve().parent
+    candidates = [os.environ.get("MOTE"), here / "mote", here.parent.parent / "bin" / "mote", shutil.which("mote")]
+    for candidate in candidates:
+        if candidate and os.access(candidate, os.X_OK) and Path(candidate).is_file():
+            return str(candidate)
+    raise FileNotFoundError("the command `mote` was found neither beside the package nor on the path; set MOTE to it")
+
+
+def trade(scene: Union[str, Path], methods: Optional[List[Mapping[str, Any]]] = None, *, output: Union[str, Path],
+          reference: Union[str, Path, None] = None, seconds: Optional[float] = None, passes: Optional[int] = None,
+          seeds: Optional[int] = None, threads: int = 0, define: Optional[Mapping[str, Any]] = None, fresh: bool = False,
+          quiet: bool = True, **parameters: Any) -> Dict[str, Any]:
+    """Lets methods take turns on a scene file and measures the error of each over time against a reference.
+
+    methods: [{"name": ..., "integrator": ..., "settings": {...}}, ...] as in a methods file (docs/guide.md); none: what
+    suits the scene. reference: an EXR file; none: one is rendered. seconds or passes: for every method and each of
+    `seeds`. Writes output/trade.html and all that it is made of, and returns its summary.json: for every method its
+    error, seconds, passes and bias. What is in the folder already is taken up where its inputs are these (fresh: not).
+    Runs the command `mote trade` as a process, so that its clocks measure nothing else. Raises mote.Error.
+    """
+    output = Path(output)
+    command = [_command(), "trade", str(scene), "-o", str(output), "--threads", str(threads)]
+    if methods is not None:
+        output.mkdir(parents=True, exist_ok=True)
+        file = output / "methods.json"
+        file.write_text(json.dumps({"methods": list(methods)}), encoding="utf-8")
+        command += ["--methods", str(file)]
+    options = {"--reference": reference, "--time": seconds, "--passes": passes, "--seeds": seeds}
+    for name, value in options.items():
+        command += [name, str(value)] if value is not None else []
+    for name, text in texts_of({**(define or {}), **parameters}):
+        command += ["-D", f"{name}={text}"]
+    command += ["--fresh"] * fresh + ["--quiet"] * quiet
+    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE if quiet else None, text=True, check=False)
+    if done.returncode != 0:
+        raise Error((done.stderr or f"mote trade ended with {done.returncode}").strip().removeprefix("mote: "))
+    return json.loads((output / "summary.json").read_text(encoding="utf-8"))
