@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "apps/number_or_null.h"
 #include "apps/output_files.h"
 #include "apps/partial_render.h"
 #include "apps/picture_file.h"
@@ -14,6 +13,7 @@
 #include "core/image/image_file.h"
 #include "core/objects/error.h"
 #include "core/objects/memory_error.h"
+#include "session/number_or_null.h"
 
 namespace mote::apps {
 

@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "session/render_report.h"
 #include "core/objects/error.h"
 #include "core/render/partial_film.h"
+#include "session/render_report.h"
 
 namespace mote::apps {
 
