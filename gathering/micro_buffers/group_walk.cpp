@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "gathering/micro_buffers/arc_tangent.h"
 #include "gathering/micro_buffers/node_rules.h"
 
 namespace mote::gathering {
@@ -13,12 +14,6 @@ namespace {
 constexpr std::uint32_t width = ReceiverLanes::width;
 /// A flat node that is seen at a slant counts as small as it looks, but not below this.
 constexpr float least_slant = 0.25f;
-
-/// atan on [0, 1] within 1e-5 (Abramowitz & Stegun 1964, 4.4.49).
-inline float arc_tangent(float x) {
-    const float x2 = x * x;
-    return x * (0.9998660f + x2 * (-0.3302995f + x2 * (0.1801410f + x2 * (-0.0851330f + x2 * 0.0208351f))));
-}
 
 class GroupWalk {
   public:

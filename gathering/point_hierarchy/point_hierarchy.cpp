@@ -39,14 +39,17 @@ PointNode node_around(std::span<const PointNode> leaves) {
 
 }  // namespace
 
+void PointHierarchy::check_memory(std::size_t points, std::size_t budget) {
+    const std::size_t fits = std::min<std::size_t>(budget / bytes_per_point, largest_count);
+    if (points > fits)
+        throw InputError(fmt::format("a hierarchy of {} points takes{}; {} points fit into the{} allowed",
+                                     points, memory_text(double(points) * double(bytes_per_point)), fits,
+                                     memory_text(double(budget))));
+}
+
 PointHierarchy::PointHierarchy(const Surfels& surfels, const HierarchySettings& settings)
     : disc_radius_(surfels.radius), patch_(surfels.patch()) {
-    const std::size_t fits = std::min<std::size_t>(settings.memory_budget / bytes_per_point, largest_count);
-    if (surfels.size() > fits)
-        throw InputError(fmt::format("a hierarchy of {} points takes{}; {} points fit into the{} allowed",
-                                     surfels.size(),
-                                     memory_text(double(surfels.size()) * double(bytes_per_point)), fits,
-                                     memory_text(double(settings.memory_budget))));
+    check_memory(surfels.size(), settings.memory_budget);
     first_.push_back(0);
     for (auto count = std::uint32_t(surfels.size()); count > 0; count = count > 1 ? (count + 1) / 2 : 0)
         first_.push_back(first_.back() + count);

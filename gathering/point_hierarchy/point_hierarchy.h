@@ -45,6 +45,8 @@ class PointHierarchy {
     static constexpr std::uint32_t largest_count = 1u << 24;
     static constexpr std::size_t bytes_per_point = 2 * sizeof(PointNode) + sizeof(std::uint32_t);
 
+    /// Throws InputError where so many points exceed 2^24 or the budget [B], naming the count that fits.
+    static void check_memory(std::size_t points, std::size_t budget);
     /// Throws InputError for more than 2^24 points or more memory than the budget, naming the count that
     /// fits. Does not refer to the points later. The same for any number of threads.
     explicit PointHierarchy(const Surfels& surfels, const HierarchySettings& settings = {});

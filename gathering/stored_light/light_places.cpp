@@ -2,7 +2,7 @@
 
 #include "core/materials/bsdfs.h"
 #include "core/materials/textures.h"
-#include "gathering/ray_bundles/surface_triangles.h"
+#include "gathering/atlas/surface_place.h"
 
 namespace mote::gathering {
 
@@ -13,12 +13,6 @@ namespace {
 const Bsdf& white() {
     static const std::shared_ptr<const Bsdf> bsdf = make_diffuse(make_constant_texture(Rgb(1.0f)));
     return *bsdf;
-}
-
-/// Twice the chord error of tessellations, for shapes that are no meshes [m].
-float depth_below(const Shape& shape) {
-    constexpr float chord_error = TessellationSettings{}.chord_error;
-    return shape.primitive_count() > 1 ? 0.0f : 2.0f * chord_error * max_component(shape.bounds().diagonal());
 }
 
 }  // namespace

@@ -34,25 +34,39 @@ void add(std::vector<Rgb>& sum, const std::vector<Rgb>& more) {
 
 }  // namespace
 
+void LitPoints::check_memory(const LitPointSettings& settings, bool media) {
+    SurfelSettings s;
+    s.memory_budget = settings.memory_budget, s.candidates = settings.candidates;
+    check_surfel_memory(settings.points, s, settings.candidates > 0);
+    PointHierarchy::check_memory(settings.points, settings.memory_budget);
+    if (media) LitVolume::check_memory(settings.volume.points, settings.memory_budget);
+}
+
 LitPoints::LitPoints(const LitScene& scene, const SurfaceTriangles& surfaces, ShapeSpan shapes,
                      const LitPointSettings& settings, const MicroBufferSettings& buffers, std::uint64_t seed,
-                     std::uint32_t pass, SamplerKind sampler, CancelToken cancelled) {
+                     std::uint32_t pass, SamplerKind sampler, CancelToken cancelled,
+                     const MediumStateAt& state_at) {
     const std::uint64_t key = hash_keys(seed, pass, 0x706f696e7473ull);
     surfels_ = draw_points(surfaces, settings, key, cancelled);
     hierarchy_.emplace(surfels_, HierarchySettings{.memory_budget = settings.memory_budget});
     MicroBufferSettings of_pass = buffers;
     of_pass.place = ray_place(hash_keys(seed, 0x706c616365ull), pass);
     buffers_.emplace(*hierarchy_, of_pass);
-    const SurfelSides sides(surfaces, shapes, surfels_);
+    const SurfelSides sides(surfaces, shapes, surfels_, state_at);
     std::vector<Rgb> light = arriving(scene, sides, settings, seed, pass, sampler, cancelled);
-    if (settings.light == StoredLight::radiosity)
+    if (scene.has_media()) {
+        volume_.emplace(scene, *hierarchy_, *buffers_, of_pass, settings.volume, state_at, key, cancelled);
+        light = exchanged_in_media(scene, sides, std::move(light), settings, key, cancelled);
+        cost_.bytes += volume_->memory_bytes();
+    } else if (settings.light == StoredLight::radiosity) {
         light = point_radiosity(*hierarchy_, *buffers_, sides, std::move(light),
                                 {std::max(0, settings.bounces - 1), settings.level, key, cancelled});
+    }
     const SurfelSides::Radiance sent = sides.reflected(light);
     radiance_.emplace(*hierarchy_, sent.front, sent.back);
     cost_.places = sides.size();
-    cost_.bytes = hierarchy_->memory_bytes() + sides.memory_bytes() +
-                  surfels_.size() * (2 * sizeof(Vec3) + sizeof(SurfacePoint) + 2 * sizeof(Rgb));
+    cost_.bytes += hierarchy_->memory_bytes() + sides.memory_bytes() +
+                   surfels_.size() * (2 * sizeof(Vec3) + sizeof(SurfacePoint) + 2 * sizeof(Rgb));
 }
 
 std::vector<Rgb> LitPoints::arriving(const LitScene& scene, const SurfelSides& sides,
@@ -78,6 +92,25 @@ std::vector<Rgb> LitPoints::arriving(const LitScene& scene, const SurfelSides& s
         add(light.irradiance, photon_light_at(sides, map, {settings.neighbours, 1.0f}, cancelled).irradiance);
     }
     return std::move(light.irradiance);
+}
+
+/// Direct light of the points in media, and what they and the surfaces exchange: returns the latter's.
+std::vector<Rgb> LitPoints::exchanged_in_media(const LitScene& scene, const SurfelSides& sides,
+                                               std::vector<Rgb> light, const LitPointSettings& settings,
+                                               std::uint64_t key, CancelToken cancelled) {
+    ArrivedFluence direct = direct_fluence_at(scene, volume_->points(), settings.light_samples,
+                                              hash_keys(key, 0x666c75ull), cancelled);
+    cost_.rays.add(direct.rays), cost_.tracking.add(direct.tracking);
+    cost_.volume_points = volume_->points().size();
+    FogLight all{std::move(light), std::move(direct.fluence)};
+    const int bounces = settings.light == StoredLight::radiosity ? std::max(0, settings.bounces - 1) : 0;
+    const FogExchange between{
+        *hierarchy_,       sides, volume_->hierarchy(), volume_->points(), volume_->hemispheres(),
+        volume_->spheres()};
+    all = fog_radiosity(between, std::move(all), settings.volume.level,
+                        {bounces, settings.level, key, cancelled});
+    volume_->set_light(all.fluence);
+    return std::move(all.irradiance);
 }
 
 }  // namespace mote::gathering

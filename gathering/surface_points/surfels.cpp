@@ -40,9 +40,14 @@ Surfels placed(const SurfaceTriangles& triangles, std::vector<SurfacePoint> plac
 
 }  // namespace
 
+void check_surfel_memory(std::uint32_t count, const SurfelSettings& settings, bool blue_noise) {
+    constexpr std::size_t point = sizeof(Vec3) * 2 + sizeof(SurfacePoint);
+    check_memory(count, blue_noise ? settings.candidates * (point + 8) + 64 : point, settings.memory_budget);
+}
+
 Surfels stratified_surfels(const SurfaceTriangles& triangles, std::uint32_t count,
                            const SurfelSettings& settings) {
-    check_memory(count, sizeof(Vec3) * 2 + sizeof(SurfacePoint), settings.memory_budget);
+    check_surfel_memory(count, settings, false);
     const SurfacePoints surface(triangles);
     std::vector<SurfacePoint> places;
     surface.draw(settings.seed, count, 0, count, places);
@@ -54,8 +59,7 @@ Surfels stratified_surfels(const SurfaceTriangles& triangles, std::uint32_t coun
 Surfels blue_noise_surfels(const SurfaceTriangles& triangles, std::uint32_t count,
                            const SurfelSettings& settings) {
     if (settings.candidates == 0) throw InputError("points on surfaces need candidates");
-    const std::size_t per_point = settings.candidates * (sizeof(Vec3) * 2 + sizeof(SurfacePoint) + 8) + 64;
-    check_memory(count, per_point, settings.memory_budget);
+    check_surfel_memory(count, settings, true);
     const SurfacePoints surface(triangles);
     const auto candidates =
         std::uint32_t(std::min<std::uint64_t>(std::uint64_t(count) * settings.candidates, 0xffffffffu));

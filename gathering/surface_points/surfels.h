@@ -41,6 +41,9 @@ struct SurfelSettings {
 Surfels blue_noise_surfels(const SurfaceTriangles& triangles, std::uint32_t count,
                            const SurfelSettings& settings = {});
 
+/// Throws the InputError of the two functions, for points beyond the budget, and does nothing else.
+void check_surfel_memory(std::uint32_t count, const SurfelSettings& settings, bool blue_noise);
+
 /// The same with points that are stratified by area alone: quick, with clumps and gaps between patches.
 Surfels stratified_surfels(const SurfaceTriangles& triangles, std::uint32_t count,
                            const SurfelSettings& settings = {});

@@ -6,7 +6,7 @@
 
 namespace mote::integrators {
 
-/// Precondition: the scene has no media.
+/// Throws InputError for what is not done in media: upsampling, and light by virtual point lights or photons.
 std::unique_ptr<core::Estimator> make_micro_estimator(const core::Scene& scene,
                                                       const core::RenderOptions& options,
                                                       const MicroSettings& settings);

@@ -1,5 +1,5 @@
-// The eye paths of sixteen pixels, advanced together to their connectable vertices, where each gathers the
-// light of points with a micro-buffer.
+// The eye paths of sixteen pixels, advanced together to their connectable vertices, on surfaces and in media,
+// where each gathers the light of points with a micro-buffer, or with two around a vertex in a medium.
 #pragma once
 
 #include <array>
@@ -11,6 +11,7 @@
 
 namespace mote::integrators {
 
+template <bool Media>
 class MicroEyeTile {
   public:
     static constexpr int side = 4, width = side * side;
@@ -22,7 +23,9 @@ class MicroEyeTile {
           points_(points),
           walk_(walk),
           texels_(std::size_t(width) * points.buffers().texels_each()),
-          weights_(points.buffers().texels_each()) {}
+          weights_(points.buffers().texels_each()) {
+        if (Media) radiance_.resize(texels_.size());
+    }
 
     void start(int lane, const EyeRay& eye);
     void stop(int lane);
@@ -37,7 +40,7 @@ class MicroEyeTile {
 
   private:
     struct Lane {
-        std::optional<EyePath<false>> path;
+        std::optional<EyePath<Media>> path;
         core::Rng rng;  ///< of the path, while other lanes advance
         TransportSum sum;
         SeenPixel seen;
@@ -50,6 +53,8 @@ class MicroEyeTile {
     void gather();
     void gather_diffuse(std::span<Lane* const> lanes);
     void gather_glossy(std::span<Lane* const> lanes);
+    void gather_through_media(std::span<Lane* const> lanes);
+    void gather_in_media(std::span<Lane* const> lanes);
     gathering::MicroReceiver receiver_of(Lane& lane);
 
     const core::Scene& scene_;
@@ -60,9 +65,14 @@ class MicroEyeTile {
     std::vector<gathering::BrdfWarp> warps_;
     std::vector<gathering::MicroTexel> texels_;
     std::vector<core::Rgb> weights_;
+    std::vector<core::Rgb> radiance_;  ///< of texels, through media
+    gathering::FogScratch fog_;
     std::array<Lane, width> lanes_;
     bool gathers_ = true;
     std::uint64_t receivers_ = 0;
 };
+
+extern template class MicroEyeTile<false>;
+extern template class MicroEyeTile<true>;
 
 }  // namespace mote::integrators

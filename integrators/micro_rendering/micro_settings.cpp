@@ -49,11 +49,26 @@ MicroSettings read_micro_settings(const Properties& p) {
     s.buffers.side = std::uint32_t(p.get_int_in("micro_buffer", 16, 1, 256));
     s.buffers.cut = float(p.get_float_in("cut", 0.25, 1e-3, 1e6));
     s.buffers.cast_leaves = p.get_bool("ray_casting", true);
+    s.points.volume.points =
+        std::uint32_t(p.get_int_in("volume_points", 16384, 0, gathering::PointHierarchy::largest_count));
+    s.points.volume.cut = float(p.get_float_in("volume_cut", 4.0, 1e-3, 1e6));
+    s.points.volume.level = std::uint32_t(p.get_int_in("volume_level", 4, 0, 24));
     s.warped = p.get_bool("brdf_warp", true);
     if (p.has("bound")) s.bound = float(p.get_float_in("bound", 0.0, 0.0, 1e30));
     s.upsampling = int(p.get_int_in("upsampling", 1, 1, 16));
     s.glossy_upsampling = p.get_bool("glossy_upsampling", false);
     return s;
+}
+
+void MicroSettings::check(bool media) const {
+    if (media && upsampling > 1)
+        throw InputError("'upsampling' of mote_micro_rendering is for scenes without media");
+    if (media && (points.light == StoredLight::vpls || points.light == StoredLight::photons))
+        throw InputError(
+            "'light' of mote_micro_rendering is 'direct' or 'radiosity' in a scene with media: points in "
+            "media "
+            "store no light of virtual point lights or photons");
+    gathering::LitPoints::check_memory(points, media);
 }
 
 std::vector<Parameter> micro_parameters() {
@@ -77,6 +92,10 @@ std::vector<Parameter> micro_parameters() {
         {"bounces", "integer", "6", "radiosity: reflections between surfaces that are followed"},
         {"radiosity_level", "integer", "6",
          "radiosity: one point of 2^level gathers for all of them that face its way"},
+        {"volume_points", "integer", "16384", "points in all media together, drawn anew in every pass"},
+        {"volume_cut", "float", "4",
+         "a group of points in media is taken as one where it covers less than so many texels"},
+        {"volume_level", "integer", "4", "radiosity: one point of 2^level in media gathers for all of them"},
         {"paths", "integer", "256", "vpls: light paths of a pass"},
         {"bound", "float", "automatic",
          "vpls: bound on the geometry term between them and points [1/m^2]; 0: none. Automatic: "

@@ -17,6 +17,8 @@ struct MicroSettings {
     int upsampling = 1;          ///< n: receivers at one pixel of n x n
     bool glossy_upsampling = false;  ///< glossy receivers, too, share their light with neighbours
 
+    /// Throws InputError for what is not done in this scene, or exceeds the memory budget.
+    void check(bool media) const;
     /// Bounces of light before a receiver that the eye sees directly; -1: no limit.
     int most_bounces() const { return eye.max_depth < 0 ? -1 : std::max(0, eye.max_depth - 2); }
 };

@@ -1,10 +1,12 @@
 // `mote_micro_rendering`: final gathering from points (Engelhardt 2013, Ch. 8; Ritschel et al. 2009), on
-// surfaces.
+// surfaces and in media.
 //
 // Every pass spreads points over all surfaces and stores at each the light that it reflects. At what the eye
 // sees a micro-buffer, a picture of a few texels over the hemisphere, says which points are visible; their
-// light is what the receiver reflects. Direct light is computed apart. Biased: points are even over their
-// discs, groups of points over a texel.
+// light is what the receiver reflects. Points in media store what they scatter, and are seen before the
+// surfaces; where an eye path scatters in a medium, two buffers are its sphere. Direct light and single
+// scattering are computed apart. Biased: points are even over their discs and balls, groups of points over a
+// texel.
 #include <fmt/format.h>
 
 #include "integrators/micro_rendering/micro_estimator.h"
@@ -21,18 +23,18 @@ class MoteMicroRendering final : public Integrator {
     explicit MoteMicroRendering(const Properties& p) : settings_(read_micro_settings(p)) {}
 
     std::string type() const override { return "mote_micro_rendering"; }
-    std::vector<Layer> layers(const Scene&) const override { return transport_layers(false, false); }
+    std::vector<Layer> layers(const Scene& s) const override {
+        return transport_layers(s.has_media(), false);
+    }
     Plan plan(const Scene& scene, const Requirements& requirements) const override;
     std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
-        if (scene.has_media())
-            throw InputError(
-                "mote_micro_rendering renders surfaces only, and the scene has media; volpath and mote_vpl "
-                "render them");
+        settings_.check(scene.has_media());
         return make_micro_estimator(scene, options, settings_);
     }
 
   private:
     void plan_light(Plan& plan) const;
+    void plan_media(Plan& plan, const Requirements& r) const;
     void plan_missing(Plan& plan, const Scene& scene, const Requirements& r) const;
     MicroSettings settings_;
 };
@@ -87,6 +89,17 @@ void MoteMicroRendering::plan_missing(Plan& plan, const Scene& scene, const Requ
                  "biased: light is blurred between them; pixels that find nobody alike are rendered again");
 }
 
+void MoteMicroRendering::plan_media(Plan& plan, const Requirements& r) const {
+    if (!r.any_media()) return plan.leave_out("media", "no code for media runs", "the scene has none");
+    plan.run("points in media", fmt::format("{} a pass", settings_.points.volume.points),
+             "biased: light is even over a point's ball, which reaches beyond the border of its medium");
+    plan.run("transmittance to points", "24 steps through a grid of the extinction, for each texel",
+             "biased by the grid's cells and by the size of texels");
+    if (settings_.warped && r.any_glossy())
+        plan.miss("buffers that follow glossy surfaces", "all receivers have cosine-weighted texels",
+                  "the scene has media");
+}
+
 Plan MoteMicroRendering::plan(const Scene& scene, const Requirements& r) const {
     Plan plan;
     plan.integrator = type();
@@ -97,11 +110,12 @@ Plan MoteMicroRendering::plan(const Scene& scene, const Requirements& r) const {
     plan_light(plan);
     plan_missing(plan, scene, r);
     plan_choice_of_lights(plan, scene);
-    if (r.any_media())
-        plan.miss("the whole picture", "refused: the scene has media",
-                  "points lie on surfaces; volpath and mote_vpl render media");
-    else
-        plan.leave_out("media", "no code for media runs", "the scene has none");
+    plan_media(plan, r);
+    try {
+        settings_.check(r.any_media());
+    } catch (const InputError& error) {
+        plan.miss("the whole picture", "refused", error.what());
+    }
     return plan;
 }
 
@@ -111,7 +125,7 @@ void register_mote_micro_rendering(Registry& registry) {
     registry.add(
         {Category::integrator, "mote_micro_rendering",
          "Final gathering from points: what the eye sees gathers the light of points on all surfaces with "
-         "micro-buffers (Ritschel et al. 2009). For scenes without media. Biased by the size of points and "
+         "micro-buffers (Ritschel et al. 2009), and of points in media. Biased by the size of points and "
          "texels.",
          micro_parameters(),
          R"(<integrator type="mote_micro_rendering"><integer name="points" value="100000"/></integrator>)"},
