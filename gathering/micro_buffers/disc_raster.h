@@ -7,6 +7,7 @@
 
 #include "core/math/vec.h"
 #include "core/math/vectorize.h"
+#include "gathering/micro_buffers/fused.h"
 
 namespace mote::gathering {
 
@@ -59,11 +60,11 @@ inline void fill_box(const RayDirections& rays, const LocalDisc& disc, const Tex
             std::uint32_t* hit = out.hit + at;
             MOTE_INDEPENDENT_LANES
             for (std::uint32_t i = 0; i < RayDirections::lanes; ++i) {
-                const float facing = a.x * wx[i] + a.y * wy[i] + a.z * wz[i], t = plane / facing;
-                const float x = t * wx[i] - c.x, y = t * wy[i] - c.y, z = t * wz[i] - c.z;
+                const float facing = fused_dot(a.x, a.y, a.z, wx[i], wy[i], wz[i]), t = plane / facing;
+                const float x = fused(t, wx[i], -c.x), y = fused(t, wy[i], -c.y), z = fused(t, wz[i], -c.z);
                 const bool behind = facing > 0.0f;
                 const bool met =
-                    (x * x + y * y + z * z <= r2) & (t > (behind ? back : 0.0f)) & (t < distance[i]);
+                    (fused_dot(x, y, z, x, y, z) <= r2) & (t > (behind ? back : 0.0f)) & (t < distance[i]);
                 distance[i] = met ? t : distance[i];
                 hit[i] = met ? (behind ? disc.hit | back_bit : disc.hit) : hit[i];
             }

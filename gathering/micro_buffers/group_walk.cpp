@@ -63,9 +63,9 @@ class GroupWalk {
         for (std::uint32_t i = 0; i < width; ++i) {
             const float x = node.center.x - lanes_.x[i], y = node.center.y - lanes_.y[i],
                         z = node.center.z - lanes_.z[i];
-            const float d2 = x * x + y * y + z * z, d = std::sqrt(d2);
-            const float up = x * lanes_.n[0][i] + y * lanes_.n[1][i] + z * lanes_.n[2][i] + r;
-            const float away = x * node.axis.x + y * node.axis.y + z * node.axis.z;
+            const float d2 = fused_dot(x, y, z, x, y, z), d = std::sqrt(d2);
+            const float up = fused_dot(x, y, z, lanes_.n[0][i], lanes_.n[1][i], lanes_.n[2][i]) + r;
+            const float away = fused_dot(x, y, z, node.axis.x, node.axis.y, node.axis.z);
             const bool hidden = (up <= 0.0f) | (fronts & (away > d * cone_sin + reach));
             const float slant = min_of(max_of(std::fabs(away) + cone_sin * d, least_slant * d), d);
             // r^2 / d^2 * slant / d against the threshold (times d / up).
@@ -93,13 +93,13 @@ class GroupWalk {
         for (std::uint32_t i = 0; i < width; ++i) {
             const float x = n.center.x - lanes_.x[i], y = n.center.y - lanes_.y[i],
                         z = n.center.z - lanes_.z[i];
-            const float cx = x * lanes_.s[0][i] + y * lanes_.s[1][i] + z * lanes_.s[2][i];
-            const float cy = x * lanes_.t[0][i] + y * lanes_.t[1][i] + z * lanes_.t[2][i];
-            const float cz = x * lanes_.n[0][i] + y * lanes_.n[1][i] + z * lanes_.n[2][i];
+            const float cx = fused_dot(x, y, z, lanes_.s[0][i], lanes_.s[1][i], lanes_.s[2][i]);
+            const float cy = fused_dot(x, y, z, lanes_.t[0][i], lanes_.t[1][i], lanes_.t[2][i]);
+            const float cz = fused_dot(x, y, z, lanes_.n[0][i], lanes_.n[1][i], lanes_.n[2][i]);
             cx_[i] = cx, cy_[i] = cy, cz_[i] = cz;
-            ax_[i] = n.axis.x * lanes_.s[0][i] + n.axis.y * lanes_.s[1][i] + n.axis.z * lanes_.s[2][i];
-            ay_[i] = n.axis.x * lanes_.t[0][i] + n.axis.y * lanes_.t[1][i] + n.axis.z * lanes_.t[2][i];
-            az_[i] = n.axis.x * lanes_.n[0][i] + n.axis.y * lanes_.n[1][i] + n.axis.z * lanes_.n[2][i];
+            ax_[i] = fused_dot(n.axis.x, n.axis.y, n.axis.z, lanes_.s[0][i], lanes_.s[1][i], lanes_.s[2][i]);
+            ay_[i] = fused_dot(n.axis.x, n.axis.y, n.axis.z, lanes_.t[0][i], lanes_.t[1][i], lanes_.t[2][i]);
+            az_[i] = fused_dot(n.axis.x, n.axis.y, n.axis.z, lanes_.n[0][i], lanes_.n[1][i], lanes_.n[2][i]);
         }
         MOTE_INDEPENDENT_LANES
         for (std::uint32_t i = 0; i < width; ++i) {
