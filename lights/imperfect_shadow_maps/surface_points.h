@@ -15,6 +15,7 @@ struct SurfacePoint {
     core::Vec3 position, normal;  ///< geometric, to either side
 };
 
+/// A sample of all surfaces.
 struct SurfacePoints {
     std::vector<SurfacePoint> points;  ///< in random order: any range of them is a sample of all
     float density = 0.0f;              ///< points per area [1/m^2]; 0: there are no surfaces
