@@ -23,7 +23,8 @@ namespace nb = nanobind;
 
 using Floats = nb::ndarray<const float, nb::c_contig, nb::device::cpu>;
 using Indices = nb::ndarray<const std::uint32_t, nb::c_contig, nb::device::cpu>;
-using Pixels = nb::ndarray<const float, nb::ndim<3>, nb::c_contig, nb::device::cpu>;  ///< [row][column][channel]
+using Pixels =
+    nb::ndarray<const float, nb::ndim<3>, nb::c_contig, nb::device::cpu>;  ///< [row][column][channel]
 
 /// A picture as Python has it: what a render returned, what was read, or what was put together.
 struct Picture {

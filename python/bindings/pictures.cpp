@@ -18,7 +18,8 @@ namespace {
 nb::object read_layer(const Picture& picture, const std::string& name) {
     const core::ImageChannels& image = picture.rendered.image;
     const session::LayerChannels layer = session::find_layer(image, name);
-    const std::size_t height = std::size_t(image.height), width = std::size_t(image.width), n = layer.planes.size();
+    const std::size_t height = std::size_t(image.height), width = std::size_t(image.width),
+                      n = layer.planes.size();
     auto* values = new std::vector<float>(height * width * n);
     const nb::capsule owner(values, [](void* p) noexcept { delete static_cast<std::vector<float>*>(p); });
     session::copy_layer(image, layer, *values);
@@ -27,8 +28,8 @@ nb::object read_layer(const Picture& picture, const std::string& name) {
 }
 
 void write_layer(Picture& picture, const std::string& name, const Pixels& values) {
-    session::set_layer(picture.rendered.image, name, int(values.shape(1)), int(values.shape(0)), int(values.shape(2)),
-                       std::span(values.data(), values.size()));
+    session::set_layer(picture.rendered.image, name, int(values.shape(1)), int(values.shape(0)),
+                       int(values.shape(2)), std::span(values.data(), values.size()));
 }
 
 nb::bytes png(const Picture& picture, const std::string& layer, std::optional<float> exposure) {
@@ -38,7 +39,8 @@ nb::bytes png(const Picture& picture, const std::string& layer, std::optional<fl
     const float scale = std::exp2(exposure ? *exposure : core::adapted_exposure(pixels));
     std::vector<std::uint8_t> bytes;
     for (const core::Rgb& p : pixels)
-        for (int c = 0; c < 3; ++c) bytes.push_back(core::encode_srgb(std::isfinite(p[c]) ? scale * p[c] : 0.0f));
+        for (int c = 0; c < 3; ++c)
+            bytes.push_back(core::encode_srgb(std::isfinite(p[c]) ? scale * p[c] : 0.0f));
     const std::vector<std::byte> file = core::encode_png(image.width, image.height, bytes, true);
     return nb::bytes(file.data(), file.size());
 }
@@ -52,7 +54,8 @@ std::vector<std::pair<std::string, std::vector<std::string>>> layers(const Pictu
 
 nb::dict metrics(const core::ImageMetrics& m) {
     nb::dict d;
-    for (const core::MetricDefinition& definition : core::metric_definitions()) d[definition.name] = m.*definition.value;
+    for (const core::MetricDefinition& definition : core::metric_definitions())
+        d[definition.name] = m.*definition.value;
     d["mean_image"] = m.average_image, d["mean_reference"] = m.average_reference;
     d["non_finite"] = m.non_finite_either;
     return d;
@@ -61,7 +64,9 @@ nb::dict metrics(const core::ImageMetrics& m) {
 nb::dict compare(const Pixels& image, const Pixels& reference, const std::optional<Pixels>& image_variance,
                  const std::optional<Pixels>& reference_variance, const std::optional<Pixels>& second,
                  const std::optional<Pixels>& second_variance) {
-    const auto given = [](const std::optional<Pixels>& p) { return p ? colours(*p) : std::vector<core::Rgb>(); };
+    const auto given = [](const std::optional<Pixels>& p) {
+        return p ? colours(*p) : std::vector<core::Rgb>();
+    };
     const auto a = colours(image), r = colours(reference), a_variance = given(image_variance),
                r_variance = given(reference_variance), s = given(second), s_variance = given(second_variance);
     const int width = int(image.shape(1)), height = int(image.shape(0));
@@ -80,7 +85,8 @@ nb::dict compare(const Pixels& image, const Pixels& reference, const std::option
     return metrics(m);
 }
 
-void compensate(Picture& picture, float bound, int steps, bool flat, bool half_resolution, float blur, bool replace) {
+void compensate(Picture& picture, float bound, int steps, bool flat, bool half_resolution, float blur,
+                bool replace) {
     screenspace::SsbcSettings settings;
     settings.bound = bound, settings.steps = steps, settings.hierarchical = !flat;
     settings.half_resolution = half_resolution, settings.blur = blur;

@@ -1,4 +1,5 @@
-// Rendering, with Python's own threads going on, its signals heard, and its exceptions kept until the picture is safe.
+// Rendering, with Python's own threads going on, its signals heard, and its exceptions kept until the picture
+// is safe.
 #include "python/bindings/bindings.h"
 
 namespace mote::python {
@@ -10,14 +11,17 @@ nb::dict as_dict(const core::RenderProgress& p) {
     d["passes"] = p.passes, d["passes_of_this_run"] = p.passes_of_this_run;
     d["passes_wanted"] = p.passes_wanted ? nb::object(nb::int_(*p.passes_wanted)) : nb::object(nb::none());
     d["seconds"] = p.seconds, d["noise"] = p.noise;
-    d["seconds_left"] = p.seconds_left < 0.0 ? nb::object(nb::none()) : nb::object(nb::float_(p.seconds_left));
+    d["seconds_left"] =
+        p.seconds_left < 0.0 ? nb::object(nb::none()) : nb::object(nb::float_(p.seconds_left));
     return d;
 }
 
-/// What Python wants to hear, and the first exception that came of it: the render then ends as if it were cancelled.
+/// What Python wants to hear, and the first exception that came of it: the render then ends as if it were
+/// cancelled.
 class Listeners {
   public:
-    Listeners(nb::object progress, nb::object preview) : progress_(std::move(progress)), preview_(std::move(preview)) {}
+    Listeners(nb::object progress, nb::object preview)
+        : progress_(std::move(progress)), preview_(std::move(preview)) {}
 
     void add_to(session::RenderSettings& settings) {
         if (!progress_.is_none())
@@ -61,10 +65,11 @@ class Listeners {
 };
 
 /// (picture, exception or None): what a signal or a callback raised ends the render, and what there is stays.
-nb::tuple render(const session::LoadedScene& scene, std::optional<std::uint32_t> passes, std::optional<double> seconds,
-                 std::optional<double> noise, std::uint64_t seed, int threads, const std::string& checkpoint,
-                 double checkpoint_every, bool resume, bool auxiliary, const std::string& denoise,
-                 const std::vector<std::string>& command_line, nb::object progress, nb::object preview) {
+nb::tuple render(const session::LoadedScene& scene, std::optional<std::uint32_t> passes,
+                 std::optional<double> seconds, std::optional<double> noise, std::uint64_t seed, int threads,
+                 const std::string& checkpoint, double checkpoint_every, bool resume, bool auxiliary,
+                 const std::string& denoise, const std::vector<std::string>& command_line,
+                 nb::object progress, nb::object preview) {
     session::RenderSettings settings;
     settings.stop = {passes, seconds, noise};
     settings.seed = seed, settings.threads = threads;

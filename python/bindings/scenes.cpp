@@ -12,16 +12,20 @@ void add_mesh(SceneTree& tree, const std::string& name, const Floats& positions,
               const std::optional<Floats>& normals, const std::optional<Floats>& uvs) {
     const auto rows = [](const auto& array, std::size_t columns, const char* what) {
         if (array.ndim() != 2 || array.shape(1) != columns)
-            throw std::invalid_argument(std::string(what) + " have the shape (n, " + std::to_string(columns) + ")");
+            throw std::invalid_argument(std::string(what) + " have the shape (n, " + std::to_string(columns) +
+                                        ")");
         return array.shape(0);
     };
     core::MeshData mesh;
     for (std::size_t i = 0, n = rows(positions, 3, "positions"); i < n; ++i)
-        mesh.positions.emplace_back(positions.data()[3 * i], positions.data()[3 * i + 1], positions.data()[3 * i + 2]);
+        mesh.positions.emplace_back(positions.data()[3 * i], positions.data()[3 * i + 1],
+                                    positions.data()[3 * i + 2]);
     for (std::size_t i = 0, n = rows(triangles, 3, "triangles"); i < n; ++i)
-        mesh.triangles.push_back({triangles.data()[3 * i], triangles.data()[3 * i + 1], triangles.data()[3 * i + 2]});
+        mesh.triangles.push_back(
+            {triangles.data()[3 * i], triangles.data()[3 * i + 1], triangles.data()[3 * i + 2]});
     for (std::size_t i = 0, n = normals ? rows(*normals, 3, "normals") : 0; i < n; ++i)
-        mesh.normals.emplace_back(normals->data()[3 * i], normals->data()[3 * i + 1], normals->data()[3 * i + 2]);
+        mesh.normals.emplace_back(normals->data()[3 * i], normals->data()[3 * i + 1],
+                                  normals->data()[3 * i + 2]);
     for (std::size_t i = 0, n = uvs ? rows(*uvs, 2, "uvs") : 0; i < n; ++i)
         mesh.uvs.emplace_back(uvs->data()[2 * i], uvs->data()[2 * i + 1]);
     tree.arrays().add_mesh(name, std::move(mesh));
@@ -30,7 +34,8 @@ void add_mesh(SceneTree& tree, const std::string& name, const Floats& positions,
 void add_grid(SceneTree& tree, const std::string& name, const Floats& values, const std::vector<float>& lower,
               const std::vector<float>& upper) {
     if ((values.ndim() != 3 && values.ndim() != 4) || lower.size() != 3 || upper.size() != 3)
-        throw std::invalid_argument("a grid has the shape (depth, height, width) or (depth, height, width, channels)");
+        throw std::invalid_argument(
+            "a grid has the shape (depth, height, width) or (depth, height, width, channels)");
     media::VolFile grid;
     grid.resolution = {int(values.shape(2)), int(values.shape(1)), int(values.shape(0))};
     grid.channels = values.ndim() == 4 ? int(values.shape(3)) : 1;
@@ -62,7 +67,8 @@ nb::list entries(const std::vector<core::PlanEntry>& list) {
 }
 
 /// [(category, type, [(parameter, type)])] of everything that a scene can name.
-std::vector<std::pair<std::pair<std::string, std::string>, std::vector<std::pair<std::string, std::string>>>> manuals() {
+std::vector<std::pair<std::pair<std::string, std::string>, std::vector<std::pair<std::string, std::string>>>>
+manuals() {
     core::Registry registry = session::make_registry();
     session::register_arrays(registry, std::make_shared<session::ArrayStore>());
     decltype(manuals()) result;
@@ -84,7 +90,8 @@ void bind_scenes(nb::module_& m) {
         .def("end", &SceneTree::end)
         .def("value", &SceneTree::value, nb::arg("kind"), nb::arg("name"), nb::arg("text"))
         .def("number", &SceneTree::number, nb::arg("name"), nb::arg("number"))
-        .def("triple", &SceneTree::triple, nb::arg("kind"), nb::arg("name"), nb::arg("x"), nb::arg("y"), nb::arg("z"))
+        .def("triple", &SceneTree::triple, nb::arg("kind"), nb::arg("name"), nb::arg("x"), nb::arg("y"),
+             nb::arg("z"))
         .def(
             "transform",
             [](SceneTree& tree, const std::string& name, const std::vector<double>& rows) {
@@ -108,8 +115,9 @@ void bind_scenes(nb::module_& m) {
             "from_text",
             [](const std::string& xml, const std::string& folder, const std::string& name,
                const std::string& integrator, const Defines& defines, bool lenient) {
-                return load(integrator, defines, lenient,
-                            [&](const auto& changes) { return LoadedScene::from_text(xml, folder, changes, name); });
+                return load(integrator, defines, lenient, [&](const auto& changes) {
+                    return LoadedScene::from_text(xml, folder, changes, name);
+                });
             },
             nb::arg("xml"), nb::arg("folder"), nb::arg("name"), nb::arg("integrator"), nb::arg("defines"),
             nb::arg("lenient"))

@@ -96,13 +96,13 @@ def load(path: Union[str, Path], *, integrator: str = "", define: Optional[Mappi
     {"integrator.paths": 256} (film__width=64 is the same as {"film.width": 64}). integrator: this type instead of the
     scene's. lenient: leave out or approximate what is wrong. Raises mote.Error with .file and .line.
     """
-    defines: Dict[str, Any] = {**(define or {}), **parameters}
+    defines: Dict[str, Any] = {**parameters, **(define or {})}
     return Scene._of(_mote.LoadedScene.from_file(str(path), integrator, texts_of(defines), lenient), str(path))
 
 
 def load_string(xml: str, *, folder: Union[str, Path] = "", name: str = "<string>", integrator: str = "",
                 define: Optional[Mapping[str, Any]] = None, lenient: bool = False, **parameters: Any) -> Scene:
     """The same of a scene file's text; relative file names are looked up in `folder`."""
-    defines: Dict[str, Any] = {**(define or {}), **parameters}
+    defines: Dict[str, Any] = {**parameters, **(define or {})}
     inner = _mote.LoadedScene.from_text(xml, str(folder) or os.getcwd(), name, integrator, texts_of(defines), lenient)
     return Scene._of(inner, name)

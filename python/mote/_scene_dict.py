@@ -46,7 +46,7 @@ def _fail(place: str, text: str) -> Error:
 
 class _Writer:
     def __init__(self, tree: _mote.Tree) -> None:
-        self.tree, self.arrays = tree, 0
+        self.tree = tree
 
     def scene(self, scene: Mapping[str, Any]) -> None:
         if scene.get("type", "scene") != "scene":
@@ -70,7 +70,7 @@ class _Writer:
         else:
             category = _category(kind, key, parent)
             identity = str(entries.pop("id", key if top else ""))
-            kind, entries = self.with_arrays(kind, entries)
+            kind, entries = self.with_arrays(kind, entries, place)
             self.tree.begin(category, kind, "" if top else key, identity, key)
             known = _manuals().get(kind, {}).get(category, {})
             for name, value in entries.items():
@@ -80,9 +80,9 @@ class _Writer:
                     self.value(name, value, known.get(name, ""), f"{place}.{name}")
             self.tree.end()
 
-    def with_arrays(self, kind: str, entries: Dict[str, Any]) -> Tuple[str, Dict[str, Any]]:
+    def with_arrays(self, kind: str, entries: Dict[str, Any], place: str) -> Tuple[str, Dict[str, Any]]:
         """Meshes and grids of arrays, which the tree takes apart from its elements."""
-        name = f"array {self.arrays}"
+        name = place
         if "positions" in entries and kind in ("arraymesh", "mesh"):
             def floats(key: str) -> Any:
                 value = entries.pop(key, None)
@@ -97,7 +97,6 @@ class _Writer:
             kind = "arraygrid"
         else:
             return kind, entries
-        self.arrays += 1
         return kind, {"array": name, **entries}
 
     def value(self, name: str, value: Any, kind: str, place: str) -> None:

@@ -23,13 +23,14 @@ def _command() -> str:
 
 
 def trade(scene: Union[str, Path], methods: Optional[List[Mapping[str, Any]]] = None, *, output: Union[str, Path],
-          reference: Union[str, Path, None] = None, seconds: Optional[float] = None, passes: Optional[int] = None,
-          seeds: Optional[int] = None, threads: int = 0, define: Optional[Mapping[str, Any]] = None, fresh: bool = False,
-          quiet: bool = True, **parameters: Any) -> Dict[str, Any]:
+          reference: Union[str, Path, None] = None, resolve: Optional[float] = None,
+          seconds: Optional[float] = None, passes: Optional[int] = None, seeds: Optional[int] = None, threads: int = 0,
+          define: Optional[Mapping[str, Any]] = None, fresh: bool = False, quiet: bool = True, **parameters: Any) -> Dict[str, Any]:
     """Lets methods take turns on a scene file and measures the error of each over time against a reference.
 
     methods: [{"name": ..., "integrator": ..., "settings": {...}}, ...] as in a methods file (docs/guide.md); none: what
-    suits the scene. reference: an EXR file; none: one is rendered. seconds or passes: for every method and each of
+    suits the scene. reference: an EXR file; none: one is rendered. resolve: the
+    smallest error that it must judge, relative. seconds or passes: for every method and each of
     `seeds`. Writes output/trade.html and all that it is made of, and returns its summary.json: for every method its
     error, seconds, passes and bias. What is in the folder already is taken up where its inputs are these (fresh: not).
     Runs the command `mote trade` as a process, so that its clocks measure nothing else. Raises mote.Error.
@@ -41,10 +42,10 @@ def trade(scene: Union[str, Path], methods: Optional[List[Mapping[str, Any]]] = 
         file = output / "methods.json"
         file.write_text(json.dumps({"methods": list(methods)}), encoding="utf-8")
         command += ["--methods", str(file)]
-    options = {"--reference": reference, "--time": seconds, "--passes": passes, "--seeds": seeds}
+    options = {"--reference": reference, "--resolve": resolve, "--time": seconds, "--passes": passes, "--seeds": seeds}
     for name, value in options.items():
         command += [name, str(value)] if value is not None else []
-    for name, text in texts_of({**(define or {}), **parameters}):
+    for name, text in texts_of({**parameters, **(define or {})}):
         command += ["-D", f"{name}={text}"]
     command += ["--fresh"] * fresh + ["--quiet"] * quiet
     done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE if quiet else None, text=True, check=False)

@@ -1,0 +1,299 @@
+#!/usr/bin/env python3
+"""The Python module: scenes, renders, layers, errors, interruption, arrays, and the bits of the command.
+
+Usage: module_test.py MOTE (the command); PYTHONPATH holds the folder of the package.
+"""
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+from pathlib import Path
+
+import mote
+import numpy as np
+
+SCENE = """<scene version="3.0.0">
+  <default name="paths" value="64"/>
+  <integrator type="mote_vpl"><integer name="paths" value="$paths"/></integrator>
+  <sensor type="perspective">
+    <float name="fov" value="50"/>
+    <transform name="to_world"><lookat origin="0, 1, 4" target="0, 0.5, 0" up="0, 1, 0"/></transform>
+    <film type="hdrfilm"><integer name="width" value="40"/><integer name="height" value="30"/></film>
+  </sensor>
+  <shape type="rectangle">
+    <transform name="to_world"><scale value="3"/><rotate x="1" angle="-90"/></transform>
+    <bsdf type="diffuse"><rgb name="reflectance" value="0.8, 0.8, 0.8"/></bsdf>
+  </shape>
+  <shape type="sphere"><point name="center" x="0" y="0.5" z="0"/><float name="radius" value="0.5"/>
+    <bsdf type="diffuse"><rgb name="reflectance" value="0.7, 0.3, 0.2"/></bsdf>
+  </shape>
+  <emitter type="point"><point name="position" x="1" y="3" z="2"/><rgb name="intensity" value="20, 18, 15"/></emitter>
+</scene>
+"""
+T = mote.ScalarTransform4f
+
+
+def dictionary():
+    """The same scene as SCENE."""
+    return {
+        "type": "scene",
+        "integrator": {"type": "mote_vpl", "paths": 64},
+        "sensor": {"type": "perspective", "fov": 50,
+                   "to_world": T().look_at(origin=[0, 1, 4], target=[0, 0.5, 0], up=[0, 1, 0]),
+                   "film": {"type": "hdrfilm", "width": 40, "height": 30}},
+        "white": {"type": "diffuse", "reflectance": {"type": "rgb", "value": [0.8, 0.8, 0.8]}},
+        "floor": {"type": "rectangle", "to_world": T().rotate([1, 0, 0], -90).scale(3),
+                  "bsdf": {"type": "ref", "id": "white"}},
+        "ball": {"type": "sphere", "center": [0, 0.5, 0], "radius": 0.5,
+                 "bsdf": {"type": "diffuse", "reflectance": np.array([0.7, 0.3, 0.2])}},
+        "lamp": {"type": "point", "position": [1, 3, 2], "intensity": [20, 18, 15]},
+    }
+
+
+def same_bits(a, b):
+    return set(a) == set(b) and all(np.array_equal(a[name].view(np.uint32), b[name].view(np.uint32)) for name in a)
+
+
+class ModuleTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.path = Path(cls.folder.name) / "scene.xml"
+        cls.path.write_text(SCENE, encoding="utf-8")
+        cls.scene = mote.load(cls.path)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def command(self, *options, name="picture.exr"):
+        path = Path(self.folder.name) / name
+        subprocess.run([MOTE, "render", self.path, "-o", path, "--quiet", *options], check=True, stdout=subprocess.DEVNULL)
+        return mote.Picture.load(path)
+
+    def test_bits_of_the_command(self):
+        theirs = self.command("--passes", "3", "--seed", "7", "-D", "paths=32", "-D", "film.width=24", "--auxiliary",
+                              "--denoise=bmfr")
+        scene = mote.load(self.path, paths=32, define={"film.width": 24})
+        for threads in (1, 2):
+            ours = mote.render(scene, passes=3, seed=7, threads=threads, auxiliary=True, denoise="bmfr")
+            self.assertTrue(same_bits(ours, theirs))
+            self.assertGreater(len(ours), 10)
+        self.assertEqual(ours.metadata["sceneHash"], theirs.metadata["sceneHash"])
+        self.assertFalse(same_bits(mote.render(scene, passes=3, seed=8, auxiliary=True, denoise="bmfr"), theirs))
+
+    def test_layers(self):
+        picture = mote.render(self.scene, passes=2, seed=1, auxiliary=True)
+        self.assertEqual(picture["beauty"].shape, (30, 40, 3))
+        self.assertEqual(picture["beauty"].dtype, np.float32)
+        self.assertEqual(picture["Depth"].shape, (30, 40))
+        parts = [picture[name] for name in ("emission", "direct", "indirect_bounded")]
+        self.assertTrue(np.array_equal(parts[0] + parts[1] + parts[2], picture["beauty"]))
+        self.assertEqual(picture.channels["N"], ["X", "Y", "Z"])
+        self.assertEqual((picture.passes, picture.width, picture.height, picture.interrupted), (2, 40, 30, False))
+        self.assertEqual(picture.statistics["passes"], 2)
+        self.assertEqual(picture.metadata["seed"], "1")
+        self.assertIn("indirect_bounded", repr(picture))
+        self.assertTrue(picture._repr_png_().startswith(b"\x89PNG"))
+        with self.assertRaisesRegex(KeyError, "did you mean 'beauty'"):
+            picture["beuaty"]
+
+    def test_files(self):
+        picture = mote.render(self.scene, passes=2)
+        path = Path(self.folder.name) / "saved.exr"
+        picture.save(path)
+        read = mote.Picture.load(path)
+        self.assertEqual(set(read), set(picture))
+        self.assertTrue(all(np.array_equal(read[name], picture[name]) for name in picture))
+        with self.assertRaises(mote.Error):
+            mote.Picture.load(Path(self.folder.name) / "nothing.exr")
+
+    def test_plan(self):
+        plan = self.scene.plan()
+        self.assertEqual(plan["integrator"], "mote_vpl")
+        self.assertTrue(all(set(entry) == {"topic", "choice", "reason", "cure"} for entry in plan["runs"]))
+        said = subprocess.run([MOTE, "plan", self.path], check=True, capture_output=True, text=True).stdout
+        self.assertEqual(str(plan), said)
+
+    def test_errors(self):
+        with self.assertRaises(mote.Error) as raised:
+            mote.load_string("<scene version='3.0.0'>\n<shape type='sphre'/>\n<bsdf type='difuse'/></scene>", name="a.xml")
+        self.assertEqual((raised.exception.file, raised.exception.line), ("a.xml", 2))
+        self.assertRegex(str(raised.exception), "did you mean 'sphere'")
+        self.assertEqual([e[2] for e in raised.exception.errors], [2, 3])
+        with self.assertRaisesRegex(mote.Error, "did you mean 'width'"):
+            mote.load(self.path, define={"film.widht": 3})
+        with self.assertRaisesRegex(mote.Error, "did you mean 'mote_vpl'"):
+            mote.load(self.path, integrator="mote_vlp")
+        for wrong in ({"passes": 0}, {"noise": -1.0}, {"threads": -1}, {"resume": True}):
+            with self.assertRaises(ValueError):
+                mote.render(self.scene, **wrong)
+        with self.assertRaisesRegex(mote.Error, "did you mean 'bmfr'"):
+            mote.render(self.scene, denoise="bmrf")
+        # The text is that of the command.
+        bad = Path(self.folder.name) / "bad.xml"
+        bad.write_text(SCENE.replace("rectangle", "rectangel"), encoding="utf-8")
+        said = subprocess.run([MOTE, "plan", bad], capture_output=True, text=True, check=False).stderr
+        with self.assertRaises(mote.Error) as raised:
+            mote.load(bad)
+        self.assertIn(str(raised.exception), said)
+
+    def test_dictionary(self):
+        ours = mote.render(mote.Scene(dictionary()), passes=2, seed=3)
+        theirs = mote.render(mote.load_string(SCENE), passes=2, seed=3)
+        self.assertTrue(same_bits(ours, theirs))
+        for change, place, word in (({"ball": {"type": "sphere", "raduis": 1}}, "scene.ball", "radius"),
+                                    ({"ball": {"type": "shpere"}}, "scene.ball", "sphere"),
+                                    ({"floor": {"type": "rectangle", "bsdf": {"type": "ref", "id": "whte"}}},
+                                     "scene.floor", "white")):
+            with self.assertRaisesRegex(mote.Error, f"did you mean '{word}'") as raised:
+                mote.Scene({**dictionary(), **change})
+            self.assertEqual(raised.exception.file, place)
+        with self.assertRaisesRegex(mote.Error, "scene.ball.radius"):
+            mote.Scene({**dictionary(), "ball": {"type": "sphere", "radius": [1, 2]}})
+
+    def test_arrays(self):
+        """A rectangle of arrays is the rectangle; grids count."""
+        corners = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
+        mesh = {"type": "arraymesh", "positions": corners, "triangles": [[0, 1, 2], [2, 3, 0]],
+                "normals": np.tile([0, 0, 1], (4, 1)), "uvs": [[0, 0], [1, 0], [1, 1], [0, 1]]}
+        floor = {**dictionary()["floor"], **mesh}
+        ours = mote.render(mote.Scene({**dictionary(), "floor": floor}), passes=2)
+        self.assertTrue(same_bits(ours, mote.render(mote.Scene(dictionary()), passes=2)))
+
+        def fog(density):
+            box = {"type": "cube", "bsdf": {"type": "null"},
+                   "interior": {"type": "heterogeneous", "albedo": 0.5,
+                                "sigma_t": {"type": "arraygrid", "data": np.full((2, 3, 4), density)}}}
+            scene = mote.Scene({**dictionary(), "integrator": {"type": "volpath"}, "box": box})
+            return mote.render(scene, passes=1)["beauty"]
+        self.assertFalse(np.array_equal(fog(0.5), fog(1.0)))
+        with self.assertRaisesRegex(mote.Error, "floor.*triangle 0 refers to vertex 4"):
+            mote.Scene({**dictionary(), "floor": {**floor, "triangles": [[0, 1, 4]]}})
+        with self.assertRaises(ValueError):
+            mote.Scene({**dictionary(), "floor": {**floor, "positions": corners[:, :2]}})
+
+    def test_progress_and_callback(self):
+        told, shown = [], []
+        main = threading.get_ident()
+
+        def progress(p):
+            self.assertEqual(threading.get_ident(), main)
+            told.append(p["passes"])
+        picture = mote.render(self.scene, seconds=0.4, progress=progress, callback=lambda p: shown.append(p["beauty"]))
+        self.assertEqual(told, sorted(told))
+        self.assertEqual(told[-1], picture.passes)
+        self.assertTrue(shown and shown[0].shape == (30, 40, 3) and np.isfinite(shown[0]).all())
+        stopped = mote.render(self.scene, passes=1 << 29, progress=lambda p: p["passes"] < 3)
+        self.assertTrue(stopped.interrupted and stopped.passes >= 3)
+
+        def fails(_):
+            raise RuntimeError("of a callback")
+        with self.assertRaisesRegex(RuntimeError, "of a callback") as raised:
+            mote.render(self.scene, passes=1 << 29, progress=fails)
+        self.assertGreater(raised.exception.picture.passes, 0)
+
+    def test_interrupt_and_resume(self):
+        checkpoint = Path(self.folder.name) / "render.checkpoint"
+        begin = []
+
+        def press():
+            begin.append(time.monotonic())
+            os.kill(os.getpid(), signal.SIGINT)
+        timer = threading.Timer(0.3, press)
+        timer.start()
+        with self.assertRaises(KeyboardInterrupt) as raised:
+            mote.render(self.scene, passes=1 << 29, seed=5, checkpoint=checkpoint)
+        self.assertLess(time.monotonic() - begin[0], 2.0)
+        timer.join()
+        partial = raised.exception.picture
+        self.assertTrue(partial.interrupted and partial.passes > 0)
+        whole = mote.render(self.scene, passes=partial.passes + 2, seed=5, checkpoint=checkpoint, resume=True)
+        self.assertEqual(whole.statistics["resumed_at"], partial.passes)
+        self.assertTrue(same_bits(whole, mote.render(self.scene, passes=partial.passes + 2, seed=5)))
+        self.assertFalse(checkpoint.exists())
+
+    def test_threads(self):
+        """Two renders at once, and the interpreter goes on meanwhile."""
+        pictures, ticks = {}, 0
+        threads = [threading.Thread(target=lambda i=i: pictures.update({i: mote.render(self.scene, passes=20, seed=2)}))
+                   for i in range(2)]
+        for thread in threads:
+            thread.start()
+        while any(thread.is_alive() for thread in threads):
+            ticks += 1
+            time.sleep(0.001)
+        self.assertGreater(ticks, 2)
+        self.assertTrue(same_bits(pictures[0], pictures[1]))
+
+    def test_measuring(self):
+        picture = self.command("--passes", "4", "--seed", "1", name="a.exr")
+        reference = self.command("--passes", "32", "--seed", "2", name="b.exr")
+        said = json.loads(subprocess.run([MOTE, "compare", Path(self.folder.name) / "a.exr", Path(self.folder.name) / "b.exr",
+                                          "--json"], check=True, capture_output=True, text=True).stdout)["metrics"]
+        ours = mote.compare(picture, reference)
+        for name, metric in said.items():
+            self.assertAlmostEqual(ours[name], metric["value"], delta=1e-6 * abs(ours[name]), msg=name)
+        self.assertEqual(set(said), set(mote.metric_definitions()))
+        plain = mote.compare(picture["beauty"], reference["beauty"])
+        self.assertEqual(plain["mse"], ours["mse"])
+        self.assertTrue(np.isnan(plain["noise"]) and ours["noise"] > 0)
+        with self.assertRaises(ValueError):
+            mote.compare(picture["beauty"], reference["beauty"][1:])
+
+    def test_ssbc_and_denoise(self):
+        picture = mote.render(self.scene, passes=4, auxiliary=True)
+        path, out = (Path(self.folder.name) / name for name in ("aux.exr", "ssbc.exr"))
+        picture.save(path)
+        subprocess.run([MOTE, "ssbc", path, "-o", out, "--bound", "0.5"], check=True, stdout=subprocess.DEVNULL)
+        theirs, ours = mote.Picture.load(out), mote.ssbc(mote.Picture.load(path), bound=0.5)
+        self.assertTrue(np.array_equal(ours["beauty"], theirs["beauty"]))
+        self.assertTrue((ours["compensation_surface"] > 0).any())
+        light = picture["beauty"] - picture["emission"]
+        plain = mote.ssbc(light, bound=0.5, position=picture["Center.P"], normal=picture["Center.N"],
+                          albedo=picture["Center.DiffuseAlbedo"],
+                          world_to_camera=[float(x) for x in picture.metadata["worldToCamera"].split()])
+        self.assertTrue(np.allclose(plain["compensation_surface"], ours["compensation_surface"], rtol=1e-5, atol=1e-7))
+        with self.assertRaisesRegex(mote.Error, "bound"):
+            mote.ssbc(light)
+        denoised = mote.denoise(picture)["denoised"]
+        self.assertFalse(np.array_equal(denoised, picture["beauty"]))
+        features = {name: picture[name] for name in ("Albedo", "Ns", "P", "Variance")}
+        self.assertTrue(np.isfinite(mote.denoise(picture["beauty"], features=features)["denoised"]).all())
+
+    def test_trade(self):
+        methods = [{"name": "paths", "integrator": "path"}, {"name": "points", "integrator": "mote_vpl"}]
+        summary = mote.trade(self.path, methods, output=Path(self.folder.name) / "trade", passes=2, seeds=1,
+                             reference=self.reference(), resolve=0.5)
+        self.assertEqual({m["name"] for m in summary["methods"]}, {"paths", "points"})
+        with self.assertRaisesRegex(mote.Error, "did you mean"):
+            mote.trade(self.path, [{"name": "x", "integrator": "paht"}], output=Path(self.folder.name) / "other", passes=1)
+
+    def reference(self):
+        path = Path(self.folder.name) / "reference.exr"
+        subprocess.run([MOTE, "trade", self.path, "--make-reference", path, "--passes", "256", "--resolve", "0.5",
+                        "--quiet"], check=True, stdout=subprocess.DEVNULL)
+        return path
+
+    def test_transform(self):
+        self.assertTrue(np.allclose(T().translate([1, 2, 3]).inverse().matrix @ [1, 2, 3, 1], [0, 0, 0, 1]))
+        self.assertTrue(np.allclose(T().rotate([0, 0, 1], 90).matrix @ [1, 0, 0, 1], [0, 1, 0, 1]))
+        self.assertTrue(np.allclose((T().translate([1, 0, 0]) @ T().scale(2)).matrix @ [1, 1, 1, 1], [3, 2, 2, 1]))
+
+    def test_documentation(self):
+        """Every public name says what it is, and type checkers find types."""
+        for name in mote.__all__:
+            self.assertGreater(len(getattr(mote, name).__doc__ or ""), 40, name)
+        package = Path(mote.__file__).parent
+        self.assertTrue((package / "py.typed").is_file())
+        self.assertIn("def render", (package / "_mote.pyi").read_text(encoding="utf-8"))
+
+
+if __name__ == "__main__":
+    MOTE = sys.argv.pop(1)
+    unittest.main()
