@@ -19,7 +19,8 @@ constexpr float cosine_slack = 4e-6f, slack = 1.0f + 1e-4f;
 inline float largest_cosine(float z, float inv_near, float inv_far, float cos_angle, float sin_angle) {
     const float c = min_of(z * (z > 0.0f ? inv_near : inv_far) + cosine_slack, 1.0f);
     const float s = std::sqrt(max_of(1.0f - c * c, 0.0f));
-    return c >= cos_angle ? 1.0f : c * cos_angle + s * sin_angle;
+    const float turned = c * cos_angle + s * sin_angle;
+    return c >= cos_angle ? 1.0f : turned;
 }
 
 /// 4 pi times Henyey-Greenstein's function at most, for |g| of [low, high] and a cosine of at most c to the
@@ -61,7 +62,11 @@ LaneValues light_of(const LightNode& node, const ReceiverBounds& x, float bound)
     const float lx = node.lower.x, ly = node.lower.y, lz = node.lower.z;
     const float ux = node.upper.x, uy = node.upper.y, uz = node.upper.z;
     const float er = node.energy.x, eg = node.energy.y, eb = node.energy.z;
-    const float y_has_cosine = node.kind == LightKind::surface ? 1.0f : 0.0f;
+    const bool y_on_surface = node.kind == LightKind::surface || node.kind == LightKind::glossy;
+    const float y_has_cosine = y_on_surface ? 1.0f : 0.0f;
+    // Of glossy lights the profile holds the cosine, and is 0 behind the surface.
+    const float most_times_cosine = Nearest ? node.most_times_cosine() : 1.0f;
+    const float y_is_glossy = Nearest && node.kind == LightKind::glossy ? 1.0f : 0.0f;
     const float g_low = float(node.g_low) * (1.0f / 65535.0f),
                 g_high = float(node.g_high) * (1.0f / 65535.0f);
     const bool y_has_lobe = node.kind == LightKind::volume && node.g_high > 0;
@@ -88,19 +93,23 @@ LaneValues light_of(const LightNode& node, const ReceiverBounds& x, float bound)
             max_of(-ax * x0, -ax * x1) + max_of(-ay * y0, -ay * y1) + max_of(-az * z0, -az * z1);
         const float cx = largest_cosine(to_light, inv_near, inv_far, x.cos_angle[i], x.sin_angle[i]);
         const float cy = largest_cosine(to_receiver, inv_near, inv_far, cos_y_cone, sin_y_cone);
-        const float c_x = x.has_cosine[i] > 0.0f ? max_of(cx, 0.0f) : 1.0f;
-        const float c_y = y_has_cosine > 0.0f ? max_of(cy, 0.0f) : 1.0f;
+        const float c_x = max_of(max_of(cx, 0.0f), 1.0f - x.has_cosine[i]);
+        const float c_y = max_of(max_of(cy, 0.0f), 1.0f - y_has_cosine);
+        const float in_front = cy > 0.0f ? most_times_cosine : 0.0f;
+        const float y_end = max_of(in_front * y_is_glossy, c_y * (1.0f - y_is_glossy));
         float d2 = near2;
         if constexpr (!Nearest) {
             const float mx = 0.5f * (x0 + x1), my = 0.5f * (y0 + y1), mz = 0.5f * (z0 + z1);
             d2 = max_of(mx * mx + my * my + mz * mz, least_d2);
         }
-        const float g = min_of(c_x * c_y / d2, own_bound);
+        const float g = min_of(c_x * y_end / d2, own_bound);
         const float light = (x.weight_r[i] * er + x.weight_g[i] * eg + x.weight_b[i] * eb) * (1.0f / 3.0f);
-        const bool none = depth > x.max_vpl_depth[i] || !(light > 0.0f) || !(g > 0.0f);
-        out.value[std::size_t(i)] = none ? 0.0f : slack * peak * light * g;
+        const float reached = depth <= x.max_vpl_depth[i] ? 1.0f : 0.0f;
+        const float sent = min_of(light * reached, g) > 0.0f ? light * g : 0.0f;
+        out.value[std::size_t(i)] = sent;
         cosine_x[i] = cx, cosine_y[i] = cy;
     }
+    for (float& v : out.value) v = v > 0.0f ? v * (slack * peak) : 0.0f;
     if (y_has_lobe)
         for (int i = 0; i < width; ++i)
             out.value[std::size_t(i)] *= slack * largest_lobe(g_low, g_high, cosine_y[i]);

@@ -25,6 +25,7 @@ struct Item {
     std::uint32_t light;
     Vec3 direction;  ///< zero where it has none
     float weight;
+    LightKind kind;
 };
 
 struct Extent {
@@ -107,11 +108,11 @@ class Builder {
             return std::uint32_t(std::partition(begin, end, is_left) - begin);
         };
         const auto useful = [&](std::uint32_t n) { return n > 0 && n < c.count; };
-        if (c.node == 0) {  // media and surfaces have nothing in common
-            const std::uint32_t n =
-                parted([&](const Item& i) { return leaves_.leaf(i.light).kind == LightKind::surface; });
-            if (useful(n)) return n;
-        }
+        // Lights of different kinds have nothing in common; they stand apart from the beginning.
+        const LightKind kind = begin->kind;
+        if ((end - 1)->kind != kind)
+            return std::uint32_t(std::find_if(begin, end, [&](const Item& i) { return i.kind != kind; }) -
+                                 begin);
         const Extent all = extent(c);
         double least = infinity_d;
         std::optional<Axis> best;
@@ -170,7 +171,8 @@ class Builder {
 Item item_of(const LightLeaves& leaves, std::uint32_t light) {
     const LightNode leaf = leaves.leaf(light);
     const bool directed = leaf.cos_angle > -1.0f;
-    return {0.5f * leaf.lower + 0.5f * leaf.upper, light, directed ? leaf.axis() : Vec3(0.0f), leaf.weight()};
+    return {0.5f * leaf.lower + 0.5f * leaf.upper, light, directed ? leaf.axis() : Vec3(0.0f), leaf.weight(),
+            leaf.kind};
 }
 
 std::vector<Item> items_of(const LightLeaves& leaves) {
@@ -182,6 +184,8 @@ std::vector<Item> items_of(const LightLeaves& leaves) {
             throw InputError(
                 fmt::format("light {} of a hierarchy has the energy {}", item.light, item.weight));
     std::erase_if(items, [](const Item& item) { return item.weight == 0.0f; });
+    std::stable_sort(items.begin(), items.end(),
+                     [](const Item& a, const Item& b) { return a.kind < b.kind; });
     return items;
 }
 

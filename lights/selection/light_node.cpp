@@ -9,9 +9,19 @@ LightNode united(const LightNode& a, const LightNode& b) {
     n.lower = glm::min(a.lower, b.lower), n.upper = glm::max(a.upper, b.upper);
     n.energy = a.energy + b.energy;
     n.peak = std::max(a.peak, b.peak);
-    n.g_low = std::min(a.g_low, b.g_low), n.g_high = std::max(a.g_high, b.g_high);
     n.least_depth = std::min(a.least_depth, b.least_depth);
-    n.kind = a.kind == b.kind ? a.kind : LightKind::mixed;
+    const auto on_surface = [](const LightNode& x) {
+        return x.kind == LightKind::surface || x.kind == LightKind::glossy;
+    };
+    n.kind = a.kind == b.kind                 ? a.kind
+             : on_surface(a) && on_surface(b) ? LightKind::glossy
+                                              : LightKind::mixed;
+    if (n.kind == LightKind::glossy) {
+        const float most = std::max(a.peak * a.most_times_cosine(), b.peak * b.most_times_cosine());
+        n.set_grazing(most);
+    } else {
+        n.g_low = std::min(a.g_low, b.g_low), n.g_high = std::max(a.g_high, b.g_high);
+    }
     // Cones hold the error of their code already; what is added once more is 0.01 degrees a level.
     n.set_cone(n.kind == LightKind::mixed ? DirectionCone::all() : core::united(a.cone(), b.cone()));
     return n;

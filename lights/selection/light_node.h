@@ -19,6 +19,7 @@ namespace mote::lights {
 /// What the cone of a node is a cone of.
 enum class LightKind : std::uint8_t {
     surface,  ///< normals: C* of the light's end is the cosine to one of them
+    glossy,   ///< normals, where the profile times C* has a bound of its own, a share of the peak
     volume,   ///< preferred directions of Henyey-Greenstein's function with |g| of [g_low, g_high]; C* is 1
     mixed     ///< nothing: C* is at most 1, the profile at most its peak
 };
@@ -33,6 +34,14 @@ struct LightNode {
     std::uint32_t representative = 0;  ///< place in the order of a light drawn in proportion to average(E_j)
     std::uint16_t g_low = 0, g_high = 0;  ///< in units of 1 / 65535, rounded outwards
     std::uint16_t least_depth = 0;        ///< at most VirtualPointLight::depth of every light
+    /// Of a glossy node: profile times C* is at most so much of the peak, in units of 1 / 65535.
+    void set_grazing(float most) {
+        const float share = peak > 0.0f && peak < core::infinity ? most / peak : 1.0f;
+        g_low = 0, g_high = std::uint16_t(std::min(std::ceil(share * 65535.0f * (1.0f + 1e-5f)), 65535.0f));
+    }
+    float most_times_cosine() const {
+        return kind == LightKind::glossy ? float(g_high) * (1.0f / 65535.0f) : 1.0f;
+    }
     LightKind kind = LightKind::surface;
     std::uint8_t reserved = 0;
 

@@ -27,6 +27,21 @@ void set_g(LightNode& node, float a) {
     node.g_high = std::uint16_t(std::ceil(a * 65535.0f));
 }
 
+/// At least f* times the cosine to the geometric normal, for any direction on its side. Where the cosine to
+/// the shading normal is at least c, f* is at most its bound over a cone, and where it is at most c' the
+/// other cosine is at most c' + sin(angle between the normals).
+float most_times_cosine(const ScatteringVertex& v, const Vec3& wo, float most) {
+    const float side = wo.z < 0.0f ? -1.0f : 1.0f;
+    const float between = glm::length(glm::cross(v.hit.shading.n, v.hit.geometric_normal)) + 1e-5f;
+    float result = 0.0f, high = 1.0f;
+    for (int k = 0; k < 7 && most < infinity; ++k, high *= 0.5f) {
+        const DirectionCone cone{{0.0f, 0.0f, side}, std::acos(0.5f * high)};
+        const float f = max_component(v.bsdf->eval_bound(v.bsdf_point(), wo, cone));
+        result = std::max(result, f * std::min(1.0f, high + between));
+    }
+    return std::min(most, std::max(result, most * std::min(1.0f, high + between)));
+}
+
 void describe_surface(LightNode& node, const VplDetail& detail, const Rgb& alpha) {
     const ScatteringVertex& v = detail.vertex;
     const Vec3 wo = v.hit.shading.to_local(v.wo);
@@ -35,8 +50,10 @@ void describe_surface(LightNode& node, const VplDetail& detail, const Rgb& alpha
     const float constant = albedo * inv_pi * correction;
     node.energy = alpha * constant;
     const float most = max_component(v.bsdf->eval_bound(v.bsdf_point(), wo, DirectionCone::all()));
-    node.peak = constant > 0.0f ? most * correction / constant : 0.0f;
-    if (v.bsdf->traits().transmissive) node.kind = LightKind::mixed;
+    const float scale = constant > 0.0f ? correction / constant : 0.0f;
+    node.peak = most * scale;
+    node.kind = v.bsdf->traits().transmissive ? LightKind::mixed : LightKind::glossy;
+    if (node.kind == LightKind::glossy) node.set_grazing(scale * most_times_cosine(v, wo, most));
 }
 
 void describe_volume(LightNode& node, const VplDetail& detail, const Rgb& alpha) {
