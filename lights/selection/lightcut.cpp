@@ -23,14 +23,16 @@ void Lightcut::add_to_total(const Estimate& e, double sign) {
 void Lightcut::set_pair(GatherPoints& points, std::size_t index, const Pair& pair) {
     const GatherGroup& group = points.group(pair.group);
     pairs_[index] = pair;
-    errors_[index] = pair.lights.single() && group.single()
-                         ? LaneValues{}
-                         : most_light(lights_.node(pair.lights), group.bounds, bound_.bound);
+    errors_[index] = expected_[index] = {};
+    if (pair.lights.single() && group.single()) return;
+    const LightNode node = lights_.node(pair.lights);
+    errors_[index] = most_light(node, group.bounds, bound_.bound);
+    expected_[index] = expected_light(node, group.bounds, bound_.bound);
 }
 
 void Lightcut::add_pair(GatherPoints& points, const Pair& pair) {
     const std::size_t index = pairs_.size();
-    pairs_.emplace_back(), errors_.emplace_back(), estimates_.emplace_back();
+    pairs_.emplace_back(), errors_.emplace_back(), expected_.emplace_back(), estimates_.emplace_back();
     set_pair(points, index, pair);
     waiting_.push_back(std::uint32_t(index));
 }
@@ -126,26 +128,24 @@ void Lightcut::find_worst(std::size_t& count) {
     }
     worst_.clear();
     for (std::size_t p = 0; p < pairs_.size(); ++p) {
-        float error = 0.0f;
-        for (int i = 0; i < width; ++i)
+        float error = 0.0f, expected = 0.0f;
+        for (int i = 0; i < width; ++i) {
             error = core::max_of(error, errors_[p].value[std::size_t(i)] * inverse[i]);
-        if (!(error > 1.0f)) continue;
-        // Of groups of which nothing is known, those with most energy first.
-        if (!(error < 1e20f))
-            error = 1e20f * (1.0f + lights_.weight(pairs_[p].lights) / lights_.weight(lights_.root()));
-        worst_.push_back({error, std::uint32_t(p)});
+            expected = core::max_of(expected, expected_[p].value[std::size_t(i)] * inverse[i]);
+        }
+        if (error > 1.0f) worst_.push_back({expected, std::uint32_t(p)});
     }
     const std::size_t room = settings_.max_cut - std::min<std::size_t>(settings_.max_cut, pairs_.size());
     count = std::min({worst_.size(), room, std::max(least_parted, worst_.size() / 2)});
     if (count < worst_.size())
         std::nth_element(worst_.begin(), worst_.begin() + std::ptrdiff_t(count), worst_.end(),
                          [](const Worst& a, const Worst& b) {
-                             return a.error != b.error ? a.error > b.error : a.pair < b.pair;
+                             return a.expected != b.expected ? a.expected > b.expected : a.pair < b.pair;
                          });
 }
 
 Lightcut::Light Lightcut::gather(const GatherContext& context, GatherPoints& points) {
-    pairs_.clear(), errors_.clear(), estimates_.clear(), waiting_.clear();
+    pairs_.clear(), errors_.clear(), expected_.clear(), estimates_.clear(), waiting_.clear();
     total_ = {};
     if (lights_.empty()) return {};
     for (const GatherKind kind : {GatherKind::surface, GatherKind::medium})

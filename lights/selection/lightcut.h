@@ -73,13 +73,13 @@ class Lightcut {
 
     // The cut, by pair.
     std::vector<Pair> pairs_;
-    std::vector<LaneValues> errors_;
+    std::vector<LaneValues> errors_, expected_;  ///< most_light() and expected_light()
     std::vector<Estimate> estimates_;
     std::vector<std::uint32_t> waiting_;  ///< pairs without an estimate
     std::array<std::uint32_t, GatherScratch::batch> batch_{};
     std::size_t in_batch_ = 0;
     struct Worst {
-        float error;
+        float expected;  ///< of the lane where it is most, relative to what is allowed
         std::uint32_t pair;
     };
     std::vector<Worst> worst_;
