@@ -86,6 +86,7 @@ TEST_CASE("Every part of a bound is needed", "[light_selection][bounds]") {
     CHECK(broken(Lights::plain, [](LightNode& n) { n.cos_angle = std::cos(0.7f * n.cone().angle); }) > 0);
     CHECK(broken(Lights::plain, [](LightNode& n) { ++n.least_depth; }) > 0);
     CHECK(broken(Lights::glossy, [](LightNode& n) { n.peak *= 0.01f; }) > 0);
+    CHECK(broken(Lights::glossy, [](LightNode& n) { n.set_grazing(1e-4f * n.peak); }) > 0);
     CHECK(broken(Lights::lobes, [](LightNode& n) { n.cos_angle = std::cos(0.5f * n.cone().angle); }) > 0);
     CHECK(broken(Lights::lobes, [](LightNode& n) { n.g_high = n.g_low = 0; }) > 0);
     CHECK(broken(Lights::all, [](LightNode& n) {
