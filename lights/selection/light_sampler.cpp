@@ -1,5 +1,7 @@
 #include "lights/selection/light_sampler.h"
 
+#include "core/math/vectorize.h"
+
 namespace mote::lights {
 
 using namespace core;
@@ -9,9 +11,10 @@ namespace {
 /// Below infinity, so that shares stay numbers: a receiver may stand on a light.
 double expected_sum(const LightNode& node, const ReceiverBounds& receivers, float bound) {
     const LaneValues lanes = expected_light(node, receivers, bound);
-    double sum = 0.0;
-    for (const float v : lanes.value) sum += double(std::min(v, 1e37f));
-    return sum;
+    alignas(64) float sums[8];
+    for (std::size_t i = 0; i < 8; ++i)
+        sums[i] = core::min_of(lanes.value[i], 1e36f) + core::min_of(lanes.value[i + 8], 1e36f);
+    return double((sums[0] + sums[1]) + (sums[2] + sums[3]) + (sums[4] + sums[5]) + (sums[6] + sums[7]));
 }
 
 }  // namespace
@@ -19,8 +22,12 @@ double expected_sum(const LightNode& node, const ReceiverBounds& receivers, floa
 double left_share(const LightHierarchy& lights, const LightCluster& group, const ReceiverBounds& receivers,
                   float bound) {
     const LightCluster left = lights.left(group), right = lights.right(group);
-    double l = expected_sum(lights.node(left), receivers, bound);
-    double r = expected_sum(lights.node(right), receivers, bound);
+    double l = 0.0, r = 0.0;
+    // The last choice, of two lights, goes by energy: what they are otherwise would take as long as two
+    // levels.
+    if (!left.single() || !right.single())
+        l = expected_sum(lights.node(left), receivers, bound),
+        r = expected_sum(lights.node(right), receivers, bound);
     if (!(l + r > 0.0)) l = double(lights.weight(left)), r = double(lights.weight(right));
     return l / (l + r);
 }
@@ -44,11 +51,10 @@ std::vector<double> probabilities(const LightHierarchy& lights, const LightClust
 }
 
 void LightSampler::draw(const LightHierarchy& lights, const ReceiverBounds& receivers, float bound,
-                        const Task& from, double scale) {
-    tasks_.assign(1, from);
-    while (!tasks_.empty()) {
-        const Task task = tasks_.back();
-        tasks_.pop_back();
+                        double scale) {
+    // One level after the other, so that nodes arrive from memory while others are looked at.
+    for (std::size_t t = 0; t < tasks_.size(); ++t) {
+        const Task task = tasks_[t];
         if (task.group.single()) {
             const double draws = double(task.last - task.first);
             drawn_.push_back({lights.light_at(task.group.first), float(draws * scale / task.p)});
@@ -60,10 +66,15 @@ void LightSampler::draw(const LightHierarchy& lights, const ReceiverBounds& rece
         while (middle < task.last && numbers_[middle] < share) numbers_[middle++] /= share;
         for (std::size_t i = middle; i < task.last; ++i)
             numbers_[i] = std::min((numbers_[i] - share) / (1.0 - share), 1.0 - 0x1p-53);
-        if (middle < task.last)
-            tasks_.push_back({lights.right(task.group), task.p * (1.0 - share), middle, task.last});
-        if (task.first < middle)
-            tasks_.push_back({lights.left(task.group), task.p * share, task.first, middle});
+        const LightCluster left = lights.left(task.group), right = lights.right(task.group);
+        if (task.first < middle) {
+            lights.prefetch(left);
+            tasks_.push_back({left, task.p * share, task.first, middle});
+        }
+        if (middle < task.last) {
+            lights.prefetch(right);
+            tasks_.push_back({right, task.p * (1.0 - share), middle, task.last});
+        }
     }
 }
 
@@ -74,7 +85,8 @@ std::span<const WeightedVpl> LightSampler::by_tree(const LightHierarchy& lights,
     if (lights.empty() || !receivers.any_active) return drawn_;
     numbers_.resize(n);
     for (std::uint32_t i = 0; i < n; ++i) numbers_[i] = (double(i) + double(rng.next_float())) / double(n);
-    draw(lights, receivers, bound, {lights.root(), 1.0, 0, n}, 1.0 / double(n));
+    tasks_.assign(1, {lights.root(), 1.0, 0, n});
+    draw(lights, receivers, bound, 1.0 / double(n));
     return drawn_;
 }
 
@@ -107,11 +119,12 @@ std::span<const WeightedVpl> LightSampler::by_cut(const LightHierarchy& lights,
     drawn_.clear(), cut_.clear();
     if (lights.empty() || !receivers.any_active) return drawn_;
     make_cut(lights, receivers, bound, n);
-    numbers_.resize(1);
+    numbers_.clear(), tasks_.clear();
     for (const Group& group : cut_) {
-        numbers_[0] = double(rng.next_float());
-        draw(lights, receivers, bound, {group.cluster, 1.0, 0, 1}, 1.0);
+        tasks_.push_back({group.cluster, 1.0, numbers_.size(), numbers_.size() + 1});
+        numbers_.push_back(double(rng.next_float()));
     }
+    draw(lights, receivers, bound, 1.0);
     return drawn_;
 }
 

@@ -48,14 +48,14 @@ class LightSampler {
     std::span<const Group> cut() const { return cut_; }
 
   private:
-    /// Draws numbers_[first, last) in a group, which was reached with probability p; each counts scale / p.
+    /// numbers_[first, last) choose lights of a group, which was reached with probability p; each counts
+    /// scale / p. draw() does all tasks_, and those that come of them.
     struct Task {
         LightCluster group;
         double p;
         std::size_t first, last;
     };
-    void draw(const LightHierarchy& lights, const ReceiverBounds& receivers, float bound, const Task& from,
-              double scale);
+    void draw(const LightHierarchy& lights, const ReceiverBounds& receivers, float bound, double scale);
     void make_cut(const LightHierarchy& lights, const ReceiverBounds& receivers, float bound,
                   std::uint32_t n);
 
