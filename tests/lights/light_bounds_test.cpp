@@ -47,7 +47,7 @@ void compare(bool glossy, const lights::VplSet& set, const lights::LightHierarch
 }
 
 Tally tally(Lights kind, std::size_t pairs, std::uint64_t seed, const Change& change = {}) {
-    static const Materials materials;
+    const Materials& materials = all_materials();
     Rng rng(seed);
     Tally tally;
     while (tally.pairs < pairs) {
@@ -95,7 +95,7 @@ TEST_CASE("Every part of a bound is needed", "[light_selection][bounds]") {
 }
 
 TEST_CASE("Lobes over cones of directions are at most their bounds", "[light_selection][bounds]") {
-    const Materials materials;
+    const Materials& materials = all_materials();
     Rng rng(5);
     std::size_t pairs = 0, tight = 0;
     for (int k = 0; k < 100000; ++k) {
@@ -123,7 +123,7 @@ TEST_CASE("Lobes over cones of directions are at most their bounds", "[light_sel
 }
 
 TEST_CASE("Groups of receivers are bounded as their points are", "[light_selection][bounds]") {
-    const Materials materials;
+    const Materials& materials = all_materials();
     Rng rng(9);
     std::size_t pairs = 0, broken = 0, too_few = 0;
     while (pairs < 200000) {

@@ -70,7 +70,7 @@ Mean mean_of(int draws, const Draw& draw) {
 }  // namespace
 
 TEST_CASE("Probabilities of all lights add up to 1, in any scale", "[light_selection][sampling]") {
-    const Materials materials;
+    const Materials& materials = all_materials();
     Rng rng(3);
     for (const Lights kind : {Lights::plain, Lights::glossy, Lights::isotropic, Lights::lobes, Lights::all}) {
         auto set = random_lights(rng, materials, kind, 400, 2.0f, 3.0f);
@@ -139,7 +139,7 @@ TEST_CASE("Lights at distances 2^-i, and a million in one place", "[light_select
 TEST_CASE("Lights drawn by the tree and by a cut have the mean of all",
           "[light_selection][sampling][statistics]") {
     constexpr double critical = 3.3;  // two-sided, 0.1 %: of twenty tests one in fifty fails for no reason
-    const Materials materials;
+    const Materials& materials = all_materials();
     Rng rng(4);
     lights::LightSampler sampler;
     for (const Lights kind : {Lights::plain, Lights::glossy, Lights::isotropic, Lights::lobes, Lights::all}) {
@@ -174,7 +174,7 @@ TEST_CASE("Lights drawn by the tree and by a cut have the mean of all",
 }
 
 TEST_CASE("More lights, less noise", "[light_selection][sampling][statistics]") {
-    const Materials materials;
+    const Materials& materials = all_materials();
     Rng rng(6);
     lights::LightSampler sampler;
     const auto set = random_lights(rng, materials, Lights::plain, 5000, 2.0f, 3.0f);
@@ -198,7 +198,7 @@ TEST_CASE("More lights, less noise", "[light_selection][sampling][statistics]") 
 }
 
 TEST_CASE("Every node holds what is below it, and one array holds all", "[light_selection]") {
-    const Materials materials;
+    const Materials& materials = all_materials();
     Rng rng(8);
     const auto set = random_lights(rng, materials, Lights::all, 1000, 2.0f, 3.0f);
     const VplLeaves leaves(set);

@@ -67,6 +67,12 @@ struct Materials {
     }
 };
 
+/// Made once: rough plastics tabulate their transmittance.
+inline const Materials& all_materials() {
+    static const Materials materials;
+    return materials;
+}
+
 enum class Lights { plain, glossy, isotropic, lobes, all };
 
 /// A group of lights in a box, whose normals or lobes lie in a cone.
