@@ -97,6 +97,8 @@ void add_render(CLI::App& app, RenderArguments& a, std::function<int()>& action)
         .add_option("--pass-range", a.pass_range,
                     "Render passes A to B - 1 alone, into a partial film for 'mote merge' (docs/cluster.md)")
         ->type_name("A:B");
+    command.add_flag("--identity", a.identity,
+                     "Render nothing: print as JSON what partial films must have in common to be merged");
     command.add_flag("--half", a.half, "Write float16 instead of float32");
     command.add_flag("--auxiliary", a.auxiliary,
                      "Also write what is seen: positions, normals, depth, albedo, with variances");

@@ -162,6 +162,20 @@ void add_statistics(core::Statistics& sum, const core::Statistics& more) {
     sum.clamped_samples += more.clamped_samples;
 }
 
+std::string identity_json(const RenderArguments& render, const core::Scene& scene,
+                          const core::Integrator& integrator, const std::string& content_hash) {
+    std::size_t parts = 1;
+    for (const core::Layer& layer : integrator.layers(scene)) parts = std::max(parts, layer.part + 1);
+    const json j = {{"mote", MOTE_VERSION},
+                    {"commit", git_hash()},
+                    {"seed", render.seed},
+                    {"integrator", integrator.type()},
+                    {"content", content_hash},
+                    {"parts", parts},
+                    {"sample_count", scene.film().sample_count}};
+    return j.dump() + "\n";
+}
+
 void write_partial(const std::string& path, const MergedFilm& partial) {
     // File names need not be UTF-8.
     core::write_partial_film(

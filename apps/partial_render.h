@@ -28,6 +28,10 @@ void write_partial(const std::string& path, const MergedFilm& partial);
 /// there twice.
 MergedFilm merge_partials(const std::vector<std::string>& paths);
 
+/// What partial films of a render must have in common, and how many passes the scene asks for, as JSON.
+std::string identity_json(const RenderArguments& render, const core::Scene& scene,
+                          const core::Integrator& integrator, const std::string& content_hash);
+
 /// Adds the counts of one run to those of another; of values that are no counts the last counts.
 void add_statistics(core::Statistics& sum, const core::Statistics& more);
 

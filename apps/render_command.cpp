@@ -351,6 +351,11 @@ int render_command(const RenderArguments& arguments) {
     check_identities(files, arguments, *scene);
     const Denoiser denoiser = denoiser_of(arguments, threads);  // what is missing is said now, not in hours
 
+    const std::string content = core::content_hash(*scene, settings_of(arguments, integrator.type()));
+    if (arguments.identity) {
+        std::fputs(identity_json(arguments, *scene, integrator, content).c_str(), stdout);
+        return exit_ok;
+    }
     core::RenderRequest request;
     request.seed = arguments.seed;
     request.stop = {arguments.passes, arguments.seconds, arguments.noise};
@@ -359,7 +364,7 @@ int render_command(const RenderArguments& arguments) {
     request.checkpoint_every_seconds = arguments.checkpoint_every;
     request.checkpoint_at_end = false;
     request.resume = arguments.resume;
-    request.content_hash = core::content_hash(*scene, settings_of(arguments, integrator.type()));
+    request.content_hash = content;
     request.features = features_of(arguments, *scene, loaded, frame_before(arguments, registry));
     if (arguments.merged) check_merged(*arguments.merged, request);
     if (arguments.merged) request.begin_with = &arguments.merged->film;

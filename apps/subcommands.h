@@ -66,6 +66,7 @@ struct RenderArguments {
     std::string stats;
     std::string tev;                     ///< address of a viewer; "": none
     std::string pass_range;              ///< "A:B": only these passes, into a partial film; "": a picture
+    bool identity = false;               ///< print what partial films must have in common, and render nothing
     const MergedFilm* merged = nullptr;  ///< passes that are there already (`mote merge`)
     SequenceFrame* sequence = nullptr;   ///< a frame that is finished is not rendered again by --resume
     std::vector<std::string> command_line;
