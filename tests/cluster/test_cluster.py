@@ -18,6 +18,7 @@ from pathlib import Path
 MOTE, SOURCE = sys.argv[1], Path(sys.argv[2])
 sys.path.insert(0, str(SOURCE / "python"))
 os.environ["MOTE_COMMAND"] = MOTE
+import dask  # noqa: E402
 from distributed import Client, LocalCluster, Nanny  # noqa: E402
 from mote import cluster  # noqa: E402
 
@@ -29,6 +30,8 @@ SCENE = """<scene version="3.0.0"><default name="grey" value="0.5"/>
     <shape type="rectangle"><transform name="to_world"><scale value="4"/><rotate x="1" angle="-90"/>
     <translate y="-1"/></transform></shape><emitter type="constant"/></scene>"""
 PATH = ["--integrator", "path"]
+# Workers are forked off a process that has read distributed, which takes a second.
+dask.config.set({"distributed.worker.multiprocessing-method": "forkserver"})
 
 
 def setUpModule():
