@@ -7,14 +7,24 @@
 
 A render has the same bits as that of the command `mote render` with the same scene, seed and passes.
 """
-from ._errors import Error
-from ._mote import version as __version__
-from ._picture import Picture
-from ._rendering import render
-from ._scene import Scene, load, load_string
-from ._measuring import compare, denoise, metric_definitions, ssbc
-from ._trade import trade
-from ._transform import ScalarTransform4f, Transform
+try:
+    from . import _mote
+except ImportError as problem:  # `python -m mote.cluster` needs the command alone
+    _problem = problem
 
-__all__ = ["Error", "Picture", "ScalarTransform4f", "Scene", "Transform", "compare", "denoise", "load", "load_string",
-           "metric_definitions", "render", "ssbc", "trade"]
+    def __getattr__(name):
+        if name.startswith("__"):
+            raise AttributeError(name)
+        raise ImportError(f"mote.{name} needs the compiled module mote._mote, which 'pip install .' builds: {_problem}")
+else:
+    from ._errors import Error
+    from ._mote import version as __version__
+    from ._picture import Picture
+    from ._rendering import render
+    from ._scene import Scene, load, load_string
+    from ._measuring import compare, denoise, metric_definitions, ssbc
+    from ._trade import trade
+    from ._transform import ScalarTransform4f, Transform
+
+    __all__ = ["Error", "Picture", "ScalarTransform4f", "Scene", "Transform", "compare", "denoise", "load",
+               "load_string", "metric_definitions", "render", "ssbc", "trade"]
