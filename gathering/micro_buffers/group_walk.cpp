@@ -88,6 +88,8 @@ class GroupWalk {
         // What looks large may reach anywhere.
         const float per_angle = one_texel ? 0.0f : square_reach * side, beside = one_texel ? 0.49f : 0.02f;
         const float largest = one_texel ? infinity : 0.5f;
+        const float per_slope = one_texel ? 0.0f : half * (bend > 0.0f ? 0.7072f : 1.0f);
+        const float least_slope = bend;
         const PointNode n = node;
         MOTE_INDEPENDENT_LANES
         for (std::uint32_t i = 0; i < width; ++i) {
@@ -114,12 +116,20 @@ class GroupWalk {
             const float px = half + half * std::copysign(ax < ay ? across : radius, cx);
             const float py = half + half * std::copysign(ax < ay ? radius : across, cy);
             const float angle = n.radius * over_d;
-            const float reach = beside + (angle < largest ? per_angle * angle : side);
+            const float any = angle < largest ? per_angle * angle : side;
+            // Along the longer coordinate, the distance from the middle, by the slope of sin (or of sqrt(1 -
+            // cos)) anywhere in the ball, unless the ball may reach a diagonal, where coordinates change
+            // roles.
+            const float wide = 1.05f * angle;  // its arc sine, up to a half
+            const float outwards = per_slope * wide * max_of(min_of(up + wide, 1.0f), least_slope);
+            const float room = half * (radius - across) - any;
+            const float reach = beside + any, narrow = beside + (room > outwards ? outwards : any);
+            const float reach_x = ax < ay ? reach : narrow, reach_y = ax < ay ? narrow : reach;
             // Rays are at i + place: the first at or after px - reach, and the one after the last.
-            x0_[i] = std::int32_t(max_of(px - reach + after_x, 0.0f));
-            y0_[i] = std::int32_t(max_of(py - reach + after_y, 0.0f));
-            x1_[i] = std::int32_t(min_of(px + reach + after_x, side));
-            y1_[i] = std::int32_t(min_of(py + reach + after_y, side));
+            x0_[i] = std::int32_t(max_of(px - reach_x + after_x, 0.0f));
+            y0_[i] = std::int32_t(max_of(py - reach_y + after_y, 0.0f));
+            x1_[i] = std::int32_t(min_of(px + reach_x + after_x, side));
+            y1_[i] = std::int32_t(min_of(py + reach_y + after_y, side));
         }
     }
 

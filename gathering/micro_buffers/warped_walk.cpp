@@ -43,7 +43,7 @@ void walk_warped(const PointHierarchy& hierarchy, const MicroBufferSettings& set
     for (NodePlace place = hierarchy.root(); hierarchy.exists(place);) {
         const std::uint32_t index = hierarchy.node_index(place);
         const PointNode& node = hierarchy.nodes()[index];
-        const Vec3 center = receiver.frame.to_local(node.center - receiver.position);
+        const Vec3 center = fused_local(receiver.frame, node.center - receiver.position);
         const bool leaf = place.level == 0;
         const NodePlace after = place.skip();
         const bool below = center.z + node.radius <= 0.0f;
@@ -59,7 +59,7 @@ void walk_warped(const PointHierarchy& hierarchy, const MicroBufferSettings& set
             continue;
         }
         if (!image.empty()) {
-            const LocalDisc disc{center, receiver.frame.to_local(node.axis), node.radius,
+            const LocalDisc disc{center, fused_local(receiver.frame, node.axis), node.radius,
                                  settings.back_faces ? near_back * node.radius : infinity, index};
             // The rays at i + place, as in group_walk.cpp.
             const Vec2 to_next = Vec2(1.0f) - settings.place;
