@@ -24,6 +24,7 @@
 #include "core/loading/faults.h"
 #include "core/objects/error.h"
 #include "core/objects/memory_error.h"
+#include "session/borrowed_arena.h"
 
 namespace mote::apps {
 
@@ -290,6 +291,7 @@ int parse_and_run(int argc, char** argv) {
 int run_command(int argc, char** argv) {
     std::set_terminate(terminate_quietly);
     ignore_file_size_signal();
+    session::settle_arithmetic();
     try {
         return parse_and_run(argc, argv);
     } catch (const UsageError& error) {

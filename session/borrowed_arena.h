@@ -6,12 +6,29 @@
 #include <tbb/task_arena.h>
 
 #include <memory>
+#include <utility>
 
 namespace mote::session {
 
+/// Gives the calling thread's own arena that arithmetic, for programs that need no other one. Must come
+/// before their first parallel loop.
+void settle_arithmetic();
+
+/// The control word of a thread outside of parallel loops, from construction to destruction.
+class PlainArithmetic {
+  public:
+    PlainArithmetic();
+    ~PlainArithmetic();
+    PlainArithmetic(const PlainArithmetic&) = delete;
+    PlainArithmetic& operator=(const PlainArithmetic&) = delete;
+
+  private:
+    unsigned before_;
+};
+
 class BorrowedArena {
   public:
-    /// For `threads` threads, the caller's among them.
+    /// For `threads` threads, the caller's among them; 0: one for every core.
     explicit BorrowedArena(int threads);
     ~BorrowedArena();
     BorrowedArena(const BorrowedArena&) = delete;
@@ -19,7 +36,10 @@ class BorrowedArena {
 
     template <typename F>
     auto execute(F&& f) {
-        return arena_->execute(std::forward<F>(f));
+        return arena_->execute([&] {
+            const PlainArithmetic here;
+            return f();
+        });
     }
 
   private:

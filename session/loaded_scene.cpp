@@ -8,6 +8,7 @@
 #include "core/loading/scene_making.h"
 #include "core/objects/memory_error.h"
 #include "core/render/render_driver.h"
+#include "session/borrowed_arena.h"
 #include "session/placement_notes.h"
 #include "session/reference_metadata.h"
 #include "session/registry.h"
@@ -41,7 +42,9 @@ void LoadedScene::load(const SceneChanges& changes, const Load& load_now) {
     changes_ = changes;
     core::LoadOptions options = load_options(changes);
     options.report = &report_;
-    scene_ = core::with_memory_for("loading the scene", [&] { return load_now(options); });
+    BorrowedArena arena(0);
+    arena.execute(
+        [&] { scene_ = core::with_memory_for("loading the scene", [&] { return load_now(options); }); });
     load_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "core/objects/error.h"
+#include "session/borrowed_arena.h"
 
 namespace mote::session {
 
@@ -51,8 +52,10 @@ screenspace::SsbcResult compensate_picture(ImageChannels& image, screenspace::Ss
     if (is_compensated(image) && !replace)
         throw InputError(std::string("the picture holds a layer '") + compensation_layer + "' already");
     if (replace) take_out_compensation(image);
-    const screenspace::SsbcPicture picture = screenspace::read_ssbc_picture(image, channels);
-    screenspace::SsbcResult result = compensate(picture.surfaces, picture.light, picture.hidden, settings);
+    screenspace::SsbcResult result = BorrowedArena(0).execute([&] {
+        const screenspace::SsbcPicture picture = screenspace::read_ssbc_picture(image, channels);
+        return compensate(picture.surfaces, picture.light, picture.hidden, settings);
+    });
     add_compensation(image, result.compensation);
     image.metadata["ssbc"] = fmt::format("bound {:.9g}, steps {}", settings.bound, settings.steps);
     return result;

@@ -46,12 +46,15 @@ void add_denoised_layer(ImageChannels& image, const OidnLibrary& library) {
 
 void add_denoised(ImageChannels& image, const std::string& method, int threads) {
     const std::vector<std::string> known = {"oidn", "bmfr"};
-    if (method == "oidn") return add_denoised_layer(image, OidnLibrary(threads));
-    if (method != "bmfr")
+    if (method != "oidn" && method != "bmfr")
         throw core::InputError("there is no denoiser '" + core::printable(method) + "'" +
                                core::suggestion(method, known));
-    BorrowedArena arena(threads > 0 ? threads : tbb::info::default_concurrency());
-    arena.execute([&] { BmfrSequence(true).add_denoised_layer(image); });
+    BorrowedArena(threads).execute([&] {
+        if (method == "oidn")
+            add_denoised_layer(image, OidnLibrary(threads));
+        else
+            BmfrSequence(true).add_denoised_layer(image);
+    });
 }
 
 ImageChannels denoised_picture(const ImageChannels& image) {

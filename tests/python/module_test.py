@@ -36,6 +36,7 @@ SCENE = """<scene version="3.0.0">
 </scene>
 """
 T = mote.ScalarTransform4f
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def dictionary():
@@ -86,6 +87,18 @@ class ModuleTest(unittest.TestCase):
             self.assertGreater(len(ours), 10)
         self.assertEqual(ours.metadata["sceneHash"], theirs.metadata["sceneHash"])
         self.assertFalse(same_bits(mote.render(scene, passes=3, seed=8, auxiliary=True, denoise="bmfr"), theirs))
+
+    def test_bits_of_tiny_numbers(self):
+        """Of a scene with lights so far off that numbers become denormal: threads must treat them alike."""
+        path = ROOT / "experiments" / "figures" / "scenes" / "sun_mirror_wall.xml"
+        define = {"resx": 64, "resy": 64}
+        for integrator in ("volpath", "mote_bdpt"):
+            out = Path(self.folder.name) / "tiny.exr"
+            subprocess.run([MOTE, "render", path, "-o", out, "--quiet", "--passes", "2", "--integrator", integrator,
+                            "-D", "resx=64", "-D", "resy=64"], check=True, stdout=subprocess.DEVNULL)
+            scene = mote.load(path, integrator=integrator, define=define)
+            for threads in (1, 2):
+                self.assertTrue(same_bits(mote.render(scene, passes=2, threads=threads), mote.Picture.load(out)))
 
     def test_layers(self):
         picture = mote.render(self.scene, passes=2, seed=1, auxiliary=True)
