@@ -22,6 +22,7 @@ packages=(
   libpugixml-dev libcli11-dev libfmt-dev nlohmann-json3-dev
   catch2 libbenchmark-dev                             # tests and benchmarks
   python3-numpy python3-matplotlib                    # the figures of experiments/figures
+  python3-venv python3-dev                            # the Python module (tools/python_packages.sh)
   glmark2-data                                        # a real bunny and horse
   doxygen                                             # the reference of the library (19 MB; left out where missing)
 )
