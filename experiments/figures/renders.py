@@ -3,6 +3,9 @@
 Every render is a file in OUTPUT/NAME/, with its statistics beside it; --redraw takes those of the last run as they are.
 Errors come from independent seeds: `mean_and_error` is their mean and its standard error. Variants that are rendered with
 the same seeds share their virtual point lights, so the differences of pairs are far less noisy than the renders are.
+
+--NAME VALUE sets a value of the scenes or integrators (own_settings.py), --compare also renders without it and says how far
+apart the pictures are, and --in-process renders by `import mote` instead of the command: the same bits, without its start.
 """
 import argparse
 import csv
@@ -17,6 +20,7 @@ import numpy as np
 from claims import Claims
 from exr import read_exr
 from origin import ROOT, Origin
+from own_settings import OwnSettings
 
 # What stands for the layer multiple_scattering of volpath: light that scatters in a medium last, and elsewhere before.
 BOUNDED, RECOVERED = "multiple_scattering_bounded", "compensation_volume"
@@ -54,7 +58,8 @@ class Mote:
         self.origin = origin
         self.program = options.bin / "mote"
         self.folder = options.output / name
-        self.redraw = options.redraw
+        self.redraw, self.own, self.compare = options.redraw, options.own, options.compare
+        self.module = import_mote(options.bin) if options.in_process else None
         if not self.program.is_file():
             raise FileNotFoundError(f"no {self.program}: build it first (tools/build_release.sh mote)")
         self.folder.mkdir(parents=True, exist_ok=True)
@@ -63,21 +68,47 @@ class Mote:
         """`scene` is a name in scenes/ or a path; `settings` go to -D, but for `integrator`, which is a type (a scene of
         scenes/ without any: mote_vpl, as the papers' figures are about virtual point lights). 0 threads:
         one for every core. `auxiliary`: with what `mote ssbc` reads."""
-        path = self.folder / f"{name}_{seed}.exr"
         if not isinstance(scene, Path):
             scene, settings = ROOT / "scenes" / f"{scene}.xml", {"integrator": "mote_vpl"} | settings
-        if not (self.redraw and path.is_file()):
-            command = [self.program, "render", scene, "-o", path, "--seed", str(seed), "--quiet",
-                       "--stats", path.with_suffix(".json")]
-            command += ["--passes", str(passes), "--threads", str(threads)] + ["--auxiliary"] * auxiliary
-            for key, value in settings.items():
-                command += ["--integrator", value] if key == "integrator" else ["-D", f"{key}={word(value)}"]
-            before = children_cpu()
-            subprocess.run(command, check=True)
-            path.with_suffix(".cpu").write_text(f"{children_cpu() - before:.3f}\n")
+        own = self.own.added_to(scene, settings)
+        path = self.rendered(scene, name, own, passes, seed, threads, auxiliary)
         picture = Picture(path)
-        self.origin.add(name, scene, settings, passes, seed, picture.statistics)
+        self.origin.add(name, scene, own, passes, seed, picture.statistics)
+        if self.compare and own != settings:
+            plain = self.rendered(scene, f"{name}_plain", settings, passes, seed, threads, auxiliary)
+            said = subprocess.run([self.program, "compare", path, plain, "--json"], check=True, capture_output=True, text=True)
+            metrics = {k: v["value"] for k, v in json.loads(said.stdout)["metrics"].items()}
+            print(f"{path.stem}: differs by {metrics['error']:.2%} from the one without {self.own.suffix()[1:]}, "
+                  f"in the mean by {metrics['bias']:+.2%}")
         return picture
+
+    def rendered(self, scene, name, settings, passes, seed, threads, auxiliary):
+        """The file of a picture, with its statistics and its processor seconds beside it."""
+        path = self.folder / f"{name}_{seed}.exr"
+        if not (self.redraw and path.is_file()):
+            render = self.render_in_process if self.module else self.render_by_command
+            seconds = render(path, scene, settings, passes, seed, threads, auxiliary)
+            path.with_suffix(".cpu").write_text(f"{seconds:.3f}\n")
+        return path
+
+    def render_by_command(self, path, scene, settings, passes, seed, threads, auxiliary):
+        command = [self.program, "render", scene, "-o", path, "--seed", str(seed), "--quiet",
+                   "--stats", path.with_suffix(".json")]
+        command += ["--passes", str(passes), "--threads", str(threads)] + ["--auxiliary"] * auxiliary
+        for key, value in settings.items():
+            command += ["--integrator", value] if key == "integrator" else ["-D", f"{key}={word(value)}"]
+        before = children_cpu()
+        subprocess.run(command, check=True)
+        return children_cpu() - before
+
+    def render_in_process(self, path, scene, settings, passes, seed, threads, auxiliary):
+        begin = time.process_time()
+        defines = {key: word(value) for key, value in settings.items() if key != "integrator"}
+        loaded = self.module.load(scene, integrator=settings.get("integrator", ""), define=defines)
+        picture = self.module.render(loaded, passes=passes, seed=seed, threads=threads, auxiliary=auxiliary)
+        picture.save(path)
+        path.with_suffix(".json").write_text(json.dumps(picture.statistics))
+        return time.process_time() - begin
 
     def ssbc(self, source, name, *options):
         """`mote ssbc` on an EXR file: the file it wrote, what it said, and the processor seconds of the whole command."""
@@ -86,6 +117,13 @@ class Mote:
         said = subprocess.run([self.program, "ssbc", source, "-o", path, *map(str, options)], check=True,
                               capture_output=True, text=True).stdout
         return path, said, children_cpu() - before
+
+
+def import_mote(bin_folder):
+    """The module of the same build, else an installed one."""
+    sys.path.insert(0, str(bin_folder.parent / "python"))
+    import mote  # pylint: disable=import-outside-toplevel
+    return mote
 
 
 def word(value):
@@ -168,19 +206,27 @@ def main(script, documentation, figure):
     parser.add_argument("--redraw", action="store_true", help="take the pictures of the last run where they are")
     parser.add_argument("--output", type=Path, default=ROOT / "out" / "figures")
     parser.add_argument("--bin", type=Path, default=ROOT / "build" / "release" / "bin", help="folder of mote")
-    options = parser.parse_args()
-    name = Path(script).stem
+    parser.add_argument("--in-process", action="store_true", help="render by `import mote`, not by the command")
+    parser.add_argument("--compare", action="store_true", help="say how far --NAME VALUE is from what the script sets")
+    options, words = parser.parse_known_args()
     origin = Origin(script, options.quick)
     try:
+        options.own = OwnSettings(words, options.bin / "mote")
+        name = Path(script).stem + options.own.suffix()
         mote = Mote(options, name + ("_quick" if options.quick else ""), origin)
         subprocess.run([ROOT / "scenes" / "generate", options.bin], stdout=subprocess.DEVNULL, check=True)
-    except (FileNotFoundError, subprocess.CalledProcessError) as error:
+    except (FileNotFoundError, ImportError, ValueError, subprocess.CalledProcessError) as error:
         print(error, file=sys.stderr)
         return 2
     begin = time.monotonic()
     # Beside a full run, a quick one leaves its pictures alone.
     output = options.output / (name + ("_quick" if options.quick else ""))
     code = figure(mote, options.quick, output)
+    try:
+        options.own.check()
+    except ValueError as error:
+        print(error, file=sys.stderr)
+        return 2
     finish(origin, output)
     print(f"{time.monotonic() - begin:.0f} s")
     return code

@@ -1,0 +1,62 @@
+"""What the command line of a figure sets of its scenes: `--bound 5`, `--film.width 80`, without editing the script.
+
+A name with a dot is a path, as with `mote render -D`. Others are $parameters of the scene file where it has one of that
+name, else parameters of the integrator, for the renders whose integrator takes them: `--bound 5` reaches mote_vpl and not
+the path tracer beside it. What no render took is an error.
+"""
+import re
+import subprocess
+
+
+class OwnSettings:
+    def __init__(self, words, program):
+        """`words`: what argparse left, --NAME VALUE, --NAME=VALUE or --NAME alone, which is true."""
+        self.values, self.taken, self.program, self.pages = {}, set(), program, None
+        name = None
+        for word in words:
+            if word.startswith("--"):
+                name, equals, value = word[2:].partition("=")
+                self.values[name] = value if equals else "true"
+            elif name is not None and self.values[name] == "true":
+                self.values[name] = word
+            else:
+                raise ValueError(f"'{word}' belongs to no --NAME")
+
+    def __bool__(self):
+        return bool(self.values)
+
+    def suffix(self):
+        """Of file names: pictures with settings of their own are other pictures."""
+        return "".join(f"_{name}={value}" for name, value in self.values.items()).replace("/", "-")
+
+    def added_to(self, scene, settings):
+        """The settings of a render, with those of the command line that it takes."""
+        own = {}
+        for name, value in self.values.items():
+            place = self.place(name, scene.read_text(encoding="utf-8"), settings)
+            if place:
+                own[place] = value
+                self.taken.add(name)
+        return {**settings, **own}
+
+    def place(self, name, text, settings):
+        if "." in name:
+            return name
+        if re.search(rf"\${name}\b", text):
+            return name
+        named = re.search(r'<integrator\s+type="([^"$]+)"', text)
+        integrator = settings.get("integrator", named.group(1) if named else "mote_layers")
+        return f"integrator.{name}" if name in self.parameters(integrator) else None
+
+    def parameters(self, integrator):
+        """Of an integrator, as its manual page has them."""
+        if self.pages is None:
+            formats = subprocess.run([self.program, "formats"], check=True, capture_output=True, text=True).stdout
+            self.pages = dict(re.findall(r"^### `(mote_\w+|path|volpath)`$(.*?)(?=^##)", formats, re.M | re.S))
+        return re.findall(r"^\| `(\w+)` \|", self.pages.get(integrator, ""), re.M)
+
+    def check(self):
+        """Raises ValueError for what nobody took."""
+        left = [f"--{name}" for name in self.values if name not in self.taken]
+        if left:
+            raise ValueError(f"no render takes {', '.join(left)}: neither a $parameter of a scene nor one of an integrator")

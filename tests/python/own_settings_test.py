@@ -1,0 +1,35 @@
+#!/usr/bin/env python3
+"""What the command line of a figure sets of its scenes (experiments/figures/own_settings.py). Usage: own_settings_test.py MOTE"""
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "experiments" / "figures"))
+from own_settings import OwnSettings  # noqa: E402
+
+
+class OwnSettingsTest(unittest.TestCase):
+    def test_places(self):
+        own = OwnSettings(["--bound", "5", "--resx=32", "--film.height", "8", "--bounded"], MOTE)
+        with tempfile.TemporaryDirectory() as folder:
+            scene = Path(folder) / "scene.xml"
+            scene.write_text('<scene><integrator type="mote_vpl"/><integer name="width" value="$resx"/></scene>')
+            self.assertEqual(own.added_to(scene, {"integrator": "path", "a": 1}),
+                             {"integrator": "path", "a": 1, "resx": "32", "film.height": "8"})
+            with self.assertRaisesRegex(ValueError, "--bound, --bounded"):
+                own.check()
+            self.assertEqual(own.added_to(scene, {"integrator.bound": 9}),
+                             {"integrator.bound": "5", "resx": "32", "film.height": "8", "integrator.bounded": "true"})
+            own.check()
+        self.assertEqual(own.suffix(), "_bound=5_resx=32_film.height=8_bounded=true")
+
+    def test_words(self):
+        self.assertFalse(OwnSettings([], MOTE))
+        with self.assertRaises(ValueError):
+            OwnSettings(["5"], MOTE)
+
+
+if __name__ == "__main__":
+    MOTE = sys.argv.pop(1)
+    unittest.main()
