@@ -104,7 +104,7 @@ class Walk {
                     const float along = wx[k] * center.x + wy[k] * center.y + wz[k] * center.z;
                     const float half2 = along * along - beside, half = std::sqrt(max_of(half2, 0.0f));
                     const float way = min_of(along + half, surface[k]) - max_of(along - half, 0.0f);
-                    const float chord = (half2 > 0.0f) & (k < used) ? max_of(way, 0.0f) : 0.0f;
+                    const float chord = ((half2 > 0.0f) & (k < used)) ? max_of(way, 0.0f) : 0.0f;
                     red[k] += chord * density.x, green[k] += chord * density.y, blue[k] += chord * density.z;
                 }
             }
