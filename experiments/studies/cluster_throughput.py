@@ -3,7 +3,8 @@
 
 Usage: cluster_throughput.py MOTE [--scene scenes/cornell_box.xml] [--passes N] [--block B] [--workers W] [--repeat R]
 With a Python that has `distributed` (tests/cluster/run makes one: build/release/python_cluster/bin/python). Times are of
-the wall, from the first pass asked for to the last film merged; both turns alternate, medians count.
+the wall and of processors, from the first pass asked for to the picture; both turns alternate, medians count. On a machine
+that others use too, only processor seconds can be compared: workers, merging and what Dask itself does are in them.
 """
 import argparse
 import os
@@ -20,6 +21,11 @@ from distributed import Client, LocalCluster  # noqa: E402
 from mote import cluster  # noqa: E402
 
 
+def processor_seconds():
+    """Of this process and of those that it waited for; on a worker: of that."""
+    return sum(os.times()[:4])
+
+
 def main():
     p = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     p.add_argument("mote")
@@ -32,23 +38,29 @@ def main():
     a = p.parse_args()
     mote = str(Path(a.mote).resolve())
     options = ["--integrator", a.integrator]
-    alone, together = [], []
+    alone, together, processors = [], [], []
     with tempfile.TemporaryDirectory() as folder, \
             LocalCluster(n_workers=a.workers, threads_per_worker=1, dashboard_address=None) as local, \
             Client(local) as client:
+        def processors_now():
+            return processor_seconds() + sum(client.run(processor_seconds).values())
+
         for _ in range(a.repeat):
-            begin = time.monotonic()
+            begin, before = time.monotonic(), processors_now()
             subprocess.run([mote, "render", a.scene, *options, "--passes", str(a.passes), "-t", str(a.workers),
                             "--quiet", "-o", f"{folder}/one.exr"], check=True)
             alone.append(time.monotonic() - begin)
-            begin = time.monotonic()
+            begin, between = time.monotonic(), processors_now()
             cluster.render(a.scene, f"{folder}/two.exr", None, passes=a.passes, block=a.block, options=options,
                            mote=mote, worker_mote=mote, client=client, quiet=True)
             together.append(time.monotonic() - begin)
-            print(f"one process {alone[-1]:.1f} s, {a.workers} workers {together[-1]:.1f} s", flush=True)
+            processors.append((between - before) / (processors_now() - between))
+            print(f"one process {alone[-1]:.1f} s, {a.workers} workers {together[-1]:.1f} s; processor seconds of the "
+                  f"former {processors[-1]:.3f} of the latter's", flush=True)
     ratio = statistics.median(alone) / statistics.median(together)
     print(f"{Path(a.scene).stem}, {a.integrator}, {a.passes} passes in blocks of {a.block}: {a.workers} workers have "
-          f"{ratio:.2f} of the throughput of one process with {a.workers} threads (medians of {a.repeat})")
+          f"{ratio:.2f} of the throughput of one process with {a.workers} threads by the wall's clock, {statistics.median(processors):.3f} by processor seconds "
+          f"(medians of {a.repeat})")
 
 
 if __name__ == "__main__":
