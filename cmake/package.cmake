@@ -3,7 +3,10 @@
 
 # The components, from the ground up: one library each. Another library of mote that others may link gets its place
 # here, its folder of headers below if it has one of its own, and what it stands on in NEEDS_name.
-set(mote_package_components core_runtime core media lights picture_lights compensation gathering screenspace integrators session)
+set(mote_package_components core_runtime core media lights picture_lights compensation gathering screenspace integrators)
+if(TARGET mote_c)
+  list(APPEND mote_package_components c)  # libmote_c.so, with all that it needs inside, and mote/mote.h
+endif()
 set(NEEDS_core core_runtime)
 set(NEEDS_media core_runtime)
 set(NEEDS_lights media)
@@ -12,8 +15,7 @@ set(NEEDS_compensation lights)
 set(NEEDS_gathering lights)
 set(NEEDS_screenspace core lights)
 set(NEEDS_integrators picture_lights compensation gathering screenspace)
-set(NEEDS_session integrators)
-set(mote_package_folders core media lights compensation gathering screenspace integrators session)
+set(mote_package_folders core media lights compensation gathering screenspace integrators)
 
 # ---- Headers as others include them, in build/.../include/mote
 set(mote_include ${PROJECT_BINARY_DIR}/include/mote)
@@ -64,15 +66,25 @@ if(MOTE_SHARED)
   set(libraries_component mote)
 endif()
 set(mote_package_needs "")
+if(TARGET mote_c)
+  if(MOTE_SHARED)
+    set(NEEDS_c integrators)  # whose libraries are then not within it
+  endif()
+  install(FILES plugins/c/mote.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mote COMPONENT dev)
+endif()
 foreach(component ${mote_package_components})
   set(targets mote_${component})
   if(component STREQUAL "core_runtime")
     set_target_properties(mote_api PROPERTIES EXPORT_NAME api)
     list(APPEND targets mote_api)
   endif()
+  set(libraries_of_this ${libraries_component})
+  if(component STREQUAL "c")
+    set(libraries_of_this mote)
+  endif()
   install(TARGETS ${targets} EXPORT mote-${component}
           ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev
-          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${libraries_component} NAMELINK_COMPONENT dev
+          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${libraries_of_this} NAMELINK_COMPONENT dev
           INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
   install(EXPORT mote-${component} NAMESPACE mote:: FILE mote-${component}.cmake DESTINATION ${mote_cmake_folder}
           COMPONENT dev)
