@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """mote's integrators as Mitsuba's: every one registered, the bits of the command, errors with names.
 
-Usage: test_mitsuba.py MOTE SOURCE_DIR     SKIPPED where `import mitsuba` does not work.
+Usage: test_mitsuba.py MOTE SOURCE_DIR     LEFT OUT where `import mitsuba` does not work.
 """
 import os
 import re
@@ -16,7 +16,7 @@ try:
     import mitsuba as mi
     mi.set_variant("scalar_rgb")
 except ImportError:
-    print("SKIPPED: no Python package 'mitsuba' (PyPI)")
+    print("LEFT OUT: no Python package 'mitsuba' (PyPI)")
     sys.exit(0)
 mi.set_log_level(mi.LogLevel.Error)
 import numpy as np  # noqa: E402
