@@ -37,8 +37,9 @@ class Film {
     bool keeps_all_squares() const { return all_squares_; }    ///< as the constructor was told
     std::uint32_t pass_count() const;                          ///< of all parts together
     std::uint32_t pass_count(std::size_t part) const { return parts_.at(part).passes; }  ///< of one part
-    /// Index of the first pass of a part that the film holds, or will hold, and of the one after the last.
+    /// Index of the first pass of a part that the film holds, or will hold.
     std::uint32_t first_pass(std::size_t part) const { return parts_.at(part).first; }
+    /// Index of the pass after the last one.
     std::uint32_t next_pass(std::size_t part) const { return parts_[part].first + pass_count(part); }
     /// Of all parts together: 0 for a film that holds all passes so far.
     std::uint32_t first_pass() const;

@@ -13,9 +13,7 @@ except ImportError as problem:  # `python -m mote.cluster` needs the command alo
     _problem = problem
 
     def __getattr__(name):
-        if name.startswith("__"):
-            raise AttributeError(name)
-        raise ImportError(f"mote.{name} needs the compiled module mote._mote, which 'pip install .' builds: {_problem}")
+        raise AttributeError(f"mote.{name} needs the compiled module mote._mote, which 'pip install .' builds: {_problem}")
 else:
     from ._errors import Error
     from ._mote import version as __version__
