@@ -3,13 +3,18 @@ import numpy as np
 
 from .exr import read_exr
 
-# Blender's pass, its switch in the view layer, and our channels.
-FEATURES = [("Depth", "use_pass_z", ["Depth.Z"]), ("Normal", "use_pass_normal", ["N.X", "N.Y", "N.Z"]),
-            ("Position", "use_pass_position", ["P.X", "P.Y", "P.Z"])]
+# Blender's pass, its switch in the view layer, its channels and kind, and our channels.
+FEATURES = [("Depth", "use_pass_z", "Z", "VALUE", ["Depth.Z"]),
+            ("Normal", "use_pass_normal", "XYZ", "VECTOR", ["N.X", "N.Y", "N.Z"]),
+            ("Position", "use_pass_position", "XYZ", "VECTOR", ["P.X", "P.Y", "P.Z"])]
 
 
 def wants_features(view_layer):
-    return any(getattr(view_layer, switch) for _, switch, _ in FEATURES)
+    return any(True for _ in wanted(view_layer))
+
+
+def wanted(view_layer):
+    return (feature for feature in FEATURES if getattr(view_layer, feature[1]))
 
 
 def colour_layers(planes):
@@ -20,6 +25,8 @@ def colour_layers(planes):
 
 def register(engine, scene, view_layer):
     engine.register_pass(scene, view_layer, "Combined", 4, "RGBA", "COLOR")
+    for name, _, channels, kind, _ in wanted(view_layer):
+        engine.register_pass(scene, view_layer, name, len(channels), channels, kind)
     for name in scene.mote.layers.split():
         engine.register_pass(scene, view_layer, name, 3, "RGB", "COLOR")
 
@@ -32,15 +39,17 @@ def show(engine, path, size, begin, view_layer):
     layers = colour_layers(planes)
     for name in layers:
         engine.add_pass(name, 3, "RGB", layer=view_layer.name)
+    features = [f for f in wanted(view_layer) if f[4][0] in planes]
+    for name, _, channels, _, _ in features:
+        engine.add_pass(name, len(channels), channels, layer=view_layer.name)
     result = engine.begin_result(0, 0, *size)
     made = result.layers[0].passes
     picture = cut("RGB")
     fill(made["Combined"], np.concatenate([picture, np.ones_like(picture[..., :1])], axis=2))
     for name in layers:
         fill(made[name], cut([f"{name}.{c}" for c in "RGB"]))
-    for name, switch, channels in FEATURES:
-        if getattr(view_layer, switch) and channels[0] in planes and name in made.keys():
-            fill(made[name], np.nan_to_num(cut(channels), nan=0.0, posinf=1e10))
+    for name, _, _, _, ours in features:
+        fill(made[name], np.nan_to_num(cut(ours), nan=1e10, posinf=1e10) if name == "Depth" else cut(ours))
     engine.end_result(result)
     return layers
 
