@@ -5,7 +5,8 @@
 
 Each engine renders SEEDS pictures of SAMPLES samples a pixel. The standard error is that of the mean over seeds. Time
 to equal error: variance of a pixel between seeds, averaged over the picture, times processor seconds a picture (export and
-loading included); the ratio is Cycles' over mote's. Sums of both at once, so that one busy machine hurts both alike.
+loading included); the ratio is Cycles' over mote's. It falls with
+SAMPLES for mote, whose process starts and loads anew for every picture.
 """
 import json
 import os
@@ -48,13 +49,15 @@ def main():
         if done.returncode:
             sys.exit(done.stdout + done.stderr)
         print("| scene | Cycles | mote | difference | standard error | processor s | time to equal error |\n" + "|---" * 7 + "|")
+        notes = []
         for scene in SCENES:
             log = json.loads((folder / f"{scene}.json").read_text())
             cycles, ours = (measure(folder, [r for r in log["runs"] if r["engine"] == e]) for e in ("CYCLES", "MOTE"))
             error = (cycles[1]**2 + ours[1]**2)**0.5 / cycles[0]
             print(f"| {scene} | {cycles[0]:.5f} | {ours[0]:.5f} | {100 * (ours[0] / cycles[0] - 1):+.2f} % | {100 * error:.2f} % "
                   f"| {cycles[3]:.2f}, {ours[3]:.2f} | {cycles[2] / ours[2]:.2f} |")
-            print("\n".join("    " + line for line in log["notes"].splitlines()), end="")
+            notes += [f"{scene}: {line}" for line in log["notes"].splitlines()]
+        print("\n".join(notes))
 
 
 main()

@@ -97,11 +97,12 @@ def fog():
     lamp("AREA", 60, Matrix.Translation((0, 0, 3)))
 
 
-def view():
+def view(angle, tilt):
+    """The camera with an angle across [degrees], 4 m away; and the same settings for both engines."""
     scene = bpy.context.scene
     camera = bpy.data.cameras.new("camera")
-    camera.angle = math.radians(50)
-    matrix = Matrix.Translation((0, -4, 1.2)) @ Matrix.Rotation(math.radians(85), 4, "X")
+    camera.angle = math.radians(angle)
+    matrix = Matrix.Translation((0, -4, 1.2)) @ Matrix.Rotation(math.radians(tilt), 4, "X")
     scene.camera = put("camera", camera, matrix)
     render, cycles, image = scene.render, scene.cycles, scene.render.image_settings
     render.resolution_x, render.resolution_y, render.resolution_percentage = *SIZE, 100
@@ -130,7 +131,7 @@ def main():
         bpy.ops.preferences.addon_install(filepath=archive, overwrite=True)
         bpy.ops.preferences.addon_enable(module="mote_render")
         {"room": room, "sun": sun, "fog": fog}[name]()
-        scene, log = view(), []
+        scene, log = view(*((31, 80) if name == "sun" else (50, 85))), []  # close to the balls
         scene.cycles.samples = scene.mote.passes = int(samples)
         for engine in ("CYCLES", "MOTE"):
             scene.render.engine = engine

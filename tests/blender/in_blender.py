@@ -193,7 +193,6 @@ def cancelled(folder):
     scene.mote.passes, scene.mote.keep = 1000000, str(folder / "kept")
     scene.render.image_settings.file_format = "OPEN_EXR"
     scene.render.filepath = str(folder / "cancelled.exr")
-    (folder / "rendering").write_text("")
     bpy.ops.render.render(write_still=True)
     from mote_render.exr import read_exr
     partial = read_exr(folder / "kept" / "picture.exr")
