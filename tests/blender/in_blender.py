@@ -178,6 +178,8 @@ def errors(scene):
     scene.mote.mote_vpl.paths = 32
     bpy.context.preferences.addons["mote_render"].preferences.command = "no/such/mote"
     expect("no/such/mote", "a command that is not there")
+    bpy.context.preferences.addons["mote_render"].preferences.command = ""
+    check("FINISHED" in bpy.ops.render.render(), "and the next picture renders")  # resets Blender's own exit code as well
 
 
 def expect(word, text):
