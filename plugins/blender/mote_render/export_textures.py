@@ -3,6 +3,7 @@ import os
 import shutil
 
 import bpy
+import numpy as np
 
 from .scene_xml import add, add_value
 
@@ -16,16 +17,25 @@ def picture_file(export, image):
         name = f"picture_{abs(hash(image.name_full)) % 10**8}{os.path.splitext(source)[1]}"
         shutil.copyfile(source, export.folder / name)
         return name
-    name = f"picture_{abs(hash(image.name_full)) % 10**8}{'.exr' if image.is_float else '.png'}"
-    image.save(filepath=str(export.folder / name)) if bpy.app.version >= (4, 0) else save_old(image, export.folder / name)
+    name = f"picture_{abs(hash(image.name_full)) % 10**8}{'.pfm' if image.is_float else '.png'}"
+    save_pixels(image, export.folder / name)
     return name
 
 
-def save_old(image, path):
-    copy = image.copy()
-    copy.file_format, copy.filepath_raw = "OPEN_EXR" if image.is_float else "PNG", str(path)
+def save_pixels(image, path):
+    """Bytes by Blender through an image of its own (the user's one keeps its name and its unsaved changes); floats,
+    which are linear and which Blender would encode for its colour space, as PFM: rows from the bottom, as Blender's."""
+    pixels = np.empty(len(image.pixels), np.float32)
+    image.pixels.foreach_get(pixels)
+    rgba = pixels.reshape(-1, image.channels)[:, [min(c, image.channels - 1) for c in range(4)]]
+    if image.is_float:
+        header = "PF\n{} {}\n-1.0\n".format(*image.size)
+        return path.write_bytes(header.encode() + np.ascontiguousarray(rgba[:, :3], "<f4").tobytes())
+    copy = bpy.data.images.new("mote", *image.size, alpha=True)
+    copy.pixels.foreach_set(rgba.ravel())
+    copy.file_format, copy.filepath_raw = "PNG", str(path)
     copy.save()
-    bpy.data.images.remove(copy)
+    return bpy.data.images.remove(copy)
 
 
 def source_of(socket):
