@@ -55,7 +55,7 @@ class Proof {
                                        {4, path_passes, 32})) {}
     Proof(const std::string& xml, double bound) : Proof(scene_from(xml, 8), bound) {}
 
-    void check(const std::string& compensation, std::uint32_t passes = 700, int paths = 24) const {
+    void check(const std::string& compensation, std::uint32_t passes = 450, int paths = 24) const {
         INFO(compensation);
         const bool media = scene_->has_media();
         const auto vpl =
@@ -168,7 +168,7 @@ TEST_CASE("bounded VPLs and every strategy of compensation equal volpath: smoke"
     const Proof proof(box(grey, smoke.xml), 4.0);
     proof.check(exact);
     for (const char* strategy : {"n-to-1", "1-to-1", "1-to-1-homogeneous"})
-        proof.check(unbiased_abc(strategy), 400);
+        proof.check(unbiased_abc(strategy), 250);
 }
 
 TEST_CASE("bounded VPLs and exact compensation equal volpath: the smoke room", "[compensation][equality]") {

@@ -167,8 +167,8 @@ TEST_CASE("bounded VPLs equal bounded paths, whoever names the fog", "[vpl][equa
     for_every_telling(Lamp::globe, [](const core::Scene& scene) {
         const auto reference =
             render(scene, R"(<integrator type="volpath"><float name="vpl_bound" value="1"/></integrator>)",
-                   9000, 12);
-        check_same(render(scene, vpl(""), 1200, 11), reference,
+                   6000, 12);
+        check_same(render(scene, vpl(""), 600, 11), reference,
                    {{"direct", "direct"},
                     {"single_scattering", "single_scattering"},
                     {"indirect_bounded", "indirect_bounded"},
