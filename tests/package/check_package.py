@@ -108,11 +108,13 @@ def check_flags(commands, of):
 
 def check_examples(build, prefix):
     examples = build / "examples"
-    room = work / "room.exr"
+    room, box = work / "room.exr", arguments.source / "scenes/cornell_box.xml"
     run(prefix / "bin/mote", "render", arguments.source / "examples/ssbc/room.xml", "--passes", 4, "--auxiliary",
         "--quiet", "-o", room)
     for folder in sorted(p for p in (arguments.source / "examples").iterdir() if p.is_dir()):
-        more = [room, work / "compensated.exr"] if folder.name == "ssbc" else []
+        more = {"ssbc": [room, work / "compensated.exr"],
+                "render_scene": [box, work / "box.exr", 1, "film.width=32", "film.height=24"],
+                "render_from_c": [box, work / "box_of_c.exr", 1, "film.width", 32, "film.height", 24]}.get(folder.name, [])
         print(f"{folder.name}: {run(examples / folder.name / folder.name, *more).splitlines()[-1]}")
 
 
