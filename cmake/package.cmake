@@ -3,7 +3,8 @@
 
 # The components, from the ground up: one library each. Another library of mote that others may link gets its place
 # here, its folder of headers below if it has one of its own, and what it stands on in NEEDS_name.
-set(mote_package_components core_runtime core media lights picture_lights compensation gathering screenspace integrators)
+set(mote_package_components core_runtime core media lights picture_lights compensation gathering screenspace integrators
+    session)
 if(TARGET mote_c)
   list(APPEND mote_package_components c)  # libmote_c.so, with all that it needs inside, and mote/mote.h
 endif()
@@ -15,7 +16,8 @@ set(NEEDS_compensation lights)
 set(NEEDS_gathering lights)
 set(NEEDS_screenspace core lights)
 set(NEEDS_integrators picture_lights compensation gathering screenspace)
-set(mote_package_folders core media lights compensation gathering screenspace integrators)
+set(NEEDS_session integrators)
+set(mote_package_folders core media lights compensation gathering screenspace integrators session)
 
 # ---- Headers as others include them, in build/.../include/mote
 set(mote_include ${PROJECT_BINARY_DIR}/include/mote)
@@ -68,7 +70,7 @@ endif()
 set(mote_package_needs "")
 if(TARGET mote_c)
   if(MOTE_SHARED)
-    set(NEEDS_c integrators)  # whose libraries are then not within it
+    set(NEEDS_c session)  # whose libraries are then not within it
   endif()
   install(FILES plugins/c/mote.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mote COMPONENT dev)
 endif()

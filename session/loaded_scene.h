@@ -29,6 +29,7 @@ std::vector<std::string> define_texts(const SceneChanges& changes);
 /// What determines the bits of a picture besides the contents of the scene's files: for core::content_hash().
 std::vector<std::string> render_settings(const SceneChanges& changes, const std::string& integrator);
 
+/// A scene that may be rendered, by several threads at once. Copies share it.
 class LoadedScene {
   public:
     /// All throw InputError, or SceneErrors with all that is wrong. A path may name XML, glTF or GLB.
@@ -36,14 +37,16 @@ class LoadedScene {
     /// Relative file names are looked up in `folder`; `name` stands for the file in messages.
     static LoadedScene from_text(const std::string& xml, const std::string& folder,
                                  const SceneChanges& changes = {}, const std::string& name = "<string>");
+    /// Of elements that were built in memory.
     static LoadedScene from_tree(const SceneTree& tree, const SceneChanges& changes = {});
 
-    const core::Scene& scene() const { return *scene_; }
-    const core::Registry& registry() const { return *registry_; }
-    const core::LoadReport& report() const { return report_; }
-    const SceneChanges& changes() const { return changes_; }
+    const core::Scene& scene() const { return *scene_; }           ///< lives as long as this, or a copy of it
+    const core::Registry& registry() const { return *registry_; }  ///< the types that it was loaded with
+    const core::LoadReport& report() const { return report_; }     ///< what was approximated
+    const SceneChanges& changes() const { return changes_; }       ///< with which it was loaded
     /// Throws InputError where the scene names none.
     const core::Integrator& integrator() const;
+    /// What will run, with the reason for every choice.
     core::Plan plan() const;
     /// What was left out or approximated, and everything else worth a warning.
     std::vector<std::string> warnings() const;

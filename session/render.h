@@ -17,8 +17,9 @@
 
 namespace mote::session {
 
+/// How long a render takes, what it writes, and whom it tells.
 struct RenderSettings {
-    std::uint64_t seed = 0;
+    std::uint64_t seed = 0;  ///< with scene and passes it determines every bit
     /// Seconds count from the call on: the scene is loaded already. No rule: the film's sample_count of
     /// passes.
     core::StopRule stop;
@@ -38,6 +39,7 @@ struct RenderSettings {
     std::function<void(const core::ImageChannels&)> preview;
 };
 
+/// What a render leaves: the picture, and what is said about it.
 struct Rendered {
     /// As `mote render` writes it, to the bit. Interrupted in its first pass: A says which pixels are
     /// finished. Interrupted before the first pixel: without channels.

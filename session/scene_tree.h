@@ -45,8 +45,9 @@ class SceneTree {
 
     /// The elements, for the loader. Throws InputError where an object is still open.
     core::SceneDocument document() const;
+    /// The same, to be shared.
     const std::shared_ptr<ArrayStore>& array_store() const { return arrays_; }
-    const std::string& name() const { return name_; }
+    const std::string& name() const { return name_; }  ///< in messages
     /// Of the elements and arrays: equal where they are. 16 hexadecimal digits.
     std::string checksum() const;
 

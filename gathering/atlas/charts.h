@@ -17,15 +17,18 @@ struct Chart {
     core::Vec3 s, t, n;                  ///< unit, orthogonal; n is on the triangles' front
     float width = 0.0f, height = 0.0f;   ///< along s and t [m]
     std::uint32_t first = 0, count = 0;  ///< into Charts::triangles
-    std::uint32_t shape = 0;
+    std::uint32_t shape = 0;             ///< of its triangles, in the order of SurfaceTriangles
 };
 
+/// All charts of a list of triangles.
 struct Charts {
+    /// Stands for no chart.
     static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
-    std::vector<Chart> charts;
+    std::vector<Chart> charts;             ///< in the order in which they were grown
     std::vector<std::uint32_t> triangles;  ///< chart by chart
     std::vector<std::uint32_t> chart_of;   ///< by triangle; none for those without area
 
+    /// Its triangles, as indices into the list that they were made of.
     std::span<const std::uint32_t> of(const Chart& chart) const {
         return {triangles.data() + chart.first, chart.count};
     }

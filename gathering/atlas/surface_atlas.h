@@ -13,10 +13,12 @@
 
 namespace mote::gathering {
 
+/// Of a triangle: where its normal points, or the other.
 enum class SurfaceSide : std::uint8_t { front, back };
 
 struct AtlasSettings {
     float texels_per_metre = 0.0f;  ///< 0: as many as `texel_budget` allows
+    /// Of all sides together; more are refused.
     std::size_t texel_budget = std::size_t(1) << 17;
     float chart_cosine = 0.8f;  ///< of make_charts()
 };
@@ -28,26 +30,29 @@ struct AtlasTexel {
     core::Vec3 normal;            ///< mean shading normal, unit, on this side
     std::uint32_t triangle;       ///< that `position` lies on
     core::Vec3 geometric_normal;  ///< mean, unit, on this side
-    SurfaceSide side;
-    bool whole;              ///< one cell of a plane, and all of it is surface
-    core::Vec2 barycentric;  ///< of `position` in its triangle
+    SurfaceSide side;             ///< that it is a piece of
+    bool whole;                   ///< one cell of a plane, and all of it is surface
+    core::Vec2 barycentric;       ///< of `position` in its triangle
 };
 
+/// The texels, and which of them lies where.
 class SurfaceAtlas {
   public:
-    static constexpr std::uint32_t none = Charts::none;
+    static constexpr std::uint32_t none = Charts::none;  ///< stands for no texel
 
     /// Throws InputError where the density or the number of charts asks for more texels than the budget, and
     /// says which density fits. `surfaces` and `shapes` must outlive the atlas.
     SurfaceAtlas(const SurfaceTriangles& surfaces, ShapeSpan shapes, const AtlasSettings& settings);
 
-    std::span<const AtlasTexel> texels() const { return texels_; }
-    std::size_t size() const { return texels_.size(); }
-    std::size_t charts() const { return charts_; }
-    float texels_per_metre() const { return texels_per_metre_; }
-    const SurfaceTriangles& surfaces() const { return *surfaces_; }
-    ShapeSpan shapes() const { return shapes_; }
-    std::size_t memory_bytes() const;
+    std::span<const AtlasTexel> texels() const { return texels_; }  ///< chart by chart
+    std::size_t size() const { return texels_.size(); }             ///< how many texels
+    std::size_t charts() const { return charts_; }                  ///< how many charts
+    float texels_per_metre() const {
+        return texels_per_metre_;
+    }  ///< along an edge, as it was asked for or chosen
+    const SurfaceTriangles& surfaces() const { return *surfaces_; }  ///< that it was made of
+    ShapeSpan shapes() const { return shapes_; }                     ///< that the triangles belong to
+    std::size_t memory_bytes() const;                                ///< [B]
 
     /// The texel at a place of a triangle; none where that side neither reflects nor emits.
     std::uint32_t texel(std::uint32_t triangle, float u, float v, SurfaceSide side) const {
@@ -62,8 +67,8 @@ class SurfaceAtlas {
 
     /// Four texels of one chart and their weights, which add up to 1.
     struct Blend {
-        std::array<std::uint32_t, 4> texel;
-        std::array<float, 4> weight;
+        std::array<std::uint32_t, 4> texel;  ///< into texels(); one may occur more than once
+        std::array<float, 4> weight;         ///< of each
     };
     /// Bilinear between the middles of cells, and linear on from there to the chart's border, where weights
     /// may be negative. Nothing where that side neither reflects nor emits.

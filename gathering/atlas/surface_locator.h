@@ -8,11 +8,13 @@
 
 namespace mote::gathering {
 
+/// A place on a triangle of the list.
 struct TrianglePlace {
-    std::uint32_t triangle;
-    float u, v;  ///< barycentric, of the second and third corner
+    std::uint32_t triangle;  ///< of SurfaceTriangles
+    float u, v;              ///< barycentric, of the second and third corner
 };
 
+/// Finds triangles of a list for hits of a ray tracer.
 class SurfaceLocator {
   public:
     /// `surfaces` must outlive the locator.

@@ -6,6 +6,7 @@
 
 namespace mote::gathering {
 
+/// Shapes in the order of the scene, which SurfaceTriangles counts them in.
 using ShapeSpan = std::span<const std::shared_ptr<core::Shape>>;
 
 /// The hit at (1 - u - v) c0 + u c1 + v c2. `t` and the rounding error of a ray are not known: leave it

@@ -6,8 +6,9 @@
 namespace mote::gathering {
 
 struct SurfaceSides {
-    bool front = false, back = false;
-    int count() const { return int(front) + int(back); }
+    bool front = false;                                   ///< where the normal points
+    bool back = false;                                    ///< the other one
+    int count() const { return int(front) + int(back); }  ///< 0 to 2
 };
 
 /// A side takes part if it emits, or if its BSDF has a part that can be evaluated and reflects there.

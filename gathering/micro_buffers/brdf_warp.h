@@ -34,10 +34,10 @@ class BrdfWarp {
         integrate();
     }
 
-    std::uint32_t cells() const { return cells_; }
+    std::uint32_t cells() const { return cells_; }  ///< along each side of the table
     /// Of the table: f times the cosine over the hemisphere, the directional albedo.
     core::Rgb integral() const { return integral_; }
-    bool black() const { return !(total_ > 0.0); }
+    bool black() const { return !(total_ > 0.0); }  ///< reflects nothing: there is no warp
 
     /// From the warped square to the cosine square and back. Both grow with each coordinate. In columns and
     /// cells where nothing is reflected the first is not onto.

@@ -13,11 +13,13 @@
 
 namespace mote::gathering {
 
+/// How the square is laid over the hemisphere.
 enum class HemisphereMap : std::uint8_t {
     cosine,     ///< Nusselt's analog: every texel has the same projected solid angle, pi / n^2
     equal_area  ///< every texel has the same solid angle, 2 pi / n^2
 };
 
+/// Unit direction with z >= 0, for a place in [0, 1]^2.
 core::Vec3 square_to_hemisphere(HemisphereMap map, const core::Vec2& square);
 /// Its inverse for unit directions with z >= 0; continuous.
 core::Vec2 hemisphere_to_square(HemisphereMap map, const core::Vec3& direction);
@@ -28,9 +30,9 @@ class HemisphereTexels {
     /// above 256.
     HemisphereTexels(HemisphereMap map, std::uint32_t side, const core::Vec2& place = core::Vec2(0.5f));
 
-    HemisphereMap map() const { return map_; }
-    std::uint32_t side() const { return side_; }
-    std::uint32_t count() const { return side_ * side_; }
+    HemisphereMap map() const { return map_; }             ///< how the square is laid over them
+    std::uint32_t side() const { return side_; }           ///< n: texels along each side
+    std::uint32_t count() const { return side_ * side_; }  ///< n^2
     /// Unit, local, one a texel.
     std::span<const core::Vec3> directions() const { return directions_; }
     /// Cosine times solid angle, integrated over the texel: they sum to pi [sr]. Sum of weight times radiance

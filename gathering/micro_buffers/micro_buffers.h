@@ -23,16 +23,19 @@ struct MicroReceiver {
 
 /// What the ray of a texel meets first.
 struct MicroTexel {
-    static constexpr std::uint32_t nothing = 0xffffffffu, back_bit = 0x80000000u;
+    static constexpr std::uint32_t nothing = 0xffffffffu;   ///< value of `hit` where the ray meets nothing
+    static constexpr std::uint32_t back_bit = 0x80000000u;  ///< set in `hit` where a back is met
 
     float distance = core::infinity;  ///< [m]
     std::uint32_t hit = nothing;      ///< node of PointHierarchy::nodes(), and the side
 
-    bool empty() const { return hit == nothing; }
-    std::uint32_t node() const { return hit & ~back_bit; }
+    bool empty() const { return hit == nothing; }           ///< the ray meets nothing
+    std::uint32_t node() const { return hit & ~back_bit; }  ///< into PointHierarchy::nodes()
+    /// The back of the node is met.
     bool from_behind() const { return (hit & back_bit) != 0; }
 };
 
+/// How fine buffers are, and what may be left out.
 struct MicroBufferSettings {
     std::uint32_t side = 16;  ///< texels
     /// Each texel is cut into rays x rays parts, with a ray each: the buffer has (side rays)^2 entries, nodes
@@ -51,15 +54,16 @@ struct MicroBufferSettings {
     bool back_faces = true;
 };
 
+/// Makes the buffers of receivers over one hierarchy; has no state that changes.
 class MicroBuffers {
   public:
     /// Keeps a reference to the hierarchy. Throws InputError for a side of 0 or above 256, or a cut that is
     /// not positive.
     explicit MicroBuffers(const PointHierarchy& hierarchy, const MicroBufferSettings& settings = {});
 
-    const PointHierarchy& hierarchy() const { return hierarchy_; }
-    const HemisphereTexels& texels() const { return texels_; }
-    std::uint32_t texels_each() const { return texels_.count(); }
+    const PointHierarchy& hierarchy() const { return hierarchy_; }  ///< that it was made for
+    const HemisphereTexels& texels() const { return texels_; }      ///< their directions and weights
+    std::uint32_t texels_each() const { return texels_.count(); }   ///< of a receiver
     /// Fills texels_each() texels for every receiver, one after the other. In one thread.
     void render(std::span<const MicroReceiver> receivers, std::span<MicroTexel> texels) const;
     /// The same with a warped buffer for each receiver: warps[i] belongs to receivers[i], and its

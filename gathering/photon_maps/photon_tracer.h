@@ -14,17 +14,20 @@
 namespace mote::gathering {
 
 struct PhotonSettings {
-    lights::LightPathSettings paths;
+    lights::LightPathSettings paths;                ///< how many, and how long
     int first_on_surface = 2, first_in_medium = 2;  ///< depth of the first vertex that leaves a photon
+    /// On surfaces and in media together: more are thinned.
     std::size_t max_photons = std::size_t(1) << 23;
 };
 
+/// Photons of one set of light paths.
 struct PhotonSet {
-    std::vector<Photon> surface, volume;
-    std::uint64_t met = 0;  ///< photons before thinning
-    int halvings = 0;       ///< n
-    core::RayCounters rays;
-    core::TrackingCounters tracking;
+    std::vector<Photon> surface;      ///< on surfaces
+    std::vector<Photon> volume;       ///< in media
+    std::uint64_t met = 0;            ///< photons before thinning
+    int halvings = 0;                 ///< n
+    core::RayCounters rays;           ///< that were traced
+    core::TrackingCounters tracking;  ///< what media were asked for
 };
 
 /// Traces in parallel. (seed, pass, path index) determines every path; the order of the photons does not

@@ -8,13 +8,15 @@ namespace mote::gathering {
 
 /// How many photons an estimate looks for, and the share of their radius that it uses (progressive_radius.h).
 struct DensityEstimate {
-    std::size_t neighbours = 50;
-    float radius_share = 1.0f;
+    std::size_t neighbours = 50;  ///< k
+    float radius_share = 1.0f;    ///< of the distance of the k-th, in (0, 1]
 };
 
+/// Photons on surfaces, ordered for estimates.
 class SurfacePhotonMap {
   public:
     SurfacePhotonMap() = default;
+    /// Sorts them into a k-d tree.
     explicit SurfacePhotonMap(std::vector<Photon> photons);
 
     /// Reflected radiance at `receiver` towards its wo, from photons of depth up to `max_depth`:
@@ -26,7 +28,8 @@ class SurfacePhotonMap {
     core::Rgb radiance(const core::ScatteringVertex& receiver, const DensityEstimate& estimate, int max_depth,
                        std::vector<core::KdTree::Neighbour>& scratch) const;
 
-    std::size_t size() const { return photons_.size(); }
+    std::size_t size() const { return photons_.size(); }  ///< how many photons
+    /// [B]
     std::size_t memory_bytes() const { return photons_.capacity() * sizeof(Photon) + tree_.memory_bytes(); }
 
   private:

@@ -13,11 +13,13 @@
 
 namespace mote::gathering {
 
-/// Light scattered towards the eye along a ray, by the number of its scatterings.
+/// Light scattered towards the eye along a ray, by the number of its scatterings [W/(m^2 sr)].
 struct BeamRadiance {
-    core::Rgb single{0.0f}, multiple{0.0f};
+    core::Rgb single{0.0f};    ///< of photons of depth 1: scattered once
+    core::Rgb multiple{0.0f};  ///< of all others
 };
 
+/// Photons in media, each with the disc within which rays meet it.
 class VolumePhotonMap {
   public:
     VolumePhotonMap() = default;
@@ -32,7 +34,8 @@ class VolumePhotonMap {
     BeamRadiance radiance(const core::Ray& ray, float t_max, const core::MediumState& state, int max_depth,
                           core::WalkContext& context, std::vector<core::RayFacingDiscs::Hit>& scratch) const;
 
-    std::size_t size() const { return photons_.size(); }
+    std::size_t size() const { return photons_.size(); }  ///< how many photons
+    /// [B]
     std::size_t memory_bytes() const { return photons_.capacity() * sizeof(Photon) + discs_.memory_bytes(); }
 
   private:

@@ -24,9 +24,12 @@ struct PointNode {
     float cone_cos;  ///< cosine of the largest angle between the axis and a point's normal; -1: any direction
 };
 
+/// Where a node is in the tree.
 struct NodePlace {
-    std::uint32_t level, index;
+    std::uint32_t level;  ///< 0: leaves
+    std::uint32_t index;  ///< within the level
 
+    /// Not of leaves. The second child is the one after it, where that exists.
     NodePlace first_child() const { return {level - 1, 2 * index}; }
     /// The first node after this one and all below it. Beyond the tree's end: exists() says no.
     NodePlace skip() const {
@@ -35,14 +38,17 @@ struct NodePlace {
     }
 };
 
+/// How a hierarchy is built.
 struct HierarchySettings {
-    PointOrder order = PointOrder::median;
+    PointOrder order = PointOrder::median;             ///< in which ranges of points are nodes
     std::size_t memory_budget = std::size_t(1) << 30;  ///< [B]
 };
 
+/// The tree over a set of points.
 class PointHierarchy {
   public:
-    static constexpr std::uint32_t largest_count = 1u << 24;
+    static constexpr std::uint32_t largest_count = 1u << 24;  ///< of points
+    /// Memory of nodes and order [B].
     static constexpr std::size_t bytes_per_point = 2 * sizeof(PointNode) + sizeof(std::uint32_t);
 
     /// Throws InputError where so many points exceed 2^24 or the budget [B], naming the count that fits.
@@ -51,8 +57,9 @@ class PointHierarchy {
     /// fits. Does not refer to the points later. The same for any number of threads.
     explicit PointHierarchy(const Surfels& surfels, const HierarchySettings& settings = {});
 
+    /// How many points, which are the leaves.
     std::uint32_t points() const { return first_.size() > 1 ? first_[1] : 0; }
-    bool empty() const { return points() == 0; }
+    bool empty() const { return points() == 0; }        ///< there is no node then
     float disc_radius() const { return disc_radius_; }  ///< of each point [m]
     double patch() const { return patch_; }             ///< area that each point stands for [m^2]
     /// order()[i] is the place of leaf i among the surfels.
@@ -60,18 +67,21 @@ class PointHierarchy {
 
     /// All nodes, leaves first: node i is the disc of point order()[i] for i < points().
     std::span<const PointNode> nodes() const { return nodes_; }
-    std::uint32_t levels() const {
-        return std::uint32_t(first_.size()) - 1;
-    }                                                                         ///< 0 where there are no points
+    /// 0 where there are no points.
+    std::uint32_t levels() const { return std::uint32_t(first_.size()) - 1; }
     std::uint32_t first(std::uint32_t level) const { return first_[level]; }  ///< node index
+    /// How many nodes a level has.
     std::uint32_t count(std::uint32_t level) const { return first_[level + 1] - first_[level]; }
-    NodePlace root() const { return {levels() - 1, 0}; }
+    NodePlace root() const { return {levels() - 1, 0}; }  ///< of a tree that is not empty
+    /// Whether the tree has a node there.
     bool exists(const NodePlace& p) const { return p.level < levels() && p.index < count(p.level); }
+    /// Into nodes().
     std::uint32_t node_index(const NodePlace& p) const { return first_[p.level] + p.index; }
     /// How many points are below the node.
     std::uint32_t points_below(const NodePlace& p) const {
         return std::min(points() - (p.index << p.level), 1u << p.level);
     }
+    /// [B]
     std::size_t memory_bytes() const {
         return nodes_.capacity() * sizeof(PointNode) + order_.capacity() * sizeof(std::uint32_t);
     }

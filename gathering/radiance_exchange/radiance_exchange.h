@@ -26,12 +26,13 @@
 
 namespace mote::gathering {
 
+/// Batch by batch, or one bounce after the other.
 enum class LightTransfer : std::uint8_t { interleaved, one_bounce };
 
 struct ExchangeSettings {
-    LightTransfer transfer = LightTransfer::interleaved;
-    std::uint32_t directions = 512;  ///< in all
-    std::uint32_t batch = 16;        ///< directions after which sender and receiver are exchanged
+    LightTransfer transfer = LightTransfer::interleaved;  ///< what is sent on, and when
+    std::uint32_t directions = 512;                       ///< in all
+    std::uint32_t batch = 16;  ///< directions after which sender and receiver are exchanged
     /// Interleaved: batches whose indirect light is sent on, but not counted. After each of them indirect
     /// light is scaled so that its power balances, which is where the slowest part would converge to.
     std::uint32_t warm_up = 8;
@@ -47,9 +48,11 @@ struct ArrivingLight {
     std::vector<core::Rgb> indirect;  ///< that was reflected before
 };
 
+/// What an exchange did: added to by each.
 struct ExchangeStatistics {
-    std::uint64_t directions = 0, hits = 0;
-    std::size_t bytes = 0;  ///< of the sums
+    std::uint64_t directions = 0;  ///< that carried light
+    std::uint64_t hits = 0;        ///< of their rays with surfaces
+    std::size_t bytes = 0;         ///< of the sums
 };
 
 /// One independent estimate for each key. `direct` is what arrives besides, irradiance empty where nothing

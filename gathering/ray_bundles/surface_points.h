@@ -9,10 +9,11 @@
 namespace mote::gathering {
 
 struct SurfacePoint {
-    std::uint32_t triangle;
-    float u, v;  ///< barycentric: (1 - u - v) c0 + u c1 + v c2
+    std::uint32_t triangle;  ///< of the list that the points were drawn on
+    float u, v;              ///< barycentric: (1 - u - v) c0 + u c1 + v c2
 };
 
+/// Draws points on the surface of a list of triangles.
 class SurfacePoints {
   public:
     /// Orders the triangles along a Morton curve, so that a share of the area in this order is a patch.
@@ -25,6 +26,7 @@ class SurfacePoints {
     /// sets: all points of a set are moved together, at random. Nothing where there is no area.
     void draw(std::uint64_t set, std::uint32_t count, std::uint32_t begin, std::uint32_t end,
               std::vector<SurfacePoint>& points) const;
+    /// [B]
     std::size_t memory_bytes() const {
         return (order_.capacity() + guide_.capacity()) * sizeof(std::uint32_t) +
                below_.capacity() * sizeof(double);

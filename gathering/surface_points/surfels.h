@@ -17,12 +17,13 @@ struct Surfels {
     float radius = 0.0f;                ///< of the discs, which together hide the surface [m]
     double area = 0.0;                  ///< of the surface: each point stands for area / size() [m^2]
 
-    std::size_t size() const { return positions.size(); }
+    std::size_t size() const { return positions.size(); }                             ///< how many points
     double patch() const { return positions.empty() ? 0.0 : area / double(size()); }  ///< [m^2]
 };
 
+/// How points are chosen, and how large their discs are.
 struct SurfelSettings {
-    std::uint64_t seed = 1;
+    std::uint64_t seed = 1;  ///< determines the points, on any number of threads
     /// Candidates for each point: more make the points more even, and take as much longer.
     std::uint32_t candidates = 8;
     /// Of the discs, in units of the radius within which there is a point for every candidate: below 1 there
