@@ -20,13 +20,12 @@ session::SceneChanges changes_of(const mote_load_options& options) {
     session::SceneChanges changes;
     changes.integrator = text_or(options.integrator, "");
     changes.lenient = options.lenient != 0;
-    for (std::size_t i = 0; i < options.define_count; ++i)
-        changes.defines.emplace_back(
-            required(required(options.define_names, "define_names")[i] ? &options.define_names[i] : nullptr,
-                     "a name of define_names"),
-            required(
-                required(options.define_values, "define_values")[i] ? &options.define_values[i] : nullptr,
-                "a value of define_values"));
+    for (std::size_t i = 0; i < options.define_count; ++i) {
+        const char* name = (&required(options.define_names, "define_names"))[i];
+        const char* value = (&required(options.define_values, "define_values"))[i];
+        changes.defines.emplace_back(&required(name, "a name of define_names"),
+                                     &required(value, "a value of define_values"));
+    }
     return changes;
 }
 

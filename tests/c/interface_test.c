@@ -199,7 +199,9 @@ static void compare_layers(mote_picture* ours, mote_picture* theirs) {
 
 /* The bits of the command, also of a definition and of another integrator. */
 static void test_bits(const char* mote, const char* folder) {
-    const char *names[] = {"paths", "film.width"}, *values[] = {"32", "24"};
+    /* More of them than the first value has characters. */
+    const char* names[] = {"paths", "film.width", "film.height", "integrator.max_depth"};
+    const char* values[] = {"8", "24", "18", "3"};
     char scene_path[4096], picture_path[4096], command[16384];
     mote_scene* scene = mote_scene_new();
     mote_picture *ours = mote_picture_new(), *theirs = mote_picture_new();
@@ -209,7 +211,8 @@ static void test_bits(const char* mote, const char* folder) {
     snprintf(scene_path, sizeof scene_path, "%s/c_interface.xml", folder);
     snprintf(picture_path, sizeof picture_path, "%s/c_interface.exr", folder);
     snprintf(command, sizeof command,
-             "'%s' render '%s' -o '%s' --passes 3 --seed 7 -D paths=32 -D film.width=24 --auxiliary --quiet "
+             "'%s' render '%s' -o '%s' --passes 3 --seed 7 -D paths=8 -D film.width=24 -D film.height=18 "
+             "-D integrator.max_depth=3 --auxiliary --quiet "
              "> /dev/null",
              mote, scene_path, picture_path);
     file = fopen(scene_path, "w");
@@ -219,7 +222,7 @@ static void test_bits(const char* mote, const char* folder) {
     fclose(file);
     memset(&load, 0, sizeof load);
     load.struct_size = sizeof load, load.define_names = names, load.define_values = values,
-    load.define_count = 2;
+    load.define_count = 4;
     CHECK(mote_scene_load_file(scene, scene_path, &load) == MOTE_OK);
     options.auxiliary = 1, options.threads = 1;
     CHECK(mote_render(scene, &options, ours) == MOTE_OK && mote_picture_width(ours) == 24);
