@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 """Installs the add-on's .zip into a private Blender and lets in_blender.py render with it; then a render is cancelled.
 
-Usage: test_addon.py MOTE SOURCE
-Where there is no Blender it prints LEFT OUT and succeeds.
+Usage: test_addon.py MOTE SOURCE [BPY_PYTHON]
+Blender is the program on the path, and the module `bpy` where a Python has it: that of MOTE_BPY_PYTHON, else BPY_PYTHON
+(what tools/install_bpy.sh makes), else the one that runs this. Nothing is downloaded. Each that is there is tested;
+where there is neither it prints LEFT OUT and succeeds.
 """
 import os
 import shutil
@@ -18,17 +20,32 @@ HERE = Path(__file__).resolve().parent
 PATH = os.pathsep.join(["/usr/bin", "/bin", os.environ.get("PATH", "")])
 
 
-def start(blender, mote, folder, archive, what):
+def blenders(built):
+    """By name: the words before the script's own, for each Blender that is here."""
+    found = {}
+    blender = shutil.which("blender", path=PATH)
+    if blender:
+        found["blender"] = [blender, "-b", "--factory-startup", "--python-exit-code", "1", "--python"]
+    for python in (os.environ.get("MOTE_BPY_PYTHON"), built, sys.executable):
+        if python and shutil.which(python) and not subprocess.run(
+                [python, "-c", "import importlib.util as u, sys; sys.exit(u.find_spec('bpy') is None)"], check=False).returncode:
+            found["bpy"] = [python, "-B"]
+            break
+        if python and python == os.environ.get("MOTE_BPY_PYTHON"):
+            sys.exit(f"MOTE_BPY_PYTHON names '{python}', which has no module bpy")
+    return found
+
+
+def start(words, mote, folder, archive, what):
     environment = {**os.environ, "PATH": PATH, "MOTE_COMMAND": mote, "BLENDER_USER_SCRIPTS": str(folder / "scripts"),
-                   "BLENDER_USER_CONFIG": str(folder / "config")}
-    return subprocess.Popen([blender, "-b", "--factory-startup", "--python-exit-code", "1", "--python",
-                             str(HERE / "in_blender.py"), "--", what, str(archive), str(folder)],
+                   "BLENDER_USER_CONFIG": str(folder / "config"), "PYTHONUNBUFFERED": "1"}
+    return subprocess.Popen([*words, str(HERE / "in_blender.py"), "--", what, str(archive), str(folder)],
                             env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
 
 
-def finish(process, word, code=0):
+def finish(process, word, codes=(0,)):
     words = process.communicate(timeout=400)[0]
-    if process.returncode != code or word not in words:
+    if process.returncode not in codes or word not in words:
         sys.exit(f"Blender ended with {process.returncode}, and should have said '{word}':\n{words}")
     print("\n".join(line for line in words.splitlines() if line.startswith("checked:")))
 
@@ -40,17 +57,13 @@ def cancel(process):
             break
     process.send_signal(signal.SIGINT)
     began = time.monotonic()
-    finish(process, "checked: cancel", code=1)  # Blender ends with 1 after any Ctrl-C
+    finish(process, "checked: cancel", codes=(0, 1))  # the program ends with 1 after any Ctrl-C
     print(f"checked: cancelled within {time.monotonic() - began:.1f} s, Blender's end included")
     if time.monotonic() - began > 10:  # what the add-on waits before it ends the process by force
         sys.exit("a cancelled render went on")
 
 
-def main():
-    mote, source = sys.argv[1], Path(sys.argv[2])
-    blender = shutil.which("blender", path=PATH)
-    if blender is None:
-        return print("LEFT OUT: the Blender add-on is not tested: no 'blender' on the path")
+def test(words, mote, source):
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "scripts" / "addons").mkdir(parents=True)
@@ -59,9 +72,19 @@ def main():
         archive = folder / "mote_render.zip"
         subprocess.run([sys.executable, "-B", str(source / "plugins" / "blender" / "make_zip.py"), str(archive), str(page)],
                        check=True)
-        finish(start(blender, mote, folder, archive, "pictures"), "checked: all")
-        cancel(start(blender, mote, folder, archive, "cancel"))
-    return None
+        finish(start(words, mote, folder, archive, "pictures"), "checked: all")
+        cancel(start(words, mote, folder, archive, "cancel"))
+
+
+def main():
+    mote, source, built = sys.argv[1], Path(sys.argv[2]), sys.argv[3] if len(sys.argv) > 3 else ""
+    found = blenders(built)
+    for name, words in found.items():
+        print(f"{name}:", flush=True)
+        test(words, mote, source)
+    for name, how in (("blender", "no 'blender' on the path"), ("bpy", "no Python with the module; tools/install_bpy.sh makes one")):
+        if name not in found:
+            print(f"LEFT OUT: the Blender add-on is not tested in {name}: {how}")
 
 
 main()

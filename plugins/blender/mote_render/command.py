@@ -13,23 +13,27 @@ PATIENCE = 10.0  # seconds after SIGINT until the process is ended
 def run(arguments, progress, stopped):
     """Runs until the end, or until stopped() says so. progress(text, share). Returns (its code, its words, cancelled).
 
-    Its stderr is a terminal of its own where there is such a thing: there it tells every pass.
+    Its stderr is a terminal of its own where there is such a thing: there it tells every pass. Ctrl-C stops it too where
+    Python has it and not Blender (the module bpy): it must not leave a callback of Blender as an exception.
     """
     ours, theirs = terminal()
     with subprocess.Popen(arguments, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=theirs,
                           start_new_session=True) as process:
         os.close(theirs)
         os.set_blocking(ours, False)
-        words, asked = "", None
+        words, asked, interrupted = "", None, False
         while process.poll() is None:
-            words += read(ours)
-            tell(words, progress)
-            if asked is None and stopped():
+            try:
+                words += read(ours)
+                tell(words, progress)
+                time.sleep(0.02)
+            except KeyboardInterrupt:
+                interrupted = True
+            if asked is None and (interrupted or stopped()):
                 asked = time.monotonic()
                 process.send_signal(signal.SIGINT)
             if asked is not None and time.monotonic() - asked > PATIENCE:
                 process.kill()
-            time.sleep(0.02)
         words += read(ours)
         os.close(ours)
     return process.returncode, said(words), asked is not None

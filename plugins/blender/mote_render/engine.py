@@ -25,6 +25,8 @@ class MoteEngine(bpy.types.RenderEngine):
             self.render_in(folder, depsgraph, size)
         except (RuntimeError, ValueError, OSError) as error:
             self.fail(str(error))
+        except KeyboardInterrupt:  # the module bpy crashes when one leaves a callback
+            self.fail("interrupted")
         finally:
             if not keep:
                 shutil.rmtree(folder, ignore_errors=True)
