@@ -1,6 +1,7 @@
 #include "lights/selection/cluster_bounds.h"
 
 #include "core/math/vectorize.h"
+#include "lights/selection/cluster_cosines.h"
 #include "lights/selection/vertex_bounds.h"
 #include "lights/virtual_lights/vpl_contributions.h"
 
@@ -11,29 +12,8 @@ using namespace core;
 namespace {
 
 constexpr int width = ReceiverLanes::width;
-/// What rounding may add to a cosine, and to the product.
-constexpr float cosine_slack = 4e-6f, slack = 1.0f + 1e-4f;
-
-/// The largest cosine between any axis of a cone (cosine and sine of its half angle) and any direction whose
-/// component along the cone's axis is at most z, of a length between near and far.
-inline float largest_cosine(float z, float inv_near, float inv_far, float cos_angle, float sin_angle) {
-    const float c = min_of(z * (z > 0.0f ? inv_near : inv_far) + cosine_slack, 1.0f);
-    const float s = std::sqrt(max_of(1.0f - c * c, 0.0f));
-    const float turned = c * cos_angle + s * sin_angle;
-    return c >= cos_angle ? 1.0f : turned;
-}
-
-/// 4 pi times Henyey-Greenstein's function at most, for |g| of [low, high] and a cosine of at most c to the
-/// preferred direction. 1 + g^2 - 2 g c is least at g = c.
-inline float largest_lobe(float low, float high, float c) {
-    const float g = min_of(max_of(c, low), high);
-    const float d = max_of((1.0f - g) * (1.0f - g) + 2.0f * g * max_of(1.0f - c, 0.0f), 1e-12f);
-    return (1.0f - low * low) / (d * std::sqrt(d));
-}
-
-struct Distances {
-    bool nearest;  ///< of the nearest points of the boxes; else of their middles
-};
+/// What rounding may add to the product.
+constexpr float slack = 1.0f + 1e-4f;
 
 /// Bsdf::eval_bound() of glossy lanes, with the cone of the directions in which the group is seen.
 void apply_glossy(const LightNode& node, const ReceiverBounds& x, LaneValues& out) {

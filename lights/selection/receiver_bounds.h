@@ -31,6 +31,7 @@ struct alignas(64) ReceiverBounds {
     ReceiverBounds(const ReceiverBounds& a, const ReceiverBounds& b);
 
     float weight(int i) const { return (weight_r[i] + weight_g[i] + weight_b[i]) * (1.0f / 3.0f); }
+    core::DirectionCone cone(int i) const;
     /// Square of the longest diagonal of any lane's positions.
     float diagonal2() const;
 
@@ -39,7 +40,6 @@ struct alignas(64) ReceiverBounds {
     void set_idle(int i);
     void set_vertex(int i, const core::ScatteringVertex& vertex);
     void set_cone(int i, const core::DirectionCone& cone);
-    core::DirectionCone cone(int i) const;
     core::Rgb most(int i) const;
     void unite(int i, const ReceiverBounds& a, const ReceiverBounds& b);
 };
