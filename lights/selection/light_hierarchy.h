@@ -1,10 +1,7 @@
 // A binary hierarchy over lights: groups of lights of like place and direction, from one of all lights down
 // to single ones (Walter et al. 2005, Sec. 3.1).
 //
-// Splits follow the surface area orientation heuristic of Estevez and Kulla 2018 with the size of a group
-// that Walter et al. 2005 give (their Eq. 2), over sixteen bins along the longest side of positions and of
-// directions. Plain and glossy surfaces and media are parted before anything else. Where nothing tells lights
-// apart they are halved, so 2^20 of them in one place are 20 levels deep.
+// Groups are parted by LightPartition.
 //
 // One flat array in the order of a walk: a group of n lights has its node, then the n_l - 1 nodes of its
 // left part, then the n_r - 1 nodes of its right part. So every group knows its place, and threads build
