@@ -1,8 +1,10 @@
-// A light drawn by the hierarchy over a million virtual point lights: microseconds of one light for a tile of
-// sixteen receivers.
+// A light drawn by the tree over a million virtual point lights, for a tile of sixteen receivers and for one:
+// seconds of a light, and how often they are those of seven loads that depend on each other, three lines
+// each, from as much memory as the tree has: a tree of eight parts a group is at least seven deep.
 #include <benchmark/benchmark.h>
 
 #include "core/materials/bsdfs.h"
+#include "experiments/benchmarks/turns.h"
 #include "lights/selection/light_sampler.h"
 #include "lights/selection/vertex_bounds.h"
 
@@ -26,7 +28,7 @@ class Walls {
             vpl.shading_normal = vpl.normal, vpl.intensity = Rgb(rng.next_float());
             vpls_.lights.push_back(vpl);
         }
-        leaves_.emplace(vpls_), tree_.emplace(*leaves_);
+        tree_.emplace(lights::VplLeaves(vpls_));
         for (int t = 0; t < 64; ++t) {
             const Vec3 corner(0.95f * rng.next_float(), 0.95f * rng.next_float(), 0.0f);
             lights::ReceiverTile tile;
@@ -36,36 +38,77 @@ class Walls {
                 v.wo = {0, 0, 1}, v.bsdf = bsdf_.get(), v.hit.position = v.position;
                 tile.set(i, v, Rgb(1.0f), MediumState{}, Rng(0), 1000);
             }
-            receivers_.emplace_back(tile);
+            tiles_.push_back(tile);
         }
     }
-    const lights::LightHierarchy& tree() const { return *tree_; }
-    const lights::ReceiverBounds& receivers(std::size_t i) const { return receivers_[i % receivers_.size()]; }
+    const lights::LightTree& tree() const { return *tree_; }
+    /// The first `lanes` of a tile, made anew as a renderer does.
+    lights::ReceiverGroups receivers(std::size_t i, int lanes) const {
+        lights::ReceiverTile tile = tiles_[i % tiles_.size()];
+        for (int k = lanes; k < 16; ++k) tile.max_vpl_depth[k] = 0;
+        return {lights::ReceiverBounds(tile), *tree_};
+    }
 
   private:
     std::shared_ptr<Bsdf> bsdf_ = make_diffuse(nullptr);
     lights::VplSet vpls_;
-    std::optional<lights::VplLeaves> leaves_;
-    std::optional<lights::LightHierarchy> tree_;
-    std::vector<lights::ReceiverBounds> receivers_;
+    std::optional<lights::LightTree> tree_;
+    std::vector<lights::ReceiverTile> tiles_;
 };
 
-void light_sample(benchmark::State& state, bool cut) {
+/// Nodes of the tree's size that name each other in one random circle.
+class Chain {
+  public:
+    explicit Chain(std::size_t bytes) : nodes_(bytes / sizeof(Node)) {
+        Rng rng(3);
+        std::vector<std::uint32_t> order(nodes_.size());
+        for (std::size_t i = 0; i < order.size(); ++i) order[i] = std::uint32_t(i);
+        for (std::size_t i = order.size() - 1; i > 0; --i)
+            std::swap(order[i], order[rng.next_u32() % (i + 1)]);
+        for (std::size_t i = 0; i < order.size(); ++i) nodes_[order[i]].next = order[(i + 1) % order.size()];
+    }
+    std::uint32_t walk(std::uint32_t from, int steps) const {
+        for (int i = 0; i < steps; ++i) {
+            const Node& node = nodes_[from];
+            from = node.next + node.second + node.third;  // 0, from other lines
+        }
+        return from;
+    }
+
+  private:
+    struct alignas(64) Node {
+        std::uint32_t next = 0, padding[15]{}, second = 0, more[15]{}, third = 0;
+    };
+    std::vector<Node> nodes_;
+};
+
+void light_sample(benchmark::State& state, bool cut, int lanes) {
     static const Walls walls(1000000);
+    static const Chain chain(walls.tree().memory_bytes());
     const auto n = std::uint32_t(state.range(0));
+    constexpr int repeats = 256, depth = 7;
     lights::LightSampler sampler;
     Rng rng(2);
     std::size_t tile = 0;
-    for (auto _ : state) {
-        const auto& receivers = walls.receivers(tile++);
-        benchmark::DoNotOptimize(cut ? sampler.by_cut(walls.tree(), receivers, infinity, n, rng)
-                                     : sampler.by_tree(walls.tree(), receivers, infinity, n, rng));
-    }
-    state.counters["seconds_a_light"] = benchmark::Counter(
-        double(n) * double(state.iterations()), benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+    std::uint32_t at = 0;
+    const auto ours = [&] {
+        for (int k = 0; k < repeats; ++k) {
+            const auto receivers = walls.receivers(tile++, lanes);
+            benchmark::DoNotOptimize(cut ? sampler.by_cut(walls.tree(), receivers, infinity, n, rng)
+                                         : sampler.by_tree(walls.tree(), receivers, infinity, n, rng));
+        }
+    };
+    const auto bare = [&] { benchmark::DoNotOptimize(at = chain.walk(at, depth * repeats * int(n))); };
+    const double operations = double(n) * repeats;
+    take_turns(
+        state, no_target, operations, [&] { return seconds_of(ours); }, [&] { return seconds_of(bare); });
+    state.counters["microseconds_a_light"] = 1.0 / state.counters["ours_M_per_s"];
 }
-BENCHMARK_CAPTURE(light_sample, by_tree, false)->Arg(1)->Arg(64)->Arg(256);
-BENCHMARK_CAPTURE(light_sample, by_cut, true)->Arg(64)->Arg(256);
+#define LIGHT_SAMPLE(name, ...) \
+    BENCHMARK_CAPTURE(light_sample, name, __VA_ARGS__)->UseManualTime()->Iterations(20)
+LIGHT_SAMPLE(by_tree_for_a_tile, false, 16)->Arg(1)->Arg(16)->Arg(64)->Arg(256);
+LIGHT_SAMPLE(by_tree_for_a_receiver, false, 1)->Arg(1)->Arg(16)->Arg(64);
+LIGHT_SAMPLE(by_cut_for_a_tile, true, 16)->Arg(64)->Arg(256);
 
 }  // namespace
 }  // namespace mote::benchmarks

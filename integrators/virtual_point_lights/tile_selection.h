@@ -8,24 +8,25 @@ namespace mote::integrators {
 
 class TileSelection {
   public:
-    /// `hierarchy` null: all lights are looked at, and nothing here does anything.
+    /// `hierarchy` is what cuts need, `tree` what is drawn from. Both null: all lights are looked at, and
+    /// nothing here does anything.
     TileSelection(const SelectionSettings& settings, const lights::LightHierarchy* hierarchy,
-                  const lights::VplSet& vpls, float bound)
-        : settings_(settings), hierarchy_(hierarchy), bound_(bound) {
+                  const lights::LightTree* tree, const lights::VplSet& vpls, float bound)
+        : settings_(settings), hierarchy_(hierarchy), tree_(tree), bound_(bound) {
         if (hierarchy_ && settings.cuts()) cut_.emplace(vpls, *hierarchy_, bound, settings.cut);
     }
 
-    bool active() const { return hierarchy_ != nullptr; }
+    bool active() const { return hierarchy_ || tree_; }
     bool collects() const { return active() && settings_.collects(); }
     bool cuts() const { return cut_.has_value(); }
 
     /// Unbiased: lights for all receivers of a tile. `key` determines what is drawn.
     lights::DrawnVpls drawn(const lights::ReceiverLanes& receivers, std::uint64_t key) {
-        const lights::ReceiverBounds bounds(receivers);
+        const lights::ReceiverGroups groups(lights::ReceiverBounds(receivers), *tree_);
         core::Rng rng(core::hash_keys(key, draws));
         if (settings_.kind == SelectionSettings::Kind::stochastic)
-            return {sampler_.by_cut(*hierarchy_, bounds, bound_, settings_.samples, rng)};
-        return {sampler_.by_tree(*hierarchy_, bounds, bound_, settings_.samples, rng)};
+            return {sampler_.by_cut(*tree_, groups, bound_, settings_.samples, rng)};
+        return {sampler_.by_tree(*tree_, groups, bound_, settings_.samples, rng)};
     }
 
     /// Lightcuts at one tile.
@@ -67,6 +68,7 @@ class TileSelection {
 
     const SelectionSettings& settings_;
     const lights::LightHierarchy* hierarchy_;
+    const lights::LightTree* tree_;
     float bound_;
     lights::LightSampler sampler_;
     lights::GatherPoints points_;

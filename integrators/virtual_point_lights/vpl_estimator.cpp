@@ -159,13 +159,18 @@ class VplEstimator final : public Estimator {
     }
 
     void make_hierarchy(const lights::VplSet& vpls, const PassContext& context) {
-        hierarchy_.reset();
-        if (!settings_.selection.by_hierarchy()) return;
+        hierarchy_.reset(), tree_.reset();
+        const SelectionSettings& selection = settings_.selection;
+        if (!selection.by_hierarchy()) return;
         const auto begin = std::chrono::steady_clock::now();
         leaves_.emplace(vpls);
-        hierarchy_.emplace(*leaves_, hash_keys(options_.seed, context.index), settings_.selection.max_bytes);
+        if (selection.cuts())
+            hierarchy_.emplace(*leaves_, hash_keys(options_.seed, context.index), selection.max_bytes);
+        else
+            tree_.emplace(*leaves_, selection.max_bytes);
         hierarchy_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-        hierarchy_bytes_ = std::max(hierarchy_bytes_, hierarchy_->memory_bytes());
+        hierarchy_bytes_ =
+            std::max(hierarchy_bytes_, hierarchy_ ? hierarchy_->memory_bytes() : tree_->memory_bytes());
     }
 
     struct Box {
@@ -186,7 +191,8 @@ class VplEstimator final : public Estimator {
             EyeShadowMaps{.lights = maps_ ? maps_->of_lights() : nullptr,
                           .receivers = store,
                           .imperfect = settings_.visibility.imperfect ? &imperfect_ : nullptr},
-            EyeLightLists{&items_, lists_ ? &*lists_ : nullptr}, hierarchy_ ? &*hierarchy_ : nullptr);
+            EyeLightLists{&items_, lists_ ? &*lists_ : nullptr}, hierarchy_ ? &*hierarchy_ : nullptr,
+            tree_ ? &*tree_ : nullptr);
         render(*tile);
         counters_.add(walk.rays, walk.tracking);
         const std::lock_guard lock(cost_mutex_);
@@ -323,7 +329,9 @@ class VplEstimator final : public Estimator {
     int tile_size_;
     SurfaceItems items_;
     std::optional<lights::VplLeaves> leaves_;
-    std::optional<lights::LightHierarchy> hierarchy_;  ///< of this pass; nothing: all lights are looked at
+    // Of this pass; neither: all lights are looked at.
+    std::optional<lights::LightHierarchy> hierarchy_;  ///< for cuts
+    std::optional<lights::LightTree> tree_;            ///< to draw from
     double hierarchy_seconds_ = 0.0;
     std::size_t hierarchy_bytes_ = 0;
     lights::LightcutCounters cuts_;

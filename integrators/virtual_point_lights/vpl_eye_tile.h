@@ -32,7 +32,7 @@ class EyeTile {
     EyeTile(const core::Scene& scene, const VplSettings& settings, float bound, const lights::VplSet& vpls,
             const compensation::ResidualTransport* transport, lights::GatherScratch& scratch,
             core::WalkContext& walk, const EyeShadowMaps& maps = {}, const EyeLightLists& lists = {},
-            const lights::LightHierarchy* hierarchy = nullptr)
+            const lights::LightHierarchy* hierarchy = nullptr, const lights::LightTree* tree = nullptr)
         : scene_(scene),
           settings_(settings),
           bound_(bound),
@@ -41,7 +41,7 @@ class EyeTile {
           walk_(walk),
           maps_(maps),
           lists_(lists),
-          selection_(settings.selection, hierarchy, vpls, bound),
+          selection_(settings.selection, hierarchy, tree, vpls, bound),
           compensation_(scene, settings.compensation, transport, vpls, scratch, walk) {}
 
     void start(int lane, const EyeRay& eye) {

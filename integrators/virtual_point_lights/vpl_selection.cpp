@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/objects/properties.h"
+#include "lights/selection/light_tree.h"
 
 namespace mote::integrators {
 
@@ -90,10 +91,11 @@ void plan_selection(Plan& plan, const SelectionSettings& s, const GatherSize& si
                                 : "exact, time grows with the number of VPLs");
     const auto [best, why] = recommended(size);
     plan.run("selection for this scene", best, why);
-    if (s.by_hierarchy())
-        plan.run("memory of the light hierarchy",
-                 fmt::format("{:.1f} MB", size.vpls * double(lights::LightHierarchy::bytes_a_light) * 1e-6),
-                 "72 bytes a VPL, besides its own");
+    if (!s.by_hierarchy()) return;
+    const std::size_t bytes =
+        s.cuts() ? lights::LightHierarchy::bytes_a_light : lights::LightTree::bytes_a_light;
+    plan.run("memory of the light hierarchy", fmt::format("{:.1f} MB", size.vpls * double(bytes) * 1e-6),
+             fmt::format("at most {} bytes a VPL, besides its own", bytes));
 }
 
 void register_selection(Registry& registry) {

@@ -8,7 +8,8 @@
 using namespace mote;
 using namespace mote::core;
 using namespace mote::tests;
-using lights::LightHierarchy, lights::ReceiverBounds, lights::VplLeaves, lights::WeightedVpl;
+using lights::LightHierarchy, lights::LightTree, lights::ReceiverBounds, lights::ReceiverGroups;
+using lights::VplLeaves, lights::WeightedVpl;
 
 namespace {
 
@@ -36,9 +37,10 @@ struct Floor {
 };
 
 /// Of all lights: their sum.
-double check_probabilities(const LightHierarchy& tree, const ReceiverBounds& receivers, float bound) {
+double check_probabilities(const LightTree& tree, const Floor& floor, float bound) {
     double sum = 0.0;
-    for (const double p : lights::probabilities(tree, tree.root(), receivers, bound)) {
+    const ReceiverGroups receivers(ReceiverBounds(floor.tile), tree);
+    for (const double p : lights::probabilities(tree, receivers, bound, tree.size())) {
         if (!(p >= 0.0 && p <= 1.0)) FAIL_CHECK(p << " is no probability");
         sum += p;
     }
@@ -77,12 +79,10 @@ TEST_CASE("Probabilities of all lights add up to 1, in any scale", "[light_selec
         Floor floor(Vec3(0.1f, 0.0f, -0.7f), 0.05f);
         const auto probabilities_of = [&](const lights::VplSet& vpls, const Floor& x) {
             const VplLeaves leaves(vpls);
-            const LightHierarchy tree(leaves);
+            const LightTree tree(leaves);
             REQUIRE(tree.size() == 400);
-            std::vector<double> by_light(400);
-            const auto p = lights::probabilities(tree, tree.root(), ReceiverBounds(x.tile), infinity);
-            for (std::uint32_t i = 0; i < 400; ++i) by_light[tree.light_at(i)] = p[i];
-            return by_light;
+            const ReceiverGroups receivers(ReceiverBounds(x.tile), tree);
+            return lights::probabilities(tree, receivers, infinity, 400);
         };
         const auto p = probabilities_of(set, floor);
         for (const float scale : {1000.0f, 0.001f}) {
@@ -104,14 +104,14 @@ TEST_CASE("Lights at distances 2^-i, and a million in one place", "[light_select
         powers.lights.push_back(light_at({std::ldexp(1.0f, -i), 0.0f, 1.0f}, {0, 0, -1}));
     many.lights.assign(std::size_t(1) << 20, light_at({0.3f, 0.2f, 1.0f}));
     const Floor floor(Vec3(0.0f), 1e-3f);
-    const ReceiverBounds receivers(floor.tile);
     lights::LightSampler sampler;
     Rng rng(1);
     for (const lights::VplSet* set : {&powers, &many}) {
         const VplLeaves leaves(*set);
-        const LightHierarchy tree(leaves);
+        const LightTree tree(leaves);
+        const ReceiverGroups receivers(ReceiverBounds(floor.tile), tree);
         CHECK(tree.size() == set->lights.size());
-        CHECK(check_probabilities(tree, receivers, infinity) == Approx(1.0).epsilon(1e-9));
+        CHECK(check_probabilities(tree, floor, infinity) == Approx(1.0).epsilon(1e-9));
         double all = 0.0;
         if (set == &many)
             for (const double v : sent(*set, 0, floor.tile, infinity)) all += v * double(set->lights.size());
@@ -129,36 +129,36 @@ TEST_CASE("Lights at distances 2^-i, and a million in one place", "[light_select
     lights::VplSet deep;
     for (int i = 0; i < 120; ++i) deep.lights.push_back(light_at({0.0f, 0.0f, std::ldexp(1.0f, -i)}));
     const VplLeaves leaves(deep);
-    const LightHierarchy tree(leaves);
+    const LightTree tree(leaves);
     const Floor below(Vec3(0.0f, 0.0f, -1.0f), 1e-6f);
-    CHECK(check_probabilities(tree, ReceiverBounds(below.tile), infinity) == Approx(1.0).epsilon(1e-9));
+    CHECK(check_probabilities(tree, below, infinity) == Approx(1.0).epsilon(1e-9));
     const Floor on_them(Vec3(0.0f), 0.0f);
-    CHECK(check_probabilities(tree, ReceiverBounds(on_them.tile), infinity) == Approx(1.0).epsilon(1e-9));
+    CHECK(check_probabilities(tree, on_them, infinity) == Approx(1.0).epsilon(1e-9));
 }
 
 TEST_CASE("Lights drawn by the tree and by a cut have the mean of all",
           "[light_selection][sampling][statistics]") {
     constexpr double critical = 3.3;  // two-sided, 0.1 %: of twenty tests one in fifty fails for no reason
     const Materials& materials = all_materials();
-    Rng rng(4);
+    Rng rng(4), draws(5);
     lights::LightSampler sampler;
     for (const Lights kind : {Lights::plain, Lights::glossy, Lights::isotropic, Lights::lobes, Lights::all}) {
         const auto set = random_lights(rng, materials, kind, 500, 1.0f, 0.5f);
         const VplLeaves leaves(set);
-        const LightHierarchy tree(leaves);
+        const LightTree tree(leaves);
         const Floor floor(Vec3(0.5f, -1.0f, -1.5f), 0.1f);
-        const ReceiverBounds receivers(floor.tile);
+        const ReceiverGroups receivers(ReceiverBounds(floor.tile), tree);
         double all = 0.0;
         for (std::size_t j = 0; j < set.lights.size(); ++j)
             for (const double v : sent(set, j, floor.tile, infinity)) all += v;
         REQUIRE(all > 0.0);
         for (const bool cut : {false, true}) {
             const auto draw = [&] {
-                const auto drawn = cut ? sampler.by_cut(tree, receivers, infinity, 64, rng)
-                                       : sampler.by_tree(tree, receivers, infinity, 64, rng);
+                const auto drawn = cut ? sampler.by_cut(tree, receivers, infinity, 64, draws)
+                                       : sampler.by_tree(tree, receivers, infinity, 64, draws);
                 return light_of(set, drawn, floor.tile);
             };
-            const Mean found = mean_of(1500, draw);
+            const Mean found = mean_of(6000, draw);
             INFO("kind " << int(kind) << ", cut " << cut << ": " << found.mean << " +- " << found.error
                          << " of " << all);
             CHECK(std::fabs(found.mean - all) < critical * found.error);
@@ -179,9 +179,9 @@ TEST_CASE("More lights, less noise", "[light_selection][sampling][statistics]") 
     lights::LightSampler sampler;
     const auto set = random_lights(rng, materials, Lights::plain, 5000, 2.0f, 3.0f);
     const VplLeaves leaves(set);
-    const LightHierarchy tree(leaves);
+    const LightTree tree(leaves);
     const Floor floor(Vec3(0.5f, -1.0f, -1.5f), 0.1f);
-    const ReceiverBounds receivers(floor.tile);
+    const ReceiverGroups receivers(ReceiverBounds(floor.tile), tree);
     for (const bool cut : {false, true}) {
         const auto error = [&](std::uint32_t n) {
             return mean_of(1000,
@@ -257,38 +257,45 @@ TEST_CASE("Representatives are drawn in proportion to their energy", "[light_sel
 
 TEST_CASE("No lights, one light, dark ones, and more than memory holds", "[light_selection][extremes]") {
     const Floor floor(Vec3(0.0f), 0.1f);
-    const ReceiverBounds receivers(floor.tile);
+    const auto receivers = [&](const LightTree& tree) {
+        return ReceiverGroups(ReceiverBounds(floor.tile), tree);
+    };
     lights::LightSampler sampler;
     Rng rng(1);
     lights::VplSet set;
     const VplLeaves leaves(set);
     CHECK(LightHierarchy(leaves).empty());
-    CHECK(sampler.by_tree(LightHierarchy(leaves), receivers, 1.0f, 4, rng).empty());
-    CHECK(sampler.by_cut(LightHierarchy(leaves), receivers, 1.0f, 4, rng).empty());
+    const LightTree none(leaves);
+    CHECK(none.empty());
+    CHECK(sampler.by_tree(none, receivers(none), 1.0f, 4, rng).empty());
+    CHECK(sampler.by_cut(none, receivers(none), 1.0f, 4, rng).empty());
 
     set.lights.push_back(light_at({0.0f, 0.0f, 1.0f}));
-    const LightHierarchy one(leaves);
+    const LightTree one(leaves);
     REQUIRE(one.size() == 1);
-    const auto drawn = sampler.by_tree(one, receivers, 1.0f, 4, rng);
+    const auto drawn = sampler.by_tree(one, receivers(one), 1.0f, 4, rng);
     REQUIRE(drawn.size() == 1);
     CHECK(drawn[0].weight == 1.0f);
-    CHECK(sampler.by_cut(one, receivers, 1.0f, 4, rng).size() == 1);
+    CHECK(sampler.by_cut(one, receivers(one), 1.0f, 4, rng).size() == 1);
 
     set.lights.assign(100, light_at({0.0f, 0.0f, 1.0f}));
     for (auto& vpl : set.lights) vpl.intensity = Rgb(0.0f);
     CHECK(LightHierarchy(leaves).empty());
     set.lights[70].intensity = Rgb(1e-30f);
     CHECK(LightHierarchy(leaves).size() == 1);
+    CHECK(LightTree(leaves).size() == 1);
     set.lights[70].intensity = Rgb(infinity);
     CHECK_THROWS_AS(LightHierarchy(leaves), InputError);
+    CHECK_THROWS_AS(LightTree(leaves), InputError);
     set.lights[70].intensity = Rgb(-1.0f);
     CHECK_THROWS_AS(LightHierarchy(leaves), InputError);
+    CHECK_THROWS_AS(LightTree(leaves), InputError);
 
     // A receiver on a light: finite weights.
     set.lights[70] = light_at(floor.tile.position(3));
     set.lights[71] = light_at({0.0f, 0.0f, 1.0f});
-    const LightHierarchy two(leaves);
-    for (const WeightedVpl& light : sampler.by_tree(two, receivers, infinity, 64, rng))
+    const LightTree two(leaves);
+    for (const WeightedVpl& light : sampler.by_tree(two, receivers(two), infinity, 64, rng))
         CHECK(std::isfinite(light.weight));
 
     /// 2^24 lights that are never made: asked for nothing but their number.
@@ -297,4 +304,5 @@ TEST_CASE("No lights, one light, dark ones, and more than memory holds", "[light
         lights::LightNode leaf(std::uint32_t) const override { return {}; }
     };
     CHECK_THROWS_AS(LightHierarchy(Many(), 0, std::size_t(1) << 30), InputError);
+    CHECK_THROWS_AS(LightTree(Many(), std::size_t(900) << 20), InputError);
 }

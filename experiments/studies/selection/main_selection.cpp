@@ -85,6 +85,9 @@ class Study {
         begin = now(CLOCK_PROCESS_CPUTIME_ID);
         hierarchy_.emplace(*leaves_, 1);
         building = now(CLOCK_PROCESS_CPUTIME_ID) - begin;
+        begin = now(CLOCK_PROCESS_CPUTIME_ID);
+        tree_.emplace(*leaves_);
+        planting = now(CLOCK_PROCESS_CPUTIME_ID) - begin;
         core::Rng rng(17);
         for (std::uint32_t t = 0; t < a.tiles; ++t) {
             const int x = int(rng.next_u32() % std::uint32_t(a.width / 4));
@@ -94,8 +97,8 @@ class Study {
 
     std::size_t tiles() const { return tiles_.size(); }
     std::size_t lights() const { return hierarchy_->size(); }
-    double bytes_a_light() const {
-        return double(vpls_.memory_bytes() + hierarchy_->memory_bytes()) /
+    double bytes_a_light(bool drawn) const {
+        return double(vpls_.memory_bytes() + (drawn ? tree_->memory_bytes() : hierarchy_->memory_bytes())) /
                double(std::max<std::size_t>(vpls_.lights.size(), 1));
     }
     /// `seconds`: of gathering alone, without eye paths and direct light, which are the same for all.
@@ -104,7 +107,7 @@ class Study {
         settings.selection = selection;
         core::WalkContext walk;
         EyeTile<true> eye(*scene_, settings, arguments_.bound, vpls_, nullptr, *scratch_, walk, {}, {},
-                          &*hierarchy_);
+                          &*hierarchy_, &*tree_);
         const std::atomic<bool> cancelled = false;
         const core::PassContext pass{0, *filter_, cancelled};
         for (int lane = 0; lane < 16; ++lane)
@@ -124,7 +127,7 @@ class Study {
         return light;
     }
 
-    double tracing = 0.0, building = 0.0, rays = 0.0;
+    double tracing = 0.0, building = 0.0, planting = 0.0, rays = 0.0;
     lights::LightcutCounters cuts;
 
   private:
@@ -135,6 +138,7 @@ class Study {
     lights::VplSet vpls_;
     std::optional<lights::VplLeaves> leaves_;
     std::optional<lights::LightHierarchy> hierarchy_;
+    std::optional<lights::LightTree> tree_;
     std::unique_ptr<core::PixelFilter> filter_ = core::make_pixel_filter("box", 0.5f, 0.5f);
     std::unique_ptr<lights::GatherScratch> scratch_ = std::make_unique<lights::GatherScratch>();
     std::vector<glm::ivec2> tiles_;
@@ -226,8 +230,10 @@ int main(int argc, char** argv) {
     CLI11_PARSE(app, argc, argv);
     Study study(a);
     std::cerr << fmt::format(
-        "{} lights, {:.1f} bytes a light; traced in {:.2f} s, hierarchy in {:.2f} s of the processor\n",
-        study.lights(), study.bytes_a_light(), study.tracing, study.building);
+        "{} lights, {:.1f} bytes a light with the hierarchy, {:.1f} with the tree; traced in {:.2f} s, "
+        "hierarchy in {:.2f} s, tree in {:.2f} s of the processor\n",
+        study.lights(), study.bytes_a_light(false), study.bytes_a_light(true), study.tracing, study.building,
+        study.planting);
     std::vector<Reference> references;
     double begin = now(CLOCK_THREAD_CPUTIME_ID);
     for (std::size_t t = 0; t < study.tiles(); ++t) references.push_back(reference_of(study, t, a));

@@ -1,0 +1,221 @@
+#include "lights/selection/light_tree.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <array>
+
+#include "core/math/vectorize.h"
+#include "core/objects/error.h"
+
+namespace mote::lights {
+
+using namespace core;
+
+namespace {
+
+constexpr std::uint32_t side_by_side_from = 4096;  // lights
+/// Groups of fewer lights are parted into multiples of eight, so that the last nodes are full.
+constexpr std::uint32_t whole_below = 512;
+
+std::uint8_t to_byte(float x) { return std::uint8_t(std::clamp(x, 0.0f, 255.0f)); }
+
+Vec3 decode_axis(std::uint8_t u, std::uint8_t v) {
+    return octahedral_unproject({(float(u) - 127.0f) / 127.0f, (float(v) - 127.0f) / 127.0f});
+}
+
+/// A cone that holds another, from few bits.
+void set_cone(LightTreeNode& node, int i, const LightNode& part) {
+    const Vec3 axis = part.axis();
+    const Vec2 p = octahedral_project(axis);
+    node.axis_u[i] = to_byte(std::round(127.0f * p.x) + 127.0f);
+    node.axis_v[i] = to_byte(std::round(127.0f * p.y) + 127.0f);
+    const Vec3 coded = decode_axis(node.axis_u[i], node.axis_v[i]);
+    const float moved = std::atan2(glm::length(glm::cross(axis, coded)), glm::dot(axis, coded));
+    const float angle = std::min(part.cone().angle + moved + (moved > 1e-4f ? 1e-5f : 0.0f), pi);
+    node.half_sine[i] = to_byte(std::ceil(255.0f * std::sin(0.5f * angle) - 2e-3f));
+}
+
+void set_part(LightTreeNode& node, int i, const LightNode& part, float group_weight) {
+    for (int k = 0; k < 3; ++k) {
+        const float per_step = node.step[k] > 0.0f ? 1.0f / node.step[k] : 0.0f;
+        float low = std::floor((part.lower[k] - node.lower[k]) * per_step);
+        float high = std::ceil((part.upper[k] - node.lower[k]) * per_step);
+        while (low > 0.0f && node.lower[k] + low * node.step[k] > part.lower[k]) low -= 1.0f;
+        while (high < 255.0f && node.lower[k] + high * node.step[k] < part.upper[k]) high += 1.0f;
+        node.low[k][i] = to_byte(low), node.high[k][i] = to_byte(high);
+    }
+    node.share[i] = std::max(part.weight() / group_weight, 1e-30f);
+    set_cone(node, i, part);
+    node.least_depth[i] = std::uint8_t(std::min<int>(part.least_depth, 255));
+    if (part.kind == LightKind::surface || part.kind == LightKind::glossy)
+        node.has_cosine = std::uint8_t(node.has_cosine | 1 << i);
+    if (part.kind != LightKind::volume || part.g_high == 0) return;
+    node.any_lobe = 1;
+    node.g_low[i] = to_byte(std::floor(float(part.g_low) / 257.0f));
+    node.g_high[i] = std::uint8_t(std::max(int(to_byte(std::ceil(float(part.g_high) / 257.0f))), 1));
+}
+
+/// Of the groups of a node: lights [first, first + count).
+struct LightRange {
+    std::uint32_t first, count;
+};
+
+}  // namespace
+
+class LightTree::Builder {
+  public:
+    Builder(const LightLeaves& leaves, LightPartition& partition, std::vector<LightTreeNode>& nodes)
+        : leaves_(leaves), partition_(partition), nodes_(nodes) {}
+
+    std::uint32_t build() {
+        std::uint32_t root = 0;
+        build({0, partition_.size()}, root);
+        return root;
+    }
+
+  private:
+    /// Large groups are parted side by side, each small one by one thread into nodes of its own.
+    LightNode build(const LightRange& group, std::uint32_t& index) {
+        if (group.count < side_by_side_from) {
+            std::vector<LightTreeNode> own;
+            const LightNode all = build_small(group, own);
+            const std::lock_guard lock(mutex_);
+            const auto base = std::uint32_t(nodes_.size());
+            for (LightTreeNode& node : own)
+                for (int i = 0; i < node.count; ++i)
+                    if (!node.leaf(i)) node.child[i] += base;
+            index = base;
+            nodes_.insert(nodes_.end(), own.begin(), own.end());
+            return all;
+        }
+        std::array<LightRange, most_parts> groups;
+        const int count = part(group, groups);
+        std::array<LightNode, most_parts> parts;
+        std::array<std::uint32_t, most_parts> children{};
+        tbb::parallel_for(0, count, [&](int i) {
+            const auto k = std::size_t(i);
+            parts[k] = groups[k].count == 1 ? leaf(groups[k], children[k]) : build(groups[k], children[k]);
+        });
+        LightNode all;
+        const LightTreeNode node = join(groups, parts, children, count, all);
+        const std::lock_guard lock(mutex_);
+        index = std::uint32_t(nodes_.size());
+        nodes_.push_back(node);
+        return all;
+    }
+
+    /// The node of the group comes first.
+    LightNode build_small(const LightRange& group, std::vector<LightTreeNode>& nodes) {
+        const std::size_t own = nodes.size();
+        nodes.emplace_back();
+        std::array<LightRange, most_parts> groups;
+        const int count = part(group, groups);
+        std::array<LightNode, most_parts> parts;
+        std::array<std::uint32_t, most_parts> children{};
+        for (std::size_t i = 0; i < std::size_t(count); ++i) {
+            if (groups[i].count == 1) {
+                parts[i] = leaf(groups[i], children[i]);
+            } else {
+                children[i] = std::uint32_t(nodes.size());
+                parts[i] = build_small(groups[i], nodes);
+            }
+        }
+        LightNode all;
+        nodes[own] = join(groups, parts, children, count, all);
+        return all;
+    }
+
+    LightNode leaf(const LightRange& group, std::uint32_t& light) const {
+        light = partition_.item(group.first).light;
+        return leaves_.leaf(light);
+    }
+
+    /// The largest groups first, until there are eight or all are small enough for a node of their own. What
+    /// was parted last are neighbours.
+    int part(const LightRange& group, std::array<LightRange, most_parts>& groups) {
+        groups[0] = group;
+        int count = 1;
+        if (group.count <= most_parts) {
+            for (; count < int(group.count); ++count)
+                groups[std::size_t(count)] = {group.first + std::uint32_t(count), 1};
+            groups[0].count = 1;
+            return count;
+        }
+        while (count < most_parts) {
+            LightRange& most =
+                *std::max_element(groups.begin(), groups.begin() + count,
+                                  [](const LightRange& a, const LightRange& b) { return a.count < b.count; });
+            if (most.count <= most_parts) break;
+            const std::uint32_t n =
+                partition_.split(most.first, most.count, most.count < whole_below ? most_parts : 1);
+            const LightRange right{most.first + n, most.count - n};
+            most.count = n;
+            std::move_backward(&most + 1, groups.data() + count, groups.data() + count + 1);
+            (&most)[1] = right, ++count;
+        }
+        return count;
+    }
+
+    static LightTreeNode join(const std::array<LightRange, most_parts>& groups,
+                              const std::array<LightNode, most_parts>& parts,
+                              const std::array<std::uint32_t, most_parts>& children, int count,
+                              LightNode& all) {
+        all = parts[0];
+        for (int i = 1; i < count; ++i) all = united(all, parts[std::size_t(i)]);
+        LightTreeNode node{};
+        node.count = std::uint8_t(count);
+        node.lower = all.lower, node.step = (all.upper - all.lower) * (1.00001f / 255.0f);
+        for (int i = 0; i < count; ++i) {
+            node.child[i] = children[std::size_t(i)];
+            if (groups[std::size_t(i)].count == 1) node.is_light = std::uint8_t(node.is_light | 1 << i);
+            set_part(node, i, parts[std::size_t(i)], all.weight());
+        }
+        return node;
+    }
+
+    const LightLeaves& leaves_;
+    LightPartition& partition_;
+    std::vector<LightTreeNode>& nodes_;
+    std::mutex mutex_;
+};
+
+LightTree::LightTree(const LightLeaves& leaves, std::size_t max_bytes) {
+    const std::size_t needed = leaves.size() * (bytes_a_light + building_bytes_a_light);
+    if (leaves.size() > (std::size_t(1) << 31) || needed > max_bytes)
+        throw InputError(
+            fmt::format("a tree over {} lights takes {:.3g} MB while it is built, and may take {:.3g} MB",
+                        leaves.size(), double(needed) * 1e-6, double(max_bytes) * 1e-6));
+    LightPartition partition(leaves);
+    size_ = partition.size();
+    if (size_ == 0) return;
+    nodes_.reserve(size_ * bytes_a_light / sizeof(LightTreeNode) +
+                   most_parts);  // untouched pages cost nothing
+    root_ = Builder(leaves, partition, nodes_).build();
+}
+
+LightParts::LightParts(const LightTreeNode& n) : any_lobe(n.any_lobe != 0) {
+    MOTE_INDEPENDENT_LANES
+    for (int i = 0; i < most_parts; ++i) {
+        lower_x[i] = n.lower.x + float(n.low[0][i]) * n.step.x;
+        lower_y[i] = n.lower.y + float(n.low[1][i]) * n.step.y;
+        lower_z[i] = n.lower.z + float(n.low[2][i]) * n.step.z;
+        upper_x[i] = n.lower.x + float(n.high[0][i]) * n.step.x;
+        upper_y[i] = n.lower.y + float(n.high[1][i]) * n.step.y;
+        upper_z[i] = n.lower.z + float(n.high[2][i]) * n.step.z;
+        // core::octahedral_unproject()
+        const float u = (float(n.axis_u[i]) - 127.0f) * (1.0f / 127.0f);
+        const float v = (float(n.axis_v[i]) - 127.0f) * (1.0f / 127.0f);
+        const float z = 1.0f - std::fabs(u) - std::fabs(v), below = max_of(-z, 0.0f);
+        const float x = u + (u >= 0.0f ? -below : below), y = v + (v >= 0.0f ? -below : below);
+        const float scale = 1.0f / std::sqrt(x * x + y * y + z * z);
+        axis_x[i] = x * scale, axis_y[i] = y * scale, axis_z[i] = z * scale;
+        const float h = float(n.half_sine[i]) * (1.0f / 255.0f), c = 1.0f - 2.0f * h * h;
+        cos_angle[i] = c, sin_angle[i] = std::sqrt(max_of(1.0f - c * c, 0.0f));
+        has_cosine[i] = float(n.has_cosine >> i & 1);
+        share[i] = n.share[i], least_depth[i] = float(n.least_depth[i]);
+        g_low[i] = float(n.g_low[i]) * (1.0f / 255.0f), g_high[i] = float(n.g_high[i]) * (1.0f / 255.0f);
+    }
+}
+
+}  // namespace mote::lights
