@@ -38,22 +38,22 @@ class Walls {
                 v.wo = {0, 0, 1}, v.bsdf = bsdf_.get(), v.hit.position = v.position;
                 tile.set(i, v, Rgb(1.0f), MediumState{}, Rng(0), 1000);
             }
-            tiles_.push_back(tile);
+            tiles_.emplace_back(tile);
+            for (int i = 1; i < 16; ++i) tile.max_vpl_depth[i] = 0;
+            single_.emplace_back(tile);
         }
     }
     const lights::LightTree& tree() const { return *tree_; }
-    /// The first `lanes` of a tile, made anew as a renderer does.
-    lights::ReceiverGroups receivers(std::size_t i, int lanes) const {
-        lights::ReceiverTile tile = tiles_[i % tiles_.size()];
-        for (int k = lanes; k < 16; ++k) tile.max_vpl_depth[k] = 0;
-        return {lights::ReceiverBounds(tile), *tree_};
+    /// All receivers of a tile, or the first.
+    const lights::ReceiverBounds& receivers(std::size_t i, bool one) const {
+        return one ? single_[i % single_.size()] : tiles_[i % tiles_.size()];
     }
 
   private:
     std::shared_ptr<Bsdf> bsdf_ = make_diffuse(nullptr);
     lights::VplSet vpls_;
     std::optional<lights::LightTree> tree_;
-    std::vector<lights::ReceiverTile> tiles_;
+    std::vector<lights::ReceiverBounds> tiles_, single_;
 };
 
 /// Nodes of the tree's size that name each other in one random circle.
@@ -82,7 +82,7 @@ class Chain {
     std::vector<Node> nodes_;
 };
 
-void light_sample(benchmark::State& state, bool cut, int lanes) {
+void light_sample(benchmark::State& state, bool cut, bool one) {
     static const Walls walls(1000000);
     static const Chain chain(walls.tree().memory_bytes());
     const auto n = std::uint32_t(state.range(0));
@@ -93,7 +93,7 @@ void light_sample(benchmark::State& state, bool cut, int lanes) {
     std::uint32_t at = 0;
     const auto ours = [&] {
         for (int k = 0; k < repeats; ++k) {
-            const auto receivers = walls.receivers(tile++, lanes);
+            const lights::ReceiverGroups receivers(walls.receivers(tile++, one), walls.tree());
             benchmark::DoNotOptimize(cut ? sampler.by_cut(walls.tree(), receivers, infinity, n, rng)
                                          : sampler.by_tree(walls.tree(), receivers, infinity, n, rng));
         }
@@ -106,9 +106,9 @@ void light_sample(benchmark::State& state, bool cut, int lanes) {
 }
 #define LIGHT_SAMPLE(name, ...) \
     BENCHMARK_CAPTURE(light_sample, name, __VA_ARGS__)->UseManualTime()->Iterations(20)
-LIGHT_SAMPLE(by_tree_for_a_tile, false, 16)->Arg(1)->Arg(16)->Arg(64)->Arg(256);
-LIGHT_SAMPLE(by_tree_for_a_receiver, false, 1)->Arg(1)->Arg(16)->Arg(64);
-LIGHT_SAMPLE(by_cut_for_a_tile, true, 16)->Arg(64)->Arg(256);
+LIGHT_SAMPLE(by_tree_for_a_tile, false, false)->Arg(1)->Arg(16)->Arg(64)->Arg(256);
+LIGHT_SAMPLE(by_tree_for_a_receiver, false, true)->Arg(1)->Arg(16)->Arg(64);
+LIGHT_SAMPLE(by_cut_for_a_tile, true, false)->Arg(64)->Arg(256);
 
 }  // namespace
 }  // namespace mote::benchmarks

@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <array>
+#include <cstring>
 
 #include "core/math/vectorize.h"
 #include "core/objects/error.h"
@@ -194,28 +195,43 @@ LightTree::LightTree(const LightLeaves& leaves, std::size_t max_bytes) {
     root_ = Builder(leaves, partition, nodes_).build();
 }
 
+namespace {
+
+/// A vector of bytes as floats. Loops of one kind of conversion are what compilers make vectors of.
+inline void to_floats(const std::uint8_t* bytes, float* floats) {
+    std::uint8_t in[most_parts];
+    std::memcpy(in, bytes, most_parts);
+    for (int i = 0; i < most_parts; ++i) floats[i] = float(in[i]);
+}
+
+}  // namespace
+
 LightParts::LightParts(const LightTreeNode& n) : any_lobe(n.any_lobe != 0) {
+    alignas(32) float low[3][most_parts], high[3][most_parts], u[most_parts], v[most_parts], h[most_parts];
+    for (int k = 0; k < 3; ++k) to_floats(n.low[k], low[k]), to_floats(n.high[k], high[k]);
+    to_floats(n.axis_u, u), to_floats(n.axis_v, v), to_floats(n.half_sine, h);
+    to_floats(n.least_depth, least_depth);
+    const Vec3 lower = n.lower, step = n.step;
+    const std::int32_t cosines = n.has_cosine;
+    for (int i = 0; i < most_parts; ++i) has_cosine[i] = float(cosines >> i & 1);
+    for (int i = 0; i < most_parts; ++i) share[i] = n.share[i];
     MOTE_INDEPENDENT_LANES
     for (int i = 0; i < most_parts; ++i) {
-        lower_x[i] = n.lower.x + float(n.low[0][i]) * n.step.x;
-        lower_y[i] = n.lower.y + float(n.low[1][i]) * n.step.y;
-        lower_z[i] = n.lower.z + float(n.low[2][i]) * n.step.z;
-        upper_x[i] = n.lower.x + float(n.high[0][i]) * n.step.x;
-        upper_y[i] = n.lower.y + float(n.high[1][i]) * n.step.y;
-        upper_z[i] = n.lower.z + float(n.high[2][i]) * n.step.z;
+        lower_x[i] = lower.x + low[0][i] * step.x, upper_x[i] = lower.x + high[0][i] * step.x;
+        lower_y[i] = lower.y + low[1][i] * step.y, upper_y[i] = lower.y + high[1][i] * step.y;
+        lower_z[i] = lower.z + low[2][i] * step.z, upper_z[i] = lower.z + high[2][i] * step.z;
         // core::octahedral_unproject()
-        const float u = (float(n.axis_u[i]) - 127.0f) * (1.0f / 127.0f);
-        const float v = (float(n.axis_v[i]) - 127.0f) * (1.0f / 127.0f);
-        const float z = 1.0f - std::fabs(u) - std::fabs(v), below = max_of(-z, 0.0f);
-        const float x = u + (u >= 0.0f ? -below : below), y = v + (v >= 0.0f ? -below : below);
+        const float a = (u[i] - 127.0f) * (1.0f / 127.0f), b = (v[i] - 127.0f) * (1.0f / 127.0f);
+        const float z = 1.0f - std::fabs(a) - std::fabs(b), below = max_of(-z, 0.0f);
+        const float x = a - std::copysign(below, a), y = b - std::copysign(below, b);
         const float scale = 1.0f / std::sqrt(x * x + y * y + z * z);
         axis_x[i] = x * scale, axis_y[i] = y * scale, axis_z[i] = z * scale;
-        const float h = float(n.half_sine[i]) * (1.0f / 255.0f), c = 1.0f - 2.0f * h * h;
+        const float half = h[i] * (1.0f / 255.0f), c = 1.0f - 2.0f * half * half;
         cos_angle[i] = c, sin_angle[i] = std::sqrt(max_of(1.0f - c * c, 0.0f));
-        has_cosine[i] = float(n.has_cosine >> i & 1);
-        share[i] = n.share[i], least_depth[i] = float(n.least_depth[i]);
-        g_low[i] = float(n.g_low[i]) * (1.0f / 255.0f), g_high[i] = float(n.g_high[i]) * (1.0f / 255.0f);
     }
+    if (!any_lobe) return;
+    to_floats(n.g_low, g_low), to_floats(n.g_high, g_high);
+    for (int i = 0; i < most_parts; ++i) g_low[i] *= 1.0f / 255.0f, g_high[i] *= 1.0f / 255.0f;
 }
 
 }  // namespace mote::lights

@@ -69,7 +69,8 @@ struct alignas(64) LightParts {
 
     float lower_x[width], lower_y[width], lower_z[width], upper_x[width], upper_y[width], upper_z[width];
     float axis_x[width], axis_y[width], axis_z[width], cos_angle[width], sin_angle[width];
-    float has_cosine[width], share[width], least_depth[width], g_low[width], g_high[width];
+    float has_cosine[width], share[width], least_depth[width];
+    float g_low[width], g_high[width];  ///< set only where there is any lobe
     bool any_lobe;
 
     explicit LightParts(const LightTreeNode& node);
