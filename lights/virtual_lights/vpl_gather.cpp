@@ -13,16 +13,20 @@ void attenuate(const GatherContext& context, ReceiverTile& tile, const ShadowPac
     for (int i = 0; i < width; ++i) {
         if (packet.occluded(i)) continue;
         context.cancelled.check();
-        const Vec3 from(packet.origin_x[i], packet.origin_y[i], packet.origin_z[i]);
-        const Vec3 to = from + Vec3(packet.direction_x[i], packet.direction_y[i], packet.direction_z[i]);
-        const ScatteringVertex* v = tile.directional[i];
-        const MediumState state = v ? v->state_towards(tile.state[i], to - from) : tile.state[i];
-        const Rgb transmittance = context.scene.transmittance(from, to, state, tile.rng[i], context.tracking);
+        const Rgb transmittance = lane_transmittance(context, tile, i, packet);
         light.r[i] *= transmittance.x, light.g[i] *= transmittance.y, light.b[i] *= transmittance.z;
     }
 }
 
 }  // namespace
+
+Rgb lane_transmittance(const GatherContext& context, ReceiverTile& tile, int i, const ShadowPacket& packet) {
+    const Vec3 from(packet.origin_x[i], packet.origin_y[i], packet.origin_z[i]);
+    const Vec3 to = from + Vec3(packet.direction_x[i], packet.direction_y[i], packet.direction_z[i]);
+    const ScatteringVertex* v = tile.directional[i];
+    const MediumState state = v ? v->state_towards(tile.state[i], to - from) : tile.state[i];
+    return context.scene.transmittance(from, to, state, tile.rng[i], context.tracking);
+}
 
 std::uint64_t count_rays(std::span<const ShadowPacket> packets) {
     std::uint64_t rays = 0;

@@ -82,6 +82,10 @@ std::uint64_t count_rays(std::span<const core::ShadowPacket> packets);
 void attenuate_free(const GatherContext& context, ReceiverTile& tile,
                     std::span<const core::ShadowPacket> packets, std::span<LaneLight> light);
 
+/// Of the segment of a lane that is not occluded: an estimate without bias, by the lane's generator.
+core::Rgb lane_transmittance(const GatherContext& context, ReceiverTile& tile, int lane,
+                             const core::ShadowPacket& packet);
+
 /// Light by lane.
 using TileLight = std::array<core::Rgb, ReceiverLanes::width>;
 

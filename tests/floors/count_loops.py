@@ -44,6 +44,7 @@ IDEAS = {
     "the light of virtual lights at receivers": (r"(?<!bool )\bcontributions_of\(", {
         "lights/virtual_lights/vpl_gather.h": 1,
         "lights/selection/lightcut.cpp": 1,              # pairs of groups, each remembered by itself
+        "lights/selection/resampling_target.cpp": 1,     # candidates, most of which are never connected
     }),
     "a gather over pairs": (r"(?<!void )\bgather_pairs\(", {
         "lights/virtual_lights/vpl_gather.h": 1,         # a tile and all its lights, by rays

@@ -1,0 +1,262 @@
+// Resampled virtual point lights have the mean of all of them, on surfaces and in media, with and without
+// what the tile before has chosen; 1/M weights do not.
+#include "lights/selection/resampling.h"
+
+#include "core/scene/scene.h"
+#include "lights/selection/light_sampler.h"
+#include "lights/selection/power_candidates.h"
+#include "lights/selection/vertex_bounds.h"
+#include "lights/virtual_lights/particle_tracer.h"
+#include "media/phase_functions.h"
+#include "tests/lights/closed_box.h"
+#include "tests/support/catch.h"
+#include "tests/support/render_statistics.h"
+
+using namespace mote;
+using namespace mote::core;
+using namespace mote::tests;
+using lights::KeptReceivers, lights::Resampling, lights::SpatialReuse, lights::TileLight, lights::WeightedVpl;
+
+namespace {
+
+/// A room with an obstacle, its VPLs, and tiles of points: on walls, seen along rays that begin at `eye`.
+struct Room {
+    std::unique_ptr<Scene> scene;
+    lights::VplSet vpls;
+    lights::VplLeaves leaves{vpls};
+    lights::LightHierarchy hierarchy;
+    std::unique_ptr<lights::GatherScratch> scratch = std::make_unique<lights::GatherScratch>();
+    RayCounters rays;
+    TrackingCounters tracking;
+    media::IsotropicPhase isotropic;
+    media::HenyeyGreensteinPhase forward{0.6f};
+
+    Room(const std::string& bsdf, const std::string& inside, std::uint32_t paths)
+        : scene(scene_from(closed_box(bsdf, inside))),
+          vpls(lights::trace_light_paths(*scene, {.paths = paths}, 7, 0, SamplerKind::sobol)),
+          hierarchy(leaves, 1) {}
+    lights::GatherContext context() { return {*scene, *scratch, rays, tracking}; }
+
+    static Ray ray(int i, float turn) {
+        const Vec3 towards(1.0f, 0.1f * float(i % 4) - 0.2f + turn, 0.1f * float(i / 4) - 0.3f);
+        return {{-0.5f, 0.0f, 0.3f}, glm::normalize(towards)};
+    }
+    void on_walls(KeptReceivers& kept, float turn, float throughput) {
+        lights::ReceiverTile tile;
+        std::array<ScatteringVertex, 16> vertices;
+        for (int i = 0; i < 16; ++i) {
+            ScatteringVertex& v = vertices[std::size_t(i)];
+            const Ray own = ray(i, turn);
+            const auto hit = scene->first_hit(own);
+            REQUIRE(hit);
+            v.position = hit->position, v.wo = -own.direction, v.hit = *hit, v.bsdf = hit->shape->bsdf.get();
+            tile.set(i, v, Rgb(throughput), scene->eye_medium_state(own), Rng(std::uint64_t(i)),
+                     i == 6 && turn == 0.0f ? 1 : 1000);
+        }
+        kept.keep(tile);
+    }
+    /// At a distance along each ray.
+    void in_air(KeptReceivers& kept, float distance) {
+        lights::ReceiverTile tile;
+        std::array<ScatteringVertex, 16> vertices;
+        for (int i = 0; i < 16; ++i) {
+            ScatteringVertex& v = vertices[std::size_t(i)];
+            const Ray own = ray(i, 0.0f);
+            v.position = own.at(distance), v.wo = -own.direction;
+            v.phase = i % 2 ? static_cast<const PhaseFunction*>(&forward) : &isotropic;
+            tile.set(i, v, Rgb(0.2f + distance), scene->eye_medium_state(own), Rng(std::uint64_t(i)),
+                     i == 3 ? 2 : 1000);
+        }
+        kept.keep(tile);
+    }
+    TileLight all(std::span<KeptReceivers* const> points, float bound) {
+        TileLight sum{};
+        for (KeptReceivers* p : points) {
+            const auto one =
+                lights::gather(context(), vpls, lights::VplRange{}, lights::BoundedGeometry{bound}, p->tile);
+            for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += one[i];
+        }
+        return sum;
+    }
+    static inline const std::string obstacle = R"(<shape type="cube"><transform name="to_world">
+        <scale x="0.05" y="0.3" z="0.5"/><translate x="0.5" y="-0.3"/></transform>
+        <bsdf type="diffuse"/></shape>)";
+};
+
+/// z of every lane, of the mean of draw() against what is right, and the relative error of the mean of all.
+struct Comparison {
+    double least_z = 0.0, largest_z = 0.0, bias = 0.0, its_error = 0.0;
+    bool unbiased() const { return least_z > -limit && largest_z < limit; }
+    /// A lane passes by chance 6e-7 times less than 1.
+    static constexpr double limit = 5.0;
+};
+template <typename Draw>
+Comparison compare(const TileLight& right, int draws, const Draw& draw) {
+    std::array<double, 16> sum{}, squares{};
+    double whole = 0.0, of_all = 0.0, all_squares = 0.0;
+    for (const Rgb& r : right) whole += double(average(r));
+    for (int k = 0; k < draws; ++k) {
+        const TileLight light = draw(std::uint64_t(k));
+        double all = 0.0;
+        for (std::size_t i = 0; i < 16; ++i) {
+            const double x = double(average(light[i]));
+            sum[i] += x, squares[i] += x * x, all += x / whole;
+        }
+        of_all += all, all_squares += all * all;
+    }
+    Comparison c;
+    const auto error = [&](double mean, double mean_square) {
+        return std::sqrt(std::max(0.0, mean_square - mean * mean) / (draws - 1.0));
+    };
+    for (std::size_t i = 0; i < 16; ++i) {
+        const double mean = sum[i] / draws, r = double(average(right[i]));
+        const double z = (mean - r) / (error(mean, squares[i] / draws) + 1e-5 * r + 1e-20);
+        c.least_z = std::min(c.least_z, z), c.largest_z = std::max(c.largest_z, z);
+    }
+    c.bias = of_all / draws - 1.0, c.its_error = error(of_all / draws, all_squares / draws);
+    return c;
+}
+
+std::string report(const Comparison& c) {
+    return fmt::format("z of {:.2f} to {:.2f}, mean {:+.2f} +- {:.2f} %", c.least_z, c.largest_z,
+                       100 * c.bias, 100 * c.its_error);
+}
+
+}  // namespace
+
+TEST_CASE("Resampled lights have the mean of all", "[light_selection][resampling]") {
+    for (const std::string& material : {diffuse, glossy}) {
+        Room room(material, Room::obstacle, 60);
+        KeptReceivers tile;
+        room.on_walls(tile, 0.0f, 0.7f);
+        KeptReceivers* const points[] = {&tile};
+        for (const float bound : {3.0f, 100.0f}) {
+            const TileLight right = room.all(points, bound);
+            const lights::PowerCandidates power(room.hierarchy);
+            lights::LightSampler sampler;
+            for (const std::string by : {"power", "tree", "cut"}) {
+                Resampling resampling(room.vpls, bound, 3, SpatialReuse::none);
+                std::vector<WeightedVpl> drawn;
+                const auto c = compare(right, 800, [&](std::uint64_t k) {
+                    Rng rng(hash_keys(k, 3));
+                    drawn.clear();
+                    if (by == "power") {
+                        power.draw(12, rng, drawn);
+                    } else {
+                        const lights::ReceiverBounds bounds(tile.tile);
+                        const auto lights = by == "cut"
+                                                ? sampler.by_cut(room.hierarchy, bounds, bound, 12, rng)
+                                                : sampler.by_tree(room.hierarchy, bounds, bound, 12, rng);
+                        drawn.assign(lights.begin(), lights.end());
+                    }
+                    return resampling.gather(room.context(), points, drawn, rng);
+                });
+                INFO(by << ", bound " << bound << ": " << report(c));
+                CHECK(c.unbiased());
+                CHECK(c.its_error < 0.05);
+            }
+        }
+    }
+}
+
+TEST_CASE("Pairs of a light and a distance have the mean of all", "[light_selection][resampling][media]") {
+    Room room(diffuse, fog, 60);
+    std::array<KeptReceivers, 4> tiles;
+    std::vector<KeptReceivers*> points;
+    for (std::size_t n = 0; n < tiles.size(); ++n)
+        room.in_air(tiles[n], 0.1f + 0.2f * float(n)), points.push_back(&tiles[n]);
+    const TileLight right = room.all(points, 5.0f);
+    const lights::PowerCandidates power(room.hierarchy);
+    Resampling resampling(room.vpls, 5.0f, 3, SpatialReuse::none);
+    std::vector<WeightedVpl> drawn;
+    const auto draw = [&](std::uint64_t k) {
+        Rng rng(hash_keys(k, 5));
+        drawn.clear(), power.draw(16, rng, drawn);
+        return resampling.gather(room.context(), points, drawn, rng);
+    };
+    const auto c = compare(right, 1500, draw);
+    INFO(report(c));
+    CHECK(c.unbiased());
+    // Four distances, and at most three shadow rays a ray.
+    CHECK(resampling.counters().chosen <= 1500 * 16 * 3);
+    CHECK(resampling.counters().candidates > 1500 * 4 * 8);
+    const auto dark = compare(right, 1500, [&](std::uint64_t k) {
+        TileLight light = draw(k);
+        for (Rgb& l : light) l *= 0.95f;
+        return light;
+    });
+    CHECK_FALSE(dark.unbiased());
+}
+
+TEST_CASE("What the tile before has chosen moves no mean, but with weights 1/M",
+          "[light_selection][resampling][reuse]") {
+    for (const std::string& material : {diffuse, glossy}) {
+        Room room(material, Room::obstacle, 60);
+        // Beside the obstacle, then behind it, then what is compared: all see different lights.
+        std::array<KeptReceivers, 3> tiles;
+        room.on_walls(tiles[0], 0.5f, 0.2f), room.on_walls(tiles[1], -0.6f, 1.0f);
+        room.on_walls(tiles[2], 0.0f, 0.7f);
+        KeptReceivers* const last[] = {&tiles[2]};
+        const TileLight right = room.all(last, 10.0f);
+        const lights::PowerCandidates power(room.hierarchy);
+        for (const SpatialReuse reuse : {SpatialReuse::unbiased, SpatialReuse::biased}) {
+            std::uint64_t reused = 0;
+            const auto c = compare(right, 2500, [&](std::uint64_t k) {
+                Resampling resampling(room.vpls, 10.0f, 2, reuse);
+                Rng rng(hash_keys(k, 9));
+                std::vector<WeightedVpl> drawn;
+                TileLight light;
+                for (KeptReceivers& tile : tiles) {
+                    drawn.clear(), power.draw(8, rng, drawn);
+                    light = resampling.gather_reusing(room.context(), tile, drawn, rng);
+                }
+                reused += resampling.counters().reused;
+                return light;
+            });
+            INFO(report(c));
+            CHECK(reused > 2500 * 4);
+            if (reuse == SpatialReuse::unbiased) {
+                CHECK(c.unbiased());
+                CHECK(std::fabs(c.bias) < Comparison::limit * c.its_error);
+            } else {  // too dark, never too bright
+                CHECK(c.least_z < -Comparison::limit);
+                CHECK(c.largest_z < Comparison::limit);
+                CHECK(c.bias < -Comparison::limit * c.its_error);
+            }
+        }
+    }
+}
+
+TEST_CASE("No lights, one light, and a receiver on a light", "[light_selection][resampling][extremes]") {
+    for (const SpatialReuse reuse : {SpatialReuse::none, SpatialReuse::unbiased, SpatialReuse::biased}) {
+        Room room(diffuse, "", 3);
+        KeptReceivers tile;
+        room.on_walls(tile, 0.0f, 0.7f);
+        KeptReceivers* const points[] = {&tile};
+        Rng rng(1);
+        Resampling resampling(room.vpls, infinity, 4, reuse);
+        for (const Rgb& l : resampling.gather_reusing(room.context(), tile, {}, rng)) CHECK(l == Rgb(0.0f));
+        // One light is exact.
+        const std::vector<WeightedVpl> one{{0, 1.0f}};
+        room.vpls.lights.resize(1);
+        const TileLight right = room.all(points, infinity);
+        for (int k = 0; k < 3; ++k) {
+            const auto light =
+                Resampling(room.vpls, infinity, 4, reuse).gather_reusing(room.context(), tile, one, rng);
+            for (std::size_t i = 0; i < 16; ++i) CHECK(light[i].x == Approx(right[i].x).epsilon(1e-5));
+        }
+        // At a place of its own, without a bound.
+        room.vpls.lights[0].position = tile.tile.position(5);
+        for (int k = 0; k < 2; ++k)
+            for (const Rgb& l : resampling.gather_reusing(room.context(), tile, one, rng))
+                CHECK((std::isfinite(l.x) && l.x >= 0.0f));
+    }
+    lights::VplSet dark;
+    dark.lights.resize(5);
+    const lights::VplLeaves leaves(dark);
+    const lights::LightHierarchy hierarchy(leaves);
+    std::vector<WeightedVpl> drawn;
+    Rng rng(1);
+    lights::PowerCandidates(hierarchy).draw(4, rng, drawn);
+    CHECK(drawn.empty());
+}
