@@ -157,7 +157,7 @@ TileLight Resampling::gather(const GatherContext& context, std::span<KeptReceive
                              std::span<const WeightedVpl> candidates, Rng& rng) {
     targets_.clear();
     for (const KeptReceivers* p : points)
-        targets_.emplace_back(vpls_, p->tile, bound_, context.scene.attenuates());
+        targets_.emplace_back(vpls_, p->tile, bound_, context.scene.attenuates(), false);
     look(context, candidates);
     reusing_ = false;
     const TileLight light = connect(context, points, rng);
@@ -170,11 +170,11 @@ TileLight Resampling::gather_reusing(const GatherContext& context, KeptReceivers
     KeptReceivers* const points[] = {&tile};
     if (shares_.reuse == SpatialReuse::none) return gather(context, points, candidates, rng);
     targets_.clear();
-    targets_.emplace_back(vpls_, tile.tile, bound_, context.scene.attenuates());
+    targets_.emplace_back(vpls_, tile.tile, bound_, context.scene.attenuates(), true);
     look(context, candidates);
     reusing_ = before_.any;
     if (reusing_) {
-        target_before_.emplace(vpls_, before_.receivers.tile, bound_, context.scene.attenuates());
+        target_before_.emplace(vpls_, before_.receivers.tile, bound_, context.scene.attenuates(), true);
         share_with_neighbours(context);
         add_reused();
     }

@@ -1,12 +1,17 @@
 // The target function of resampling: what a virtual point light is thought to send to a receiver.
 //
 // Luminance of f*(x) min(G*(x,y_j), b) I_j, times the throughput of the eye path, as if no surface stood
-// between, and times a guess of the transmittance: 1 / (1 + t + t^2/2 + t^3/6), where t is the distance times
-// the mean of the extinctions at both ends. It is e^-t nearly where t is small, and where t is large it falls
-// more slowly, since the guess may be wrong: what it takes for dark is chosen less often, and never counts
-// much when it is. The function is the same whenever it is asked, and 0 only where no light arrives.
+// between, and times a guess of the transmittance, where t is the distance times the mean of the extinctions
+// at both ends: 1 / (1 + t + t^2/2 + t^3/6) in a homogeneous medium, which is nearly e^-t, and 1 / (1 + t) in
+// others. It falls slowly since t may be wrong: what it takes for dark is chosen less often, and counts the
+// more when it is. The function is 0 only where no light arrives.
+//
+// Lobes in media are looked at by expected_light(), for sixteen lanes at once, where nobody has to know the
+// target again: it is the same but for rounding. Where tiles are reused it has to be the same whenever it is
+// asked (`exact`), and glossy surfaces always ask their BSDF, lane by lane.
 #pragma once
 
+#include "lights/selection/receiver_bounds.h"
 #include "lights/virtual_lights/vpl_gather.h"
 
 namespace mote::lights {
@@ -18,7 +23,7 @@ class ResamplingTarget {
     using Lanes = std::array<float, width>;
 
     /// Keeps references to all. `bound`: b [1/m^2], infinity for none. `attenuates`: whether there are media.
-    ResamplingTarget(const VplSet& vpls, const ReceiverTile& tile, float bound, bool attenuates);
+    ResamplingTarget(const VplSet& vpls, const ReceiverTile& tile, float bound, bool attenuates, bool exact);
 
     /// The target times the weight of the light. Returns false, and nothing counts, where it is 0 everywhere.
     bool of_light(const WeightedVpl& light, GatherScratch& scratch, Lanes& out) const;
@@ -36,11 +41,15 @@ class ResamplingTarget {
 
   private:
     float extinction_at(const core::Vec3& light) const;
+    bool lobes_at_once(const VirtualPointLight& light) const;
+    bool expected(const WeightedVpl& light, Lanes& out) const;
 
     const VplSet* vpls_;
     const ReceiverTile* tile_;
     BoundedGeometry bound_;
     const core::Medium* medium_ = nullptr;  ///< of the first lane in one; null: of none
+    std::optional<ReceiverBounds> lobes_;   ///< of the tile, where it has no glossy surfaces
+    float fast_ = 0.0f;                     ///< how the guess of the transmittance falls
     Lanes own_half_{},
         scale_{};         ///< half of the extinction at a receiver; where `medium_` is not its medium, all
     Lanes other_half_{};  ///< 1/2 where that at the light counts, else 0

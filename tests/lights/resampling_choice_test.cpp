@@ -71,7 +71,7 @@ TEST_CASE("Resampling over three lights, by enumeration", "[light_selection][res
     const auto set = random_lights(rng, all_materials(), Lights::plain, 3, 2.0f, 3.0f);
     RandomReceivers receivers(rng, all_materials(), set.lights[0].position, false);
     lights::ReceiverTile tile = receivers.tile;
-    const lights::ResamplingTarget target(set, tile, 4.0f, false);
+    const lights::ResamplingTarget target(set, tile, 4.0f, false, true);
     const auto scratch = std::make_unique<lights::GatherScratch>();
     const std::array<double, 3> p{0.5, 0.3, 0.2};
     int lanes_with_dark_lights = 0;
