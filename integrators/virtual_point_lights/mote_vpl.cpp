@@ -125,13 +125,13 @@ void MoteVpl::check_upsampling(const Properties& properties) const {
 void MoteVpl::check_selection() const {
     const SelectionSettings& s = settings_.selection;
     if (!s.by_hierarchy()) return;
-    const char* against = settings_.interleaving > 1                   ? "interleaving"
-                          : settings_.lists.size > 0                   ? "light_lists"
-                          : settings_.compensates()                    ? "compensation"
-                          : settings_.clamping.enabled                 ? "roughness_clamping"
-                          : settings_.visibility.shadow_maps           ? "shadow maps"
-                          : settings_.visibility.imperfect && s.cuts() ? "imperfect shadow maps"
-                                                                       : nullptr;
+    const char* against = settings_.interleaving > 1                     ? "interleaving"
+                          : settings_.lists.size > 0                     ? "light_lists"
+                          : settings_.compensates()                      ? "compensation"
+                          : settings_.clamping.enabled                   ? "roughness_clamping"
+                          : settings_.visibility.shadow_maps             ? "shadow maps"
+                          : settings_.visibility.imperfect && s.traces() ? "imperfect shadow maps"
+                                                                         : nullptr;
     if (against)
         throw InputError(
             std::string("a selection of VPLs by a hierarchy does not go together with ") + against, s.where);
@@ -264,7 +264,7 @@ void register_mote_vpl(Registry& registry) {
          "what stands between VPLs and receivers: traced, shadow_map, imperfect_shadow_map"});
     parameters.push_back({"selection", "selection", "all",
                           "the VPLs that receivers look at: all, lightcuts, multidimensional_lightcuts, "
-                          "stochastic_lightcuts, light_tree"});
+                          "stochastic_lightcuts, light_tree, resampling"});
     parameters.push_back({"scattering_points", "integer", "8",
                           "points in media where the light of each eye ray is gathered, besides the surface "
                           "behind them, up to 64; 0: "

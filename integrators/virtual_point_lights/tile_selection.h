@@ -1,29 +1,40 @@
 // The light of selected virtual point lights at the receivers of a tile, with what selecting works with.
 #pragma once
 
+#include "integrators/virtual_point_lights/tile_resampling.h"
 #include "integrators/virtual_point_lights/vpl_selection.h"
 #include "lights/selection/light_sampler.h"
 
 namespace mote::integrators {
 
+/// What a pass selects lights by; null: not by this.
+struct SelectedBy {
+    const lights::LightHierarchy* hierarchy = nullptr;  ///< for cuts
+    const lights::LightTree* tree = nullptr;            ///< to draw from
+    const lights::PowerCandidates* power = nullptr;     ///< candidates by power
+};
+
 class TileSelection {
   public:
-    /// `hierarchy` is what cuts need, `tree` what is drawn from. Both null: all lights are looked at, and
-    /// nothing here does anything.
-    TileSelection(const SelectionSettings& settings, const lights::LightHierarchy* hierarchy,
-                  const lights::LightTree* tree, const lights::VplSet& vpls, float bound)
-        : settings_(settings), hierarchy_(hierarchy), tree_(tree), bound_(bound) {
+    /// All of `by` null: all lights are looked at, and nothing here does anything.
+    TileSelection(const SelectionSettings& settings, const SelectedBy& by, const lights::VplSet& vpls,
+                  float bound)
+        : settings_(settings), hierarchy_(by.hierarchy), tree_(by.tree), bound_(bound) {
+        if (settings.resamples() && (by.tree || by.power))
+            resampling_.emplace(settings, by.tree, by.power, vpls, bound);
         if (hierarchy_ && settings.cuts()) cut_.emplace(vpls, *hierarchy_, bound, settings.cut);
     }
 
-    bool active() const { return hierarchy_ || tree_; }
+    /// Other draws for the same eye paths: for studies of what drawing does.
+    void draw_apart(std::uint64_t key) { draws_ = core::hash_keys(draws_, key); }
+    bool active() const { return hierarchy_ || tree_ || resampling_; }
     bool collects() const { return active() && settings_.collects(); }
     bool cuts() const { return cut_.has_value(); }
 
     /// Unbiased: lights for all receivers of a tile. `key` determines what is drawn.
     lights::DrawnVpls drawn(const lights::ReceiverLanes& receivers, std::uint64_t key) {
         const lights::ReceiverGroups groups(lights::ReceiverBounds(receivers), *tree_);
-        core::Rng rng(core::hash_keys(key, draws));
+        core::Rng rng(core::hash_keys(key, draws_));
         if (settings_.kind == SelectionSettings::Kind::stochastic)
             return {sampler_.by_cut(*tree_, groups, bound_, settings_.samples, rng)};
         return {sampler_.by_tree(*tree_, groups, bound_, settings_.samples, rng)};
@@ -49,12 +60,16 @@ class TileSelection {
                     tile.any_active = true, tile.any_directional |= tile.directional[i] != nullptr;
                 else
                     tile.max_vpl_depth[i] = 0, tile.directional[i] = nullptr;
-            points_.add(tile, kind);
+            if (resampling_)
+                resampling_->add(tile, kind);
+            else
+                points_.add(tile, kind);
         }
     }
-    /// Multidimensional lightcuts over all points since the last call, by kind.
+    /// Multidimensional lightcuts, or resampling, over all points since the last call, by kind.
     lights::Lightcut::Light gather_points(const lights::GatherContext& context, std::uint64_t key) {
-        core::Rng rng(core::hash_keys(key, draws));
+        core::Rng rng(core::hash_keys(key, draws_));
+        if (resampling_) return resampling_->gather(context, rng);
         points_.build(rng);
         const auto light = cut_->gather(context, points_);
         points_.clear();
@@ -62,9 +77,12 @@ class TileSelection {
     }
 
     lights::LightcutCounters counters() const { return cut_ ? cut_->counters() : lights::LightcutCounters{}; }
+    lights::ResamplingCounters resampling_counters() const {
+        return resampling_ ? resampling_->counters() : lights::ResamplingCounters{};
+    }
 
   private:
-    static constexpr std::uint64_t draws = 0x73656c656374ull;  ///< apart from what eye paths draw
+    std::uint64_t draws_ = 0x73656c656374ull;  ///< apart from what eye paths draw
 
     const SelectionSettings& settings_;
     const lights::LightHierarchy* hierarchy_;
@@ -73,6 +91,7 @@ class TileSelection {
     lights::LightSampler sampler_;
     lights::GatherPoints points_;
     std::optional<lights::Lightcut> cut_;
+    std::optional<TileResampling> resampling_;
 };
 
 }  // namespace mote::integrators

@@ -112,6 +112,11 @@ class VplEstimator final : public Estimator {
             statistics.values["lightcut_pairs_evaluated"] = double(cuts_.evaluated);
             statistics.values["lightcuts_at_limit"] = double(cuts_.at_limit);
         }
+        if (settings_.selection.resamples()) {
+            statistics.values["resampling_candidates"] = double(resampled_.candidates);
+            statistics.values["resampling_chosen"] = double(resampled_.chosen);
+            statistics.values["resampling_reused"] = double(resampled_.reused);
+        }
         if (filter_) {
             statistics.seconds["filter_features"] = filter_->feature_seconds();
             statistics.seconds["filter"] = filter_->filter_seconds();
@@ -159,18 +164,23 @@ class VplEstimator final : public Estimator {
     }
 
     void make_hierarchy(const lights::VplSet& vpls, const PassContext& context) {
-        hierarchy_.reset(), tree_.reset();
+        hierarchy_.reset(), tree_.reset(), power_.reset();
         const SelectionSettings& selection = settings_.selection;
         if (!selection.by_hierarchy()) return;
         const auto begin = std::chrono::steady_clock::now();
         leaves_.emplace(vpls);
-        if (selection.cuts())
+        if (selection.cuts() || selection.by_power())
             hierarchy_.emplace(*leaves_, hash_keys(options_.seed, context.index), selection.max_bytes);
         else
             tree_.emplace(*leaves_, selection.max_bytes);
+        if (selection.by_power()) power_.emplace(*hierarchy_);
         hierarchy_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
         hierarchy_bytes_ =
             std::max(hierarchy_bytes_, hierarchy_ ? hierarchy_->memory_bytes() : tree_->memory_bytes());
+    }
+
+    SelectedBy selected_by() const {
+        return {hierarchy_ ? &*hierarchy_ : nullptr, tree_ ? &*tree_ : nullptr, power_ ? &*power_ : nullptr};
     }
 
     struct Box {
@@ -191,13 +201,13 @@ class VplEstimator final : public Estimator {
             EyeShadowMaps{.lights = maps_ ? maps_->of_lights() : nullptr,
                           .receivers = store,
                           .imperfect = settings_.visibility.imperfect ? &imperfect_ : nullptr},
-            EyeLightLists{&items_, lists_ ? &*lists_ : nullptr}, hierarchy_ ? &*hierarchy_ : nullptr,
-            tree_ ? &*tree_ : nullptr);
+            EyeLightLists{&items_, lists_ ? &*lists_ : nullptr}, selected_by());
         render(*tile);
         counters_.add(walk.rays, walk.tracking);
         const std::lock_guard lock(cost_mutex_);
         imperfect_lookups_ += tile->imperfect_lookups();
         cuts_.add(tile->cut_counters());
+        resampled_.add(tile->resampling_counters());
         cost_.vertices += tile->compensation_cost().vertices;
         cost_.seconds += tile->compensation_cost().seconds;
     }
@@ -332,9 +342,11 @@ class VplEstimator final : public Estimator {
     // Of this pass; neither: all lights are looked at.
     std::optional<lights::LightHierarchy> hierarchy_;  ///< for cuts
     std::optional<lights::LightTree> tree_;            ///< to draw from
+    std::optional<lights::PowerCandidates> power_;     ///< to draw candidates from
     double hierarchy_seconds_ = 0.0;
     std::size_t hierarchy_bytes_ = 0;
     lights::LightcutCounters cuts_;
+    lights::ResamplingCounters resampled_;
     std::optional<VplLightLists> lists_;  ///< of this pass; nothing: all lights are looked at
     double list_seconds_ = 0.0;
     std::optional<lights::ReflectiveShadowMaps> reflective_;  ///< nothing: lights draw their paths

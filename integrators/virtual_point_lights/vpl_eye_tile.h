@@ -32,7 +32,7 @@ class EyeTile {
     EyeTile(const core::Scene& scene, const VplSettings& settings, float bound, const lights::VplSet& vpls,
             const compensation::ResidualTransport* transport, lights::GatherScratch& scratch,
             core::WalkContext& walk, const EyeShadowMaps& maps = {}, const EyeLightLists& lists = {},
-            const lights::LightHierarchy* hierarchy = nullptr, const lights::LightTree* tree = nullptr)
+            const SelectedBy& selected_by = {})
         : scene_(scene),
           settings_(settings),
           bound_(bound),
@@ -41,7 +41,7 @@ class EyeTile {
           walk_(walk),
           maps_(maps),
           lists_(lists),
-          selection_(settings.selection, hierarchy, tree, vpls, bound),
+          selection_(settings.selection, selected_by, vpls, bound),
           compensation_(scene, settings.compensation, transport, vpls, scratch, walk) {}
 
     void start(int lane, const EyeRay& eye) {
@@ -64,7 +64,10 @@ class EyeTile {
     void gathers(bool yes) { gathers_ = yes; }
     CompensationCost compensation_cost() const { return compensation_.cost(); }
     std::uint64_t imperfect_lookups() const { return imperfect_lookups_; }
+    /// Other lights are selected for the same eye paths: for studies of what selecting does.
+    void draw_apart(std::uint64_t key) { selection_.draw_apart(key); }
     lights::LightcutCounters cut_counters() const { return selection_.counters(); }
+    lights::ResamplingCounters resampling_counters() const { return selection_.resampling_counters(); }
 
     /// Of the lanes to come: where they lie in the picture, `spacing` pixels apart, and how much receivers
     /// that are stored count.

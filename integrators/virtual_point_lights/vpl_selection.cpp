@@ -37,6 +37,25 @@ std::shared_ptr<Object> make_drawn(const Properties& p, Kind kind) {
     return std::make_shared<Selection>(s);
 }
 
+constexpr std::uint32_t default_candidates = 256, default_resampled = 8;
+
+std::shared_ptr<Object> make_resampling(const Properties& p, Kind kind) {
+    using Proposal = ResamplingSettings::Proposal;
+    using lights::SpatialReuse;
+    SelectionSettings s = common(p, kind);
+    s.samples = std::uint32_t(p.get_int_in("samples", default_resampled, 1, 1 << 16));
+    s.resampling.candidates = std::uint32_t(p.get_int_in("candidates", default_candidates, 1, 1 << 20));
+    const std::string by = p.get_choice("candidates_by", "cut", {"cut", "light_tree", "power"});
+    s.resampling.proposal = by == "power"        ? Proposal::power
+                            : by == "light_tree" ? Proposal::light_tree
+                                                 : Proposal::cut;
+    const std::string reuse = p.get_choice("reuse", "none", {"none", "unbiased", "biased"});
+    s.resampling.reuse = reuse == "unbiased" ? SpatialReuse::unbiased
+                         : reuse == "biased" ? SpatialReuse::biased
+                                             : SpatialReuse::none;
+    return std::make_shared<Selection>(s);
+}
+
 const Parameter most_megabytes{"max_megabytes", "float", "4096",
                                "of the hierarchy while it is built; larger ones are refused"};
 const std::vector<Parameter> cut_parameters{
@@ -46,6 +65,20 @@ const std::vector<Parameter> cut_parameters{
     most_megabytes};
 const std::vector<Parameter> drawn_parameters{
     {"samples", "integer", "64", "lights drawn for each tile of 4 x 4 pixels"}, most_megabytes};
+
+const std::vector<Parameter> resampling_parameters{
+    {"candidates", "integer", "256",
+     "lights that a tile of 4 x 4 pixels looks at without shadow rays, on surfaces and along eye rays "
+     "through "
+     "media"},
+    {"candidates_by", "string", "cut",
+     "cut: one from each group of a cut of stochastic lightcuts; light_tree: drawn by the hierarchy; power: "
+     "by what lights send in all"},
+    {"samples", "integer", "8", "of them chosen by each pixel, on surfaces and in media: shadow rays"},
+    {"reuse", "string", "none",
+     "unbiased, biased: on surfaces what a pixel of the tile before has chosen and sees is a candidate, too; "
+     "biased leaves out the weights that make up for what only one of them sees"},
+    most_megabytes};
 
 std::string example(const std::string& type) { return "<selection type=\"" + type + "\"/>"; }
 
@@ -64,6 +97,30 @@ std::pair<std::string, std::string> recommended(const GatherSize& size) {
     return {"stochastic_lightcuts, or lightcuts for a picture of one pass", why};
 }
 
+std::string chosen_by_resampling(const SelectionSettings& s) {
+    using Proposal = ResamplingSettings::Proposal;
+    const Proposal by = s.resampling.proposal;
+    return fmt::format("resampling, {} of {} candidates {}, {} reuse", s.samples, s.resampling.candidates,
+                       by == Proposal::cut     ? "from a cut"
+                       : by == Proposal::power ? "drawn by power"
+                                               : "drawn by the light hierarchy",
+                       s.resampling.reuse == lights::SpatialReuse::none     ? "without"
+                       : s.resampling.reuse == lights::SpatialReuse::biased ? "with biased"
+                                                                            : "with unbiased");
+}
+
+std::string why_right_or_not(const SelectionSettings& s) {
+    if (s.cuts()) return "biased by at most the threshold for each group; one cut a tile of 4 x 4";
+    if (s.resamples() && s.resampling.reuse == lights::SpatialReuse::biased)
+        return "biased: too dark where one pixel of a pair sees or faces a light and the other does not, "
+               "since "
+               "weights 1/M of reuse leave visibility and support of the neighbour out";
+    if (s.resamples())
+        return "unbiased; tiles of 4 x 4 look at the same candidates, each pixel chooses its own";
+    return s.by_hierarchy() ? "unbiased; the same lights for a tile of 4 x 4"
+                            : "exact, time grows with the number of VPLs";
+}
+
 std::string chosen(const SelectionSettings& s) {
     const std::string cut =
         fmt::format("threshold {:g} %, at most {} groups", 100.0 * double(s.cut.threshold), s.cut.max_cut);
@@ -78,6 +135,8 @@ std::string chosen(const SelectionSettings& s) {
             return fmt::format("stochastic lightcuts, {} lights a tile", s.samples);
         case Kind::light_tree:
             return fmt::format("{} lights a tile, drawn by the light hierarchy", s.samples);
+        case Kind::resampling:
+            return chosen_by_resampling(s);
     }
     return "";
 }
@@ -85,15 +144,15 @@ std::string chosen(const SelectionSettings& s) {
 }  // namespace
 
 void plan_selection(Plan& plan, const SelectionSettings& s, const GatherSize& size) {
-    plan.run("selection", chosen(s),
-             s.cuts()           ? "biased by at most the threshold for each group; one cut a tile of 4 x 4"
-             : s.by_hierarchy() ? "unbiased; the same lights for a tile of 4 x 4"
-                                : "exact, time grows with the number of VPLs");
+    plan.run("selection", chosen(s), why_right_or_not(s));
     const auto [best, why] = recommended(size);
     plan.run("selection for this scene", best, why);
+    if (s.resamples() && s.resampling.reuse == lights::SpatialReuse::biased)
+        plan.miss("light at the ends of shadows", "reuse with weights 1/M takes a part of it",
+                  "asked for: reuse 'unbiased' keeps it, and costs a second shadow ray for what arrives");
     if (!s.by_hierarchy()) return;
     const std::size_t bytes =
-        s.cuts() ? lights::LightHierarchy::bytes_a_light : lights::LightTree::bytes_a_light;
+        s.cuts() || s.by_power() ? lights::LightHierarchy::bytes_a_light : lights::LightTree::bytes_a_light;
     plan.run("memory of the light hierarchy", fmt::format("{:.1f} MB", size.vpls * double(bytes) * 1e-6),
              fmt::format("at most {} bytes a VPL, besides its own", bytes));
 }
@@ -124,6 +183,10 @@ void register_selection(Registry& registry) {
         make_drawn, Kind::stochastic);
     add("light_tree", "Lights drawn by the hierarchy in proportion to what they may send: unbiased.",
         drawn_parameters, make_drawn, Kind::light_tree);
+    add("resampling",
+        "Few lights for each pixel, chosen among many candidates by what they would send if nothing stood "
+        "between: unbiased, but for biased reuse.",
+        resampling_parameters, make_resampling, Kind::resampling);
 }
 
 }  // namespace mote::integrators

@@ -6,23 +6,41 @@
 #include "core/render/plan.h"
 #include "core/scene/requirements.h"
 #include "lights/selection/lightcut.h"
+#include "lights/selection/spatial_reuse.h"
 
 namespace mote::integrators {
 
+/// Where candidates of resampling come from, how many a tile looks at, and whose choices become candidates.
+struct ResamplingSettings {
+    enum class Proposal : std::uint8_t { light_tree, cut, power };
+
+    std::uint32_t candidates = 256;
+    Proposal proposal = Proposal::cut;
+    lights::SpatialReuse reuse = lights::SpatialReuse::none;
+};
+
 struct SelectionSettings {
-    enum class Kind : std::uint8_t { all, lightcuts, multidimensional, stochastic, light_tree };
+    enum class Kind : std::uint8_t { all, lightcuts, multidimensional, stochastic, light_tree, resampling };
 
     Kind kind = Kind::all;
     lights::LightcutSettings cut;
-    std::uint32_t samples = 64;                    ///< drawn for a tile of receivers
+    std::uint32_t samples = 64;  ///< drawn for a tile of receivers; resampled for each
+    ResamplingSettings resampling;
     std::size_t max_bytes = std::size_t(4) << 30;  ///< of the hierarchy while it is built
     core::SourceLocation where;
 
     bool by_hierarchy() const { return kind != Kind::all; }
     /// A sum of groups, which looks at what arrives; else lights are drawn without bias.
     bool cuts() const { return kind == Kind::lightcuts || kind == Kind::multidimensional; }
+    bool resamples() const { return kind == Kind::resampling; }
+    /// Candidates are drawn by power; else by the tree.
+    bool by_power() const {
+        return resamples() && resampling.proposal == ResamplingSettings::Proposal::power;
+    }
     /// All points of a pixel are gathered at once.
-    bool collects() const { return kind == Kind::multidimensional; }
+    bool collects() const { return kind == Kind::multidimensional || resamples(); }
+    /// Visibility is traced, whatever else there is.
+    bool traces() const { return cuts() || resamples(); }
 };
 
 class Selection : public core::Object {
@@ -34,7 +52,7 @@ class Selection : public core::Object {
     SelectionSettings settings_;
 };
 
-/// all, lightcuts, multidimensional_lightcuts, stochastic_lightcuts, light_tree.
+/// all, lightcuts, multidimensional_lightcuts, stochastic_lightcuts, light_tree, resampling.
 void register_selection(core::Registry& registry);
 
 /// What a pass is about to gather, for the plan.

@@ -52,6 +52,8 @@ const std::map<std::string, Words> words = {
     {"approximate.transmittance", {"mean", "exact"}},
     {"screen_space.receivers", {"surfaces"}},
     {"shadow_map.storage", {"intervals", "nodes"}},
+    {"resampling.candidates_by", {"cut", "light_tree", "power"}},
+    {"resampling.reuse", {"none", "unbiased", "biased"}},
 };
 
 /// Numbers by name. The first is used throughout and keeps pictures quick, but for light paths, which are
@@ -107,6 +109,7 @@ const std::map<std::string, Words> numbers = {
     {"texels", {"", "0.5"}},
     {"threshold", {"", "0"}},
     {"max_cut", {"", "7"}},
+    {"candidates", {"20"}},
 };
 
 /// Numbers that are tried on the first level alone: what they change is below whoever nests the type.

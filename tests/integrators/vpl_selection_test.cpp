@@ -28,6 +28,13 @@ std::string cut(const std::string& type, double threshold, int max_cut = 1 << 20
                        type, threshold, max_cut);
 }
 
+std::string resampled(const std::string& by, const std::string& reuse, int candidates = 24, int samples = 3) {
+    return fmt::format(R"(<selection type="resampling"><integer name="candidates" value="{}"/>
+        <integer name="samples" value="{}"/><string name="candidates_by" value="{}"/>
+        <string name="reuse" value="{}"/></selection>)",
+                       candidates, samples, by, reuse);
+}
+
 std::vector<core::Rgb> picture(const core::Scene& scene, const std::string& integrator,
                                core::Statistics* statistics = nullptr) {
     const auto method = integrator_from(integrator);
@@ -50,11 +57,15 @@ TEST_CASE("selected VPLs have the mean of volpath", "[vpl][selection][equality]"
     };
     const std::string haze =
         fog("0.8, 1.0, 1.3", R"(<phase type="hg"><float name="g" value="0.5"/></phase>)");
-    for (const Case& c : {Case{"", {drawn("light_tree", 8), drawn("stochastic_lightcuts", 8)}, 1.15},
-                          Case{haze,
-                               {drawn("light_tree", 6), drawn("stochastic_lightcuts", 6) + two,
-                                cut("multidimensional_lightcuts", 0.0) + two},
-                               1.25}}) {
+    for (const Case& c :
+         {Case{"",
+               {drawn("light_tree", 8), drawn("stochastic_lightcuts", 8), resampled("power", "unbiased")},
+               1.15},
+          Case{haze,
+               {drawn("light_tree", 6), drawn("stochastic_lightcuts", 6) + two,
+                cut("multidimensional_lightcuts", 0.0) + two, resampled("power", "none"),
+                resampled("light_tree", "unbiased") + two},
+               1.25}}) {
         const auto scene = scene_from(box(c.medium.empty() ? mixed : grey, c.medium), 8);
         const auto reference = render_statistics(
             *scene,
@@ -105,6 +116,8 @@ TEST_CASE("Few rays for many VPLs", "[vpl][selection]") {
     const double all = rays("");
     CHECK(rays(drawn("light_tree", 64)) < 0.03 * all);
     CHECK(rays(drawn("stochastic_lightcuts", 64)) < 0.03 * all);
+    CHECK(rays(resampled("power", "none", 256, 8)) < 0.002 * all);
+    CHECK(rays(resampled("power", "unbiased", 256, 8)) < 0.004 * all);
     CHECK(rays(cut("lightcuts", 0.02, 1000)) < 0.2 * all);
 }
 
@@ -112,7 +125,8 @@ TEST_CASE("Without lights there is nothing to select", "[vpl][selection][extreme
     const auto scene = scene_from(box(grey, fog("0.8, 1.0, 1.3", "")), 8);
     for (const int paths : {0, 1})
         for (const std::string& selection : {drawn("light_tree", 4), drawn("stochastic_lightcuts", 4),
-                                             cut("lightcuts", 0.02), cut("multidimensional_lightcuts", 0.02)})
+                                             cut("lightcuts", 0.02), cut("multidimensional_lightcuts", 0.02),
+                                             resampled("power", "unbiased"), resampled("cut", "biased")})
             for (const core::Rgb& pixel : picture(*scene, vpl(selection, "", paths)))
                 CHECK((std::isfinite(pixel.x) && pixel.x >= 0.0f));
 }
@@ -129,6 +143,9 @@ TEST_CASE("What does not go together with a selection is refused by name", "[vpl
         CHECK_THROWS_WITH(integrator_from(vpl(selection, settings)), Catch::Contains(name));
     CHECK_THROWS_WITH(
         integrator_from(vpl(cut("lightcuts", 0.02), R"(<visibility type="imperfect_shadow_map"/>)")),
+        Catch::Contains("imperfect shadow maps"));
+    CHECK_THROWS_WITH(
+        integrator_from(vpl(resampled("cut", "none"), R"(<visibility type="imperfect_shadow_map"/>)")),
         Catch::Contains("imperfect shadow maps"));
     CHECK_NOTHROW(integrator_from(vpl(selection, R"(<visibility type="imperfect_shadow_map"/>)")));
     const auto scene = scene_from(box(grey, ""), 8);
@@ -153,4 +170,9 @@ TEST_CASE("Plans say which selection is best, and why", "[vpl][selection][plan]"
                Contains("stochastic_lightcuts, or lightcuts") && Contains("shadow rays"));
     CHECK_THAT(plan_of(vpl(cut("lightcuts", 0.02), "", 300000), fog("0.8, 1.0, 1.3", "")),
                Contains("multidimensional_lightcuts") && Contains("threshold 2 %") && Contains("MB"));
+    CHECK_THAT(
+        plan_of(vpl(resampled("power", "unbiased"), "", 300000), ""),
+        Contains("3 of 24 candidates drawn by power, with unbiased reuse") && !Contains("biased: too dark"));
+    CHECK_THAT(plan_of(vpl(resampled("cut", "biased"), "", 300000), ""),
+               Contains("biased: too dark") && Contains("1/M"));
 }

@@ -25,6 +25,7 @@ struct Room {
     lights::VplSet vpls;
     lights::VplLeaves leaves{vpls};
     lights::LightHierarchy hierarchy;
+    lights::LightTree tree{leaves};
     std::unique_ptr<lights::GatherScratch> scratch = std::make_unique<lights::GatherScratch>();
     RayCounters rays;
     TrackingCounters tracking;
@@ -143,10 +144,9 @@ TEST_CASE("Resampled lights have the mean of all", "[light_selection][resampling
                     if (by == "power") {
                         power.draw(12, rng, drawn);
                     } else {
-                        const lights::ReceiverBounds bounds(tile.tile);
-                        const auto lights = by == "cut"
-                                                ? sampler.by_cut(room.hierarchy, bounds, bound, 12, rng)
-                                                : sampler.by_tree(room.hierarchy, bounds, bound, 12, rng);
+                        const lights::ReceiverGroups groups(lights::ReceiverBounds(tile.tile), room.tree);
+                        const auto lights = by == "cut" ? sampler.by_cut(room.tree, groups, bound, 12, rng)
+                                                        : sampler.by_tree(room.tree, groups, bound, 12, rng);
                         drawn.assign(lights.begin(), lights.end());
                     }
                     return resampling.gather(room.context(), points, drawn, rng);

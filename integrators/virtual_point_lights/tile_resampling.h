@@ -1,0 +1,89 @@
+// Resampled virtual point lights at the receivers of a tile: points of surfaces one after the other, each
+// with what the tile before has chosen, and all points in media of an eye ray at once.
+#pragma once
+
+#include <deque>
+
+#include "integrators/virtual_point_lights/vpl_selection.h"
+#include "lights/selection/gather_points.h"
+#include "lights/selection/light_sampler.h"
+#include "lights/selection/power_candidates.h"
+#include "lights/selection/resampling.h"
+
+namespace mote::integrators {
+
+class TileResampling {
+  public:
+    /// One of `tree` and `power`, which candidates are drawn by; the other one is null.
+    TileResampling(const SelectionSettings& settings, const lights::LightTree* tree,
+                   const lights::PowerCandidates* power, const lights::VplSet& vpls, float bound)
+        : settings_(settings),
+          tree_(tree),
+          power_(power),
+          bound_(bound),
+          resampling_(vpls, bound, settings.samples, settings.resampling.reuse) {}
+
+    /// Remembers points of a pixel, until gather(). Idle lanes are allowed.
+    void add(const lights::ReceiverTile& receivers, lights::GatherKind kind) {
+        Points& points = points_[std::size_t(kind)];
+        if (!receivers.any_active) return;
+        if (points.used == points.tiles.size()) points.tiles.emplace_back();
+        points.tiles[points.used++].keep(receivers);
+    }
+
+    /// The light at all points since the last call, by kind.
+    lights::Lightcut::Light gather(const lights::GatherContext& context, core::Rng& rng) {
+        lights::Lightcut::Light light{};
+        auto& [surfaces, media] = points_;
+        for (std::size_t p = 0; p < surfaces.used; ++p) {
+            lights::KeptReceivers& tile = surfaces.tiles[p];
+            draw(lights::ReceiverBounds(tile.tile), rng);
+            const auto one = resampling_.gather_reusing(context, tile, candidates_, rng);
+            for (std::size_t i = 0; i < one.size(); ++i) light[0][i] += one[i];
+        }
+        if (media.used > 0) {
+            std::vector<lights::KeptReceivers*> along;
+            for (std::size_t p = 0; p < media.used; ++p) along.push_back(&media.tiles[p]);
+            lights::ReceiverBounds bounds(along[0]->tile);
+            for (std::size_t p = 1; p < along.size(); ++p)
+                bounds = lights::ReceiverBounds(bounds, lights::ReceiverBounds(along[p]->tile));
+            draw(bounds, rng);
+            light[1] = resampling_.gather(context, along, candidates_, rng);
+        }
+        surfaces.used = media.used = 0;
+        return light;
+    }
+    lights::ResamplingCounters counters() const { return resampling_.counters(); }
+
+  private:
+    using Proposal = ResamplingSettings::Proposal;
+    struct Points {
+        std::deque<lights::KeptReceivers> tiles;  ///< memory that is used again
+        std::size_t used = 0;
+    };
+
+    void draw(const lights::ReceiverBounds& receivers, core::Rng& rng) {
+        const std::uint32_t n = settings_.resampling.candidates;
+        candidates_.clear();
+        if (settings_.resampling.proposal == Proposal::power) {
+            power_->draw(n, rng, candidates_);
+            return;
+        }
+        const lights::ReceiverGroups groups(receivers, *tree_);
+        const auto drawn = settings_.resampling.proposal == Proposal::cut
+                               ? sampler_.by_cut(*tree_, groups, bound_, n, rng)
+                               : sampler_.by_tree(*tree_, groups, bound_, n, rng);
+        candidates_.assign(drawn.begin(), drawn.end());
+    }
+
+    const SelectionSettings& settings_;
+    const lights::LightTree* tree_;
+    const lights::PowerCandidates* power_;
+    float bound_;
+    std::array<Points, 2> points_;  ///< by kind
+    lights::LightSampler sampler_;
+    std::vector<lights::WeightedVpl> candidates_;
+    lights::Resampling resampling_;
+};
+
+}  // namespace mote::integrators
