@@ -40,13 +40,27 @@ double now(clockid_t clock) {
     return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
 }
 
-/// "lightcuts:THRESHOLD:MAX_CUT", "multidimensional:THRESHOLD:MAX_CUT", "stochastic:N", "tree:N".
+/// "lightcuts:THRESHOLD:MAX_CUT", "multidimensional:THRESHOLD:MAX_CUT", "stochastic:N", "tree:N",
+/// "ris:CANDIDATES:SAMPLES:none|unbiased|biased:cut|tree|power".
 SelectionSettings settings_of(const std::string& text) {
     std::vector<std::string> words;
     std::istringstream stream(text);
     for (std::string word; std::getline(stream, word, ':');) words.push_back(word);
-    words.resize(3);
+    words.resize(5);
     SelectionSettings s;
+    if (words[0] == "ris") {
+        using Proposal = ResamplingSettings::Proposal;
+        using lights::SpatialReuse;
+        s.kind = Kind::resampling, s.samples = std::uint32_t(std::stoul(words[2]));
+        s.resampling = {std::uint32_t(std::stoul(words[1])),
+                        words[4] == "power"  ? Proposal::power
+                        : words[4] == "tree" ? Proposal::light_tree
+                                             : Proposal::cut,
+                        words[3] == "unbiased" ? SpatialReuse::unbiased
+                        : words[3] == "biased" ? SpatialReuse::biased
+                                               : SpatialReuse::none};
+        return s;
+    }
     s.kind = words[0] == "lightcuts"          ? Kind::lightcuts
              : words[0] == "multidimensional" ? Kind::multidimensional
              : words[0] == "stochastic"       ? Kind::stochastic
@@ -84,6 +98,7 @@ class Study {
         leaves_.emplace(vpls_);
         begin = now(CLOCK_PROCESS_CPUTIME_ID);
         hierarchy_.emplace(*leaves_, 1);
+        power_.emplace(*hierarchy_);
         building = now(CLOCK_PROCESS_CPUTIME_ID) - begin;
         begin = now(CLOCK_PROCESS_CPUTIME_ID);
         tree_.emplace(*leaves_);
@@ -107,17 +122,25 @@ class Study {
         settings.selection = selection;
         core::WalkContext walk;
         EyeTile<true> eye(*scene_, settings, arguments_.bound, vpls_, nullptr, *scratch_, walk, {}, {},
-                          &*hierarchy_, &*tree_);
+                          SelectedBy{&*hierarchy_, &*tree_, &*power_});
         const std::atomic<bool> cancelled = false;
         const core::PassContext pass{0, *filter_, cancelled};
-        for (int lane = 0; lane < 16; ++lane)
-            eye.start(lane, make_eye_ray(*scene_, options_, pass, tiles_[tile].x + lane % 4,
-                                         tiles_[tile].y + lane / 4));
-        walk.rng = core::Rng(key);
+        eye.draw_apart(key);  // eye paths have generators of their own
+        const glm::ivec2 at = tiles_[tile];
+        // What tiles reuse comes from those of the same task that were rendered before them.
+        const bool reuses = selection.resampling.reuse != lights::SpatialReuse::none;
+        const glm::ivec2 first = reuses ? at / task * task : at;
+        int count = 0;
         const double begin = now(CLOCK_THREAD_CPUTIME_ID);
-        eye.run({}, 1.0f), eye.gather_collected();
-        seconds = now(CLOCK_THREAD_CPUTIME_ID) - begin;
-        rays += double(walk.rays.occlusion), cuts.add(eye.cut_counters());
+        for (int y = first.y; y <= at.y; y += 4)
+            for (int x = first.x; x <= (y < at.y ? first.x + task - 4 : at.x); x += 4) {
+                for (int lane = 0; lane < 16; ++lane)
+                    eye.start(lane, make_eye_ray(*scene_, options_, pass, x + lane % 4, y + lane / 4));
+                eye.run({}, 1.0f), eye.gather_collected();
+                ++count;
+            }
+        seconds = (now(CLOCK_THREAD_CPUTIME_ID) - begin) / double(count);
+        rays += double(walk.rays.occlusion) / double(count), cuts.add(eye.cut_counters());
         Pixels light;
         for (int lane = 0; lane < 16; ++lane) {
             TransportSum sum = eye.sum(lane).transport;
@@ -139,6 +162,8 @@ class Study {
     std::optional<lights::VplLeaves> leaves_;
     std::optional<lights::LightHierarchy> hierarchy_;
     std::optional<lights::LightTree> tree_;
+    std::optional<lights::PowerCandidates> power_;
+    static constexpr int task = 16;  ///< pixels of VplEstimator
     std::unique_ptr<core::PixelFilter> filter_ = core::make_pixel_filter("box", 0.5f, 0.5f);
     std::unique_ptr<lights::GatherScratch> scratch_ = std::make_unique<lights::GatherScratch>();
     std::vector<glm::ivec2> tiles_;
@@ -218,7 +243,9 @@ int main(int argc, char** argv) {
     Arguments a;
     CLI::App app{"Error and cost of selecting virtual point lights, as CSV"};
     app.add_option("scene", a.scene, "scene file, with media")->required();
-    app.add_option("methods", a.methods, "lightcuts:T:N multidimensional:T:N stochastic:N tree:N")
+    app.add_option("methods", a.methods,
+                   "lightcuts:T:N multidimensional:T:N stochastic:N tree:N "
+                   "ris:CANDIDATES:SAMPLES:REUSE:BY")
         ->required();
     app.add_option("--paths", a.paths, "light paths");
     app.add_option("--tiles", a.tiles, "of 4 x 4 pixels");
