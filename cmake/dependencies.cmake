@@ -24,6 +24,7 @@ find_package(ZLIB REQUIRED)
 find_package(assimp CONFIG REQUIRED)
 find_package(nlohmann_json CONFIG REQUIRED)
 find_package(fmt CONFIG REQUIRED)
+find_package(Eigen3 3.3 REQUIRED NO_MODULE)  # headers, inside lights/selection alone
 if(MOTE_BUILD_APPS)
   find_package(CLI11 CONFIG REQUIRED)
 endif()

@@ -124,7 +124,7 @@ void MoteVpl::check_upsampling(const Properties& properties) const {
 
 void MoteVpl::check_selection() const {
     const SelectionSettings& s = settings_.selection;
-    if (!s.by_hierarchy()) return;
+    if (!s.selects()) return;
     const char* against = settings_.interleaving > 1                     ? "interleaving"
                           : settings_.lists.size > 0                     ? "light_lists"
                           : settings_.compensates()                      ? "compensation"
@@ -133,8 +133,7 @@ void MoteVpl::check_selection() const {
                           : settings_.visibility.imperfect && s.traces() ? "imperfect shadow maps"
                                                                          : nullptr;
     if (against)
-        throw InputError(
-            std::string("a selection of VPLs by a hierarchy does not go together with ") + against, s.where);
+        throw InputError(std::string("a selection of VPLs does not go together with ") + against, s.where);
 }
 
 /// A light path leaves some three VPLs.
@@ -264,7 +263,7 @@ void register_mote_vpl(Registry& registry) {
          "what stands between VPLs and receivers: traced, shadow_map, imperfect_shadow_map"});
     parameters.push_back({"selection", "selection", "all",
                           "the VPLs that receivers look at: all, lightcuts, multidimensional_lightcuts, "
-                          "stochastic_lightcuts, light_tree, resampling"});
+                          "stochastic_lightcuts, light_tree, matrix, resampling"});
     parameters.push_back({"scattering_points", "integer", "8",
                           "points in media where the light of each eye ray is gathered, besides the surface "
                           "behind them, up to 64; 0: "

@@ -12,6 +12,7 @@ struct SelectedBy {
     const lights::LightHierarchy* hierarchy = nullptr;  ///< for cuts
     const lights::LightTree* tree = nullptr;            ///< to draw from
     const lights::PowerCandidates* power = nullptr;     ///< candidates by power
+    const lights::MatrixSelection* matrix = nullptr;    ///< groups of its columns
 };
 
 class TileSelection {
@@ -19,7 +20,7 @@ class TileSelection {
     /// All of `by` null: all lights are looked at, and nothing here does anything.
     TileSelection(const SelectionSettings& settings, const SelectedBy& by, const lights::VplSet& vpls,
                   float bound)
-        : settings_(settings), hierarchy_(by.hierarchy), tree_(by.tree), bound_(bound) {
+        : settings_(settings), hierarchy_(by.hierarchy), tree_(by.tree), matrix_(by.matrix), bound_(bound) {
         if (settings.resamples() && (by.tree || by.power))
             resampling_.emplace(settings, by.tree, by.power, vpls, bound);
         if (hierarchy_ && settings.cuts()) cut_.emplace(vpls, *hierarchy_, bound, settings.cut);
@@ -27,14 +28,15 @@ class TileSelection {
 
     /// Other draws for the same eye paths: for studies of what drawing does.
     void draw_apart(std::uint64_t key) { draws_ = core::hash_keys(draws_, key); }
-    bool active() const { return hierarchy_ || tree_ || resampling_; }
+    bool active() const { return hierarchy_ || tree_ || matrix_ || resampling_; }
     bool collects() const { return active() && settings_.collects(); }
     bool cuts() const { return cut_.has_value(); }
 
     /// Unbiased: lights for all receivers of a tile. `key` determines what is drawn.
     lights::DrawnVpls drawn(const lights::ReceiverLanes& receivers, std::uint64_t key) {
-        const lights::ReceiverGroups groups(lights::ReceiverBounds(receivers), *tree_);
         core::Rng rng(core::hash_keys(key, draws_));
+        if (matrix_) return {matrix_->draw(receivers, rng, columns_)};
+        const lights::ReceiverGroups groups(lights::ReceiverBounds(receivers), *tree_);
         if (settings_.kind == SelectionSettings::Kind::stochastic)
             return {sampler_.by_cut(*tree_, groups, bound_, settings_.samples, rng)};
         return {sampler_.by_tree(*tree_, groups, bound_, settings_.samples, rng)};
@@ -87,6 +89,8 @@ class TileSelection {
     const SelectionSettings& settings_;
     const lights::LightHierarchy* hierarchy_;
     const lights::LightTree* tree_;
+    const lights::MatrixSelection* matrix_;
+    std::vector<lights::WeightedVpl> columns_;  ///< that stand for all, at a tile
     float bound_;
     lights::LightSampler sampler_;
     lights::GatherPoints points_;

@@ -9,6 +9,7 @@
 #include "integrators/eye_path/eye_ray.h"
 #include "integrators/screen_space_compensation/hidden_light.h"
 #include "integrators/virtual_point_lights/vpl_eye_tile.h"
+#include "integrators/virtual_point_lights/vpl_matrix.h"
 #include "integrators/virtual_point_lights/vpl_shadow_maps.h"
 #include "lights/selection/vertex_bounds.h"
 #include "lights/virtual_lights/reflective_shadow_maps.h"
@@ -39,6 +40,7 @@ class VplEstimator final : public Estimator {
                 scene, std::size_t(settings.visibility.imperfect_map.all_points), options.seed);
         if (settings_.reflective_maps > 0)
             reflective_.emplace(scene, settings.reflective_maps, settings.paths);
+        if (settings_.selection.by_matrix()) matrix_.emplace(scene, settings_.selection.matrix, options.seed);
         if (settings_.filters) filter_.emplace(scene, options, settings_.filter);
     }
 
@@ -66,6 +68,7 @@ class VplEstimator final : public Estimator {
         bytes_ = std::max(bytes_, vpls.memory_bytes());
         if (settings_.visibility.imperfect) make_imperfect_maps(vpls, context);
         make_hierarchy(vpls, context);
+        if (matrix_) make_matrix(vpls, context);
         if (settings_.lists.size > 0 && !maps_) make_lists(vpls, context.cancelled);
         const int columns = (options_.width + tile_size_ - 1) / tile_size_;
         const int rows = (options_.height + tile_size_ - 1) / tile_size_;
@@ -106,6 +109,7 @@ class VplEstimator final : public Estimator {
             statistics.seconds["light_hierarchy"] = hierarchy_seconds_;
             statistics.values["light_hierarchy_bytes"] = double(hierarchy_bytes_);
         }
+        if (matrix_) matrix_->add_statistics(statistics);
         if (cuts_.cuts > 0) {
             statistics.values["lightcuts"] = double(cuts_.cuts);
             statistics.values["lightcut_pairs"] = double(cuts_.pairs);
@@ -179,8 +183,21 @@ class VplEstimator final : public Estimator {
             std::max(hierarchy_bytes_, hierarchy_ ? hierarchy_->memory_bytes() : tree_->memory_bytes());
     }
 
+    void make_matrix(const lights::VplSet& vpls, const PassContext& context) {
+        selects_by_matrix_ = false;  // receivers are looked for without
+        const std::uint64_t key = hash_keys(options_.seed, context.index, 0x6d6174726978ull);
+        const auto pixels =
+            spread_pixels(options_.width, options_.height, eye_paths_for(settings_.selection.matrix), key);
+        std::vector<lights::MatrixReceiver> receivers;
+        with_tile(context, vpls, nullptr, [&](EyeTile<Media>& tile) {
+            receivers = find_receivers(scene_, options_, context, pixels, tile);
+        });
+        matrix_->make(vpls, receivers, bound_, key, counters_, context.cancelled);
+        selects_by_matrix_ = true;
+    }
     SelectedBy selected_by() const {
-        return {hierarchy_ ? &*hierarchy_ : nullptr, tree_ ? &*tree_ : nullptr, power_ ? &*power_ : nullptr};
+        return {hierarchy_ ? &*hierarchy_ : nullptr, tree_ ? &*tree_ : nullptr, power_ ? &*power_ : nullptr,
+                selects_by_matrix_ ? &matrix_->selection() : nullptr};
     }
 
     struct Box {
@@ -339,10 +356,12 @@ class VplEstimator final : public Estimator {
     int tile_size_;
     SurfaceItems items_;
     std::optional<lights::VplLeaves> leaves_;
-    // Of this pass; neither: all lights are looked at.
+    // Of this pass; none: all lights are looked at.
     std::optional<lights::LightHierarchy> hierarchy_;  ///< for cuts
     std::optional<lights::LightTree> tree_;            ///< to draw from
     std::optional<lights::PowerCandidates> power_;     ///< to draw candidates from
+    std::optional<VplMatrix> matrix_;                  ///< nothing: not by a matrix
+    bool selects_by_matrix_ = false;
     double hierarchy_seconds_ = 0.0;
     std::size_t hierarchy_bytes_ = 0;
     lights::LightcutCounters cuts_;

@@ -60,6 +60,8 @@ class EyeTile {
     const VplPixel& sum(int lane) const { return lanes_[std::size_t(lane)].sum; }
     /// What the lane's eye path met first, after run().
     const SeenPixel& seen(int lane) const { return lanes_[std::size_t(lane)].seen; }
+    /// From now on receivers are added to these, and nothing arrives at them.
+    void collect_receivers(std::vector<lights::MatrixReceiver>& all) { collected_ = &all; }
     /// Do lanes to come gather VPLs and compensate? Else receivers are seen, and nothing arrives at them.
     void gathers(bool yes) { gathers_ = yes; }
     CompensationCost compensation_cost() const { return compensation_.cost(); }
@@ -140,7 +142,7 @@ class EyeTile {
         return {scene_, scratch_, walk_.rays, walk_.tracking, walk_.cancelled};
     }
 
-    /// By the hierarchy; nothing yet where points wait for each other.
+    /// By the hierarchy or the matrix; nothing yet where points wait for each other.
     lights::TileLight gather_selected() {
         if (!receivers_.any_active) return {};
         if (selection_.collects()) {
@@ -279,6 +281,10 @@ class EyeTile {
         const int max_depth = settings_.eye.max_depth;
         const std::int32_t vpl_depth =
             max_depth < 0 ? std::numeric_limits<std::int32_t>::max() : max_depth - path.depth() - 1;
+        if (collected_) {
+            collected_->push_back({vertex, throughput, state, vpl_depth});
+            return;
+        }
         lane.receiver = vertex.on_surface() ? ReceiverKind::surface : ReceiverKind::medium;
         receivers_.set(index, vertex, throughput, state, core::Rng(walk_.rng.next_u32()), vpl_depth);
         compensation_.add(index, vertex, throughput, state, vpl_depth);
@@ -306,6 +312,7 @@ class EyeTile {
     std::array<Lane, lights::ReceiverTile::width> lanes_;
     lights::ReceiverTile receivers_;
     bool gathers_ = true;
+    std::vector<lights::MatrixReceiver>* collected_ = nullptr;
 };
 
 }  // namespace mote::integrators

@@ -56,6 +56,24 @@ std::shared_ptr<Object> make_resampling(const Properties& p, Kind kind) {
     return std::make_shared<Selection>(s);
 }
 
+std::shared_ptr<Object> make_matrix(const Properties& p, Kind kind) {
+    using Rows = lights::RowVisibilitySettings::Kind;
+    SelectionSettings s = common(p, kind);
+    lights::MatrixSettings& m = s.matrix;
+    m.rows = std::uint32_t(p.get_int_in("rows", m.rows, 1, 1 << 16));
+    m.columns = std::uint32_t(p.get_int_in("columns", m.columns, 1, 1 << 20));
+    m.slices = std::uint32_t(p.get_int_in("slices", m.slices, 1, 1 << 12));
+    const std::string rows =
+        p.get_choice("row_visibility", "rays", {"rays", "shadow_map", "imperfect_shadow_map"});
+    m.visibility.kind = rows == "rays"         ? Rows::rays
+                        : rows == "shadow_map" ? Rows::shadow_maps
+                                               : Rows::imperfect;
+    m.visibility.map_size = int(p.get_int_in("map_size", m.visibility.map_size, 4, 1024));
+    m.visibility.imperfect.size = m.visibility.map_size;
+    m.max_bytes = s.max_bytes;
+    return std::make_shared<Selection>(s);
+}
+
 const Parameter most_megabytes{"max_megabytes", "float", "4096",
                                "of the hierarchy while it is built; larger ones are refused"};
 const std::vector<Parameter> cut_parameters{
@@ -79,6 +97,17 @@ const std::vector<Parameter> resampling_parameters{
      "unbiased, biased: on surfaces what a pixel of the tile before has chosen and sees is a candidate, too; "
      "biased leaves out the weights that make up for what only one of them sees"},
     most_megabytes};
+const std::vector<Parameter> matrix_parameters{
+    {"rows", "integer", "256",
+     "receivers at which all lights are looked at, of all slices; rounded up to 16 for each"},
+    {"columns", "integer", "256",
+     "groups of lights of a slice; one light of each lights a tile of 4 x 4 pixels"},
+    {"slices", "integer", "16", "groups of receivers of like place and normal, each with its own columns"},
+    {"row_visibility", "string", "rays",
+     "what stands between rows and lights: rays, shadow_map (volumetric, of what a receiver sees) or "
+     "imperfect_shadow_map; with maps only the probabilities of lights err"},
+    {"map_size", "integer", "32", "texels along an edge of such a map"},
+    {"max_megabytes", "float", "4096", "of rows and columns; larger ones are refused"}};
 
 std::string example(const std::string& type) { return "<selection type=\"" + type + "\"/>"; }
 
@@ -117,8 +146,8 @@ std::string why_right_or_not(const SelectionSettings& s) {
                "weights 1/M of reuse leave visibility and support of the neighbour out";
     if (s.resamples())
         return "unbiased; tiles of 4 x 4 look at the same candidates, each pixel chooses its own";
-    return s.by_hierarchy() ? "unbiased; the same lights for a tile of 4 x 4"
-                            : "exact, time grows with the number of VPLs";
+    return s.selects() ? "unbiased; the same lights for a tile of 4 x 4"
+                       : "exact, time grows with the number of VPLs";
 }
 
 std::string chosen(const SelectionSettings& s) {
@@ -137,8 +166,28 @@ std::string chosen(const SelectionSettings& s) {
             return fmt::format("{} lights a tile, drawn by the light hierarchy", s.samples);
         case Kind::resampling:
             return chosen_by_resampling(s);
+        case Kind::matrix:
+            return fmt::format(
+                "matrix row-column sampling, {} rows, {} columns for each of {} slices of receivers",
+                s.matrix.rows_a_slice() * s.matrix.slices, s.matrix.columns, s.matrix.slices);
     }
     return "";
+}
+
+void plan_matrix(Plan& plan, const lights::MatrixSettings& m, const GatherSize& size) {
+    using Rows = lights::RowVisibilitySettings::Kind;
+    const double rows = double(m.rows_a_slice() * m.slices);
+    plan.run("memory of the matrix",
+             fmt::format("{:.1f} MB", double(m.bytes(std::size_t(size.vpls), 1)) * 1e-6),
+             fmt::format("{:.0f} bytes a VPL, besides its own; one slice after the other",
+                         double(m.bytes(1000, 1)) * 1e-3));
+    plan.run("rows of the matrix",
+             m.visibility.kind == Rows::rays          ? "by rays"
+             : m.visibility.kind == Rows::shadow_maps ? "by volumetric shadow maps of receivers"
+                                                      : "by imperfect shadow maps of receivers",
+             fmt::format(
+                 "{:.2g} pairs a pass, of receivers on surfaces and in media; a picture's gather has {:.2g}",
+                 rows * size.vpls, size.receivers * size.points * double(m.columns)));
 }
 
 }  // namespace
@@ -150,6 +199,7 @@ void plan_selection(Plan& plan, const SelectionSettings& s, const GatherSize& si
     if (s.resamples() && s.resampling.reuse == lights::SpatialReuse::biased)
         plan.miss("light at the ends of shadows", "reuse with weights 1/M takes a part of it",
                   "asked for: reuse 'unbiased' keeps it, and costs a second shadow ray for what arrives");
+    if (s.by_matrix()) plan_matrix(plan, s.matrix, size);
     if (!s.by_hierarchy()) return;
     const std::size_t bytes =
         s.cuts() || s.by_power() ? lights::LightHierarchy::bytes_a_light : lights::LightTree::bytes_a_light;
@@ -187,6 +237,11 @@ void register_selection(Registry& registry) {
         "Few lights for each pixel, chosen among many candidates by what they would send if nothing stood "
         "between: unbiased, but for biased reuse.",
         resampling_parameters, make_resampling, Kind::resampling);
+    add("matrix",
+        "Matrix row-column sampling: groups of lights that send alike to a few receivers, for each slice of "
+        "the "
+        "picture, and one light drawn anew from each: unbiased.",
+        matrix_parameters, make_matrix, Kind::matrix);
 }
 
 }  // namespace mote::integrators

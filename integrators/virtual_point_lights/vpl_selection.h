@@ -6,6 +6,7 @@
 #include "core/render/plan.h"
 #include "core/scene/requirements.h"
 #include "lights/selection/lightcut.h"
+#include "lights/selection/matrix_selection.h"
 #include "lights/selection/spatial_reuse.h"
 
 namespace mote::integrators {
@@ -20,16 +21,27 @@ struct ResamplingSettings {
 };
 
 struct SelectionSettings {
-    enum class Kind : std::uint8_t { all, lightcuts, multidimensional, stochastic, light_tree, resampling };
+    enum class Kind : std::uint8_t {
+        all,
+        lightcuts,
+        multidimensional,
+        stochastic,
+        light_tree,
+        matrix,
+        resampling
+    };
 
     Kind kind = Kind::all;
     lights::LightcutSettings cut;
+    lights::MatrixSettings matrix;
     std::uint32_t samples = 64;  ///< drawn for a tile of receivers; resampled for each
     ResamplingSettings resampling;
     std::size_t max_bytes = std::size_t(4) << 30;  ///< of the hierarchy while it is built
     core::SourceLocation where;
 
-    bool by_hierarchy() const { return kind != Kind::all; }
+    bool selects() const { return kind != Kind::all; }
+    bool by_hierarchy() const { return selects() && !by_matrix(); }
+    bool by_matrix() const { return kind == Kind::matrix; }
     /// A sum of groups, which looks at what arrives; else lights are drawn without bias.
     bool cuts() const { return kind == Kind::lightcuts || kind == Kind::multidimensional; }
     bool resamples() const { return kind == Kind::resampling; }
@@ -52,7 +64,7 @@ class Selection : public core::Object {
     SelectionSettings settings_;
 };
 
-/// all, lightcuts, multidimensional_lightcuts, stochastic_lightcuts, light_tree, resampling.
+/// all, lightcuts, multidimensional_lightcuts, stochastic_lightcuts, light_tree, matrix, resampling.
 void register_selection(core::Registry& registry);
 
 /// What a pass is about to gather, for the plan.

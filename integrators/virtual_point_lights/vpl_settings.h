@@ -44,7 +44,7 @@ struct VplSettings {
     bool compensates() const { return compensation.enabled || screen_space.has_value(); }
     /// VPLs are shared out among the eye paths of a pixel, instead of all of them meeting every one.
     bool vpls_shared_out() const {
-        if (selection.by_hierarchy()) return false;
+        if (selection.selects()) return false;
         return !compensation.enabled || compensation.strategy == compensation::Strategy::one_to_one;
     }
 
@@ -59,7 +59,7 @@ struct VplSettings {
     lights::LightPathSettings light_paths() const {
         lights::LightPathSettings s;
         s.paths = paths, s.rr_depth = eye.rr_depth;
-        s.keep_states = !selection.by_hierarchy();  // rays begin at receivers
+        s.keep_states = !selection.selects();  // rays begin at receivers
         s.max_vertices = eye.max_depth < 0 ? -1 : std::max(0, eye.max_depth - 2);
         return s;
     }

@@ -49,6 +49,7 @@ IDEAS = {
     "a gather over pairs": (r"(?<!void )\bgather_pairs\(", {
         "lights/virtual_lights/vpl_gather.h": 1,         # a tile and all its lights, by rays
         "lights/shadow_maps/shadow_map_gather.h": 1,     # a light and all its receivers, by its map
+        "lights/selection/matrix_rows.cpp": 1,           # rows of a matrix: all lights, each remembered by itself
     }),
 }
 

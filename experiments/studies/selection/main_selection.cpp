@@ -14,6 +14,7 @@
 #include "integrators/eye_path/eye_ray.h"
 #include "integrators/register_integrators.h"
 #include "integrators/virtual_point_lights/vpl_eye_tile.h"
+#include "integrators/virtual_point_lights/vpl_matrix.h"
 #include "lights/register_lights.h"
 #include "lights/selection/vertex_bounds.h"
 #include "media/register_media.h"
@@ -40,8 +41,19 @@ double now(clockid_t clock) {
     return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
 }
 
+lights::MatrixSettings matrix_of(const std::vector<std::string>& words) {
+    using Rows = lights::RowVisibilitySettings::Kind;
+    lights::MatrixSettings m;
+    m.rows = std::uint32_t(std::stoul(words[1])), m.columns = std::uint32_t(std::stoul(words[2]));
+    if (!words[3].empty()) m.slices = std::uint32_t(std::stoul(words[3]));
+    if (words[4] == "maps") m.visibility.kind = Rows::shadow_maps;
+    if (words[4] == "imperfect") m.visibility.kind = Rows::imperfect;
+    return m;
+}
+
 /// "lightcuts:THRESHOLD:MAX_CUT", "multidimensional:THRESHOLD:MAX_CUT", "stochastic:N", "tree:N",
-/// "ris:CANDIDATES:SAMPLES:none|unbiased|biased:cut|tree|power".
+/// "ris:CANDIDATES:SAMPLES:none|unbiased|biased:cut|tree|power",
+/// "matrix:ROWS:COLUMNS:SLICES:VISIBILITY" (rays, maps, imperfect).
 SelectionSettings settings_of(const std::string& text) {
     std::vector<std::string> words;
     std::istringstream stream(text);
@@ -64,9 +76,12 @@ SelectionSettings settings_of(const std::string& text) {
     s.kind = words[0] == "lightcuts"          ? Kind::lightcuts
              : words[0] == "multidimensional" ? Kind::multidimensional
              : words[0] == "stochastic"       ? Kind::stochastic
+             : words[0] == "matrix"           ? Kind::matrix
                                               : Kind::light_tree;
     if (s.cuts())
         s.cut = {std::stof(words[1]), std::uint32_t(std::stoul(words[2]))};
+    else if (s.by_matrix())
+        s.matrix = matrix_of(words);
     else
         s.samples = std::uint32_t(std::stoul(words[1]));
     return s;
@@ -116,13 +131,33 @@ class Study {
         return double(vpls_.memory_bytes() + (drawn ? tree_->memory_bytes() : hierarchy_->memory_bytes())) /
                double(std::max<std::size_t>(vpls_.lights.size(), 1));
     }
+    /// Rows and columns of a matrix, for the tiles to come, from all of the picture; nothing for others.
+    void prepare(const SelectionSettings& selection) {
+        preparing = 0.0;
+        matrix_.reset();
+        if (!selection.by_matrix()) return;
+        core::WalkContext walk;
+        const auto pixels =
+            spread_pixels(options_.width, options_.height, eye_paths_for(selection.matrix), 1);
+        VplSettings settings = settings_;
+        settings.selection = selection;
+        EyeTile<true> eye(*scene_, settings, arguments_.bound, vpls_, nullptr, *scratch_, walk);
+        const std::atomic<bool> cancelled = false;
+        const double begin = now(CLOCK_PROCESS_CPUTIME_ID);
+        const auto receivers = find_receivers(*scene_, options_, {0, *filter_, cancelled}, pixels, eye);
+        matrix_.emplace(*scene_, selection.matrix, 1);
+        SharedCounters counters;
+        matrix_->make(vpls_, receivers, arguments_.bound, 1, counters, {});
+        preparing = now(CLOCK_PROCESS_CPUTIME_ID) - begin;
+    }
     /// `seconds`: of gathering alone, without eye paths and direct light, which are the same for all.
     Pixels render(std::size_t tile, const SelectionSettings& selection, std::uint32_t key, double& seconds) {
         VplSettings settings = settings_;
         settings.selection = selection;
         core::WalkContext walk;
-        EyeTile<true> eye(*scene_, settings, arguments_.bound, vpls_, nullptr, *scratch_, walk, {}, {},
-                          SelectedBy{&*hierarchy_, &*tree_, &*power_});
+        EyeTile<true> eye(
+            *scene_, settings, arguments_.bound, vpls_, nullptr, *scratch_, walk, {}, {},
+            SelectedBy{&*hierarchy_, &*tree_, &*power_, matrix_ ? &matrix_->selection() : nullptr});
         const std::atomic<bool> cancelled = false;
         const core::PassContext pass{0, *filter_, cancelled};
         eye.draw_apart(key);  // eye paths have generators of their own
@@ -150,7 +185,7 @@ class Study {
         return light;
     }
 
-    double tracing = 0.0, building = 0.0, planting = 0.0, rays = 0.0;
+    double tracing = 0.0, building = 0.0, planting = 0.0, preparing = 0.0, rays = 0.0;
     lights::LightcutCounters cuts;
 
   private:
@@ -164,6 +199,7 @@ class Study {
     std::optional<lights::LightTree> tree_;
     std::optional<lights::PowerCandidates> power_;
     static constexpr int task = 16;  ///< pixels of VplEstimator
+    std::optional<VplMatrix> matrix_;
     std::unique_ptr<core::PixelFilter> filter_ = core::make_pixel_filter("box", 0.5f, 0.5f);
     std::unique_ptr<lights::GatherScratch> scratch_ = std::make_unique<lights::GatherScratch>();
     std::vector<glm::ivec2> tiles_;
@@ -197,6 +233,7 @@ Reference reference_of(Study& study, std::size_t tile, const Arguments& a) {
 void measure(Study& study, const std::vector<Reference>& references, const std::string& method,
              const Arguments& a) {
     double seconds = 0.0, nothing = 0.0, mean = 0.0, moved = 0.0, squares = 0.0, relative = 0.0, worst = 0.0;
+    study.prepare(settings_of(method));
     study.rays = 0.0, study.cuts = {};
     for (std::size_t t = 0; t < study.tiles(); ++t)
         for (const double v : references[t].mean) mean += v / double(16 * study.tiles());
@@ -218,6 +255,8 @@ void measure(Study& study, const std::vector<Reference>& references, const std::
     double spread = 0.0;  // of the mean square over tiles
     for (const double v : of_tiles) spread += (v - rel) * (v - rel);
     spread = std::sqrt(spread) / double(of_tiles.size());
+    const double prepared = study.preparing;
+    study.prepare(settings_of("tree:1"));
     // What eye paths and direct light take, which all methods have.
     for (std::size_t t = 0; t < study.tiles(); ++t) {
         double own = 0.0;
@@ -229,11 +268,13 @@ void measure(Study& study, const std::vector<Reference>& references, const std::
     const auto root = [](double x) { return x > 0.0 ? std::sqrt(x) : 0.0; };
     const double pairs = study.cuts.cuts > 0 ? double(study.cuts.pairs) / double(study.cuts.cuts) : 0.0;
     std::cout << fmt::format(
-                     "{},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.2f},{:.2f},{:.0f},{:.0f},{:.2f}\n", method,
-                     study.lights(), 100.0 * root(rel), rel > 0.0 ? 50.0 * spread / std::sqrt(rel) : 0.0,
-                     100.0 * root(squares / n) / mean, 100.0 * moved / n / mean, 100.0 * worst,
-                     seconds / n * pixels, (seconds - nothing) / n * pixels, study.rays / n, pairs,
-                     study.cuts.cuts > 0 ? double(study.cuts.at_limit) / double(study.cuts.cuts) : 0.0)
+                     "{},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.2f},{:.2f},{:.0f},{:.0f},{:.2f},{:.2f}\n",
+                     method, study.lights(), 100.0 * root(rel),
+                     rel > 0.0 ? 50.0 * spread / std::sqrt(rel) : 0.0, 100.0 * root(squares / n) / mean,
+                     100.0 * moved / n / mean, 100.0 * worst, seconds / n * pixels,
+                     (seconds - nothing) / n * pixels, study.rays / n, pairs,
+                     study.cuts.cuts > 0 ? double(study.cuts.at_limit) / double(study.cuts.cuts) : 0.0,
+                     prepared)
               << std::flush;
 }
 
@@ -245,7 +286,7 @@ int main(int argc, char** argv) {
     app.add_option("scene", a.scene, "scene file, with media")->required();
     app.add_option("methods", a.methods,
                    "lightcuts:T:N multidimensional:T:N stochastic:N tree:N "
-                   "ris:CANDIDATES:SAMPLES:REUSE:BY")
+                   "ris:CANDIDATES:SAMPLES:REUSE:BY matrix:ROWS:COLUMNS:SLICES:VISIBILITY")
         ->required();
     app.add_option("--paths", a.paths, "light paths");
     app.add_option("--tiles", a.tiles, "of 4 x 4 pixels");
@@ -267,6 +308,6 @@ int main(int argc, char** argv) {
     std::cerr << fmt::format("reference in {:.1f} s\n", now(CLOCK_THREAD_CPUTIME_ID) - begin);
     std::cout
         << "method,lights,relative_error_percent,its_standard_error,error_of_mean_percent,bias_percent,worst_"
-           "percent,picture_seconds,gather_seconds,rays_a_pixel,groups_a_cut,at_limit\n";
+           "percent,picture_seconds,gather_seconds,rays_a_pixel,groups_a_cut,at_limit,prepare_seconds\n";
     for (const std::string& method : a.methods) measure(study, references, method, a);
 }
