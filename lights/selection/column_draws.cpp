@@ -26,10 +26,14 @@ ColumnDraws::ColumnDraws(ColumnClusters clusters, std::span<const float> weights
     }
 }
 
+double ColumnDraws::weight(std::size_t i) const {
+    const auto next = std::upper_bound(clusters_.first.begin(), clusters_.first.end(), i);
+    return upto_[i] - (i > *(next - 1) ? upto_[i - 1] : 0.0);
+}
+
 double ColumnDraws::probability(std::size_t i) const {
     const auto next = std::upper_bound(clusters_.first.begin(), clusters_.first.end(), i);
-    const std::size_t first = *(next - 1), last = *next - 1;
-    return (upto_[i] - (i > first ? upto_[i - 1] : 0.0)) / upto_[last];
+    return weight(i) / upto_[*next - 1];
 }
 
 void ColumnDraws::draw(Rng& rng, std::vector<WeightedVpl>& drawn) const {

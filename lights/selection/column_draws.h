@@ -16,6 +16,8 @@ class ColumnDraws {
 
     std::size_t size() const { return clusters_.size(); }
     const ColumnClusters& clusters() const { return clusters_; }
+    /// Of the i-th of all members, in units of its cluster.
+    double weight(std::size_t i) const;
     /// Probability of the i-th of all members within its cluster.
     double probability(std::size_t i) const;
     /// Appends a light of each cluster.

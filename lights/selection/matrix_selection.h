@@ -40,6 +40,11 @@ class MatrixSelection {
     MatrixSelection(const RowContext& context, std::span<const MatrixReceiver> receivers,
                     const MatrixSettings& settings, std::uint64_t key);
 
+    /// Of slices that are known.
+    MatrixSelection(PlaceTree tree, std::vector<ColumnDraws> draws)
+        : tree_(std::move(tree)), draws_(std::move(draws)) {}
+
+    const PlaceTree& tree() const { return tree_; }  ///< of receivers
     std::size_t slices() const { return draws_.size(); }
     /// The slice in which a tile lies. Precondition: a lane is not idle.
     std::size_t slice_of(const ReceiverLanes& receivers) const;

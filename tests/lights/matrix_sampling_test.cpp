@@ -8,6 +8,7 @@
 #include "core/scene/scene.h"
 #include "lights/selection/column_split.h"
 #include "lights/selection/light_clusters.h"
+#include "lights/selection/shared_columns.h"
 #include "lights/virtual_lights/particle_tracer.h"
 #include "tests/lights/random_lights.h"
 #include "tests/support/catch.h"
@@ -394,6 +395,49 @@ TEST_CASE("More columns than lights are all lights, each once", "[light_selectio
     REQUIRE(drawn.size() == room.vpls.lights.size());
     for (std::size_t j = 0; j < drawn.size(); ++j) CHECK((drawn[j].index == j && drawn[j].weight == 1.0f));
     CHECK(room.light(tile, lights::DrawnVpls{drawn}) == room.light(tile, lights::VplRange{}));
+}
+
+TEST_CASE("Clusters of one frame serve the lights of another, without bias",
+          "[light_selection][matrix][statistics]") {
+    constexpr double critical = 3.3;
+    Rng rng(9);
+    Room room(diffuse, 300), other(diffuse, 200), one(diffuse, 1);
+    other.vpls = lights::trace_light_paths(*room.scene, {.paths = 250}, 8, 3, SamplerKind::sobol);
+    other.vpls.lights[5].intensity = Rgb(0.0f);
+    const lights::ReceiverTile tile = other.tile(100);
+    const double all = other.light(tile, lights::VplRange{});
+    const auto settings = settings_of(32, 24, 2);
+    std::array<double, 2> error{};
+    // From a frame like it, and from one that had hardly any light.
+    for (Room* before : {&room, &one}) {
+        const lights::SharedColumns shared(
+            before->vpls, MatrixSelection(before->context(), before->receivers, settings, 1));
+        const MatrixSelection matrix = shared.for_lights(other.vpls);
+        for (std::size_t s = 0; s < matrix.slices(); ++s)
+            CHECK(matrix.slice(s).clusters().members.size() == other.vpls.lights.size() - 1);
+        std::vector<WeightedVpl> drawn;
+        const Mean found = mean_of(
+            3000, [&] { return other.light(tile, lights::DrawnVpls{matrix.draw(tile, rng, drawn)}); });
+        INFO(found.mean << " +- " << found.error << " of " << all);
+        CHECK(std::fabs(found.mean - all) < critical * found.error);
+        CHECK(critical * found.error < 0.1 * all);
+        error[before == &one] = found.error;
+        // Weights of the lights before are others.
+        if (before == &room)
+            CHECK_FALSE((matrix.slice(0).clusters().members == shared.found().slice(0).clusters().members));
+    }
+    CHECK(error[0] < 0.5 * error[1]);
+    // Its own lights join their own clusters; none at all is dealt with.
+    const lights::SharedColumns shared(room.vpls,
+                                       MatrixSelection(room.context(), room.receivers, settings, 1));
+    const MatrixSelection own = shared.for_lights(room.vpls);
+    std::size_t moved = 0;
+    for (std::size_t k = 0; k < own.slice(0).size(); ++k)
+        moved +=
+            own.slice(0).clusters().cluster(k).size() != shared.found().slice(0).clusters().cluster(k).size();
+    CHECK(moved < own.slice(0).size() / 4);  // a few stand in one place
+    CHECK(shared.for_lights({}).slice(0).size() == 0);
+    CHECK(lights::SharedColumns().for_lights(room.vpls).slices() == 0);
 }
 
 TEST_CASE("Maps of receivers see what rays see", "[light_selection][matrix]") {
