@@ -183,17 +183,29 @@ class VplEstimator final : public Estimator {
             std::max(hierarchy_bytes_, hierarchy_ ? hierarchy_->memory_bytes() : tree_->memory_bytes());
     }
 
+    /// The first of the passes that share rows makes them, whether or not it was made in this run.
     void make_matrix(const lights::VplSet& vpls, const PassContext& context) {
+        const std::uint32_t share = settings_.selection.shared_passes;
+        const PassContext first{context.index / share * share, context.filter, context.cancelled};
+        if (matrix_->pass() != first.index) {
+            if (first.index == context.index)
+                make_rows(vpls, first);
+            else
+                make_rows(trace_lights(first), first);
+        }
+        matrix_->use_for(context.index, vpls);
+        selects_by_matrix_ = true;
+    }
+    void make_rows(const lights::VplSet& vpls, const PassContext& first) {
         selects_by_matrix_ = false;  // receivers are looked for without
-        const std::uint64_t key = hash_keys(options_.seed, context.index, 0x6d6174726978ull);
+        const std::uint64_t key = hash_keys(options_.seed, first.index, 0x6d6174726978ull);
         const auto pixels =
             spread_pixels(options_.width, options_.height, eye_paths_for(settings_.selection.matrix), key);
         std::vector<lights::MatrixReceiver> receivers;
-        with_tile(context, vpls, nullptr, [&](EyeTile<Media>& tile) {
-            receivers = find_receivers(scene_, options_, context, pixels, tile);
+        with_tile(first, vpls, nullptr, [&](EyeTile<Media>& tile) {
+            receivers = find_receivers(scene_, options_, first, pixels, tile);
         });
-        matrix_->make(vpls, receivers, bound_, key, counters_, context.cancelled);
-        selects_by_matrix_ = true;
+        matrix_->make(first.index, vpls, receivers, bound_, key, counters_, first.cancelled);
     }
     SelectedBy selected_by() const {
         return {hierarchy_ ? &*hierarchy_ : nullptr, tree_ ? &*tree_ : nullptr, power_ ? &*power_ : nullptr,

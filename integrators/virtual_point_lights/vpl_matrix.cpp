@@ -33,24 +33,35 @@ VplMatrix::VplMatrix(const Scene& scene, const lights::MatrixSettings& settings,
                                                 hash_keys(seed, 0x726f7773ull));
 }
 
-void VplMatrix::make(const lights::VplSet& vpls, std::span<const lights::MatrixReceiver> receivers,
-                     float bound, std::uint64_t key, SharedCounters& counters, CancelToken cancelled) {
+void VplMatrix::make(std::uint32_t pass, const lights::VplSet& vpls,
+                     std::span<const lights::MatrixReceiver> receivers, float bound, std::uint64_t key,
+                     SharedCounters& counters, CancelToken cancelled) {
     const auto begin = std::chrono::steady_clock::now();
     RayCounters rays;
     TrackingCounters tracking;
     const lights::RowContext context{scene_,   vpls, bound,    settings_.visibility,
                                      &points_, rays, tracking, cancelled};
-    selection_ = {};  // of the pass before, whose memory is free now
-    selection_ = lights::MatrixSelection(context, receivers, settings_, key);
+    pass_.reset(), other_.reset(), shared_ = {};  // of the passes before, whose memory is free now
+    shared_ = {vpls, lights::MatrixSelection(context, receivers, settings_, key)};
+    pass_ = pass;
     counters.add(rays, tracking);
-    receivers_ += receivers.size(), bytes_ = std::max(bytes_, selection_.memory_bytes());
+    receivers_ += receivers.size(), bytes_ = std::max(bytes_, shared_.memory_bytes());
+    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+void VplMatrix::use_for(std::uint32_t pass, const lights::VplSet& vpls) {
+    other_.reset();
+    if (pass == pass_) return;
+    const auto begin = std::chrono::steady_clock::now();
+    other_ = shared_.for_lights(vpls);
+    bytes_ = std::max(bytes_, shared_.memory_bytes() + other_->memory_bytes());
     seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
 void VplMatrix::add_statistics(Statistics& statistics) const {
     statistics.seconds["matrix"] = seconds_;
     statistics.values["matrix_bytes"] = double(bytes_);
-    statistics.values["matrix_slices"] = double(selection_.slices());
+    statistics.values["matrix_slices"] = double(selection().slices());
     statistics.values["matrix_receivers"] += double(receivers_);
 }
 

@@ -9,6 +9,7 @@
 #include "integrators/eye_path/counters.h"
 #include "integrators/eye_path/eye_ray.h"
 #include "integrators/virtual_point_lights/vpl_selection.h"
+#include "lights/selection/shared_columns.h"
 
 namespace mote::integrators {
 
@@ -46,17 +47,24 @@ class VplMatrix {
   public:
     VplMatrix(const core::Scene& scene, const lights::MatrixSettings& settings, std::uint64_t seed);
 
-    /// For the gathers of a pass. Throws as MatrixSelection does.
-    void make(const lights::VplSet& vpls, std::span<const lights::MatrixReceiver> receivers, float bound,
-              std::uint64_t key, SharedCounters& counters, core::CancelToken cancelled);
-    const lights::MatrixSelection& selection() const { return selection_; }
+    /// The clusters at hand are those of the lights of this pass, or of none.
+    std::optional<std::uint32_t> pass() const { return pass_; }
+    /// Rows and clusters from the lights of a pass. Throws as MatrixSelection does.
+    void make(std::uint32_t pass, const lights::VplSet& vpls,
+              std::span<const lights::MatrixReceiver> receivers, float bound, std::uint64_t key,
+              SharedCounters& counters, core::CancelToken cancelled);
+    /// For the gathers of a pass that has these lights.
+    void use_for(std::uint32_t pass, const lights::VplSet& vpls);
+    const lights::MatrixSelection& selection() const { return other_ ? *other_ : shared_.found(); }
     void add_statistics(core::Statistics& statistics) const;
 
   private:
     const core::Scene& scene_;
     lights::MatrixSettings settings_;
     lights::SurfacePoints points_;  ///< of imperfect maps at rows
-    lights::MatrixSelection selection_;
+    std::optional<std::uint32_t> pass_;
+    lights::SharedColumns shared_;
+    std::optional<lights::MatrixSelection> other_;  ///< for lights of another pass
     std::uint64_t receivers_ = 0;
     double seconds_ = 0.0;
     std::size_t bytes_ = 0;

@@ -64,13 +64,14 @@ std::shared_ptr<Object> make_matrix(const Properties& p, Kind kind) {
     m.columns = std::uint32_t(p.get_int_in("columns", m.columns, 1, 1 << 20));
     m.slices = std::uint32_t(p.get_int_in("slices", m.slices, 1, 1 << 12));
     const std::string rows =
-        p.get_choice("row_visibility", "rays", {"rays", "shadow_map", "imperfect_shadow_map"});
+        p.get_choice("row_visibility", "shadow_map", {"rays", "shadow_map", "imperfect_shadow_map"});
     m.visibility.kind = rows == "rays"         ? Rows::rays
                         : rows == "shadow_map" ? Rows::shadow_maps
                                                : Rows::imperfect;
     m.visibility.map_size = int(p.get_int_in("map_size", m.visibility.map_size, 4, 1024));
     m.visibility.imperfect.size = m.visibility.map_size;
     m.max_bytes = s.max_bytes;
+    s.shared_passes = std::uint32_t(p.get_int_in("shared_passes", 1, 1, 1 << 20));
     return std::make_shared<Selection>(s);
 }
 
@@ -102,11 +103,15 @@ const std::vector<Parameter> matrix_parameters{
      "receivers at which all lights are looked at, of all slices; rounded up to 16 for each"},
     {"columns", "integer", "256",
      "groups of lights of a slice; one light of each lights a tile of 4 x 4 pixels"},
-    {"slices", "integer", "16", "groups of receivers of like place and normal, each with its own columns"},
-    {"row_visibility", "string", "rays",
+    {"slices", "integer", "4", "groups of receivers of like place and normal, each with its own columns"},
+    {"row_visibility", "string", "shadow_map",
      "what stands between rows and lights: rays, shadow_map (volumetric, of what a receiver sees) or "
      "imperfect_shadow_map; with maps only the probabilities of lights err"},
     {"map_size", "integer", "32", "texels along an edge of such a map"},
+    {"shared_passes", "integer", "1",
+     "passes that have the same rows and groups: each pass has new lights, which join the groups of those "
+     "that "
+     "stand most like them"},
     {"max_megabytes", "float", "4096", "of rows and columns; larger ones are refused"}};
 
 std::string example(const std::string& type) { return "<selection type=\"" + type + "\"/>"; }

@@ -34,7 +34,8 @@ struct SelectionSettings {
     Kind kind = Kind::all;
     lights::LightcutSettings cut;
     lights::MatrixSettings matrix;
-    std::uint32_t samples = 64;  ///< drawn for a tile of receivers; resampled for each
+    std::uint32_t shared_passes = 1;  ///< that have the same rows and clusters of a matrix
+    std::uint32_t samples = 64;       ///< drawn for a tile of receivers; resampled for each
     ResamplingSettings resampling;
     std::size_t max_bytes = std::size_t(4) << 30;  ///< of the hierarchy while it is built
     core::SourceLocation where;

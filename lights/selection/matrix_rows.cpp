@@ -14,24 +14,37 @@ namespace {
 
 constexpr std::size_t row_lanes = ReceiverLanes::width;
 constexpr std::size_t lights_a_task = 1024;  // lights of a task
-constexpr float most_value = 1e30f;          // squares of rows of it are finite in double precision
-constexpr float least_share = 1e-15f;        // columns below it have norms that single precision loses
+constexpr std::size_t sampled_lights = 2048;
+constexpr double least_light = 0.05;   // of the mean of rows: darker ones are not made as bright as others
+constexpr float most_value = 1e30f;    // squares of rows of it are finite in double precision
+constexpr float least_share = 1e-15f;  // columns below it have norms that single precision loses
 
 float average_of(const LaneLight& l, std::size_t i) {
     return std::min((l.r[i] + l.g[i] + l.b[i]) * (1.0f / 3.0f), most_value);
 }
+
+/// Some lights at all rows: seen and unhidden, column after column.
+struct Chunk {
+    std::size_t first, count, stride;  ///< every stride-th light
+    std::vector<float> seen, unhidden;
+
+    Chunk(std::size_t first_, std::size_t count_, std::size_t stride_, std::size_t rows)
+        : first(first_), count(count_), stride(stride_), seen(count_ * rows, 0.0f), unhidden(seen) {}
+    std::size_t column(std::size_t light) const { return (light - first) / stride; }
+};
 
 /// Remembers the light before V*.
 template <typename Visibility>
 struct Unhidden {
     Visibility& visibility;
     std::span<float> values;  ///< of a chunk
-    std::size_t first, rows, row;
+    const Chunk& chunk;
+    std::size_t rows, row;
 
     void operator()(std::span<ShadowPacket> packets, std::span<LaneLight> light) {
         for (const LaneLight& l : light)
             for (std::size_t i = 0; i < std::min(row_lanes, rows - row); ++i)
-                values[(l.vpl - first) * rows + row + i] = average_of(l, i);
+                values[chunk.column(l.vpl) * rows + row + i] = average_of(l, i);
         visibility(packets, light);
     }
 };
@@ -51,12 +64,6 @@ ReceiverTile tile_of(std::span<const MatrixReceiver> receivers) {
     }
     return tile;
 }
-
-/// Some lights at all rows: seen and unhidden, column after column.
-struct Chunk {
-    std::size_t first, count;
-    std::vector<float> seen, unhidden;
-};
 
 class Rows {
   public:
@@ -98,14 +105,14 @@ class Rows {
     template <typename Visibility>
     void gather_tile(Chunk& own, std::size_t t, const ReceiverTile& tile, Visibility& visibility,
                      GatherScratch& scratch) {
-        Unhidden<Visibility> both{visibility, own.unhidden, own.first, rows_, t * row_lanes};
+        Unhidden<Visibility> both{visibility, own.unhidden, own, rows_, t * row_lanes};
         const auto pairs = [&](const auto& visit) {
-            for (std::size_t j = own.first; j < own.first + own.count; ++j) visit(tile, WeightedVpl{j});
+            for (std::size_t k = 0; k < own.count; ++k) visit(tile, WeightedVpl{own.first + k * own.stride});
         };
         gather_pairs(context_.vpls, pairs, BoundedGeometry{context_.bound}, both, scratch,
                      [&](const LaneLight& l) {
                          for (std::size_t i = 0; i < std::min(row_lanes, rows_ - t * row_lanes); ++i)
-                             own.seen[(l.vpl - own.first) * rows_ + t * row_lanes + i] = average_of(l, i);
+                             own.seen[own.column(l.vpl) * rows_ + t * row_lanes + i] = average_of(l, i);
                      });
     }
 
@@ -121,6 +128,26 @@ double norm_of(std::span<const float> column) {
     double sum = 0.0;
     for (const float v : column) sum += double(v) * double(v);
     return std::sqrt(sum);
+}
+
+/// What rows are multiplied by, so that each has about as much light as the others: one over that of some
+/// lights. A receiver beside a light would decide alone what is alike.
+std::vector<float> row_scales(Rows& rows, std::size_t lights, std::size_t count) {
+    const std::size_t stride = std::max<std::size_t>(1, lights / sampled_lights);
+    Chunk some(0, (lights + stride - 1) / stride, stride, count);
+    rows.gather(some);
+    std::vector<double> sums(count);
+    double mean = 0.0;
+    for (std::size_t i = 0; i < some.seen.size(); ++i) sums[i % count] += double(some.seen[i]);
+    for (const double sum : sums) mean += sum / double(count);
+    std::vector<float> scales(count, 1.0f);
+    if (!(mean > 0.0)) return scales;
+    for (std::size_t i = 0; i < count; ++i) scales[i] = float(1.0 / std::max(sums[i] / mean, least_light));
+    return scales;
+}
+
+void scale_rows(std::span<float> values, std::span<const float> scales) {
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] *= scales[i % scales.size()];
 }
 
 /// Columns of a chunk into the matrix. Weights are norms so far.
@@ -184,10 +211,12 @@ ReducedMatrix reduced_matrix(const RowContext& context, std::span<const MatrixRe
     matrix.values.resize(matrix.rows * lights), matrix.weights.resize(lights);
     matrix.classes.resize(lights);
     Rows rows(context, receivers, key);
+    const auto scales = receivers.empty() || lights == 0 ? std::vector<float>(matrix.rows, 1.0f)
+                                                         : row_scales(rows, lights, matrix.rows);
     tbb::parallel_for(std::size_t(0), (lights + lights_a_task - 1) / lights_a_task, [&](std::size_t c) {
-        Chunk own{c * lights_a_task, std::min(lights_a_task, lights - c * lights_a_task), {}, {}};
-        own.seen.assign(own.count * matrix.rows, 0.0f), own.unhidden = own.seen;
+        Chunk own(c * lights_a_task, std::min(lights_a_task, lights - c * lights_a_task), 1, matrix.rows);
         if (!receivers.empty()) rows.gather(own);
+        scale_rows(own.seen, scales), scale_rows(own.unhidden, scales);
         take(own, context.vpls, matrix);
     });
     normalise(matrix);

@@ -30,7 +30,7 @@ enum class LightClass : std::uint8_t {
 
 struct ReducedMatrix {
     std::size_t rows = 0;
-    std::vector<float> values;   ///< columns, averages of the channels, in units of the largest
+    std::vector<float> values;   ///< columns, averages of the channels; rows have about the same light
     std::vector<float> weights;  ///< of lights: drawn in proportion to it
     std::vector<LightClass> classes;
 

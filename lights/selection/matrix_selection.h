@@ -20,7 +20,7 @@ namespace mote::lights {
 struct MatrixSettings {
     std::uint32_t rows = 256;     ///< of all slices; each has the same number, a multiple of 16
     std::uint32_t columns = 256;  ///< clusters of a slice
-    std::uint32_t slices = 16;
+    std::uint32_t slices = 4;
     RowVisibilitySettings visibility;
     std::size_t max_bytes = std::size_t(4) << 30;
 

@@ -3,6 +3,7 @@
 // best.
 #include "core/objects/error.h"
 #include "core/render/pass_runner.h"
+#include "core/render/render_driver.h"
 #include "core/scene/requirements.h"
 #include "tests/integrators/test_scenes.h"
 #include "tests/support/catch.h"
@@ -35,6 +36,13 @@ std::string resampled(const std::string& by, const std::string& reuse, int candi
                        candidates, samples, by, reuse);
 }
 
+std::string matrix(int rows, int columns, int slices, const std::string& visibility = "rays") {
+    return fmt::format(R"(<selection type="matrix"><integer name="rows" value="{}"/>
+        <integer name="columns" value="{}"/><integer name="slices" value="{}"/>
+        <string name="row_visibility" value="{}"/></selection>)",
+                       rows, columns, slices, visibility);
+}
+
 std::vector<core::Rgb> picture(const core::Scene& scene, const std::string& integrator,
                                core::Statistics* statistics = nullptr) {
     const auto method = integrator_from(integrator);
@@ -50,6 +58,9 @@ std::vector<core::Rgb> picture(const core::Scene& scene, const std::string& inte
 
 TEST_CASE("selected VPLs have the mean of volpath", "[vpl][selection][equality]") {
     const std::string two = R"(<integer name="eye_samples" value="2"/>)";
+    const std::string shared =
+        R"(<selection type="matrix"><integer name="rows" value="16"/><integer name="columns" value="9"/>
+        <integer name="shared_passes" value="5"/></selection>)";
     struct Case {
         std::string medium;
         std::vector<std::string> settings;
@@ -57,15 +68,15 @@ TEST_CASE("selected VPLs have the mean of volpath", "[vpl][selection][equality]"
     };
     const std::string haze =
         fog("0.8, 1.0, 1.3", R"(<phase type="hg"><float name="g" value="0.5"/></phase>)");
-    for (const Case& c :
-         {Case{"",
-               {drawn("light_tree", 8), drawn("stochastic_lightcuts", 8), resampled("power", "unbiased")},
-               1.15},
-          Case{haze,
-               {drawn("light_tree", 6), drawn("stochastic_lightcuts", 6) + two,
-                cut("multidimensional_lightcuts", 0.0) + two, resampled("power", "none"),
-                resampled("light_tree", "unbiased") + two},
-               1.25}}) {
+    for (const Case& c : {Case{"",
+                               {drawn("light_tree", 8), drawn("stochastic_lightcuts", 8), matrix(32, 9, 2),
+                                shared, resampled("power", "unbiased")},
+                               1.15},
+                          Case{haze,
+                               {drawn("light_tree", 6), drawn("stochastic_lightcuts", 6) + two,
+                                cut("multidimensional_lightcuts", 0.0) + two, matrix(32, 9, 2),
+                                resampled("power", "none"), resampled("light_tree", "unbiased") + two},
+                               1.25}}) {
         const auto scene = scene_from(box(c.medium.empty() ? mixed : grey, c.medium), 8);
         const auto reference = render_statistics(
             *scene,
@@ -119,16 +130,64 @@ TEST_CASE("Few rays for many VPLs", "[vpl][selection]") {
     CHECK(rays(resampled("power", "none", 256, 8)) < 0.002 * all);
     CHECK(rays(resampled("power", "unbiased", 256, 8)) < 0.004 * all);
     CHECK(rays(cut("lightcuts", 0.02, 1000)) < 0.2 * all);
+    // Sixteen rows of all lights, and 64 columns, of a picture of 256 pixels.
+    CHECK(rays(matrix(16, 64, 1)) < (0.03 + 16.0 / 256.0) * all);
 }
 
 TEST_CASE("Without lights there is nothing to select", "[vpl][selection][extremes]") {
     const auto scene = scene_from(box(grey, fog("0.8, 1.0, 1.3", "")), 8);
     for (const int paths : {0, 1})
-        for (const std::string& selection : {drawn("light_tree", 4), drawn("stochastic_lightcuts", 4),
-                                             cut("lightcuts", 0.02), cut("multidimensional_lightcuts", 0.02),
-                                             resampled("power", "unbiased"), resampled("cut", "biased")})
+        for (const std::string& selection :
+             {drawn("light_tree", 4), drawn("stochastic_lightcuts", 4), cut("lightcuts", 0.02),
+              cut("multidimensional_lightcuts", 0.02), resampled("power", "unbiased"),
+              resampled("cut", "biased"), matrix(32, 2, 2), matrix(1, 1, 1, "imperfect_shadow_map")})
             for (const core::Rgb& pixel : picture(*scene, vpl(selection, "", paths)))
                 CHECK((std::isfinite(pixel.x) && pixel.x >= 0.0f));
+}
+
+TEST_CASE("A matrix with more columns than lights is the picture of all VPLs", "[vpl][selection]") {
+    const std::string collisions = R"(<integer name="scattering_points" value="0"/>)";
+    for (const bool media : {false, true}) {
+        const auto scene = scene_from(media ? box(grey, fog("0.8, 0.8, 0.8", "")) : box(mixed, ""), 12);
+        const auto all = picture(*scene, vpl("", collisions, 60));
+        const auto same = picture(*scene, vpl(matrix(16, 5000, 2), collisions, 60));
+        const auto other = picture(*scene, vpl(matrix(16, 10, 2), collisions, 60));
+        std::size_t wrong = 0, differ = 0;
+        for (std::size_t i = 0; i < all.size(); ++i)
+            for (int k = 0; k < 3; ++k) {
+                wrong += std::fabs(same[i][k] - all[i][k]) > 3e-5f * all[i][k] + 1e-7f;
+                differ += std::fabs(other[i][k] - all[i][k]) > 1e-3f * all[i][k];
+            }
+        CHECK(wrong == 0);
+        CHECK(differ > all.size() / 2);
+    }
+}
+
+TEST_CASE("Passes that share the rows of a matrix have the bits that they have alone", "[vpl][selection]") {
+    const auto scene = scene_from(box(grey, fog("0.8, 1.0, 1.3", "")), 8);
+    const auto filter = core::make_pixel_filter("box", 0.5f, 0.5f);
+    const std::atomic<bool> never{false};
+    const auto pass_of = [&](int shared, std::vector<std::uint32_t> passes) {
+        const auto method = integrator_from(vpl(fmt::format(
+            R"(<selection type="matrix"><integer name="rows" value="16"/><integer name="columns" value="12"/>
+               <integer name="slices" value="1"/><integer name="shared_passes" value="{}"/></selection>)",
+            shared)));
+        const auto estimator =
+            method->prepare(*scene, core::RenderOptions{3, 8, 8, core::SamplerKind::sobol});
+        core::PassImage image(8, 8, method->layers(*scene).size());
+        for (const std::uint32_t pass : passes) {
+            image = core::PassImage(8, 8, method->layers(*scene).size());
+            REQUIRE(estimator->pass({pass, *filter, never}, image));
+        }
+        std::vector<core::Rgb> all;
+        for (std::size_t layer = 0; layer < method->layers(*scene).size(); ++layer)
+            all.insert(all.end(), image.layer(layer).begin(), image.layer(layer).end());
+        return all;
+    };
+    const auto fifth = pass_of(3, {0, 1, 2, 3, 4});  // the second of its three
+    CHECK((fifth == pass_of(3, {4})));
+    CHECK_FALSE((fifth == pass_of(1, {4})));
+    CHECK((pass_of(3, {3}) == pass_of(1, {3})));
 }
 
 TEST_CASE("What does not go together with a selection is refused by name", "[vpl][selection]") {
@@ -149,13 +208,15 @@ TEST_CASE("What does not go together with a selection is refused by name", "[vpl
         Catch::Contains("imperfect shadow maps"));
     CHECK_NOTHROW(integrator_from(vpl(selection, R"(<visibility type="imperfect_shadow_map"/>)")));
     const auto scene = scene_from(box(grey, ""), 8);
-    const std::string tight =
-        R"(<selection type="light_tree"><float name="max_megabytes" value="0.01"/></selection>)";
-    const auto method = integrator_from(vpl(tight, "", 4000));
-    core::Film film(8, 8, method->layers(*scene));
-    core::PassRunner runner(*scene, *method, 3, film);
-    const std::atomic<bool> cancelled = false;
-    CHECK_THROWS_AS(runner.run_pass(cancelled), core::InputError);
+    for (const std::string type : {"light_tree", "matrix"}) {
+        const std::string tight =
+            "<selection type=\"" + type + R"("><float name="max_megabytes" value="0.01"/></selection>)";
+        const auto method = integrator_from(vpl(tight, "", 4000));
+        core::Film film(8, 8, method->layers(*scene));
+        core::PassRunner runner(*scene, *method, 3, film);
+        const std::atomic<bool> cancelled = false;
+        CHECK_THROWS_AS(runner.run_pass(cancelled), core::InputError);
+    }
 }
 
 TEST_CASE("Plans say which selection is best, and why", "[vpl][selection][plan]") {
@@ -175,4 +236,8 @@ TEST_CASE("Plans say which selection is best, and why", "[vpl][selection][plan]"
         Contains("3 of 24 candidates drawn by power, with unbiased reuse") && !Contains("biased: too dark"));
     CHECK_THAT(plan_of(vpl(resampled("cut", "biased"), "", 300000), ""),
                Contains("biased: too dark") && Contains("1/M"));
+    CHECK_THAT(plan_of(vpl(matrix(200, 100, 4, "shadow_map"), "", 300000), fog("0.8, 1.0, 1.3", "")),
+               Contains("256 rows, 100 columns for each of 4 slices") &&
+                   Contains("shadow maps of receivers") && Contains("on surfaces and in media") &&
+                   Contains("MB"));
 }
