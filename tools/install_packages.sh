@@ -18,7 +18,7 @@ packages=(
   libopenimageio-dev openimageio-tools                # textures and PNG; its CMake config names its tools
   libassimp-dev                                       # mesh files
   libglm-dev libtbb-dev                               # vectors, threads
-  libeigen3-dev                                       # linear algebra, that ours is tested against
+  libeigen3-dev                                       # columns of light in clusters; what ours is tested against
   libpugixml-dev libcli11-dev libfmt-dev nlohmann-json3-dev
   catch2 libbenchmark-dev                             # tests and benchmarks
   python3-numpy python3-matplotlib                    # the figures of experiments/figures
