@@ -147,7 +147,7 @@ class Study {
         const auto receivers = find_receivers(*scene_, options_, {0, *filter_, cancelled}, pixels, eye);
         matrix_.emplace(*scene_, selection.matrix, 1);
         SharedCounters counters;
-        matrix_->make(vpls_, receivers, arguments_.bound, 1, counters, {});
+        matrix_->make(0, vpls_, receivers, arguments_.bound, 1, counters, {});
         preparing = now(CLOCK_PROCESS_CPUTIME_ID) - begin;
     }
     /// `seconds`: of gathering alone, without eye paths and direct light, which are the same for all.
