@@ -2,8 +2,10 @@
 // with what the tile before has chosen, and all points in media of an eye ray at once.
 #pragma once
 
+#include <algorithm>
 #include <deque>
 
+#include "core/math/morton.h"
 #include "integrators/virtual_point_lights/vpl_selection.h"
 #include "lights/selection/gather_points.h"
 #include "lights/selection/light_sampler.h"
@@ -20,6 +22,7 @@ class TileResampling {
         : settings_(settings),
           tree_(tree),
           power_(power),
+          vpls_(vpls),
           bound_(bound),
           resampling_(vpls, bound, settings.samples, settings.resampling.reuse) {}
 
@@ -74,15 +77,32 @@ class TileResampling {
                                ? sampler_.by_cut(*tree_, groups, bound_, n, rng)
                                : sampler_.by_tree(*tree_, groups, bound_, n, rng);
         candidates_.assign(drawn.begin(), drawn.end());
+        sort_by_place();
+    }
+
+    /// Choices are even steps through the candidates: where neighbours are alike they are spread evenly over
+    /// the lights. By power candidates come in the order of the hierarchy.
+    void sort_by_place() {
+        core::Bounds3 bounds;
+        for (const lights::WeightedVpl& c : candidates_) bounds.extend(vpls_.lights[c.index].position);
+        keys_.clear();
+        for (const lights::WeightedVpl& c : candidates_)
+            keys_.emplace_back(core::morton_code(vpls_.lights[c.index].position, bounds), c);
+        std::sort(keys_.begin(), keys_.end(), [](const auto& a, const auto& b) {
+            return a.first != b.first ? a.first < b.first : a.second.index < b.second.index;
+        });
+        for (std::size_t i = 0; i < keys_.size(); ++i) candidates_[i] = keys_[i].second;
     }
 
     const SelectionSettings& settings_;
     const lights::LightTree* tree_;
     const lights::PowerCandidates* power_;
+    const lights::VplSet& vpls_;
     float bound_;
     std::array<Points, 2> points_;  ///< by kind
     lights::LightSampler sampler_;
     std::vector<lights::WeightedVpl> candidates_;
+    std::vector<std::pair<std::uint64_t, lights::WeightedVpl>> keys_;
     lights::Resampling resampling_;
 };
 

@@ -7,7 +7,7 @@
 // z stands for c tiles, because it had a neighbour, too.
 //
 // Unbiased: a light y counts with the balance heuristic's weights, in which p_hat, without what a receiver
-// does to all light, stands for the density of a technique (Bitterli et al. 2020, Sec. 4.3; Lin et al. 2022):
+// does to all light, stands for the density of a technique (Bitterli et al. 2020, Sec. 4; Lin et al. 2022):
 //   m_own = p_x(y) / (p_x(y) + c p_z(y) V_z(y)),   m_reused = c p_z(y) V_z(y) / (p_x(y) + c p_z(y) V_z(y)).
 // Of what z has chosen V_z is known to be 1. Own candidates are chosen as if it were, and those that were
 // chosen and arrive cost a second shadow ray, from z: where it meets something, the light counts
