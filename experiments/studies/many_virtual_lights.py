@@ -15,7 +15,9 @@ import subprocess
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-METHODS = ["lightcuts:0.02:1000", "multidimensional:0.02:1000", "stochastic:64", "stochastic:256", "tree:64", "tree:256"]
+METHODS = ["lightcuts:0.02:1000", "multidimensional:0.02:1000", "stochastic:64", "stochastic:256", "tree:64", "tree:256",
+           "ris:256:16:none:cut", "ris:256:64:none:cut", "ris:256:16:unbiased:cut", "ris:1024:32:none:power",
+           "ris:1024:32:unbiased:power", "ris:1024:32:biased:power"]
 # Scene, light paths for a million lights, bound [1/m^2].
 SCENES = [("atrium", 1000000, 2.0), ("smoke_room", 410000, 20.0)]
 

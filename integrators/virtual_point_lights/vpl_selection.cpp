@@ -37,7 +37,7 @@ std::shared_ptr<Object> make_drawn(const Properties& p, Kind kind) {
     return std::make_shared<Selection>(s);
 }
 
-constexpr std::uint32_t default_candidates = 256, default_resampled = 8;
+constexpr std::uint32_t default_candidates = 256, default_resampled = 32;
 
 std::shared_ptr<Object> make_resampling(const Properties& p, Kind kind) {
     using Proposal = ResamplingSettings::Proposal;
@@ -93,7 +93,7 @@ const std::vector<Parameter> resampling_parameters{
     {"candidates_by", "string", "cut",
      "cut: one from each group of a cut of stochastic lightcuts; light_tree: drawn by the hierarchy; power: "
      "by what lights send in all"},
-    {"samples", "integer", "8", "of them chosen by each pixel, on surfaces and in media: shadow rays"},
+    {"samples", "integer", "32", "of them chosen by each pixel, on surfaces and in media: shadow rays"},
     {"reuse", "string", "none",
      "unbiased, biased: on surfaces what a pixel of the tile before has chosen and sees is a candidate, too; "
      "biased leaves out the weights that make up for what only one of them sees"},
@@ -209,7 +209,8 @@ void plan_selection(Plan& plan, const SelectionSettings& s, const GatherSize& si
     const std::size_t bytes =
         s.cuts() || s.by_power() ? lights::LightHierarchy::bytes_a_light : lights::LightTree::bytes_a_light;
     plan.run("memory of the light hierarchy", fmt::format("{:.1f} MB", size.vpls * double(bytes) * 1e-6),
-             fmt::format("at most {} bytes a VPL, besides its own", bytes));
+             fmt::format("at most {} bytes a VPL, besides its own{}", bytes,
+                         s.by_power() ? "; what draws by power takes 12 more" : ""));
 }
 
 void register_selection(Registry& registry) {

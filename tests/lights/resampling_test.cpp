@@ -2,6 +2,8 @@
 // what the tile before has chosen; 1/M weights do not.
 #include "lights/selection/resampling.h"
 
+#include <fmt/format.h>
+
 #include "core/scene/scene.h"
 #include "lights/selection/light_sampler.h"
 #include "lights/selection/power_candidates.h"
