@@ -125,7 +125,7 @@ void MoteVpl::check_upsampling(const Properties& properties) const {
 void MoteVpl::check_selection() const {
     const SelectionSettings& s = settings_.selection;
     if (!s.selects()) return;
-    const char* against = settings_.interleaving > 1                     ? "interleaving"
+    const char* against = settings_.interleaving > 1 && s.traces()       ? "interleaving"
                           : settings_.lists.size > 0                     ? "light_lists"
                           : settings_.compensates()                      ? "compensation"
                           : settings_.clamping.enabled                   ? "roughness_clamping"
@@ -180,7 +180,11 @@ void MoteVpl::plan_image_space(Plan& plan) const {
                  settings_.visibility.shadow_maps ? "no effect where shadow maps are used"
                                                   : "unbiased; pays where much is hidden from many VPLs");
     const int n = settings_.interleaving;
-    if (n > 1)
+    if (n > 1 && settings_.selection.by_hierarchy())
+        plan.run("interleaving",
+                 "the 4 x 4 pixels that share drawn lights lie " + std::to_string(n) + " apart",
+                 "unbiased: noise differs from pixel to pixel");
+    else if (n > 1)
         plan.run("interleaving",
                  std::to_string(n * n) + " shares of the VPLs, for pixels of " + std::to_string(n) + " x " +
                      std::to_string(n),
@@ -277,8 +281,10 @@ void register_mote_vpl(Registry& registry) {
                           "widen glossy lobes to the density of the light that is known: biased"});
     parameters.push_back(
         {"clamping_neighbours", "integer", "16", "m': a lobe reaches over so many lights of a pass"});
-    parameters.push_back({"interleaving", "integer", "1",
-                          "n, up to 8: a pixel of n x n gathers every n^2-th VPL, which counts n^2 times"});
+    parameters.push_back(
+        {"interleaving", "integer", "1",
+         "n, up to 8: a pixel of n x n gathers every n^2-th VPL, which counts n^2 times; where "
+         "lights are drawn, the pixels that share them lie n apart"});
     parameters.push_back(
         {"upsampling", "integer", "1",
          "n, up to 8: VPLs are gathered at one pixel of n x n, light between them comes from "

@@ -61,6 +61,7 @@ TEST_CASE("selected VPLs have the mean of volpath", "[vpl][selection][equality]"
     const std::string shared =
         R"(<selection type="matrix"><integer name="rows" value="16"/><integer name="columns" value="9"/>
         <integer name="shared_passes" value="5"/></selection>)";
+    const std::string apart = R"(<integer name="interleaving" value="2"/>)";
     struct Case {
         std::string medium;
         std::vector<std::string> settings;
@@ -73,8 +74,8 @@ TEST_CASE("selected VPLs have the mean of volpath", "[vpl][selection][equality]"
                                 shared, resampled("power", "unbiased")},
                                1.15},
                           Case{haze,
-                               {drawn("light_tree", 6), drawn("stochastic_lightcuts", 6) + two,
-                                cut("multidimensional_lightcuts", 0.0) + two, matrix(32, 9, 2),
+                               {drawn("light_tree", 6) + apart, drawn("stochastic_lightcuts", 6) + two,
+                                cut("multidimensional_lightcuts", 0.0) + two, matrix(32, 9, 2) + apart,
                                 resampled("power", "none"), resampled("light_tree", "unbiased") + two},
                                1.25}}) {
         const auto scene = scene_from(box(c.medium.empty() ? mixed : grey, c.medium), 8);
@@ -193,7 +194,6 @@ TEST_CASE("Passes that share the rows of a matrix have the bits that they have a
 TEST_CASE("What does not go together with a selection is refused by name", "[vpl][selection]") {
     const std::string selection = drawn("light_tree", 4);
     const std::vector<std::pair<std::string, std::string>> cases{
-        {R"(<integer name="interleaving" value="2"/>)", "interleaving"},
         {R"(<integer name="light_lists" value="4"/>)", "light_lists"},
         {R"(<boolean name="roughness_clamping" value="true"/>)", "roughness_clamping"},
         {R"(<compensation type="exact"/>)", "compensation"},
@@ -206,6 +206,9 @@ TEST_CASE("What does not go together with a selection is refused by name", "[vpl
     CHECK_THROWS_WITH(
         integrator_from(vpl(resampled("cut", "none"), R"(<visibility type="imperfect_shadow_map"/>)")),
         Catch::Contains("imperfect shadow maps"));
+    for (const std::string& s : {cut("lightcuts", 0.02), resampled("cut", "none")})
+        CHECK_THROWS_WITH(integrator_from(vpl(s, R"(<integer name="interleaving" value="2"/>)")),
+                          Catch::Contains("interleaving"));
     CHECK_NOTHROW(integrator_from(vpl(selection, R"(<visibility type="imperfect_shadow_map"/>)")));
     const auto scene = scene_from(box(grey, ""), 8);
     for (const std::string type : {"light_tree", "matrix"}) {

@@ -234,6 +234,61 @@ TEST_CASE("Every node holds what is below it, and one array holds all", "[light_
     for (const int count : seen) CHECK(count == 1);
 }
 
+TEST_CASE("Every part of a node that is drawn from holds what is below it", "[light_selection]") {
+    const Materials& materials = all_materials();
+    Rng rng(9);
+    for (const Lights kind : {Lights::plain, Lights::lobes, Lights::all}) {
+        const auto set = random_lights(rng, materials, kind, 3000, 2.0f, 0.3f);
+        const VplLeaves leaves(set);
+        const LightTree tree(leaves);
+        CHECK(tree.memory_bytes() <= LightTree::bytes_a_light * set.lights.size());
+        std::vector<int> seen(set.lights.size());
+        std::size_t outside = 0, wide = 0;
+        const auto holds = [&](const lights::LightParts& parts, int i, const lights::LightNode& leaf) {
+            const Vec3 lower(parts.lower_x[i], parts.lower_y[i], parts.lower_z[i]);
+            const Vec3 upper(parts.upper_x[i], parts.upper_y[i], parts.upper_z[i]);
+            const Vec3 axis(parts.axis_x[i], parts.axis_y[i], parts.axis_z[i]);
+            const float rounding = 1e-6f * glm::length(upper - lower) + 1e-6f;
+            bool held = glm::all(glm::lessThanEqual(lower, leaf.lower + rounding)) &&
+                        glm::all(glm::greaterThanEqual(upper, leaf.upper - rounding)) &&
+                        parts.least_depth[i] <= float(leaf.least_depth);
+            const bool surface =
+                leaf.kind == lights::LightKind::surface || leaf.kind == lights::LightKind::glossy;
+            held &= surface || parts.has_cosine[i] == 0.0f;
+            // A cone is asked for where there is a cosine or a lobe.
+            if (parts.has_cosine[i] == 1.0f || (parts.any_lobe && parts.g_high[i] > 0.0f))
+                held &= glm::dot(axis, leaf.axis()) >= parts.cos_angle[i] - 1e-6f;
+            if (parts.any_lobe && parts.g_high[i] > 0.0f)
+                held &= parts.g_low[i] <= float(leaf.g_low) / 65535.0f + 1e-6f &&
+                        parts.g_high[i] >= float(leaf.g_high) / 65535.0f - 1e-6f;
+            return held;
+        };
+        const auto visit = [&](const auto& self,
+                               const lights::LightTreeNode& node) -> std::vector<std::uint32_t> {
+            const lights::LightParts parts(node);
+            std::vector<std::uint32_t> all;
+            double share = 0.0;
+            for (int i = 0; i < node.count; ++i) {
+                const auto below = node.leaf(i) ? std::vector<std::uint32_t>{node.child[i]}
+                                                : self(self, tree.node(node.child[i]));
+                for (const std::uint32_t light : below) outside += !holds(parts, i, leaves.leaf(light));
+                if (node.leaf(i)) {
+                    ++seen[node.child[i]];
+                    wide += parts.cos_angle[i] < 0.9995f && parts.has_cosine[i] == 1.0f;  // 1.8 degrees
+                }
+                share += double(node.share[i]);
+                all.insert(all.end(), below.begin(), below.end());
+            }
+            if (std::fabs(share - 1.0) > 1e-4) FAIL_CHECK(share << " is not all energy");
+            return all;
+        };
+        CHECK(visit(visit, tree.root()).size() == set.lights.size());
+        CHECK(outside == 0);
+        CHECK(wide == 0);
+        for (const int count : seen) CHECK(count == 1);
+    }
+}
+
 TEST_CASE("Representatives are drawn in proportion to their energy", "[light_selection][statistics]") {
     lights::VplSet set;
     for (int j = 0; j < 6; ++j) {
