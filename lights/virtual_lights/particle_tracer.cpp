@@ -12,6 +12,8 @@ using namespace core;
 namespace {
 
 constexpr std::uint32_t chunk_size = 32;
+/// Traced side by side before they are put together: what a million lights take twice is little of them.
+constexpr std::uint32_t chunks_at_once = 1024;
 constexpr std::uint32_t light_path_stream =
     0x56504cu;  // keeps light paths apart from pixels of the same index
 
@@ -69,19 +71,31 @@ void append(VplSet& to, VplSet&& from) {
     to.tracking.add(from.tracking);
 }
 
+/// For so many times as much and a little more: lists that grow by doubling would hold it twice.
+void reserve(VplSet& set, double times) {
+    const auto reserve_list = [&](auto& list) {
+        list.reserve(std::size_t(1.05 * times * double(list.size())));
+    };
+    reserve_list(set.lights), reserve_list(set.details), reserve_list(set.states), reserve_list(set.starts);
+}
+
 }  // namespace
 
 VplSet trace_light_paths(const LitScene& scene, const LightPathSettings& settings, std::uint64_t seed,
                          std::uint32_t pass, SamplerKind sampler, CancelToken cancelled,
                          const LightPathStarts* starts) {
     const std::uint32_t chunks = (settings.paths + chunk_size - 1) / chunk_size;
-    std::vector<VplSet> parts(chunks);
-    tbb::parallel_for(std::uint32_t(0), chunks, [&](std::uint32_t c) {
-        const std::uint32_t begin = c * chunk_size, end = std::min(begin + chunk_size, settings.paths);
-        parts[c] = trace_chunk(scene, settings, begin, end, seed, pass, sampler, cancelled, starts);
-    });
     VplSet set;
-    for (VplSet& part : parts) append(set, std::move(part));
+    for (std::uint32_t first = 0; first < chunks; first += chunks_at_once) {
+        std::vector<VplSet> parts(std::min(chunks_at_once, chunks - first));
+        tbb::parallel_for(std::size_t(0), parts.size(), [&](std::size_t p) {
+            const std::uint32_t begin = (first + std::uint32_t(p)) * chunk_size;
+            const std::uint32_t end = std::min(begin + chunk_size, settings.paths);
+            parts[p] = trace_chunk(scene, settings, begin, end, seed, pass, sampler, cancelled, starts);
+        });
+        for (VplSet& part : parts) append(set, std::move(part)), part = {};
+        if (first == 0) reserve(set, double(chunks) / double(parts.size()));
+    }
     set.paths = settings.paths;
     return set;
 }
