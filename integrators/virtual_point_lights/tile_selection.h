@@ -32,10 +32,12 @@ class TileSelection {
     bool collects() const { return active() && settings_.collects(); }
     bool cuts() const { return cut_.has_value(); }
 
-    /// Unbiased: lights for all receivers of a tile. `key` determines what is drawn.
+    /// Unbiased: lights for all receivers of a tile. `key` determines what is drawn. Where a hierarchy is
+    /// given and not to be used, all of its lights.
     lights::DrawnVpls drawn(const lights::ReceiverLanes& receivers, std::uint64_t key) {
         core::Rng rng(core::hash_keys(key, draws_));
         if (matrix_) return {matrix_->draw(receivers, rng, columns_)};
+        if (!settings_.selects()) return {all()};
         const lights::ReceiverGroups groups(lights::ReceiverBounds(receivers), *tree_);
         if (settings_.kind == SelectionSettings::Kind::stochastic)
             return {sampler_.by_cut(*tree_, groups, bound_, settings_.samples, rng)};
@@ -45,9 +47,10 @@ class TileSelection {
     /// Lightcuts at one tile.
     lights::TileLight cut(const lights::GatherContext& context, const lights::ReceiverTile& receivers,
                           std::uint64_t key) {
+        const bool medium = receivers.in_medium[first_active(receivers)] != 0.0f;
         points_.clear();
-        points_.add(receivers, lights::GatherKind::surface);
-        return gather_points(context, key)[0];
+        points_.add(receivers, medium ? lights::GatherKind::medium : lights::GatherKind::surface);
+        return gather_points(context, key)[medium];
     }
 
     /// Remembers points of a pixel, until gather_points(). `is_surface(lane)` tells the kinds apart.
@@ -73,7 +76,7 @@ class TileSelection {
         core::Rng rng(core::hash_keys(key, draws_));
         if (resampling_) return resampling_->gather(context, rng);
         points_.build(rng);
-        const auto light = cut_->gather(context, points_);
+        const auto light = cut_->gather(context, points_, rng);
         points_.clear();
         return light;
     }
@@ -84,6 +87,17 @@ class TileSelection {
     }
 
   private:
+    static int first_active(const lights::ReceiverTile& receivers) {
+        int lane = 0;
+        while (lane + 1 < lights::ReceiverTile::width && receivers.max_vpl_depth[lane] == 0) ++lane;
+        return lane;
+    }
+    std::span<const lights::WeightedVpl> all() {
+        if (all_.empty())
+            for (const std::uint32_t light : hierarchy_->lights(hierarchy_->root())) all_.push_back({light});
+        return all_;
+    }
+
     std::uint64_t draws_ = 0x73656c656374ull;  ///< apart from what eye paths draw
 
     const SelectionSettings& settings_;
@@ -93,6 +107,7 @@ class TileSelection {
     std::vector<lights::WeightedVpl> columns_;  ///< that stand for all, at a tile
     float bound_;
     lights::LightSampler sampler_;
+    std::vector<lights::WeightedVpl> all_;
     lights::GatherPoints points_;
     std::optional<lights::Lightcut> cut_;
     std::optional<TileResampling> resampling_;

@@ -28,6 +28,9 @@ std::shared_ptr<Object> make_cut(const Properties& p, Kind kind) {
     SelectionSettings s = common(p, kind);
     s.cut.threshold = float(p.get_float_in("threshold", 0.02, 0.0, 1.0));
     s.cut.max_cut = std::uint32_t(p.get_int_in("max_cut", 1000, 1, 1 << 28));
+    s.cut.error = float(p.get_float_in("error", 0.0, 0.0, 1.0));
+    s.cut.shared_angle[0] = float(p.get_float_in("shared_angle", 0.0, 0.0, 10.0));
+    s.cut.shared_angle[1] = float(p.get_float_in("shared_angle_in_media", 0.0, 0.0, 10.0));
     return std::make_shared<Selection>(s);
 }
 
@@ -81,6 +84,12 @@ const std::vector<Parameter> cut_parameters{
     {"threshold", "float", "0.02",
      "share of a pixel's light that the error of one group may be; 0: all VPLs"},
     {"max_cut", "integer", "1000", "groups that a tile of 4 x 4 pixels is lit by at most"},
+    {"error", "float", "0",
+     "parting ends where the error of a tile is estimated to be this share of its light; 0: only by "
+     "threshold"},
+    {"shared_angle", "float", "0",
+     "points of a face that a light sees within such an angle share a shadow ray [rad]; 0: none do"},
+    {"shared_angle_in_media", "float", "0", "the same of points in media"},
     most_megabytes};
 const std::vector<Parameter> drawn_parameters{
     {"samples", "integer", "64", "lights drawn for each tile of 4 x 4 pixels"}, most_megabytes};

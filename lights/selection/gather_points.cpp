@@ -28,6 +28,11 @@ float importance(const ReceiverTile& tile, int i) {
     return (tile.weight_r[i] + tile.weight_g[i] + tile.weight_b[i]) * (1.0f / 3.0f);
 }
 
+void describe(GatherGroup& group) {
+    group.lobes = ReceiverLobes(group.representative);
+    group.sets = ReceiverSets(group.representative);
+}
+
 }  // namespace
 
 void GatherPoints::add(const ReceiverTile& tile, GatherKind kind) {
@@ -37,7 +42,7 @@ void GatherPoints::add(const ReceiverTile& tile, GatherKind kind) {
     for (const ScatteringVertex*& vertex : own.directional)
         if (vertex) vertex = &vertices_.emplace_back(*vertex);
     groups_.push_back({own, ReceiverBounds(own)});
-    groups_.back().diagonal2 = 0.0f;
+    describe(groups_.back());
 }
 
 void GatherPoints::build(Rng& rng) {
@@ -67,6 +72,7 @@ std::uint32_t GatherPoints::join(std::uint32_t left, std::uint32_t right, Rng& r
                   Rng(rng.next_u32()));
     }
     group.diagonal2 = group.bounds.diagonal2();
+    describe(group);
     groups_.push_back(std::move(group));
     return std::uint32_t(groups_.size() - 1);
 }

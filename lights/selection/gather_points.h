@@ -11,7 +11,9 @@
 #include <deque>
 #include <vector>
 
+#include "lights/selection/lobe_contributions.h"
 #include "lights/selection/receiver_bounds.h"
+#include "lights/selection/receiver_sets.h"
 
 namespace mote::lights {
 
@@ -23,6 +25,8 @@ struct GatherGroup {
     ReceiverBounds bounds;
     std::uint32_t left = 0, right = 0;  ///< groups; both 0: one tile of points
     float diagonal2 = 0.0f;             ///< ReceiverBounds::diagonal2()
+    ReceiverLobes lobes{};              ///< of the representatives
+    ReceiverSets sets{};                ///< of the representatives
 
     bool single() const { return right == 0; }
 };

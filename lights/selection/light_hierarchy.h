@@ -57,6 +57,12 @@ class LightHierarchy {
     std::uint32_t light_at(std::uint32_t place) const { return order_[place]; }
     float weight_at(std::uint32_t place) const { return weights_[place]; }
 
+    /// Says that a group's node will be looked at soon, and maybe its left part.
+    void prefetch_node(const LightCluster& c) const {
+        if (c.single()) return;
+        __builtin_prefetch(nodes_.data() + c.node);
+        __builtin_prefetch(nodes_.data() + c.node + 1);
+    }
     /// Says that the two parts of a group, whose own node is at hand, will be looked at soon.
     void prefetch(const LightCluster& c) const {
         if (c.count < 3) return;

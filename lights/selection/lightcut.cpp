@@ -11,6 +11,10 @@ namespace {
 
 /// Pairs parted at once: few enough to part the worst first, enough for batches of shadow rays.
 constexpr std::size_t least_parted = GatherScratch::batch;
+/// Before so many pairs are there, nothing is estimated of their error: one of them may be most of the sum.
+constexpr std::size_t least_cut = 128;
+/// Of the mean of a tile: what a pixel's light counts at least where errors are relative to it.
+constexpr double least_of_mean = 0.05;
 
 }  // namespace
 
@@ -24,6 +28,9 @@ void Lightcut::set_pair(GatherPoints& points, std::size_t index, const Pair& pai
     const GatherGroup& group = points.group(pair.group);
     pairs_[index] = pair;
     errors_[index] = expected_[index] = {};
+    if (!pair.lights.single())
+        if (const SeenCluster* seen = seen_.find(pair.lights.node, std::uint32_t(pair.kind)))
+            pairs_[index].seen = *seen;
     if (pair.lights.single() && group.single()) return;
     const LightNode node = lights_.node(pair.lights);
     errors_[index] = most_light(node, group.bounds, bound_.bound);
@@ -48,12 +55,12 @@ void Lightcut::scale_estimate(std::size_t index, float scale) {
 void Lightcut::part_lights(GatherPoints& points, std::size_t index) {
     const Pair pair = pairs_[index];
     const LightCluster left = lights_.left(pair.lights), right = lights_.right(pair.lights);
-    const std::uint32_t place = lights_.representative(pair.lights);
-    const bool in_left = place < right.first;
+    const bool waits = pair.place == nobody, in_left = waits || pair.place < right.first;
     const LightCluster &heir = in_left ? left : right, &other = in_left ? right : left;
-    scale_estimate(index, lights_.weight(heir) / lights_.weight(pair.lights));
-    set_pair(points, index, {pair.group, heir, pair.kind});
-    add_pair(points, {pair.group, other, pair.kind});
+    const SeenCluster seen = pair.seen.of_part();
+    if (!waits) scale_estimate(index, lights_.weight(heir) / lights_.weight(pair.lights));
+    set_pair(points, index, {pair.group, heir, pair.kind, pair.place, seen});
+    add_pair(points, {pair.group, other, pair.kind, nobody, seen});
 }
 
 /// Who stands for the points of a lane is one of its left or of its right points, which differs from lane to
@@ -61,11 +68,13 @@ void Lightcut::part_lights(GatherPoints& points, std::size_t index) {
 void Lightcut::part_points(GatherPoints& points, std::size_t index) {
     const Pair pair = pairs_[index];
     const GatherGroup& group = points.group(pair.group);
-    add_to_total(estimates_[index], -1.0);
-    estimates_[index] = {};
-    set_pair(points, index, {group.left, pair.lights, pair.kind});
-    waiting_.push_back(std::uint32_t(index));
-    add_pair(points, {group.right, pair.lights, pair.kind});
+    if (pair.place != nobody) {
+        add_to_total(estimates_[index], -1.0);
+        estimates_[index] = {};
+        waiting_.push_back(std::uint32_t(index));
+    }
+    set_pair(points, index, {group.left, pair.lights, pair.kind, nobody, pair.seen});
+    add_pair(points, {group.right, pair.lights, pair.kind, nobody, pair.seen});
 }
 
 void Lightcut::part(GatherPoints& points, std::size_t index) {
@@ -80,85 +89,165 @@ void Lightcut::part(GatherPoints& points, std::size_t index) {
         part_points(points, index);
 }
 
-/// Estimates of the pairs of batch_, whose light and rays are in the scratch memory.
-void Lightcut::resolve(const GatherContext& context, GatherPoints& points) {
-    context.cancelled.check();
-    const auto packets = std::span(context.scratch.packets).first(in_batch_);
-    const auto light = std::span(context.scratch.light).first(in_batch_);
-    context.rays.occlusion += count_rays(packets);
-    context.scene.find_occluded(packets);
-    for (std::size_t k = 0; k < in_batch_; ++k) {
-        const std::size_t index = batch_[k];
-        ReceiverTile& tile = points.group(pairs_[index].group).representative;
-        attenuate_free(context, tile, packets.subspan(k, 1), light.subspan(k, 1));
-        Estimate& e = estimates_[index];
-        std::copy_n(light[k].r, width, e.r), std::copy_n(light[k].g, width, e.g);
-        std::copy_n(light[k].b, width, e.b);
-        add_to_total(e, 1.0);
+/// Whose nodes will be looked at soon.
+void Lightcut::part_worst(GatherPoints& points, std::size_t count) {
+    constexpr std::size_t ahead = 4;
+    for (std::size_t k = 0; k < count; ++k) {
+        if (k + 2 * ahead < count) lights_.prefetch_node(pairs_[worst_[k + 2 * ahead].pair].lights);
+        if (k + ahead < count) lights_.prefetch(pairs_[worst_[k + ahead].pair].lights);
+        part(points, worst_[k].pair);
     }
-    in_batch_ = 0;
+}
+
+/// A light for each, in proportion to energy: all go down at once, so that nodes arrive from memory while
+/// others are looked at.
+void Lightcut::draw(std::span<const std::uint32_t> waiting) {
+    std::array<LightCluster, GatherScratch::batch> at;
+    for (std::size_t k = 0; k < waiting.size(); ++k) {
+        at[k] = pairs_[waiting[k]].lights;
+        lights_.prefetch_node(at[k]);
+    }
+    for (bool any = true; any;) {
+        any = false;
+        for (LightCluster& c : std::span(at).first(waiting.size())) {
+            if (c.single()) continue;
+            const LightCluster left = lights_.left(c);
+            c = rng_.next_float() * lights_.weight(c) < lights_.weight(left) ? left : lights_.right(c);
+            lights_.prefetch_node(c);
+            any = true;
+        }
+    }
+    for (std::size_t k = 0; k < waiting.size(); ++k) {
+        pairs_[waiting[k]].place = at[k].first;
+        __builtin_prefetch(&vpls_.lights[lights_.light_at(at[k].first)]);
+    }
+    for (std::size_t k = 0; k < waiting.size(); ++k) {
+        const std::uint32_t detail = vpls_.lights[lights_.light_at(at[k].first)].detail;
+        if (detail != VirtualPointLight::no_detail) __builtin_prefetch(&vpls_.details[detail].vertex);
+    }
+}
+
+/// What an estimate says of a pair's lights.
+void Lightcut::saw(std::size_t index) {
+    Pair& pair = pairs_[index];
+    const Estimate& e = estimates_[index];
+    float arrived = 0.0f;
+    for (int i = 0; i < width; ++i) arrived += e.r[i] + e.g[i] + e.b[i];
+    const float expected = 3.0f * expected_[index].sum();
+    if (!(expected > 0.0f)) return;
+    constexpr float most = 10.0f;
+    pair.seen.add(std::clamp(arrived / expected, 0.0f, most));
+    if (!pair.lights.single()) seen_.set(pair.lights.node, std::uint32_t(pair.kind), pair.seen);
 }
 
 /// Of all pairs that wait.
 void Lightcut::evaluate(const GatherContext& context, GatherPoints& points) {
-    for (const std::uint32_t index : waiting_) {
-        const Pair& pair = pairs_[index];
-        const std::uint32_t place = lights_.representative(pair.lights);
-        const float weight = lights_.weight(pair.lights) / lights_.weight_at(place);
-        const ReceiverTile& tile = points.group(pair.group).representative;
-        estimates_[index] = {};
-        if (!contributions_of(vpls_, {lights_.light_at(place), weight}, tile, bound_,
-                              context.scratch.packets[in_batch_], context.scratch.light[in_batch_]))
-            continue;
-        batch_[in_batch_++] = index;
-        if (in_batch_ == GatherScratch::batch) resolve(context, points);
+    for (std::size_t first = 0; first < waiting_.size(); first += GatherScratch::batch) {
+        const auto part =
+            std::span(waiting_).subspan(first, std::min(GatherScratch::batch, waiting_.size() - first));
+        draw(part);
+        for (const std::uint32_t index : part) {
+            const Pair& pair = pairs_[index];
+            const float weight = lights_.weight(pair.lights) / lights_.weight_at(pair.place);
+            const GatherGroup& group = points.group(pair.group);
+            estimates_[index] = {};
+            if (cut_contributions(vpls_, {lights_.light_at(pair.place), weight}, group.representative,
+                                  group.lobes, bound_, context.scratch.packets[in_batch_],
+                                  context.scratch.light[in_batch_]))
+                batch_[in_batch_++] = index;
+            else
+                saw(index);
+        }
+        resolve(context, points);
     }
-    if (in_batch_ > 0) resolve(context, points);
     counters_.evaluated += waiting_.size();
     waiting_.clear();
 }
 
-/// The pairs to part now into worst_, its first `count`.
-void Lightcut::find_worst(std::size_t& count) {
+/// The pairs to part now into worst_, its first `count`: at most `limit` pairs will be.
+/// `estimated`: the sum is known, so that parting ends where it is good enough.
+void Lightcut::find_worst(std::size_t limit, bool estimated, std::size_t& count) {
     constexpr float most = std::numeric_limits<float>::max();
-    alignas(64) float inverse[width];
+    double mean = 0.0;
+    for (const double t : total_) mean += std::max(t, 0.0) / double(width);
+    alignas(64) float inverse[width], per_total[width];
+    double variance[width] = {};
+    int lit = 0;
     for (int i = 0; i < width; ++i) {
-        const double allowed = double(settings_.threshold) * std::max(total_[std::size_t(i)], 0.0);
+        const double total = std::max(total_[std::size_t(i)], 0.0);
+        const double allowed = double(settings_.threshold) * total;
         inverse[i] = allowed > 0.0 ? float(std::min(1.0 / allowed, double(most))) : most;
+        // A dark pixel beside bright ones is not what the cut is made for.
+        const double least = std::max(total, least_of_mean * mean);
+        lit += least > 0.0;
+        per_total[i] = least > 0.0 ? float(std::min(1.0 / least, double(most))) : 0.0f;
     }
     worst_.clear();
     for (std::size_t p = 0; p < pairs_.size(); ++p) {
-        float error = 0.0f, expected = 0.0f;
+        float error = 0.0f, squares = 0.0f;
         for (int i = 0; i < width; ++i) {
             error = core::max_of(error, errors_[p].value[std::size_t(i)] * inverse[i]);
-            expected = core::max_of(expected, expected_[p].value[std::size_t(i)] * inverse[i]);
+            const float share = expected_[p].value[std::size_t(i)] * per_total[i];
+            squares += share * share;
         }
-        if (error > 1.0f) worst_.push_back({expected, std::uint32_t(p)});
+        squares = std::min(squares * pairs_[p].seen.variance(), most);
+        variance[p % width] += double(squares);
+        if (error > 1.0f) worst_.push_back({squares, std::uint32_t(p)});
     }
-    const std::size_t room = settings_.max_cut - std::min<std::size_t>(settings_.max_cut, pairs_.size());
+    double sum = 0.0;
+    for (const double v : variance) sum += v;
+    predicted_ = lit > 0 ? std::sqrt(sum / double(lit)) : 0.0;
+    count = 0;
+    const bool enough = pairs_.size() >= std::min<std::size_t>(limit, least_cut);
+    if (estimated && enough && settings_.threshold > 0.0f && predicted_ <= double(settings_.error))
+        worst_.clear();
+    const std::size_t room = limit - std::min(limit, pairs_.size());
     count = std::min({worst_.size(), room, std::max(least_parted, worst_.size() / 2)});
     if (count < worst_.size())
         std::nth_element(worst_.begin(), worst_.begin() + std::ptrdiff_t(count), worst_.end(),
                          [](const Worst& a, const Worst& b) {
-                             return a.expected != b.expected ? a.expected > b.expected : a.pair < b.pair;
+                             return a.variance != b.variance ? a.variance > b.variance : a.pair < b.pair;
                          });
 }
 
-Lightcut::Light Lightcut::gather(const GatherContext& context, GatherPoints& points) {
+/// Parts without looking, by what is expected and what tiles before have seen, so that no pair is estimated
+/// that is parted anyway.
+void Lightcut::plan(GatherPoints& points, std::size_t size) {
+    while (pairs_.size() < size) {
+        total_ = {};
+        for (std::size_t p = 0; p < pairs_.size(); ++p)
+            for (std::size_t i = 0; i < total_.size(); ++i)
+                total_[i] += double(std::min(expected_[p].value[i], 1e30f) * pairs_[p].seen.mean());
+        std::size_t count = 0;
+        find_worst(size, false, count);
+        if (count == 0) break;
+        part_worst(points, count);
+    }
+    total_ = {};
+}
+
+Lightcut::Light Lightcut::gather(const GatherContext& context, GatherPoints& points, const Rng& rng) {
+    rng_ = rng;
     pairs_.clear(), errors_.clear(), expected_.clear(), estimates_.clear(), waiting_.clear();
     total_ = {};
     if (lights_.empty()) return {};
+    std::size_t kinds = 0;
     for (const GatherKind kind : {GatherKind::surface, GatherKind::medium})
-        if (points.root(kind) != GatherPoints::none)
-            add_pair(points, {points.root(kind), lights_.root(), kind});
+        if (points.root(kind) != GatherPoints::none) {
+            add_pair(points, {points.root(kind), lights_.root(), kind, nobody, {}});
+            kinds |= std::size_t(1) << std::size_t(kind);
+        }
     if (pairs_.empty()) return {};
+    if (settings_.threshold > 0.0f) plan(points, planned_[kinds]);
     for (std::size_t count = 0;;) {
         evaluate(context, points);
-        find_worst(count);
+        find_worst(settings_.max_cut, true, count);
         if (count == 0) break;
-        for (std::size_t k = 0; k < count; ++k) part(points, worst_[k].pair);
+        part_worst(points, count);
     }
+    planned_[kinds] = pairs_.size() * 3 / 4;
     ++counters_.cuts, counters_.pairs += pairs_.size(), counters_.at_limit += !worst_.empty();
+    counters_.predicted_squares += sqr(predicted_);
     std::array<std::array<Vec3d, width>, 2> sum{};
     for (std::size_t p = 0; p < pairs_.size(); ++p) {
         auto& of_kind = sum[std::size_t(pairs_[p].kind)];

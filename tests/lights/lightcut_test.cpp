@@ -75,7 +75,7 @@ struct Room {
             gather.add(tiles[std::size_t(n)], n == points ? GatherKind::surface : GatherKind::medium);
         Rng rng(seed);
         gather.build(rng);
-        const auto light = cut.gather(context(), gather);
+        const auto light = cut.gather(context(), gather, rng);
         counters = cut.counters();
         return light;
     }
@@ -143,7 +143,7 @@ TEST_CASE("A lightcut's error is what its threshold lets it be", "[light_selecti
         Rng rng(1);
         points.add(tile, GatherKind::medium);
         points.build(rng);
-        alone.gather(room.context(), points);
+        alone.gather(room.context(), points, rng);
     }
     CHECK(together < alone.counters().pairs);
 }
@@ -165,4 +165,88 @@ TEST_CASE("Lightcuts without lights, of one light, and at a light",
         room.vpls.lights[j].position = room.tiles[0].position(int(j % 16));
     for (const auto& kind : room.cut(100.0f, {}))
         for (const Rgb& light : kind) CHECK(std::isfinite(light.y));
+}
+
+TEST_CASE("A lightcut of single groups has the mean of all lights", "[light_selection][lightcuts]") {
+    Room room(tests::diffuse, 300);
+    const lights::VplLeaves leaves(room.vpls);
+    const lights::LightHierarchy tree(leaves, 1);
+    // Two groups: of all lights at walls, and of all at points in the air. Whose shadow ray is shared by a
+    // tile is drawn so that the tile's light is right.
+    for (const float angle : {0.0f, 10.0f}) {
+        lights::Lightcut cut(room.vpls, tree, 20.0f, {0.02f, 2, 0.0f, {angle, angle}});
+        constexpr int draws = 4000;
+        double sum[2] = {}, squares[2] = {};
+        for (std::uint64_t seed = 0; seed < draws; ++seed) {
+            GatherPoints points;
+            points.add(room.tiles[Room::points], GatherKind::surface);
+            points.add(room.tiles[0], GatherKind::medium), points.add(room.tiles[5], GatherKind::medium);
+            Rng rng(seed + 1);
+            points.build(rng);
+            const auto light = cut.gather(room.context(), points, rng);
+            for (std::size_t kind = 0; kind < 2; ++kind) {
+                double tile = 0.0;
+                for (const Rgb& c : light[kind]) tile += double(average(c));
+                sum[kind] += tile / draws, squares[kind] += tile * tile / draws;
+            }
+        }
+        CHECK(cut.counters().pairs == 2 * draws);
+        double right[2] = {};
+        for (const int n : {0, 5, Room::points})
+            for (const Rgb& c : lights::gather(room.context(), room.vpls, lights::VplRange{},
+                                               lights::BoundedGeometry{20.0f}, room.tiles[std::size_t(n)]))
+                right[n == Room::points ? 0 : 1] += double(average(c));
+        for (std::size_t kind = 0; kind < 2; ++kind) {
+            const double deviation = std::sqrt((squares[kind] - sqr(sum[kind])) / draws);
+            INFO("angle " << angle << ", kind " << kind << ": " << sum[kind] << " for " << right[kind]
+                          << " +- " << deviation);
+            CHECK(std::fabs(sum[kind] - right[kind]) < 4.0 * deviation);
+            CHECK(deviation < 0.03 * right[kind]);
+        }
+    }
+}
+
+TEST_CASE("A lightcut that has seen tiles before plans, and is right still", "[light_selection][lightcuts]") {
+    Room room(tests::diffuse, 3000);
+    const auto all = room.all(20.0f);
+    const lights::VplLeaves leaves(room.vpls);
+    const lights::LightHierarchy tree(leaves, 1);
+    const auto gather = [&](lights::Lightcut& cut, std::uint64_t seed) {
+        GatherPoints points;
+        for (int n = 0; n <= Room::points; ++n)
+            points.add(room.tiles[std::size_t(n)],
+                       n == Room::points ? GatherKind::surface : GatherKind::medium);
+        Rng rng(seed);
+        points.build(rng);
+        return cut.gather(room.context(), points, rng);
+    };
+    // With few groups, which those that were seen share out better; estimates that nobody uses are fewer.
+    lights::Lightcut cut(room.vpls, tree, 20.0f, {0.001f, 400});
+    gather(cut, 1);
+    const double first = double(cut.counters().evaluated);
+    double squares = 0.0, predicted = 0.0;
+    constexpr int tiles = 12;
+    for (std::uint64_t seed = 2; seed < 2 + tiles; ++seed) {
+        const auto light = gather(cut, seed);
+        for (std::size_t i = 0; i < 16; ++i)
+            squares +=
+                sqr(double(average(light[0][i] + light[1][i])) / double(average(all[0][i] + all[1][i])) -
+                    1.0) /
+                (16.0 * tiles);
+    }
+    const double later = (double(cut.counters().evaluated) - first) / tiles;
+    predicted = std::sqrt(cut.counters().predicted_squares / double(cut.counters().cuts));
+    INFO("estimates " << first << ", then " << later << "; error " << std::sqrt(squares) << ", predicted "
+                      << predicted);
+    CHECK(later < 0.95 * first);
+    CHECK(std::sqrt(squares) < 0.15);
+    // An estimate, not a bound: of the right size.
+    CHECK(predicted > 0.4 * std::sqrt(squares));
+    CHECK(predicted < 4.0 * std::sqrt(squares));
+    // Nothing of what was seen, and no shared ray, is in the light of all.
+    lights::Lightcut exact(room.vpls, tree, 20.0f, {0.0f, 1u << 30, 0.5f, {10.0f, 10.0f}});
+    for (std::uint64_t seed = 1; seed < 3; ++seed) {
+        const auto light = gather(exact, seed);
+        for (std::size_t i = 0; i < 16; ++i) CHECK(light[0][i].y == Approx(all[0][i].y).epsilon(2e-5));
+    }
 }
