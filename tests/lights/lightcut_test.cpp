@@ -206,6 +206,47 @@ TEST_CASE("A lightcut of single groups has the mean of all lights", "[light_sele
     }
 }
 
+TEST_CASE("A shadow ray that receivers share is right in the mean", "[light_selection][lightcuts]") {
+    Room room(tests::diffuse, 40);
+    const auto lights = room.vpls.lights;
+    const lights::ReceiverTile& tile = room.tiles[3];
+    int mixed = 0;
+    for (const auto& light : lights) {
+        room.vpls.lights.assign(1, light);
+        double right = 0.0;
+        lights::ReceiverTile exact = tile;
+        const TileLight of_all = lights::gather(room.context(), room.vpls, lights::VplRange{},
+                                                lights::BoundedGeometry{20.0f}, exact);
+        for (const Rgb& c : of_all) right += double(average(c));
+        const lights::VplLeaves leaves(room.vpls);
+        const lights::LightHierarchy tree(leaves, 1);
+        if (tree.empty()) continue;
+        lights::Lightcut cut(room.vpls, tree, 20.0f, {0.02f, 1000, 0.0f, {10.0f, 10.0f}});
+        constexpr int draws = 200;
+        double sum = 0.0, squares = 0.0;
+        for (std::uint64_t seed = 0; seed < draws; ++seed) {
+            GatherPoints points;
+            points.add(tile, GatherKind::medium);
+            Rng rng(seed + 1);
+            points.build(rng);
+            double all = 0.0;
+            const auto light_of_tile = cut.gather(room.context(), points, rng);
+            for (const Rgb& c : light_of_tile[1]) all += double(average(c));
+            sum += all / draws, squares += all * all / draws;
+        }
+        const double deviation = std::sqrt(std::max(squares - sqr(sum), 0.0) / draws);
+        // All lanes that get light see the light, or none does: the same whoever is asked.
+        if (deviation < 1e-6 * sum || sum == 0.0) {
+            CHECK(sum == Approx(right).epsilon(1e-4).margin(1e-12));
+            continue;
+        }
+        ++mixed;
+        INFO("light " << (&light - lights.data()) << ": " << sum << " for " << right << " +- " << deviation);
+        CHECK(std::fabs(sum - right) < 4.0 * deviation);
+    }
+    CHECK(mixed > 5);
+}
+
 TEST_CASE("A lightcut that has seen tiles before plans, and is right still", "[light_selection][lightcuts]") {
     Room room(tests::diffuse, 3000);
     const auto all = room.all(20.0f);
