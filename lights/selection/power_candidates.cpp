@@ -19,21 +19,25 @@ PowerCandidates::PowerCandidates(const LightHierarchy& lights)
     }
 }
 
-void PowerCandidates::draw(std::uint32_t n, Rng& rng, std::vector<WeightedVpl>& drawn) const {
+void PowerCandidates::draw(const LightCluster& group, std::uint32_t n, Rng& rng,
+                           std::vector<WeightedVpl>& drawn) const {
     if (sums_.empty()) return;
-    const double total = sums_.back();
-    std::uint32_t last = 0;
-    bool any = false;
+    const std::uint32_t end = group.first + group.count;
+    const double begin = group.first > 0 ? sums_[group.first - 1] : 0.0, power = sums_[end - 1] - begin;
+    const double shares_per_power = double(begins_.size()) / sums_.back();
+    std::uint32_t last = end;
     for (std::uint32_t i = 0; i < n; ++i) {
-        const double u = std::min((double(i) + double(rng.next_float())) / double(n), 1.0 - 0x1p-53);
-        std::uint32_t place = begins_[std::size_t(u * double(begins_.size()))];
-        while (place + 1 < sums_.size() && sums_[place] <= u * total) ++place;
-        const float weight = float(1.0 / (double(n) * probability(place)));
-        if (any && place == last)
+        const double u = begin + power * (double(i) + double(rng.next_float())) / double(n);
+        const std::size_t share = std::min(std::size_t(u * shares_per_power), begins_.size() - 1);
+        std::uint32_t place = std::clamp(begins_[share], group.first, end - 1);
+        while (place + 1 < end && sums_[place] <= u) ++place;
+        const double own = sums_[place] - (place > 0 ? sums_[place - 1] : 0.0);
+        const auto weight = float(power / (double(n) * own));
+        if (place == last)
             drawn.back().weight += weight;
         else
             drawn.push_back({lights_.light_at(place), weight});
-        last = place, any = true;
+        last = place;
     }
 }
 

@@ -21,7 +21,12 @@ class PowerCandidates {
 
     /// Appends n lights, each with 1 / (n p); a light that is drawn more than once comes once, and counts so
     /// often. Nothing where there are no lights.
-    void draw(std::uint32_t n, core::Rng& rng, std::vector<WeightedVpl>& drawn) const;
+    void draw(std::uint32_t n, core::Rng& rng, std::vector<WeightedVpl>& drawn) const {
+        draw(lights_.root(), n, rng, drawn);
+    }
+    /// The same among the lights of a group.
+    void draw(const LightCluster& group, std::uint32_t n, core::Rng& rng,
+              std::vector<WeightedVpl>& drawn) const;
     /// Of the light at a place in the order of the hierarchy.
     double probability(std::uint32_t place) const {
         return (sums_[place] - (place > 0 ? sums_[place - 1] : 0.0)) / sums_.back();

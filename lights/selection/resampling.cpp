@@ -174,6 +174,7 @@ TileLight Resampling::gather_reusing(const GatherContext& context, KeptReceivers
     look(context, candidates);
     reusing_ = before_.any;
     if (reusing_) {
+        before_.keep_alike(tile.tile);
         target_before_.emplace(vpls_, before_.receivers.tile, bound_, context.scene.attenuates(), true);
         share_with_neighbours(context);
         add_reused();

@@ -17,6 +17,9 @@
 // could have found the light (Bitterli et al. 2020, Alg. 4). Light that z does not receive is lost by the
 // share of z, and more along a chain of tiles: the mean is too dark where shadows end and surfaces turn, and
 // no ray is traced from z.
+//
+// Either way z is a neighbour only if it is alike: on a surface that faces the same way within 25 degrees, as
+// Bitterli et al. 2020 have it, and no farther from the tangent plane of x than that angle.
 #pragma once
 
 #include <array>
@@ -51,6 +54,14 @@ struct ReuseShares {
     }
 };
 
+/// May a lane of `x` reuse what the same lane of `z` has chosen?
+inline bool alike(const ReceiverLanes& x, const ReceiverLanes& z, int lane) {
+    constexpr float cosine = 0.906f, sine = 0.423f;  // of 25 degrees
+    const core::Vec3 n = x.geometric_normal(lane), between = z.position(lane) - x.position(lane);
+    return glm::dot(n, z.geometric_normal(lane)) > cosine &&
+           std::fabs(glm::dot(n, between)) <= sine * glm::length(between);
+}
+
 /// The tile before.
 struct ReusedTile {
     static constexpr int width = ReceiverTile::width;
@@ -62,6 +73,12 @@ struct ReusedTile {
     std::array<float, width> confidence{};  ///< c of each lane; 0: there is nothing to reuse
     bool any = false;
 
+    /// Forgets what lanes of `x` may not reuse.
+    void keep_alike(const ReceiverLanes& x) {
+        for (int i = 0; i < width; ++i)
+            if (!alike(x, receivers.tile, i))
+                confidence[std::size_t(i)] = 0.0f, samples[std::size_t(i)].clear();
+    }
     /// Of lanes that have gathered with the neighbours of these confidences.
     void count_tile(const ReceiverLanes& gathered) {
         any = false;
