@@ -23,6 +23,7 @@ void register_integrators(core::Registry& registry) {
     register_mote_photon_map(registry);
     register_mote_ray_bundles(registry);
     register_mote_vsl(registry);
+    register_mote_ray_lights(registry);
     register_mote_single_scattering(registry);
     register_mote_epipolar(registry);
 }

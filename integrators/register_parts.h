@@ -20,6 +20,7 @@ void register_mote_micro_rendering(core::Registry& registry);
 void register_mote_photon_map(core::Registry& registry);
 void register_mote_ray_bundles(core::Registry& registry);
 void register_mote_vsl(core::Registry& registry);
+void register_mote_ray_lights(core::Registry& registry);
 void register_mote_single_scattering(core::Registry& registry);
 void register_mote_epipolar(core::Registry& registry);
 

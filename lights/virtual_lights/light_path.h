@@ -35,14 +35,22 @@ struct AnyStart {
     void operator()(const core::LightChoice&, const core::EmissionSample&) const {}
 };
 
+/// For whoever does not ask what lies between the vertices.
+struct AnySegment {
+    void operator()(const core::Ray&, const core::MediumState&, const core::PathWeights&,
+                    const core::WalkEvent&, int) const {}
+};
+
 /// Follows a particle of `emitter` whose power over the number of paths is `start` [W]: calls visit(vertex,
 /// alpha / paths, depth, state) at every vertex, delta surfaces included; `depth` counts from 1 at the first.
-/// The vertex's `wo` points back along the path; `state` holds the media on its side.
-template <bool Media, typename Visit>
+/// The vertex's `wo` points back along the path; `state` holds the media on its side. Before, on_segment(ray,
+/// state, weights, event, depth) is told of the way there, with media and weights at its start and
+/// context.boundary_hits; also where the particle leaves the scene.
+template <bool Media, typename Visit, typename OnSegment = AnySegment>
 void follow_particle(const core::LitScene& scene, const LightPathSettings& settings,
                      const core::Emitter& emitter, const core::EmissionSample& emission,
                      const core::Rgb& start, core::Sampler& sampler, core::WalkContext& context,
-                     const Visit& visit) {
+                     const Visit& visit, const OnSegment& on_segment = {}) {
     core::PathWeights weights;
     weights.throughput = start;
     core::MediumState state;
@@ -55,7 +63,10 @@ void follow_particle(const core::LitScene& scene, const LightPathSettings& setti
     for (int depth = 1; settings.max_vertices < 0 || depth <= settings.max_vertices; ++depth) {
         core::Rgb emitted(0.0f);
         // tau / p(t): sigma_s / sigma_t at a collision, 1 at a surface.
+        [[maybe_unused]] const core::MediumState state_before = state;
+        [[maybe_unused]] const core::PathWeights weights_before = weights;
         const core::WalkEvent event = core::walk<Media>(scene, ray, state, weights, emitted, context);
+        on_segment(ray, state_before, weights_before, event, depth);
         if (event.kind == core::WalkEvent::Kind::escaped) return;
         const core::ScatteringVertex vertex = make_vertex(event, ray);
         const float channels = Media ? core::average(weights.unidirectional) : 1.0f;
@@ -80,9 +91,10 @@ void follow_particle(const core::LitScene& scene, const LightPathSettings& setti
 
 /// The same for a path of a light that is drawn by its power. `on_start(choice, emission)` is called first,
 /// for a path that there is.
-template <bool Media, typename Visit, typename Start = AnyStart>
+template <bool Media, typename Visit, typename Start = AnyStart, typename OnSegment = AnySegment>
 void follow_light_path(const core::LitScene& scene, const LightPathSettings& settings, core::Sampler& sampler,
-                       core::WalkContext& context, const Visit& visit, const Start& on_start = {}) {
+                       core::WalkContext& context, const Visit& visit, const Start& on_start = {},
+                       const OnSegment& on_segment = {}) {
     float u_light = sampler.next_1d();
     const core::LightChoice choice = scene.choose_emitter_by_power(u_light, &u_light);
     const core::Vec2 u_position = sampler.next_2d(), u_direction = sampler.next_2d();
@@ -92,7 +104,8 @@ void follow_light_path(const core::LitScene& scene, const LightPathSettings& set
     on_start(choice, *emission);
     // alpha_1, with the cosine at the light, over the paths (Engelhardt 2013, Sec. 10.1.1, step 3).
     const core::Rgb start = emission->weight / (choice.probability * float(settings.paths));
-    follow_particle<Media>(scene, settings, *choice.emitter, *emission, start, sampler, context, visit);
+    follow_particle<Media>(scene, settings, *choice.emitter, *emission, start, sampler, context, visit,
+                           on_segment);
 }
 
 }  // namespace mote::lights

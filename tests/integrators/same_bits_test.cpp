@@ -114,6 +114,8 @@ const std::map<std::string, Words> numbers = {
     {"columns", {"8"}},
     {"slices", {"", "1"}},
     {"map_size", {"8"}},
+    {"share", {"", "7"}},
+    {"width", {"", "0.2"}},
 };
 
 /// Numbers that are tried on the first level alone: what they change is below whoever nests the type.

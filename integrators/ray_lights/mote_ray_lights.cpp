@@ -1,0 +1,198 @@
+// `mote_ray_lights`: virtual ray lights in media (Novak et al. 2012), virtual point lights on surfaces.
+//
+// Every pass traces a fresh set of light paths. Their segments in media are lights all along, and eye rays
+// gather them all along: there is no point from which 1/d^2 could blow up, so that nothing has to be bounded
+// or brought back in media. Surfaces keep VPLs, bounded, and what the bound takes is found by eye paths that
+// go on (ray_light_tile.h). So the mean is right, but for light that passes mirrors and glass last; with a
+// width ray lights are beam lights, blurred over it.
+#include <fmt/format.h>
+
+#include "integrators/eye_path/counters.h"
+#include "integrators/eye_path/eye_path_parameters.h"
+#include "integrators/ray_lights/ray_light_tile.h"
+#include "integrators/register_parts.h"
+
+namespace mote::integrators {
+
+using namespace core;
+
+namespace {
+
+template <bool Media>
+class RayLightEstimator final : public Estimator {
+  public:
+    RayLightEstimator(const Scene& scene, const RenderOptions& options, const RayLightSettings& settings)
+        : scene_(scene),
+          options_(options),
+          settings_(settings),
+          bound_(settings.bound_for(scene.rays().bounds())),
+          media_(scene.media()) {
+        settings_.eye.wanted = wanted_transport(options);
+        settings_.eye.max_scatterings = std::isfinite(bound_) ? -1 : 1;
+    }
+
+    bool pass(const PassContext& context, PassImage& image) override {
+        if (context.cancelled) return false;
+        const lights::RayLightSet set =
+            lights::trace_ray_lights(scene_, media_, settings_.light_paths(), options_.seed, context.index,
+                                     options_.sampler, context.cancelled);
+        counters_.add(set.surface.rays, set.surface.tracking);
+        rays_ += set.rays.size(), vpls_ += set.surface.lights.size(), paths_ += settings_.paths;
+        bytes_ = std::max(bytes_, set.memory_bytes());
+        const RayLightPass lights{media_, set, bound_};
+        return for_each_tile(options_.width, options_.height, tile_size, context.cancelled,
+                             [&](int x0, int y0, int x1, int y1) {
+                                 render_tile(context, lights, image, {x0, y0, x1, y1});
+                             });
+    }
+
+    void add_statistics(Statistics& statistics) const override {
+        counters_.report(statistics, Media);
+        statistics.values["ray_lights"] += double(rays_);
+        statistics.values["vpls"] += double(vpls_);
+        statistics.values["light_paths"] += double(paths_);
+        statistics.values["light_bytes_peak"] = double(bytes_);
+        statistics.values["line_pairs"] += double(pairs_.pairs);
+        statistics.values["line_pairs_connected"] += double(pairs_.connected);
+        if (std::isfinite(bound_)) statistics.values["bound"] = bound_;
+    }
+
+  private:
+    using Tile = RayLightTile<Media>;
+    static constexpr int tile_size = 16;
+    struct Box {
+        int x0, y0, x1, y1;
+    };
+
+    void render_tile(const PassContext& context, const RayLightPass& lights, PassImage& image,
+                     const Box& box) {
+        WalkContext walk;
+        walk.cancelled = context.cancelled;
+        const auto scratch = std::make_unique<lights::GatherScratch>();
+        const auto tile = std::make_unique<Tile>(scene_, settings_, lights, *scratch, walk);
+        for (int y = box.y0; y < box.y1; y += Tile::side)
+            for (int x = box.x0; x < box.x1; x += Tile::side) {
+                if (context.cancelled) return;
+                const auto pixels = [&](const auto& visit) {
+                    for (int i = 0; i < Tile::side * Tile::side; ++i)
+                        visit(i, x + i % Tile::side, y + i / Tile::side,
+                              x + i % Tile::side < box.x1 && y + i / Tile::side < box.y1);
+                };
+                pixels([&](int i, int px, int py, bool there) {
+                    if (there)
+                        tile->start(i, make_eye_ray(scene_, options_, context, px, py));
+                    else
+                        tile->stop(i);
+                });
+                tile->run();
+                pixels([&](int i, int px, int py, bool there) {
+                    if (there) store(tile->sum(i), image, px, py, Media);
+                });
+            }
+        counters_.add(walk.rays, walk.tracking);
+        const std::lock_guard lock(mutex_);
+        pairs_.add(tile->counters());
+    }
+
+    const Scene& scene_;
+    RenderOptions options_;
+    RayLightSettings settings_;
+    float bound_;
+    lights::ScatteringMedia media_;
+    SharedCounters counters_;
+    std::mutex mutex_;
+    lights::LineCounters pairs_;
+    std::uint64_t rays_ = 0, vpls_ = 0, paths_ = 0;
+    std::size_t bytes_ = 0;
+};
+
+class MoteRayLights final : public Integrator {
+  public:
+    explicit MoteRayLights(const Properties& p) {
+        settings_.eye = read_eye_path_limits(p);
+        settings_.paths = std::uint32_t(p.get_int_in("paths", 64, 0, std::int64_t(1) << 26));
+        settings_.share = std::size_t(p.get_int_in("share", 0, 0, std::int64_t(1) << 26));
+        settings_.width = float(p.get_float_in("width", 0.0, 0.0, 1e30));
+        settings_.scattering_points = int(p.get_int_in("scattering_points", 4, 1, 64));
+        if (p.has("bound")) settings_.bound = float(p.get_float_in("bound", 1.0, 0.0, 1e30));
+    }
+
+    std::string type() const override { return "mote_ray_lights"; }
+    std::vector<Layer> layers(const Scene& scene) const override {
+        return transport_layers(scene.has_media(), false);
+    }
+    Plan plan(const Scene& scene, const Requirements& requirements) const override;
+    std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
+        if (scene.has_media()) return std::make_unique<RayLightEstimator<true>>(scene, options, settings_);
+        return std::make_unique<RayLightEstimator<false>>(scene, options, settings_);
+    }
+
+  private:
+    void plan_lines(Plan& plan) const;
+    RayLightSettings settings_;
+};
+
+void MoteRayLights::plan_lines(Plan& plan) const {
+    plan.run("ray lights",
+             fmt::format("segments of light paths in media, {} bytes each", sizeof(lights::RayLight)),
+             "light scatters all along them; VPLs stand on surfaces alone");
+    plan.run("eye rays",
+             settings_.share > 0 ? fmt::format("{} ray lights each, drawn by their power", settings_.share)
+                                 : "all ray lights each",
+             "a point on the ray light by the asinh of its distance, then one on the eye ray equi-angularly");
+    plan.run("single scattering", fmt::format("{} scattering points a ray", settings_.scattering_points),
+             "light of lights is not that of virtual ones");
+    if (settings_.width > 0.0f)
+        plan.miss("detail of light scattered in media", fmt::format("blurred over {:.3g} m", settings_.width),
+                  "beam lights: asked for; more passes do not sharpen it, a smaller width does");
+}
+
+Plan MoteRayLights::plan(const Scene& scene, const Requirements& r) const {
+    Plan plan;
+    plan.integrator = type();
+    plan.run("light paths", fmt::format("{} a pass", settings_.paths), "a fresh set every pass");
+    plan_media(plan, r);
+    if (r.media_scattering)
+        plan_lines(plan);
+    else
+        plan.leave_out("ray lights", "light paths leave VPLs on surfaces alone", "no medium scatters");
+    const float bound = settings_.bound_for(scene.rays().bounds());
+    plan.run("bound", fmt::format("{:.4g} /m^2, from surface to surface", bound),
+             settings_.bound ? "asked for" : "automatic: light paths / R^2 with the radius R of all shapes");
+    plan.run("compensation", "exact: eye paths go on to surfaces nearer than the bound",
+             "nothing is bounded in media");
+    if (r.any_delta())
+        plan.miss("caustics", "light that reaches a receiver through a delta surface",
+                  "a virtual light cannot be connected through mirrors and glass; volpath renders it");
+    plan_choice_of_lights(plan, scene);
+    plan_medium_lights(plan, r);
+    return plan;
+}
+
+}  // namespace
+
+void register_mote_ray_lights(Registry& registry) {
+    auto parameters = eye_path_parameters();
+    parameters.push_back({"paths", "integer", "64", "light paths traced in every pass"});
+    parameters.push_back({"share", "integer", "0",
+                          "ray lights that a receiver looks at, drawn by their power; 0: all of them"});
+    parameters.push_back(
+        {"width", "float", "0",
+         "of beam lights [m]: light that scatters in media is blurred over a ball of this radius, "
+         "a bias; 0: ray lights, unbiased"});
+    parameters.push_back(
+        {"bound", "float", "automatic",
+         "bound b [1/m^2] on the geometry term from surface to surface, what is above it being found "
+         "by eye paths that go on; automatic: light paths / R^2 with the radius R of all shapes"});
+    parameters.push_back({"scattering_points", "integer", "4",
+                          "points in media where each eye ray looks for the light of lights, up to 64"});
+    registry.add({Category::integrator, "mote_ray_lights",
+                  "Virtual ray lights in media and virtual point lights on surfaces (Novak et al. 2012): "
+                  "unbiased, or with a "
+                  "width blurred.",
+                  parameters,
+                  R"(<integrator type="mote_ray_lights"><integer name="paths" value="128"/></integrator>)"},
+                 [](const Properties& p) { return std::make_shared<MoteRayLights>(p); });
+}
+
+}  // namespace mote::integrators

@@ -1,0 +1,208 @@
+// The eye paths of a 4x4 tile of pixels of `mote_ray_lights`.
+//
+// A path goes on to its first surface that is no mirror and no glass. Media before it are lines, which gather
+// ray lights and the VPLs on surfaces all along; lights themselves are looked for at a few scattering points
+// of each. The surface gathers ray lights, and VPLs with a bounded geometry term. What the bound takes comes
+// back exactly: the path goes on, and where it finds the next surface so near that G > b, that one is a
+// receiver as well, weighed by (G - b)/G, and so on.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "integrators/eye_path/eye_path.h"
+#include "integrators/ray_lights/ray_light_settings.h"
+#include "lights/ray_lights/line_gather.h"
+
+namespace mote::integrators {
+
+/// The lights of a pass.
+struct RayLightPass {
+    const lights::ScatteringMedia& media;
+    const lights::RayLightSet& set;
+    float bound;  ///< b [1/m^2]
+};
+
+template <bool Media>
+class RayLightTile {
+  public:
+    static constexpr int side = 4;
+    static constexpr std::size_t lane_count = lights::ReceiverTile::width;
+    static_assert(std::size_t(side * side) == lane_count);
+
+    RayLightTile(const core::Scene& scene, const RayLightSettings& settings, const RayLightPass& pass,
+                 lights::GatherScratch& scratch, core::WalkContext& walk)
+        : scene_(scene),
+          settings_(settings),
+          pass_(pass),
+          walk_(walk),
+          context_{scene, scratch, walk.rays, walk.tracking, walk.cancelled},
+          share_(pass.set, settings.share),
+          gather_(context_, pass.set, share_, settings.width) {}
+
+    void start(int lane, const EyeRay& eye) {
+        Lane& l = lanes_[std::size_t(lane)];
+        l.sum = {}, l.alive = true, l.lines.clear();
+        walk_.rng = eye.rng;
+        l.path.emplace(scene_, settings_.eye, eye, walk_);
+        l.points.emplace(wants_points() ? settings_.scattering_points : 0);
+        l.rng = walk_.rng;
+    }
+    void stop(int lane) { lanes_[std::size_t(lane)].alive = false; }
+    const TransportSum& sum(int lane) const { return lanes_[std::size_t(lane)].sum; }
+    const lights::LineCounters& counters() const { return gather_.counters(); }
+
+    /// Follows the eye paths to their ends.
+    void run() {
+        for (bool any = true; any;) {
+            receivers_.clear();
+            any = false;
+            for (std::size_t i = 0; i < lane_count; ++i) {
+                Lane& lane = lanes_[i];
+                lane.lines.clear();
+                if (!lane.alive) continue;
+                walk_.rng = lane.rng;
+                lane.alive = advance(lane, int(i));
+                lane.rng = walk_.rng;
+                any |= lane.alive;
+            }
+            gather_at_surfaces();
+            if constexpr (Media) gather_along_lines();
+        }
+    }
+
+  private:
+    struct Lane {
+        std::optional<EyePath<Media>> path;
+        core::Rng rng;  ///< of the path, while other lanes advance
+        TransportSum sum;
+        std::optional<core::ScatteringPoints> points;
+        std::vector<lights::EyeLine> lines;  ///< of the last leg
+        core::Vec3 normal{0.0f};             ///< shading normal of the last surface that gathered
+        bool alive = false;
+    };
+
+    bool wants_points() const { return settings_.eye.wanted[Transport::single_scattering]; }
+    /// Deeper lights would make a path longer than max_depth.
+    std::int32_t light_depth(int eye_depth) const {
+        const int most = settings_.eye.max_depth;
+        return most < 0 ? std::numeric_limits<std::int32_t>::max() : std::max(0, most - eye_depth - 1);
+    }
+
+    /// Follows one eye path to its next vertex, and makes a receiver of it. Returns whether it goes on.
+    bool advance(Lane& lane, int index) {
+        EyePath<Media>& path = *lane.path;
+        const bool first = path.scatterings() == 0 && (path.depth() == 0 || !path.vertex().connectable());
+        if (!(first ? to_surface(lane) : path.advance(walk_, lane.sum))) return false;
+        const core::ScatteringVertex& vertex = path.vertex();
+        if (first && !vertex.connectable()) return true;
+        if (!first && !keep_residual(lane)) return false;
+        if (path.wants_connection()) lane.sum[path.layer_of_connection()] += path.sample_light(walk_);
+        if (settings_.eye.wanted[Transport::indirect])
+            receivers_.set(index, vertex, path.throughput(), path.state(), core::Rng(walk_.rng.next_u32()),
+                           light_depth(path.depth()));
+        lane.normal = vertex.hit.shading.n;
+        return true;
+    }
+
+    /// The first leg, or one behind a mirror: media on it are lines. Returns whether there is a vertex.
+    bool to_surface(Lane& lane) {
+        EyePath<Media>& path = *lane.path;
+        bool at_vertex;
+        if constexpr (Media) {
+            lane.points->start(core::Rng(walk_.rng.next_u32()));
+            const auto walker = [&](core::Rgb& emitted, core::WalkContext& c) {
+                return core::walk_to_surface(scene_, path.ray(), path.state(), path.weights(), emitted,
+                                             *lane.points, c);
+            };
+            at_vertex =
+                path.advance_by(walker, walk_, lane.sum, [&](const EyeLeg& leg) { add_lines(lane, leg); });
+            if (wants_points() && path.may_go_on()) add_single_scattering(lane);
+        } else {
+            at_vertex = path.advance(walk_, lane.sum);
+        }
+        return at_vertex;
+    }
+
+    void add_lines(Lane& lane, const EyeLeg& leg) {
+        const std::int32_t depth = light_depth(lane.path->depth());
+        if (!settings_.eye.wanted[Transport::multiple_scattering] || depth == 0) return;
+        const core::Rgb throughput = lights::throughput_of<Media>(leg.before);
+        core::Rng rng(walk_.rng.next_u32());
+        lights::for_each_medium_line(
+            {leg.ray, leg.event.surface_distance, leg.start, walk_.boundary_hits}, pass_.media, rng,
+            walk_.tracking,
+            [&](const lights::MediumLine& line, const core::MediumState& state,
+                const core::Rgb& transmittance) {
+                lane.lines.push_back({line, throughput * transmittance, state, depth});
+            });
+    }
+
+    void add_single_scattering(Lane& lane) {
+        for (const core::ScatteringPoint& point : lane.points->choose(rare_light)) {
+            if (core::is_black(point.weight)) continue;
+            const core::MediumState& state = lane.points->state_of(point);
+            const core::ScatteringVertex vertex = lane.path->vertex_at(point.position, state);
+            lane.sum[Transport::single_scattering] += lane.path->light_at(vertex, point.weight, state, walk_);
+        }
+    }
+
+    /// At a vertex behind the first: (G - b)/G of the edge that led there. Returns whether anything is left;
+    /// from media comes what ray lights bring, and from mirrors and glass what no VPL stands for.
+    bool keep_residual(Lane& lane) {
+        EyePath<Media>& path = *lane.path;
+        const core::ScatteringVertex& vertex = path.vertex();
+        if (!vertex.on_surface() || !vertex.connectable()) return false;
+        const float g = std::fabs(glm::dot(lane.normal, path.ray().direction)) *
+                        vertex.geometric_cosine(vertex.wo) / core::sqr(path.leg_length());
+        if (!(g > pass_.bound)) return false;
+        path.scale(std::isfinite(g) ? 1.0f - pass_.bound / g : 1.0f);
+        return true;
+    }
+
+    void gather_at_surfaces() {
+        if (!receivers_.any_active) return;
+        add(lights::gather(context_, pass_.set.surface, lights::VplRange{},
+                           lights::BoundedGeometry{pass_.bound}, receivers_),
+            Transport::indirect);
+        if constexpr (Media) add(gather_.rays_to_surfaces(receivers_), Transport::indirect);
+    }
+
+    /// The n-th lines of all lanes at once.
+    void gather_along_lines() {
+        for (std::size_t n = 0;; ++n) {
+            lights::EyeLines eyes;
+            bool any = false;
+            for (std::size_t i = 0; i < lane_count; ++i)
+                if (Lane& lane = lanes_[i]; n < lane.lines.size()) {
+                    eyes.of[i] = &lane.lines[n], any = true;
+                    attenuation_.rng[i] = core::Rng(lane.rng.next_u32());
+                }
+            if (!any) return;
+            add(gather_.rays_to_eyes(eyes, attenuation_), Transport::multiple_scattering);
+            add(gather_.vpls_to_eyes(eyes, {}, attenuation_), Transport::multiple_scattering);
+        }
+    }
+
+    void add(const lights::TileLight& light, Transport layer) {
+        for (std::size_t i = 0; i < lane_count; ++i) lanes_[i].sum[layer] += light[i];
+    }
+
+    /// Scattering points that carry less than this share of the light are looked at by chance.
+    static constexpr float rare_light = 0.3f;
+
+    const core::Scene& scene_;
+    const RayLightSettings& settings_;
+    const RayLightPass& pass_;
+    core::WalkContext& walk_;
+    lights::GatherContext context_;
+    lights::RayLightShare share_;
+    lights::LineGather gather_;
+    std::array<Lane, lane_count> lanes_;
+    lights::ReceiverTile receivers_;
+    lights::ReceiverTile attenuation_;  ///< what lines need of a tile: states and generators
+};
+
+}  // namespace mote::integrators

@@ -1,0 +1,56 @@
+// What a light would send to a receiver if nothing stood between them, where one of the two or both are
+// lines: an eye ray through a medium, a ray light.
+//
+// Points on the lines are drawn (line_sampling.h), the values are divided by their densities: estimates of
+//   eye ray, ray light    integral over v and u of  T sigma_s f_p(x)  V*/w^2  f_p(y) sigma_s T P
+//   surface, ray light    integral over u of        f_r C*(x)         V*/w^2  f_p(y) sigma_s T P
+//   eye ray, surface VPL  integral over v of        T sigma_s f_p(x)  V* C*(y)/w^2  I
+// without visibility and transmittance between x and y (Novak et al. 2012, Eqs. 5 to 8).
+//
+// Virtual beam lights: with a width r, what scatters at a point of a ray light is spread evenly over a ball
+// of that radius, as far as the inverse square is concerned: within r it is the mean of 1/w^2 over the ball,
+// 3/r^2, so that as much light arrives within r on the whole. Biased by what changes over the ball; nothing
+// is left that could grow without a bound.
+#pragma once
+
+#include "lights/ray_lights/ray_light.h"
+#include "lights/virtual_lights/vpl_receivers.h"
+
+namespace mote::lights {
+
+/// An eye ray's part in one medium.
+struct EyeLine {
+    MediumLine line;
+    core::Rgb throughput{0.0f};  ///< of the eye path up to the line's origin
+    core::MediumState state;     ///< media on the line
+    std::int32_t max_depth = 0;  ///< of lights; deeper ones are left out
+};
+
+/// Light at the receiver's end of a segment [W/(m^2 sr)], and the segment.
+struct LineConnection {
+    core::Rgb value;
+    core::Vec3 from, to;  ///< from the receiver to the light
+};
+
+/// What connections draw from and count in.
+struct LineContext {
+    core::Rng& rng;
+    core::TrackingCounters& counters;
+    float width = 0.0f;  ///< of beam lights [m]; 0: ray lights
+};
+
+/// 1/w^2 of a distance squared [1/m^2], spread over the width.
+float inverse_square(double distance_squared, float width);
+
+/// An eye ray and a ray light; `u`: for the point on the light, and for the one on the eye ray. Nothing where
+/// no light comes that way.
+std::optional<LineConnection> connect(const EyeLine& eye, const RayLight& light, const core::Vec2& u,
+                                      const LineContext& context);
+/// A surface, the lane of a tile, and a ray light.
+std::optional<LineConnection> connect(const ReceiverLanes& receivers, int lane, const RayLight& light,
+                                      float u, const LineContext& context);
+/// An eye ray and a VPL on a surface.
+std::optional<LineConnection> connect(const EyeLine& eye, const VplSet& vpls, const VirtualPointLight& vpl,
+                                      float u, const LineContext& context);
+
+}  // namespace mote::lights

@@ -1,0 +1,92 @@
+// A part of a ray that lies in one medium, as light scatters along it: what both a ray light and an eye ray
+// are.
+//
+// The part is cut into equal cells. A medium that varies is walked once: at the ends of the cells stand
+// estimates of the transmittance from the beginning, each the product of independent ones, so that the
+// transmittance to any point is the product of the last of them and a short estimate, without bias. The
+// weight of a cell is what light scatters in it, about: sigma_s T. It steers distances (line_sampling.h), and
+// is above 0 wherever light could scatter.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/geometry/shape.h"
+#include "core/scene/medium.h"
+#include "core/scene/medium_state.h"
+#include "lights/ray_lights/line_sampling.h"
+
+namespace mote::lights {
+
+/// What lines ask of a medium, found once.
+struct MediumKind {
+    const core::Medium* medium;
+    bool homogeneous, isotropic;
+    core::MediumCoefficients coefficients;  ///< of a homogeneous medium
+    float voxel_size;                       ///< of others [m]
+    core::Bounds3 bounds;                   ///< the same
+};
+
+/// Those of a scene that scatter.
+class ScatteringMedia {
+  public:
+    explicit ScatteringMedia(std::span<const std::shared_ptr<core::Medium>> media);
+    /// Null where the medium does not scatter, or is null.
+    const MediumKind* find(const core::Medium* medium) const {
+        for (const MediumKind& kind : kinds_)
+            if (kind.medium == medium) return &kind;
+        return nullptr;
+    }
+
+  private:
+    std::vector<MediumKind> kinds_;
+};
+
+/// In one medium.
+struct MediumLine {
+    core::Vec3 origin{0.0f}, direction{0, 0, 1};  ///< unit direction
+    float length = 0.0f;                          ///< [m]
+    const core::Medium* medium = nullptr;
+    core::Rgb sigma_t{0.0f},
+        sigma_s{0.0f};  ///< of a homogeneous medium [1/m]; of others the mean of what was seen
+    bool homogeneous = false, isotropic = true;
+    std::uint32_t cells = 1;                              ///< at most most_cells
+    std::array<float, most_cells> weights{};              ///< of cells
+    std::array<core::Rgb, most_cells + 1> transmittance;  ///< to the ends of cells; not of homogeneous media
+
+    std::span<const float> cell_weights() const { return std::span(weights).first(cells); }
+    core::Vec3d at(double t) const { return core::Vec3d(origin) + t * core::Vec3d(direction); }  ///< [m]
+    /// Cell of a distance.
+    std::size_t cell_of(double t) const;
+    /// Estimate of T(t) sigma_s(t) [1/m].
+    core::Rgb scattering(double t, core::Rng& rng, core::TrackingCounters& counters) const;
+    /// Phase function [1/sr] for light that goes along the line and on towards `to`, or comes from `to` and
+    /// goes back along the line; the same number. `to` is unit length.
+    core::Rgb phase(const core::Vec3& to) const;
+};
+
+/// The part [t0, t1] of a ray in a medium; t1 may be infinite. In homogeneous media the line ends
+/// at an optical depth of 40, where no light is left in single precision; in others where the medium does.
+/// Nothing where that leaves no line.
+std::optional<MediumLine> make_medium_line(const core::Ray& ray, float t0, float t1, const MediumKind& kind,
+                                           core::Rng& rng, core::TrackingCounters& counters);
+
+/// A ray up to a distance, with the media at ray.t_min and the boundaries on the way, sorted by distance.
+struct RayThroughMedia {
+    const core::Ray& ray;
+    float t_end;
+    const core::MediumState& state;
+    std::span<const core::SurfaceHit> boundaries;
+};
+
+/// Calls visit(line, state, transmittance) for all parts of a ray in media that scatter: `state` holds the
+/// media there, `transmittance` is an estimate from ray.t_min to the beginning of the part.
+template <typename Visit>
+void for_each_medium_line(const RayThroughMedia& through, const ScatteringMedia& media, core::Rng& rng,
+                          core::TrackingCounters& counters, const Visit& visit);
+
+}  // namespace mote::lights
+
+#include "lights/ray_lights/medium_line_impl.h"

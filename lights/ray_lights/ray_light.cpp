@@ -1,0 +1,106 @@
+#include "lights/ray_lights/ray_light.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+namespace mote::lights {
+
+using namespace core;
+
+namespace {
+
+constexpr std::uint32_t chunk_size = 32;
+constexpr std::uint32_t ray_light_stream = 0x56524cu;  // apart from pixels of the same index
+
+/// Leaves ray lights on the segments of one path, and VPLs on surfaces.
+template <bool Media>
+void leave_lights(const LitScene& scene, const ScatteringMedia& media, const LightPathSettings& settings,
+                  std::uint32_t path, Sampler& sampler, WalkContext& context, RayLightSet& set) {
+    const auto leave_vpl = [&](const ScatteringVertex& vertex, const Rgb& alpha, int depth,
+                               const MediumState&) {
+        if (vertex.on_surface()) append_vpl(set.surface, vertex, alpha, std::uint32_t(depth), path);
+    };
+    // What leads on from the segment draws from a generator of its own.
+    Rng rng(context.rng.next_u32());
+    const auto leave_rays = [&](const Ray& ray, const MediumState& state, const PathWeights& weights,
+                                const WalkEvent& event, int depth) {
+        if constexpr (Media) {
+            const Rgb power = weights.throughput / average(weights.unidirectional);
+            for_each_medium_line(
+                {ray, event.surface_distance, state, context.boundary_hits}, media, rng, context.tracking,
+                [&](const MediumLine& line, const MediumState&, const Rgb& transmittance) {
+                    set.rays.push_back({line, power * transmittance, std::uint32_t(depth), path});
+                });
+        }
+    };
+    follow_light_path<Media>(scene, settings, sampler, context, leave_vpl, AnyStart{}, leave_rays);
+}
+
+RayLightSet trace_chunk(const LitScene& scene, const ScatteringMedia& media,
+                        const LightPathSettings& settings, std::uint32_t begin, std::uint32_t end,
+                        std::uint64_t seed, std::uint32_t pass, SamplerKind kind, CancelToken cancelled) {
+    RayLightSet set;
+    for (std::uint32_t path = begin; path < end; ++path) {
+        Sampler sampler(kind, seed, path, pass, ray_light_stream);
+        WalkContext context;
+        context.cancelled = cancelled;
+        context.rng = Rng(hash_keys(seed, pass, path, ray_light_stream));
+        if (scene.has_media())
+            leave_lights<true>(scene, media, settings, path, sampler, context, set);
+        else
+            leave_lights<false>(scene, media, settings, path, sampler, context, set);
+        set.surface.rays.add(context.rays);
+        set.surface.tracking.add(context.tracking);
+    }
+    return set;
+}
+
+void append(RayLightSet& to, RayLightSet&& from) {
+    VplSet& vpls = to.surface;
+    const auto offset = std::uint32_t(vpls.details.size());
+    for (VirtualPointLight& vpl : from.surface.lights)
+        if (vpl.detail != VirtualPointLight::no_detail) vpl.detail += offset;
+    vpls.lights.insert(vpls.lights.end(), from.surface.lights.begin(), from.surface.lights.end());
+    vpls.details.insert(vpls.details.end(), from.surface.details.begin(), from.surface.details.end());
+    vpls.rays.add(from.surface.rays), vpls.tracking.add(from.surface.tracking);
+    to.rays.insert(to.rays.end(), from.rays.begin(), from.rays.end());
+}
+
+/// What scatters on the line, by its weights.
+double scattered_power(const RayLight& light) {
+    double sum = 0.0;
+    for (const float weight : light.line.cell_weights()) sum += double(weight);
+    return double(average(light.power)) * sum * double(light.line.length) / double(light.line.cells);
+}
+
+}  // namespace
+
+RayLightSet trace_ray_lights(const LitScene& scene, const ScatteringMedia& media,
+                             const LightPathSettings& settings, std::uint64_t seed, std::uint32_t pass,
+                             SamplerKind sampler, CancelToken cancelled) {
+    const std::uint32_t chunks = (settings.paths + chunk_size - 1) / chunk_size;
+    std::vector<RayLightSet> parts(chunks);
+    tbb::parallel_for(std::uint32_t(0), chunks, [&](std::uint32_t c) {
+        const std::uint32_t begin = c * chunk_size, end = std::min(begin + chunk_size, settings.paths);
+        parts[c] = trace_chunk(scene, media, settings, begin, end, seed, pass, sampler, cancelled);
+    });
+    RayLightSet set;
+    for (RayLightSet& part : parts) append(set, std::move(part));
+    set.surface.paths = settings.paths;
+    double sum = 0.0;
+    for (const RayLight& light : set.rays) set.power.push_back(sum += scattered_power(light));
+    return set;
+}
+
+RayLightChoice RayLightShare::choose(std::size_t n, float start) const {
+    if (all_) return {n, 1.0f};
+    const double total = set_.total_power();
+    const double place = (double(n) + double(start)) / double(count_) * total;
+    const auto found = std::upper_bound(set_.power.begin(), set_.power.end(), place);
+    const auto index = std::min(std::size_t(found - set_.power.begin()), set_.rays.size() - 1);
+    const double own = set_.power[index] - (index > 0 ? set_.power[index - 1] : 0.0);
+    return {index, own > 0.0 ? float(total / (own * double(count_))) : 0.0f};
+}
+
+}  // namespace mote::lights

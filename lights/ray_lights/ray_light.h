@@ -1,0 +1,68 @@
+// Virtual ray lights: the segments of light paths in media, kept as light sources (Novak et al. 2012).
+//
+// A segment leaves a light or a vertex with power P, and light scatters everywhere along it, so that a
+// receiver x sees  P integral over u of  T(u) sigma_s(u) f_p G*(x, y(u)) V*(x, y(u)).  The segment reaches to
+// the first surface, past the collision where its path went on: the distribution of that collision is T
+// sigma_s itself. So a ray light is all that the volume VPLs at the end of its segment stand for, and VPLs
+// are left on surfaces alone.
+#pragma once
+
+#include "lights/ray_lights/medium_line.h"
+#include "lights/virtual_lights/light_path.h"
+#include "lights/virtual_lights/virtual_point_light.h"
+
+namespace mote::lights {
+
+/// The part of a segment in one medium.
+struct RayLight {
+    MediumLine line;
+    core::Rgb power{0.0f};    ///< that arrives at the line's origin, over the number of paths [W]
+    std::uint32_t depth = 1;  ///< vertices of the path after the light, with one on this line
+    std::uint32_t path = 0;   ///< index of the light path
+};
+
+/// The ray lights of one set of light paths, in path order, and the VPLs that they left on surfaces.
+struct RayLightSet {
+    std::vector<RayLight> rays;
+    VplSet surface;  ///< without states: connections are traced from receivers
+    std::vector<double>
+        power;  ///< sums of what the rays scatter, about, up to each of them; the last is the total
+
+    double total_power() const { return power.empty() ? 0.0 : power.back(); }
+    /// Of all lists.
+    std::size_t memory_bytes() const {
+        return rays.size() * sizeof(RayLight) + power.size() * sizeof(double) + surface.memory_bytes();
+    }
+};
+
+/// Traces one set of light paths in parallel. (seed, pass, path index) determines every path; the order of
+/// the lights does not depend on threads. The set's counters hold what the paths took. Throws
+/// core::Cancelled.
+RayLightSet trace_ray_lights(const core::LitScene& scene, const ScatteringMedia& media,
+                             const LightPathSettings& settings, std::uint64_t seed, std::uint32_t pass,
+                             core::SamplerKind sampler, core::CancelToken cancelled = {});
+
+/// A ray light, drawn.
+struct RayLightChoice {
+    std::size_t index;
+    float weight;  ///< one over its expected number among those that are drawn
+};
+
+/// Which ray lights a receiver looks at: all, or so many of them, drawn by their power in equal steps through
+/// the sum from one random start.
+class RayLightShare {
+  public:
+    /// `most`: so many; 0: all.
+    RayLightShare(const RayLightSet& set, std::size_t most)
+        : set_(set), all_(most == 0 || most >= set.rays.size()), count_(all_ ? set.rays.size() : most) {}
+    std::size_t count() const { return set_.total_power() > 0.0 ? count_ : 0; }
+    /// The n-th of count(), by a random start in [0, 1) that all of a receiver share.
+    RayLightChoice choose(std::size_t n, float start) const;
+
+  private:
+    const RayLightSet& set_;
+    bool all_;
+    std::size_t count_;
+};
+
+}  // namespace mote::lights

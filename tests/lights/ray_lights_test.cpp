@@ -1,0 +1,217 @@
+// Distances on lines, lines through media, and what ray lights send to receivers, against quadrature and
+// closed forms.
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "core/math/random.h"
+#include "core/scene/scene.h"
+#include "lights/ray_lights/line_connections.h"
+#include "tests/support/catch.h"
+#include "tests/support/render_statistics.h"
+
+using namespace mote;
+using namespace mote::core;
+using namespace mote::lights;
+
+namespace {
+
+constexpr std::array<float, 4> even{1.0f, 1.0f, 1.0f, 1.0f}, uneven{0.5f, 3.0f, 0.0f, 1.0f};
+
+/// The integral of the density over [begin, end], as it is drawn from: by the mean of f = 1 over samples at
+/// midpoints. Each f/pdf times pdf is 1, so what is integrated is 1/pdf: the length of the part where the
+/// weights are not zero.
+template <typename Density>
+double length_by_samples(const Density& density, double begin, double end, double length,
+                         std::span<const float> weights, int n = 200000) {
+    double sum = 0.0;
+    for (int i = 0; i < n; ++i) {
+        const auto s = sample_line(density, begin, end, length, weights, float((i + 0.5) / n));
+        if (s) sum += 1.0 / s->pdf_distance / n;
+    }
+    return sum;
+}
+
+/// The integral of the pdf, by midpoints, cell by cell: weight * density / sum is what a sample there would
+/// have.
+template <typename Density>
+double pdf_integral(const Density& density, double begin, double end, double length,
+                    std::span<const float> weights) {
+    const auto any = sample_line(density, begin, end, length, weights, 0.5f);
+    REQUIRE(any);
+    // The factor between weight * density and the pdf is the same everywhere.
+    const auto cell = [&](double t) {
+        return weights[std::min(std::size_t(t / length * double(weights.size())), weights.size() - 1)];
+    };
+    const double factor = any->pdf_distance / (double(cell(any->position)) * density.density(any->position));
+    double sum = 0.0;
+    const int n = 400000;
+    for (int i = 0; i < n; ++i) {
+        const double t = begin + (end - begin) * (i + 0.5) / n;
+        sum += factor * double(cell(t)) * density.density(t) * (end - begin) / n;
+    }
+    return sum;
+}
+
+MediumLine clear_line(const Vec3& origin, const Vec3& direction, float length) {
+    MediumLine line;
+    line.origin = origin, line.direction = glm::normalize(direction), line.length = length;
+    line.homogeneous = true, line.sigma_s = Rgb(1.0f);  // scatters, takes nothing: only 1/w^2 is left
+    line.weights[0] = 1.0f;
+    return line;
+}
+
+constexpr double phases =
+    1.0 / (16.0 * std::numbers::pi * std::numbers::pi);  ///< of two isotropic scatterings
+
+/// Mean of connections between two lines over n x n midpoints of the square, over the phase functions.
+double line_integral(const MediumLine& eye, const MediumLine& light, int n, float width = 0.0f) {
+    EyeLine x;
+    x.line = eye, x.throughput = Rgb(1.0f), x.max_depth = 10;
+    RayLight y;
+    y.line = light, y.power = Rgb(1.0f);
+    Rng rng(1);
+    TrackingCounters counters;
+    double sum = 0.0;
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j)
+            if (const auto c =
+                    connect(x, y, {float((i + 0.5) / n), float((j + 0.5) / n)}, {rng, counters, width}))
+                sum += double(c->value.x);
+    return sum / (double(n) * n) / phases;
+}
+
+}  // namespace
+
+TEST_CASE("densities on lines integrate to 1", "[ray_lights][pdf]") {
+    for (const double sine : {1.0, 0.3, 1e-3, 1e-9, 0.0})
+        for (const double h : {1.0, 0.05, 1e-3})
+            for (const auto weights :
+                 {std::span<const float>(even).first(1), std::span<const float>(uneven)}) {
+                const InverseDistance density{0.7, h, sine};
+                INFO("sine " << sine << " h " << h << " cells " << weights.size());
+                CHECK(pdf_integral(density, 0.0, 3.0, 3.0, weights) == Approx(1.0).epsilon(1e-4));
+                const double zero =
+                    weights.size() > 1 ? 0.75 : 0.0;  // where the weight is zero nothing is drawn
+                CHECK(length_by_samples(density, 0.0, 3.0, 3.0, weights) == Approx(3.0 - zero).epsilon(1e-3));
+            }
+    for (const double h : {1.0, 0.05, 1e-2})
+        for (const double nearest : {-1.0, 0.7, 5.0}) {
+            const InverseSquare density{nearest, h};
+            CHECK(pdf_integral(density, 0.5, 2.5, 3.0, even) == Approx(1.0).epsilon(1e-4));
+            CHECK(length_by_samples(density, 0.5, 2.5, 3.0, even) == Approx(2.0).epsilon(2e-3));
+        }
+}
+
+// Novak et al. 2012: over an infinite eye ray 1/w^2 is pi / sqrt(h^2 + u^2), over a light from -a to a that
+// is 2 pi asinh(a/h).
+TEST_CASE("a perpendicular ray light seen by an infinite eye ray is 2 pi asinh(a/h)", "[ray_lights]") {
+    const float far = 1e6f;
+    for (const double a : {0.5, 3.0})
+        for (const double h : {2.0, 0.1, 1e-3}) {
+            const MediumLine eye = clear_line({0, 0, -far}, {0, 0, 1}, 2.0f * far);
+            const MediumLine light = clear_line({float(-a), float(h), 0}, {1, 0, 0}, float(2.0 * a));
+            const double exact = 2.0 * std::numbers::pi * std::asinh(a / h);
+            INFO("a " << a << " h " << h);
+            // What is sampled is proportional to the integrand: every sample is the integral, but for the eye
+            // ray's ends, a/far of it, and single precision.
+            CHECK(line_integral(eye, light, 1) == Approx(exact).epsilon(3e-5));
+            CHECK(line_integral(eye, light, 20) == Approx(exact).epsilon(3e-5));
+            CHECK_FALSE(line_integral(eye, light, 20) ==
+                        Approx(std::numbers::pi * std::asinh(2.0 * a / h)).epsilon(1e-2));
+        }
+}
+
+TEST_CASE("lines of any position are what quadrature says", "[ray_lights]") {
+    Rng rng(7);
+    const auto point = [&] {
+        return Vec3(rng.next_float(), rng.next_float(), rng.next_float()) * 2.0f - 1.0f;
+    };
+    for (int k = 0; k < 6; ++k) {
+        const MediumLine eye = clear_line(point(), point(), 1.0f + rng.next_float()),
+                         light = clear_line(point() + Vec3(0, 0, 1.5f), point(), 1.0f + rng.next_float());
+        double exact = 0.0;
+        const int n = 1000;
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; j < n; ++j) {
+                const Vec3d w = light.at(light.length * (i + 0.5) / n) - eye.at(eye.length * (j + 0.5) / n);
+                exact += double(eye.length) * double(light.length) / glm::dot(w, w) / (double(n) * n);
+            }
+        CHECK(line_integral(eye, light, 60) == Approx(exact).epsilon(5e-3));
+    }
+}
+
+TEST_CASE("parallel, crossing, empty and coincident lines are finite", "[ray_lights][extremes]") {
+    const MediumLine eye = clear_line({0, 0, 0}, {0, 0, 1}, 4.0f);
+    const double apart = line_integral(eye, clear_line({0, 1, 0}, {0, 0, 1}, 4.0f), 40);
+    // Parallel lines: 2 (L atan(L/h)/h - log(1 + L^2/h^2)/2).
+    CHECK(apart == Approx(2.0 * (4.0 * std::atan(4.0) - 0.5 * std::log(17.0))).epsilon(1e-3));
+    CHECK(line_integral(eye, clear_line({0, 1, 4}, {0, 0, -1}, 4.0f), 40) == Approx(apart).epsilon(1e-3));
+    // Nearly parallel goes over into parallel.
+    for (const float slant : {1e-3f, 1e-5f, 1e-7f, 1e-9f})
+        CHECK(line_integral(eye, clear_line({0, 1, 0}, {slant, 0, 1}, 4.0f), 40) ==
+              Approx(apart).epsilon(2e-3));
+    for (const MediumLine& light :
+         {clear_line({-1, 0, 2}, {1, 0, 0}, 2.0f), clear_line({0, 0, 0}, {1, 0, 0}, 1.0f),
+          clear_line({0, 0, 1}, {0, 0, 1}, 2.0f), clear_line({0, 0, 9}, {0, 0, -1}, 20.0f),
+          clear_line({0, 1e-20f, 1}, {1e-20f, 0, 1}, 1.0f), clear_line({1e8f, 0, 1}, {0, 0, 1}, 1e8f)}) {
+        const double value = line_integral(eye, light, 30);
+        INFO(value);
+        CHECK((std::isfinite(value) && value >= 0.0));
+    }
+    // The eye on the ray light, and lines of no length.
+    CHECK(std::isfinite(
+        line_integral(clear_line({0, 0, 0}, {0, 0, 1}, 1.0f), clear_line({-1, 0, 0}, {1, 0, 0}, 2.0f), 30)));
+    CHECK(line_integral(eye, clear_line({0, 1, 0}, {0, 0, 1}, 0.0f), 4) == 0.0);
+    CHECK(line_integral(clear_line({0, 1, 0}, {0, 0, 1}, 0.0f), eye, 4) == 0.0);
+}
+
+// Over a ball of the width the spread inverse square has the integral of the inverse square, and it is never
+// above 3 over the width squared.
+TEST_CASE("beam lights keep what arrives near them, and are bounded", "[ray_lights][beams]") {
+    const float width = 0.3f;
+    double spread = 0.0;
+    const int n = 20000;
+    for (int i = 0; i < n; ++i) {
+        const double w = width * (i + 0.5) / n;
+        spread += 4.0 * std::numbers::pi * w * w * double(inverse_square(w * w, width)) * width / n;
+    }
+    CHECK(spread == Approx(4.0 * std::numbers::pi * width).epsilon(1e-4));
+    CHECK(inverse_square(1.0, width) == 1.0f);
+    CHECK(inverse_square(0.0, width) == Approx(3.0f / (width * width)));
+    // Lines farther from each other than the width do not see it. The nearer they are the brighter a ray
+    // light is without end, a beam light is not.
+    const MediumLine eye = clear_line({0, 0, 0}, {0, 0, 1}, 4.0f);
+    const auto beam = [&](float h, float r) {
+        return line_integral(eye, clear_line({-1, h, 2}, {1, 0, 0}, 2.0f), 100, r);
+    };
+    CHECK(beam(2.0f, width) == Approx(beam(2.0f, 0.0f)).epsilon(1e-3));
+    CHECK(beam(0.05f, 0.04f) == Approx(beam(0.05f, 0.0f)).epsilon(1e-2));
+    CHECK(beam(1e-9f, 0.0f) > 2.0 * beam(1e-3f, 0.0f));
+    CHECK(beam(1e-9f, width) < 1.01 * beam(1e-3f, width));
+}
+
+TEST_CASE("a share of the ray lights counts for all", "[ray_lights]") {
+    RayLightSet set;
+    double sum = 0.0;
+    for (const double power : {1.0, 0.0, 5.0, 0.25, 20.0}) {
+        set.rays.emplace_back();
+        set.power.push_back(sum += power);
+    }
+    const RayLightShare all(set, 0), three(set, 3);
+    CHECK(all.count() == 5);
+    CHECK(all.choose(2, 0.3f).index == 2);
+    CHECK(all.choose(2, 0.3f).weight == 1.0f);
+    REQUIRE(three.count() == 3);
+    std::array<double, 5> counted{};
+    const int n = 100000;
+    for (int i = 0; i < n; ++i)
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto choice = three.choose(k, float((i + 0.5) / n));
+            counted[choice.index] += double(choice.weight) / n;
+        }
+    for (const std::size_t i : {0, 2, 3, 4}) CHECK(counted[i] == Approx(1.0).epsilon(1e-3));
+    CHECK(counted[1] == 0.0);
+    CHECK(RayLightShare(RayLightSet{}, 3).count() == 0);
+    CHECK(RayLightShare(RayLightSet{}, 0).count() == 0);
+}
