@@ -174,8 +174,9 @@ Plan MoteRayLights::plan(const Scene& scene, const Requirements& r) const {
 void register_mote_ray_lights(Registry& registry) {
     auto parameters = eye_path_parameters();
     parameters.push_back({"paths", "integer", "64", "light paths traced in every pass"});
-    parameters.push_back({"share", "integer", "0",
-                          "ray lights that a receiver looks at, drawn by their power; 0: all of them"});
+    parameters.push_back(
+        {"share", "integer", "0",
+         "ray lights, and as many VPLs, that a receiver looks at, drawn by their power; 0: all of them"});
     parameters.push_back(
         {"width", "float", "0",
          "of beam lights [m]: light that scatters in media is blurred over a ball of this radius, "

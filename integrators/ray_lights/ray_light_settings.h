@@ -11,18 +11,23 @@
 namespace mote::integrators {
 
 struct RayLightSettings {
-    EyePathLimits eye;  ///< max_depth counts the whole path from light to eye
+    static constexpr double lights_a_path = 4.0;  ///< about
+    EyePathLimits eye;                            ///< max_depth counts the whole path from light to eye
     std::uint32_t paths = 64;
     std::size_t share = 0;       ///< ray lights that a receiver looks at; 0: all
     float width = 0.0f;          ///< of beam lights [m]; 0: ray lights
     std::optional<float> bound;  ///< b of VPLs from surface to surface [1/m^2]; nothing: automatic
     int scattering_points = 4;   ///< where an eye ray in media looks for the light of lights
 
-    /// As that of mote_vpl.
+    /// As that of mote_vpl, by what receivers look at.
     float bound_for(const core::Bounds3& bounds) const {
         if (bound) return *bound;
         const float radius = bounds.radius();
-        return radius > 0.0f ? float(paths) / core::sqr(radius) : core::infinity;
+        return radius > 0.0f ? float(looked_at()) / core::sqr(radius) : core::infinity;
+    }
+    /// Light paths whose lights are that many.
+    double looked_at() const {
+        return share == 0 ? double(paths) : std::min(double(paths), double(share) / lights_a_path);
     }
     lights::LightPathSettings light_paths() const {
         lights::LightPathSettings s;

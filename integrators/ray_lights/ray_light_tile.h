@@ -39,8 +39,7 @@ class RayLightTile {
           pass_(pass),
           walk_(walk),
           context_{scene, scratch, walk.rays, walk.tracking, walk.cancelled},
-          share_(pass.set, settings.share),
-          gather_(context_, pass.set, share_, settings.width) {}
+          gather_(context_, pass.set, settings.share, settings.width) {}
 
     void start(int lane, const EyeRay& eye) {
         Lane& l = lanes_[std::size_t(lane)];
@@ -80,7 +79,8 @@ class RayLightTile {
         TransportSum sum;
         std::optional<core::ScatteringPoints> points;
         std::vector<lights::EyeLine> lines;  ///< of the last leg
-        core::Vec3 normal{0.0f};             ///< shading normal of the last surface that gathered
+        core::Vec3 normal{0.0f};             ///< shading normal of the last point that gathered
+        bool on_surface = true;              ///< or was that in a medium?
         bool alive = false;
     };
 
@@ -103,7 +103,7 @@ class RayLightTile {
         if (settings_.eye.wanted[Transport::indirect])
             receivers_.set(index, vertex, path.throughput(), path.state(), core::Rng(walk_.rng.next_u32()),
                            light_depth(path.depth()));
-        lane.normal = vertex.hit.shading.n;
+        lane.normal = vertex.hit.shading.n, lane.on_surface = vertex.on_surface();
         return true;
     }
 
@@ -150,13 +150,13 @@ class RayLightTile {
     }
 
     /// At a vertex behind the first: (G - b)/G of the edge that led there. Returns whether anything is left;
-    /// from media comes what ray lights bring, and from mirrors and glass what no VPL stands for.
+    /// mirrors and glass send what no VPL stands for.
     bool keep_residual(Lane& lane) {
         EyePath<Media>& path = *lane.path;
         const core::ScatteringVertex& vertex = path.vertex();
-        if (!vertex.on_surface() || !vertex.connectable()) return false;
-        const float g = std::fabs(glm::dot(lane.normal, path.ray().direction)) *
-                        vertex.geometric_cosine(vertex.wo) / core::sqr(path.leg_length());
+        if (!vertex.connectable()) return false;
+        const float cosine = lane.on_surface ? std::fabs(glm::dot(lane.normal, path.ray().direction)) : 1.0f;
+        const float g = cosine * vertex.geometric_cosine(vertex.wo) / core::sqr(path.leg_length());
         if (!(g > pass_.bound)) return false;
         path.scale(std::isfinite(g) ? 1.0f - pass_.bound / g : 1.0f);
         return true;
@@ -164,10 +164,8 @@ class RayLightTile {
 
     void gather_at_surfaces() {
         if (!receivers_.any_active) return;
-        add(lights::gather(context_, pass_.set.surface, lights::VplRange{},
-                           lights::BoundedGeometry{pass_.bound}, receivers_),
-            Transport::indirect);
-        if constexpr (Media) add(gather_.rays_to_surfaces(receivers_), Transport::indirect);
+        add(gather_.vpls_to_points(receivers_, pass_.bound), Transport::indirect);
+        if constexpr (Media) add(gather_.rays_to_points(receivers_, pass_.bound), Transport::indirect);
     }
 
     /// The n-th lines of all lanes at once.
@@ -182,7 +180,7 @@ class RayLightTile {
                 }
             if (!any) return;
             add(gather_.rays_to_eyes(eyes, attenuation_), Transport::multiple_scattering);
-            add(gather_.vpls_to_eyes(eyes, {}, attenuation_), Transport::multiple_scattering);
+            add(gather_.vpls_to_eyes(eyes, attenuation_), Transport::multiple_scattering);
         }
     }
 
@@ -198,7 +196,6 @@ class RayLightTile {
     const RayLightPass& pass_;
     core::WalkContext& walk_;
     lights::GatherContext context_;
-    lights::RayLightShare share_;
     lights::LineGather gather_;
     std::array<Lane, lane_count> lanes_;
     lights::ReceiverTile receivers_;

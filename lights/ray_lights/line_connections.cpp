@@ -129,13 +129,13 @@ std::optional<LineConnection> connect(const EyeLine& eye, const RayLight& light,
 }
 
 std::optional<LineConnection> connect(const ReceiverLanes& receivers, int lane, const RayLight& light,
-                                      float u, const LineContext& context) {
+                                      float u, float bound, const LineContext& context) {
     if (std::int32_t(light.depth) > receivers.max_vpl_depth[lane]) return std::nullopt;
     const ScatteringVertex* vertex = receivers.directional[lane];
     const MediumLine& line = light.line;
     const Vec3d x(vertex ? vertex->position : receivers.position(lane));
     double begin = 0.0, end = double(line.length);
-    if (!vertex) {  // nothing comes from below a diffuse surface
+    if (!vertex && receivers.in_medium[lane] == 0.0f) {  // nothing comes from below a diffuse surface
         const Vec3d normal(receivers.geometric_normal(lane));
         const double height = glm::dot(Vec3d(line.origin) - x, normal),
                      slope = glm::dot(Vec3d(line.direction), normal);
@@ -151,25 +151,29 @@ std::optional<LineConnection> connect(const ReceiverLanes& receivers, int lane, 
                                                       average(line.phase(towards.direction));
                                            })
                                  : line.cell_weights();
-    const auto on_light = sample_line(around(line, x, context.width), begin, end, double(line.length), by, u);
+    const auto on_light = sample_line(around(line, x, std::fmax(context.width, 1.0f / std::sqrt(bound))),
+                                      begin, end, double(line.length), by, u);
     if (!on_light) return std::nullopt;
     const Vec3d y = line.at(on_light->position);
     const Towards towards(x, y);
     if (!(towards.distance > 0.0)) return std::nullopt;
     Rgb value(receivers.weight_r[lane], receivers.weight_g[lane], receivers.weight_b[lane]);
     Vec3 from(x);
+    float cosine = 1.0f;
     if (vertex) {
-        value *= vertex->eval_cos(towards.direction, TransportMode::radiance);
+        value *= vertex->eval(towards.direction, TransportMode::radiance);
+        cosine = vertex->shading_cosine(towards.direction);
         from = vertex->ray_origin(towards.direction);
-    } else {
+    } else if (receivers.in_medium[lane] == 0.0f) {
         const Vec3 shading(receivers.shading_x[lane], receivers.shading_y[lane], receivers.shading_z[lane]);
         const bool above = glm::dot(receivers.geometric_normal(lane), towards.direction) > 0.0f;
-        value *= above ? std::fmax(0.0f, glm::dot(shading, towards.direction)) : 0.0f;
+        cosine = above ? std::fmax(0.0f, glm::dot(shading, towards.direction)) : 0.0f;
     }
+    value *= std::fmin(cosine * inverse_square(towards.distance_squared, context.width), bound) /
+             float(on_light->pdf_distance);
     if (!(max_component(value) > 0.0f)) return std::nullopt;
     value *= light.power * line.scattering(on_light->position, context.rng, context.counters) *
-             line.phase(-towards.direction) *
-             float(double(inverse_square(towards.distance_squared, context.width)) / on_light->pdf_distance);
+             line.phase(-towards.direction);
     if (!(max_component(value) > 0.0f)) return std::nullopt;
     return LineConnection{value, from, Vec3(y)};
 }

@@ -3,7 +3,7 @@
 //
 // Points on the lines are drawn (line_sampling.h), the values are divided by their densities: estimates of
 //   eye ray, ray light    integral over v and u of  T sigma_s f_p(x)  V*/w^2  f_p(y) sigma_s T P
-//   surface, ray light    integral over u of        f_r C*(x)         V*/w^2  f_p(y) sigma_s T P
+//   point, ray light      integral over u of        f*(x)    min(G*, b) V*    f_p(y) sigma_s T P
 //   eye ray, surface VPL  integral over v of        T sigma_s f_p(x)  V* C*(y)/w^2  I
 // without visibility and transmittance between x and y (Novak et al. 2012, Eqs. 5 to 8).
 //
@@ -46,9 +46,9 @@ float inverse_square(double distance_squared, float width);
 /// no light comes that way.
 std::optional<LineConnection> connect(const EyeLine& eye, const RayLight& light, const core::Vec2& u,
                                       const LineContext& context);
-/// A surface, the lane of a tile, and a ray light.
+/// A point, the lane of a tile, and a ray light. Of G* = C*(x)/w^2 counts min(G*, bound) [1/m^2].
 std::optional<LineConnection> connect(const ReceiverLanes& receivers, int lane, const RayLight& light,
-                                      float u, const LineContext& context);
+                                      float u, float bound, const LineContext& context);
 /// An eye ray and a VPL on a surface.
 std::optional<LineConnection> connect(const EyeLine& eye, const VplSet& vpls, const VirtualPointLight& vpl,
                                       float u, const LineContext& context);

@@ -1,5 +1,5 @@
 // Gathering along lines: the light of ray lights and of VPLs on surfaces for sixteen eye rays, and of ray
-// lights for sixteen surfaces.
+// lights for sixteen points.
 //
 // Shadow rays go in packets of sixteen, a batch at a time, as those of VPLs do (virtual_lights/vpl_gather.h).
 // Points on the lines follow a sequence that fills the square evenly as the lights go by, from a start of the
@@ -27,28 +27,37 @@ struct LineCounters {
 /// Gathers for one task; keeps references.
 class LineGather {
   public:
-    /// `share`: the ray lights that a receiver looks at; `width` of beam lights [m].
-    LineGather(const GatherContext& context, const RayLightSet& set, const RayLightShare& share, float width)
-        : context_(context), set_(set), share_(share), width_(width) {}
+    /// `share`: so many ray lights, and so many VPLs, does a receiver look at, 0: all; `width` of beam lights
+    /// [m].
+    LineGather(const GatherContext& context, const RayLightSet& set, std::size_t share, float width)
+        : context_(context),
+          set_(set),
+          rays_(set.ray_power, share),
+          surface_(set.surface_power, share),
+          width_(width) {}
 
     /// By lane. `tile` is written to: its states and generators are those of the lanes; generators it has
     /// must be the lanes' own.
     TileLight rays_to_eyes(const EyeLines& eyes, ReceiverTile& tile);
-    TileLight vpls_to_eyes(const EyeLines& eyes, const VplRange& range, ReceiverTile& tile);
-    /// Of a tile of surfaces alone.
-    TileLight rays_to_surfaces(ReceiverTile& tile);
+    TileLight vpls_to_eyes(const EyeLines& eyes, ReceiverTile& tile);
+    /// The same of points, with min(G*, bound) [1/m^2].
+    TileLight rays_to_points(ReceiverTile& tile, float bound);
+    TileLight vpls_to_points(ReceiverTile& tile, float bound);
     const LineCounters& counters() const { return counters_; }
 
   private:
     template <typename Connect>
     TileLight gather(std::size_t count, ReceiverTile& tile, const Connect& connect_lane);
+    WeightedVpl resample(const EyeLine& eye, const LightShare& offered, std::size_t first, std::size_t count,
+                         float start, float u) const;
     void begin_eyes(const EyeLines& eyes, ReceiverTile& tile) const;
 
     GatherContext context_;
     const RayLightSet& set_;
-    const RayLightShare& share_;
+    LightShare rays_, surface_;
     float width_;
     LineCounters counters_;
+    std::vector<WeightedVpl> chosen_;
 };
 
 }  // namespace mote::lights

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace mote::lights {
 
@@ -67,11 +68,21 @@ void append(RayLightSet& to, RayLightSet&& from) {
     to.rays.insert(to.rays.end(), from.rays.begin(), from.rays.end());
 }
 
-/// What scatters on the line, by its weights.
-double scattered_power(const RayLight& light) {
+/// What scatters on the line, by its weights, over the root of its length. For a line of length L and power P
+/// that is P sqrt(L), which is how its light spreads: P / d within L of it, P L / d^2 farther away, so that
+/// the mean of the square over receivers on surfaces around it is P^2 L, but for logarithms. Drawn by P L,
+/// short lines would count so much where they are drawn that they were points again.
+double drawn_power(const RayLight& light) {
     double sum = 0.0;
     for (const float weight : light.line.cell_weights()) sum += double(weight);
-    return double(average(light.power)) * sum * double(light.line.length) / double(light.line.cells);
+    return double(average(light.power)) * sum * std::sqrt(double(light.line.length)) /
+           double(light.line.cells);
+}
+
+/// What a VPL sends out, about: its intensity holds the BSDF where that is a constant.
+double reflected_power(const VirtualPointLight& vpl) {
+    const double constant = vpl.detail == VirtualPointLight::no_detail ? 1.0 : double(inv_pi);
+    return constant * double(average(vpl.intensity));
 }
 
 }  // namespace
@@ -89,18 +100,25 @@ RayLightSet trace_ray_lights(const LitScene& scene, const ScatteringMedia& media
     for (RayLightSet& part : parts) append(set, std::move(part));
     set.surface.paths = settings.paths;
     double sum = 0.0;
-    for (const RayLight& light : set.rays) set.power.push_back(sum += scattered_power(light));
+    for (const RayLight& light : set.rays) set.ray_power.push_back(sum += drawn_power(light));
+    sum = 0.0;
+    for (const VirtualPointLight& vpl : set.surface.lights)
+        set.surface_power.push_back(sum += reflected_power(vpl));
     return set;
 }
 
-RayLightChoice RayLightShare::choose(std::size_t n, float start) const {
+WeightedVpl LightShare::choose(std::size_t n, float start) const {
     if (all_) return {n, 1.0f};
-    const double total = set_.total_power();
-    const double place = (double(n) + double(start)) / double(count_) * total;
-    const auto found = std::upper_bound(set_.power.begin(), set_.power.end(), place);
-    const auto index = std::min(std::size_t(found - set_.power.begin()), set_.rays.size() - 1);
-    const double own = set_.power[index] - (index > 0 ? set_.power[index - 1] : 0.0);
+    const double total = power_.back(), place = (double(n) + double(start)) / double(count_) * total;
+    const auto found = std::upper_bound(power_.begin(), power_.end(), place);
+    const auto index = std::min(std::size_t(found - power_.begin()), power_.size() - 1);
+    const double own = power_[index] - (index > 0 ? power_[index - 1] : 0.0);
     return {index, own > 0.0 ? float(total / (own * double(count_))) : 0.0f};
+}
+
+void LightShare::choose_all(float start, std::vector<WeightedVpl>& lights) const {
+    lights.clear();
+    for (std::size_t n = 0; n < count(); ++n) lights.push_back(choose(n, start));
 }
 
 }  // namespace mote::lights

@@ -10,6 +10,7 @@
 #include "lights/ray_lights/medium_line.h"
 #include "lights/virtual_lights/light_path.h"
 #include "lights/virtual_lights/virtual_point_light.h"
+#include "lights/virtual_lights/vpl_choice.h"
 
 namespace mote::lights {
 
@@ -25,13 +26,13 @@ struct RayLight {
 struct RayLightSet {
     std::vector<RayLight> rays;
     VplSet surface;  ///< without states: connections are traced from receivers
-    std::vector<double>
-        power;  ///< sums of what the rays scatter, about, up to each of them; the last is the total
+    /// Sums of what lights send out, about, up to each of them; the last is the total.
+    std::vector<double> ray_power, surface_power;
 
-    double total_power() const { return power.empty() ? 0.0 : power.back(); }
     /// Of all lists.
     std::size_t memory_bytes() const {
-        return rays.size() * sizeof(RayLight) + power.size() * sizeof(double) + surface.memory_bytes();
+        return rays.size() * sizeof(RayLight) + (ray_power.size() + surface_power.size()) * sizeof(double) +
+               surface.memory_bytes();
     }
 };
 
@@ -42,25 +43,22 @@ RayLightSet trace_ray_lights(const core::LitScene& scene, const ScatteringMedia&
                              const LightPathSettings& settings, std::uint64_t seed, std::uint32_t pass,
                              core::SamplerKind sampler, core::CancelToken cancelled = {});
 
-/// A ray light, drawn.
-struct RayLightChoice {
-    std::size_t index;
-    float weight;  ///< one over its expected number among those that are drawn
-};
-
-/// Which ray lights a receiver looks at: all, or so many of them, drawn by their power in equal steps through
-/// the sum from one random start.
-class RayLightShare {
+/// Which lights a receiver looks at: all, or so many of them, drawn by their power in equal steps through the
+/// sum from one random start.
+class LightShare {
   public:
-    /// `most`: so many; 0: all.
-    RayLightShare(const RayLightSet& set, std::size_t most)
-        : set_(set), all_(most == 0 || most >= set.rays.size()), count_(all_ ? set.rays.size() : most) {}
-    std::size_t count() const { return set_.total_power() > 0.0 ? count_ : 0; }
-    /// The n-th of count(), by a random start in [0, 1) that all of a receiver share.
-    RayLightChoice choose(std::size_t n, float start) const;
+    /// `power`: sums up to each light, which must outlive this; `most`: so many; 0: all.
+    LightShare(std::span<const double> power, std::size_t most)
+        : power_(power), all_(most == 0 || most >= power.size()), count_(all_ ? power.size() : most) {}
+    std::size_t count() const { return !power_.empty() && power_.back() > 0.0 ? count_ : 0; }
+    /// The n-th of count(), by a random start in [0, 1) that all of a receiver share. Its weight is one over
+    /// how often it is expected among those that are drawn.
+    WeightedVpl choose(std::size_t n, float start) const;
+    /// All of them, for whoever gathers many receivers at once (virtual_lights/vpl_choice.h).
+    void choose_all(float start, std::vector<WeightedVpl>& lights) const;
 
   private:
-    const RayLightSet& set_;
+    std::span<const double> power_;
     bool all_;
     std::size_t count_;
 };

@@ -46,8 +46,9 @@ void check(const std::string& xml, const std::string& settings, const std::strin
 }
 
 const std::string paths = R"(<integer name="paths" value="8"/>)";
+const std::string shared = R"(<integer name="paths" value="40"/><integer name="share" value="8"/>)";
 const std::string forward = R"(<phase type="hg"><float name="g" value="0.6"/></phase>)";
-const Effort quick{300, 2500, 0.12}, long_run{6000, 40000, 0.04};
+const Effort quick{200, 2000, 0.15}, long_run{2500, 16000, 0.06};
 
 void check_all(const Effort& effort) {
     const mote::tests::TemporaryFolder folder;
@@ -55,7 +56,8 @@ void check_all(const Effort& effort) {
     check(box(grey, fog("0.8, 1.0, 1.3", "")), paths, "", effort);
     check(box(mixed, fog("0.8, 1.0, 1.3", forward)), paths, "", effort);
     check(box(grey, smoke), paths, "", effort);
-    check(box(grey, fog("0.8, 1.0, 1.3", "")), paths + R"(<integer name="share" value="6"/>)", "", effort);
+    check(box(grey, fog("0.8, 1.0, 1.3", "")), shared, "", effort);
+    check(box(mixed, fog("0.8, 1.0, 1.3", forward)), shared, "", effort);
 }
 
 }  // namespace
@@ -65,8 +67,7 @@ TEST_CASE("ray lights equal paths in fog", "[ray_lights][equality]") {
 }
 TEST_CASE("ray lights equal paths in smoke, a share of them", "[ray_lights][equality]") {
     const mote::tests::TemporaryFolder folder;
-    check(box(grey, smoke_medium(folder.file("smoke.vol"))), paths + R"(<integer name="share" value="6"/>)",
-          "", quick);
+    check(box(grey, smoke_medium(folder.file("smoke.vol"))), shared, "", quick);
 }
 TEST_CASE("ray lights equal paths: every kind of medium, with fine eyes", "[.][ray_lights_long]") {
     check_all(long_run);
@@ -93,7 +94,8 @@ TEST_CASE("ray lights equal paths: max_depth, thick fog, fog without walls, pane
 TEST_CASE("beam lights: the bias falls with the width", "[ray_lights][beams]") {
     const auto scene = scene_from(box(grey, fog("2, 2.5, 3", "")), 8);
     const auto mean_of = [&](const std::string& width) {
-        const auto r = ray_lights(*scene, paths + width, 400, 5);  // the same light paths in all
+        const auto r = ray_lights(*scene, shared + R"(<integer name="max_depth" value="4"/>)" + width, 60,
+                                  5);  // the same light paths in all
         return r.whole[r.layer("multiple_scattering")][1].mean;
     };
     const double exact = mean_of("");

@@ -192,13 +192,8 @@ TEST_CASE("beam lights keep what arrives near them, and are bounded", "[ray_ligh
 }
 
 TEST_CASE("a share of the ray lights counts for all", "[ray_lights]") {
-    RayLightSet set;
-    double sum = 0.0;
-    for (const double power : {1.0, 0.0, 5.0, 0.25, 20.0}) {
-        set.rays.emplace_back();
-        set.power.push_back(sum += power);
-    }
-    const RayLightShare all(set, 0), three(set, 3);
+    const std::array<double, 5> power{1.0, 1.0, 6.0, 6.25, 26.25};  // sums: the second has none
+    const LightShare all(power, 0), three(power, 3);
     CHECK(all.count() == 5);
     CHECK(all.choose(2, 0.3f).index == 2);
     CHECK(all.choose(2, 0.3f).weight == 1.0f);
@@ -212,6 +207,6 @@ TEST_CASE("a share of the ray lights counts for all", "[ray_lights]") {
         }
     for (const std::size_t i : {0, 2, 3, 4}) CHECK(counted[i] == Approx(1.0).epsilon(1e-3));
     CHECK(counted[1] == 0.0);
-    CHECK(RayLightShare(RayLightSet{}, 3).count() == 0);
-    CHECK(RayLightShare(RayLightSet{}, 0).count() == 0);
+    CHECK(LightShare({}, 3).count() == 0);
+    CHECK(LightShare({}, 0).count() == 0);
 }
