@@ -21,6 +21,7 @@ std::string default_methods(const core::Requirements& requirements) {
             {{"paths", 64}, {"compensation", {{"type", "approximate"}, {"depth", 2}}}});
     add("VPL, exact compensation", "mote_vpl", {{"paths", 64}, {"compensation", "exact"}});
     add("VPL unbounded", "mote_vpl", {{"paths", 64}, {"bounded", false}});
+    if (media) add("ray lights", "mote_ray_lights", json::object());
     if (!media) add("spherical lights", "mote_vsl", {{"paths", 64}});
     add("photon map", "mote_photon_map", {{"photon_paths", 20000}});
     return json({{"time", 20}, {"seeds", 2}, {"methods", methods}}).dump(2);

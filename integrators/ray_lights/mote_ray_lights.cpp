@@ -110,8 +110,8 @@ class MoteRayLights final : public Integrator {
   public:
     explicit MoteRayLights(const Properties& p) {
         settings_.eye = read_eye_path_limits(p);
-        settings_.paths = std::uint32_t(p.get_int_in("paths", 64, 0, std::int64_t(1) << 26));
-        settings_.share = std::size_t(p.get_int_in("share", 0, 0, std::int64_t(1) << 26));
+        settings_.paths = std::uint32_t(p.get_int_in("paths", 256, 0, std::int64_t(1) << 26));
+        settings_.share = std::size_t(p.get_int_in("share", 8, 0, std::int64_t(1) << 26));
         settings_.width = float(p.get_float_in("width", 0.0, 0.0, 1e30));
         settings_.scattering_points = int(p.get_int_in("scattering_points", 4, 1, 64));
         if (p.has("bound")) settings_.bound = float(p.get_float_in("bound", 1.0, 0.0, 1e30));
@@ -157,10 +157,11 @@ Plan MoteRayLights::plan(const Scene& scene, const Requirements& r) const {
     else
         plan.leave_out("ray lights", "light paths leave VPLs on surfaces alone", "no medium scatters");
     const float bound = settings_.bound_for(scene.rays().bounds());
-    plan.run("bound", fmt::format("{:.4g} /m^2, from surface to surface", bound),
-             settings_.bound ? "asked for" : "automatic: light paths / R^2 with the radius R of all shapes");
-    plan.run("compensation", "exact: eye paths go on to surfaces nearer than the bound",
-             "nothing is bounded in media");
+    plan.run(
+        "bound", fmt::format("{:.4g} /m^2, from surface to surface", bound),
+        settings_.bound ? "asked for" : "automatic: by the light paths that a receiver looks at, over R^2");
+    plan.run("compensation", "exact: eye paths go on to what is nearer than the bound",
+             "nothing is bounded along eye rays");
     if (r.any_delta())
         plan.miss("caustics", "light that reaches a receiver through a delta surface",
                   "a virtual light cannot be connected through mirrors and glass; volpath renders it");
@@ -173,9 +174,9 @@ Plan MoteRayLights::plan(const Scene& scene, const Requirements& r) const {
 
 void register_mote_ray_lights(Registry& registry) {
     auto parameters = eye_path_parameters();
-    parameters.push_back({"paths", "integer", "64", "light paths traced in every pass"});
+    parameters.push_back({"paths", "integer", "256", "light paths traced in every pass"});
     parameters.push_back(
-        {"share", "integer", "0",
+        {"share", "integer", "8",
          "ray lights, and as many VPLs, that a receiver looks at, drawn by their power; 0: all of them"});
     parameters.push_back(
         {"width", "float", "0",
@@ -184,7 +185,7 @@ void register_mote_ray_lights(Registry& registry) {
     parameters.push_back(
         {"bound", "float", "automatic",
          "bound b [1/m^2] on the geometry term from surface to surface, what is above it being found "
-         "by eye paths that go on; automatic: light paths / R^2 with the radius R of all shapes"});
+         "by eye paths that go on; automatic: light paths that a receiver looks at, at least 16, over R^2"});
     parameters.push_back({"scattering_points", "integer", "4",
                           "points in media where each eye ray looks for the light of lights, up to 64"});
     registry.add({Category::integrator, "mote_ray_lights",

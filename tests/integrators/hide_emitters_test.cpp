@@ -55,7 +55,8 @@ std::string sheet(const std::string& bsdf) {
 std::string integrator(const std::string& type, bool hide) {
     std::string text = "<integrator type='" + type + "'><boolean name='hide_emitters' value='" +
                        (hide ? "true" : "false") + "'/>";
-    if (type == "mote_vpl" || type == "mote_vsl" || type == "mote_vpl_ray_bundles")
+    if (type == "mote_vpl" || type == "mote_vsl" || type == "mote_vpl_ray_bundles" ||
+        type == "mote_ray_lights")
         text += "<integer name='paths' value='4'/>";
     if (type == "mote_photon_map") text += "<integer name='photon_paths' value='50'/>";
     if (type == "mote_micro_rendering")
@@ -117,8 +118,8 @@ TEST_CASE("fog before and behind a hidden lamp dims alike", "[hide_emitters]") {
     // Eye rays begin at the near clip plane, 0.01 m from the camera: 0.04 m to the lamp and 0.05 m behind it;
     // a path that skips either is brighter by 8 or 10 %, which check_mean() tells.
     const double expected = light_of_floor(2.0);
-    for (const char* type :
-         {"volpath", "mote_bdpt", "mote_vpl", "mote_photon_map", "mote_single_scattering", "mote_epipolar"}) {
+    for (const char* type : {"volpath", "mote_bdpt", "mote_vpl", "mote_ray_lights", "mote_photon_map",
+                             "mote_single_scattering", "mote_epipolar"}) {
         INFO(type);
         const auto picture = render(*scene, type, true);
         CHECK(mean_of(picture, "emission") == 0.0);

@@ -128,7 +128,8 @@ TEST_CASE("a method that is asked for one cell gives it its own mean and traces 
                            type != "mote_ray_bundles" && type != "mote_micro_rendering" && type != "path";
         const Scene& scene = media ? *foggy : *dry;
         std::string few;
-        if (type == "mote_vpl" || type == "mote_vsl" || type == "mote_vpl_ray_bundles")
+        if (type == "mote_vpl" || type == "mote_vsl" || type == "mote_vpl_ray_bundles" ||
+            type == "mote_ray_lights")
             few = "<integer name='paths' value='4'/>";
         if (type == "mote_epipolar")
             few = "<integer name='lines' value='16'/><integer name='steps' value='8'/>";

@@ -43,6 +43,7 @@ const std::string integrators[] = {
     R"(<integrator type="mote_bdpt"/>)",
     R"(<integrator type="mote_vpl"><integer name="paths" value="4"/></integrator>)",
     R"(<integrator type="mote_vsl"><integer name="paths" value="4"/></integrator>)",
+    R"(<integrator type="mote_ray_lights"><integer name="paths" value="4"/></integrator>)",
     R"(<integrator type="mote_vpl_ray_bundles"><integer name="paths" value="4"/><integer name="directions" value="4"/></integrator>)",
     R"(<integrator type="mote_photon_map"><integer name="photon_paths" value="50"/></integrator>)",
     R"(<integrator type="mote_micro_rendering"><integer name="points" value="100"/><integer name="micro_buffer" value="4"/></integrator>)",

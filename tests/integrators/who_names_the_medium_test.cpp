@@ -138,7 +138,7 @@ TEST_CASE("one name is as good as another, to the bit, in every integrator", "[n
                 continue;  // surfaces only
             // Their defaults trace more light than bits need.
             const std::string few =
-                type == "mote_vpl"          ? R"(<integer name="paths" value="8"/>)"
+                type == "mote_vpl" || type == "mote_ray_lights" ? R"(<integer name="paths" value="8"/>)"
                 : type == "mote_photon_map" ? R"(<integer name="photon_paths" value="200"/>)"
                 : type == "mote_micro_rendering"
                     ? R"(<integer name="points" value="200"/><integer name="micro_buffer" value="4"/>)"
