@@ -42,7 +42,7 @@ class Blend final : public Bsdf {
         const std::array<float, 2> share = shares(p);
         float sum = 0.0f;
         for (std::size_t k = 0; k < 2; ++k)
-            if (share[k] > 0.0f) sum += share[k] * nested_[k]->pdf_solid_angle(p, wo, wi, mode);
+            if (share[k] > 0.0f) sum += share[k] * drawn_pdf(*nested_[k], p, wo, wi, mode);
         return sum;
     }
 
@@ -91,6 +91,12 @@ class Blend final : public Bsdf {
     }
 
   private:
+    /// Density with which a part comes back with this direction: where it is black it draws nothing, whatever
+    /// its density says (sample() of all kinds), and the other part has to make up for it.
+    static float drawn_pdf(const Bsdf& part, const BsdfPoint& p, const Vec3& wo, const Vec3& wi,
+                           TransportMode mode) {
+        return is_black(part.eval(p, wo, wi, mode)) ? 0.0f : part.pdf_solid_angle(p, wo, wi, mode);
+    }
     /// Of the first and of the second. Textures may leave [0, 1], as in Mitsuba.
     std::array<float, 2> shares(const BsdfPoint& p) const {
         const float second = std::clamp(weight_.eval(p.uv), 0.0f, 1.0f);

@@ -73,6 +73,24 @@ TEST_CASE("a mask divides light between passing and its BSDF, where its texture 
            !core::make_mask(core::make_thin_dielectric({}), nullptr)->traits().tints));
 }
 
+TEST_CASE("a blend whose one part is black reflects all of the other's share", "[materials][mask]") {
+    const auto black = core::make_diffuse(grey(0.0f)), white = core::make_diffuse(grey(0.8f));
+    for (const bool first : {false, true}) {
+        const auto blend = core::make_blend(first ? black : white, first ? white : black, grey(0.5f));
+        const Vec3 wo = direction_at(0.7, 1.0);
+        core::Rng rng(5);
+        const int n = 4000;
+        double sum = 0;
+        for (int i = 0; i < n; ++i) {
+            const float lobe = rng.next_float();
+            const core::Vec2 u = rng.next_vec2();
+            if (const auto s = blend->sample(point, wo, lobe, u, TransportMode::radiance)) sum += s->weight.x;
+        }
+        // Half of the draws come back, with weight 0.8 each: four standard errors of 0.4 / sqrt(n).
+        CHECK(sum / n == Approx(0.4).margin(4 * 0.4 / std::sqrt(n)));
+    }
+}
+
 TEST_CASE("the chances of sample() are those of straight_passage()", "[materials][mask]") {
     for (const BsdfCase& c : all_cases()) {
         if (!c.bsdf->traits().pane) continue;
