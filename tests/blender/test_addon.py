@@ -72,7 +72,8 @@ def test(words, mote, source):
         archive = folder / "mote_render.zip"
         subprocess.run([sys.executable, "-B", str(source / "plugins" / "blender" / "make_zip.py"), str(archive), str(page)],
                        check=True)
-        finish(start(words, mote, folder, archive, "pictures"), "checked: all")
+        for what in ("pictures", "parts"):
+            finish(start(words, mote, folder, archive, what), "checked: all")
         cancel(start(words, mote, folder, archive, "cancel"))
 
 
@@ -82,7 +83,8 @@ def main():
     for name, words in found.items():
         print(f"{name}:", flush=True)
         test(words, mote, source)
-    for name, how in (("blender", "no 'blender' on the path"), ("bpy", "no Python with the module; tools/install_bpy.sh makes one")):
+    missing = {"blender": "no 'blender' on the path", "bpy": "no Python has the module; tools/install_bpy.sh makes one"}
+    for name, how in missing.items():
         if name not in found:
             print(f"LEFT OUT: the Blender add-on is not tested in {name}: {how}")
 

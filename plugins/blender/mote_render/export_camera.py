@@ -26,6 +26,8 @@ def add_camera(export, depsgraph, size):
     matrix = obj.matrix_world.normalized() @ TURNED
     clip = {"near_clip": float(camera.clip_start), "far_clip": float(camera.clip_end)}
     if camera.type == "ORTHO":
+        if camera.dof.use_dof:
+            export.note("camera: depth of field of an orthographic one is left out")
         across = Matrix.Translation(obj.matrix_world.normalized().to_3x3() @ Vector((*middle, 0)))
         sensor = add(export.root, "sensor", "orthographic", **clip)
         add_matrix(sensor, across @ matrix @ Matrix.Diagonal((extent[0] / 2, extent[0] / 2, 1, 1)))

@@ -7,10 +7,14 @@ cone takes light away and makes the rest no brighter.
 """
 import math
 
+import bpy
+import numpy as np
 from mathutils import Matrix
 
+from .export_textures import write_pfm
 from .scene_xml import add, add_matrix
 
+PROFILE = 256  # texels across a spot's cone
 TURNED = Matrix.Diagonal((1, -1, -1, 1))  # lamps shine along -z, our shapes face +z
 
 
@@ -59,15 +63,24 @@ def add_sun(export, obj, lamp, matrix, watts):
 
 
 def add_spot(export, obj, lamp, matrix, watts):
-    """Cycles' rim is a smooth step in the cosine, times the cosine in 3.4; ours is linear in the angle."""
-    half = lamp.spot_size / 2
-    beam = math.acos(min(1.0, math.cos(half) + (1 - math.cos(half)) * lamp.spot_blend))
-    export.note(f"spot '{obj.name}': the rim of its cone is linear in the angle")
+    """A hard cone, through which a picture of Cycles' fall-off shines."""
+    half = min(lamp.spot_size / 2, math.radians(89))
     if lamp.shadow_soft_size > 0:
         export.note(f"spot '{obj.name}': its radius became 0")
     light = add(export.root, "emitter", "spot", intensity=[w / (4 * math.pi) for w in watts],
-                cutoff_angle=math.degrees(half), beam_width=min(math.degrees(beam), math.degrees(half) * 0.9999))
+                cutoff_angle=math.degrees(half), beam_width=math.degrees(half) * 0.9999)
+    file = f"spot_{len(export.root)}.pfm"
+    write_pfm(export.folder / file, (PROFILE, PROFILE), fall_off(half, lamp.spot_blend).repeat(3))
+    add(light, "texture", "bitmap", "texture", filename=file, raw=True, wrap_mode="clamp")
     add_matrix(light, matrix.normalized() @ TURNED)
+
+
+def fall_off(half, blend):
+    """A smooth step in the cosine, over the square around the cone; times the cosine itself in Blender 3."""
+    across = (2 * np.arange(PROFILE) + 1) / PROFILE - 1
+    cosine = 1 / np.sqrt(1 + (across[:, None]**2 + across**2) * math.tan(half)**2)
+    step = np.clip((cosine - math.cos(half)) / max((1 - math.cos(half)) * blend, 1e-9), 0, 1) if blend > 0 else 1 + 0 * cosine
+    return step * step * (3 - 2 * step) * (cosine if bpy.app.version < (4, 0) else 1)
 
 
 def add_area(export, obj, lamp, matrix, watts):

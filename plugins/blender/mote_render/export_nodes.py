@@ -86,9 +86,11 @@ def mix(export, where, parent, node):
         if clear is not None and clear.type == "BSDF_TRANSPARENT":
             return masked(export, where, parent, node, other, share == "opacity")
     bsdf = add(parent, "bsdf", "blendbsdf")
-    weight = constant(export, where, node.inputs[0])
-    add_value(bsdf, "weight", min(max(weight, 0.0), 1.0))
+    add_socket(export, where, bsdf, "weight", node.inputs[0])
     light = [add_surface(export, where, bsdf, source) for source in (first, second)]
+    if not any(map(any, light)):
+        return BLACK
+    weight = min(max(constant(export, where, node.inputs[0]), 0.0), 1.0)
     return [(1 - weight) * a + weight * b for a, b in zip(*light)]
 
 

@@ -79,13 +79,24 @@ def add_grid(export, obj, matrix, _materials):
         export.note(f"{where}: an extinction with a colour became its mean")
     if mean <= 0:
         return export.note(f"{where}: without extinction; left out")
+    if any(emission):
+        export.note(f"{where}: its emission follows the density")
+    mean, sigma_a = mean * density_of(volume, matrix), [a * density_of(volume, matrix) for a in sigma_a]
+    sigma_s, emission = ([v * density_of(volume, matrix) for v in values] for values in (sigma_s, emission))
     cube = add(export.root, "shape", "cube")
-    add_matrix(cube, matrix @ box_matrix(obj))
+    add_matrix(cube, matrix @ box_matrix(obj, volume.grids[name]))
     add(cube, "bsdf", "null")
     medium = add(cube, "medium", "heterogeneous", "interior", scale=mean,
                  albedo=[min(s / mean, 1.0) for s in sigma_s])
     add_matrix(add(medium, "volume", "vdbvolume", "sigma_t", filename=path, grid=name), matrix)
     add_phase_and_light(export, where, medium, sigma_a, emission, g)
+
+
+def density_of(volume, matrix):
+    """Densities of the space of an object are less where it is larger: Cycles takes its scale along (1, 1, 1)."""
+    if volume.render.space != "OBJECT":
+        return 1.0
+    return 1 / max((matrix.to_3x3() @ Vector((1, 1, 1)).normalized()).length, 1e-9)
 
 
 def grid_node(volume):
@@ -96,9 +107,10 @@ def grid_node(volume):
     return source_of(output.inputs["Volume"]) if output else None
 
 
-def box_matrix(obj):
-    """Takes [-1, 1]^3 to the object's bounding box, a hundredth larger: trilinear values reach half a voxel out."""
+def box_matrix(obj, grid):
+    """Takes [-1, 1]^3 to the object's bounding box and half a voxel more, which trilinear values reach out of it."""
     corners = [Vector(c) for c in obj.bound_box]
+    voxel = Vector(sum(abs(grid.matrix_object[row][column]) for column in range(3)) for row in range(3))
     low, high = (Vector(f(c[i] for c in corners) for i in range(3)) for f in (min, max))
-    half = 0.505 * (high - low)
+    half = 0.505 * (high - low + voxel)
     return Matrix.Translation((low + high) / 2) @ Matrix.Diagonal((*half, 1))
