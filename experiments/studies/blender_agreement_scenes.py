@@ -1,6 +1,6 @@
-"""Inside of Blender: three scenes, each rendered by Cycles and by mote with several seeds. See blender_agreement.py.
+"""Inside of Blender: four scenes, each rendered by Cycles and by mote with several seeds. See blender_agreement.py.
 
-Arguments after --: ADDON.zip FOLDER SAMPLES SEEDS SCENE...
+Arguments after --: ADDON.zip FOLDER SMOKE.vdb WIDTH SAMPLES SEEDS SCENE...
 """
 import json
 import math
@@ -11,7 +11,7 @@ from pathlib import Path
 import bpy
 from mathutils import Matrix
 
-SIZE, DEPTH = (64, 36), 12  # pixels; edges of the longest path, the emitter's included
+DEPTH = 12  # edges of the longest path, the emitter's included
 
 
 def material(name, kind, socket="Surface", **inputs):
@@ -97,7 +97,35 @@ def fog():
     lamp("AREA", 60, Matrix.Translation((0, 0, 3)))
 
 
-def view(angle, tilt):
+def table(smoke):
+    """What users do: a floor with a picture, a ball of glass, smoke out of a file, under a lamp and a grey sky."""
+    wall = material("wall", "ShaderNodeBsdfDiffuse", Color=(0.6, 0.55, 0.5, 1))
+    plane(wall, Matrix.Translation((0, 2, 1)) @ Matrix.Rotation(math.pi / 2, 4, "X") @ Matrix.Diagonal((3, 3, 1, 1)))
+    checked = material("checked", "ShaderNodeBsdfDiffuse")
+    plane(checked, Matrix.Diagonal((3, 3, 1, 1)))
+    layer = bpy.context.scene.objects[-1].data.uv_layers.new(name="uv")
+    for loop, corner in zip(layer.data, ((0, 0), (6, 0), (6, 6), (0, 6))):
+        loop.uv = corner
+    nodes = checked.node_tree.nodes
+    texture = nodes.new("ShaderNodeTexImage")
+    texture.image = bpy.data.images.new("checks", 32, 32)
+    rows, columns = [[(i // 32 if down else i % 32) // 16 for i in range(1024)] for down in (True, False)]
+    texture.image.pixels[:] = [v for r, c in zip(rows, columns) for v in ((0.8, 0.3, 0.2, 1) if r == c else (0.85, 0.8, 0.7, 1))]
+    checked.node_tree.links.new(texture.outputs[0], nodes["Diffuse BSDF"].inputs["Color"])
+    ball(material("glass", "ShaderNodeBsdfGlass", Color=(1, 1, 1, 1), Roughness=0.0, IOR=1.5), -0.75)
+    data = bpy.data.volumes.new("smoke")
+    data.filepath = smoke
+    data.materials.append(material("smoke", "ShaderNodeVolumePrincipled", "Volume", Color=(0.85, 0.85, 0.85, 1), Density=4.0))
+    # The smoke is 2.9 m high along its y.
+    put("smoke", data, Matrix.Translation((0.8, 0, 0.05)) @ Matrix.Rotation(math.pi / 2, 4, "X") @ Matrix.Scale(0.5, 4))
+    lamp("AREA", 80, Matrix.Translation((0, -1, 3)), 1.5)
+    world = bpy.data.worlds.new("world")
+    bpy.context.scene.world = world
+    world.use_nodes = True
+    world.node_tree.nodes["Background"].inputs["Color"].default_value = (0.3, 0.3, 0.35, 1)
+
+
+def view(angle, tilt, width):
     """The camera with an angle across [degrees], 4 m away; and the same settings for both engines."""
     scene = bpy.context.scene
     camera = bpy.data.cameras.new("camera")
@@ -105,7 +133,7 @@ def view(angle, tilt):
     matrix = Matrix.Translation((0, -4, 1.2)) @ Matrix.Rotation(math.radians(tilt), 4, "X")
     scene.camera = put("camera", camera, matrix)
     render, cycles, image = scene.render, scene.cycles, scene.render.image_settings
-    render.resolution_x, render.resolution_y, render.resolution_percentage = *SIZE, 100
+    render.resolution_x, render.resolution_y, render.resolution_percentage = width, width * 9 // 16, 100
     render.threads_mode, render.threads = "FIXED", 2
     image.file_format, image.color_depth, image.exr_codec = "OPEN_EXR", "32", "ZIP"
     scene.view_settings.view_transform, scene.view_settings.exposure = "Raw", 0.0
@@ -115,6 +143,7 @@ def view(angle, tilt):
     cycles.caustics_reflective = cycles.caustics_refractive = True
     for kind in ("max", "diffuse", "glossy", "transmission", "volume", "transparent_max"):
         setattr(cycles, kind + "_bounces", 1024 if kind == "transparent_max" else DEPTH - 1)
+    cycles.volume_step_rate, cycles.volume_max_steps = 0.5, 65536  # it marches through what is not homogeneous
     scene.mote.integrator, scene.mote.volpath.max_depth, scene.mote.pixel_filter = "volpath", DEPTH, "box"
     scene.mote.threads = 2
     return scene
@@ -125,13 +154,13 @@ def processor_seconds():
 
 
 def main():
-    archive, folder, samples, seeds, *names = sys.argv[sys.argv.index("--") + 1:]
+    archive, folder, smoke, width, samples, seeds, *names = sys.argv[sys.argv.index("--") + 1:]
     for name in names:
         bpy.ops.wm.read_factory_settings(use_empty=True)
         bpy.ops.preferences.addon_install(filepath=archive, overwrite=True)
         bpy.ops.preferences.addon_enable(module="mote_render")
-        {"room": room, "sun": sun, "fog": fog}[name]()
-        scene, log = view(*((31, 80) if name == "sun" else (50, 85))), []  # close to the balls
+        {"room": room, "sun": sun, "fog": fog, "table": lambda: table(smoke)}[name]()
+        scene, log = view(*((31, 80) if name == "sun" else (50, 85)), int(width)), []  # close to the balls
         scene.cycles.samples = scene.mote.passes = int(samples)
         for engine in ("CYCLES", "MOTE"):
             scene.render.engine = engine
