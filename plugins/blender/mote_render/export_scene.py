@@ -22,6 +22,9 @@ def export_scene(depsgraph, folder, size):
     add_meshes(export, depsgraph, Materials(export))
     add_lights(export, depsgraph)
     add_world(export, depsgraph.scene)
+    kinds = {e.get("type") for e in export.root.iter("emitter")}
+    if "area" in kinds and kinds & {"constant", "envmap"}:
+        export.note("lamps with a size hide the world behind them")
     export.write(folder / "scene.xml")
     return begin, export.notes
 
