@@ -111,7 +111,8 @@ def table(smoke):
     texture = nodes.new("ShaderNodeTexImage")
     texture.image = bpy.data.images.new("checks", 32, 32)
     rows, columns = [[(i // 32 if down else i % 32) // 16 for i in range(1024)] for down in (True, False)]
-    texture.image.pixels[:] = [v for r, c in zip(rows, columns) for v in ((0.8, 0.3, 0.2, 1) if r == c else (0.85, 0.8, 0.7, 1))]
+    colours = [(0.8, 0.3, 0.2, 1) if r == c else (0.85, 0.8, 0.7, 1) for r, c in zip(rows, columns)]
+    texture.image.pixels[:] = [v for colour in colours for v in colour]
     checked.node_tree.links.new(texture.outputs[0], nodes["Diffuse BSDF"].inputs["Color"])
     ball(material("glass", "ShaderNodeBsdfGlass", Color=(1, 1, 1, 1), Roughness=0.0, IOR=1.5), -0.75)
     data = bpy.data.volumes.new("smoke")

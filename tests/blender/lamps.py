@@ -73,7 +73,8 @@ def instances(folder):
     inner = bpy.data.objects.new("inner", cone)
     inner.matrix_world = Matrix.Translation((0.3, 0, 0)) @ Matrix.Rotation(1.1, 4, "Y")
     group.objects.link(inner)
-    for matrix in (Matrix.Translation((1, 1, 0)) @ Matrix.Rotation(0.7, 4, "Z"), Matrix.Translation((0, -1, 0)) @ Matrix.Scale(1.4, 4)):
+    for matrix in (Matrix.Translation((1, 1, 0)) @ Matrix.Rotation(0.7, 4, "Z"),
+                   Matrix.Translation((0, -1, 0)) @ Matrix.Scale(1.4, 4)):
         holder = add("holder", None, matrix)
         holder.instance_type, holder.instance_collection = "COLLECTION", group
     ours, cycles = (picture(scene, folder, engine, 1) for engine in ("MOTE", "CYCLES"))

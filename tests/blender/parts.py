@@ -123,7 +123,8 @@ def depth_of_field(folder):
         expected = (aperture * (far - focus) / far)**2 / 4 + (side * focus / far)**2 / 3 + pixel**2 / 12
         # Of n points on a disc the mean of x^2 has the variance (R^4 / 8 - R^4 / 16) / n; n samples met the light.
         error = expected / math.sqrt(64 * ours.sum() / 10)
-        check(abs(found - expected) < 4 * error, f"depth of field by {what}: variance {found:.5f} = {expected:.5f} m^2 +- {error:.5f}")
+        check(abs(found - expected) < 4 * error,
+              f"depth of field by {what}: variance {found:.5f} = {expected:.5f} m^2 +- {error:.5f}")
 
 
 def sky(folder):
@@ -146,7 +147,8 @@ def sky(folder):
     ours, cycles = (colour(picture(scene, folder, engine, 64)) for engine in ("MOTE", "CYCLES"))
     difference = np.abs(ours - cycles)
     check(np.median(difference) < 0.02 * cycles.mean() and abs(ours.mean() / cycles.mean() - 1) < 0.01,
-          f"sky picture: median difference to Cycles {np.median(difference) / cycles.mean():.4f}, means {ours.mean():.4f}, {cycles.mean():.4f}")
+          f"sky picture: median difference to Cycles {np.median(difference) / cycles.mean():.4f}, "
+          f"means {ours.mean():.4f}, {cycles.mean():.4f}")
 
 
 def parts(folder):
