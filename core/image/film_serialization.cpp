@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -39,6 +40,18 @@ void for_each_block(std::uint64_t first, std::uint64_t passes, const Body& body)
         body(std::uint32_t(first), level);
         first += 1ull << level;
     }
+}
+
+/// Could these be sums of so many terms? Each adds less than 2^40 to a digit; of larger ones the sum of two
+/// films would leave 64 bits.
+bool can_be(const ExactSums& sums, std::uint32_t terms) {
+    const std::int64_t most = std::int64_t(terms) << 40;
+    bool fits = sums.places_exist();
+    ExactSums::for_each_array(sums, [&](const auto& numbers) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(numbers[0])>, std::int64_t>)
+            for (const std::int64_t digit : numbers) fits = fits && digit >= -most && digit <= most;
+    });
+    return fits;
 }
 
 }  // namespace
@@ -115,16 +128,26 @@ void Film::deserialize(std::span<const std::byte> bytes) {
         if (head.passes > most_passes || head.first > std::numeric_limits<std::uint32_t>::max() - most_passes)
             throw InputError("the film is damaged: it has too many passes");
 
-    // Into a film of its own: this one is changed when all is known to be right.
+    // Into a film of its own: this one is changed when all is known to be right. What it holds besides its
+    // sums follows from the numbers of passes, which bytes must stand for before memory is asked for.
+    std::uint64_t least = 0;
+    const auto expect = [&](std::uint64_t numbers) {
+        least += least_packed_size(numbers);
+        if (least > content.size()) throw InputError("the film is damaged: its length is wrong");
+    };
     Film read(width_, height_, layers_, all_squares_);
     read.non_finite_ = header.non_finite;
     for (std::size_t i = 0; i < heads.size(); ++i) {
         Part& part = read.parts_[i];
         part.first = heads[i].first, part.passes = heads[i].passes, part.work = heads[i].work;
         for_each_block(part.first, part.passes, [&](std::uint32_t first, std::uint32_t level) {
+            expect(pixels());
             part.blocks.push_back({first, level, std::vector<float>(pixels())});
         });
-        while (part.complete_blocks(part.half_squares.size()) > 0) part.half_squares.emplace_back(pixels());
+        while (part.complete_blocks(part.half_squares.size()) > 0) {
+            expect(3 * pixels());
+            part.half_squares.emplace_back(pixels());
+        }
     }
     std::vector<Packing> packings;
     auto rest = content.subspan(sizeof(header) + head_bytes);
@@ -143,12 +166,14 @@ void Film::deserialize(std::span<const std::byte> bytes) {
         unpack(from, *packing, std::span(numbers));
         from += packing++->size;
     });
-    const auto places_exist = [](const ExactSums& sums) { return sums.places_exist(); };
-    fits = std::ranges::all_of(read.sums_, places_exist) &&
-           std::ranges::all_of(read.layer_squares_, places_exist);
-    for (const Part& part : read.parts_)
-        fits = fits && part.beauty_squares.places_exist() &&
-               std::ranges::all_of(part.half_squares, places_exist);
+    for (std::size_t i = 0; i < layers_.size(); ++i) {
+        const std::uint32_t passes = read.parts_[layers_[i].part].passes;
+        fits = fits && can_be(read.sums_[i], passes) && can_be(read.layer_squares_[i], passes);
+    }
+    for (const Part& part : read.parts_) {
+        fits = fits && can_be(part.beauty_squares, part.passes);
+        for (const ExactSums& squares : part.half_squares) fits = fits && can_be(squares, part.passes);
+    }
     if (!fits) throw InputError("the film is damaged: it holds a number that cannot be");
     *this = std::move(read);
 }

@@ -28,6 +28,9 @@ Packing packing_of(std::span<const T> numbers);
 template <typename T>
 void pack(std::span<const T> numbers, const Packing& packing, std::byte* to);
 
+/// So many bytes at least are `count` numbers of any size, and at most 2048 times as many when they are
+/// unpacked.
+constexpr std::uint64_t least_packed_size(std::uint64_t count) { return (count + 255) / 256; }
 /// What the first bytes say of `count` numbers of `number_size` bytes; nothing where that cannot be.
 std::optional<Packing> read_packing(std::span<const std::byte> from, std::size_t count,
                                     std::size_t number_size);

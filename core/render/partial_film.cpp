@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "core/image/packed_numbers.h"
 #include "core/image/whole_file.h"
 #include "core/objects/error.h"
 #include "core/render/headed_file.h"
@@ -22,8 +23,9 @@ PartialFilm read_from(std::span<const std::byte> bytes) {
     const auto count = reader.number<std::uint32_t>();
     if (width > most_edge || height > most_edge || count > most_layers)
         throw InputError("damaged (its size cannot be)");
-    std::vector<Layer> layers(count);
-    for (Layer& layer : layers) {
+    std::vector<Layer> layers;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        Layer& layer = layers.emplace_back();
         layer.name = reader.text(), layer.description = reader.text();
         layer.auxiliary = reader.number<std::uint8_t>() != 0,
         layer.squares = reader.number<std::uint8_t>() != 0;
@@ -31,6 +33,9 @@ PartialFilm read_from(std::span<const std::byte> bytes) {
         layer.part = reader.number<std::uint32_t>();
         if (layer.part >= count) throw InputError("damaged (a layer of no part)");
     }
+    // Three channels a layer, three arrays of a sum: before memory is asked for that the file cannot fill.
+    if (9 * std::uint64_t(count) * least_packed_size(std::uint64_t(width) * height) > file.film.size())
+        throw InputError("damaged (its length is wrong)");
     try {
         PartialFilm partial{std::move(about), Film(int(width), int(height), std::move(layers), all_squares)};
         partial.film.deserialize(file.film);

@@ -234,6 +234,16 @@ void resume(const RenderRequest& request, RenderResult& result) {
                                              "': rendering from the start");
 }
 
+/// Films of other layers or sizes are those of another render, whatever their files say.
+void begin_with(const Film& before, Film& film) {
+    try {
+        film.add(before);
+    } catch (const std::invalid_argument&) {
+        throw InputError(
+            "the passes that this render begins with are of another one: other pixels or other layers");
+    }
+}
+
 /// Lets an empty film begin with the range; one that was resumed must do so already.
 void begin_range(const PassRange& range, const Estimator& estimator, Film& film) {
     std::vector<std::uint32_t> first(film.parts(), 0);
@@ -268,7 +278,7 @@ RenderResult render(const Scene& scene, const Integrator& integrator, const Rend
     RenderResult result = with_memory_for(film_of, [&] {
         return RenderResult{Film(settings.width, settings.height, layers, request.all_squares), {}, false, 0};
     });
-    if (request.begin_with) result.film.add(*request.begin_with);
+    if (request.begin_with) begin_with(*request.begin_with, result.film);
     if (request.resume) resume(request, result);  // before the work of prepare(): it may be refused
     if (!request.range && result.film.first_pass() > 0)
         throw InputError("cannot resume: this checkpoint holds passes from " +

@@ -2,10 +2,11 @@
 #include "tools/fuzz/formats.h"
 
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <stdexcept>
 
-#include "session/reference_metadata.h"
+#include "apps/partial_render.h"
 #include "apps/trade/methods_file.h"
 #include "apps/trade/record.h"
 #include "apps/trade/reference.h"
@@ -23,6 +24,7 @@
 #include "media/register_media.h"
 #include "media/vdb_grid.h"
 #include "media/vol_file.h"
+#include "session/reference_metadata.h"
 #include "tools/fuzz/seeds.h"
 
 namespace mote::fuzz {
@@ -112,6 +114,15 @@ void read_checkpoint(const std::string& path) {
     film.beauty(), film.beauty_variance_of_mean(), film.noise();
 }
 
+// Merged with the passes after it.
+void read_partial_film(const std::string& path) {
+    const std::string next = (std::filesystem::path(path).parent_path() / next_film).string();
+    std::vector<std::string> paths = {path};
+    if (std::filesystem::exists(next)) paths.push_back(next);
+    const apps::MergedFilm merged = apps::merge_partials(paths);
+    merged.film.beauty(), merged.film.beauty_variance_of_mean(), merged.film.noise();
+}
+
 void read_vdb(const std::string& path) {
     media::VdbLoadOptions options;
     options.clamp_negative = true, options.time_limit = 4.0;
@@ -171,6 +182,7 @@ std::vector<Format> formats() {
                    vol_seeds,
                    {}});
     all.push_back({"checkpoint", ".checkpoint", "mote", read_checkpoint, checkpoint_seeds, forge_checkpoint});
+    all.push_back({"partial film", ".film", "mote", read_partial_film, partial_film_seeds, forge_checkpoint});
     all.push_back(textual({"methods",
                            ".json",
                            "mote",

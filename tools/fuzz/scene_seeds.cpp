@@ -74,6 +74,7 @@ void write_neighbours(const std::string& folder) {
     };
     core::write_png((root / "picture.png").string(), 2, 2, std::vector<core::Rgb>(4, core::Rgb(0.5f)));
     write("mesh.obj", obj_seeds().front());
+    write(next_film, partial_film(5, 8));
     write("grid.vol", vol_seeds().front());
     write("part.xml", bytes_of("<scene version=\"0.6.0\"><shape type=\"rectangle\"/></scene>"));
 }

@@ -2,7 +2,6 @@
 #include "tools/fuzz/seeds.h"
 
 #include <OpenImageIO/imageio.h>
-#include <unistd.h>
 
 #include <assimp/cexport.h>
 #include <assimp/Exporter.hpp>
@@ -14,34 +13,15 @@
 #include <span>
 
 #include "apps/trade/record.h"
-#include "core/image/checksum.h"
 #include "core/image/image_file.h"
-#include "core/render/checkpoint.h"
 #include "media/vol_file.h"
+#include "tools/fuzz/scratch_file.h"
 
 namespace mote::fuzz {
 
 namespace {
 
-namespace fs = std::filesystem;
 using core::Rgb;
-
-// A file under /dev/shm or the temporary folder, gone with this.
-class ScratchFile {
-  public:
-    explicit ScratchFile(const std::string& extension)
-        : path_((fs::temp_directory_path() / ("mote_fuzz_seed_" + std::to_string(::getpid()) + extension))
-                    .string()) {}
-    ~ScratchFile() {
-        std::error_code ignored;
-        fs::remove(path_, ignored);
-    }
-    const std::string& path() const { return path_; }
-    Bytes bytes() const { return bytes_of_file(path_); }
-
-  private:
-    std::string path_;
-};
 
 const char* const cube_obj = R"(# a cube
 o cube
@@ -194,36 +174,6 @@ std::vector<Bytes> record_seeds() {
     records[1].error = 0.25, records[1].final = true;
     for (apps::trade::Record& r : records) r.wall = 1.5;
     return {bytes_of(apps::trade::to_csv(records))};
-}
-
-core::Film small_film() { return core::Film(4, 3, {core::Layer{"direct", ""}, core::Layer{"indirect", ""}}); }
-
-std::vector<Bytes> checkpoint_seeds() {
-    const ScratchFile file(".checkpoint");
-    std::vector<Bytes> seeds;
-    for (const int passes : {1, 16, 17}) {
-        core::Film film = small_film();
-        core::PassImage image(4, 3, 2);
-        for (int i = 0; i < passes; ++i) film.add_pass(image);
-        core::write_checkpoint(file.path(), {checkpoint_hash, 7}, film);
-        seeds.push_back(file.bytes());
-    }
-    return seeds;
-}
-
-void forge_checkpoint(Bytes& bytes) {
-    constexpr std::size_t size_at = 12, number = sizeof(std::uint64_t);
-    if (bytes.size() < size_at + 4 + number) return;
-    const auto sum = [&](std::size_t begin, std::size_t end) {
-        const std::uint64_t value =
-            core::checksum(std::as_bytes(std::span(bytes).subspan(begin, end - begin)));
-        std::memcpy(bytes.data() + end, &value, number);
-    };
-    std::uint32_t head = 0;
-    std::memcpy(&head, bytes.data() + size_at, sizeof(head));
-    if (head > bytes.size() || bytes.size() - head < number) return;
-    sum(0, head);
-    if (bytes.size() >= head + 2 * number) sum(head + number, bytes.size() - number);
 }
 
 void forge_png(Bytes& bytes) {

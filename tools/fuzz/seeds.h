@@ -17,6 +17,9 @@ std::vector<Bytes> vol_seeds();
 std::vector<Bytes> methods_seeds();
 std::vector<Bytes> record_seeds();
 std::vector<Bytes> checkpoint_seeds();
+/// Passes [first, end) of a render as `mote render --pass-range` writes them.
+Bytes partial_film(std::uint32_t first, std::uint32_t end);
+std::vector<Bytes> partial_film_seeds();
 /// `world_to_camera`: 16 numbers.
 std::vector<Bytes> exr_seeds(const std::string& world_to_camera);
 /// A gradient as OpenImageIO writes it: "png", "jpeg", ...
@@ -38,8 +41,10 @@ std::vector<Bytes> curve_seeds();
 /// What the checkpoints among the seeds belong to.
 core::Film small_film();
 inline const char* const checkpoint_hash = "0123456789abcdef";
+/// A neighbour that partial films are merged with: the passes after them.
+inline const char* const next_film = "next.film";
 
-/// Makes the two checksums of a checkpoint, and those of the chunks of a PNG, fit again.
+/// Makes the two checksums of a checkpoint or a partial film, and those of the chunks of a PNG, fit again.
 void forge_checkpoint(Bytes& bytes);
 void forge_png(Bytes& bytes);
 
