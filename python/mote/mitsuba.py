@@ -12,6 +12,7 @@ environment, or `mote` on the path), so the bits are those of the command on tha
 in its words. `path` and `volpath` are called mote_path and mote_volpath here. Nothing is differentiated.
 """
 import os
+import re
 import subprocess
 import tempfile
 import xml.etree.ElementTree as ElementTree
@@ -23,6 +24,42 @@ TYPES = ("mote_bdpt", "mote_epipolar", "mote_layers", "mote_micro_rendering", "m
          "mote_ray_bundles", "mote_ray_lights", "mote_single_scattering", "mote_volpath", "mote_vpl", "mote_vpl_ray_bundles", "mote_vsl")
 RENAMED = {"mote_path": "path", "mote_volpath": "volpath"}  # Mitsuba has its own of these names
 PATHS = ("filename",)
+# Objects that integrators of mote hold and Mitsuba has no word for. Its parser sees each as an integrator
+# `mote_compensation`, ... whose type in mote is a text of this name; export() turns them back.
+PARTS = ("compensation", "visibility", "selection")
+PART_TYPE = "mote_type"
+_PART_TAG = re.compile(rf"<(/?)({'|'.join(PARTS)})\b([^<>]*?)(/?)>")
+
+
+def _tag_for_mitsuba(match):
+    closing, part, attributes, empty = match.groups()
+    if closing:
+        return "</integrator>"
+    kind = re.search(r"""\btype\s*=\s*(["'])(.*?)\1""", attributes)
+    if not kind:
+        return match.group(0)
+    name = "" if re.search(r"\bname\s*=", attributes) else f' name="{part}"'
+    return (f'<integrator type="mote_{part}"{name}{attributes[:kind.start()]}{attributes[kind.end():]}>'
+            f'<string name="{PART_TYPE}" value="{kind.group(2)}"/>' + ("</integrator>" if empty else ""))
+
+
+def _text_for_mitsuba(text):
+    """A scene file with the parts of our integrators as Mitsuba's parser takes them, line by line as it was."""
+    return _PART_TAG.sub(_tag_for_mitsuba, text)
+
+
+def _dict_for_mitsuba(value, part=None):
+    """The same of a dictionary: {"type": "mote_vpl", "compensation": {"type": "approximate", ...}}."""
+    if not isinstance(value, dict):
+        return value
+    ours = part or value.get("type") in TYPES
+    def part_of(key):
+        return key if key in PARTS else part  # the compensation `media` of a compensation
+    result = {key: _dict_for_mitsuba(inner, part_of(key) if ours and isinstance(inner, dict) else None)
+              for key, inner in value.items()}
+    if part:
+        result.update({"type": f"mote_{part}", PART_TYPE: value.get("type", "")})
+    return result
 
 
 def _parsed(parse, source, parameters):
@@ -39,13 +76,24 @@ def _remember(scene, parse, source, folder, parameters):
 
 
 def load_file(path, parallel=True, optimize=True, **parameters):
-    """mi.load_file, whose scenes mote can render."""
+    """mi.load_file, whose scenes mote can render; <compensation>, <visibility> and <selection> of the file are known."""
+    folder = Path(path).absolute().parent
+    text = Path(path).read_text() if Path(path).is_file() else ""
+    if _PART_TAG.search(text):
+        mi.file_resolver().prepend(str(folder))
+        text = _text_for_mitsuba(text)
+        try:
+            scene = mi.load_string(text, parallel=parallel, optimize=optimize, **parameters)
+        except RuntimeError as error:
+            raise RuntimeError(f"{path}: {error}") from None
+        return _remember(scene, mi.parser.parse_string, text, folder, parameters)
     scene = _load_file(str(path), parallel=parallel, optimize=optimize, **parameters)
     return _remember(scene, mi.parser.parse_file, str(path), Path(path).parent, parameters)
 
 
 def load_dict(dictionary, *arguments, **named):
-    """mi.load_dict, whose scenes mote can render."""
+    """mi.load_dict, whose scenes mote can render; integrators of mote may hold their compensation, visibility, selection."""
+    dictionary = _dict_for_mitsuba(dictionary)
     return _remember(_load_dict(dictionary, *arguments, **named), mi.parser.parse_dict, dictionary, ".", {})
 
 
@@ -60,8 +108,14 @@ def export(scene, path):
     for element in root.iter("string"):
         if element.get("name") in PATHS:
             element.set("value", str(_resolved(element.get("value"), folder)))
-    for element in root.iter("integrator"):
-        element.set("type", RENAMED.get(element.get("type"), element.get("type")))
+    for element in list(root.iter("integrator")):
+        kind = element.get("type")
+        element.set("type", RENAMED.get(kind, kind))
+        if kind.removeprefix("mote_") in PARTS:
+            text = next(e for e in element if e.get("name") == PART_TYPE)
+            element.remove(text)
+            element.tag = kind.removeprefix("mote_")
+            element.set("type", text.get("value"))
     ElementTree.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
 
 
@@ -108,7 +162,7 @@ def _make(kind):
 
 def _register(*_):
     if mi.variant() is not None:
-        for kind in TYPES:
+        for kind in TYPES + tuple(f"mote_{part}" for part in PARTS):
             mi.register_integrator(kind, _make(kind))
 
 

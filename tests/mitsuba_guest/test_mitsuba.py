@@ -67,6 +67,37 @@ class Guest(unittest.TestCase):
             self.assertEqual(set(layers), set(command))
             self.assertIn("direct", layers)
 
+    def test_objects_that_integrators_hold(self):
+        plain = {"type": "mote_vpl", "paths": 30, "bound": 0.5}
+        held = {**plain, "compensation": {"type": "screen_space", "steps": 1, "media": {"type": "none"}},
+                "visibility": {"type": "imperfect_shadow_map", "points": 300}}
+        scene = mi.load_dict(scene_of(held))
+        picture = np.array(mi.render(scene, spp=2, seed=5))
+        self.assertTrue(np.array_equal(picture, np.array(by_command(scene, 2, 5)[""])))
+        self.assertIn("compensation_surface", scene.integrator().layers)
+        self.assertFalse(np.array_equal(picture, np.array(mi.render(mi.load_dict(scene_of(plain)), spp=2, seed=5))))
+        # A file of mote's, as it stands; a definition reaches what is held.
+        with tempfile.TemporaryDirectory() as folder:
+            Path(folder, "s.xml").write_text("""<scene version="3.0.0"><default name="steps" value="1"/>
+                <integrator type="mote_vpl"><integer name="paths" value="30"/><float name="bound" value="0.5"/>
+                <compensation type="screen_space"><integer name="steps" value="$steps"/>
+                  <compensation name='media' type='none'/></compensation>
+                <visibility type="traced"/></integrator>
+                <sensor type="perspective"><transform name="to_world"><lookat origin="0, 1, 4" target="0, 0, 0"
+                  up="0, 1, 0"/></transform><film type="hdrfilm"><integer name="width" value="20"/>
+                <integer name="height" value="14"/></film></sensor><shape type="sphere"/>
+                <shape type="rectangle"><transform name="to_world"><translate z="-1"/></transform></shape>
+                <emitter type="constant"/></scene>""")
+            loaded = mi.load_file(f"{folder}/s.xml", steps=2)
+            picture = np.array(mi.render(loaded, spp=2))
+            subprocess.run([MOTE, "render", "s.xml", "--passes", "2", "-D", "steps=2", "--quiet", "-o", "a.exr"], cwd=folder,
+                           check=True, stdout=subprocess.DEVNULL)
+            command = guest._channels(f"{folder}/a.exr")
+            self.assertTrue(np.array_equal(picture, np.array(command[""])))
+            self.assertIn("compensation_surface", command)
+        with self.assertRaisesRegex(RuntimeError, "did you mean 'exact'"):
+            mi.render(mi.load_dict(scene_of({**plain, "compensation": {"type": "exct"}})), spp=1)
+
     def test_the_picture_is_that_of_mitsuba(self):
         mine = np.array(mi.render(mi.load_dict(scene_of({"type": "mote_path"})), spp=256), dtype=float)
         theirs = np.array(mi.render(mi.load_dict(scene_of({"type": "path"})), spp=256), dtype=float)
