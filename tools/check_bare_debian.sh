@@ -1,0 +1,85 @@
+#!/bin/bash
+# On a Debian 12 that has nothing: do the packages bring what the command and the examples need?
+#
+#   tools/check_bare_debian.sh [--wheel] [--build BUILD] [ROOT]
+#
+# Makes a Debian of the smallest kind in ROOT (build/bare_debian; debootstrap, kept for the next time, of which the
+# packages of the last check are taken away first), installs the .deb files of BUILD (build/release, built) by
+# `apt-get install` with what they declare, nothing that is merely recommended, renders a scene, installs g++ and cmake,
+# and builds and runs each example from an empty folder. --wheel: also builds the wheel here, installs it there by pip and
+# renders from Python. Needs root, debootstrap and Debian's packages (300 MB), PyPI for --wheel; not part of ./test.
+set -euo pipefail
+source=$(cd "$(dirname "$0")/.." && pwd)
+build=$source/build/release root=$source/build/bare_debian wheel=0
+while (($#)); do
+  case $1 in
+    --wheel) wheel=1 ;;
+    --build) build=$(realpath "$2") && shift ;;
+    *) root=$(realpath -m "$1") ;;
+  esac
+  shift
+done
+if ((EUID != 0)) || ! command -v debootstrap > /dev/null; then
+  echo "error: needs root, and debootstrap (apt-get install debootstrap)" >&2
+  exit 1
+fi
+
+step() { echo "== $*"; }
+inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 HOME=/root DEBIAN_FRONTEND=noninteractive "$@"; }
+install() { inside apt-get install -y -q --no-install-recommends "$@" >> "$log" 2>&1 || { tail -n 20 "$log" && exit 1; }; }
+log=$build/bare_debian.log
+: > "$log"
+
+[[ -e $root/etc/debian_version ]] || { step "a Debian in $root" && debootstrap --variant=minbase bookworm "$root" >> "$log"; }
+inside apt-get update -q >> "$log"
+for package in mote-dev mote g++ cmake make python3-venv; do  # together they fail where one is not there
+  inside apt-get purge -y -q "$package" >> "$log" 2>&1 || true
+done
+inside apt-get autoremove -y -q --purge >> "$log" 2>&1
+trap 'umount "$root/proc"' EXIT
+mount -t proc proc "$root/proc"
+
+step "Debian packages of $build"
+rm -rf "$root/check" "$build/bare_debian" && mkdir -p "$root/check"
+(cd "$build" && cpack -G DEB -B "$build/bare_debian" >> "$log" 2>&1)
+cp "$build"/bare_debian/*.deb "$root/check"
+mkdir "$root/check/scenes" && cp -r "$source/scenes/cornell_box.xml" "$source/scenes/meshes" "$root/check/scenes"
+
+step "the command alone"
+before=$(inside dpkg-query -f '.\n' -W | wc -l)
+install $(cd "$root/check" && echo mote_*.deb | sed 's|^|/check/|')
+echo "$(($(inside dpkg-query -f '.\n' -W | wc -l) - before)) packages installed"
+inside mote --version
+inside mote render /check/scenes/cornell_box.xml -o /check/box.exr --passes 1 -D resx=64 -D resy=64 --quiet
+inside ldd /usr/libexec/mote/mote_grid_reader | grep "not found" && exit 1
+
+step "each example, with g++ and cmake alone"
+install $(cd "$root/check" && echo mote-dev_*.deb | sed 's|^|/check/|') g++ cmake make
+cp -r "$source/examples" "$root/check/examples"
+inside mote render /check/examples/ssbc/room.xml -o /check/room.exr --passes 2 --auxiliary --quiet
+for folder in "$root"/check/examples/*/; do
+  example=$(basename "$folder")
+  inside cmake -S "/check/examples/$example" -B "/check/build/$example" >> "$log" 2>&1 || { tail -n 20 "$log" && exit 1; }
+  inside cmake --build "/check/build/$example" >> "$log" 2>&1 || { tail -n 20 "$log" && exit 1; }
+  case $example in
+    ssbc) words=(/check/room.exr /check/compensated.exr) ;;
+    render_scene) words=(/check/scenes/cornell_box.xml /check/a.exr 1 resx=64 resy=64) ;;
+    render_from_c) words=(/check/scenes/cornell_box.xml /check/b.exr 1 resx 64 resy 64) ;;
+    *) words=() ;;
+  esac
+  echo "$example: $(inside "/check/build/$example/$example" "${words[@]}" 2>> "$log" | tail -n 1)"
+done
+
+if ((wheel)); then
+  step "the wheel"
+  python3 -m pip wheel -q --no-deps -w "$build/bare_debian" "$source" >> "$log" 2>&1
+  cp "$build"/bare_debian/mote-*.whl "$root/check"
+  install python3-venv
+  inside python3 -m venv /check/python
+  # PyPI as this machine reaches it.
+  [[ -z ${PIP_CERT:-} ]] || cp "$PIP_CERT" "$root/check/certificates.crt"
+  inside env ${PIP_CERT:+PIP_CERT=/check/certificates.crt} sh -c '/check/python/bin/pip install -q /check/mote-*.whl'
+  inside sh -c "cd /check && python/bin/python -c \"import mote; mote.render('scenes/cornell_box.xml', passes=1).save('box.exr')\""
+  inside /check/python/bin/python -c "import mote; p = mote.Picture.load('/check/box.exr'); print(mote.__version__, p['beauty'].shape, p['beauty'].mean())"
+fi
+echo "all good: $log"
