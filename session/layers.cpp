@@ -42,7 +42,7 @@ void sort_channels(LayerChannels& layer) {
 bool holds_vectors(const std::string& layer) {
     const auto dot = layer.rfind('.');
     const std::string last = dot == std::string::npos ? layer : layer.substr(dot + 1);
-    return last == "P" || last == "N" || last == "Ns";
+    return last == "P" || last == "N" || last == "Ns" || last == "PreviousP" || last == "MotionVector";
 }
 
 /// The names of a layer's channels in a picture.

@@ -26,8 +26,9 @@ std::vector<LayerChannels> layers_of(const core::ImageChannels& image);
 /// Throws InputError with the nearest name there is.
 LayerChannels find_layer(const core::ImageChannels& image, const std::string& name);
 /// Adds a layer of 1 or 3 channels side by side, or replaces it: R, G, B; X, Y, Z where it holds vectors (P,
-/// N, Ns and what ends in them behind a dot); Z of Depth, A of alpha, Y of any other with one channel. A
-/// picture without channels takes the size. Throws InputError for other sizes or numbers of channels.
+/// N, Ns, PreviousP, MotionVector and what ends in them behind a dot); Z of Depth, A of alpha, Y of any other
+/// with one channel. A picture without channels takes the size. Throws InputError for other sizes or numbers
+/// of channels.
 void set_layer(core::ImageChannels& image, const std::string& name, int width, int height, int channels,
                std::span<const float> values);
 /// Values of a layer, row by row from the top, its channels side by side. Throws std::invalid_argument unless

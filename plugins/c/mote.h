@@ -213,7 +213,7 @@ MOTE_API int mote_picture_layer_channels(const mote_picture* picture, const char
 /* Fills [height][width][channels]; `count` floats have room in `values`. */
 MOTE_API mote_status mote_picture_read(mote_picture* picture, const char* layer, float* values, size_t count);
 /* Adds a layer, or replaces it, of 1 or 3 channels. The first one decides the picture's size. 3 channels are X, Y, Z of
- * layers that hold vectors (P, N, Ns, and what ends in .P, .N or .Ns), else R, G, B; one is Y. */
+ * layers that hold vectors (P, N, Ns, PreviousP, MotionVector, and what ends in .P, .N, ...), else R, G, B; one is Y. */
 MOTE_API mote_status mote_picture_write(mote_picture* picture, const char* layer, int width, int height, int channels,
                                         const float* values);
 MOTE_API mote_status mote_picture_set_metadata(mote_picture* picture, const char* name, const char* value);
@@ -243,6 +243,15 @@ MOTE_API mote_status mote_picture_compensate(mote_picture* picture, const mote_s
  * layers Albedo, Ns, P, Depth, Variance where the picture has them. `threads` 0: one for every core. */
 MOTE_API mote_status mote_picture_denoise(mote_picture* picture, const char* method, int threads);
 
+/* The frames of a sequence, by regression and by what earlier frames show of the same places (docs/denoising.md). */
+typedef struct mote_sequence mote_sequence;
+MOTE_API mote_sequence* mote_sequence_new(void); /* never null but where memory is out */
+MOTE_API void mote_sequence_free(mote_sequence* sequence); /* null is allowed */
+/* Adds the layer "denoised" to the next frame; errors are the picture's. Frames have one size and the same layers. What
+ * moved is known from the layer "MotionVector", else from P and the metadata "worldToCamera"; without either no frame
+ * takes anything from those before. */
+MOTE_API mote_status mote_sequence_denoise(mote_sequence* sequence, mote_picture* frame);
+
 typedef struct mote_metrics {
     size_t struct_size;
     double error;                /* relative, see docs/testing.md */
@@ -258,6 +267,50 @@ typedef struct mote_metrics {
 MOTE_API mote_status mote_compare(const float* image, const float* reference, int width, int height,
                                   const float* image_variance, const float* reference_variance,
                                   mote_metrics* metrics);
+
+/* ---- algorithms over the camera and the lights of another renderer ------------------------------------------ */
+
+typedef struct mote_epipolar_options {
+    size_t struct_size;
+    int width, height;
+    const float* depth;   /* [height][width], along the camera's axis [m]; not above 0, or not finite: nothing is there */
+    double far_distance;  /* [m] along rays that meet nothing: where they end; above 0 */
+    double focal_length;  /* of a pinhole camera [pixels] */
+    double centre_x, centre_y; /* where its axis meets the picture [pixels]; both 0: in the middle */
+    double lamp[3];       /* in camera space: x right, y down, z forward [m] */
+    int lines;            /* around the whole border; 0: 512 */
+    int samples;          /* of a line before it is refined; 0: 16 */
+    double tolerance;     /* of interpolation, relative; 0: 0.05 */
+    void* user;
+    /* The light of the lamp that is scattered into the ray through the place (x, y) of the picture [pixels; the middle of
+     * the first pixel is (0.5, 0.5)] before `distance` [m]: radiance [W/(m^2 sr)]. In the thread of mote_epipolar(). */
+    void (*march)(void* user, double x, double y, double distance, float radiance[3]);
+} mote_epipolar_options;
+
+/* Epipolar sampling (docs/epipolar.md): light that media scatter once, over a whole picture, from few rays that `march` is
+ * called for. Fills light [height][width][3], room for `count` floats; `marched` (may be null): calls of `march`. */
+MOTE_API mote_status mote_epipolar(const mote_epipolar_options* options, float* light, size_t count, uint64_t* marched);
+
+/* A hierarchy over lights, of which one is drawn for a receiver in proportion to what it may contribute, unoccluded
+ * (Estevez and Kulla 2018). */
+typedef struct mote_light_tree mote_light_tree;
+typedef struct mote_light {
+    float lower[3], upper[3]; /* a box that holds it [m] */
+    float normal[3];          /* unit: it shines within a right angle of this; zero: to all sides */
+    double intensity;         /* along the normal, mean of the channels [W/sr]; above 0 */
+} mote_light;
+
+/* The lights are copied. Null, with the reason in `status` (which may be null), where there are none or more than 2^28,
+ * or one of them cannot be. */
+MOTE_API mote_light_tree* mote_light_tree_new(const mote_light* lights, size_t count, mote_status* status);
+MOTE_API void mote_light_tree_free(mote_light_tree* tree); /* null is allowed */
+/* A light drawn by u in [0, 1), and the probability of that draw. `normal`: unit, on the side from which light counts;
+ * null: from all sides. Several threads may ask at once. */
+MOTE_API mote_status mote_light_tree_sample(const mote_light_tree* tree, const float position[3], const float normal[3],
+                                            double u, size_t* light, double* probability);
+/* Of mote_light_tree_sample() drawing this light; over all lights they sum to 1. NaN for arguments that cannot be. */
+MOTE_API double mote_light_tree_probability(const mote_light_tree* tree, const float position[3], const float normal[3],
+                                            size_t light);
 
 #ifdef __cplusplus
 }
