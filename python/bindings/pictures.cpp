@@ -7,6 +7,7 @@
 #include "core/image/srgb.h"
 #include "python/bindings/bindings.h"
 #include "session/compare.h"
+#include "session/denoise/bmfr_sequence.h"
 #include "session/denoise/denoised_layer.h"
 #include "session/picture_compensation.h"
 
@@ -94,6 +95,11 @@ void compensate(Picture& picture, float bound, int steps, bool flat, bool half_r
     session::compensate_picture(picture.rendered.image, settings, {}, replace);
 }
 
+/// What the frames so far have left.
+struct Sequence {
+    session::BmfrSequence frames{false};
+};
+
 Picture read_picture(const std::string& path) {
     const nb::gil_scoped_release others_go_on;
     Picture picture;
@@ -147,6 +153,15 @@ void bind_pictures(nb::module_& m) {
                 session::add_denoised(p.rendered.image, method, threads);
             },
             nb::arg("method"), nb::arg("threads"));
+    nb::class_<Sequence>(m, "Sequence", "Frames that are denoised in their order.")
+        .def(nb::init<>())
+        .def(
+            "denoise",
+            [](Sequence& s, Picture& p) {
+                const nb::gil_scoped_release others_go_on;
+                s.frames.add_denoised_layer(p.rendered.image);
+            },
+            nb::arg("picture"));
     m.def("compare", &compare, nb::arg("image"), nb::arg("reference"), nb::arg("image_variance").none(),
           nb::arg("reference_variance").none(), nb::arg("second").none(), nb::arg("second_variance").none());
     m.def("metric_definitions", [] {

@@ -1,7 +1,7 @@
 """What is measured of pictures and done to them: `mote compare`, `mote ssbc` and `mote denoise` on arrays."""
 from __future__ import annotations
 
-from typing import Any, Dict, Mapping, Optional, Union
+from typing import Any, Dict, Iterable, Iterator, Mapping, Optional, Union
 
 import numpy as np
 
@@ -87,8 +87,30 @@ def denoise(picture: Image, method: str = "bmfr", *, features: Optional[Mapping[
     name: "Albedo" (height, width, 3), "Ns" (unit normals), "P" [m], "Depth" (height, width) [m], "Variance" of the mean.
     Raises mote.Error.
     """
+    result = _with_features(picture, features)
+    result._picture.denoise(method, threads)
+    return result
+
+
+def _with_features(picture: Image, features: Optional[Mapping[str, np.ndarray]]) -> Picture:
     result = picture.copy() if isinstance(picture, Picture) else Picture({"beauty": _pixels(picture, "beauty")})
     for name, values in (features or {}).items():
         result[name] = values
-    result._picture.denoise(method, threads)
     return result
+
+
+def denoise_sequence(frames: Iterable[Image], features: Optional[Iterable[Mapping[str, np.ndarray]]] = None) -> Iterator[Picture]:
+    """Copies of the frames of a sequence, in their order and one by one as they are asked for, each with the layer
+    "denoised": by regression on features, and by what earlier frames show of the same places (docs/denoising.md).
+
+    Frames have one size and the same layers. For arrays of radiance give the features of each frame by name, as denoise()
+    takes them. What moved is known from "MotionVector" (height, width, 3) [pixels; x and y, to the place in the frame
+    before], else from "P" and the metadata "worldToCamera" of pictures; without either no frame takes anything from those
+    before. Raises mote.Error.
+    """
+    sequence = _mote.Sequence()
+    of_frame = iter(features) if features is not None else None
+    for frame in frames:
+        result = _with_features(frame, next(of_frame) if of_frame else None)
+        sequence.denoise(result._picture)
+        yield result

@@ -279,6 +279,33 @@ class ModuleTest(unittest.TestCase):
         features = {name: picture[name] for name in ("Albedo", "Ns", "P", "Variance")}
         self.assertTrue(np.isfinite(mote.denoise(picture["beauty"], features=features)["denoised"]).all())
 
+    def test_denoised_sequences(self):
+        frames = [mote.render(self.scene, passes=2, seed=seed, auxiliary=True) for seed in (1, 2, 3)]
+        # The same frames by the command.
+        folder = Path(self.folder.name) / "frames"
+        folder.mkdir()
+        for i, frame in enumerate(frames):
+            frame.save(folder / f"f.{i:04d}.exr")
+        subprocess.run([MOTE, "denoise", folder / "f.####.exr", "-o", folder / "d.####.exr", "--method", "bmfr"],
+                       check=True, stdout=subprocess.DEVNULL)
+        theirs = [mote.Picture.load(folder / f"d.{i:04d}.exr")["denoised"] for i in range(3)]
+        for frame, of_command in zip(mote.denoise_sequence(mote.Picture.load(folder / f"f.{i:04d}.exr") for i in range(3)), theirs):
+            self.assertTrue(np.array_equal(frame["denoised"], of_command))
+        ours = list(mote.denoise_sequence(frames))  # whose cameras are known better than a file's float32 says
+        for frame, of_command in zip(ours, theirs):
+            self.assertTrue(np.allclose(frame["denoised"], of_command, rtol=1e-5, atol=1e-6))
+        self.assertNotIn("denoised", frames[0])
+        alone = next(mote.denoise_sequence(frames[2:]))["denoised"]
+        self.assertFalse(np.array_equal(ours[2]["denoised"], alone))
+        # Arrays: nothing moves, which the motion says.
+        still = np.zeros((*frames[0]["beauty"].shape[:2], 3), np.float32)
+        features = [{**{name: f[name] for name in ("Albedo", "Ns", "P")}, "MotionVector": still} for f in frames]
+        plain = list(mote.denoise_sequence([f["beauty"] for f in frames], features))
+        self.assertFalse(np.array_equal(plain[2]["denoised"], next(mote.denoise_sequence([frames[2]["beauty"]],
+                                                                                         features[2:]))["denoised"]))
+        with self.assertRaisesRegex(mote.Error, "already"):
+            list(mote.denoise_sequence(ours))
+
     def test_trade(self):
         methods = [{"name": "paths", "integrator": "path"}, {"name": "points", "integrator": "mote_vpl"}]
         summary = mote.trade(self.path, methods, output=Path(self.folder.name) / "trade", passes=2, seeds=1,
