@@ -155,9 +155,10 @@ TEST_CASE("Resampled lights have the mean of all", "[light_selection][resampling
                         groups.draw(room.hierarchy, power, lights::ReceiverBounds(tile.tile), bound, 24, rng,
                                     drawn);
                     } else {
-                        const lights::ReceiverGroups groups(lights::ReceiverBounds(tile.tile), room.tree);
-                        const auto lights = by == "cut" ? sampler.by_cut(room.tree, groups, bound, 12, rng)
-                                                        : sampler.by_tree(room.tree, groups, bound, 12, rng);
+                        const lights::ReceiverGroups receivers(lights::ReceiverBounds(tile.tile), room.tree);
+                        const auto lights = by == "cut"
+                                                ? sampler.by_cut(room.tree, receivers, bound, 12, rng)
+                                                : sampler.by_tree(room.tree, receivers, bound, 12, rng);
                         drawn.assign(lights.begin(), lights.end());
                     }
                     return resampling.gather(room.context(), points, drawn, rng);
