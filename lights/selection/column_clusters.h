@@ -4,9 +4,9 @@
 // in proportion to its norm and scaled by 1 / p. What that errs by, summed over rows, has the mean square
 //   w_k = sum over pairs i < j of the cluster of ||x_i|| ||x_j|| ||x_i/||x_i|| - x_j/||x_j|| ||^2
 //       = (sum ||x_j||)^2 - ||sum x_j||^2
-// (Sec. 5.1; the second form takes one look at each column). Clusters are made so that the sum of w_k is
+// (the second form takes one look at each column). Clusters are made so that the sum of w_k is
 // small: centres drawn in proportion to what each column costs with all others, columns to the nearest centre
-// (clustering by sampling, Sec. 5.3), and from two thirds of the clusters on the most expensive one is
+// (clustering by sampling), and from two thirds of the clusters on the most expensive one is
 // divided in two where it falls apart best along a line (splitting).
 //
 // Columns are sums over few rows, so clusters are found from what a light sends to a few receivers.

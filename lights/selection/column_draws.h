@@ -1,6 +1,6 @@
 // One light drawn from each cluster, with a probability in proportion to its weight, that counts 1 / p times:
 // unbiased for any clusters and weights, as long as no light that can send light has the weight 0 (Hasan et
-// al. 2007, Sec. 5.1).
+// al. 2007).
 #pragma once
 
 #include "lights/selection/column_clusters.h"
