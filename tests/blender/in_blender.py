@@ -102,7 +102,7 @@ def units(scene, folder):
     for kind, radius, size, radiance in (("POINT", 0.0, 0, rho / math.pi * 100 / (4 * math.pi) / 9),
                                          ("POINT", 0.05, 0, rho / math.pi * 100 / (4 * math.pi) / 9),
                                          ("SPOT", 0.0, 0, rho / math.pi * 100 / (4 * math.pi) / 9),
-                                         ("AREA", 0.0, 0.1, rho / math.pi * 100 / 4 / 9),
+                                         ("AREA", 0.0, 0.1, rho / math.pi * 100 / (math.pi if bpy.app.version >= (4, 5) else 4) / 9),
                                          ("SUN", 0.0, 0, rho / math.pi * 100)):
         lamp = bpy.data.lights.new("lamp", kind)
         lamp.energy = 100

@@ -29,7 +29,8 @@ def lamps(folder):
     plane("floor", surface("floor", diffuse((WHITE, WHITE, WHITE, 1))), Matrix.Scale(20, 4))
     scene.camera.data.ortho_scale = 0.1
     up, cosine = Matrix.Translation((0.3, 0, 4)), 1 / math.hypot(1, 0.3 / 4)  # where the camera does not see it
-    area, spot = 100 / 4 / 16 * cosine**4, 50 / (4 * math.pi) / 16 * cosine**(4 if bpy.app.version < (4, 0) else 3)
+    area = 100 / (math.pi if bpy.app.version >= (4, 5) else 4) / 16 * cosine**4
+    spot = 50 / (4 * math.pi) / 16 * cosine**(4 if bpy.app.version < (4, 0) else 3)
     for kind, matrix, irradiance, settings in (
             ("AREA", up, area, {"shape": "DISK", "size": 0.2}),
             ("AREA", up @ Matrix.Diagonal((2, 0.5, 1, 1)), area, {"shape": "ELLIPSE", "size": 0.1, "size_y": 0.2}),
@@ -41,6 +42,8 @@ def lamps(folder):
         # A lamp 0.2 m wide and the view of 0.1 m change E by less than (0.2 / 4)^2 + 2 * 0.05 * 0.3 / 16.
         name = f"{kind} {settings.get('shape', '')}".strip()
         check(abs(found / expected - 1) < 0.0045 + 4 * error / expected, f"lamp {name}: {found:.5f} = {expected:.5f}")
+        cycles, their_error = mean_of(colour(picture(scene, folder, "CYCLES"))[..., 1])
+        check(abs(cycles / expected - 1) < 0.01 + 4 * their_error / expected, f"lamp {name} in Cycles: {cycles:.5f}")
         bpy.data.objects.remove(made)
     spots(scene, folder)
 

@@ -95,7 +95,9 @@ def add_area(export, obj, lamp, matrix, watts):
     hidden(export, obj)
     shape = add(export.root, "shape", "disk" if round_ else "rectangle")
     add_matrix(shape, matrix @ TURNED @ Matrix.Diagonal((across / 2, up / 2, 1, 1)))
-    return add(shape, "emitter", "area", radiance=[w / (4 * area) for w in watts])
+    # Later Blender has the flux itself, pi L A = P; it can be made a radiance.
+    share = math.pi * (area if lamp.normalize else 1) if hasattr(lamp, "normalize") else 4 * area
+    return add(shape, "emitter", "area", radiance=[w / share for w in watts])
 
 
 def hidden(export, obj):
