@@ -1,12 +1,14 @@
 #!/usr/bin/python3
-"""Virtual point lights by the hundred thousand: what selecting them costs, and what it leaves of the picture.
+"""Virtual point lights by the million: what selecting them costs, and what it leaves of the picture.
 
 Runs mote_study_selection at tiles of 4 x 4 pixels drawn from a picture of 512 x 512: all methods have the same lights, eye
-paths and points along them, and are held against many lights drawn by the hierarchy, whose variance is taken off (--brute:
-against all lights). Prints a table a scene, and how the time of a lightcut grows with the number of lights: the slope of a
+paths and points along them, and are held against the light of all lights. That takes a million lights 5 to 20 s a tile, so
+sums are kept in build/references, and only what is missing there is made; --references makes them and nothing else. Prints
+a table a scene, error against threshold, and how the time of a lightcut grows with the number of lights: the slope of a
 line through the logarithms. Seconds are of one processor, for the whole picture, without eye paths and direct light.
 
---quick: few tiles and lights, a minute. --csv FILE writes all lines.
+--quick: few tiles and lights, two minutes. --output FOLDER: many_virtual_lights.csv and .png. A method is
+KIND:THRESHOLD:MAX_CUT:ERROR:SHARED_ANGLE:SHARED_ANGLE_IN_MEDIA (docs/scene-format.md, <selection>).
 """
 import argparse
 import csv
@@ -15,27 +17,40 @@ import subprocess
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-METHODS = ["lightcuts:0.02:1000", "multidimensional:0.02:1000", "stochastic:64", "stochastic:256", "tree:64", "tree:256",
-           "ris:256:16:none:cut", "ris:256:64:none:cut", "ris:256:16:unbiased:cut", "ris:1024:32:none:power",
+SHARED = "multidimensional:0.02:1000:0:0.2:0.2"
+METHODS = ["lightcuts:0.02:1000", "multidimensional:0.02:1000", SHARED, "multidimensional:0.02:1000:0:5:5",
+           "stochastic:64", "stochastic:256", "ris:256:16:none:cut", "ris:256:64:none:cut", "ris:1024:32:none:power",
            "ris:1024:32:unbiased:power", "ris:1024:32:biased:power"]
+# What the estimated error is worth: it ends these, not their thresholds.
+BY_ERROR = [f"multidimensional:0.002:4000:{error}:0.2:0.2" for error in (0.08, 0.04, 0.02)]
+GROWTH = "multidimensional:0.002:4000:0.04:0.2:0.2"
 # Scene, light paths for a million lights, bound [1/m^2].
 SCENES = [("atrium", 1000000, 2.0), ("smoke_room", 410000, 20.0)]
 
 
-def study(program, scene, paths, bound, tiles, methods, brute=False):
-    command = [program, str(ROOT / "scenes" / f"{scene}.xml"), *methods, "--paths", str(paths), "--bound", str(bound),
-               "--tiles", str(tiles)] + (["--brute"] if brute else [])
-    done = subprocess.run(command, capture_output=True, text=True, check=True)
-    print(done.stderr.strip().splitlines()[0])
+def study(options, scene, paths, bound, methods, *more):
+    command = [options.program, str(ROOT / "scenes" / f"{scene}.xml"), *methods, "--paths", str(paths), "--bound", str(bound),
+               "--tiles", str(options.tiles), "--threads", str(options.threads), *more]
+    done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode:
+        raise SystemExit(done.stderr)
+    print(done.stderr.strip().splitlines()[0], flush=True)
     return [dict(line, scene=scene, paths=paths) for line in csv.DictReader(done.stdout.splitlines())]
 
 
+def references(options, scene, paths):
+    folder = ROOT / "build" / "references"
+    folder.mkdir(parents=True, exist_ok=True)
+    return ["--references", str(folder / f"{scene}_{paths}.txt")]
+
+
 def table(lines):
-    print("| scene | lights | method | error [%] | bias [%] | seconds | rays a pixel | groups | at the limit |")
-    print("|---|---|---|---|---|---|---|---|---|")
+    print("| scene | lights | method | error [%] | estimated [%] | bias [%] | median [%] | seconds | rays a pixel | groups | at the limit |")
+    print("|---|---|---|---|---|---|---|---|---|---|---|")
     for l in lines:
         print(f"| {l['scene']} | {l['lights']} | {l['method']} | {l['relative_error_percent']} +- {l['its_standard_error']} | "
-              f"{l['bias_percent']} | {l['gather_seconds']} | {l['rays_a_pixel']} | {l['groups_a_cut']} | {l['at_limit']} |")
+              f"{l['predicted_percent']} | {l['bias_percent']} | {l['median_percent']} | {l['gather_seconds']} | {l['rays_a_pixel']} | "
+              f"{l['groups_a_cut']} | {l['at_limit']} |")
 
 
 def slope(lines):
@@ -46,33 +61,59 @@ def slope(lines):
     return sum((a - mx) * (b - my) for a, b in zip(x, y)) / sum((a - mx) ** 2 for a in x)
 
 
+def write(folder, lines, growths):
+    import matplotlib
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    folder.mkdir(parents=True, exist_ok=True)
+    with open(folder / "many_virtual_lights.csv", "w", newline="") as file:
+        writer = csv.DictWriter(file, lines[0].keys())
+        writer.writeheader()
+        writer.writerows(lines)
+    figure, (errors, growth) = plt.subplots(1, 2, figsize=(11, 4.2))
+    for scene, _, _ in SCENES:
+        own = [l for l in lines if l["scene"] == scene and float(l["relative_error_percent"]) > 0]
+        errors.loglog([float(l["gather_seconds"]) for l in own], [float(l["relative_error_percent"]) for l in own], "o", label=scene)
+        for l in own:
+            errors.annotate(l["method"].replace("multidimensional", "m"), (float(l["gather_seconds"]), float(l["relative_error_percent"])), fontsize=5)
+        growth.loglog([float(l["lights"]) for l in growths[scene]], [float(l["gather_seconds"]) for l in growths[scene]], "o-",
+                      label=f"{scene}, exponent {slope(growths[scene]):.2f}")
+    errors.axhline(2.0, color="gray", linewidth=0.5), errors.axvline(40.0, color="gray", linewidth=0.5)
+    errors.set(xlabel="processor seconds", ylabel="error against all lights [%]", title="512 x 512, a million lights")
+    growth.set(xlabel="lights", ylabel="processor seconds", title=GROWTH)
+    for ax in (errors, growth):
+        ax.legend(), ax.grid(True, which="both", alpha=0.3)
+    figure.tight_layout()
+    figure.savefig(folder / "many_virtual_lights.png", dpi=110)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", default=str(ROOT / "build/release/bin/mote_study_selection"))
     parser.add_argument("--quick", action="store_true", help="few tiles and lights")
-    parser.add_argument("--brute", action="store_true", help="all lights as the reference: minutes a tile")
+    parser.add_argument("--references", action="store_true", help="make what is missing of the references, and nothing else")
     parser.add_argument("--tiles", type=int, help="of 4 x 4 pixels")
-    parser.add_argument("--csv", type=Path)
+    parser.add_argument("--threads", type=int, default=1, help="for references; methods have one")
+    parser.add_argument("--output", type=Path, help="folder of the table and of the plot")
     options = parser.parse_args()
-    tiles = options.tiles or (8 if options.quick else 125)
-    lines = []
+    options.tiles = options.tiles or (6 if options.quick else 60)
+    share, lines, growths = (50 if options.quick else 1), [], {}
     for scene, paths, bound in SCENES:
-        share = 20 if options.quick else 1
-        lines += study(options.program, scene, paths // share, bound, tiles, METHODS, options.brute)
+        methods = [] if options.references else METHODS + BY_ERROR
+        lines += study(options, scene, paths // share, bound, methods, *references(options, scene, paths // share))
+    if options.references:
+        return
     table(lines)
     for scene, paths, bound in SCENES:
-        growth = []
-        for exponent in range(3, 5 if options.quick else 8):
+        growths[scene] = []
+        for exponent in range(3, 6 if options.quick else 8):
             number = int(paths * 10.0 ** (exponent - 6))
-            growth += study(options.program, scene, number, bound, tiles, [METHODS[0]])
-        table(growth)
-        print(f"{scene}: seconds grow as lights^{slope(growth):.2f}")
-        lines += growth
-    if options.csv:
-        with open(options.csv, "w", newline="") as file:
-            writer = csv.DictWriter(file, lines[0].keys())
-            writer.writeheader()
-            writer.writerows(lines)
+            growths[scene] += study(options, scene, number, bound, [GROWTH], "--costs")
+        table(growths[scene])
+        print(f"{scene}: seconds grow as lights^{slope(growths[scene]):.2f}", flush=True)
+        lines += growths[scene]
+    if options.output:
+        write(options.output, lines, growths)
 
 
 if __name__ == "__main__":
