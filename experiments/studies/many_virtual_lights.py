@@ -19,8 +19,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent.parent
 SHARED = "multidimensional:0.02:1000:0:0.2:0.2"
 METHODS = ["lightcuts:0.02:1000", "multidimensional:0.02:1000", SHARED, "multidimensional:0.02:1000:0:5:5",
-           "stochastic:64", "stochastic:256", "ris:256:16:none:cut", "ris:256:64:none:cut", "ris:1024:32:none:power",
-           "ris:1024:32:unbiased:power", "ris:1024:32:biased:power"]
+           "stochastic:64", "stochastic:256", "ris:256:32:none:groups", "ris:1024:64:none:groups", "ris:1024:32:none:groups",
+           "ris:1024:32:unbiased:groups", "ris:1024:32:biased:groups", "ris:1024:32:none:power", "ris:256:64:none:cut"]
 # What the estimated error is worth: it ends these, not their thresholds.
 BY_ERROR = [f"multidimensional:0.002:4000:{error}:0.2:0.2" for error in (0.08, 0.04, 0.02)]
 GROWTH = "multidimensional:0.002:4000:0.04:0.2:0.2"

@@ -6,22 +6,22 @@
 #include <deque>
 
 #include "core/math/morton.h"
+#include "integrators/virtual_point_lights/selected_by.h"
 #include "integrators/virtual_point_lights/vpl_selection.h"
 #include "lights/selection/gather_points.h"
+#include "lights/selection/group_candidates.h"
 #include "lights/selection/light_sampler.h"
-#include "lights/selection/power_candidates.h"
 #include "lights/selection/resampling.h"
 
 namespace mote::integrators {
 
 class TileResampling {
   public:
-    /// One of `tree` and `power`, which candidates are drawn by; the other one is null.
-    TileResampling(const SelectionSettings& settings, const lights::LightTree* tree,
-                   const lights::PowerCandidates* power, const lights::VplSet& vpls, float bound)
+    /// `by` has what the proposal of candidates needs.
+    TileResampling(const SelectionSettings& settings, const SelectedBy& by, const lights::VplSet& vpls,
+                   float bound)
         : settings_(settings),
-          tree_(tree),
-          power_(power),
+          by_(by),
           vpls_(vpls),
           bound_(bound),
           resampling_(vpls, bound, settings.samples, settings.resampling.reuse) {}
@@ -69,13 +69,18 @@ class TileResampling {
         const std::uint32_t n = settings_.resampling.candidates;
         candidates_.clear();
         if (settings_.resampling.proposal == Proposal::power) {
-            power_->draw(n, rng, candidates_);
+            by_.power->draw(n, rng, candidates_);
             return;
         }
-        const lights::ReceiverGroups groups(receivers, *tree_);
+        if (settings_.resampling.proposal == Proposal::groups) {
+            groups_.draw(*by_.hierarchy, *by_.power, receivers, bound_, n, rng, candidates_);
+            sort_by_place();
+            return;
+        }
+        const lights::ReceiverGroups groups(receivers, *by_.tree);
         const auto drawn = settings_.resampling.proposal == Proposal::cut
-                               ? sampler_.by_cut(*tree_, groups, bound_, n, rng)
-                               : sampler_.by_tree(*tree_, groups, bound_, n, rng);
+                               ? sampler_.by_cut(*by_.tree, groups, bound_, n, rng)
+                               : sampler_.by_tree(*by_.tree, groups, bound_, n, rng);
         candidates_.assign(drawn.begin(), drawn.end());
         sort_by_place();
     }
@@ -95,12 +100,12 @@ class TileResampling {
     }
 
     const SelectionSettings& settings_;
-    const lights::LightTree* tree_;
-    const lights::PowerCandidates* power_;
+    const SelectedBy by_;
     const lights::VplSet& vpls_;
     float bound_;
     std::array<Points, 2> points_;  ///< by kind
     lights::LightSampler sampler_;
+    lights::GroupCandidates groups_;
     std::vector<lights::WeightedVpl> candidates_;
     std::vector<std::pair<std::uint64_t, lights::WeightedVpl>> keys_;
     lights::Resampling resampling_;

@@ -7,22 +7,13 @@
 
 namespace mote::integrators {
 
-/// What a pass selects lights by; null: not by this.
-struct SelectedBy {
-    const lights::LightHierarchy* hierarchy = nullptr;  ///< for cuts
-    const lights::LightTree* tree = nullptr;            ///< to draw from
-    const lights::PowerCandidates* power = nullptr;     ///< candidates by power
-    const lights::MatrixSelection* matrix = nullptr;    ///< groups of its columns
-};
-
 class TileSelection {
   public:
     /// All of `by` null: all lights are looked at, and nothing here does anything.
     TileSelection(const SelectionSettings& settings, const SelectedBy& by, const lights::VplSet& vpls,
                   float bound)
         : settings_(settings), hierarchy_(by.hierarchy), tree_(by.tree), matrix_(by.matrix), bound_(bound) {
-        if (settings.resamples() && (by.tree || by.power))
-            resampling_.emplace(settings, by.tree, by.power, vpls, bound);
+        if (settings.resamples() && (by.tree || by.power)) resampling_.emplace(settings, by, vpls, bound);
         if (hierarchy_ && settings.cuts()) cut_.emplace(vpls, *hierarchy_, bound, settings.cut);
     }
 

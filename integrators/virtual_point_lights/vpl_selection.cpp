@@ -48,8 +48,9 @@ std::shared_ptr<Object> make_resampling(const Properties& p, Kind kind) {
     SelectionSettings s = common(p, kind);
     s.samples = std::uint32_t(p.get_int_in("samples", default_resampled, 1, 1 << 16));
     s.resampling.candidates = std::uint32_t(p.get_int_in("candidates", default_candidates, 1, 1 << 20));
-    const std::string by = p.get_choice("candidates_by", "cut", {"cut", "light_tree", "power"});
+    const std::string by = p.get_choice("candidates_by", "groups", {"groups", "cut", "light_tree", "power"});
     s.resampling.proposal = by == "power"        ? Proposal::power
+                            : by == "groups"     ? Proposal::groups
                             : by == "light_tree" ? Proposal::light_tree
                                                  : Proposal::cut;
     const std::string reuse = p.get_choice("reuse", "none", {"none", "unbiased", "biased"});
@@ -99,8 +100,9 @@ const std::vector<Parameter> resampling_parameters{
      "lights that a tile of 4 x 4 pixels looks at without shadow rays, on surfaces and along eye rays "
      "through "
      "media"},
-    {"candidates_by", "string", "cut",
-     "cut: one from each group of a cut of stochastic lightcuts; light_tree: drawn by the hierarchy; power: "
+    {"candidates_by", "string", "groups",
+     "groups: eight by power from each group of a cut; cut: one from each group of a cut of stochastic "
+     "lightcuts; light_tree: drawn by the hierarchy; power: "
      "by what lights send in all"},
     {"samples", "integer", "32", "of them chosen by each pixel, on surfaces and in media: shadow rays"},
     {"reuse", "string", "none",
@@ -144,9 +146,10 @@ std::string chosen_by_resampling(const SelectionSettings& s) {
     using Proposal = ResamplingSettings::Proposal;
     const Proposal by = s.resampling.proposal;
     return fmt::format("resampling, {} of {} candidates {}, {} reuse", s.samples, s.resampling.candidates,
-                       by == Proposal::cut     ? "from a cut"
-                       : by == Proposal::power ? "drawn by power"
-                                               : "drawn by the light hierarchy",
+                       by == Proposal::cut      ? "from a cut"
+                       : by == Proposal::groups ? "from the groups of a cut"
+                       : by == Proposal::power  ? "drawn by power"
+                                                : "drawn by the light hierarchy",
                        s.resampling.reuse == lights::SpatialReuse::none     ? "without"
                        : s.resampling.reuse == lights::SpatialReuse::biased ? "with biased"
                                                                             : "with unbiased");

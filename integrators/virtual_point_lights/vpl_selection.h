@@ -13,10 +13,12 @@ namespace mote::integrators {
 
 /// Where candidates of resampling come from, how many a tile looks at, and whose choices become candidates.
 struct ResamplingSettings {
-    enum class Proposal : std::uint8_t { light_tree, cut, power };
+    enum class Proposal : std::uint8_t { light_tree, cut, groups, power };
+    /// A table of the power of lights is needed.
+    bool by_power() const { return proposal == Proposal::power || proposal == Proposal::groups; }
 
     std::uint32_t candidates = 256;
-    Proposal proposal = Proposal::cut;
+    Proposal proposal = Proposal::groups;
     lights::SpatialReuse reuse = lights::SpatialReuse::none;
 };
 
@@ -46,10 +48,8 @@ struct SelectionSettings {
     /// A sum of groups, which looks at what arrives; else lights are drawn without bias.
     bool cuts() const { return kind == Kind::lightcuts || kind == Kind::multidimensional; }
     bool resamples() const { return kind == Kind::resampling; }
-    /// Candidates are drawn by power; else by the tree.
-    bool by_power() const {
-        return resamples() && resampling.proposal == ResamplingSettings::Proposal::power;
-    }
+    /// Candidates are drawn by power, from all or from groups; else by the tree.
+    bool by_power() const { return resamples() && resampling.by_power(); }
     /// All points of a pixel are gathered at once.
     bool collects() const { return kind == Kind::multidimensional || resamples(); }
     /// Visibility is traced, whatever else there is.

@@ -53,7 +53,7 @@ const std::map<std::string, Words> words = {
     {"screen_space.receivers", {"surfaces"}},
     {"shadow_map.storage", {"intervals", "nodes"}},
     {"matrix.row_visibility", {"rays", "shadow_map", "imperfect_shadow_map"}},
-    {"resampling.candidates_by", {"cut", "light_tree", "power"}},
+    {"resampling.candidates_by", {"groups", "cut", "light_tree", "power"}},
     {"resampling.reuse", {"none", "unbiased", "biased"}},
 };
 

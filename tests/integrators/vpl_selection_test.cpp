@@ -76,7 +76,7 @@ TEST_CASE("selected VPLs have the mean of volpath", "[vpl][selection][equality]"
                           Case{haze,
                                {drawn("light_tree", 6) + apart, drawn("stochastic_lightcuts", 6) + two,
                                 cut("multidimensional_lightcuts", 0.0) + two, matrix(32, 9, 2) + apart,
-                                resampled("power", "none"), resampled("light_tree", "unbiased") + two},
+                                resampled("power", "none"), resampled("groups", "unbiased") + two},
                                1.25}}) {
         const auto scene = scene_from(box(c.medium.empty() ? mixed : grey, c.medium), 8);
         const auto reference = render_statistics(

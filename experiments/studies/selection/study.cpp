@@ -34,9 +34,10 @@ ResamplingSettings resampling_of(const std::vector<std::string>& words) {
     using Proposal = ResamplingSettings::Proposal;
     using lights::SpatialReuse;
     return {std::uint32_t(std::stoul(words[1])),
-            words[4] == "power"  ? Proposal::power
-            : words[4] == "tree" ? Proposal::light_tree
-                                 : Proposal::cut,
+            words[4] == "power"    ? Proposal::power
+            : words[4] == "tree"   ? Proposal::light_tree
+            : words[4] == "groups" ? Proposal::groups
+                                   : Proposal::cut,
             words[3] == "unbiased" ? SpatialReuse::unbiased
             : words[3] == "biased" ? SpatialReuse::biased
                                    : SpatialReuse::none};

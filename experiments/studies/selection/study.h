@@ -27,7 +27,7 @@ double now(clockid_t clock);
 
 /// "all", "lightcuts:THRESHOLD:MAX_CUT:ERROR:ANGLE:ANGLE_IN_MEDIA" and "multidimensional:..." alike, where
 /// what is left out at the end is 0, "stochastic:N", "tree:N",
-/// "ris:CANDIDATES:SAMPLES:none|unbiased|biased:cut|tree|power",
+/// "ris:CANDIDATES:SAMPLES:none|unbiased|biased:groups|cut|tree|power",
 /// "matrix:ROWS:COLUMNS:SLICES:rays|maps|imperfect".
 SelectionSettings settings_of(const std::string& text);
 
