@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/math/vectorize.h"
 #include "lights/selection/cluster_bounds.h"
 
 namespace mote::lights {
