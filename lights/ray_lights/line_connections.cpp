@@ -15,6 +15,8 @@ constexpr double resolution = 1e-12;
 /// Share of an even distribution in weights that are guessed from the middles of cells.
 constexpr float defensive = 0.15f;
 
+double square(double x) { return x * x; }  // core::sqr() is for single precision
+
 using CellWeights = std::array<float, most_cells>;
 
 /// Multiplies the weights of a line by guess(middle of the cell), and the mean of all guesses besides.
@@ -50,7 +52,7 @@ InverseSquare around(const MediumLine& line, const Vec3d& point, float width) {
     const double nearest = glm::dot(to, Vec3d(line.direction));
     const Vec3d off = to - nearest * Vec3d(line.direction);
     const double least = resolution * (double(line.length) + std::fabs(nearest));
-    return {nearest, std::sqrt(glm::dot(off, off) + sqr(double(width)) + sqr(least))};
+    return {nearest, std::sqrt(glm::dot(off, off) + square(double(width)) + square(least))};
 }
 
 /// Do weights of cells alone say too little? Not where light scatters evenly, and media are thin.
@@ -63,7 +65,8 @@ std::optional<LineSample> sample_on_light(const RayLight& light, const EyeLine& 
     const LinePair pair = line_pair(Vec3d(y.origin), Vec3d(y.direction), Vec3d(x.origin), Vec3d(x.direction));
     const double least = resolution * (double(y.length) + double(x.length) + std::fabs(pair.nearest_first));
     const InverseDistance density{pair.nearest_first,
-                                  std::sqrt(sqr(pair.distance) + sqr(double(width)) + sqr(least)), pair.sine};
+                                  std::sqrt(square(pair.distance) + square(double(width)) + square(least)),
+                                  pair.sine};
     const double length = double(y.length);
     if (!steers(y)) return sample_line(density, 0.0, length, length, y.cell_weights(), u);
     CellWeights weights;
@@ -102,7 +105,7 @@ std::optional<LineSample> sample_on_eye(const MediumLine& eye, const MediumLine&
 }  // namespace
 
 float inverse_square(double distance_squared, float width) {
-    if (distance_squared < sqr(double(width))) return 3.0f / sqr(width);
+    if (distance_squared < square(double(width))) return 3.0f / sqr(width);
     return float(1.0 / distance_squared);
 }
 

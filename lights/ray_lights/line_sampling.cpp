@@ -15,6 +15,8 @@ constexpr double parallel = 1e-7;
 /// Below this, sinh(x) / x and its inverse are 1 to double precision.
 constexpr double tiny = 1e-8;
 
+double squared(double x) { return x * x; }  // core::sqr() is for single precision
+
 }  // namespace
 
 LinePair line_pair(const Vec3d& first_origin, const Vec3d& first_direction, const Vec3d& second_origin,
@@ -36,7 +38,7 @@ LinePair line_pair(const Vec3d& first_origin, const Vec3d& first_direction, cons
 }
 
 double InverseDistance::density(double u) const {
-    return 1.0 / std::sqrt(distance * distance + sqr(sine * (u - nearest)));
+    return 1.0 / std::sqrt(distance * distance + squared(sine * (u - nearest)));
 }
 double InverseDistance::integral(double u) const {
     const double x = (u - nearest) / distance;
@@ -47,7 +49,7 @@ double InverseDistance::inverse(double integral) const {
     return nearest + distance * (std::fabs(x) < tiny ? integral : std::sinh(x) / sine);
 }
 
-double InverseSquare::density(double v) const { return 1.0 / (sqr(distance) + sqr(v - nearest)); }
+double InverseSquare::density(double v) const { return 1.0 / (squared(distance) + squared(v - nearest)); }
 double InverseSquare::integral(double v) const { return std::atan((v - nearest) / distance) / distance; }
 double InverseSquare::inverse(double integral) const {
     return nearest + distance * std::tan(distance * integral);
