@@ -41,7 +41,8 @@ struct Extent {
     double cost(double c2) const {
         if (positions.empty()) return 0.0;
         const Vec3d p(positions.diagonal()), d(directions.diagonal());
-        return weight * (glm::dot(p, p) + c2 * sqr(glm::dot(d, d) / (8.0 * 127.0 * 127.0)));
+        const double bend = glm::dot(d, d) / (8.0 * 127.0 * 127.0);
+        return weight * (glm::dot(p, p) + c2 * bend * bend);
     }
 };
 
