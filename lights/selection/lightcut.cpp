@@ -247,7 +247,7 @@ Lightcut::Light Lightcut::gather(const GatherContext& context, GatherPoints& poi
     }
     planned_[kinds] = pairs_.size() * 3 / 4;
     ++counters_.cuts, counters_.pairs += pairs_.size(), counters_.at_limit += !worst_.empty();
-    counters_.predicted_squares += sqr(predicted_);
+    counters_.predicted_squares += predicted_ * predicted_;
     std::array<std::array<Vec3d, width>, 2> sum{};
     for (std::size_t p = 0; p < pairs_.size(); ++p) {
         auto& of_kind = sum[std::size_t(pairs_[p].kind)];

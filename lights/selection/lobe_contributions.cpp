@@ -97,9 +97,8 @@ bool cut_contributions(const VplSet& vpls, const WeightedVpl& light, const Recei
     const VirtualPointLight& vpl = vpls.lights[light.index];
     const bool plain = vpl.detail == VirtualPointLight::no_detail && !receivers.any_directional;
     // Roughness that is clamped pair by pair has no lobe to ask.
-    if (plain || !lobes.known || !vpls.peak_density.empty())
-        return contributions_of(vpls, light, receivers, weight, packet, out);
-    const auto own = lobe_of(vpls, vpl);
+    const bool quick = !plain && lobes.known && vpls.peak_density.empty();
+    const auto own = quick ? lobe_of(vpls, vpl) : std::nullopt;
     if (!own) return contributions_of(vpls, light, receivers, weight, packet, out);
     out.receivers = &receivers, out.vpl = light.index;
     return contributions(receivers, lobes, vpl, *own, light.weight, weight, packet, out);

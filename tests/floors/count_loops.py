@@ -45,6 +45,7 @@ IDEAS = {
         "lights/virtual_lights/vpl_gather.h": 1,
         "lights/selection/lobe_contributions.cpp": 2,    # pairs of groups: where its own loop for lobes does not hold
         "lights/selection/resampling_target.cpp": 1,     # candidates, most of which are never connected
+        "lights/selection/lobe_contributions.cpp": 1,    # pairs of groups, each remembered by itself
     }),
     "a gather over pairs": (r"(?<!void )\bgather_pairs\(", {
         "lights/virtual_lights/vpl_gather.h": 1,         # a tile and all its lights, by rays
