@@ -114,6 +114,7 @@ const std::map<std::string, Words> numbers = {
     {"columns", {"8"}},
     {"slices", {"", "1"}},
     {"map_size", {"8"}},
+    {"shared_passes", {"", "2"}},
     {"share", {"", "7"}},
     {"width", {"", "0.2"}},
 };
