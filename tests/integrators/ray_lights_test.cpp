@@ -48,7 +48,7 @@ void check(const std::string& xml, const std::string& settings, const std::strin
 const std::string paths = R"(<integer name="paths" value="8"/>)";
 const std::string shared = R"(<integer name="paths" value="40"/><integer name="share" value="8"/>)";
 const std::string forward = R"(<phase type="hg"><float name="g" value="0.6"/></phase>)";
-const Effort quick{200, 2000, 0.15}, long_run{700, 6000, 0.1};
+const Effort quick{200, 2000, 0.15}, long_run{3000, 30000, 0.1};
 
 void check_all(const Effort& effort) {
     const mote::tests::TemporaryFolder folder;
