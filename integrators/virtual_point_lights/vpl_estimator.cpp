@@ -306,7 +306,7 @@ class VplEstimator final : public Estimator {
     std::size_t share_of(const PassContext& context, int column, int row) const {
         const auto n = std::size_t(settings_.interleaving);
         const auto start = std::size_t(hash_keys(options_.seed, 0x696e7465726cull) % (n * n));
-        if (settings_.selection.by_hierarchy()) return 0;
+        if (settings_.selection.selects()) return 0;
         return (std::size_t(column) % n + n * (std::size_t(row) % n) + start + context.index) % (n * n);
     }
 
@@ -316,7 +316,7 @@ class VplEstimator final : public Estimator {
         const glm::ivec2 first = lanes[0];  // the others lie to the right and below
         const int n = settings_.interleaving;
         // Drawn lights are no shares: any of them may be drawn, and neighbours draw their own.
-        const std::size_t shares = settings_.selection.by_hierarchy() ? 1 : std::size_t(n) * std::size_t(n);
+        const std::size_t shares = settings_.selection.selects() ? 1 : std::size_t(n) * std::size_t(n);
         const std::size_t share = first.x < 0 ? 0 : share_of(context, first.x, first.y);
         std::array<VplPixel, lane_count> sums;
         const auto samples = std::uint32_t(settings_.eye_samples);

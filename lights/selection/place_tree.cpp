@@ -1,6 +1,8 @@
 #include "lights/selection/place_tree.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "core/math/bounds.h"
@@ -73,7 +75,9 @@ std::uint32_t PlaceTree::build(std::span<const Point> points, std::size_t first,
     float cut = median;
     auto middle = std::partition(part.begin(), part.end(), [&](std::uint32_t i) { return value(i) < cut; });
     if (middle == part.begin()) {
+        // Not a denormal number, which threads that flush those to zero would not tell from a median of 0.
         cut = std::nextafter(median, infinity);
+        if (std::fabs(cut) < std::numeric_limits<float>::min()) cut = std::numeric_limits<float>::min();
         middle = std::partition(part.begin(), part.end(), [&](std::uint32_t i) { return value(i) < cut; });
     }
     const auto left_count = std::size_t(middle - part.begin()), right_count = part.size() - left_count;

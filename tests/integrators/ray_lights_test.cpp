@@ -77,7 +77,7 @@ TEST_CASE("ray lights equal paths: max_depth, thick fog, fog without walls, pane
         const std::string limit = fmt::format(R"(<integer name="max_depth" value="{}"/>)", depth);
         check(box(grey, fog("0.8, 1.0, 1.3", "")), paths + limit, limit, long_run);
     }
-    check(box(grey, fog("6, 8, 10", forward)), paths, "", long_run);
+    check(box(grey, fog("6, 8, 10", forward)), paths, "", {3000, 30000, 0.25});  // far noisier than thin fog
     check(leafy_box(fog("0.8, 1.0, 1.3", "")), paths + R"(<integer name="max_depth" value="5"/>)",
           R"(<integer name="max_depth" value="5"/>)", long_run);
     // Without end: rays that meet nothing.
