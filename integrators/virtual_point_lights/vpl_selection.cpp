@@ -40,7 +40,7 @@ std::shared_ptr<Object> make_drawn(const Properties& p, Kind kind) {
     return std::make_shared<Selection>(s);
 }
 
-constexpr std::uint32_t default_candidates = 256, default_resampled = 32;
+constexpr std::uint32_t default_candidates = 1024, default_resampled = 32;
 
 std::shared_ptr<Object> make_resampling(const Properties& p, Kind kind) {
     using Proposal = ResamplingSettings::Proposal;
@@ -96,7 +96,7 @@ const std::vector<Parameter> drawn_parameters{
     {"samples", "integer", "64", "lights drawn for each tile of 4 x 4 pixels"}, most_megabytes};
 
 const std::vector<Parameter> resampling_parameters{
-    {"candidates", "integer", "256",
+    {"candidates", "integer", "1024",
      "lights that a tile of 4 x 4 pixels looks at without shadow rays, on surfaces and along eye rays "
      "through "
      "media"},

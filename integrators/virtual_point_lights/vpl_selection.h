@@ -17,7 +17,7 @@ struct ResamplingSettings {
     /// A table of the power of lights is needed.
     bool by_power() const { return proposal == Proposal::power || proposal == Proposal::groups; }
 
-    std::uint32_t candidates = 256;
+    std::uint32_t candidates = 1024;
     Proposal proposal = Proposal::groups;
     lights::SpatialReuse reuse = lights::SpatialReuse::none;
 };

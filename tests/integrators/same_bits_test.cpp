@@ -90,7 +90,7 @@ const std::map<std::string, Words> numbers = {
     {"all_points", {"500", "1000"}},
     {"splat", {"", "1"}},
     {"bias", {"", "2"}},
-    {"candidates", {"", "0"}},
+    {"candidates", {"24", "0"}},
     {"micro_buffer", {"3", "1"}},
     {"cut", {"", "0.3"}},
     {"radiosity_level", {"", "0"}},
