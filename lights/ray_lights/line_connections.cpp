@@ -58,6 +58,31 @@ InverseSquare around(const MediumLine& line, const Vec3d& point, float width) {
 /// Do weights of cells alone say too little? Not where light scatters evenly, and media are thin.
 bool steers(const MediumLine& line) { return line.cells > 1; }
 
+/// Weights of a line's cells for light between it and a point, in memory of `weights` where they are steered.
+std::span<const float> weights_towards(const MediumLine& line, const Vec3d& point, CellWeights& weights) {
+    if (!steers(line)) return line.cell_weights();
+    return steered(line, weights, [&](double middle) {
+        const Towards towards(line.at(middle), point);
+        return passes(line, towards.distance) * average(line.phase(towards.direction));
+    });
+}
+
+/// Distances along a line [m].
+struct Part {
+    double begin, end;
+};
+/// What lies above the plane through a point; nothing for a line in the plane or parallel to it and below.
+std::optional<Part> part_above(const MediumLine& line, const Vec3d& point, const Vec3& n) {
+    Part part{0.0, double(line.length)};
+    const Vec3d normal(n);
+    const double height = glm::dot(Vec3d(line.origin) - point, normal),
+                 slope = glm::dot(Vec3d(line.direction), normal);
+    if (slope > 0.0) part.begin = std::max(part.begin, -height / slope);
+    if (slope < 0.0) part.end = std::min(part.end, -height / slope);
+    if (slope == 0.0 && height <= 0.0) return std::nullopt;
+    return part;
+}
+
 /// The point on the ray light: by its distance from the eye ray; and, where it has cells, by what would go to
 /// the nearest point of the eye ray.
 std::optional<LineSample> sample_on_light(const RayLight& light, const EyeLine& eye, float u, float width) {
@@ -137,25 +162,15 @@ std::optional<LineConnection> connect(const ReceiverLanes& receivers, int lane, 
     const ScatteringVertex* vertex = receivers.directional[lane];
     const MediumLine& line = light.line;
     const Vec3d x(vertex ? vertex->position : receivers.position(lane));
-    double begin = 0.0, end = double(line.length);
+    std::optional<Part> part = Part{0.0, double(line.length)};
     if (!vertex && receivers.in_medium[lane] == 0.0f) {  // nothing comes from below a diffuse surface
-        const Vec3d normal(receivers.geometric_normal(lane));
-        const double height = glm::dot(Vec3d(line.origin) - x, normal),
-                     slope = glm::dot(Vec3d(line.direction), normal);
-        if (slope > 0.0) begin = std::max(begin, -height / slope);
-        if (slope < 0.0) end = std::min(end, -height / slope);
-        if (slope == 0.0 && height <= 0.0) return std::nullopt;
+        part = part_above(line, x, receivers.geometric_normal(lane));
+        if (!part) return std::nullopt;
     }
     CellWeights weights;
-    const auto by = steers(line) ? steered(line, weights,
-                                           [&](double middle) {
-                                               const Towards towards(line.at(middle), x);
-                                               return passes(line, towards.distance) *
-                                                      average(line.phase(towards.direction));
-                                           })
-                                 : line.cell_weights();
+    const auto by = weights_towards(line, x, weights);
     const auto on_light = sample_line(around(line, x, std::fmax(context.width, 1.0f / std::sqrt(bound))),
-                                      begin, end, double(line.length), by, u);
+                                      part->begin, part->end, double(line.length), by, u);
     if (!on_light) return std::nullopt;
     const Vec3d y = line.at(on_light->position);
     const Towards towards(x, y);
@@ -188,24 +203,15 @@ std::optional<LineConnection> connect(const EyeLine& eye, const VplSet& vpls, co
         vpl.detail == VirtualPointLight::no_detail ? nullptr : &vpls.details[vpl.detail];
     const MediumLine& line = eye.line;
     const Vec3d y(detail ? detail->vertex.position : vpl.position);
-    double begin = 0.0, end = double(line.length);
+    std::optional<Part> part = Part{0.0, double(line.length)};
     if (!detail) {  // it shines to one side
-        const Vec3d normal(vpl.normal);
-        const double height = glm::dot(Vec3d(line.origin) - y, normal),
-                     slope = glm::dot(Vec3d(line.direction), normal);
-        if (slope > 0.0) begin = std::max(begin, -height / slope);
-        if (slope < 0.0) end = std::min(end, -height / slope);
-        if (slope == 0.0 && height <= 0.0) return std::nullopt;
+        part = part_above(line, y, vpl.normal);
+        if (!part) return std::nullopt;
     }
     CellWeights weights;
-    const auto by = steers(line) ? steered(line, weights,
-                                           [&](double middle) {
-                                               const Towards towards(line.at(middle), y);
-                                               return passes(line, towards.distance) *
-                                                      average(line.phase(towards.direction));
-                                           })
-                                 : line.cell_weights();
-    const auto on_eye = sample_line(around(line, y, 0.0f), begin, end, double(line.length), by, u);
+    const auto by = weights_towards(line, y, weights);
+    const auto on_eye =
+        sample_line(around(line, y, 0.0f), part->begin, part->end, double(line.length), by, u);
     if (!on_eye) return std::nullopt;
     const Vec3d x = line.at(on_eye->position);
     const Towards towards(x, y);

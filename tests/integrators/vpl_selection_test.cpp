@@ -54,6 +54,19 @@ std::vector<core::Rgb> picture(const core::Scene& scene, const std::string& inte
     return film.beauty();
 }
 
+/// `same` is `all` to rounding; `other`, which is not, is seen to differ.
+void check_same_and_other(const std::vector<core::Rgb>& all, const std::vector<core::Rgb>& same,
+                          const std::vector<core::Rgb>& other) {
+    std::size_t wrong = 0, differ = 0;
+    for (std::size_t i = 0; i < all.size(); ++i)
+        for (int k = 0; k < 3; ++k) {
+            wrong += std::fabs(same[i][k] - all[i][k]) > 3e-5f * all[i][k] + 1e-7f;
+            differ += std::fabs(other[i][k] - all[i][k]) > 1e-3f * all[i][k];
+        }
+    CHECK(wrong == 0);
+    CHECK(differ > all.size() / 2);
+}
+
 }  // namespace
 
 TEST_CASE("selected VPLs have the mean of volpath", "[vpl][selection][equality]") {
@@ -106,14 +119,7 @@ TEST_CASE("A lightcut with a threshold of 0 is the picture of all VPLs", "[vpl][
         for (const std::string type : {"lightcuts", "multidimensional_lightcuts"}) {
             const auto same = picture(*scene, vpl(cut(type, 0.0), collisions, 60));
             const auto other = picture(*scene, vpl(cut(type, 0.0, 30), collisions, 60));
-            std::size_t wrong = 0, differ = 0;
-            for (std::size_t i = 0; i < all.size(); ++i)
-                for (int k = 0; k < 3; ++k) {
-                    wrong += std::fabs(same[i][k] - all[i][k]) > 3e-5f * all[i][k] + 1e-7f;
-                    differ += std::fabs(other[i][k] - all[i][k]) > 1e-3f * all[i][k];
-                }
-            CHECK(wrong == 0);
-            CHECK(differ > all.size() / 2);
+            check_same_and_other(all, same, other);
         }
     }
 }
@@ -153,14 +159,7 @@ TEST_CASE("A matrix with more columns than lights is the picture of all VPLs", "
         const auto all = picture(*scene, vpl("", collisions, 60));
         const auto same = picture(*scene, vpl(matrix(16, 5000, 2), collisions, 60));
         const auto other = picture(*scene, vpl(matrix(16, 10, 2), collisions, 60));
-        std::size_t wrong = 0, differ = 0;
-        for (std::size_t i = 0; i < all.size(); ++i)
-            for (int k = 0; k < 3; ++k) {
-                wrong += std::fabs(same[i][k] - all[i][k]) > 3e-5f * all[i][k] + 1e-7f;
-                differ += std::fabs(other[i][k] - all[i][k]) > 1e-3f * all[i][k];
-            }
-        CHECK(wrong == 0);
-        CHECK(differ > all.size() / 2);
+        check_same_and_other(all, same, other);
     }
 }
 

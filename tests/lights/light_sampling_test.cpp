@@ -4,6 +4,7 @@
 #include "lights/selection/light_sampler.h"
 #include "tests/lights/random_lights.h"
 #include "tests/support/catch.h"
+#include "tests/support/mean_of.h"
 
 using namespace mote;
 using namespace mote::core;
@@ -53,20 +54,6 @@ double light_of(const lights::VplSet& set, std::span<const WeightedVpl> drawn,
     for (const WeightedVpl& light : drawn)
         for (const double v : sent(set, light.index, tile, infinity)) sum += double(light.weight) * v;
     return sum;
-}
-
-struct Mean {
-    double mean, error;
-};
-template <typename Draw>
-Mean mean_of(int draws, const Draw& draw) {
-    double sum = 0.0, squares = 0.0;
-    for (int k = 0; k < draws; ++k) {
-        const double x = draw();
-        sum += x, squares += x * x;
-    }
-    const double mean = sum / draws;
-    return {mean, std::sqrt(std::max(0.0, squares / draws - mean * mean) / (draws - 1.0))};
 }
 
 }  // namespace

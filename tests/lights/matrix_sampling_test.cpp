@@ -12,6 +12,7 @@
 #include "lights/virtual_lights/particle_tracer.h"
 #include "tests/lights/random_lights.h"
 #include "tests/support/catch.h"
+#include "tests/support/mean_of.h"
 #include "tests/support/render_statistics.h"
 
 // After random_lights.h, whose functions have names of its materials as parameters.
@@ -163,20 +164,6 @@ MatrixSettings settings_of(std::uint32_t rows, std::uint32_t columns, std::uint3
     settings.rows = rows, settings.columns = columns, settings.slices = slices;
     settings.max_bytes = max_bytes;
     return settings;
-}
-
-struct Mean {
-    double mean, error;
-};
-template <typename Draw>
-Mean mean_of(int draws, const Draw& draw) {
-    double sum = 0.0, squares = 0.0;
-    for (int k = 0; k < draws; ++k) {
-        const double x = draw();
-        sum += x, squares += x * x;
-    }
-    const double mean = sum / draws;
-    return {mean, std::sqrt(std::max(0.0, squares / draws - mean * mean) / (draws - 1.0))};
 }
 
 }  // namespace
