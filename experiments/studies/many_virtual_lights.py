@@ -3,9 +3,10 @@
 
 Runs mote_study_selection at tiles of 4 x 4 pixels drawn from a picture of 512 x 512: all methods have the same lights, eye
 paths and points along them, and are held against the light of all lights. That takes a million lights 5 to 20 s a tile, so
-sums are kept in build/references, and only what is missing there is made; --references makes them and nothing else. Prints
-a table a scene, error against threshold, and how the time of a lightcut grows with the number of lights: the slope of a
-line through the logarithms. Seconds are of one processor, for the whole picture, without eye paths and direct light.
+sums of 60 tiles lie in experiments/studies/selection/references, and only what is missing there is made (of other numbers of
+lights in build/references); --references makes them and nothing else. Prints a table a scene, error against threshold, and
+how the time of a lightcut grows with the number of lights: the slope of a line through the logarithms. Seconds are of one
+processor, for the whole picture, without eye paths and direct light.
 
 --quick: few tiles and lights, two minutes. --output FOLDER: many_virtual_lights.csv and .png. A method is
 KIND:THRESHOLD:MAX_CUT:ERROR:SHARED_ANGLE:SHARED_ANGLE_IN_MEDIA (docs/scene-format.md, <selection>).
@@ -39,7 +40,7 @@ def study(options, scene, paths, bound, methods, *more):
 
 
 def references(options, scene, paths):
-    folder = ROOT / "build" / "references"
+    folder = ROOT / ("build/references" if options.quick else "experiments/studies/selection/references")
     folder.mkdir(parents=True, exist_ok=True)
     return ["--references", str(folder / f"{scene}_{paths}.txt")]
 
