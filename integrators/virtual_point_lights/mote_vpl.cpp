@@ -125,7 +125,7 @@ void MoteVpl::check_upsampling(const Properties& properties) const {
 void MoteVpl::check_selection() const {
     const SelectionSettings& s = settings_.selection;
     if (!s.selects()) return;
-    const char* against = settings_.interleaving > 1 && s.traces()       ? "interleaving"
+    const char* against = settings_.interleaving > 1 && s.cuts()         ? "interleaving"
                           : settings_.lists.size > 0                     ? "light_lists"
                           : settings_.compensates()                      ? "compensation"
                           : settings_.clamping.enabled                   ? "roughness_clamping"

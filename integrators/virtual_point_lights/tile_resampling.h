@@ -1,5 +1,6 @@
 // Resampled virtual point lights at the receivers of a tile: points of surfaces one after the other, each
-// with what the tile before has chosen, and all points in media of an eye ray at once.
+// with what the tile before has chosen, and all points in media of an eye ray at once. Candidates drawn by
+// the tree are those of all points of a pixel, and learn from the tiles before (learned_shares.h).
 #pragma once
 
 #include <algorithm>
@@ -38,6 +39,11 @@ class TileResampling {
     lights::Lightcut::Light gather(const lights::GatherContext& context, core::Rng& rng) {
         lights::Lightcut::Light light{};
         auto& [surfaces, media] = points_;
+        if (settings_.resampling.by_tree() && settings_.resampling.reuse == lights::SpatialReuse::none) {
+            gather_all(context, rng, light);
+            surfaces.used = media.used = 0;
+            return light;
+        }
         for (std::size_t p = 0; p < surfaces.used; ++p) {
             lights::KeptReceivers& tile = surfaces.tiles[p];
             draw(lights::ReceiverBounds(tile.tile), rng);
@@ -65,6 +71,41 @@ class TileResampling {
         std::size_t used = 0;
     };
 
+    /// One set of candidates for all points.
+    void gather_all(const lights::GatherContext& context, core::Rng& rng, lights::Lightcut::Light& light) {
+        all_.clear(), bounds_.clear();
+        for (Points& points : points_)
+            for (std::size_t p = 0; p < points.used; ++p) {
+                all_.push_back(&points.tiles[p]);
+                bounds_.emplace_back(points.tiles[p].tile);
+            }
+        if (all_.empty()) return;
+        sampler_.use(settings_.learning ? &learned_ : nullptr);
+        draw(lights::ReceiverGroups(bounds_, *by_.tree), rng);
+        seen_.clear();
+        for (const std::uint32_t c : order_) seen_.push_back(sampler_.seen(c));
+        resampling_.gather(context, all_, candidates_, rng, seen_);
+        for (std::size_t p = 0; p < all_.size(); ++p) {
+            const auto one = resampling_.light_of(p);
+            auto& sum = light[p < points_[0].used ? 0 : 1];
+            for (std::size_t i = 0; i < one.size(); ++i) sum[i] += one[i];
+        }
+        if (!settings_.learning) return;
+        for (std::size_t c = 0; c < candidates_.size(); ++c) {
+            const auto& found = resampling_.found()[c];
+            sampler_.learn(order_[c], found.light, found.rays, found.ray_squares);
+        }
+    }
+
+    void draw(const lights::ReceiverGroups& groups, core::Rng& rng) {
+        const std::uint32_t n = settings_.resampling.candidates;
+        const auto drawn = settings_.resampling.proposal == Proposal::cut
+                               ? sampler_.by_cut(*by_.tree, groups, bound_, n, rng)
+                               : sampler_.by_tree(*by_.tree, groups, bound_, n, rng);
+        candidates_.assign(drawn.begin(), drawn.end());
+        sort_by_place();
+    }
+
     void draw(const lights::ReceiverBounds& receivers, core::Rng& rng) {
         const std::uint32_t n = settings_.resampling.candidates;
         candidates_.clear();
@@ -77,12 +118,7 @@ class TileResampling {
             sort_by_place();
             return;
         }
-        const lights::ReceiverGroups groups(receivers, *by_.tree);
-        const auto drawn = settings_.resampling.proposal == Proposal::cut
-                               ? sampler_.by_cut(*by_.tree, groups, bound_, n, rng)
-                               : sampler_.by_tree(*by_.tree, groups, bound_, n, rng);
-        candidates_.assign(drawn.begin(), drawn.end());
-        sort_by_place();
+        draw(lights::ReceiverGroups(receivers, *by_.tree), rng);
     }
 
     /// Choices are even steps through the candidates: where neighbours are alike they are spread evenly over
@@ -91,12 +127,17 @@ class TileResampling {
         core::Bounds3 bounds;
         for (const lights::WeightedVpl& c : candidates_) bounds.extend(vpls_.lights[c.index].position);
         keys_.clear();
-        for (const lights::WeightedVpl& c : candidates_)
-            keys_.emplace_back(core::morton_code(vpls_.lights[c.index].position, bounds), c);
-        std::sort(keys_.begin(), keys_.end(), [](const auto& a, const auto& b) {
-            return a.first != b.first ? a.first < b.first : a.second.index < b.second.index;
+        for (std::size_t c = 0; c < candidates_.size(); ++c)
+            keys_.emplace_back(core::morton_code(vpls_.lights[candidates_[c].index].position, bounds),
+                               std::uint32_t(c));
+        unsorted_.assign(candidates_.begin(), candidates_.end());
+        std::sort(keys_.begin(), keys_.end(), [&](const auto& a, const auto& b) {
+            if (a.first != b.first) return a.first < b.first;
+            return unsorted_[a.second].index < unsorted_[b.second].index;
         });
-        for (std::size_t i = 0; i < keys_.size(); ++i) candidates_[i] = keys_[i].second;
+        order_.clear();
+        for (std::size_t i = 0; i < keys_.size(); ++i)
+            order_.push_back(keys_[i].second), candidates_[i] = unsorted_[keys_[i].second];
     }
 
     const SelectionSettings& settings_;
@@ -106,8 +147,13 @@ class TileResampling {
     std::array<Points, 2> points_;  ///< by kind
     lights::LightSampler sampler_;
     lights::GroupCandidates groups_;
-    std::vector<lights::WeightedVpl> candidates_;
-    std::vector<std::pair<std::uint64_t, lights::WeightedVpl>> keys_;
+    lights::LearnedShares learned_;  ///< of this task
+    std::vector<lights::WeightedVpl> candidates_, unsorted_;
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> keys_;
+    std::vector<std::uint32_t> order_;  ///< of the candidates: as they were drawn
+    std::vector<float> seen_;           ///< by candidate
+    std::vector<lights::KeptReceivers*> all_;
+    std::vector<lights::ReceiverBounds> bounds_;
     lights::Resampling resampling_;
 };
 

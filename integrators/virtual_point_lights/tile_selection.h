@@ -30,15 +30,40 @@ class TileSelection {
         if (matrix_) return {matrix_->draw(receivers, rng, columns_)};
         if (!settings_.selects()) return {all()};
         const lights::ReceiverGroups groups(lights::ReceiverBounds(receivers), *tree_);
+        sampler_.use(settings_.learning ? &learned_[is_in_medium(receivers)] : nullptr);
         if (settings_.kind == SelectionSettings::Kind::stochastic)
             return {sampler_.by_cut(*tree_, groups, bound_, settings_.samples, rng)};
         return {sampler_.by_tree(*tree_, groups, bound_, settings_.samples, rng)};
+    }
+    /// Is what drawn lights bring to be told to those of later tiles?
+    bool learns() const { return tree_ && settings_.learning && settings_.draws(); }
+    /// The light of drawn() at the same receivers, from which later tiles learn.
+    lights::TileLight gather(const lights::GatherContext& context, const lights::VplSet& vpls,
+                             const lights::DrawnVpls& drawn, lights::ReceiverTile& receivers) {
+        lights::TileSum sum;
+        if (!receivers.any_active) return sum.value();
+        lights::TracedVisibility visibility(context, receivers);
+        std::size_t next = 0;  // drawn light: those that send nothing are not heard of
+        const auto add = [&](const lights::LaneLight& light) {
+            sum.add(light);
+            while (drawn.drawn[next].index != light.vpl) sampler_.learn(next++, 0.0);
+            double arrived = 0.0;
+            for (int i = 0; i < lights::LaneLight::width; ++i)
+                arrived += double(light.r[i] + light.g[i] + light.b[i]);
+            sampler_.learn(next++, arrived / 3.0);
+        };
+        const auto pairs = [&](const auto& visit) {
+            for (const lights::WeightedVpl& light : drawn.drawn) visit(receivers, light);
+        };
+        lights::gather_pairs(vpls, pairs, lights::BoundedGeometry{bound_}, visibility, context.scratch, add);
+        while (next < drawn.drawn.size()) sampler_.learn(next++, 0.0);
+        return sum.value();
     }
 
     /// Lightcuts at one tile.
     lights::TileLight cut(const lights::GatherContext& context, const lights::ReceiverTile& receivers,
                           std::uint64_t key) {
-        const bool medium = receivers.in_medium[first_active(receivers)] != 0.0f;
+        const bool medium = is_in_medium(receivers);
         points_.clear();
         points_.add(receivers, medium ? lights::GatherKind::medium : lights::GatherKind::surface);
         return gather_points(context, key)[medium];
@@ -78,10 +103,10 @@ class TileSelection {
     }
 
   private:
-    static int first_active(const lights::ReceiverTile& receivers) {
+    static bool is_in_medium(const lights::ReceiverLanes& receivers) {
         int lane = 0;
-        while (lane + 1 < lights::ReceiverTile::width && receivers.max_vpl_depth[lane] == 0) ++lane;
-        return lane;
+        while (lane + 1 < lights::ReceiverLanes::width && receivers.max_vpl_depth[lane] == 0) ++lane;
+        return receivers.in_medium[lane] != 0.0f;
     }
     std::span<const lights::WeightedVpl> all() {
         if (all_.empty())
@@ -98,6 +123,7 @@ class TileSelection {
     std::vector<lights::WeightedVpl> columns_;  ///< that stand for all, at a tile
     float bound_;
     lights::LightSampler sampler_;
+    std::array<lights::LearnedShares, 2> learned_;  ///< at surfaces, in media: of this task
     std::vector<lights::WeightedVpl> all_;
     lights::GatherPoints points_;
     std::optional<lights::Lightcut> cut_;

@@ -152,7 +152,9 @@ class EyeTile {
         }
         const std::uint64_t key = walk_.rng.next_u32();
         if (selection_.cuts()) return selection_.cut(context(), receivers_, key);
-        return gather_lights(selection_.drawn(receivers_, key));
+        const lights::DrawnVpls drawn = selection_.drawn(receivers_, key);
+        return selection_.learns() ? selection_.gather(context(), vpls_, drawn, receivers_)
+                                   : gather_lights(drawn);
     }
 
     template <typename Lights>

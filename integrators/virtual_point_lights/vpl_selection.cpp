@@ -37,6 +37,7 @@ std::shared_ptr<Object> make_cut(const Properties& p, Kind kind) {
 std::shared_ptr<Object> make_drawn(const Properties& p, Kind kind) {
     SelectionSettings s = common(p, kind);
     s.samples = std::uint32_t(p.get_int_in("samples", s.samples, 1, 1 << 20));
+    s.learning = p.get_bool("learning", true);
     return std::make_shared<Selection>(s);
 }
 
@@ -53,6 +54,7 @@ std::shared_ptr<Object> make_resampling(const Properties& p, Kind kind) {
                             : by == "groups"     ? Proposal::groups
                             : by == "light_tree" ? Proposal::light_tree
                                                  : Proposal::cut;
+    s.learning = p.get_bool("learning", true);
     const std::string reuse = p.get_choice("reuse", "none", {"none", "unbiased", "biased"});
     s.resampling.reuse = reuse == "unbiased" ? SpatialReuse::unbiased
                          : reuse == "biased" ? SpatialReuse::biased
@@ -92,8 +94,11 @@ const std::vector<Parameter> cut_parameters{
      "points of a face that a light sees within such an angle share a shadow ray [rad]; 0: none do"},
     {"shared_angle_in_media", "float", "0", "the same of points in media"},
     most_megabytes};
+const Parameter learning{"learning", "boolean", "true",
+                         "groups of lights of which little arrived at tiles before are drawn less often: "
+                         "unbiased, within 16 x 16 pixels"};
 const std::vector<Parameter> drawn_parameters{
-    {"samples", "integer", "64", "lights drawn for each tile of 4 x 4 pixels"}, most_megabytes};
+    {"samples", "integer", "64", "lights drawn for each tile of 4 x 4 pixels"}, learning, most_megabytes};
 
 const std::vector<Parameter> resampling_parameters{
     {"candidates", "integer", "1024",
@@ -108,6 +113,7 @@ const std::vector<Parameter> resampling_parameters{
     {"reuse", "string", "none",
      "unbiased, biased: on surfaces what a pixel of the tile before has chosen and sees is a candidate, too; "
      "biased leaves out the weights that make up for what only one of them sees"},
+    learning,
     most_megabytes};
 const std::vector<Parameter> matrix_parameters{
     {"rows", "integer", "256",

@@ -17,6 +17,9 @@ struct ResamplingSettings {
     /// A table of the power of lights is needed.
     bool by_power() const { return proposal == Proposal::power || proposal == Proposal::groups; }
 
+    /// By the tree over all lights: candidates of all points of a pixel at once, which learn.
+    bool by_tree() const { return proposal == Proposal::cut || proposal == Proposal::light_tree; }
+
     std::uint32_t candidates = 1024;
     Proposal proposal = Proposal::groups;
     lights::SpatialReuse reuse = lights::SpatialReuse::none;
@@ -38,6 +41,7 @@ struct SelectionSettings {
     lights::MatrixSettings matrix;
     std::uint32_t shared_passes = 1;  ///< that have the same rows and clusters of a matrix
     std::uint32_t samples = 64;       ///< drawn for a tile of receivers; resampled for each
+    bool learning = true;             ///< drawn lights: shares by what tiles before found out
     ResamplingSettings resampling;
     std::size_t max_bytes = std::size_t(4) << 30;  ///< of the hierarchy while it is built
     core::SourceLocation where;
@@ -48,6 +52,8 @@ struct SelectionSettings {
     /// A sum of groups, which looks at what arrives; else lights are drawn without bias.
     bool cuts() const { return kind == Kind::lightcuts || kind == Kind::multidimensional; }
     bool resamples() const { return kind == Kind::resampling; }
+    /// A few lights for each tile, the same for all of its receivers.
+    bool draws() const { return kind == Kind::stochastic || kind == Kind::light_tree; }
     /// Candidates are drawn by power, from all or from groups; else by the tree.
     bool by_power() const { return resamples() && resampling.by_power(); }
     /// All points of a pixel are gathered at once.

@@ -61,13 +61,17 @@ int widest_gap(std::span<const int> sorted, const Value& value) {
     return best;
 }
 
-ReceiverGroups::Group united(const ReceiverBounds& x, std::span<const int> members, float per_weight) {
+ReceiverGroups::Group united(std::span<const ReceiverBounds> points, std::span<const int> members,
+                             float per_weight) {
     ReceiverGroups::Group g{};
     bool alike = true;
-    const int one = members.front();
-    g.has_cosine = x.has_cosine[one], g.g_low = x.g_low[one], g.g_high = x.g_high[one];
+    const int one = members.front() % lanes;
+    const ReceiverBounds& first = points[std::size_t(members.front() / lanes)];
+    g.has_cosine = first.has_cosine[one], g.g_low = first.g_low[one], g.g_high = first.g_high[one];
     g.cone = DirectionCone{{0, 0, 1}, -1.0f};
-    for (const int i : members) {
+    for (const int member : members) {
+        const ReceiverBounds& x = points[std::size_t(member / lanes)];
+        const int i = member % lanes;
         g.box.extend({x.lower_x[i], x.lower_y[i], x.lower_z[i]});
         g.box.extend({x.upper_x[i], x.upper_y[i], x.upper_z[i]});
         alike &= x.has_cosine[i] == g.has_cosine && (x.g_high[i] > 0.0f) == (g.g_high > 0.0f);
@@ -83,20 +87,24 @@ ReceiverGroups::Group united(const ReceiverBounds& x, std::span<const int> membe
 
 }  // namespace
 
-ReceiverGroups::ReceiverGroups(const ReceiverBounds& x, const LightTree& lights) {
-    if (lights.empty() || !x.any_active) return;
+ReceiverGroups::ReceiverGroups(const ReceiverBounds& receivers, const LightTree& lights)
+    : ReceiverGroups(std::span(&receivers, 1), lights) {}
+
+ReceiverGroups::ReceiverGroups(std::span<const ReceiverBounds> points, const LightTree& lights) {
+    if (lights.empty()) return;
     const Vec3 diagonal = 255.0f * lights.root().step;
     const float length = glm::length(diagonal), per_length = length > 0.0f ? 10.0f / length : 0.0f;
-    std::array<int, lanes> order{};
-    std::array<Feature, lanes> all;
-    int active = 0;
-    float weight = 0.0f;
-    for (int i = 0; i < lanes; ++i) {
-        if (x.max_vpl_depth[i] == 0) continue;
-        all[std::size_t(i)] = feature_of(x, i, per_length);
-        order[std::size_t(active++)] = i, weight += x.weight(i);
-    }
-    std::array<Lanes, most> parts{measured(order, all, 0, active)};
+    std::vector<int> order;
+    std::vector<Feature> all(points.size() * std::size_t(lanes));
+    for (std::size_t p = 0; p < points.size(); ++p)
+        for (int i = 0; i < lanes; ++i) {
+            if (points[p].max_vpl_depth[i] == 0) continue;
+            const int member = int(p) * lanes + i;
+            all[std::size_t(member)] = feature_of(points[p], i, per_length);
+            order.push_back(member), weight_ += points[p].weight(i);
+        }
+    if (order.empty()) return;
+    std::array<Lanes, most> parts{measured(order, all, 0, int(order.size()))};
     for (count_ = 1; count_ < most; ++count_) {
         Lanes& widest = *std::max_element(parts.begin(), parts.begin() + count_,
                                           [](const Lanes& a, const Lanes& b) { return a.extent < b.extent; });
@@ -111,8 +119,8 @@ ReceiverGroups::ReceiverGroups(const ReceiverBounds& x, const LightTree& lights)
     for (int k = 0; k < count_; ++k) {
         const Lanes& p = parts[std::size_t(k)];
         groups_[std::size_t(k)] =
-            united(x, std::span(order).subspan(std::size_t(p.first), std::size_t(p.count)),
-                   weight > 0.0f ? 1.0f / weight : 0.0f);
+            united(points, std::span(order).subspan(std::size_t(p.first), std::size_t(p.count)),
+                   weight_ > 0.0f ? 1.0f / weight_ : 0.0f);
     }
 }
 

@@ -28,13 +28,18 @@ class ReceiverGroups {
 
     /// The tree's root tells what is far.
     ReceiverGroups(const ReceiverBounds& receivers, const LightTree& lights);
+    /// Of several points of each lane.
+    ReceiverGroups(std::span<const ReceiverBounds> points, const LightTree& lights);
 
     bool empty() const { return count_ == 0; }
+    /// Of all receivers, in all.
+    float weight() const { return weight_; }
     std::span<const Group> all() const { return std::span(groups_).first(std::size_t(count_)); }
 
   private:
     std::array<Group, most> groups_;
     int count_ = 0;
+    float weight_ = 0.0f;
 };
 
 /// By part: about the light that all receivers get from it, over the energy of the group of the parts: 0 only

@@ -5,16 +5,30 @@ namespace mote::lights {
 using namespace core;
 
 /// Targets of all pairs of a candidate and a point where any lane receives light.
-void Resampling::look(const GatherContext& context, std::span<const WeightedVpl> candidates) {
+void Resampling::look(const GatherContext& context, std::span<const WeightedVpl> candidates,
+                      std::span<const float> seen) {
     pairs_.clear(), weights_.clear(), shares_of_pairs_.clear();
-    for (const WeightedVpl& light : candidates) {
-        context.cancelled.check();
+    found_.assign(candidates.size(), {});
+    for (std::size_t c = 0; c < candidates.size(); ++c) {
+        if (c % 16 == 0) context.cancelled.check();
+        const WeightedVpl& light = candidates[c];
+        const Medium* medium = nullptr;
+        float there = 0.0f;
         for (std::size_t p = 0; p < targets_.size(); ++p) {
+            const ResamplingTarget& target = targets_[p];
+            if (const Medium* own = target.medium(); own && own != medium)
+                medium = own, there = target.extinction_at(vpls_.lights[light.index].position);
             Weights& weights = weights_.emplace_back();
-            if (targets_[p].of_light(light, context.scratch, weights))
-                pairs_.push_back({std::uint32_t(light.index), std::uint32_t(p), light.weight});
-            else
+            if (!target.of_light(light, there, context.scratch, weights)) {
                 weights_.pop_back();
+                continue;
+            }
+            pairs_.push_back({std::uint32_t(light.index), std::uint32_t(p), std::uint32_t(c), light.weight});
+            float sum = 0.0f;
+            for (const float w : weights) sum += w;
+            found_[c].light += double(sum);
+            if (!seen.empty())
+                for (float& w : weights) w *= seen[c];
         }
     }
     counters_.candidates += candidates.size() * targets_.size();
@@ -42,7 +56,7 @@ void Resampling::add_reused() {
     std::size_t most = 0;
     for (const auto& samples : before_.samples) most = std::max(most, samples.size());
     for (std::size_t k = 0; k < most; ++k) {
-        pairs_.push_back({std::uint32_t(k), 0, 0.0f});
+        pairs_.push_back({std::uint32_t(k), 0, 0, 0.0f});
         Weights &weights = weights_.emplace_back(), &shares = shares_of_pairs_.emplace_back();
         weights = shares = {};
         for (std::size_t i = 0; i < std::size_t(width); ++i) {
@@ -65,7 +79,7 @@ void Resampling::fill(std::size_t round, ShadowPacket& packet, Samples& samples)
         if (!s.active) continue;
         const ChosenCandidate& chosen = choice_.chosen[i][round];
         const Pair& pair = pairs_[chosen.candidate];
-        s.own = pair.weight > 0.0f, s.point = pair.point;
+        s.own = pair.weight > 0.0f, s.point = pair.point, s.candidate = pair.candidate;
         s.share = reusing_ ? shares_of_pairs_[chosen.candidate][i] : 1.0f;
         s.index = s.own ? pair.light : before_.samples[i][pair.light].light;
         const float worth = s.own ? pair.weight : before_.samples[i][pair.light].weight;
@@ -74,7 +88,7 @@ void Resampling::fill(std::size_t round, ShadowPacket& packet, Samples& samples)
                    (double(worth) * double(s.share) / double(weights_[chosen.candidate][i]));
         const ResamplingTarget& target = targets_[pair.point];
         const ResamplingTarget::Connection c = target.of_lane(int(i), s.index);
-        s.light = c.light, s.target = c.value * target.scale(int(i));
+        s.light = c.light, s.target = c.value * target.scale(int(i)), s.value = c.value;
         s.active = c.value > 0.0f;
         if (!s.active) continue;
         packet.origin_x[i] = c.origin.x, packet.origin_y[i] = c.origin.y, packet.origin_z[i] = c.origin.z;
@@ -127,7 +141,7 @@ TileLight Resampling::connect(const GatherContext& context, std::span<KeptReceiv
     std::size_t rounds = 0;
     for (const auto& chosen : choice_.chosen) rounds = std::max(rounds, chosen.size());
     const bool attenuates = context.scene.attenuates();
-    std::array<Vec3d, width> sum{};
+    sums_.assign(points.size(), {});
     for (std::size_t first = 0; first < rounds; first += GatherScratch::batch) {
         context.cancelled.check();
         const std::size_t count = std::min(GatherScratch::batch, rounds - first);
@@ -138,27 +152,40 @@ TileLight Resampling::connect(const GatherContext& context, std::span<KeptReceiv
         for (std::size_t r = 0; r < count; ++r)
             for (int i = 0; i < width; ++i) {
                 Sample& s = batch_[r][std::size_t(i)];
-                s.active = s.active && !packets[r].occluded(i);
+                if (!s.active) continue;
+                s.active = !packets[r].occluded(i);
                 if (s.active && attenuates)
                     s.light *= lane_transmittance(context, points[s.point]->tile, i, packets[r]);
+                const float passed = s.active ? luminance(s.light) / s.value : 0.0f;
+                if (s.own)
+                    found_[s.candidate].rays += 1.0f, found_[s.candidate].ray_squares += passed * passed;
             }
         if (reusing_ && shares_.reuse == SpatialReuse::unbiased) look_back(context, count);
         for (std::size_t r = 0; r < count; ++r)
             for (std::size_t i = 0; i < std::size_t(width); ++i)
-                if (const Sample& s = batch_[r][i]; s.active) sum[i] += s.weight * Vec3d(s.light);
+                if (const Sample& s = batch_[r][i]; s.active) sums_[s.point][i] += s.weight * Vec3d(s.light);
         if (shares_.reuse != SpatialReuse::none) remember(count);
     }
+    TileLight light{};
+    for (std::size_t p = 0; p < sums_.size(); ++p) {
+        const TileLight one = light_of(p);
+        for (std::size_t i = 0; i < light.size(); ++i) light[i] += one[i];
+    }
+    return light;
+}
+
+TileLight Resampling::light_of(std::size_t point) const {
     TileLight light;
-    for (std::size_t i = 0; i < light.size(); ++i) light[i] = Rgb(sum[i]);
+    for (std::size_t i = 0; i < light.size(); ++i) light[i] = Rgb(sums_[point][i]);
     return light;
 }
 
 TileLight Resampling::gather(const GatherContext& context, std::span<KeptReceivers* const> points,
-                             std::span<const WeightedVpl> candidates, Rng& rng) {
+                             std::span<const WeightedVpl> candidates, Rng& rng, std::span<const float> seen) {
     targets_.clear();
     for (const KeptReceivers* p : points)
         targets_.emplace_back(vpls_, p->tile, bound_, context.scene.attenuates(), false);
-    look(context, candidates);
+    look(context, candidates, seen);
     reusing_ = false;
     const TileLight light = connect(context, points, rng);
     for (auto& samples : kept_) samples.clear();
@@ -171,7 +198,7 @@ TileLight Resampling::gather_reusing(const GatherContext& context, KeptReceivers
     if (shares_.reuse == SpatialReuse::none) return gather(context, points, candidates, rng);
     targets_.clear();
     targets_.emplace_back(vpls_, tile.tile, bound_, context.scene.attenuates(), true);
-    look(context, candidates);
+    look(context, candidates, {});
     reusing_ = before_.any;
     if (reusing_) {
         before_.keep_alike(tile.tile);

@@ -33,9 +33,21 @@ class Resampling {
     Resampling(const VplSet& vpls, float bound, std::uint32_t samples, SpatialReuse reuse)
         : vpls_(vpls), bound_(bound), samples_(samples), shares_{reuse} {}
 
+    /// What was found out about a candidate: the sum of its targets, times its weight, over points and lanes,
+    /// and of rays to it the sum of the squares of what they let through, over what the target guessed.
+    struct Found {
+        double light = 0.0;
+        float rays = 0.0f, ray_squares = 0.0f;
+    };
     /// The light of all at the points, whose sum a lane is. `candidates` are right in the mean: 1 / (M p).
+    /// `seen`: factors of their targets, above 0; none: 1.
     TileLight gather(const GatherContext& context, std::span<KeptReceivers* const> points,
-                     std::span<const WeightedVpl> candidates, core::Rng& rng);
+                     std::span<const WeightedVpl> candidates, core::Rng& rng,
+                     std::span<const float> seen = {});
+    /// Of the last gather(), by candidate.
+    std::span<const Found> found() const { return found_; }
+    /// The share of a point in the last light.
+    TileLight light_of(std::size_t point) const;
     /// The same at one tile, with what the tile before has chosen; then this is the tile before.
     TileLight gather_reusing(const GatherContext& context, KeptReceivers& tile,
                              std::span<const WeightedVpl> candidates, core::Rng& rng);
@@ -44,21 +56,22 @@ class Resampling {
   private:
     using Weights = CandidateWeights<width>;
     struct Pair {
-        std::uint32_t light, point;
+        std::uint32_t light, point, candidate;
         float weight;  ///< of the candidate; 0: of the tile before, where it differs from lane to lane
     };
     /// What a lane has chosen, with its shadow ray in a packet.
     struct Sample {
-        core::Rgb light;  ///< what arrives if nothing is in the way
-        double weight;    ///< W
-        float share;      ///< m_own, as it was chosen
-        float target;     ///< scaled
-        std::uint32_t index, point;
+        core::Rgb light;      ///< what arrives if nothing is in the way
+        double weight;        ///< W
+        float share;          ///< m_own, as it was chosen
+        float target, value;  ///< scaled, and not
+        std::uint32_t index, point, candidate;
         bool active, own;
     };
     using Samples = std::array<Sample, width>;
 
-    void look(const GatherContext& context, std::span<const WeightedVpl> candidates);
+    void look(const GatherContext& context, std::span<const WeightedVpl> candidates,
+              std::span<const float> seen);
     void share_with_neighbours(const GatherContext& context);
     void add_reused();
     TileLight connect(const GatherContext& context, std::span<KeptReceivers* const> points, core::Rng& rng);
@@ -74,7 +87,9 @@ class Resampling {
 
     std::vector<ResamplingTarget> targets_;  ///< of the points
     std::vector<Pair> pairs_;
-    std::vector<Weights> weights_, shares_of_pairs_;  ///< by pair; the second only where tiles are reused
+    std::vector<Found> found_;
+    std::vector<std::array<core::Vec3d, width>> sums_;  ///< by point
+    std::vector<Weights> weights_, shares_of_pairs_;    ///< by pair; the second only where tiles are reused
     SystematicChoice<width> choice_;
     std::array<Samples, GatherScratch::batch> batch_;
     bool reusing_ = false;

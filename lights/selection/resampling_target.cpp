@@ -1,8 +1,5 @@
 #include "lights/selection/resampling_target.h"
 
-#include "lights/selection/cluster_bounds.h"
-#include "lights/selection/vertex_bounds.h"
-
 namespace mote::lights {
 
 using namespace core;
@@ -23,7 +20,6 @@ ResamplingTarget::ResamplingTarget(const VplSet& vpls, const ReceiverTile& tile,
                                    bool exact)
     : vpls_(&vpls), tile_(&tile), bound_{bound} {
     if (!exact) lobes_.emplace(tile);
-    if (lobes_ && lobes_->any_glossy) lobes_.reset();
     for (std::size_t i = 0; i < std::size_t(width); ++i) {
         const float weight = luminance(Rgb(tile.weight_r[i], tile.weight_g[i], tile.weight_b[i]));
         scale_[i] = tile.max_vpl_depth[i] != 0 && weight > 0.0f ? 1.0f / weight : 0.0f;
@@ -40,40 +36,21 @@ float ResamplingTarget::extinction_at(const Vec3& light) const {
     return medium_ ? average(medium_->coefficients(light).sigma_t) : 0.0f;
 }
 
-/// Is this light, or any receiver, a lobe in a medium, and none of them a glossy surface?
-bool ResamplingTarget::lobes_at_once(const VirtualPointLight& light) const {
-    const bool detailed = light.detail != VirtualPointLight::no_detail;
-    return lobes_ && (detailed || tile_->any_directional) && !(detailed && light.on_surface());
-}
-
-bool ResamplingTarget::expected(const WeightedVpl& light, Lanes& out) const {
-    const Vec3 position = vpls_->lights[light.index].position;
-    const LaneValues sent =
-        expected_light(VplLeaves(*vpls_).leaf(std::uint32_t(light.index)), *lobes_, bound_.bound);
-    const float there = extinction_at(position);
-    float brightest = 0.0f;
-    for (std::size_t i = 0; i < std::size_t(width); ++i) {
-        const float dx = position.x - tile_->x[i], dy = position.y - tile_->y[i],
-                    dz = position.z - tile_->z[i];
-        const float t = std::sqrt(dx * dx + dy * dy + dz * dz) * (own_half_[i] + other_half_[i] * there);
-        const float value = sent.value[i] * light.weight * guessed_transmittance(t, fast_);
-        out[i] = value > 0.0f ? min_of(value, largest) : 0.0f;
-        brightest = max_of(brightest, out[i]);
-    }
-    return brightest > 0.0f;
-}
-
-bool ResamplingTarget::of_light(const WeightedVpl& light, GatherScratch& scratch, Lanes& out) const {
-    if (lobes_at_once(vpls_->lights[light.index])) return expected(light, out);
+bool ResamplingTarget::of_light(const WeightedVpl& light, float there, GatherScratch& scratch,
+                                Lanes& out) const {
     ShadowPacket& ray = scratch.packets[0];
     LaneLight& sent = scratch.light[0];
-    if (!contributions_of(*vpls_, light, *tile_, bound_, ray, sent)) return false;
-    const float there = extinction_at(vpls_->lights[light.index].position);
-    for (std::size_t i = 0; i < std::size_t(width); ++i) {
+    const bool any = lobes_ ? cut_contributions(*vpls_, light, *tile_, *lobes_, bound_, ray, sent)
+                            : contributions_of(*vpls_, light, *tile_, bound_, ray, sent);
+    if (!any) return false;
+    const float fast = fast_;
+    MOTE_INDEPENDENT_LANES
+    for (int i = 0; i < width; ++i) {
         const float dx = ray.direction_x[i], dy = ray.direction_y[i], dz = ray.direction_z[i];
-        const float t = std::sqrt(dx * dx + dy * dy + dz * dz) * (own_half_[i] + other_half_[i] * there);
-        const float value = luminance(Rgb(sent.r[i], sent.g[i], sent.b[i])) * guessed_transmittance(t, fast_);
-        out[i] = ray.t_max[i] > 0.0f ? min_of(value, largest) : 0.0f;
+        const auto k = std::size_t(i);
+        const float t = std::sqrt(dx * dx + dy * dy + dz * dz) * (own_half_[k] + other_half_[k] * there);
+        const float value = luminance(Rgb(sent.r[i], sent.g[i], sent.b[i])) * guessed_transmittance(t, fast);
+        out[k] = ray.t_max[i] > 0.0f ? min_of(value, largest) : 0.0f;
     }
     return true;
 }

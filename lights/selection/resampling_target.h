@@ -6,12 +6,12 @@
 // others. It falls slowly since t may be wrong: what it takes for dark is chosen less often, and counts the
 // more when it is. The function is 0 only where no light arrives.
 //
-// Lobes in media are looked at by expected_light(), for sixteen lanes at once, where nobody has to know the
+// Lobes in media are looked at for sixteen lanes at once (lobe_contributions.h) where nobody has to know the
 // target again: it is the same but for rounding. Where tiles are reused it has to be the same whenever it is
 // asked (`exact`), and glossy surfaces always ask their BSDF, lane by lane.
 #pragma once
 
-#include "lights/selection/receiver_bounds.h"
+#include "lights/selection/lobe_contributions.h"
 #include "lights/virtual_lights/vpl_gather.h"
 
 namespace mote::lights {
@@ -26,7 +26,13 @@ class ResamplingTarget {
     ResamplingTarget(const VplSet& vpls, const ReceiverTile& tile, float bound, bool attenuates, bool exact);
 
     /// The target times the weight of the light. Returns false, and nothing counts, where it is 0 everywhere.
-    bool of_light(const WeightedVpl& light, GatherScratch& scratch, Lanes& out) const;
+    bool of_light(const WeightedVpl& light, GatherScratch& scratch, Lanes& out) const {
+        return of_light(light, extinction_at(vpls_->lights[light.index].position), scratch, out);
+    }
+    /// The same where the extinction at the light is known (0 if medium() is null).
+    bool of_light(const WeightedVpl& light, float extinction, GatherScratch& scratch, Lanes& out) const;
+    const core::Medium* medium() const { return medium_; }  ///< whose extinction at lights counts
+    float extinction_at(const core::Vec3& light) const;
     /// The same of one lane, with the light that arrives and its shadow ray.
     struct Connection {
         core::Rgb light{0.0f};
@@ -40,15 +46,11 @@ class ResamplingTarget {
     const ReceiverTile& tile() const { return *tile_; }
 
   private:
-    float extinction_at(const core::Vec3& light) const;
-    bool lobes_at_once(const VirtualPointLight& light) const;
-    bool expected(const WeightedVpl& light, Lanes& out) const;
-
     const VplSet* vpls_;
     const ReceiverTile* tile_;
     BoundedGeometry bound_;
     const core::Medium* medium_ = nullptr;  ///< of the first lane in one; null: of none
-    std::optional<ReceiverBounds> lobes_;   ///< of the tile, where it has no glossy surfaces
+    std::optional<ReceiverLobes> lobes_;    ///< of the tile; nothing: every pair asks for itself
     float fast_ = 0.0f;                     ///< how the guess of the transmittance falls
     Lanes own_half_{},
         scale_{};         ///< half of the extinction at a receiver; where `medium_` is not its medium, all

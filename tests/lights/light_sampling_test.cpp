@@ -160,6 +160,62 @@ TEST_CASE("Lights drawn by the tree and by a cut have the mean of all",
     }
 }
 
+TEST_CASE("Learned shares have the mean of all, whatever was learned",
+          "[light_selection][sampling][statistics]") {
+    constexpr double critical = 3.5;  // two-sided, 0.05 %
+    const Materials& materials = all_materials();
+    Rng rng(14), draws(15);
+    const auto set = random_lights(rng, materials, Lights::plain, 800, 1.0f, 0.5f);
+    const VplLeaves leaves(set);
+    const LightTree tree(leaves);
+    const Floor floor(Vec3(0.5f, -1.0f, -1.5f), 0.1f);
+    const ReceiverGroups receivers(ReceiverBounds(floor.tile), tree);
+    // Half of the lights are hidden: what arrives, and what these would send.
+    std::vector<double> light(set.lights.size(), 0.0), other(set.lights.size(), 0.0);
+    double all = 0.0;
+    for (std::size_t j = 0; j < set.lights.size(); ++j) {
+        double sum = 0.0;
+        for (const double v : sent(set, j, floor.tile, infinity)) sum += v;
+        if (set.lights[j].position.x < 0.0f)
+            other[j] = sum;
+        else
+            light[j] = sum, all += sum;
+    }
+    for (const bool cut : {false, true}) {
+        std::array<double, 3> errors{};
+        for (const int taught : {0, 1, 2}) {  // nothing, what is so, that all others are hidden
+            lights::LightSampler sampler;
+            lights::LearnedShares learned;
+            sampler.use(&learned);
+            const auto drawn = [&] {
+                return cut ? sampler.by_cut(tree, receivers, infinity, 32, draws)
+                           : sampler.by_tree(tree, receivers, infinity, 32, draws);
+            };
+            for (int k = 0; taught > 0 && k < 30; ++k) {
+                const auto lights = drawn();
+                for (std::size_t i = 0; i < lights.size(); ++i)
+                    sampler.learn(i,
+                                  double(lights[i].weight) * (taught == 1 ? light : other)[lights[i].index]);
+            }
+            const auto draw = [&] {
+                double sum = 0.0;
+                for (const WeightedVpl& l : drawn()) sum += double(l.weight) * light[l.index];
+                return sum;
+            };
+            const Mean found = mean_of(6000, draw);
+            INFO("cut " << cut << ", taught " << taught << ": " << found.mean << " +- " << found.error
+                        << " of " << all);
+            errors[std::size_t(taught)] = found.error;
+            CHECK(std::fabs(found.mean - all) < critical * found.error);
+            CHECK(found.error < 0.02 * all);
+            for (const double wrong : {0.85, 1.15})
+                CHECK(std::fabs(wrong * found.mean - all) > critical * found.error);
+        }
+        CHECK(errors[1] < 0.85 * errors[0]);
+        CHECK(errors[2] > errors[0]);
+    }
+}
+
 TEST_CASE("More lights, less noise", "[light_selection][sampling][statistics]") {
     const Materials& materials = all_materials();
     Rng rng(6);

@@ -49,6 +49,7 @@ SelectionSettings settings_of(const std::string& text) {
     std::vector<std::string> words;
     std::istringstream stream(text);
     for (std::string word; std::getline(stream, word, ':');) words.push_back(word);
+    const bool plain = text.ends_with(":plain");
     words.resize(6);
     SelectionSettings s;
     s.kind = words[0] == "all"                ? Kind::all
@@ -69,6 +70,7 @@ SelectionSettings settings_of(const std::string& text) {
         s.resampling = resampling_of(words), s.samples = std::uint32_t(std::stoul(words[2]));
     else if (s.by_hierarchy())
         s.samples = std::uint32_t(std::stoul(words[1]));
+    s.learning = !plain;
     return s;
 }
 
@@ -138,7 +140,10 @@ Pixels Study::render(std::size_t index, const SelectionSettings& selection, Tile
     const auto scratch = std::make_unique<lights::GatherScratch>();
     EyeTile<true> eye(*scene_, settings, arguments_.bound, vpls_, nullptr, *scratch, walk, {}, {},
                       SelectedBy{&*hierarchy_, &*tree_, &*power_, matrix ? &matrix->selection() : nullptr});
-    const bool learns = selection.cuts() || selection.resampling.reuse != lights::SpatialReuse::none;
+    const bool learns = selection.cuts() ||
+                        ((selection.draws() || (selection.resamples() && selection.resampling.by_tree())) &&
+                         selection.learning) ||
+                        selection.resampling.reuse != lights::SpatialReuse::none;
     const std::atomic<bool> cancelled = false;
     const core::PassContext pass{0, *filter_, cancelled};
     const glm::ivec2 wanted = tiles_[index], task = wanted / 16 * 16;
