@@ -70,8 +70,8 @@ void register_heterogeneous_medium(core::Registry& registry) {
           {"temperature_offset", "float", "0", "See temperature_scale."},
           {"transmittance", "string", "automatic",
            "Estimator of shadow rays: ray_marching, delta_tracking, ratio_tracking, residual_ratio_tracking, "
-           "or the "
-           "better of the last two for the grid."},
+           "unbiased_ray_marching (little noise in smooth grids, docs/media.md), or the better of ratio and "
+           "residual tracking for the grid."},
           {"majorants", "string", "local", "Bounds that tracking runs against: local (by cells) or global."},
           {"marching_tolerance", "float", "0.001",
            "Relative error of the optical depth that ray_marching aims at."}},

@@ -22,6 +22,7 @@
 #include "media/majorant_grid.h"
 #include "media/regular_tracking.h"
 #include "media/tracking_random.h"
+#include "media/voxel_copy.h"
 
 namespace mote::media {
 
@@ -90,6 +91,12 @@ class TrackedMedium final : public HeterogeneousMedium {
         majorant_ = float(detail::largest(grid_.majorants.total().upper) * double(parts_.scale));
         if (majorant_ == 0.0f) return;
         voxel_size_ = find_voxel_size();
+        if constexpr (!chromatic)
+            if (estimator_ == TransmittanceEstimator::unbiased_ray_marching && ends_with_cells()) {
+                auto cursor = grid_.cursor();
+                copy_ = VoxelCopy(grid_.majorants.lower(), grid_.majorants.upper(),
+                                  [&](const Voxel& v) { return cursor.lookup(core::Vec3d(v)); });
+            }
         if (parts_.tracking.majorants == Majorants::local)
             regular_from_ = detail::regular_depth_per_voxel / (double(voxel_size_) * double(parts_.scale));
     }
@@ -156,12 +163,18 @@ class TrackedMedium final : public HeterogeneousMedium {
     core::Rgb by_ratio_tracking(const core::Ray& ray, core::Rng& rng, core::TrackingCounters& counters) const;
     core::Rgb by_residual_tracking(const core::Ray& ray, core::Rng& rng,
                                    core::TrackingCounters& counters) const;
+    core::Rgb by_unbiased_marching(const core::Ray& ray, core::Rng& rng,
+                                   core::TrackingCounters& counters) const;
 
     /// The part of the segment that can hold the medium; false when there is none.
     bool clip(const core::Ray& ray, double& t0, double& t1) const {
         t0 = ray.t_min, t1 = ray.t_max;
         if constexpr (boxed) return grid_.box.clip(ray, t0, t1);
         return true;
+    }
+    /// Nothing is outside of the majorants' cells.
+    bool ends_with_cells() const {
+        return grid_.majorants.has_cells() && detail::largest(grid_.majorants.outside().upper) == 0.0;
     }
     core::Vec3d index_origin(const core::Ray& ray) const {
         return grid_.world_to_index.point(core::Vec3d(ray.origin));
@@ -173,6 +186,7 @@ class TrackedMedium final : public HeterogeneousMedium {
     float find_voxel_size() const;
 
     Grid grid_;
+    VoxelCopy copy_;  ///< for unbiased ray marching through one channel, where it is not too large
     float majorant_ = 0.0f;
     /// From this rate on a cell may be tracked regularly. The same wherever a ray ends, so that two
     /// techniques agree.
@@ -184,3 +198,4 @@ class TrackedMedium final : public HeterogeneousMedium {
 
 #include "media/tracked_medium_impl.h"
 #include "media/tracked_scattering_impl.h"
+#include "media/unbiased_marching_impl.h"

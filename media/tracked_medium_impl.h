@@ -273,6 +273,8 @@ core::Rgb TrackedMedium<Grid>::transmittance_by(TransmittanceEstimator estimator
             return by_ratio_tracking(ray, rng, counters);
         case TransmittanceEstimator::residual_ratio_tracking:
             return by_residual_tracking(ray, rng, counters);
+        case TransmittanceEstimator::unbiased_ray_marching:
+            return by_unbiased_marching(ray, rng, counters);
         case TransmittanceEstimator::automatic:
             break;
     }

@@ -10,8 +10,12 @@ namespace mote::media {
 
 namespace {
 
-const std::vector<std::string> estimator_names = {"automatic", "ray_marching", "delta_tracking",
-                                                  "ratio_tracking", "residual_ratio_tracking"};
+const std::vector<std::string> estimator_names = {"automatic",
+                                                  "ray_marching",
+                                                  "delta_tracking",
+                                                  "ratio_tracking",
+                                                  "residual_ratio_tracking",
+                                                  "unbiased_ray_marching"};
 const std::vector<std::string> majorant_names = {"local", "global"};
 
 /// Place of the parameter's word in `known`; the first where it is not given.

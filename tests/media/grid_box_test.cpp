@@ -98,7 +98,8 @@ TEST_CASE("a grid's medium ends at its box, in every wrap mode and however it is
                     for (const auto estimator :
                          {TransmittanceEstimator::ray_marching, TransmittanceEstimator::delta_tracking,
                           TransmittanceEstimator::ratio_tracking,
-                          TransmittanceEstimator::residual_ratio_tracking}) {
+                          TransmittanceEstimator::residual_ratio_tracking,
+                          TransmittanceEstimator::unbiased_ray_marching}) {
                         tests::Mean mean;
                         for (int n = 0; n < 3000; ++n)
                             mean.add(m->transmittance_by(estimator, ray, rng, counters).x);
