@@ -32,6 +32,21 @@ WalkEvent reflected_at(const SurfaceHit& pane, float stop_chance, float surface_
     return event;
 }
 
+/// As far along the ray as rounding can put a point onto the other side of what is hit there [m].
+float margin_at(const SurfaceHit& hit, const Ray& ray) {
+    const float cosine = std::fabs(glm::dot(hit.geometric_normal, ray.direction));
+    return 4e-7f * (hit.t + max_component(glm::abs(hit.position))) / std::max(cosine, 1e-3f);
+}
+
+/// A collision so near to what lies before or behind it (or null) that its position, once rounded, could be
+/// on the other side is moved off it: the path would go on in a medium that it is not in, and never leave it.
+float kept_between(const SurfaceHit* before, float t, const SurfaceHit* behind, const Ray& ray) {
+    const float near = before ? before->t + margin_at(*before, ray) : ray.t_min;
+    const float far = behind ? behind->t - margin_at(*behind, ray) : infinity;
+    if (near <= far) return std::clamp(t, near, far);
+    return 0.5f * ((before ? before->t : ray.t_min) + behind->t);
+}
+
 WalkEvent collision_at(float t, const Medium* medium, float surface_distance) {
     WalkEvent event;
     event.kind = WalkEvent::Kind::collision, event.distance = t, event.medium = medium;
@@ -48,6 +63,7 @@ WalkEvent follow(const RayQueries& scene, const Ray& ray, MediumState& state, Pa
     const auto hit = scene.first_hit(ray);
     const float t_end = hit ? hit->t : ray.t_max;
     float t = ray.t_min;
+    [[maybe_unused]] const SurfaceHit* before = nullptr;  // the boundary at t
     if constexpr (Media) context.boundary_hits.clear();
     if (Media ? scene.has_boundaries() : scene.has_panes()) {
         Ray boundary_ray = ray;
@@ -56,17 +72,19 @@ WalkEvent follow(const RayQueries& scene, const Ray& ray, MediumState& state, Pa
         scene.boundaries_along(boundary_ray, context.boundary_hits);
         for (const SurfaceHit& boundary : context.boundary_hits) {
             if constexpr (Media)
-                if (const auto c = cross(t, boundary.t)) return collision_at(*c, state.current(), t_end);
+                if (const auto c = cross(t, boundary.t))
+                    return collision_at(kept_between(before, *c, &boundary, ray), state.current(), t_end);
             if (is_pane(boundary))
                 if (const StraightPassage pane = passage_through(boundary, ray.direction);
                     !passes(pane, weights, context.rng))
                     return reflected_at(boundary, pane.stops, t_end);
             if constexpr (Media) state.cross(*boundary.shape, boundary.geometric_normal, ray.direction);
-            t = boundary.t;
+            t = boundary.t, before = &boundary;
         }
     }
     if constexpr (Media)
-        if (const auto c = cross(t, t_end)) return collision_at(*c, state.current(), t_end);
+        if (const auto c = cross(t, t_end))
+            return collision_at(kept_between(before, *c, hit ? &*hit : nullptr, ray), state.current(), t_end);
     WalkEvent event;
     event.surface_distance = ray.t_max;
     if (hit) {

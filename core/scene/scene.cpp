@@ -85,13 +85,6 @@ bool Scene::has_coloured_panes() const {
     return std::any_of(parts_.shapes.begin(), parts_.shapes.end(),
                        [](const auto& shape) { return shape->bsdf->traits().tints; });
 }
-void Scene::visit_boundaries(const Ray& ray, BoundaryVisitor visitor, const void* visit) const {
-    rays_->for_each_hit(ray, RayTracer::Group::boundaries,
-                        [&](const SurfaceHit& hit) { return visitor(visit, hit); });
-}
-void Scene::boundaries_along(const Ray& ray, std::vector<SurfaceHit>& hits) const {
-    rays_->all_hits(ray, RayTracer::Group::boundaries, hits);
-}
 
 Bounds3 Scene::medium_extent(const Medium& medium) const {
     Bounds3 box;

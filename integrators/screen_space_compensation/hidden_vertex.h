@@ -32,7 +32,7 @@ class PixelRay {
         walk_.rays.closest += std::uint64_t(layers_);
         if (!scene_.has_media()) return;
         state_ = scene_.eye_medium_state(ray_);
-        scene_.rays().all_hits(ray_, core::RayTracer::Group::boundaries, walk_.boundary_hits);
+        scene_.boundaries_along(ray_, walk_.boundary_hits);
         ++walk_.rays.boundary;
     }
     /// Side 2 k is behind layer k, and 2 k - 1 before it. Nothing where rounding lost it.
