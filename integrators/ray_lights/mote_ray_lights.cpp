@@ -111,7 +111,8 @@ class MoteRayLights final : public Integrator {
     explicit MoteRayLights(const Properties& p) {
         settings_.eye = read_eye_path_limits(p);
         settings_.paths = std::uint32_t(p.get_int_in("paths", 256, 0, std::int64_t(1) << 26));
-        settings_.share = std::size_t(p.get_int_in("share", 8, 0, std::int64_t(1) << 26));
+        settings_.share = std::size_t(p.get_int_in("share", 12, 0, std::int64_t(1) << 26));
+        settings_.candidates = std::size_t(p.get_int_in("candidates", 128, 0, std::int64_t(1) << 26));
         settings_.width = float(p.get_float_in("width", 0.0, 0.0, 1e30));
         settings_.scattering_points = int(p.get_int_in("scattering_points", 4, 1, 64));
         if (p.has("bound")) settings_.bound = float(p.get_float_in("bound", 1.0, 0.0, 1e30));
@@ -137,8 +138,9 @@ void MoteRayLights::plan_lines(Plan& plan) const {
              fmt::format("segments of light paths in media, {} bytes each", sizeof(lights::RayLight)),
              "light scatters all along them; VPLs stand on surfaces alone");
     plan.run("eye rays",
-             settings_.share > 0 ? fmt::format("{} ray lights each, drawn by their power", settings_.share)
-                                 : "all ray lights each",
+             settings_.share > 0
+                 ? fmt::format("{} connections each, drawn by what lights would send", settings_.share)
+                 : "all ray lights and VPLs each",
              "a point on the ray light by the asinh of its distance, then one on the eye ray equi-angularly");
     plan.run("single scattering", fmt::format("{} scattering points a ray", settings_.scattering_points),
              "light of lights is not that of virtual ones");
@@ -175,9 +177,13 @@ Plan MoteRayLights::plan(const Scene& scene, const Requirements& r) const {
 void register_mote_ray_lights(Registry& registry) {
     auto parameters = eye_path_parameters();
     parameters.push_back({"paths", "integer", "256", "light paths traced in every pass"});
-    parameters.push_back(
-        {"share", "integer", "8",
-         "ray lights, and as many VPLs, that a receiver looks at, drawn by their power; 0: all of them"});
+    parameters.push_back({"share", "integer", "12",
+                          "connections of a leg of an eye path, to ray lights and VPLs, drawn by what they "
+                          "would send along it and to "
+                          "its surface; 0: to all of them"});
+    parameters.push_back({"candidates", "integer", "128",
+                          "ray lights, and as many VPLs, that these are drawn from, themselves drawn by "
+                          "power; 0: all of them"});
     parameters.push_back(
         {"width", "float", "0",
          "of beam lights [m]: light that scatters in media is blurred over a ball of this radius, "

@@ -39,11 +39,12 @@ class RayLightTile {
           pass_(pass),
           walk_(walk),
           context_{scene, scratch, walk.rays, walk.tracking, walk.cancelled},
-          gather_(context_, pass.set, settings.share, settings.width) {}
+          gather_(context_, pass.set, settings.looked_at(), settings.width) {}
 
     void start(int lane, const EyeRay& eye) {
         Lane& l = lanes_[std::size_t(lane)];
         l.sum = {}, l.alive = true, l.lines.clear();
+        l.extinction = l.step = 0.0f;
         walk_.rng = eye.rng;
         l.path.emplace(scene_, settings_.eye, eye, walk_);
         l.points.emplace(wants_points() ? settings_.scattering_points : 0);
@@ -67,8 +68,7 @@ class RayLightTile {
                 lane.rng = walk_.rng;
                 any |= lane.alive;
             }
-            gather_at_surfaces();
-            if constexpr (Media) gather_along_lines();
+            gather();
         }
     }
 
@@ -81,6 +81,8 @@ class RayLightTile {
         std::vector<lights::EyeLine> lines;  ///< of the last leg
         core::Vec3 normal{0.0f};             ///< shading normal of the last point that gathered
         bool on_surface = true;              ///< or was that in a medium?
+        float extinction = 0.0f;             ///< mean along the last leg in media [1/m]
+        float step = 0.0f;                   ///< light that a connection carries
         bool alive = false;
     };
 
@@ -131,13 +133,16 @@ class RayLightTile {
         if (!settings_.eye.wanted[Transport::multiple_scattering] || depth == 0) return;
         const core::Rgb throughput = lights::throughput_of<Media>(leg.before);
         core::Rng rng(walk_.rng.next_u32());
+        float depth_of_media = 0.0f;
         lights::for_each_medium_line(
             {leg.ray, leg.event.surface_distance, leg.start, walk_.boundary_hits}, pass_.media, rng,
             walk_.tracking,
             [&](const lights::MediumLine& line, const core::MediumState& state,
                 const core::Rgb& transmittance) {
                 lane.lines.push_back({line, throughput * transmittance, state, depth});
+                depth_of_media += core::average(line.sigma_t) * line.length;
             });
+        lane.extinction = depth_of_media / leg.event.surface_distance;
     }
 
     void add_single_scattering(Lane& lane) {
@@ -162,26 +167,75 @@ class RayLightTile {
         return true;
     }
 
-    void gather_at_surfaces() {
-        if (!receivers_.any_active) return;
-        add(gather_.vpls_to_points(receivers_, pass_.bound), Transport::indirect);
-        if constexpr (Media) add(gather_.rays_to_points(receivers_, pass_.bound), Transport::indirect);
-    }
-
-    /// The n-th lines of all lanes at once.
-    void gather_along_lines() {
+    /// Lights of points and of the n-th lines of all lanes at once.
+    void gather() {
+        eyes_.clear();
         for (std::size_t n = 0;; ++n) {
             lights::EyeLines eyes;
             bool any = false;
             for (std::size_t i = 0; i < lane_count; ++i)
-                if (Lane& lane = lanes_[i]; n < lane.lines.size()) {
-                    eyes.of[i] = &lane.lines[n], any = true;
-                    attenuation_.rng[i] = core::Rng(lane.rng.next_u32());
-                }
-            if (!any) return;
-            add(gather_.rays_to_eyes(eyes, attenuation_), Transport::multiple_scattering);
-            add(gather_.vpls_to_eyes(eyes, attenuation_), Transport::multiple_scattering);
+                if (n < lanes_[i].lines.size()) eyes.of[i] = &lanes_[i].lines[n], any = true;
+            if (!any) break;
+            eyes_.push_back(eyes);
         }
+        if (eyes_.empty() && !receivers_.any_active) return;
+        if (!draw_candidates()) return;
+        const lights::PointReceivers points(receivers_, around(), pass_.bound);
+        lights::LaneFloats expected = offer_all(points);
+        const lights::LaneFloats steps = steps_of(expected);
+        if (receivers_.any_active)
+            add(gather_.to_points(at_points_, steps, pass_.bound, receivers_), Transport::indirect);
+        for (std::size_t n = 0; n < eyes_.size(); ++n) {
+            for (std::size_t i = 0; i < lane_count; ++i)
+                if (eyes_[n].of[i]) attenuation_.rng[i] = core::Rng(lanes_[i].rng.next_u32());
+            add(gather_.to_eyes(eyes_[n], along_eyes_[n], steps, attenuation_),
+                Transport::multiple_scattering);
+        }
+    }
+
+    /// By the first lane that gathers. Returns whether any does.
+    bool draw_candidates() {
+        const auto gathers = [&](std::size_t i) {
+            return !lanes_[i].lines.empty() || receivers_.max_vpl_depth[i] != 0;
+        };
+        std::size_t first = lane_count;
+        int count = 0;
+        for (std::size_t i = lane_count; i-- > 0;)
+            if (gathers(i)) first = i, ++count;
+        if (count == 0) return false;
+        core::Rng rng(lanes_[first].rng.next_u32());
+        gather_.draw_candidates(rng, count);
+        return true;
+    }
+
+    lights::LaneFloats around() const {
+        lights::LaneFloats extinction;
+        for (std::size_t i = 0; i < lane_count; ++i) extinction.of[i] = lanes_[i].extinction;
+        return extinction;
+    }
+
+    /// What all candidates would send to points and lines: sums by lane.
+    lights::LaneFloats offer_all(const lights::PointReceivers& points) {
+        at_points_.clear();
+        if (receivers_.any_active) gather_.offer(points, at_points_);
+        lights::LaneFloats sum = at_points_.total();
+        while (along_eyes_.size() < eyes_.size()) along_eyes_.emplace_back();
+        for (std::size_t n = 0; n < eyes_.size(); ++n) {
+            along_eyes_[n].clear();
+            gather_.offer(eyes_[n], along_eyes_[n]);
+            for (std::size_t i = 0; i < lane_count; ++i) sum.of[i] += along_eyes_[n].total().of[i];
+        }
+        return sum;
+    }
+
+    /// How much light a connection carries: never less than on the legs before, so that what matters less has
+    /// fewer.
+    lights::LaneFloats steps_of(const lights::LaneFloats& expected) {
+        lights::LaneFloats steps;
+        if (settings_.share == 0) return steps;
+        for (std::size_t i = 0; i < lane_count; ++i)
+            steps.of[i] = lanes_[i].step = std::max(lanes_[i].step, expected.of[i] / float(settings_.share));
+        return steps;
     }
 
     void add(const lights::TileLight& light, Transport layer) {
@@ -199,6 +253,9 @@ class RayLightTile {
     lights::LineGather gather_;
     std::array<Lane, lane_count> lanes_;
     lights::ReceiverTile receivers_;
+    std::vector<lights::EyeLines> eyes_;  ///< of this step, with what is on offer to them
+    std::vector<lights::LineOffer> along_eyes_;
+    lights::LineOffer at_points_;
     lights::ReceiverTile attenuation_;  ///< what lines need of a tile: states and generators
 };
 

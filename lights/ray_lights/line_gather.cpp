@@ -28,29 +28,70 @@ void set_lane(ShadowPacket& packet, LaneLight& light, int i, const LineConnectio
     light.r[i] = weight * c.value.x, light.g[i] = weight * c.value.y, light.b[i] = weight * c.value.z;
 }
 
-/// So many VPLs are looked at for each that an eye ray connects to.
-constexpr std::size_t candidates = 6;
-
-/// What a VPL sends to an eye ray, about: intensity over distance, 0 only where all of the ray is below its
-/// horizon.
-float about(const EyeLine& eye, const VirtualPointLight& vpl) {
-    const MediumLine& line = eye.line;
-    const Vec3 to = vpl.position - line.origin, across = line.length * line.direction;
-    if (vpl.detail == VirtualPointLight::no_detail && glm::dot(vpl.normal, to) >= 0.0f &&
-        glm::dot(vpl.normal, to - across) >= 0.0f)
-        return 0.0f;
-    const float t = std::clamp(glm::dot(to, line.direction), 0.0f, line.length);
-    const Vec3 off = to - t * line.direction;
-    return average(vpl.intensity) / std::sqrt(glm::dot(off, off) + 1e-4f * sqr(line.length));
+/// One of a point, the lane of a tile, and a VPL.
+std::optional<LineConnection> connect_point(const ReceiverTile& tile, int lane, const VplSet& vpls,
+                                            const VirtualPointLight& vpl, float bound) {
+    if (std::int32_t(vpl.depth) > tile.max_vpl_depth[lane]) return std::nullopt;
+    const lights::LaneConnection c = lane_connection(tile, lane, vpls, vpl, 1.0f);
+    const Rgb value = c.value * std::fmin(c.cos_x * c.cos_y / c.distance_squared, bound);
+    if (!(max_component(value) > 0.0f)) return std::nullopt;
+    return LineConnection{value, c.origin, c.target};
 }
 
 }  // namespace
 
-/// connect_lane(lane, n, u) -> optional<pair<LineConnection, weight>> for the n-th light.
+void LineGather::draw_candidates(Rng& rng, int receivers) {
+    constexpr std::size_t least = 8;
+    const std::size_t count =
+        std::min(candidates_, std::max(least, candidates_ * std::size_t(receivers) / std::size_t(width)));
+    LightShare(set_.ray_power, count).choose_all(rng.next_float(), offered_rays_);
+    LightShare(set_.surface_power, count).choose_all(rng.next_float(), offered_surface_);
+}
+
+void LineGather::offer(const EyeLines& eyes, LineOffer& offer) const {
+    const EyeReceivers receivers(eyes);
+    LaneFloats expected;
+    for (const WeightedVpl& light : offered_rays_) {
+        expected_light(set_.rays[light.index], receivers, width_, expected);
+        offer.add(std::uint32_t(light.index), true, light.weight, expected);
+    }
+    for (const WeightedVpl& light : offered_surface_) {
+        expected_light(set_.surface.lights[light.index], receivers, expected);
+        offer.add(std::uint32_t(light.index), false, light.weight, expected);
+    }
+}
+
+void LineGather::offer(const PointReceivers& points, LineOffer& offer) const {
+    LaneFloats expected;
+    for (const WeightedVpl& light : offered_rays_) {
+        expected_light(set_.rays[light.index], points, width_, expected);
+        offer.add(std::uint32_t(light.index), true, light.weight, expected);
+    }
+    for (const WeightedVpl& light : offered_surface_) {
+        expected_light(set_.surface.lights[light.index], points, expected);
+        offer.add(std::uint32_t(light.index), false, light.weight, expected);
+    }
+}
+
+template <typename Active>
+void LineGather::pick(const LineOffer& offer, const LaneFloats& steps, ReceiverTile& tile,
+                      const Active& active) {
+    for (int i = 0; i < width; ++i)
+        if (active(i))
+            offer.pick(i, steps.of[i], tile.rng[i].next_float(), picks_[std::size_t(i)]);
+        else
+            picks_[std::size_t(i)].clear();
+}
+
+/// connect_lane(lane, pick, u) -> optional<LineConnection>.
 template <typename Connect>
-TileLight LineGather::gather(std::size_t count, ReceiverTile& tile, const Connect& connect_lane) {
+TileLight LineGather::gather(ReceiverTile& tile, const Connect& connect_lane) {
     std::array<Vec2, width> starts;
-    for (int i = 0; i < width; ++i) starts[std::size_t(i)] = tile.rng[i].next_vec2();
+    std::size_t most = 0;
+    for (std::size_t i = 0; i < picks_.size(); ++i) {
+        most = std::max(most, picks_[i].size());
+        if (!picks_[i].empty()) starts[i] = tile.rng[i].next_vec2();
+    }
     TracedVisibility visibility(context_, tile);
     TileSum sum;
     std::size_t batched = 0;
@@ -61,15 +102,18 @@ TileLight LineGather::gather(std::size_t count, ReceiverTile& tile, const Connec
         for (const LaneLight& l : light) sum.add(l);
         batched = 0;
     };
-    for (std::size_t n = 0; n < count; ++n) {
+    for (std::size_t n = 0; n < most; ++n) {
         ShadowPacket& packet = context_.scratch.packets[batched];
         LaneLight& light = context_.scratch.light[batched];
         bool any = false;
-        for (int i = 0; i < width; ++i) {
+        for (std::size_t i = 0; i < picks_.size(); ++i) {
             packet.t_max[i] = -1.0f;
             light.r[i] = light.g[i] = light.b[i] = 0.0f;
-            if (const auto found = connect_lane(i, n, spread(starts[std::size_t(i)], n))) {
-                set_lane(packet, light, i, found->first, found->second);
+            if (n >= picks_[i].size()) continue;
+            const LinePick& pick = picks_[i][n];
+            ++counters_.pairs;
+            if (const Found found = connect_lane(int(i), pick, spread(starts[i], n))) {
+                set_lane(packet, light, int(i), *found, pick.weight);
                 ++counters_.connected, any = true;
             }
         }
@@ -79,90 +123,28 @@ TileLight LineGather::gather(std::size_t count, ReceiverTile& tile, const Connec
     return sum.value();
 }
 
-void LineGather::begin_eyes(const EyeLines& eyes, ReceiverTile& tile) const {
+TileLight LineGather::to_eyes(const EyeLines& eyes, const LineOffer& offer, const LaneFloats& steps,
+                              ReceiverTile& tile) {
     for (int i = 0; i < width; ++i) {
         tile.directional[i] = nullptr;
         if (const EyeLine* eye = eyes.of[std::size_t(i)]) tile.state[i] = eye->state;
     }
-}
-
-TileLight LineGather::rays_to_eyes(const EyeLines& eyes, ReceiverTile& tile) {
-    begin_eyes(eyes, tile);
-    std::array<float, width> starts;
-    for (int i = 0; i < width; ++i) starts[std::size_t(i)] = tile.rng[i].next_float();
-    using Found = std::optional<std::pair<LineConnection, float>>;
-    return gather(rays_.count(), tile, [&](int i, std::size_t n, const Vec2& u) -> Found {
-        const EyeLine* eye = eyes.of[std::size_t(i)];
-        if (!eye) return std::nullopt;
-        ++counters_.pairs;
-        const WeightedVpl choice = rays_.choose(n, starts[std::size_t(i)]);
-        const auto c = connect(*eye, set_.rays[choice.index], u, {tile.rng[i], context_.tracking, width_});
-        return c ? Found({*c, choice.weight}) : std::nullopt;
+    pick(offer, steps, tile, [&](int i) { return eyes.of[std::size_t(i)] != nullptr; });
+    return gather(tile, [&](int i, const LinePick& pick, const Vec2& u) -> Found {
+        const EyeLine& eye = *eyes.of[std::size_t(i)];
+        const LineContext context{tile.rng[i], context_.tracking, pick.ray ? width_ : 0.0f};
+        if (pick.ray) return connect(eye, set_.rays[pick.light], u, context);
+        return connect(eye, set_.surface, set_.surface.lights[pick.light], u.x, context);
     });
 }
 
-TileLight LineGather::vpls_to_eyes(const EyeLines& eyes, ReceiverTile& tile) {
-    begin_eyes(eyes, tile);
-    std::array<float, width> starts;
-    for (int i = 0; i < width; ++i) starts[std::size_t(i)] = tile.rng[i].next_float();
-    using Found = std::optional<std::pair<LineConnection, float>>;
-    const std::size_t count = surface_.count();
-    if (count == 0) return {};
-    // As many candidates for each: where there are few lights, and where all are looked at, one.
-    const std::size_t each = std::clamp(set_.surface.lights.size() / count, std::size_t(1), candidates);
-    const LightShare offered(set_.surface_power, count * each);
-    return gather(count, tile, [&](int i, std::size_t n, const Vec2& u) -> Found {
-        const EyeLine* eye = eyes.of[std::size_t(i)];
-        if (!eye) return std::nullopt;
-        ++counters_.pairs;
-        const auto choice = resample(*eye, offered, n * each, each, starts[std::size_t(i)], u.y);
-        if (!(choice.weight > 0.0f)) return std::nullopt;
-        const auto c = connect(*eye, set_.surface, set_.surface.lights[choice.index], u.x,
-                               {tile.rng[i], context_.tracking});
-        return c ? Found({*c, choice.weight}) : std::nullopt;
+TileLight LineGather::to_points(const LineOffer& offer, const LaneFloats& steps, float bound,
+                                ReceiverTile& tile) {
+    pick(offer, steps, tile, [&](int i) { return tile.max_vpl_depth[i] > 0; });
+    return gather(tile, [&](int i, const LinePick& pick, const Vec2& u) -> Found {
+        if (!pick.ray) return connect_point(tile, i, set_.surface, set_.surface.lights[pick.light], bound);
+        return connect(tile, i, set_.rays[pick.light], u.x, bound, {tile.rng[i], context_.tracking, width_});
     });
-}
-
-/// One of `count` of the lights that are offered, from the n-th on, in proportion to what it would send to
-/// the eye ray, about (resampled importance sampling, Talbot et al. 2005). Weight 0: none of them sends any.
-WeightedVpl LineGather::resample(const EyeLine& eye, const LightShare& offered, std::size_t first,
-                                 std::size_t count, float start, float u) const {
-    if (count == 1) return offered.choose(first, start);
-    WeightedVpl chosen{0, 0.0f};
-    float sum = 0.0f, target = 0.0f;
-    for (std::size_t n = first; n < first + count; ++n) {
-        const WeightedVpl light = offered.choose(n, start);
-        const float guess = about(eye, set_.surface.lights[light.index]), share = guess * light.weight;
-        if (!(share > 0.0f)) continue;
-        sum += share;
-        if (u * sum < share)  // the same number may decide again: what is left of it is even
-            chosen = light, target = guess, u = u * sum / share;
-        else
-            u = (u * sum - share) / (sum - share);
-    }
-    if (target > 0.0f) chosen.weight = sum / target;
-    return chosen;
-}
-
-TileLight LineGather::rays_to_points(ReceiverTile& tile, float bound) {
-    std::array<float, width> starts;
-    for (int i = 0; i < width; ++i) starts[std::size_t(i)] = tile.rng[i].next_float();
-    using Found = std::optional<std::pair<LineConnection, float>>;
-    return gather(rays_.count(), tile, [&](int i, std::size_t n, const Vec2& u) -> Found {
-        if (tile.max_vpl_depth[i] == 0) return std::nullopt;
-        ++counters_.pairs;
-        const WeightedVpl choice = rays_.choose(n, starts[std::size_t(i)]);
-        const auto c =
-            connect(tile, i, set_.rays[choice.index], u.x, bound, {tile.rng[i], context_.tracking, width_});
-        return c ? Found({*c, choice.weight}) : std::nullopt;
-    });
-}
-
-TileLight LineGather::vpls_to_points(ReceiverTile& tile, float bound) {
-    int first = 0;  // a lane that is not idle: others have no generator of their own
-    while (first + 1 < width && tile.max_vpl_depth[first] == 0) ++first;
-    surface_.choose_all(tile.rng[first].next_float(), chosen_);
-    return lights::gather(context_, set_.surface, DrawnVpls{chosen_}, BoundedGeometry{bound}, tile);
 }
 
 }  // namespace mote::lights

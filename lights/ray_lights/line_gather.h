@@ -2,19 +2,14 @@
 // lights for sixteen points.
 //
 // Shadow rays go in packets of sixteen, a batch at a time, as those of VPLs do (virtual_lights/vpl_gather.h).
-// Points on the lines follow a sequence that fills the square evenly as the lights go by, from a start of the
-// lane's own.
+// Which lights a lane connects to is drawn from what they would send to it (line_offer.h). Points on the
+// lines follow a sequence that fills the square evenly as the lights go by, from a start of the lane's own.
 #pragma once
 
-#include "lights/ray_lights/line_connections.h"
+#include "lights/ray_lights/line_offer.h"
 #include "lights/virtual_lights/vpl_gather.h"
 
 namespace mote::lights {
-
-/// Sixteen eye rays' parts; null: an idle lane.
-struct EyeLines {
-    std::array<const EyeLine*, ReceiverLanes::width> of{};
-};
 
 /// What is counted.
 struct LineCounters {
@@ -27,37 +22,39 @@ struct LineCounters {
 /// Gathers for one task; keeps references.
 class LineGather {
   public:
-    /// `share`: so many ray lights, and so many VPLs, does a receiver look at, 0: all; `width` of beam lights
-    /// [m].
-    LineGather(const GatherContext& context, const RayLightSet& set, std::size_t share, float width)
-        : context_(context),
-          set_(set),
-          rays_(set.ray_power, share),
-          surface_(set.surface_power, share),
-          width_(width) {}
+    /// `candidates`: so many ray lights, and so many VPLs, does a tile look at, 0: all; `width` of beam
+    /// lights [m].
+    LineGather(const GatherContext& context, const RayLightSet& set, std::size_t candidates, float width)
+        : context_(context), set_(set), candidates_(candidates), width_(width) {}
 
-    /// By lane. `tile` is written to: its states and generators are those of the lanes; generators it has
-    /// must be the lanes' own.
-    TileLight rays_to_eyes(const EyeLines& eyes, ReceiverTile& tile);
-    TileLight vpls_to_eyes(const EyeLines& eyes, ReceiverTile& tile);
+    /// Draws the lights that are looked at from here on, by `receivers` lanes; fewer lanes look at fewer.
+    void draw_candidates(core::Rng& rng, int receivers);
+    /// What these would send, about.
+    void offer(const EyeLines& eyes, LineOffer& offer) const;
+    void offer(const PointReceivers& points, LineOffer& offer) const;
+
+    /// By lane: along eye rays, connected by steps of so much light. `tile` is written to: its states and
+    /// generators are those of the lanes; generators it has must be the lanes' own.
+    TileLight to_eyes(const EyeLines& eyes, const LineOffer& offer, const LaneFloats& steps,
+                      ReceiverTile& tile);
     /// The same of points, with min(G*, bound) [1/m^2].
-    TileLight rays_to_points(ReceiverTile& tile, float bound);
-    TileLight vpls_to_points(ReceiverTile& tile, float bound);
+    TileLight to_points(const LineOffer& offer, const LaneFloats& steps, float bound, ReceiverTile& tile);
     const LineCounters& counters() const { return counters_; }
 
   private:
+    using Found = std::optional<LineConnection>;
+    template <typename Active>
+    void pick(const LineOffer& offer, const LaneFloats& steps, ReceiverTile& tile, const Active& active);
     template <typename Connect>
-    TileLight gather(std::size_t count, ReceiverTile& tile, const Connect& connect_lane);
-    WeightedVpl resample(const EyeLine& eye, const LightShare& offered, std::size_t first, std::size_t count,
-                         float start, float u) const;
-    void begin_eyes(const EyeLines& eyes, ReceiverTile& tile) const;
+    TileLight gather(ReceiverTile& tile, const Connect& connect_lane);
 
     GatherContext context_;
     const RayLightSet& set_;
-    LightShare rays_, surface_;
+    std::size_t candidates_;
     float width_;
     LineCounters counters_;
-    std::vector<WeightedVpl> chosen_;
+    std::vector<WeightedVpl> offered_rays_, offered_surface_;
+    std::array<std::vector<LinePick>, ReceiverLanes::width> picks_;  ///< by lane
 };
 
 }  // namespace mote::lights

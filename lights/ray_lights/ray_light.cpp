@@ -107,18 +107,27 @@ RayLightSet trace_ray_lights(const LitScene& scene, const ScatteringMedia& media
     return set;
 }
 
-WeightedVpl LightShare::choose(std::size_t n, float start) const {
+WeightedVpl LightShare::choose(std::size_t n, float start) const { return choose_behind(n, start, 0); }
+
+/// No light before `first` is looked at.
+WeightedVpl LightShare::choose_behind(std::size_t n, float start, std::size_t first) const {
     if (all_) return {n, 1.0f};
     const double total = power_.back(), place = (double(n) + double(start)) / double(count_) * total;
-    const auto found = std::upper_bound(power_.begin(), power_.end(), place);
-    const auto index = std::min(std::size_t(found - power_.begin()), power_.size() - 1);
+    std::size_t index = first;
+    constexpr std::size_t few = 8;  // steps of a walk are foreseen, those of a search are not
+    for (std::size_t i = 0; i < few && index < power_.size() && power_[index] <= place; ++i) ++index;
+    if (index < power_.size() && power_[index] <= place)
+        index = std::size_t(std::upper_bound(power_.begin() + std::ptrdiff_t(index), power_.end(), place) -
+                            power_.begin());
+    index = std::min(index, power_.size() - 1);
     const double own = power_[index] - (index > 0 ? power_[index - 1] : 0.0);
     return {index, own > 0.0 ? float(total / (own * double(count_))) : 0.0f};
 }
 
 void LightShare::choose_all(float start, std::vector<WeightedVpl>& lights) const {
     lights.clear();
-    for (std::size_t n = 0; n < count(); ++n) lights.push_back(choose(n, start));
+    for (std::size_t n = 0; n < count(); ++n)
+        lights.push_back(choose_behind(n, start, n == 0 ? 0 : lights.back().index));
 }
 
 }  // namespace mote::lights

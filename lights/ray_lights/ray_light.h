@@ -58,6 +58,7 @@ class LightShare {
     void choose_all(float start, std::vector<WeightedVpl>& lights) const;
 
   private:
+    WeightedVpl choose_behind(std::size_t n, float start, std::size_t first) const;
     std::span<const double> power_;
     bool all_;
     std::size_t count_;

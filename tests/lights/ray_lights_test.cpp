@@ -1,12 +1,13 @@
 // Distances on lines, lines through media, and what ray lights send to receivers, against quadrature and
 // closed forms.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
 #include "core/math/random.h"
 #include "core/scene/scene.h"
-#include "lights/ray_lights/line_connections.h"
+#include "lights/ray_lights/line_offer.h"
 #include "tests/support/catch.h"
 #include "tests/support/render_statistics.h"
 
@@ -209,4 +210,107 @@ TEST_CASE("a share of the ray lights counts for all", "[ray_lights]") {
     CHECK(counted[1] == 0.0);
     CHECK(LightShare({}, 3).count() == 0);
     CHECK(LightShare({}, 0).count() == 0);
+}
+
+TEST_CASE("connections by steps count every light once", "[ray_lights]") {
+    // What is expected in a lane, twice as much in the next; the third sends nothing, the fifth counts 3
+    // times.
+    const std::array<float, 5> expected{0.5f, 4.0f, 0.0f, 0.01f, 1.0f}, weight{1.0f, 1.0f, 1.0f, 1.0f, 3.0f};
+    LineOffer offer;
+    for (std::uint32_t k = 0; k < 5; ++k) {
+        LaneFloats lanes;
+        lanes.of[2] = expected[k], lanes.of[3] = 2.0f * expected[k];
+        offer.add(k, k % 2 == 0, weight[k], lanes);
+    }
+    CHECK(offer.total().of[0] == 0.0f);
+    CHECK(offer.total().of[2] == Approx(7.51f));
+    std::vector<LinePick> picks;
+    const auto counts = [&](float step) {
+        std::array<double, 5> counted{};
+        const int n = 100000;
+        for (int i = 0; i < n; ++i) {
+            offer.pick(2, step, float((i + 0.5) / n), picks);
+            for (const LinePick& pick : picks) counted[pick.light] += double(pick.weight) / n;
+        }
+        return counted;
+    };
+    for (const float step : {0.0f, 0.3f, 1.0f, 5.0f}) {
+        const auto counted = counts(step);
+        INFO("step " << step);
+        for (const std::size_t k : {0, 1, 3, 4}) CHECK(counted[k] == Approx(double(weight[k])).epsilon(2e-3));
+        CHECK(counted[2] == 0.0);
+    }
+    offer.pick(2, 1.0f, 0.5f, picks);  // a VPL that is met four times is one connection
+    CHECK(std::count_if(picks.begin(), picks.end(), [](const LinePick& p) { return p.light == 1; }) == 1);
+    offer.pick(0, 1.0f, 0.5f, picks);
+    CHECK(picks.empty());
+    offer.clear();
+    offer.pick(2, 1.0f, 0.5f, picks);
+    CHECK(picks.empty());
+}
+
+// What connections are drawn by is above 0 wherever light arrives, or it would be lost; and it is about the
+// mean.
+TEST_CASE("expected light is about what arrives, and nowhere 0 where any does", "[ray_lights]") {
+    Rng rng(11);
+    TrackingCounters counters;
+    const auto point = [&] {
+        return Vec3(rng.next_float(), rng.next_float(), rng.next_float()) * 2.0f - 1.0f;
+    };
+    struct Seen {
+        int arrive = 0, lost = 0, far_off = 0;
+        void add(double mean, float expected) {
+            if (!(mean > 0.0)) return;
+            ++arrive, lost += expected > 0.0f ? 0 : 1;
+            far_off += mean > 4.0 * double(expected) || double(expected) > 8.0 * mean ? 1 : 0;
+        }
+    };
+    std::array<Seen, 3> seen;
+    constexpr int n = 12;
+    for (int k = 0; k < 300; ++k) {
+        RayLight light;
+        light.line = clear_line(point(), point(), 0.1f + 2.0f * rng.next_float());
+        light.power = Rgb(1.0f);
+        EyeLine eye;
+        eye.line = clear_line(point(), point(), 0.5f + 2.0f * rng.next_float());
+        eye.throughput = Rgb(0.7f), eye.max_depth = 10;
+        VplSet vpls;
+        VirtualPointLight& vpl = vpls.lights.emplace_back();
+        vpl.position = point(), vpl.normal = vpl.shading_normal = glm::normalize(point());
+        vpl.intensity = Rgb(2.0f);
+        ReceiverLanes lanes;
+        const Vec3 x = point(), normal = glm::normalize(point());
+        lanes.x[5] = x.x, lanes.y[5] = x.y, lanes.z[5] = x.z;
+        lanes.shading_x[5] = lanes.geometric_x[5] = normal.x,
+        lanes.shading_y[5] = lanes.geometric_y[5] = normal.y;
+        lanes.shading_z[5] = lanes.geometric_z[5] = normal.z;
+        lanes.weight_r[5] = lanes.weight_g[5] = lanes.weight_b[5] = 0.3f, lanes.max_vpl_depth[5] = 10;
+        EyeLines eyes;
+        eyes.of[5] = &eye;
+        const EyeReceivers along(eyes);
+        const PointReceivers points(lanes, {}, 50.0f);
+        LaneFloats expected[3];
+        expected_light(light, along, 0.0f, expected[0]);
+        expected_light(vpl, along, expected[1]);
+        expected_light(light, points, 0.0f, expected[2]);
+        std::array<double, 3> mean{};
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; j < n; ++j) {
+                const Vec2 u{(float(i) + 0.5f) / n, (float(j) + 0.5f) / n};
+                const LineContext context{rng, counters, 0.0f};
+                if (const auto c = connect(eye, light, u, context)) mean[0] += double(c->value.x) / (n * n);
+                if (const auto c = connect(eye, vpls, vpl, u.x, context))
+                    mean[1] += double(c->value.x) / (n * n);
+                if (const auto c = connect(lanes, 5, light, u.x, 50.0f, context))
+                    mean[2] += double(c->value.x) / (n * n);
+            }
+        for (std::size_t kind = 0; kind < 3; ++kind) seen[kind].add(mean[kind], expected[kind].of[5]);
+        CHECK(expected[0].of[4] == 0.0f);  // an idle lane
+    }
+    for (std::size_t kind = 0; kind < 3; ++kind) {
+        INFO("kind " << kind << ": far off " << seen[kind].far_off << " of " << seen[kind].arrive);
+        CHECK(seen[kind].arrive > 100);
+        CHECK(seen[kind].lost == 0);
+        CHECK(seen[kind].far_off < seen[kind].arrive / 5);
+    }
 }
