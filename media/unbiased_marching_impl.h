@@ -13,7 +13,7 @@ namespace mote::media {
 namespace detail {
 
 /// Steps per optical depth of the majorant.
-inline constexpr double steps_per_depth = 1.0;
+inline constexpr double steps_per_depth = 0.7;
 /// Ways that need more are tracked.
 inline constexpr double most_steps = 96.0;
 

@@ -33,9 +33,24 @@ void apply_glossy(const LightNode& node, const ReceiverBounds& x, LaneValues& ou
     }
 }
 
-template <bool Nearest>
-LaneValues light_of(const LightNode& node, const ReceiverBounds& x, float bound) {
-    LaneValues out;
+/// Times the largest values of the lobes of both ends, where there are any.
+void apply_lobes(const LightNode& node, const ReceiverBounds& x, const float* cosine_x, const float* cosine_y,
+                 LaneValues& out) {
+    const float g_low = float(node.g_low) * (1.0f / 65535.0f),
+                g_high = float(node.g_high) * (1.0f / 65535.0f);
+    if (node.kind == LightKind::volume && node.g_high > 0)
+        for (int i = 0; i < width; ++i)
+            out.value[std::size_t(i)] *= slack * largest_lobe(g_low, g_high, cosine_y[i]);
+    if (x.any_lobe)
+        for (int i = 0; i < width; ++i)
+            out.value[std::size_t(i)] *=
+                x.g_high[i] > 0.0f ? slack * largest_lobe(x.g_low[i], x.g_high[i], cosine_x[i]) : 1.0f;
+}
+
+/// At most, about, or both, which have nearly everything in common.
+template <bool Most, bool About>
+void light_of(const LightNode& node, const ReceiverBounds& x, float bound, LaneValues& most,
+              LaneValues& about) {
     const Vec3 axis = node.axis();
     const float ax = axis.x, ay = axis.y, az = axis.z, cos_y_cone = node.cos_angle;
     const float sin_y_cone = safe_sqrt(1.0f - sqr(cos_y_cone));
@@ -45,13 +60,10 @@ LaneValues light_of(const LightNode& node, const ReceiverBounds& x, float bound)
     const bool y_on_surface = node.kind == LightKind::surface || node.kind == LightKind::glossy;
     const float y_has_cosine = y_on_surface ? 1.0f : 0.0f;
     // Of glossy lights the profile holds the cosine, and is 0 behind the surface.
-    const float most_times_cosine = Nearest ? node.most_times_cosine() : 1.0f;
-    const float y_is_glossy = Nearest && node.kind == LightKind::glossy ? 1.0f : 0.0f;
-    const float g_low = float(node.g_low) * (1.0f / 65535.0f),
-                g_high = float(node.g_high) * (1.0f / 65535.0f);
-    const bool y_has_lobe = node.kind == LightKind::volume && node.g_high > 0;
+    const float most_times_cosine = node.most_times_cosine();
+    const float y_is_glossy = node.kind == LightKind::glossy ? 1.0f : 0.0f;
     const float least_d2 = max_of(0.25f * node.diagonal2(), min_distance_squared);
-    const float peak = Nearest && node.kind != LightKind::volume ? node.peak : 1.0f;
+    const float peak = node.kind != LightKind::volume ? node.peak : 1.0f;
     const auto depth = std::int32_t(node.least_depth);
     const float own_bound = bound;
     float cosine_x[width], cosine_y[width];
@@ -75,41 +87,52 @@ LaneValues light_of(const LightNode& node, const ReceiverBounds& x, float bound)
         const float cy = largest_cosine(to_receiver, inv_near, inv_far, cos_y_cone, sin_y_cone);
         const float c_x = max_of(max_of(cx, 0.0f), 1.0f - x.has_cosine[i]);
         const float c_y = max_of(max_of(cy, 0.0f), 1.0f - y_has_cosine);
-        const float in_front = cy > 0.0f ? most_times_cosine : 0.0f;
-        const float y_end = max_of(in_front * y_is_glossy, c_y * (1.0f - y_is_glossy));
-        float d2 = near2;
-        if constexpr (!Nearest) {
-            const float mx = 0.5f * (x0 + x1), my = 0.5f * (y0 + y1), mz = 0.5f * (z0 + z1);
-            d2 = max_of(mx * mx + my * my + mz * mz, least_d2);
-        }
-        const float g = min_of(c_x * y_end / d2, own_bound);
         const float light = (x.weight_r[i] * er + x.weight_g[i] * eg + x.weight_b[i] * eb) * (1.0f / 3.0f);
         const float reached = depth <= x.max_vpl_depth[i] ? 1.0f : 0.0f;
-        const float sent = min_of(light * reached, g) > 0.0f ? light * g : 0.0f;
-        out.value[std::size_t(i)] = sent;
+        if constexpr (Most) {
+            const float in_front = cy > 0.0f ? most_times_cosine : 0.0f;
+            const float y_end = max_of(in_front * y_is_glossy, c_y * (1.0f - y_is_glossy));
+            const float g = min_of(c_x * y_end / near2, own_bound);
+            const float sent = min_of(light * reached, g) > 0.0f ? light * g : 0.0f;
+            most.value[std::size_t(i)] = sent;
+        }
+        if constexpr (About) {
+            const float mx = 0.5f * (x0 + x1), my = 0.5f * (y0 + y1), mz = 0.5f * (z0 + z1);
+            const float d2 = max_of(mx * mx + my * my + mz * mz, least_d2);
+            const float g = min_of(c_x * c_y / d2, own_bound);
+            const float sent = min_of(light * reached, g) > 0.0f ? light * g : 0.0f;
+            about.value[std::size_t(i)] = sent;
+        }
         cosine_x[i] = cx, cosine_y[i] = cy;
     }
-    for (float& v : out.value) v = v > 0.0f ? v * (slack * peak) : 0.0f;
-    if (y_has_lobe)
-        for (int i = 0; i < width; ++i)
-            out.value[std::size_t(i)] *= slack * largest_lobe(g_low, g_high, cosine_y[i]);
-    if (x.any_lobe)
-        for (int i = 0; i < width; ++i)
-            out.value[std::size_t(i)] *=
-                x.g_high[i] > 0.0f ? slack * largest_lobe(x.g_low[i], x.g_high[i], cosine_x[i]) : 1.0f;
-    return out;
+    if constexpr (Most) {
+        for (float& v : most.value) v = v > 0.0f ? v * (slack * peak) : 0.0f;
+        apply_lobes(node, x, cosine_x, cosine_y, most);
+        if (x.any_glossy) apply_glossy(node, x, most);
+    }
+    if constexpr (About) {
+        for (float& v : about.value) v *= slack;
+        apply_lobes(node, x, cosine_x, cosine_y, about);
+    }
 }
 
 }  // namespace
 
 LaneValues most_light(const LightNode& node, const ReceiverBounds& receivers, float bound) {
-    LaneValues out = light_of<true>(node, receivers, bound);
-    if (receivers.any_glossy) apply_glossy(node, receivers, out);
-    return out;
+    LaneValues most, about;
+    light_of<true, false>(node, receivers, bound, most, about);
+    return most;
 }
 
 LaneValues expected_light(const LightNode& node, const ReceiverBounds& receivers, float bound) {
-    return light_of<false>(node, receivers, bound);
+    LaneValues most, about;
+    light_of<false, true>(node, receivers, bound, most, about);
+    return about;
+}
+
+void bound_light(const LightNode& node, const ReceiverBounds& receivers, float bound, LaneValues& most,
+                 LaneValues& expected) {
+    light_of<true, true>(node, receivers, bound, most, expected);
 }
 
 }  // namespace mote::lights

@@ -34,4 +34,8 @@ LaneValues most_light(const LightNode& node, const ReceiverBounds& receivers, fl
 /// is that of the middles, and at least half the diagonal of the group.
 LaneValues expected_light(const LightNode& node, const ReceiverBounds& receivers, float bound);
 
+/// Both at once.
+void bound_light(const LightNode& node, const ReceiverBounds& receivers, float bound, LaneValues& most,
+                 LaneValues& expected);
+
 }  // namespace mote::lights

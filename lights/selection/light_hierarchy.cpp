@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <tbb/parallel_invoke.h>
 
+#include <algorithm>
+
 #include "core/math/random.h"
 #include "core/objects/error.h"
 #include "lights/selection/light_partition.h"
@@ -68,6 +70,28 @@ LightHierarchy::LightHierarchy(const LightLeaves& leaves, std::uint64_t seed, st
     order_.resize(partition.size()), weights_.resize(partition.size());
     for (std::uint32_t i = 0; i < partition.size(); ++i)
         order_[i] = partition.item(i).light, weights_[i] = partition.item(i).weight;
+    double sum = 0.0;
+    for (std::uint32_t i = 0; i < partition.size(); ++i) {
+        if (i % block == 0) sums_.push_back(sum);
+        sum += double(weights_[i]);
+    }
+}
+
+std::uint32_t LightHierarchy::place_at(const LightCluster& c, double share) const {
+    const std::uint32_t last = c.first + c.count - 1;
+    double before = sums_[c.first / block];
+    for (std::uint32_t i = c.first / block * block; i < c.first; ++i) before += double(weights_[i]);
+    const double wanted = before + share * double(weight(c));
+    const auto begin = sums_.begin();
+    const auto above = std::upper_bound(begin + c.first / block + 1, begin + last / block + 1, wanted) - 1;
+    std::uint32_t place = c.first;
+    if (const auto first = std::uint32_t(above - begin) * block; first > c.first)
+        place = first, before = *above;
+    for (; place < last; ++place) {
+        before += double(weights_[place]);
+        if (before > wanted) break;
+    }
+    return place;
 }
 
 }  // namespace mote::lights

@@ -56,6 +56,12 @@ class LightHierarchy {
     /// The light at a place in the order, and its average(E).
     std::uint32_t light_at(std::uint32_t place) const { return order_[place]; }
     float weight_at(std::uint32_t place) const { return weights_[place]; }
+    /// The place in a group up to which lie so much of its weights; drawn evenly in [0, 1), that is a light
+    /// in proportion to average(E).
+    std::uint32_t place_at(const LightCluster& c, double share) const;
+    /// Says that place_at() will be asked for, or light_at().
+    void prefetch_places(const LightCluster& c) const { __builtin_prefetch(&weights_[c.first]); }
+    void prefetch_light_at(std::uint32_t place) const { __builtin_prefetch(&order_[place]); }
 
     /// Says that a group's node will be looked at soon, and maybe its left part.
     void prefetch_node(const LightCluster& c) const {
@@ -74,7 +80,8 @@ class LightHierarchy {
         return std::span(order_).subspan(c.first, c.count);
     }
     std::size_t memory_bytes() const {
-        return nodes_.size() * sizeof(LightNode) + order_.size() * (sizeof(std::uint32_t) + sizeof(float));
+        return nodes_.size() * sizeof(LightNode) + order_.size() * (sizeof(std::uint32_t) + sizeof(float)) +
+               sums_.size() * sizeof(double);
     }
     static constexpr std::size_t bytes_a_light = sizeof(LightNode) + sizeof(std::uint32_t) + sizeof(float);
 
@@ -83,6 +90,8 @@ class LightHierarchy {
     std::vector<LightNode> nodes_;      ///< inner ones
     std::vector<std::uint32_t> order_;  ///< lights
     std::vector<float> weights_;        ///< average(E) in this order
+    static constexpr std::uint32_t block = 32;
+    std::vector<double> sums_;  ///< of the weights before every block of places
 };
 
 }  // namespace mote::lights

@@ -13,6 +13,10 @@ namespace {
 constexpr std::size_t least_parted = GatherScratch::batch;
 /// Before so many pairs are there, nothing is estimated of their error: one of them may be most of the sum.
 constexpr std::size_t least_cut = 128;
+/// The mean square of an estimate is at most its mean times its bound: a light close by may send far more
+/// than is expected, seldom. Bounds are far too large for some groups, so they count up to so many
+/// expectations.
+constexpr float most_above = 8.0f;
 /// Of the mean of a tile: what a pixel's light counts at least where errors are relative to it.
 constexpr double least_of_mean = 0.05;
 
@@ -33,8 +37,7 @@ void Lightcut::set_pair(GatherPoints& points, std::size_t index, const Pair& pai
             pairs_[index].seen = *seen;
     if (pair.lights.single() && group.single()) return;
     const LightNode node = lights_.node(pair.lights);
-    errors_[index] = most_light(node, group.bounds, bound_.bound);
-    expected_[index] = expected_light(node, group.bounds, bound_.bound);
+    bound_light(node, group.bounds, bound_.bound, errors_[index], expected_[index]);
 }
 
 void Lightcut::add_pair(GatherPoints& points, const Pair& pair) {
@@ -99,30 +102,24 @@ void Lightcut::part_worst(GatherPoints& points, std::size_t count) {
     }
 }
 
-/// A light for each, in proportion to energy: all go down at once, so that nodes arrive from memory while
-/// others are looked at.
+/// A light for each, in proportion to energy. Random numbers are the golden ratio's sequence from a random
+/// start: each is even, and pairs that are neighbours in the order of lights have them far apart, so that
+/// where light changes evenly over them their errors have opposite signs. What is needed next arrives from
+/// memory meanwhile.
 void Lightcut::draw(std::span<const std::uint32_t> waiting) {
-    std::array<LightCluster, GatherScratch::batch> at;
-    for (std::size_t k = 0; k < waiting.size(); ++k) {
-        at[k] = pairs_[waiting[k]].lights;
-        lights_.prefetch_node(at[k]);
+    constexpr double golden = 0.6180339887498949;
+    for (const std::uint32_t index : waiting) lights_.prefetch_places(pairs_[index].lights);
+    for (const std::uint32_t index : waiting) {
+        Pair& pair = pairs_[index];
+        share_ += share_ < 1.0 - golden ? golden : golden - 1.0;
+        pair.place = lights_.place_at(pair.lights, share_);
+        lights_.prefetch_light_at(pair.place);
     }
-    for (bool any = true; any;) {
-        any = false;
-        for (LightCluster& c : std::span(at).first(waiting.size())) {
-            if (c.single()) continue;
-            const LightCluster left = lights_.left(c);
-            c = rng_.next_float() * lights_.weight(c) < lights_.weight(left) ? left : lights_.right(c);
-            lights_.prefetch_node(c);
-            any = true;
-        }
-    }
-    for (std::size_t k = 0; k < waiting.size(); ++k) {
-        pairs_[waiting[k]].place = at[k].first;
-        __builtin_prefetch(&vpls_.lights[lights_.light_at(at[k].first)]);
-    }
-    for (std::size_t k = 0; k < waiting.size(); ++k) {
-        const std::uint32_t detail = vpls_.lights[lights_.light_at(at[k].first)].detail;
+    for (const std::uint32_t index : waiting)
+        __builtin_prefetch(&vpls_.lights[lights_.light_at(pairs_[index].place)]);
+    if (vpls_.details.empty()) return;
+    for (const std::uint32_t index : waiting) {
+        const std::uint32_t detail = vpls_.lights[lights_.light_at(pairs_[index].place)].detail;
         if (detail != VirtualPointLight::no_detail) __builtin_prefetch(&vpls_.details[detail].vertex);
     }
 }
@@ -142,6 +139,12 @@ void Lightcut::saw(std::size_t index) {
 
 /// Of all pairs that wait.
 void Lightcut::evaluate(const GatherContext& context, GatherPoints& points) {
+    // In the order of lights, where neighbours are alike.
+    std::sort(waiting_.begin(), waiting_.end(), [&](std::uint32_t a, std::uint32_t b) {
+        const Pair &p = pairs_[a], &q = pairs_[b];
+        return p.group != q.group ? p.group < q.group : p.lights.first < q.lights.first;
+    });
+    share_ = double(rng_.next_u32()) * 0x1p-32;
     for (std::size_t first = 0; first < waiting_.size(); first += GatherScratch::batch) {
         const auto part =
             std::span(waiting_).subspan(first, std::min(GatherScratch::batch, waiting_.size() - first));
@@ -184,15 +187,18 @@ void Lightcut::find_worst(std::size_t limit, bool estimated, std::size_t& count)
     }
     worst_.clear();
     for (std::size_t p = 0; p < pairs_.size(); ++p) {
-        float error = 0.0f, squares = 0.0f;
+        float error = 0.0f, squares = 0.0f, urgency = 0.0f;
         for (int i = 0; i < width; ++i) {
-            error = core::max_of(error, errors_[p].value[std::size_t(i)] * inverse[i]);
+            const float bound = errors_[p].value[std::size_t(i)];
+            error = core::max_of(error, bound * inverse[i]);
             const float share = expected_[p].value[std::size_t(i)] * per_total[i];
             squares += share * share;
+            urgency += share * core::min_of(bound * per_total[i], most_above * share);
         }
-        squares = std::min(squares * pairs_[p].seen.variance(), most);
+        const float seen = pairs_[p].seen.variance();
+        squares = std::min(squares * seen, most);
         variance[p % width] += double(squares);
-        if (error > 1.0f) worst_.push_back({squares, std::uint32_t(p)});
+        if (error > 1.0f) worst_.push_back({std::min(urgency * seen, most), std::uint32_t(p)});
     }
     double sum = 0.0;
     for (const double v : variance) sum += v;
@@ -206,7 +212,7 @@ void Lightcut::find_worst(std::size_t limit, bool estimated, std::size_t& count)
     if (count < worst_.size())
         std::nth_element(worst_.begin(), worst_.begin() + std::ptrdiff_t(count), worst_.end(),
                          [](const Worst& a, const Worst& b) {
-                             return a.variance != b.variance ? a.variance > b.variance : a.pair < b.pair;
+                             return a.urgency != b.urgency ? a.urgency > b.urgency : a.pair < b.pair;
                          });
 }
 

@@ -110,8 +110,9 @@ class Lightcut {
     std::array<std::array<std::uint16_t, width>, GatherScratch::batch> ray_of_{};
     static constexpr std::uint16_t no_ray = 0xffff;
     core::Rng rng_;
+    double share_ = 0.0;  ///< of a group's energy, up to whom stands for it
     struct Worst {
-        float variance;  ///< estimated, summed over lanes, relative to their light
+        float urgency;  ///< by which they are parted
         std::uint32_t pair;
     };
     std::vector<Worst> worst_;
