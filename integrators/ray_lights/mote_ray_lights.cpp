@@ -114,7 +114,7 @@ class MoteRayLights final : public Integrator {
         settings_.share = std::size_t(p.get_int_in("share", 12, 0, std::int64_t(1) << 26));
         settings_.candidates = std::size_t(p.get_int_in("candidates", 128, 0, std::int64_t(1) << 26));
         settings_.width = float(p.get_float_in("width", 0.0, 0.0, 1e30));
-        settings_.scattering_points = int(p.get_int_in("scattering_points", 4, 1, 64));
+        settings_.scattering_points = int(p.get_int_in("scattering_points", 8, 1, 64));
         if (p.has("bound")) settings_.bound = float(p.get_float_in("bound", 1.0, 0.0, 1e30));
     }
 
@@ -192,7 +192,7 @@ void register_mote_ray_lights(Registry& registry) {
         {"bound", "float", "automatic",
          "bound b [1/m^2] on the geometry term from surface to surface, what is above it being found "
          "by eye paths that go on; automatic: light paths that a receiver looks at, at least 16, over R^2"});
-    parameters.push_back({"scattering_points", "integer", "4",
+    parameters.push_back({"scattering_points", "integer", "8",
                           "points in media where each eye ray looks for the light of lights, up to 64"});
     registry.add({Category::integrator, "mote_ray_lights",
                   "Virtual ray lights in media and virtual point lights on surfaces (Novak et al. 2012): "

@@ -11,14 +11,14 @@
 namespace mote::integrators {
 
 struct RayLightSettings {
-    static constexpr double lights_a_path = 4.0;  ///< about
+    static constexpr double lights_a_path = 2.0;  ///< about
     EyePathLimits eye;                            ///< max_depth counts the whole path from light to eye
     std::uint32_t paths = 256;
     std::size_t share = 12;        ///< connections of a leg of an eye path; 0: to all lights
     std::size_t candidates = 128;  ///< ray lights, and VPLs, that they are drawn from; 0: all
     float width = 0.0f;            ///< of beam lights [m]; 0: ray lights
     std::optional<float> bound;    ///< b of VPLs from surface to surface [1/m^2]; nothing: automatic
-    int scattering_points = 4;     ///< where an eye ray in media looks for the light of lights
+    int scattering_points = 8;     ///< where an eye ray in media looks for the light of lights
 
     /// As that of mote_vpl, by how many light paths a receiver looks at the lights of. Never that of fewer
     /// than 16: where the radius is that of the scene, all light would be found by eye paths.

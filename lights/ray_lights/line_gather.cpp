@@ -76,11 +76,9 @@ void LineGather::offer(const PointReceivers& points, LineOffer& offer) const {
 template <typename Active>
 void LineGather::pick(const LineOffer& offer, const LaneFloats& steps, ReceiverTile& tile,
                       const Active& active) {
-    for (int i = 0; i < width; ++i)
-        if (active(i))
-            offer.pick(i, steps.of[i], tile.rng[i].next_float(), picks_[std::size_t(i)]);
-        else
-            picks_[std::size_t(i)].clear();
+    LaneFloats starts;
+    for (int i = 0; i < width; ++i) starts.of[i] = active(i) ? tile.rng[i].next_float() : 1.0f;
+    offer.pick(steps, starts, picks_);
 }
 
 /// connect_lane(lane, pick, u) -> optional<LineConnection>.

@@ -54,7 +54,7 @@ class LineGather {
     float width_;
     LineCounters counters_;
     std::vector<WeightedVpl> offered_rays_, offered_surface_;
-    std::array<std::vector<LinePick>, ReceiverLanes::width> picks_;  ///< by lane
+    LinePicks picks_;
 };
 
 }  // namespace mote::lights

@@ -1,10 +1,30 @@
 #include "lights/ray_lights/line_offer.h"
 
-#include <algorithm>
-
 namespace mote::lights {
 
 using namespace core;
+
+namespace {
+
+/// Connects to a light, which reaches up to `expected`, at each step from `next` on. Returns the one behind.
+float connect_by_steps(const LinePick& light, float expected, float step, float next,
+                       std::vector<LinePick>& picks) {
+    if (!(step > 0.0f)) {
+        picks.push_back(light);
+        return expected;
+    }
+    int steps = 0;
+    for (; next < expected; next += step) ++steps;
+    const float weight = light.weight * (step / expected);
+    // Points on ray lights are drawn anew each time; a VPL is the same.
+    if (light.ray)
+        picks.insert(picks.end(), std::size_t(steps), {light.light, true, weight});
+    else
+        picks.push_back({light.light, false, weight * float(steps)});
+    return next;
+}
+
+}  // namespace
 
 void LineOffer::add(std::uint32_t light, bool ray, float weight, const LaneFloats& expected) {
     lights_.push_back({light, ray, weight});
@@ -15,24 +35,25 @@ void LineOffer::add(std::uint32_t light, bool ray, float weight, const LaneFloat
     }
 }
 
-void LineOffer::pick(int lane, float step, float start, std::vector<LinePick>& picks) const {
-    picks.clear();
-    float next = start * step;  // how far it is to the next step
+void LineOffer::pick(const LaneFloats& steps, const LaneFloats& starts, LinePicks& picks) const {
+    constexpr int lanes = ReceiverLanes::width;
+    LaneFloats next;  // how far it is to the next step
+    for (int i = 0; i < lanes; ++i) {
+        picks[std::size_t(i)].clear();
+        next.of[i] = starts.of[i] < 1.0f ? starts.of[i] * steps.of[i] : infinity;
+    }
     for (std::size_t k = 0; k < lights_.size(); ++k) {
-        const float expected = expected_[k].of[lane];
-        if (!(expected > 0.0f)) continue;
-        if (!(step > 0.0f)) {
-            picks.push_back(lights_[k]);
-            continue;
-        }
-        const LinePick& light = lights_[k];
-        const float weight = light.weight * (step / expected);
-        int steps = 0;
-        for (; next < expected; next += step) ++steps;
-        next -= expected;
-        // Points on ray lights are drawn anew each time; a VPL is the same.
-        for (int n = 0; n < (light.ray ? steps : std::min(steps, 1)); ++n)
-            picks.push_back({light.light, light.ray, light.ray ? weight : weight * float(steps)});
+        const LaneFloats& expected = expected_[k];
+        // Few lanes connect to a light: whether any does is asked of all at once.
+        int reached = 0;
+        for (int i = 0; i < lanes; ++i) reached += next.of[i] < expected.of[i] ? 1 : 0;
+        for (int i = 0; i < lanes && reached > 0; ++i)
+            if (next.of[i] < expected.of[i]) {
+                --reached;
+                next.of[i] = connect_by_steps(lights_[k], expected.of[i], steps.of[i], next.of[i],
+                                              picks[std::size_t(i)]);
+            }
+        for (int i = 0; i < lanes; ++i) next.of[i] -= expected.of[i];
     }
 }
 

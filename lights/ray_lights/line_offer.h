@@ -20,6 +20,9 @@ struct LinePick {
     float weight;         ///< how often it counts
 };
 
+/// By lane.
+using LinePicks = std::array<std::vector<LinePick>, ReceiverLanes::width>;
+
 /// Lights on offer to a tile.
 class LineOffer {
   public:
@@ -29,9 +32,9 @@ class LineOffer {
     void add(std::uint32_t light, bool ray, float weight, const LaneFloats& expected);
     /// Of all, by lane.
     const LaneFloats& total() const { return total_; }
-    /// What a lane connects to, with steps of `step` from a start within the first one; a step of 0: to all
-    /// that send any light, once.
-    void pick(int lane, float step, float start, std::vector<LinePick>& picks) const;
+    /// What lanes connect to, each with steps of `steps` from a start within the first one; a step of 0: to
+    /// all that send any light, once. Of lanes with a start of 1 or more, to nothing.
+    void pick(const LaneFloats& steps, const LaneFloats& starts, LinePicks& picks) const;
 
   private:
     std::vector<LinePick> lights_;

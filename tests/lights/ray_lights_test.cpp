@@ -224,13 +224,20 @@ TEST_CASE("connections by steps count every light once", "[ray_lights]") {
     }
     CHECK(offer.total().of[0] == 0.0f);
     CHECK(offer.total().of[2] == Approx(7.51f));
-    std::vector<LinePick> picks;
+    LinePicks picks;
+    const auto pick = [&](int lane, float step, float start) -> const std::vector<LinePick>& {
+        LaneFloats steps, starts;
+        for (int i = 0; i < ReceiverLanes::width; ++i) starts.of[i] = i == lane ? start : 1.0f;
+        steps.of[lane] = step;
+        offer.pick(steps, starts, picks);
+        return picks[std::size_t(lane)];
+    };
     const auto counts = [&](float step) {
         std::array<double, 5> counted{};
         const int n = 100000;
         for (int i = 0; i < n; ++i) {
-            offer.pick(2, step, float((i + 0.5) / n), picks);
-            for (const LinePick& pick : picks) counted[pick.light] += double(pick.weight) / n;
+            for (const LinePick& p : pick(2, step, float((i + 0.5) / n)))
+                counted[p.light] += double(p.weight) / n;
         }
         return counted;
     };
@@ -240,13 +247,12 @@ TEST_CASE("connections by steps count every light once", "[ray_lights]") {
         for (const std::size_t k : {0, 1, 3, 4}) CHECK(counted[k] == Approx(double(weight[k])).epsilon(2e-3));
         CHECK(counted[2] == 0.0);
     }
-    offer.pick(2, 1.0f, 0.5f, picks);  // a VPL that is met four times is one connection
-    CHECK(std::count_if(picks.begin(), picks.end(), [](const LinePick& p) { return p.light == 1; }) == 1);
-    offer.pick(0, 1.0f, 0.5f, picks);
-    CHECK(picks.empty());
+    const auto& some = pick(2, 1.0f, 0.5f);  // a VPL that is met four times is one connection
+    CHECK(std::count_if(some.begin(), some.end(), [](const LinePick& p) { return p.light == 1; }) == 1);
+    CHECK(picks[3].empty());
+    CHECK(pick(0, 1.0f, 0.5f).empty());
     offer.clear();
-    offer.pick(2, 1.0f, 0.5f, picks);
-    CHECK(picks.empty());
+    CHECK(pick(2, 1.0f, 0.5f).empty());
 }
 
 // What connections are drawn by is above 0 wherever light arrives, or it would be lost; and it is about the
