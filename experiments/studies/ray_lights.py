@@ -1,12 +1,14 @@
 #!/usr/bin/python3
 """Virtual ray lights and beam lights against virtual point lights, photons and paths: processor seconds to 5 % of error.
 
-Two scenes, 48 x 30: a small room full of fog (micro_fog.xml) and the smoke room. Every method is rendered twice with some
-processor seconds, starting taken off (a render of one pass tells it); errors are root mean squares over pixels of all light with
-the weights of `mote compare`, against two references, one of volpath and one of long ray lights, whose noise is taken off. The time
-to 5 % is that of an error that falls with the root of the time, above the bias, which is the part that both seeds share: where
-that alone is above 5 %, there is none ("never"). `--quick`: a few seconds, numbers without a meaning.
+Two scenes, 48 x 30: a small room full of fog (micro_fog.xml) and the smoke room. Every method has the best of its settings: all
+of them are rendered by a few seeds, and the one that is fastest to 5 % is rendered anew by other seeds, which are judged. Starting
+is taken off (a render of one pass tells it); errors are root mean squares over pixels of all light with the weights of `mote
+compare`, against two references, one of volpath and one of long ray lights, whose noise is taken off. The time to 5 % is that of
+an error that falls with the root of the time, above the bias, which is the part that pairs of seeds share: where that alone is
+above 5 %, there is none ("never"). `--quick`: the foggy room in less than a minute, numbers without a meaning.
 """
+import itertools
 import math
 import sys
 from pathlib import Path
@@ -14,72 +16,149 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "figures"))
+from claims import Claims
 from renders import approximate, error_weight, luminance, main, write_csv
 
 FOG = Path(__file__).resolve().parent / "micro_fog.xml"
 TARGET = 0.05
+CHOICE_SEEDS, SEEDS = (101, 102), (1, 2, 3, 4, 5)
+
+
+def of(integrator, **settings):
+    return {"integrator": integrator, **{f"integrator.{k}": v for k, v in settings.items()}}
+
+
+def vpls(steps=0, **settings):
+    return of("mote_vpl", **settings) | (approximate(steps) if steps else {})
+
+
+# By method: its settings, by name. Eye paths are those that share the VPLs of a pass.
 METHODS = {
-    "ray lights": {"integrator": "mote_ray_lights"},
-    "ray lights, 4 each": {"integrator": "mote_ray_lights", "integrator.share": 4},
-    "beam lights, 0.1 m": {"integrator": "mote_ray_lights", "integrator.width": 0.1},
-    "VPLs bounded": {"integrator": "mote_vpl", "integrator.paths": 64},
-    "VPLs, ABC, 1 step": {"integrator": "mote_vpl", "integrator.paths": 64, **approximate(1)},
-    "VPLs, ABC, 2 steps": {"integrator": "mote_vpl", "integrator.paths": 64, **approximate(2)},
-    "VPLs, ABC, 3 steps": {"integrator": "mote_vpl", "integrator.paths": 64, **approximate(3)},
-    "photon map": {"integrator": "mote_photon_map", "integrator.photon_paths": 20000},
-    "volpath": {"integrator": "volpath"},
+    "ray lights": {"12 of 128": of("mote_ray_lights"), "8 of 64": of("mote_ray_lights", share=8, candidates=64),
+                   "20 of 256": of("mote_ray_lights", share=20, candidates=256)},
+    "beam lights, 0.1 m": {"12 of 128": of("mote_ray_lights", width=0.1)},
+    "VPLs, ABC": {"1 step, 64": vpls(1, paths=64), "2 steps, 64": vpls(2, paths=64), "3 steps, 64": vpls(3, paths=64),
+                  "2 steps, 16": vpls(2, paths=16), "2 steps, 64, 8 eye paths": vpls(2, paths=64, eye_samples=8),
+                  "2 steps, 32, 1-to-n": vpls(2, paths=32) | {"integrator.compensation.strategy": "1-to-n"}},
+    "VPLs bounded": {"64": vpls(paths=64), "256": vpls(paths=256)},
+    "photon map": {"20000": of("mote_photon_map", photon_paths=20000)},
+    "volpath": {"": of("volpath")},
 }
 # The smoke room's own settings would go to mote_vpl: those of its methods are named by its parameters.
 OWN_NAMES = {"integrator.paths": "paths"}
 
 
-def errors_of(pictures, references):
-    """Squared error of one picture and the part that two of them share, over the square of the light."""
+def seconds_to_target(pictures, references):
+    """By picture: its error and its seconds to the target; and the error that pairs of pictures share."""
     first, second = references
     weight = error_weight(0.5 * (first + second))
     norm = np.sum(weight * first * second)
-    alone = np.mean([np.sum(weight * (x - first) * (x - second)) / norm for x in pictures])
-    shared = np.sum(weight * (pictures[0] - first) * (pictures[1] - second)) / norm
-    return float(alone), max(0.0, float(shared))
+    pairs = [np.sum(weight * ((a - first) * (b - second) + (b - first) * (a - second)) / 2) / norm
+             for (a, _), (b, _) in itertools.combinations(pictures, 2)]
+    shared = max(0.0, float(np.mean(pairs)))
+    errors, times = [], []
+    for light, cpu in pictures:
+        alone = float(np.sum(weight * (light - first) * (light - second)) / norm)
+        left = TARGET**2 - shared
+        errors.append(math.sqrt(max(alone, 0.0)))
+        times.append(cpu * max(alone - shared, 0.0) / left if left > 0 else math.inf)
+    return errors, times, math.sqrt(shared)
 
 
-def seconds_to_target(seconds, alone, shared):
-    """Variance falls with the time, the bias stays."""
-    left = TARGET**2 - shared
-    return seconds * max(alone - shared, 0.0) / left if left > 0 else math.inf
+class Scene:
+    """Renders of one scene at equal processor seconds."""
+
+    def __init__(self, mote, scene, label, size):
+        self.mote, self.scene, self.label, self.size, self.costs = mote, scene, label, size, {}
+
+    def render(self, name, settings, cpu, seed):
+        """As many passes as take so long: the light, and its processor seconds without those of the start."""
+        named = {**self.size, **settings}
+        if not isinstance(self.scene, Path) and settings["integrator"] == "mote_vpl":
+            named = {OWN_NAMES.get(key, key): value for key, value in named.items()}
+        tag = "".join(c if c.isalnum() else "_" for c in f"{self.label} {name}")
+        if name not in self.costs:
+            once = self.mote.render(self.scene, f"{tag}_once", named, 1, seed=99)
+            some = self.mote.render(self.scene, f"{tag}_some", named, 4, seed=99)
+            each = max(1e-4, (some.cpu - once.cpu) / 3)
+            self.costs[name] = each, max(0.0, once.cpu - each)
+        each, start = self.costs[name]
+        picture = self.mote.render(self.scene, f"{tag}", named, max(2, round(cpu / each)), seed=seed)
+        return luminance(picture[""]), max(picture.cpu - start, 1e-3)
+
+
+def judge(scene, name, settings, cpu, seeds, references):
+    """A row of the table."""
+    pictures = [scene.render(name, settings, cpu, seed) for seed in seeds]
+    errors, times, shared = seconds_to_target(pictures, references)
+    bias = np.mean([light.mean() for light, _ in pictures]) / np.mean([r.mean() for r in references]) - 1
+    spread = float(np.std(times, ddof=1)) if all(map(math.isfinite, times)) else math.nan
+    return [float(np.mean([c for _, c in pictures])), float(np.mean(errors)), shared, float(bias), float(np.mean(times)), spread]
+
+
+def show(row):
+    print("{:11} {:19} {:25} {:7} {:5.1f} s  error {:6.1%}, shared {:5.1%}, mean {:+.1%}  to 5 %: {:6.2f} s, seeds spread {:.2f} s"
+          .format(*row), flush=True)
+
+
+def study(mote, scene, label, quick):
+    size, choice, judged = ({"resx": 16, "resy": 10}, 0.1, 0.2) if quick else ({"resx": 48, "resy": 30}, 1.5, 3)
+    renders = Scene(mote, scene, label, size)
+    references = [renders.render("reference paths", of("volpath"), 8 * judged, 11)[0],
+                  renders.render("reference rays", of("mote_ray_lights"), 5 * judged, 12)[0]]
+    rows = []
+    for method, settings in METHODS.items():
+        tried = {}
+        settings = dict(list(settings.items())[:2 if quick else None])
+        for name, values in settings.items() if len(settings) > 1 else ():
+            found = judge(renders, f"{method} {name}", values, choice, CHOICE_SEEDS, references)
+            rows.append([label, method, name, "choice", *found])
+            show(rows[-1])
+            tried[name] = found[4]
+        best = min(tried, key=tried.get) if tried else next(iter(settings))
+        rows.append([label, method, best, "judged", *judge(renders, f"{method} {best}", settings[best], judged, SEEDS[:2 if quick else None], references)])
+        show(rows[-1])
+    return rows
+
+
+def plot(rows, path):
+    import matplotlib
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    scenes = list(dict.fromkeys(row[0] for row in rows))
+    figure, axes = plt.subplots(1, len(scenes), figsize=(12, 4), sharey=True, squeeze=False)
+    for ax, scene in zip(axes[0], scenes):
+        for i, method in enumerate(METHODS):
+            for stage, style in (("choice", "o"), ("judged", "s")):
+                own = [row for row in rows if row[:2] == [scene, method] and row[3] == stage and math.isfinite(row[8])]
+                ax.errorbar([row[8] for row in own], [i] * len(own), xerr=[row[9] for row in own] if stage == "judged" else None,
+                            fmt=style, color="C0" if stage == "judged" else "0.7", zorder=2 if stage == "judged" else 1)
+            if not any(row[:2] == [scene, method] and row[3] == "judged" and math.isfinite(row[8]) for row in rows):
+                ax.text(0.98, i, "never", transform=ax.get_yaxis_transform(), ha="right", va="center")
+        ax.set(xscale="log", xlabel="processor seconds to 5 % of error", title=scene)
+        ax.set_yticks(range(len(METHODS)), list(METHODS))
+        ax.grid(True, axis="x", which="both", alpha=0.3)
+    axes[0][0].invert_yaxis()
+    figure.tight_layout()
+    figure.savefig(path, dpi=110)
 
 
 def run(mote, quick, output):
-    seconds, size = (0.3, {"resx": 16, "resy": 10}) if quick else (3, {"resx": 48, "resy": 30})
-    rows = []
-
-    def render(scene, tag, settings, cpu, seed):
-        """As many passes as take so long; the picture and its processor seconds without those of the start."""
-        named = settings if isinstance(scene, Path) or settings["integrator"] != "mote_vpl" else {
-            OWN_NAMES.get(key, key): value for key, value in settings.items()}
-        tag = f"{tag}_{Path(str(scene)).stem}".replace(" ", "_").replace(",", "")
-        once = mote.render(scene, f"{tag}_once", {**size, **named}, 1, seed=99)
-        some = mote.render(scene, f"{tag}_some", {**size, **named}, 5, seed=99)
-        each = max(1e-4, (some.cpu - once.cpu) / 4)
-        start = max(0.0, once.cpu - each)
-        picture = mote.render(scene, f"{tag}_{seed}", {**size, **named}, max(2, round(cpu / each)), seed=seed)
-        return luminance(picture[""]), max(picture.cpu - start, 1e-3), picture.passes
-
-    for scene, label in ((FOG, "foggy room"), ("smoke_room", "smoke room")):
-        references = [render(scene, "reference_paths", METHODS["volpath"], 4 * seconds, 11)[0],
-                      render(scene, "reference_rays", METHODS["ray lights"], 4 * seconds, 12)[0]]
-        for name, settings in METHODS.items():
-            renders = [render(scene, name, settings, seconds, seed) for seed in (1, 2)]
-            alone, shared = errors_of([light for light, _, _ in renders], references)
-            cpu = float(np.mean([r[1] for r in renders]))
-            bias = np.mean([light.mean() for light, _, _ in renders]) / np.mean([r.mean() for r in references]) - 1
-            needed = seconds_to_target(cpu, alone, shared)
-            rows.append([label, name, cpu, renders[0][2], math.sqrt(max(alone, 0.0)), math.sqrt(shared), bias, needed])
-            print("{:11} {:20} {:5.1f} s {:5d} passes  error {:6.1%}, shared by both {:5.1%}, mean {:+.1%}  to 5 %: {:6.1f} s"
-                  .format(*rows[-1]), flush=True)
-    write_csv(output.with_suffix(".csv"), ["scene", "method", "seconds", "passes", "error", "shared error", "bias",
-                                           "seconds to 5 %"], rows)
-    return 0
+    rows, claims = [], Claims()
+    scenes = (FOG, "foggy room", 0.2), ("smoke_room", "smoke room", 0.5)
+    for scene, label, most in scenes[:1 if quick else None]:
+        rows += study(mote, scene, label, quick)
+        seconds = {row[1]: row[8:] for row in rows if row[0] == label and row[3] == "judged"}
+        (rays, ray_spread), (points, point_spread) = seconds["ray lights"], seconds["VPLs, ABC"]
+        ratio = rays / points
+        error = ratio * math.hypot(ray_spread / rays, point_spread / points) / math.sqrt(len(SEEDS)) if ratio > 0 else math.nan
+        if not quick:
+            claims.check(f"{label}: ray lights take at most {most} of the time of VPLs with approximate compensation to 5 % of error",
+                         f"{ratio:.3f} +- {error:.3f}", ratio <= most)
+    write_csv(output.with_suffix(".csv"), ["scene", "method", "settings", "stage", "seconds", "error", "shared_error", "bias",
+                                           "to_target", "spread"], rows)
+    plot(rows, output.with_suffix(".png"))
+    return claims.exit_code()
 
 
 if __name__ == "__main__":
