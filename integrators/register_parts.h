@@ -28,10 +28,15 @@ void register_mote_epipolar(core::Registry& registry);
 // nothing but these limits.
 std::shared_ptr<const core::Integrator> make_path(const EyePathLimits& limits);
 std::shared_ptr<const core::Integrator> make_volpath(const EyePathLimits& limits, bool equiangular);
+/// Virtual point lights by the ten thousand, resampled for pixels that do not lie side by side, as an image
+/// filter wants them. What their bound takes is missing.
+std::shared_ptr<const core::Integrator> make_drawn_vpls(const EyePathLimits& limits);
 /// Light of lights with a position, scattered once in media; light of all others, with all else that scatters
 /// at most once (lights = positional, other).
 std::shared_ptr<const core::Integrator> make_epipolar(const EyePathLimits& limits, int lines, int samples);
 std::shared_ptr<const core::Integrator> make_single_scattering(const EyePathLimits& limits);
+/// Light of all lights that scatters at most once.
+std::shared_ptr<const core::Integrator> make_all_single_scattering(const EyePathLimits& limits);
 
 /// Light that passes delta surfaces last, for integrators that can only hit lights.
 void plan_caustics(core::Plan& plan, const core::Scene& scene, const core::Requirements& requirements);

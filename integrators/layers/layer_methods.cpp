@@ -71,24 +71,34 @@ std::vector<std::string> transport_cells(bool media) {
 }
 
 std::vector<LayerMethod> choose_layer_methods(const Scene& scene, const Requirements& r,
-                                              const EyePathLimits& limits) {
+                                              const EyePathLimits& limits, FarLight far_light) {
+    const bool by_lights = far_light == FarLight::lights;
+    const std::string reason =
+        by_lights ? "virtual point lights, drawn for pixels that lie apart: less noise than paths, and what "
+                    "the bound takes is missing"
+                  : "paths of pixels err independently of each other, which the filter takes";
+    const bool equiangular = r.media_scattering && lamps_in_media(scene);
+    const auto far = [&] {
+        if (by_lights) return make_drawn_vpls(limits);
+        return r.any_media() ? make_volpath(limits, equiangular) : make_path(limits);
+    };
     if (!r.any_media())
         return {{make_path(limits), {"emission", "direct"}, "one scattering: light and BSDF sampling"},
-                {make_path(limits),
-                 {"indirect"},
-                 "paths of pixels err independently of each other, which the filter takes"}};
+                {far(), {"indirect"}, reason}};
     const std::size_t lights = positional_lights(scene).size();
     const bool marched = r.media_scattering && lights > 0 && lights <= most_marched_lights &&
                          (limits.max_depth < 0 || limits.max_depth > 1);
-    const std::string surfaces = "surfaces behind media whose transmittance is marched",
-                      far = "paths of pixels err independently of each other, which the filter takes";
-    const bool equiangular = r.media_scattering && lamps_in_media(scene);
-    if (!marched)
-        return {{make_single_scattering(limits), {"emission", "direct"}, surfaces},
-                {make_volpath(limits, equiangular),
-                 {"indirect", "single_scattering", "multiple_scattering"},
-                 far + (lights > 0 ? "; too many lights to march each of them"
-                                   : "; no light has a position to march to")}};
+    const std::string surfaces = "surfaces behind media whose transmittance is marched";
+    if (!marched) {
+        const std::string why =
+            lights > 0 ? "; too many lights to march each of them" : "; no light has a position to march to";
+        const LayerMethod near{make_single_scattering(limits), {"emission", "direct"}, surfaces};
+        const std::string single = "single_scattering";
+        if (!by_lights) return {near, {far(), {"indirect", single, "multiple_scattering"}, reason + why}};
+        const LayerMethod others{far(), {"indirect", "multiple_scattering"}, reason};
+        if (lights > 0) return {near, {make_volpath(limits, equiangular), {single}, "paths" + why}, others};
+        return {{make_all_single_scattering(limits), {"emission", "direct", single}, surfaces}, others};
+    }
     // Lines end at the border of the picture: as many as there are pixels along half of it.
     const int lines = std::clamp(scene.film().width + scene.film().height, 16, 1024);
     // Refinement starts from the evenly spread samples: a gap in the smoke between two of them is not seen.
@@ -99,7 +109,7 @@ std::vector<LayerMethod> choose_layer_methods(const Scene& scene, const Requirem
             {make_epipolar(limits, lines, samples),
              {positional_scattering},
              "lights with a position, marched along epipolar lines: nothing is left to chance"},
-            {make_volpath(limits, equiangular), {"indirect", "multiple_scattering"}, far}};
+            {far(), {"indirect", "multiple_scattering"}, reason}};
 }
 
 std::vector<LayerMethod> with_cells(const Scene& scene, std::vector<LayerMethod> methods) {

@@ -25,10 +25,14 @@ struct LayerMethod {
 /// The names of the cells of a scene, in the order of Transport.
 std::vector<std::string> transport_cells(bool media);
 
+/// What fills light that has scattered at least twice, or once after a surface: paths, unbiased, or virtual
+/// point lights, which leave less noise and miss what their bound takes.
+enum class FarLight : std::uint8_t { paths, lights };
+
 /// For each cell the method that does it best in this scene, with reasons.
 std::vector<LayerMethod> choose_layer_methods(const core::Scene& scene,
                                               const core::Requirements& requirements,
-                                              const EyePathLimits& limits);
+                                              const EyePathLimits& limits, FarLight far_light);
 
 /// The same methods, each with the cells that it fills in this scene. Throws InputError, with its place, for
 /// a cell that no scene has or that the method cannot fill, and where two methods fill one cell.

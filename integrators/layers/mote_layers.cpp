@@ -54,6 +54,8 @@ class MoteLayers final : public Integrator {
     explicit MoteLayers(const Properties& properties)
         : limits_(read_eye_path_limits(properties)), filter_(read_layer_filter(properties)) {
         filters_ = properties.get_bool("filter", true);
+        if (properties.get_choice("far_light", "paths", {"paths", "lights"}) == "lights")
+            far_light_ = FarLight::lights;
         read_shares(properties);
         for (const Properties::Child& child : properties.children) {
             const auto integrator = std::dynamic_pointer_cast<const Integrator>(child.object);
@@ -68,7 +70,7 @@ class MoteLayers final : public Integrator {
                 {integrator, split_names(named ? child.name : ""), "asked for", child.where});
         }
         if (asked_for_.empty()) return;
-        for (const std::string name : {"max_depth", "rr_depth", "hide_emitters"})
+        for (const std::string name : {"max_depth", "rr_depth", "hide_emitters", "far_light"})
             if (properties.has(name))
                 properties.warn(name + " has no effect: every nested integrator has its own");
     }
@@ -117,13 +119,14 @@ class MoteLayers final : public Integrator {
         return layers;
     }
     std::vector<LayerMethod> methods(const Scene& scene) const {
-        return with_cells(scene, asked_for_.empty()
-                                     ? choose_layer_methods(scene, find_requirements(scene), limits_)
-                                     : asked_for_);
+        return with_cells(scene, asked_for_.empty() ? choose_layer_methods(scene, find_requirements(scene),
+                                                                           limits_, far_light_)
+                                                    : asked_for_);
     }
     EyePathLimits limits_;
     LayerFilterParameters filter_;
     bool filters_ = true;
+    FarLight far_light_ = FarLight::paths;
     std::vector<std::uint32_t> shares_;  ///< of passes, one a method; empty: as many as each needs
     std::vector<LayerMethod> asked_for_;
 };
@@ -172,6 +175,11 @@ void register_mote_layers(Registry& registry) {
          "smooth indirect light and multiple scattering in image space, as far as noise explains "
          "their detail"});
     for (Parameter& p : layer_filter_parameters()) parameters.push_back(std::move(p));
+    parameters.push_back(
+        {"far_light", "string", "paths",
+         "indirect light and multiple scattering where the scene chooses: 'paths', unbiased, or 'lights', "
+         "virtual point lights, resampled, with less noise and without what their bound "
+         "takes"});
     parameters.push_back(
         {"shares", "string", "as many as reduce the error fastest",
          "passes of each method in a round, such as '3, 1' (docs/cluster.md): passes are known "

@@ -52,6 +52,10 @@ std::shared_ptr<const Integrator> make_single_scattering(const EyePathLimits& li
     return std::make_shared<const MoteSingleScattering>(scattering_properties(limits, "other"));
 }
 
+std::shared_ptr<const Integrator> make_all_single_scattering(const EyePathLimits& limits) {
+    return std::make_shared<const MoteSingleScattering>(scattering_properties(limits, "all"));
+}
+
 void register_mote_single_scattering(Registry& registry) {
     auto parameters = scattering_parameters();
     parameters.push_back(

@@ -24,6 +24,7 @@ namespace {
 
 class MoteVpl final : public Integrator {
   public:
+    explicit MoteVpl(const VplSettings& settings) : settings_(settings) {}
     explicit MoteVpl(const Properties& properties) {
         settings_.eye = read_eye_path_limits(properties);
         settings_.eye.max_scatterings = 1;  // from then on virtual lights take over
@@ -248,6 +249,16 @@ Plan MoteVpl::plan(const Scene& scene, const Requirements& r) const {
 }
 
 }  // namespace
+
+std::shared_ptr<const Integrator> make_drawn_vpls(const EyePathLimits& limits) {
+    VplSettings s;
+    s.eye = limits, s.eye.max_scatterings = 1;
+    s.paths = 20000, s.scattering_points = 1, s.interleaving = 4;
+    s.selection.kind = SelectionSettings::Kind::resampling, s.selection.samples = 16;
+    s.selection.resampling.candidates = 256;
+    s.selection.resampling.proposal = ResamplingSettings::Proposal::cut;
+    return std::make_shared<MoteVpl>(s);
+}
 
 void register_mote_vpl(Registry& registry) {
     auto parameters = eye_path_parameters();

@@ -80,6 +80,22 @@ TEST_CASE("what the scene chooses adds up to volpath", "[mote_layers]") {
         same_mean(parts, "single_scattering_other", whole, "single_scattering", OnFailure::nothing).passed);
 }
 
+TEST_CASE("far light by virtual lights is what mote_vpl makes of as many under their bound",
+          "[mote_layers]") {
+    const auto scene = foggy_box();
+    const auto lights =
+        render_statistics(*scene,
+                          *integrator_from("<integrator type='mote_vpl'><integer name='paths' value='20000'/>"
+                                           "<selection type='light_tree'/></integrator>"),
+                          {4, 16, 1});
+    const auto parts =
+        render_statistics(*scene, *layers_of("<string name='far_light' value='lights'/>"), {4, 16, 2});
+    for (const std::string cell : {"indirect_bounded", "multiple_scattering_bounded"}) {
+        check_cell(parts, cell, lights, cell);
+        CHECK_FALSE(same_mean(parts.scaled(1.2), cell, lights, cell, OnFailure::nothing).passed);
+    }
+}
+
 TEST_CASE("paths through fog in which a lamp stands look for its light along every ray", "[mote_layers]") {
     const auto scene_with_lamp_at = [](const char* place) {
         return scene_from(fmt::format(R"(<scene version="3.0.0"><shape type="cube"><bsdf type="null"/>

@@ -36,6 +36,7 @@ const std::map<std::string, Words> words = {
     {"mote_bdpt.heuristic", {"power", "balance", "none"}},
     {"mote_vpl_ray_bundles.techniques", {"combined", "vpls", "bundles"}},
     {"mote_vpl_ray_bundles.links", {"rays", "grid", "imperfect"}},
+    {"mote_layers.far_light", {"paths", "lights"}},
     {"mote_layers.shares", {"3", "2, 1", "1, 2, 1"}},
     {"mote_micro_rendering.light", {"direct", "vpls", "radiosity", "photons"}},
     {"mote_single_scattering.sampling", {"full", "sub_sampled"}},
