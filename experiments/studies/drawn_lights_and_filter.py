@@ -29,8 +29,9 @@ from exr import read_exr
 # Light paths of a million VPLs, bound [1/m^2], generated files.
 SCENES = {"smoke_room": (410000, 20, {"smoke": "smoke.vdb"}), "atrium": (1000000, 2, {"meshes": ""})}
 LAYERS = ["indirect_bounded", "multiple_scattering_bounded"]
-METHODS = [f"stochastic:{n}@4" for n in (4, 16, 48)] + ["stochastic:16", "stochastic:16@4!"] + [
-    f"ris:{m}:{n}:{by}@4" for m, n, by in ((256, 8, "groups"), (256, 32, "groups"), (1024, 32, "groups"), (64, 16, "cut"))]
+METHODS = [f"stochastic:{n}{how}@4" for n in (16, 48) for how in ("+learning=false", "")] + [
+    f"ris:{m}:{n}:cut@4" for m, n in ((64, 8), (128, 8), (128, 16), (256, 16), (256, 32))] + [
+    "ris:128:16:cut+learning=false@4", "ris:128:16:cut", "ris:128:16:cut@4!", "ris:256:32:groups@4", "multidimensional:0.08:1000:0.2"]
 TYPES = {"stochastic": ("stochastic_lightcuts", "samples"), "tree": ("light_tree", "samples"),
          "ris": ("resampling", "candidates", "samples", "candidates_by"), "lightcuts": ("lightcuts", "error", "max_cut", "shared_angle"),
          "multidimensional": ("multidimensional_lightcuts", "error", "max_cut", "shared_angle")}
@@ -75,12 +76,11 @@ def references(args, scene, folder):
     """Filtered, and not; stored ones where there are any."""
     kept = dict(np.load(args.keep)) if args.keep and args.keep.exists() else {}
     key = f"{scene} {args.size} {args.passes} {args.quick} {args.reference}"
-    for end in ("", "!"):
-        if key + end not in kept:
-            kept[key + end] = render(args, scene, f"stochastic:{args.reference}@4{end}", folder)[0]
-    if args.keep:
-        stored = dict(np.load(args.keep)) if args.keep.exists() else {}
-        np.savez(args.keep, **{**stored, **kept})
+    missing = [end for end in ("", "!") if key + end not in kept]
+    for end in missing:
+        kept[key + end] = render(args, scene, f"stochastic:{args.reference}@4{end}", folder)[0]
+    if args.keep and missing:
+        np.savez(args.keep, **kept)
     return {"true": kept[key], "false": kept[key + "!"]}
 
 

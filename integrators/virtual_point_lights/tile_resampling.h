@@ -66,6 +66,9 @@ class TileResampling {
 
   private:
     using Proposal = ResamplingSettings::Proposal;
+    /// Of a cut. Each looks at the lights of its group, so more of them cost less than groups do, and know
+    /// less.
+    static constexpr std::uint32_t lights_a_group = 2;
     struct Points {
         std::deque<lights::KeptReceivers> tiles;  ///< memory that is used again
         std::size_t used = 0;
@@ -100,7 +103,8 @@ class TileResampling {
     void draw(const lights::ReceiverGroups& groups, core::Rng& rng) {
         const std::uint32_t n = settings_.resampling.candidates;
         const auto drawn = settings_.resampling.proposal == Proposal::cut
-                               ? sampler_.by_cut(*by_.tree, groups, bound_, n, rng)
+                               ? sampler_.from_groups(*by_.tree, groups, bound_,
+                                                      std::max(n / lights_a_group, 1u), lights_a_group, rng)
                                : sampler_.by_tree(*by_.tree, groups, bound_, n, rng);
         candidates_.assign(drawn.begin(), drawn.end());
         sort_by_place();

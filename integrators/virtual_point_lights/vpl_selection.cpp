@@ -41,7 +41,7 @@ std::shared_ptr<Object> make_drawn(const Properties& p, Kind kind) {
     return std::make_shared<Selection>(s);
 }
 
-constexpr std::uint32_t default_candidates = 1024, default_resampled = 32;
+constexpr std::uint32_t default_candidates = 256, default_resampled = 32;
 
 std::shared_ptr<Object> make_resampling(const Properties& p, Kind kind) {
     using Proposal = ResamplingSettings::Proposal;
@@ -49,7 +49,7 @@ std::shared_ptr<Object> make_resampling(const Properties& p, Kind kind) {
     SelectionSettings s = common(p, kind);
     s.samples = std::uint32_t(p.get_int_in("samples", default_resampled, 1, 1 << 16));
     s.resampling.candidates = std::uint32_t(p.get_int_in("candidates", default_candidates, 1, 1 << 20));
-    const std::string by = p.get_choice("candidates_by", "groups", {"groups", "cut", "light_tree", "power"});
+    const std::string by = p.get_choice("candidates_by", "cut", {"cut", "groups", "light_tree", "power"});
     s.resampling.proposal = by == "power"        ? Proposal::power
                             : by == "groups"     ? Proposal::groups
                             : by == "light_tree" ? Proposal::light_tree
@@ -95,25 +95,27 @@ const std::vector<Parameter> cut_parameters{
     {"shared_angle_in_media", "float", "0", "the same of points in media"},
     most_megabytes};
 const Parameter learning{"learning", "boolean", "true",
-                         "groups of lights of which little arrived at tiles before are drawn less often: "
-                         "unbiased, within 16 x 16 pixels"};
+                         "lights that are like those of which little arrived at the tiles before, of 16 x 16 "
+                         "pixels, are drawn less often"};
 const std::vector<Parameter> drawn_parameters{
     {"samples", "integer", "64", "lights drawn for each tile of 4 x 4 pixels"}, learning, most_megabytes};
 
 const std::vector<Parameter> resampling_parameters{
-    {"candidates", "integer", "1024",
+    {"candidates", "integer", "256",
      "lights that a tile of 4 x 4 pixels looks at without shadow rays, on surfaces and along eye rays "
      "through "
      "media"},
-    {"candidates_by", "string", "groups",
-     "groups: eight by power from each group of a cut; cut: one from each group of a cut of stochastic "
-     "lightcuts; light_tree: drawn by the hierarchy; power: "
-     "by what lights send in all"},
+    {"candidates_by", "string", "cut",
+     "cut: two from each group of a cut, as stochastic lightcuts draw them, of all points of a pixel at "
+     "once; "
+     "light_tree: drawn by the hierarchy, alike; groups: eight by power from each group of a cut; power: by "
+     "what lights send in all"},
     {"samples", "integer", "32", "of them chosen by each pixel, on surfaces and in media: shadow rays"},
     {"reuse", "string", "none",
      "unbiased, biased: on surfaces what a pixel of the tile before has chosen and sees is a candidate, too; "
      "biased leaves out the weights that make up for what only one of them sees"},
-    learning,
+    {learning.name, learning.type, learning.default_value,
+     learning.description + "; with cut and light_tree"},
     most_megabytes};
 const std::vector<Parameter> matrix_parameters{
     {"rows", "integer", "256",

@@ -20,8 +20,8 @@ struct ResamplingSettings {
     /// By the tree over all lights: candidates of all points of a pixel at once, which learn.
     bool by_tree() const { return proposal == Proposal::cut || proposal == Proposal::light_tree; }
 
-    std::uint32_t candidates = 1024;
-    Proposal proposal = Proposal::groups;
+    std::uint32_t candidates = 256;
+    Proposal proposal = Proposal::cut;
     lights::SpatialReuse reuse = lights::SpatialReuse::none;
 };
 

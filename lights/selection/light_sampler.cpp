@@ -35,6 +35,26 @@ struct Shares {
     }
 };
 
+/// Do lights with a cosine, of each part, face one way? A cone of 29 degrees to both sides.
+bool face_one_way(const LightTreeNode& node) {
+    constexpr int narrow = 64;
+    for (int i = 0; i < node.count; ++i)
+        if ((node.has_cosine >> i & 1) != 0 && node.half_sine[i] > narrow) return false;
+    return true;
+}
+
+/// Do all receivers stand so far from a group, three times its diagonal, that its lights are at one distance?
+bool far_from(const LightTreeNode& node, const ReceiverGroups& receivers) {
+    constexpr float distance2 = 9.0f;
+    const Vec3 size = 255.0f * node.step, middle = node.lower + 0.5f * size;
+    const float least = distance2 * glm::dot(size, size);
+    for (const ReceiverGroups::Group& x : receivers.all()) {
+        const Vec3 gap = glm::max(glm::max(x.box.lower - middle, middle - x.box.upper), Vec3(0.0f));
+        if (glm::dot(gap, gap) < least) return false;
+    }
+    return true;
+}
+
 /// A single light cannot be parted: it stands last.
 bool less(const LightSampler::Group& a, const LightSampler::Group& b) {
     return a.is_light != b.is_light ? a.is_light : a.expected < b.expected;
@@ -108,7 +128,14 @@ void LightSampler::draw(const LightTree& tree, const ReceiverGroups& receivers, 
     for (std::size_t t = 0; t < tasks_.size(); ++t) {
         const Task task = tasks_[t];
         const LightTreeNode& node = tree.node(task.node);
-        auto expected = expected_light(LightParts(node), receivers, bound);
+        std::array<float, most_parts> expected;
+        // Where lights differ in nothing but energy, or somebody looks at each of them anyway.
+        const bool alike = !task.known && task.levels <= 0 && face_one_way(node) &&
+                           (looked_at_ || far_from(node, receivers));
+        if (alike)
+            std::copy(node.share, node.share + most_parts, expected.begin());
+        else
+            expected = expected_light(LightParts(node), receivers, bound);
         const auto plain = expected;
         LearnedShares::Means means;
         const bool known = learned(task, expected, means);
@@ -206,37 +233,52 @@ void LightSampler::make_cut(const LightTree& tree, const ReceiverGroups& receive
     }
 }
 
-/// Adds a light of the group, or a task for it.
-void LightSampler::draw_from(const LightTree& tree, const Group& group, Rng& rng) {
+/// Adds lights of the group, or tasks for them.
+void LightSampler::draw_from(const LightTree& tree, const Group& group, std::uint32_t count, Rng& rng) {
     const LightTreeNode& node = tree.node(group.node);
     const Values& values = values_[group.values];
-    double sum = 0.0, before = 0.0;
+    double sum = 0.0, reached = 0.0;
     for (int i = group.first; i < group.last; ++i) sum += double(values.light[std::size_t(i)]);
-    const double u = next_double(rng) * sum;
-    int i = group.first;
-    while (i + 1 < group.last && !(u < before + double(values.light[std::size_t(i)])))
-        before += double(values.light[std::size_t(i++)]);
-    const auto k = std::size_t(i);
-    const double p = double(values.light[k]) / sum;
-    const std::uint32_t step =
-        learned_ ? add_step({group.node, values.step, i, p / (values.energy * double(values.plain[k]))})
-                 : none;
-    if (node.leaf(i)) {
-        add_light(node.child[i], 1.0 / p, step, 1.0, values.means[k]);
-    } else {
-        tree.prefetch(node.child[i]);
-        tasks_.push_back({node.child[i], 1, step, levels_below_groups, values.means[k], values.known, p,
-                          values.energy * double(node.share[i])});
+    // As in draw().
+    const double u = next_double(rng), per_value = double(count) / sum;
+    std::uint32_t done = 0;
+    for (int i = group.first; i < group.last && done < count; ++i) {
+        const auto k = std::size_t(i);
+        reached += double(values.light[k]);
+        const auto end = i + 1 < group.last ? std::min(std::uint32_t(reached * per_value + u), count) : count;
+        if (end == done) continue;
+        const std::uint32_t own = end - done;
+        done = end;
+        const double p = double(values.light[k]) / sum;
+        const std::uint32_t step =
+            learned_ ? add_step({group.node, values.step, i, p / (values.energy * double(values.plain[k]))})
+                     : none;
+        if (node.leaf(i)) {
+            add_light(node.child[i], double(own) / (double(count) * p), step, double(count) / double(own),
+                      values.means[k]);
+        } else {
+            tree.prefetch(node.child[i]);
+            tasks_.push_back({node.child[i], own, step, count > 1 ? 0 : levels_below_groups, values.means[k],
+                              values.known, p, values.energy * double(node.share[i])});
+        }
     }
 }
 
 std::span<const WeightedVpl> LightSampler::by_cut(const LightTree& tree, const ReceiverGroups& receivers,
                                                   float bound, std::uint32_t n, Rng& rng) {
+    return from_groups(tree, receivers, bound, n, 1, rng);
+}
+
+std::span<const WeightedVpl> LightSampler::from_groups(const LightTree& tree, const ReceiverGroups& receivers,
+                                                       float bound, std::uint32_t n, std::uint32_t each,
+                                                       Rng& rng) {
     begin(receivers);
     if (tree.empty() || receivers.empty()) return drawn_;
     make_cut(tree, receivers, bound, n);
-    for (const Group& group : cut_) draw_from(tree, group, rng);
-    draw(tree, receivers, bound, 1.0, rng);
+    for (const Group& group : cut_) draw_from(tree, group, each, rng);
+    looked_at_ = each > 1;
+    draw(tree, receivers, bound, 1.0 / double(each), rng);
+    looked_at_ = false;
     return drawn_;
 }
 

@@ -38,6 +38,12 @@ class LightSampler {
     std::span<const WeightedVpl> by_cut(const LightTree& tree, const ReceiverGroups& receivers, float bound,
                                         std::uint32_t n, core::Rng& rng);
 
+    /// The same with `each` lights from each of at most n groups, where below the groups energy alone counts:
+    /// candidates for whoever looks at each of them.
+    std::span<const WeightedVpl> from_groups(const LightTree& tree, const ReceiverGroups& receivers,
+                                             float bound, std::uint32_t n, std::uint32_t each,
+                                             core::Rng& rng);
+
     /// From now on draws ask these, and learn() tells them; null: nothing is learned.
     void use(LearnedShares* learned) { learned_ = learned; }
     /// What arrived of the i-th drawn light, times its weight, at all receivers; or what would if nothing
@@ -91,7 +97,7 @@ class LightSampler {
     void make_cut(const LightTree& tree, const ReceiverGroups& receivers, float bound, std::uint32_t n);
     void add_node(const LightTree& tree, const ReceiverGroups& receivers, float bound, const Task& node);
     void add_group(const LightTree& tree, Group group);
-    void draw_from(const LightTree& tree, const Group& group, core::Rng& rng);
+    void draw_from(const LightTree& tree, const Group& group, std::uint32_t count, core::Rng& rng);
     void add_light(std::uint32_t light, double weight, std::uint32_t step, double per_weight,
                    const LearnedMean& mean);
     LearnedMean of_all() const { return learned_ ? learned_->of_all() : LearnedMean{}; }
@@ -99,6 +105,7 @@ class LightSampler {
     bool learned(const Task& task, std::array<float, most_parts>& light, LearnedShares::Means& means) const;
 
     LearnedShares* learned_ = nullptr;
+    bool looked_at_ = false;
     double per_light_ = 1.0;  ///< 1 over the weights of the receivers
     std::vector<Step> steps_;
     /// Of a drawn light: its last step, what makes its weight 1 / p, and seen().

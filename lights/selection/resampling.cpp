@@ -9,21 +9,23 @@ void Resampling::look(const GatherContext& context, std::span<const WeightedVpl>
                       std::span<const float> seen) {
     pairs_.clear(), weights_.clear(), shares_of_pairs_.clear();
     found_.assign(candidates.size(), {});
-    for (std::size_t c = 0; c < candidates.size(); ++c) {
-        if (c % 16 == 0) context.cancelled.check();
-        const WeightedVpl& light = candidates[c];
-        const Medium* medium = nullptr;
-        float there = 0.0f;
-        for (std::size_t p = 0; p < targets_.size(); ++p) {
-            const ResamplingTarget& target = targets_[p];
-            if (const Medium* own = target.medium(); own && own != medium)
-                medium = own, there = target.extinction_at(vpls_.lights[light.index].position);
+    // Point by point: even steps through all pairs give each point its share of the choices.
+    for (std::size_t p = 0; p < targets_.size(); ++p) {
+        const ResamplingTarget& target = targets_[p];
+        context.cancelled.check();
+        if (p == 0 || target.medium() != targets_[p - 1].medium()) {
+            extinctions_.clear();
+            for (const WeightedVpl& light : candidates)
+                extinctions_.push_back(target.extinction_at(vpls_.lights[light.index].position));
+        }
+        for (std::size_t c = 0; c < candidates.size(); ++c) {
             Weights& weights = weights_.emplace_back();
-            if (!target.of_light(light, there, context.scratch, weights)) {
+            if (!target.of_light(candidates[c], extinctions_[c], context.scratch, weights)) {
                 weights_.pop_back();
                 continue;
             }
-            pairs_.push_back({std::uint32_t(light.index), std::uint32_t(p), std::uint32_t(c), light.weight});
+            pairs_.push_back({std::uint32_t(candidates[c].index), std::uint32_t(p), std::uint32_t(c),
+                              candidates[c].weight});
             float sum = 0.0f;
             for (const float w : weights) sum += w;
             found_[c].light += double(sum);
@@ -87,8 +89,11 @@ void Resampling::fill(std::size_t round, ShadowPacket& packet, Samples& samples)
         s.weight = choice_.sum[i] * double(chosen.count) / double(samples_) *
                    (double(worth) * double(s.share) / double(weights_[chosen.candidate][i]));
         const ResamplingTarget& target = targets_[pair.point];
-        const ResamplingTarget::Connection c = target.of_lane(int(i), s.index);
-        s.light = c.light, s.target = c.value * target.scale(int(i)), s.value = c.value;
+        const ResamplingTarget::Connection c =
+            target.of_lane(int(i), s.index, shares_.reuse != SpatialReuse::none);
+        s.light = c.light, s.target = c.value * target.scale(int(i));
+        s.value = weights_[chosen.candidate][i] /
+                  (worth * s.share * (seen_.empty() ? 1.0f : seen_[pair.candidate]));
         s.active = c.value > 0.0f;
         if (!s.active) continue;
         packet.origin_x[i] = c.origin.x, packet.origin_y[i] = c.origin.y, packet.origin_z[i] = c.origin.z;
@@ -185,6 +190,7 @@ TileLight Resampling::gather(const GatherContext& context, std::span<KeptReceive
     targets_.clear();
     for (const KeptReceivers* p : points)
         targets_.emplace_back(vpls_, p->tile, bound_, context.scene.attenuates(), false);
+    seen_ = seen;
     look(context, candidates, seen);
     reusing_ = false;
     const TileLight light = connect(context, points, rng);
@@ -198,6 +204,7 @@ TileLight Resampling::gather_reusing(const GatherContext& context, KeptReceivers
     if (shares_.reuse == SpatialReuse::none) return gather(context, points, candidates, rng);
     targets_.clear();
     targets_.emplace_back(vpls_, tile.tile, bound_, context.scene.attenuates(), true);
+    seen_ = {};
     look(context, candidates, {});
     reusing_ = before_.any;
     if (reusing_) {

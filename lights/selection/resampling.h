@@ -88,6 +88,8 @@ class Resampling {
     std::vector<ResamplingTarget> targets_;  ///< of the points
     std::vector<Pair> pairs_;
     std::vector<Found> found_;
+    std::span<const float> seen_;
+    std::vector<float> extinctions_;                    ///< at candidates
     std::vector<std::array<core::Vec3d, width>> sums_;  ///< by point
     std::vector<Weights> weights_, shares_of_pairs_;    ///< by pair; the second only where tiles are reused
     SystematicChoice<width> choice_;

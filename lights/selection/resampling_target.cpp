@@ -55,17 +55,19 @@ bool ResamplingTarget::of_light(const WeightedVpl& light, float there, GatherScr
     return true;
 }
 
-ResamplingTarget::Connection ResamplingTarget::of_lane(int lane, std::size_t light) const {
+ResamplingTarget::Connection ResamplingTarget::of_lane(int lane, std::size_t light, bool guesses) const {
     const VirtualPointLight& vpl = vpls_->lights[light];
     if (std::int32_t(vpl.depth) > tile_->max_vpl_depth[lane]) return {};
     const LaneConnection c = lane_connection(*tile_, lane, *vpls_, vpl, 1.0f);
     const float g = c.cos_x * c.cos_y / c.distance_squared;
     Connection connection{c.value * weigh(bound_, g, c.distance_squared, c.cos_x, c.cos_y, lane), c.origin,
                           c.target, 0.0f};
+    connection.value = min_of(luminance(connection.light), largest);
+    if (!guesses) return connection;
     const auto i = std::size_t(lane);
     const float t = std::sqrt(c.distance_squared) *
                     (own_half_[i] + (medium_ ? other_half_[i] * extinction_at(vpl.position) : 0.0f));
-    connection.value = min_of(luminance(connection.light) * guessed_transmittance(t, fast_), largest);
+    connection.value = min_of(connection.value * guessed_transmittance(t, fast_), largest);
     return connection;
 }
 

@@ -29,7 +29,8 @@ class ResamplingTarget {
     bool of_light(const WeightedVpl& light, GatherScratch& scratch, Lanes& out) const {
         return of_light(light, extinction_at(vpls_->lights[light.index].position), scratch, out);
     }
-    /// The same where the extinction at the light is known (0 if medium() is null).
+    /// The same where the extinction at the light is known (0 if medium() is null). If not `exact`, that
+    /// between is looked at, too.
     bool of_light(const WeightedVpl& light, float extinction, GatherScratch& scratch, Lanes& out) const;
     const core::Medium* medium() const { return medium_; }  ///< whose extinction at lights counts
     float extinction_at(const core::Vec3& light) const;
@@ -39,7 +40,8 @@ class ResamplingTarget {
         core::Vec3 origin{0.0f}, target{0.0f};
         float value = 0.0f;
     };
-    Connection of_lane(int lane, std::size_t light) const;
+    /// Not `guesses`: without the guess of the transmittance.
+    Connection of_lane(int lane, std::size_t light, bool guesses = true) const;
 
     /// 1 over the luminance of what a lane does to all light: it makes targets of different receivers alike.
     float scale(int lane) const { return scale_[std::size_t(lane)]; }

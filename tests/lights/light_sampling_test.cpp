@@ -181,15 +181,16 @@ TEST_CASE("Learned shares have the mean of all, whatever was learned",
         else
             light[j] = sum, all += sum;
     }
-    for (const bool cut : {false, true}) {
+    for (const std::string way : {"tree", "cut", "groups"}) {
         std::array<double, 3> errors{};
         for (const int taught : {0, 1, 2}) {  // nothing, what is so, that all others are hidden
             lights::LightSampler sampler;
             lights::LearnedShares learned;
             sampler.use(&learned);
             const auto drawn = [&] {
-                return cut ? sampler.by_cut(tree, receivers, infinity, 32, draws)
-                           : sampler.by_tree(tree, receivers, infinity, 32, draws);
+                return way == "tree"  ? sampler.by_tree(tree, receivers, infinity, 32, draws)
+                       : way == "cut" ? sampler.by_cut(tree, receivers, infinity, 32, draws)
+                                      : sampler.from_groups(tree, receivers, infinity, 16, 2, draws);
             };
             for (int k = 0; taught > 0 && k < 30; ++k) {
                 const auto lights = drawn();
@@ -203,8 +204,8 @@ TEST_CASE("Learned shares have the mean of all, whatever was learned",
                 return sum;
             };
             const Mean found = mean_of(6000, draw);
-            INFO("cut " << cut << ", taught " << taught << ": " << found.mean << " +- " << found.error
-                        << " of " << all);
+            INFO(way << ", taught " << taught << ": " << found.mean << " +- " << found.error << " of "
+                     << all);
             errors[std::size_t(taught)] = found.error;
             CHECK(std::fabs(found.mean - all) < critical * found.error);
             CHECK(found.error < 0.02 * all);

@@ -143,7 +143,7 @@ TEST_CASE("Resampled lights have the mean of all", "[light_selection][resampling
             const lights::PowerCandidates power(room.hierarchy);
             lights::LightSampler sampler;
             lights::GroupCandidates groups;
-            for (const std::string by : {"power", "tree", "cut", "groups"}) {
+            for (const std::string by : {"power", "tree", "cut", "parts", "groups"}) {
                 Resampling resampling(room.vpls, bound, 3, SpatialReuse::none);
                 std::vector<WeightedVpl> drawn;
                 const auto c = compare(right, 800, [&](std::uint64_t k) {
@@ -156,12 +156,16 @@ TEST_CASE("Resampled lights have the mean of all", "[light_selection][resampling
                                     drawn);
                     } else {
                         const lights::ReceiverGroups receivers(lights::ReceiverBounds(tile.tile), room.tree);
-                        const auto lights = by == "cut"
-                                                ? sampler.by_cut(room.tree, receivers, bound, 12, rng)
+                        const auto lights = by == "cut" ? sampler.by_cut(room.tree, receivers, bound, 12, rng)
+                                            : by == "parts"
+                                                ? sampler.from_groups(room.tree, receivers, bound, 6, 3, rng)
                                                 : sampler.by_tree(room.tree, receivers, bound, 12, rng);
                         drawn.assign(lights.begin(), lights.end());
                     }
-                    return resampling.gather(room.context(), points, drawn, rng);
+                    std::vector<float> seen;  // any factors do
+                    for (std::size_t i = 0; by == "parts" && i < drawn.size(); ++i)
+                        seen.push_back(0.5f * float(1 + i % 3));
+                    return resampling.gather(room.context(), points, drawn, rng, seen);
                 });
                 INFO(by << ", bound " << bound << ": " << report(c));
                 CHECK(c.unbiased());
