@@ -14,6 +14,7 @@
 #include "integrators/eye_path/transport_layers.h"
 #include "integrators/register_parts.h"
 #include "integrators/virtual_point_lights/plan_compensation.h"
+#include "integrators/virtual_point_lights/plan_selection.h"
 #include "integrators/virtual_point_lights/vpl_estimator.h"
 #include "lights/virtual_lights/reflective_shadow_maps.h"
 
@@ -93,7 +94,7 @@ class MoteVpl final : public Integrator {
     void read_compensation(const Properties& properties);
     void check_upsampling(const Properties& properties) const;
     void check_selection() const;
-    void plan_choice_of_vpls(Plan& plan, const Scene& scene) const;
+    void plan_choice_of_vpls(Plan& plan, const Scene& scene, const Requirements& r) const;
     void plan_bound(Plan& plan, const Bounds3& surfaces) const;
     void plan_light_paths(Plan& plan, const Scene& scene) const;
     void plan_image_space(Plan& plan) const;
@@ -138,14 +139,15 @@ void MoteVpl::check_selection() const {
 }
 
 /// A light path leaves some three VPLs.
-void MoteVpl::plan_choice_of_vpls(Plan& plan, const Scene& scene) const {
+void MoteVpl::plan_choice_of_vpls(Plan& plan, const Scene& scene, const Requirements& r) const {
     const double pixels = double(scene.film().width) * double(scene.film().height);
     const double lattice = double(settings_.upsampling * settings_.upsampling);
     const int points = scene.has_media() && settings_.scattering_points > 0
                            ? 1 + std::min(settings_.scattering_points, 2)
                            : 1;
     plan_selection(plan, settings_.selection,
-                   {3.0 * double(settings_.paths), pixels * settings_.eye_samples / lattice, points});
+                   {3.0 * double(settings_.paths), pixels * settings_.eye_samples / lattice, points,
+                    settings_.filters, depth_of_media(scene), r.media_heterogeneous == 0});
 }
 
 void MoteVpl::plan_light_paths(Plan& plan, const Scene& scene) const {
@@ -216,7 +218,7 @@ Plan MoteVpl::plan(const Scene& scene, const Requirements& r) const {
                  "every surface is diffuse and every medium isotropic");
     const double pixels = double(scene.film().width) * double(scene.film().height);
     plan_visibility(plan, scene, settings_.visibility, pixels * settings_.eye_samples);
-    plan_choice_of_vpls(plan, scene);
+    plan_choice_of_vpls(plan, scene, r);
     plan_media(plan, r);
     if (r.any_media() && settings_.scattering_points == 0)
         plan.run("eye rays", "one distance by tracking per pixel and pass", "Engelhardt 2013, Eq. 10.9");

@@ -8,10 +8,9 @@
 #include "integrators/eye_path/counters.h"
 #include "integrators/eye_path/eye_ray.h"
 #include "integrators/screen_space_compensation/hidden_light.h"
+#include "integrators/virtual_point_lights/pass_selection.h"
 #include "integrators/virtual_point_lights/vpl_eye_tile.h"
-#include "integrators/virtual_point_lights/vpl_matrix.h"
 #include "integrators/virtual_point_lights/vpl_shadow_maps.h"
-#include "lights/selection/vertex_bounds.h"
 #include "lights/virtual_lights/reflective_shadow_maps.h"
 
 namespace mote::integrators {
@@ -28,7 +27,8 @@ class VplEstimator final : public Estimator {
           settings_(settings),
           bound_(settings.bound_for(scene.rays().bounds())),
           tile_size_(lane_tile(spacing())),
-          items_(scene.rays().bounds(), settings.lists.cells) {
+          items_(scene.rays().bounds(), settings.lists.cells),
+          selection_(scene, settings.selection, options, bound_) {
         settings_.eye.wanted = wanted_transport(options);
         if (settings_.compensation.enabled && std::isfinite(bound_))
             transport_.emplace(scene, bound_, settings_.compensation);
@@ -40,7 +40,6 @@ class VplEstimator final : public Estimator {
                 scene, std::size_t(settings.visibility.imperfect_map.all_points), options.seed);
         if (settings_.reflective_maps > 0)
             reflective_.emplace(scene, settings.reflective_maps, settings.paths);
-        if (settings_.selection.by_matrix()) matrix_.emplace(scene, settings_.selection.matrix, options.seed);
         if (settings_.filters) filter_.emplace(scene, options, settings_.filter);
     }
 
@@ -67,8 +66,7 @@ class VplEstimator final : public Estimator {
         vpls_ += vpls.lights.size(), paths_ += vpls.paths;
         bytes_ = std::max(bytes_, vpls.memory_bytes());
         if (settings_.visibility.imperfect) make_imperfect_maps(vpls, context);
-        make_hierarchy(vpls, context);
-        if (matrix_) make_matrix(vpls, context);
+        selection_.prepare(vpls, context, passes_of_matrix(), counters_);
         if (settings_.lists.size > 0 && !maps_) make_lists(vpls, context.cancelled);
         const int columns = (options_.width + tile_size_ - 1) / tile_size_;
         const int rows = (options_.height + tile_size_ - 1) / tile_size_;
@@ -105,11 +103,7 @@ class VplEstimator final : public Estimator {
             statistics.lookups["imperfect_shadow_maps"] += imperfect_lookups_;
         }
         if (settings_.lists.size > 0) statistics.seconds["light_lists"] = list_seconds_;
-        if (settings_.selection.by_hierarchy()) {
-            statistics.seconds["light_hierarchy"] = hierarchy_seconds_;
-            statistics.values["light_hierarchy_bytes"] = double(hierarchy_bytes_);
-        }
-        if (matrix_) matrix_->add_statistics(statistics);
+        selection_.add_statistics(statistics);
         if (cuts_.cuts > 0) {
             statistics.values["lightcuts"] = double(cuts_.cuts);
             statistics.values["lightcut_pairs"] = double(cuts_.pairs);
@@ -167,49 +161,16 @@ class VplEstimator final : public Estimator {
         counters_.add(lists_->rays(), {});
     }
 
-    void make_hierarchy(const lights::VplSet& vpls, const PassContext& context) {
-        hierarchy_.reset(), tree_.reset(), power_.reset();
-        const SelectionSettings& selection = settings_.selection;
-        if (!selection.by_hierarchy()) return;
-        const auto begin = std::chrono::steady_clock::now();
-        leaves_.emplace(vpls);
-        if (selection.cuts() || selection.by_power())
-            hierarchy_.emplace(*leaves_, hash_keys(options_.seed, context.index), selection.max_bytes);
-        else
-            tree_.emplace(*leaves_, selection.max_bytes);
-        if (selection.by_power()) power_.emplace(*hierarchy_);
-        hierarchy_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-        hierarchy_bytes_ =
-            std::max(hierarchy_bytes_, hierarchy_ ? hierarchy_->memory_bytes() : tree_->memory_bytes());
-    }
-
-    /// The first of the passes that share rows makes them, whether or not it was made in this run.
-    void make_matrix(const lights::VplSet& vpls, const PassContext& context) {
-        const std::uint32_t share = settings_.selection.shared_passes;
-        const PassContext first{context.index / share * share, context.filter, context.cancelled};
-        if (matrix_->pass() != first.index) {
-            if (first.index == context.index)
-                make_rows(vpls, first);
-            else
-                make_rows(trace_lights(first), first);
-        }
-        matrix_->use_for(context.index, vpls);
-        selects_by_matrix_ = true;
-    }
-    void make_rows(const lights::VplSet& vpls, const PassContext& first) {
-        selects_by_matrix_ = false;  // receivers are looked for without
-        const std::uint64_t key = hash_keys(options_.seed, first.index, 0x6d6174726978ull);
-        const auto pixels =
-            spread_pixels(options_.width, options_.height, eye_paths_for(settings_.selection.matrix), key);
-        std::vector<lights::MatrixReceiver> receivers;
-        with_tile(first, vpls, nullptr, [&](EyeTile<Media>& tile) {
-            receivers = find_receivers(scene_, options_, first, pixels, tile);
-        });
-        matrix_->make(first.index, vpls, receivers, bound_, key, counters_, first.cancelled);
-    }
-    SelectedBy selected_by() const {
-        return {hierarchy_ ? &*hierarchy_ : nullptr, tree_ ? &*tree_ : nullptr, power_ ? &*power_ : nullptr,
-                selects_by_matrix_ ? &matrix_->selection() : nullptr};
+    PassSelection::Passes passes_of_matrix() {
+        return {[this](const PassContext& context) { return trace_lights(context); },
+                [this](const PassContext& context, const lights::VplSet& vpls,
+                       std::span<const glm::ivec2> pixels) {
+                    std::vector<lights::MatrixReceiver> receivers;
+                    with_tile(context, vpls, nullptr, [&](EyeTile<Media>& tile) {
+                        receivers = find_receivers(scene_, options_, context, pixels, tile);
+                    });
+                    return receivers;
+                }};
     }
 
     struct Box {
@@ -230,7 +191,7 @@ class VplEstimator final : public Estimator {
             EyeShadowMaps{.lights = maps_ ? maps_->of_lights() : nullptr,
                           .receivers = store,
                           .imperfect = settings_.visibility.imperfect ? &imperfect_ : nullptr},
-            EyeLightLists{&items_, lists_ ? &*lists_ : nullptr}, selected_by());
+            EyeLightLists{&items_, lists_ ? &*lists_ : nullptr}, selection_.by());
         render(*tile);
         counters_.add(walk.rays, walk.tracking);
         const std::lock_guard lock(cost_mutex_);
@@ -369,15 +330,7 @@ class VplEstimator final : public Estimator {
     float bound_;
     int tile_size_;
     SurfaceItems items_;
-    std::optional<lights::VplLeaves> leaves_;
-    // Of this pass; none: all lights are looked at.
-    std::optional<lights::LightHierarchy> hierarchy_;  ///< for cuts
-    std::optional<lights::LightTree> tree_;            ///< to draw from
-    std::optional<lights::PowerCandidates> power_;     ///< to draw candidates from
-    std::optional<VplMatrix> matrix_;                  ///< nothing: not by a matrix
-    bool selects_by_matrix_ = false;
-    double hierarchy_seconds_ = 0.0;
-    std::size_t hierarchy_bytes_ = 0;
+    PassSelection selection_;
     lights::LightcutCounters cuts_;
     lights::ResamplingCounters resampled_;
     std::optional<VplLightLists> lists_;  ///< of this pass; nothing: all lights are looked at

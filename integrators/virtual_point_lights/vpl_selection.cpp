@@ -1,9 +1,6 @@
 #include "integrators/virtual_point_lights/vpl_selection.h"
 
-#include <fmt/format.h>
-
 #include "core/objects/properties.h"
-#include "lights/selection/light_tree.h"
 
 namespace mote::integrators {
 
@@ -12,9 +9,6 @@ using namespace core;
 namespace {
 
 using Kind = SelectionSettings::Kind;
-
-/// Nanoseconds of a shadow ray in a packet, as brute force spends them: for an estimate of its time.
-constexpr double ray_nanoseconds = 60.0;
 
 SelectionSettings common(const Properties& p, Kind kind) {
     SelectionSettings s;
@@ -135,103 +129,7 @@ const std::vector<Parameter> matrix_parameters{
 
 std::string example(const std::string& type) { return "<selection type=\"" + type + "\"/>"; }
 
-/// What is best here, and why.
-std::pair<std::string, std::string> recommended(const GatherSize& size) {
-    constexpr double few_lights = 500.0;
-    const double seconds = size.vpls * size.receivers * size.points * ray_nanoseconds * 1e-9;
-    if (size.vpls < few_lights)
-        return {"all", fmt::format("{:.0f} VPLs are fewer than a hierarchy would look at", size.vpls)};
-    const std::string why = fmt::format(
-        "about {:.2g} VPLs at {:.2g} receivers are {:.2g} shadow rays, {:.0f} s of processor time", size.vpls,
-        size.receivers * size.points, size.vpls * size.receivers * size.points, seconds);
-    if (size.points > 1)
-        return {"stochastic_lightcuts, or multidimensional_lightcuts for a picture of one pass",
-                why + "; points along a ray share a cut"};
-    return {"stochastic_lightcuts, or lightcuts for a picture of one pass", why};
-}
-
-std::string chosen_by_resampling(const SelectionSettings& s) {
-    using Proposal = ResamplingSettings::Proposal;
-    const Proposal by = s.resampling.proposal;
-    return fmt::format("resampling, {} of {} candidates {}, {} reuse", s.samples, s.resampling.candidates,
-                       by == Proposal::cut      ? "from a cut"
-                       : by == Proposal::groups ? "from the groups of a cut"
-                       : by == Proposal::power  ? "drawn by power"
-                                                : "drawn by the light hierarchy",
-                       s.resampling.reuse == lights::SpatialReuse::none     ? "without"
-                       : s.resampling.reuse == lights::SpatialReuse::biased ? "with biased"
-                                                                            : "with unbiased");
-}
-
-std::string why_right_or_not(const SelectionSettings& s) {
-    if (s.cuts()) return "biased by at most the threshold for each group; one cut a tile of 4 x 4";
-    if (s.resamples() && s.resampling.reuse == lights::SpatialReuse::biased)
-        return "biased: too dark where one pixel of a pair sees or faces a light and the other does not, "
-               "since "
-               "weights 1/M of reuse leave visibility and support of the neighbour out";
-    if (s.resamples())
-        return "unbiased; tiles of 4 x 4 look at the same candidates, each pixel chooses its own";
-    return s.selects() ? "unbiased; the same lights for a tile of 4 x 4"
-                       : "exact, time grows with the number of VPLs";
-}
-
-std::string chosen(const SelectionSettings& s) {
-    const std::string cut =
-        fmt::format("threshold {:g} %, at most {} groups", 100.0 * double(s.cut.threshold), s.cut.max_cut);
-    switch (s.kind) {
-        case Kind::all:
-            return "all VPLs at every receiver";
-        case Kind::lightcuts:
-            return "lightcuts, " + cut;
-        case Kind::multidimensional:
-            return "multidimensional lightcuts, " + cut;
-        case Kind::stochastic:
-            return fmt::format("stochastic lightcuts, {} lights a tile", s.samples);
-        case Kind::light_tree:
-            return fmt::format("{} lights a tile, drawn by the light hierarchy", s.samples);
-        case Kind::resampling:
-            return chosen_by_resampling(s);
-        case Kind::matrix:
-            return fmt::format(
-                "matrix row-column sampling, {} rows, {} columns for each of {} slices of receivers",
-                s.matrix.rows_a_slice() * s.matrix.slices, s.matrix.columns, s.matrix.slices);
-    }
-    return "";
-}
-
-void plan_matrix(Plan& plan, const lights::MatrixSettings& m, const GatherSize& size) {
-    using Rows = lights::RowVisibilitySettings::Kind;
-    const double rows = double(m.rows_a_slice() * m.slices);
-    plan.run("memory of the matrix",
-             fmt::format("{:.1f} MB", double(m.bytes(std::size_t(size.vpls), 1)) * 1e-6),
-             fmt::format("{:.0f} bytes a VPL, besides its own; one slice after the other",
-                         double(m.bytes(1000, 1)) * 1e-3));
-    plan.run("rows of the matrix",
-             m.visibility.kind == Rows::rays          ? "by rays"
-             : m.visibility.kind == Rows::shadow_maps ? "by volumetric shadow maps of receivers"
-                                                      : "by imperfect shadow maps of receivers",
-             fmt::format(
-                 "{:.2g} pairs a pass, of receivers on surfaces and in media; a picture's gather has {:.2g}",
-                 rows * size.vpls, size.receivers * size.points * double(m.columns)));
-}
-
 }  // namespace
-
-void plan_selection(Plan& plan, const SelectionSettings& s, const GatherSize& size) {
-    plan.run("selection", chosen(s), why_right_or_not(s));
-    const auto [best, why] = recommended(size);
-    plan.run("selection for this scene", best, why);
-    if (s.resamples() && s.resampling.reuse == lights::SpatialReuse::biased)
-        plan.miss("light at the ends of shadows", "reuse with weights 1/M takes a part of it",
-                  "asked for: reuse 'unbiased' keeps it, and costs a second shadow ray for what arrives");
-    if (s.by_matrix()) plan_matrix(plan, s.matrix, size);
-    if (!s.by_hierarchy()) return;
-    const std::size_t bytes =
-        s.cuts() || s.by_power() ? lights::LightHierarchy::bytes_a_light : lights::LightTree::bytes_a_light;
-    plan.run("memory of the light hierarchy", fmt::format("{:.1f} MB", size.vpls * double(bytes) * 1e-6),
-             fmt::format("at most {} bytes a VPL, besides its own{}", bytes,
-                         s.by_power() ? "; what draws by power takes 12 more" : ""));
-}
 
 void register_selection(Registry& registry) {
     const auto add = [&](const std::string& type, const std::string& summary,

@@ -3,8 +3,6 @@
 
 #include "core/objects/error.h"
 #include "core/objects/registry.h"
-#include "core/render/plan.h"
-#include "core/scene/requirements.h"
 #include "lights/selection/lightcut.h"
 #include "lights/selection/matrix_selection.h"
 #include "lights/selection/spatial_reuse.h"
@@ -73,16 +71,5 @@ class Selection : public core::Object {
 
 /// all, lightcuts, multidimensional_lightcuts, stochastic_lightcuts, light_tree, matrix, resampling.
 void register_selection(core::Registry& registry);
-
-/// What a pass is about to gather, for the plan.
-struct GatherSize {
-    double vpls = 0.0;       ///< about
-    double receivers = 0.0;  ///< of a picture, about
-    int points = 1;          ///< a pixel, on surfaces and in media
-};
-
-/// What runs, and what would be better here and why: brute force costs lights times receivers, a hierarchy
-/// some hundred lights a receiver.
-void plan_selection(core::Plan& plan, const SelectionSettings& settings, const GatherSize& size);
 
 }  // namespace mote::integrators

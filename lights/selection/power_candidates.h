@@ -16,7 +16,7 @@ namespace mote::lights {
 
 class PowerCandidates {
   public:
-    /// Keeps a reference. 12 bytes a light.
+    /// Keeps a reference.
     explicit PowerCandidates(const LightHierarchy& lights);
 
     /// Appends n lights, each with 1 / (n p); a light that is drawn more than once comes once, and counts so
@@ -31,6 +31,7 @@ class PowerCandidates {
     double probability(std::uint32_t place) const {
         return (sums_[place] - (place > 0 ? sums_[place - 1] : 0.0)) / sums_.back();
     }
+    static constexpr std::size_t bytes_a_light = sizeof(double) + sizeof(std::uint32_t);
     std::size_t memory_bytes() const {
         return sums_.size() * sizeof(double) + begins_.size() * sizeof(std::uint32_t);
     }

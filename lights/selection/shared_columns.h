@@ -20,6 +20,13 @@ class SharedColumns {
     /// For others. On the threads of TBB; the same for any number of them.
     MatrixSelection for_lights(const VplSet& vpls) const;
     std::size_t memory_bytes() const;
+    /// At most, with those of others and while they are found.
+    static constexpr std::size_t bytes(std::size_t lights, std::size_t slices) {
+        constexpr std::size_t a_slice = sizeof(std::uint32_t) + sizeof(double);  // found, and of others
+        constexpr std::size_t at_work = sizeof(std::uint32_t) + 2 * sizeof(float);
+        constexpr std::size_t in_tree = sizeof(Place) + 5 * sizeof(std::uint32_t);
+        return lights * (slices * (2 * a_slice + at_work) + in_tree + 3 * sizeof(float));
+    }
 
   private:
     std::size_t nearest(const Place& place) const;

@@ -4,7 +4,6 @@
 #include "core/objects/error.h"
 #include "core/render/pass_runner.h"
 #include "core/render/render_driver.h"
-#include "core/scene/requirements.h"
 #include "tests/integrators/test_scenes.h"
 #include "tests/support/catch.h"
 #include "tests/support/render_statistics.h"
@@ -220,27 +219,4 @@ TEST_CASE("What does not go together with a selection is refused by name", "[vpl
         const std::atomic<bool> cancelled = false;
         CHECK_THROWS_AS(runner.run_pass(cancelled), core::InputError);
     }
-}
-
-TEST_CASE("Plans say which selection is best, and why", "[vpl][selection][plan]") {
-    const auto plan_of = [&](const std::string& integrator, const std::string& medium) {
-        const auto scene = scene_from(box(grey, medium), 64);
-        return integrator_from(integrator)->plan(*scene, core::find_requirements(*scene)).to_text();
-    };
-    using Catch::Contains;
-    CHECK_THAT(plan_of(vpl("", "", 20), ""),
-               Contains("all VPLs at every receiver") && Contains("60 VPLs are fewer"));
-    CHECK_THAT(plan_of(vpl("", "", 300000), ""),
-               Contains("stochastic_lightcuts, or lightcuts") && Contains("shadow rays"));
-    CHECK_THAT(plan_of(vpl(cut("lightcuts", 0.02), "", 300000), fog("0.8, 1.0, 1.3", "")),
-               Contains("multidimensional_lightcuts") && Contains("threshold 2 %") && Contains("MB"));
-    CHECK_THAT(
-        plan_of(vpl(resampled("power", "unbiased"), "", 300000), ""),
-        Contains("3 of 24 candidates drawn by power, with unbiased reuse") && !Contains("biased: too dark"));
-    CHECK_THAT(plan_of(vpl(resampled("cut", "biased"), "", 300000), ""),
-               Contains("biased: too dark") && Contains("1/M"));
-    CHECK_THAT(plan_of(vpl(matrix(200, 100, 4, "shadow_map"), "", 300000), fog("0.8, 1.0, 1.3", "")),
-               Contains("256 rows, 100 columns for each of 4 slices") &&
-                   Contains("shadow maps of receivers") && Contains("on surfaces and in media") &&
-                   Contains("MB"));
 }

@@ -1,0 +1,27 @@
+// What a plan says about the selection of virtual point lights: what runs, what would be better, and why.
+#pragma once
+
+#include "core/render/plan.h"
+#include "core/scene/requirements.h"
+#include "integrators/virtual_point_lights/vpl_selection.h"
+
+namespace mote::integrators {
+
+/// What a pass is about to gather.
+struct GatherSize {
+    double vpls = 0.0;        ///< about
+    double receivers = 0.0;   ///< of a picture, about
+    int points = 1;           ///< a pixel, on surfaces and in media
+    bool filtered = false;    ///< the picture, in image space
+    double depth = 0.0;       ///< optical, across media that scatter; 0: there are none
+    bool homogeneous = true;  ///< all of those
+};
+
+/// The mean optical depth of lines that cross media that scatter, side by side and along each axis.
+double depth_of_media(const core::Scene& scene);
+
+/// The choice by docs/many_lights.md: brute force costs lights times receivers; the others differ in what
+/// they know before they trace a ray, and that is worth most where most lights are hidden.
+void plan_selection(core::Plan& plan, const SelectionSettings& settings, const GatherSize& size);
+
+}  // namespace mote::integrators

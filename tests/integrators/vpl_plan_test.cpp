@@ -1,0 +1,177 @@
+// What plans of `mote_vpl` say about the selection of virtual point lights: which is best, why, and what it
+// takes; and that a pass refuses what takes more than it may, to the byte.
+#include "core/objects/error.h"
+#include "core/render/pass_runner.h"
+#include "core/scene/requirements.h"
+#include "integrators/virtual_point_lights/plan_selection.h"
+#include "integrators/virtual_point_lights/selection_memory.h"
+#include "tests/integrators/test_scenes.h"
+#include "tests/support/catch.h"
+#include "tests/support/render_statistics.h"
+#include "tests/support/temporary_folder.h"
+
+using namespace mote;
+using namespace mote::tests;
+using Catch::Contains;
+using integrators::SelectionSettings;
+using Kind = SelectionSettings::Kind;
+
+namespace {
+
+std::string vpl(int paths, const std::string& settings = "") {
+    return fmt::format(R"(<integrator type="mote_vpl"><integer name="paths" value="{}"/>
+        <float name="bound" value="1"/>{}</integrator>)",
+                       paths, settings);
+}
+
+const core::PlanEntry* entry_of(const core::Plan& plan, const std::string& topic) {
+    for (const core::PlanEntry& e : plan.runs)
+        if (e.topic == topic) return &e;
+    return nullptr;
+}
+
+core::Plan plan_of(const core::Scene& scene, const std::string& integrator) {
+    return integrator_from(integrator)->plan(scene, core::find_requirements(scene));
+}
+
+/// Choice and reason of an entry; "" where there is none.
+std::string said(const core::Plan& plan, const std::string& topic) {
+    const core::PlanEntry* entry = entry_of(plan, topic);
+    return entry ? entry->choice + ": " + entry->reason : "";
+}
+
+std::string advice(const core::Scene& scene, int paths, const std::string& settings = "") {
+    return said(plan_of(scene, vpl(paths, settings)), "selection for this scene");
+}
+
+}  // namespace
+
+TEST_CASE("Plans choose a selection by lights, receivers and media, and say why", "[vpl][selection][plan]") {
+    const auto surfaces = scene_from(box(grey, ""), 64);
+    CHECK_THAT(advice(*surfaces, 20), Contains("all: 60 VPLs are fewer"));
+    CHECK_THAT(advice(*surfaces, 300), Contains("all: ") && Contains("saves less than it errs"));
+    CHECK_THAT(advice(*surfaces, 2000),
+               Contains("stochastic_lightcuts, or lightcuts") && Contains("shadow rays"));
+    CHECK_THAT(advice(*surfaces, 20000), Contains("matrix where shadows decide") && Contains("hidden"));
+    CHECK_THAT(advice(*surfaces, 300000), Contains("resampling, 64 of 1024") && Contains("hide most lights"));
+    // A larger picture of the same lights is worth more than brute force.
+    CHECK_THAT(advice(*scene_from(box(grey, ""), 300), 300), Contains("stochastic_lightcuts"));
+    for (const int paths : {2000, 20000, 300000})
+        CHECK_THAT(advice(*surfaces, paths, R"(<boolean name="filter" value="true"/>)"),
+                   Contains("with interleaving 4") && Contains("filter takes out"));
+    CHECK(said(plan_of(*surfaces, vpl(2000)), "integrator for this medium").empty());
+
+    // A box of 2 x 2 x 1.3 metres: haze leaves the choice to surfaces, fog takes it.
+    const auto haze = scene_from(box(grey, fog("0.1, 0.1, 0.1", "")), 64);
+    CHECK(integrators::depth_of_media(*haze) == Approx(0.1 * 5.3 / 3.0));
+    CHECK_THAT(advice(*haze, 2000), Contains("or multidimensional_lightcuts for a picture of one pass"));
+    CHECK_THAT(advice(*haze, 20000), Contains("matrix where shadows decide"));
+    CHECK(said(plan_of(*haze, vpl(2000)), "integrator for this medium").empty());
+    const auto foggy = scene_from(box(grey, fog("1, 2, 3", "")), 64);
+    CHECK(integrators::depth_of_media(*foggy) == Approx(2.0 * 5.3 / 3.0));
+    for (const int paths : {2000, 20000, 300000})
+        CHECK_THAT(advice(*foggy, paths), Contains("multidimensional_lightcuts, with shared_angle") &&
+                                              Contains("optical depth 3.5"));
+    CHECK_THAT(said(plan_of(*foggy, vpl(2000)), "integrator for this medium"),
+               Contains("mote_ray_lights") && Contains("in homogeneous fog"));
+    const TemporaryFolder folder;
+    const auto smoky = scene_from(box(grey, smoke_medium(folder.file("smoke.vol"))), 64);
+    CHECK_THAT(said(plan_of(*smoky, vpl(2000)), "integrator for this medium"),
+               Contains("mote_ray_lights") && Contains("in smoke"));
+    // What only absorbs is not lit.
+    const auto dark = scene_from(box(grey, R"(<medium type="homogeneous" name="interior">
+        <float name="sigma_t" value="3"/><float name="albedo" value="0"/></medium>)"),
+                                 64);
+    CHECK(integrators::depth_of_media(*dark) == 0.0);
+}
+
+TEST_CASE("Plans say what is selected, and what it takes", "[vpl][selection][plan]") {
+    const auto scene = scene_from(box(grey, fog("0.8, 1.0, 1.3", "")), 64);
+    const auto plan_text = [&](const std::string& selection, int paths = 100000) {
+        const core::Plan plan = plan_of(*scene, vpl(paths, selection));
+        std::string text;
+        for (const auto& entries : {plan.runs, plan.missing})
+            for (const core::PlanEntry& e : entries)
+                text += e.topic + ": " + e.choice + ": " + e.reason + "\n";
+        return text;
+    };
+    CHECK_THAT(plan_text(""), Contains("all VPLs at every receiver") && !Contains("a VPL while it is built"));
+    CHECK_THAT(plan_text(R"(<selection type="lightcuts"/>)"),
+               Contains("lightcuts, threshold 2 %") && Contains("28.8 MB") && Contains("at most 96 bytes"));
+    CHECK_THAT(plan_text(R"(<selection type="light_tree"/>)"), Contains("18.0 MB") && Contains("at most 60"));
+    const std::string by = R"(<string name="candidates_by" value=")",
+                      reuse = R"("/><string name="reuse" value=")";
+    CHECK_THAT(
+        plan_text(R"(<selection type="resampling">)" + by + "power" + reuse + R"(unbiased"/></selection>)"),
+        Contains("32 of 1024 candidates drawn by power, with unbiased reuse") && Contains("at most 108") &&
+            Contains("12 for what draws by power") && !Contains("biased: too dark"));
+    CHECK_THAT(
+        plan_text(R"(<selection type="resampling">)" + by + "cut" + reuse + R"(biased"/></selection>)"),
+        Contains("biased: too dark") && Contains("1/M") && Contains("at most 60"));
+    const std::string matrix = R"(<selection type="matrix"><integer name="rows" value="200"/>
+        <integer name="columns" value="100"/></selection>)";
+    CHECK_THAT(plan_text(matrix), Contains("256 rows, 100 columns for each of 4 slices") &&
+                                      Contains("shadow maps of receivers") &&
+                                      Contains("on surfaces and in media") && Contains("at most 336 bytes") &&
+                                      !Contains("refused"));
+    CHECK_THAT(plan_text(matrix, 1 << 23), Contains("more than the 4096 MB of max_megabytes, refused"));
+}
+
+TEST_CASE("Selections are refused where they take more than max_megabytes, to the byte",
+          "[vpl][selection][extremes]") {
+    const auto scene = scene_from(box(grey, ""), 8);
+    const auto render = [&](const std::string& type, const std::string& settings, double bytes,
+                            core::Statistics& statistics) {
+        const auto method = integrator_from(vpl(
+            500,
+            fmt::format(R"(<selection type="{}">{}<float name="max_megabytes" value="{:.9f}"/></selection>)",
+                        type, settings, 1e-6 * bytes)));
+        core::Film film(8, 8, method->layers(*scene));
+        core::PassRunner runner(*scene, *method, 3, film);
+        const std::atomic<bool> cancelled = false;
+        runner.run_pass(cancelled);
+        runner.estimator().add_statistics(statistics);
+    };
+    struct Case {
+        std::string type, settings;
+        std::size_t bytes_a_light;
+        std::string kept;
+    };
+    for (const Case& c :
+         {Case{"lightcuts", "", 96, "light_hierarchy_bytes"},
+          Case{"light_tree", "", 60, "light_hierarchy_bytes"},
+          Case{"stochastic_lightcuts", "", 60, "light_hierarchy_bytes"},
+          Case{"resampling", "", 108, "light_hierarchy_bytes"},
+          Case{"resampling", R"(<string name="candidates_by" value="cut"/>)", 60, "light_hierarchy_bytes"},
+          Case{"matrix", R"(<integer name="rows" value="64"/>)", 4 * 16 + 32 + 4 * 12, "matrix_bytes"},
+          Case{"matrix", R"(<integer name="shared_passes" value="3"/>)", 336, "matrix_bytes"},
+          Case{"matrix", R"(<integer name="slices" value="20"/><integer name="shared_passes" value="3"/>)",
+               20 * 36 + 56, "matrix_bytes"}}) {
+        INFO(c.type << " " << c.settings);
+        core::Statistics statistics;
+        render(c.type, c.settings, 1e8, statistics);
+        const double bytes = double(c.bytes_a_light) * statistics.values.at("vpls");
+        // What stays is less than what was counted, and counted closely.
+        CHECK(statistics.values.at(c.kept) <= bytes);
+        CHECK(statistics.values.at(c.kept) > 0.15 * bytes);
+        core::Statistics again;
+        CHECK_NOTHROW(render(c.type, c.settings, bytes + 0.5, again));
+        CHECK_THROWS_AS(render(c.type, c.settings, bytes - 0.5, again), core::InputError);
+    }
+}
+
+TEST_CASE("A selection from 2^24 lights is within its memory, or refused before it is asked for",
+          "[vpl][selection][extremes]") {
+    SelectionSettings s;
+    constexpr std::size_t lights = std::size_t(1) << 24;
+    for (const Kind kind : {Kind::all, Kind::lightcuts, Kind::light_tree, Kind::resampling}) {
+        s.kind = kind;
+        CHECK_NOTHROW(check_selection_memory(s, lights));
+        CHECK((kind == Kind::all || integrators::selection_bytes(s, lights) < 150 * lights));
+    }
+    s.kind = Kind::matrix;
+    CHECK_THROWS_WITH(check_selection_memory(s, lights),
+                      Contains("16777216 virtual point lights takes 5637 MB"));
+    s.matrix.rows = 64;
+    CHECK_NOTHROW(check_selection_memory(s, lights));
+}
