@@ -17,17 +17,17 @@ PassSelection::PassSelection(const Scene& scene, const SelectionSettings& settin
 void PassSelection::prepare(const lights::VplSet& vpls, const PassContext& context, const Passes& passes,
                             SharedCounters& counters) {
     check_selection_memory(settings_, vpls.lights.size());
-    make_hierarchy(vpls, context);
+    make_hierarchy(vpls);
     if (matrix_) make_matrix(vpls, context, passes, counters);
 }
 
-void PassSelection::make_hierarchy(const lights::VplSet& vpls, const PassContext& context) {
+void PassSelection::make_hierarchy(const lights::VplSet& vpls) {
     hierarchy_.reset(), tree_.reset(), power_.reset();
     if (!settings_.by_hierarchy()) return;
     const auto begin = std::chrono::steady_clock::now();
     leaves_.emplace(vpls);
     if (settings_.cuts() || settings_.by_power())
-        hierarchy_.emplace(*leaves_, hash_keys(options_.seed, context.index), settings_.max_bytes);
+        hierarchy_.emplace(*leaves_, settings_.max_bytes);
     else
         tree_.emplace(*leaves_, settings_.max_bytes);
     if (settings_.by_power()) power_.emplace(*hierarchy_);

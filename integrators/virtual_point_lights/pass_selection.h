@@ -32,7 +32,7 @@ class PassSelection {
     void add_statistics(core::Statistics& statistics) const;
 
   private:
-    void make_hierarchy(const lights::VplSet& vpls, const core::PassContext& context);
+    void make_hierarchy(const lights::VplSet& vpls);
     void make_matrix(const lights::VplSet& vpls, const core::PassContext& context, const Passes& passes,
                      SharedCounters& counters);
     void make_rows(const lights::VplSet& vpls, const core::PassContext& first, const Passes& passes,

@@ -4,7 +4,6 @@
 
 #include "core/objects/error.h"
 #include "lights/selection/light_hierarchy.h"
-#include "lights/selection/light_partition.h"
 #include "lights/selection/light_tree.h"
 #include "lights/selection/power_candidates.h"
 #include "lights/selection/shared_columns.h"
@@ -23,7 +22,7 @@ std::size_t selection_bytes(const SelectionSettings& s, std::size_t lights) {
     if (!s.by_hierarchy()) return 0;
     if (!s.cuts() && !s.by_power())
         return lights * (lights::LightTree::bytes_a_light + lights::LightTree::building_bytes_a_light);
-    return lights * (lights::LightHierarchy::bytes_a_light + sizeof(lights::LightItem) +
+    return lights * (lights::LightHierarchy::bytes_a_light + lights::LightHierarchy::building_bytes_a_light +
                      (s.by_power() ? lights::PowerCandidates::bytes_a_light : 0));
 }
 

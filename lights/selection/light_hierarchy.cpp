@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "core/math/random.h"
 #include "core/objects/error.h"
 #include "lights/selection/light_partition.h"
 
@@ -17,59 +16,78 @@ namespace {
 
 constexpr std::uint32_t parallel_from = 4096;  // lights
 
+/// Of a group of n lights, which has n - 1 groups of two or more in it: by their numbers in a walk.
+struct Split {
+    std::uint32_t left_count, left_nodes;
+};
+
+template <typename Left, typename Right>
+void do_both(std::uint32_t lights, const Left& left, const Right& right) {
+    if (lights < parallel_from)
+        left(), right();
+    else
+        tbb::parallel_invoke(left, right);
+}
+
 class Builder {
   public:
-    Builder(const LightLeaves& leaves, std::uint64_t seed, LightPartition& partition,
-            std::vector<LightNode>& nodes)
-        : leaves_(leaves), seed_(seed), partition_(partition), nodes_(nodes) {}
+    Builder(const LightLeaves& leaves, LightPartition& partition)
+        : leaves_(leaves), partition_(partition), splits_(partition.size() - 1) {}
 
-    /// Puts the items of a group in order and writes its nodes.
-    LightNode build(const LightCluster& c) {
-        if (c.single()) {
-            LightNode leaf = leaves_.leaf(partition_.item(c.first).light);
-            leaf.representative = c.first;
-            return leaf;
-        }
-        const std::uint32_t n = partition_.split(c.first, c.count);
-        const LightCluster left{c.node + 1, c.first, n}, right{c.node + n, c.first + n, c.count - n};
+    /// Puts the lights of a group in order, whose number in the walk is given. Returns how many nodes it has.
+    std::uint32_t split(std::uint32_t number, std::uint32_t first, std::uint32_t count) {
+        if (count == 1) return 0;
+        const std::uint32_t n = partition_.split(first, count);
+        std::uint32_t left = 0, right = 0;
+        do_both(
+            count, [&] { left = split(number + 1, first, n); },
+            [&] { right = split(number + n, first + n, count - n); });
+        splits_[number] = {n, left};
+        return LightCluster{0, first, count}.has_node() ? 1 + left + right : 0;
+    }
+
+    /// Writes the nodes of a group.
+    LightNode build(std::uint32_t number, const LightCluster& c, std::vector<LightNode>& nodes) const {
+        if (c.single()) return leaves_.leaf(partition_.item(c.first).light);
+        const auto [n, left_nodes] = splits_[number];
         LightNode a, b;
-        if (c.count < parallel_from)
-            a = build(left), b = build(right);
-        else
-            tbb::parallel_invoke([&] { a = build(left); }, [&] { b = build(right); });
-        LightNode& node = nodes_[c.node];
-        node = united(a, b);
-        node.left_count = n;
-        const float u = Rng(hash_keys(seed_, c.node, c.count)).next_float();
-        node.representative = double(u) * (double(a.weight()) + double(b.weight())) < double(a.weight())
-                                  ? a.representative
-                                  : b.representative;
+        do_both(
+            c.count,
+            [&] {
+                a = build(number + 1, {c.node + 1, c.first, n}, nodes);
+            },
+            [&] {
+                b = build(number + n, {c.node + 1 + left_nodes, c.first + n, c.count - n}, nodes);
+            });
+        LightNode node = united(a, b);
+        node.left_count = n, node.left_nodes = left_nodes;
+        if (c.has_node()) nodes[c.node] = node;
         return node;
     }
 
   private:
     const LightLeaves& leaves_;
-    std::uint64_t seed_;
     LightPartition& partition_;
-    std::vector<LightNode>& nodes_;
+    std::vector<Split> splits_;
 };
 
 }  // namespace
 
-LightHierarchy::LightHierarchy(const LightLeaves& leaves, std::uint64_t seed, std::size_t max_bytes)
-    : leaves_(&leaves) {
-    const std::size_t needed = leaves.size() * (bytes_a_light + sizeof(LightItem));
+LightHierarchy::LightHierarchy(const LightLeaves& leaves, std::size_t max_bytes) : leaves_(&leaves) {
+    const std::size_t needed = leaves.size() * (bytes_a_light + building_bytes_a_light);
     if (leaves.size() > (std::size_t(1) << 31) || needed > max_bytes)
         throw InputError(fmt::format(
             "a hierarchy over {} lights takes {:.3g} MB while it is built, and may take {:.3g} MB",
             leaves.size(), double(needed) * 1e-6, double(max_bytes) * 1e-6));
     LightPartition partition(leaves);
     if (partition.size() == 0) return;
-    nodes_.resize(partition.size() - 1);
-    Builder(leaves, seed, partition, nodes_).build({0, 0, partition.size()});
+    Builder builder(leaves, partition);
+    nodes_.resize(builder.split(0, 0, partition.size()));
+    builder.build(0, {0, 0, partition.size()}, nodes_);
     order_.resize(partition.size()), weights_.resize(partition.size());
     for (std::uint32_t i = 0; i < partition.size(); ++i)
         order_[i] = partition.item(i).light, weights_[i] = partition.item(i).weight;
+    sums_.reserve(partition.size() / block + 1);
     double sum = 0.0;
     for (std::uint32_t i = 0; i < partition.size(); ++i) {
         if (i % block == 0) sums_.push_back(sum);

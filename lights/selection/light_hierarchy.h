@@ -3,9 +3,10 @@
 //
 // Groups are parted by LightPartition.
 //
-// One flat array in the order of a walk: a group of n lights has its node, then the n_l - 1 nodes of its
-// left part, then the n_r - 1 nodes of its right part. So every group knows its place, and threads build
-// disjoint parts. The bits do not depend on the number of threads.
+// One flat array in the order of a walk: a group of three lights or more has its node, then the nodes of its
+// left part, then those of its right part. Of one light or two the leaves say it, which saves a third of the
+// nodes. So every group knows its place, and threads build disjoint parts. The bits do not depend on the
+// number of threads.
 #pragma once
 
 #include <span>
@@ -19,39 +20,40 @@ namespace mote::lights {
 struct LightCluster {
     std::uint32_t node = 0, first = 0, count = 0;
     bool single() const { return count == 1; }
+    bool has_node() const { return count > 2; }
 };
 
 class LightHierarchy {
   public:
     LightHierarchy() = default;
-    /// Lights of energy 0 are left out. `seed` draws the representatives. `max_bytes` is for memory_bytes()
-    /// of all lights and what building takes besides; throws core::InputError where it does not suffice, and
-    /// for energies that are negative or not finite. Keeps a reference to the leaves.
-    explicit LightHierarchy(const LightLeaves& leaves, std::uint64_t seed = 0,
-                            std::size_t max_bytes = std::size_t(-1));
+    /// Lights of energy 0 are left out. `max_bytes` is for memory_bytes() of all lights and what building
+    /// takes besides; throws core::InputError where it does not suffice, and for energies that are negative
+    /// or not finite. Keeps a reference to the leaves.
+    explicit LightHierarchy(const LightLeaves& leaves, std::size_t max_bytes = std::size_t(-1));
 
     bool empty() const { return order_.empty(); }
     std::size_t size() const { return order_.size(); }  ///< lights of energy above 0
     LightCluster root() const { return {0, 0, std::uint32_t(order_.size())}; }
     /// Precondition: !single().
     LightCluster left(const LightCluster& c) const {
+        if (!c.has_node()) return {0, c.first, 1};
         return {c.node + 1, c.first, nodes_[c.node].left_count};
     }
     LightCluster right(const LightCluster& c) const {
-        const std::uint32_t n = nodes_[c.node].left_count;
-        return {c.node + n, c.first + n, c.count - n};
+        if (!c.has_node()) return {0, c.first + 1, 1};
+        const LightNode& node = nodes_[c.node];
+        return {c.node + 1 + node.left_nodes, c.first + node.left_count, c.count - node.left_count};
     }
-    /// What is known of a group. Of a single light its leaves say it.
+    /// What is known of a group.
     LightNode node(const LightCluster& c) const {
-        return c.single() ? leaves_->leaf(order_[c.first]) : nodes_[c.node];
+        if (c.has_node()) return nodes_[c.node];
+        const LightNode first = leaves_->leaf(order_[c.first]);
+        return c.single() ? first : united(first, leaves_->leaf(order_[c.first + 1]));
     }
     /// average(E) of a group.
     float weight(const LightCluster& c) const {
-        return c.single() ? weights_[c.first] : nodes_[c.node].weight();
-    }
-    /// The light that stands for a group: that of its left or of its right part. Its place in the order.
-    std::uint32_t representative(const LightCluster& c) const {
-        return c.single() ? c.first : nodes_[c.node].representative;
+        if (c.has_node()) return nodes_[c.node].weight();
+        return c.single() ? weights_[c.first] : weights_[c.first] + weights_[c.first + 1];
     }
     /// The light at a place in the order, and its average(E).
     std::uint32_t light_at(std::uint32_t place) const { return order_[place]; }
@@ -65,15 +67,15 @@ class LightHierarchy {
 
     /// Says that a group's node will be looked at soon, and maybe its left part.
     void prefetch_node(const LightCluster& c) const {
-        if (c.single()) return;
+        if (!c.has_node()) return;
         __builtin_prefetch(nodes_.data() + c.node);
         __builtin_prefetch(nodes_.data() + c.node + 1);
     }
     /// Says that the two parts of a group, whose own node is at hand, will be looked at soon.
     void prefetch(const LightCluster& c) const {
-        if (c.count < 3) return;
+        if (!c.has_node()) return;
         __builtin_prefetch(nodes_.data() + c.node + 1);
-        __builtin_prefetch(nodes_.data() + c.node + nodes_[c.node].left_count);
+        __builtin_prefetch(nodes_.data() + c.node + 1 + nodes_[c.node].left_nodes);
     }
     /// The lights of a group.
     std::span<const std::uint32_t> lights(const LightCluster& c) const {
@@ -83,11 +85,14 @@ class LightHierarchy {
         return nodes_.size() * sizeof(LightNode) + order_.size() * (sizeof(std::uint32_t) + sizeof(float)) +
                sums_.size() * sizeof(double);
     }
-    static constexpr std::size_t bytes_a_light = sizeof(LightNode) + sizeof(std::uint32_t) + sizeof(float);
+    /// At most; usually two thirds as many nodes.
+    static constexpr std::size_t bytes_a_light =
+        sizeof(LightNode) + sizeof(std::uint32_t) + sizeof(float) + 1;
+    static constexpr std::size_t building_bytes_a_light = 32;  ///< besides, while it is built
 
   private:
     const LightLeaves* leaves_ = nullptr;
-    std::vector<LightNode> nodes_;      ///< inner ones
+    std::vector<LightNode> nodes_;      ///< of groups of three or more
     std::vector<std::uint32_t> order_;  ///< lights
     std::vector<float> weights_;        ///< average(E) in this order
     static constexpr std::uint32_t block = 32;

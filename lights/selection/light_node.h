@@ -5,7 +5,7 @@
 // times albedo / pi for a glossy vertex. Its profile is I_j / E_j, and what a node knows of the profile is
 // either that of Henyey-Greenstein's function about a cone of axes, or its peak.
 //
-// 64 bytes: a cache line, and with a VPL and its place in the order 136 bytes a light.
+// 64 bytes: a cache line.
 #pragma once
 
 #include <cstdint>
@@ -25,13 +25,13 @@ enum class LightKind : std::uint8_t {
 };
 
 struct LightNode {
-    core::Vec3 lower, upper;           ///< positions
-    core::Rgb energy{0.0f};            ///< sum of E_j
-    std::uint32_t axis_code = 0;       ///< of the cone (core/math/octahedral.h)
-    float cos_angle = -1.0f;           ///< of the cone's half angle, which holds the error of the code
-    float peak = 1.0f;                 ///< at least I_j / E_j of every light, direction and channel
-    std::uint32_t left_count = 0;      ///< lights of the left child; the right one has the others
-    std::uint32_t representative = 0;  ///< place in the order of a light drawn in proportion to average(E_j)
+    core::Vec3 lower, upper;              ///< positions
+    core::Rgb energy{0.0f};               ///< sum of E_j
+    std::uint32_t axis_code = 0;          ///< of the cone (core/math/octahedral.h)
+    float cos_angle = -1.0f;              ///< of the cone's half angle, which holds the error of the code
+    float peak = 1.0f;                    ///< at least I_j / E_j of every light, direction and channel
+    std::uint32_t left_count = 0;         ///< lights of the left child; the right one has the others
+    std::uint32_t left_nodes = 0;         ///< nodes of the left child
     std::uint16_t g_low = 0, g_high = 0;  ///< in units of 1 / 65535, rounded outwards
     std::uint16_t least_depth = 0;        ///< at most VirtualPointLight::depth of every light
     /// Of a glossy node: profile times C* is at most so much of the peak, in units of 1 / 65535.
@@ -60,7 +60,7 @@ struct LightNode {
 };
 static_assert(sizeof(LightNode) == 64);
 
-/// Both together. left_count and representative are left for whoever makes the tree.
+/// Both together. left_count and left_nodes are left for whoever makes the tree.
 LightNode united(const LightNode& a, const LightNode& b);
 
 /// The lights that a hierarchy is made of. Virtual point lights are one set (vpl_leaves.h); whatever has a

@@ -32,7 +32,7 @@ void Lightcut::set_pair(GatherPoints& points, std::size_t index, const Pair& pai
     const GatherGroup& group = points.group(pair.group);
     pairs_[index] = pair;
     errors_[index] = expected_[index] = {};
-    if (!pair.lights.single())
+    if (pair.lights.has_node())
         if (const SeenCluster* seen = seen_.find(pair.lights.node, std::uint32_t(pair.kind)))
             pairs_[index].seen = *seen;
     if (pair.lights.single() && group.single()) return;
@@ -134,7 +134,7 @@ void Lightcut::saw(std::size_t index) {
     if (!(expected > 0.0f)) return;
     constexpr float most = 10.0f;
     pair.seen.add(std::clamp(arrived / expected, 0.0f, most));
-    if (!pair.lights.single()) seen_.set(pair.lights.node, std::uint32_t(pair.kind), pair.seen);
+    if (pair.lights.has_node()) seen_.set(pair.lights.node, std::uint32_t(pair.kind), pair.seen);
 }
 
 /// Of all pairs that wait.

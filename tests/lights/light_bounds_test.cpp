@@ -54,7 +54,7 @@ Tally tally(Lights kind, std::size_t pairs, std::uint64_t seed, const Change& ch
         const auto set = random_lights(rng, materials, kind, 1 + rng.next_u32() % 8,
                                        random_size(rng, -3, 0.5f), random_size(rng, -3, 0.5f));
         const lights::VplLeaves leaves(set);
-        const lights::LightHierarchy tree(leaves, seed);
+        const lights::LightHierarchy tree(leaves);
         const RandomReceivers receivers(rng, materials, set.lights[0].position);
         const lights::ReceiverBounds bounds(receivers.tile);
         const float bound = rng.next_u32() % 2 ? infinity : random_size(rng, -1, 2);

@@ -68,7 +68,7 @@ struct Room {
     }
     lights::Lightcut::Light cut(float bound, const LightcutSettings& settings, std::uint64_t seed = 1) {
         const lights::VplLeaves leaves(vpls);
-        const lights::LightHierarchy tree(leaves, seed);
+        const lights::LightHierarchy tree(leaves);
         lights::Lightcut cut(vpls, tree, bound, settings);
         GatherPoints gather;
         for (int n = 0; n <= points; ++n)
@@ -136,7 +136,7 @@ TEST_CASE("A lightcut's error is what its threshold lets it be", "[light_selecti
     room.cut(20.0f, {0.02f, 1u << 30});
     const auto together = room.counters.pairs;
     const lights::VplLeaves leaves(room.vpls);
-    const lights::LightHierarchy tree(leaves, 1);
+    const lights::LightHierarchy tree(leaves);
     lights::Lightcut alone(room.vpls, tree, 20.0f, {0.02f, 1u << 30});
     for (const auto& tile : room.tiles) {
         GatherPoints points;
@@ -170,7 +170,7 @@ TEST_CASE("Lightcuts without lights, of one light, and at a light",
 TEST_CASE("A lightcut of single groups has the mean of all lights", "[light_selection][lightcuts]") {
     Room room(tests::diffuse, 300);
     const lights::VplLeaves leaves(room.vpls);
-    const lights::LightHierarchy tree(leaves, 1);
+    const lights::LightHierarchy tree(leaves);
     // Two groups: of all lights at walls, and of all at points in the air. Whose shadow ray is shared by a
     // tile is drawn so that the tile's light is right.
     for (const float angle : {0.0f, 10.0f}) {
@@ -219,7 +219,7 @@ TEST_CASE("A shadow ray that receivers share is right in the mean", "[light_sele
                                                 lights::BoundedGeometry{20.0f}, exact);
         for (const Rgb& c : of_all) right += double(average(c));
         const lights::VplLeaves leaves(room.vpls);
-        const lights::LightHierarchy tree(leaves, 1);
+        const lights::LightHierarchy tree(leaves);
         if (tree.empty()) continue;
         lights::Lightcut cut(room.vpls, tree, 20.0f, {0.02f, 1000, 0.0f, {10.0f, 10.0f}});
         constexpr int draws = 200;
@@ -251,7 +251,7 @@ TEST_CASE("A lightcut that has seen tiles before plans, and is right still", "[l
     Room room(tests::diffuse, 3000);
     const auto all = room.all(20.0f);
     const lights::VplLeaves leaves(room.vpls);
-    const lights::LightHierarchy tree(leaves, 1);
+    const lights::LightHierarchy tree(leaves);
     const auto gather = [&](lights::Lightcut& cut, std::uint64_t seed) {
         GatherPoints points;
         for (int n = 0; n <= Room::points; ++n)

@@ -38,7 +38,7 @@ struct Room {
     Room(const std::string& bsdf, const std::string& inside, std::uint32_t paths)
         : scene(scene_from(closed_box(bsdf, inside))),
           vpls(lights::trace_light_paths(*scene, {.paths = paths}, 7, 0, SamplerKind::sobol)),
-          hierarchy(leaves, 1) {}
+          hierarchy(leaves) {}
     lights::GatherContext context() { return {*scene, *scratch, rays, tracking}; }
 
     static Ray ray(int i) {

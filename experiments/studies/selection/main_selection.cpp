@@ -95,7 +95,6 @@ int main(int argc, char** argv) try {
     app.add_option("--points", a.points, "along each eye ray in media");
     app.add_option("--bound", a.bound, "on the geometry term [1/m^2]");
     app.add_option("--width", a.width, "of the picture"), app.add_option("--height", a.height, "");
-    app.add_option("--seed", a.seed, "of the hierarchy");
     app.add_flag("--costs", a.costs_only, "no reference, and errors are 0");
     app.add_option("--references", a.references, "file that keeps sums of all lights");
     app.add_option("--pixels", a.pixels, "file that gets a line a pixel: method, x, y, reference, light");

@@ -98,7 +98,7 @@ Study::Study(const Arguments& a) : arguments_(a), scene_(load(a)) {
     tracing = now(CLOCK_PROCESS_CPUTIME_ID) - begin;
     leaves_.emplace(vpls_);
     begin = now(CLOCK_PROCESS_CPUTIME_ID);
-    hierarchy_.emplace(*leaves_, a.seed);
+    hierarchy_.emplace(*leaves_);
     building = now(CLOCK_PROCESS_CPUTIME_ID) - begin;
     power_.emplace(*hierarchy_);
     begin = now(CLOCK_PROCESS_CPUTIME_ID);

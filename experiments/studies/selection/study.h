@@ -16,7 +16,7 @@ using namespace integrators;
 struct Arguments {
     std::string scene, references, pixels;
     std::vector<std::string> methods;
-    std::uint32_t paths = 1000, tiles = 60, threads = 1, seed = 1;
+    std::uint32_t paths = 1000, tiles = 60, threads = 1;
     int width = 512, height = 512, points = 2;
     float bound = 1.0f;
     bool costs_only = false;
