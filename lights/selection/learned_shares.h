@@ -54,7 +54,7 @@ class LearnedShares {
     void add_to_all(float look, float rays, float ray_squares) { all_.add(look, rays, ray_squares); }
 
   private:
-    static constexpr float prior_looks = 1.0f, prior_rays = 4.0f, least = 1.0f / 64.0f;
+    static constexpr float prior_looks = 4.0f, prior_rays = 8.0f, least = 1.0f / 16.0f;
     struct Sum {
         float count = 0.0f, squares = 0.0f;
 

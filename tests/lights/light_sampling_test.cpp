@@ -192,7 +192,7 @@ TEST_CASE("Learned shares have the mean of all, whatever was learned",
                        : way == "cut" ? sampler.by_cut(tree, receivers, infinity, 32, draws)
                                       : sampler.from_groups(tree, receivers, infinity, 16, 2, draws);
             };
-            for (int k = 0; taught > 0 && k < 30; ++k) {
+            for (int k = 0; taught > 0 && k < 150; ++k) {
                 const auto lights = drawn();
                 for (std::size_t i = 0; i < lights.size(); ++i)
                     sampler.learn(i,
