@@ -37,16 +37,15 @@ Advice recommended(const GatherSize& size) {
         size.vpls, size.receivers * size.points, rays, seconds);
     if (seconds < few_seconds) return {"all", cost + ": a selection saves less than it errs"};
     if (size.filtered)
-        return {
-            "stochastic_lightcuts, with interleaving 4",
-            cost + "; drawn lights leave noise that differs from pixel to pixel, which the filter takes out"};
+        return {"resampling, 16 of 256 candidates from a cut, with interleaving 4",
+                cost + "; what is chosen for each pixel leaves noise of its own, which the filter takes out"};
     if (size.depth >= media_decide)
         return {"multidimensional_lightcuts, with shared_angle and shared_angle_in_media of 0.2",
                 cost + fmt::format("; in media of optical depth {:.2g} most lights are seen and near ones "
                                    "count, which bounds know; points along a ray share a cut",
                                    size.depth)};
     if (size.vpls >= many_lights)
-        return {"resampling, 64 of 1024 candidates by groups",
+        return {"resampling, 32 of 256 candidates from a cut",
                 cost + "; where surfaces hide most lights, rays go to those of many that would send most"};
     if (size.vpls >= some_lights)
         return {"matrix where shadows decide, else stochastic_lightcuts",
@@ -64,7 +63,7 @@ void plan_ray_lights(Plan& plan, const GatherSize& size) {
         fmt::format("optical depth {:.2g}: segments of light paths need no bound in media; in {} they took "
                     "{} of the time of bounded VPLs with compensation to 5 % of error",
                     size.depth, size.homogeneous ? "homogeneous fog" : "smoke",
-                    size.homogeneous ? "0.4" : "0.6"));
+                    size.homogeneous ? "a tenth" : "a third"));
 }
 
 std::string chosen_by_resampling(const SelectionSettings& s) {

@@ -53,7 +53,7 @@ TEST_CASE("Plans choose a selection by lights, receivers and media, and say why"
     CHECK_THAT(advice(*surfaces, 2000),
                Contains("stochastic_lightcuts, or lightcuts") && Contains("shadow rays"));
     CHECK_THAT(advice(*surfaces, 20000), Contains("matrix where shadows decide") && Contains("hidden"));
-    CHECK_THAT(advice(*surfaces, 300000), Contains("resampling, 64 of 1024") && Contains("hide most lights"));
+    CHECK_THAT(advice(*surfaces, 300000), Contains("resampling, 32 of 256") && Contains("hide most lights"));
     // A larger picture of the same lights is worth more than brute force.
     CHECK_THAT(advice(*scene_from(box(grey, ""), 300), 300), Contains("stochastic_lightcuts"));
     for (const int paths : {2000, 20000, 300000})
