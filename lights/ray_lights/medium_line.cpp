@@ -19,6 +19,14 @@ constexpr float certain_share = 0.1f;    ///< of the mean of all cells that each
 
 Rgb exp_minus(const Rgb& depth) { return {std::exp(-depth.x), std::exp(-depth.y), std::exp(-depth.z)}; }
 
+/// Of a transmittance that falls from one value to another over an optical depth.
+Rgb mean_between(const Rgb& before, const Rgb& after, const Rgb& depth) {
+    Rgb mean;
+    for (int i = 0; i < 3; ++i)
+        mean[i] = depth[i] > 1e-3f ? (before[i] - after[i]) / depth[i] : 0.5f * (before[i] + after[i]);
+    return mean;
+}
+
 std::optional<MediumLine> homogeneous_line(MediumLine line, const MediumCoefficients& c) {
     line.sigma_t = c.sigma_t, line.sigma_s = c.sigma_s, line.homogeneous = true;
     float thinnest = infinity;
@@ -27,9 +35,13 @@ std::optional<MediumLine> homogeneous_line(MediumLine line, const MediumCoeffici
     line.length = std::fmin(line.length, deepest / thinnest);
     if (!(line.length > 0.0f)) return std::nullopt;
     line.cells = line.isotropic && max_component(c.sigma_t) * line.length < even_depth ? 1 : fog_cells;
+    // The mean of sigma_s T over a cell: what is in its middle says little where cells are deep.
+    const float cell = line.length / float(line.cells);
+    Rgb before(1.0f);
     for (std::uint32_t i = 0; i < line.cells; ++i) {
-        const float middle = (float(i) + 0.5f) * line.length / float(line.cells);
-        line.weights[i] = average(c.sigma_s * exp_minus(c.sigma_t * middle));
+        const Rgb after = exp_minus(c.sigma_t * (float(i + 1) * cell));
+        line.weights[i] = average(c.sigma_s * mean_between(before, after, c.sigma_t * cell));
+        before = after;
     }
     return line;
 }
