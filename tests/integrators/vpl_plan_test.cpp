@@ -97,13 +97,13 @@ TEST_CASE("Plans say what is selected, and what it takes", "[vpl][selection][pla
     };
     CHECK_THAT(plan_text(""), Contains("all VPLs at every receiver") && !Contains("a VPL while it is built"));
     CHECK_THAT(plan_text(R"(<selection type="lightcuts"/>)"),
-               Contains("lightcuts, threshold 2 %") && Contains("28.8 MB") && Contains("at most 96 bytes"));
+               Contains("lightcuts, threshold 2 %") && Contains("31.5 MB") && Contains("at most 105 bytes"));
     CHECK_THAT(plan_text(R"(<selection type="light_tree"/>)"), Contains("18.0 MB") && Contains("at most 60"));
     const std::string by = R"(<string name="candidates_by" value=")",
                       reuse = R"("/><string name="reuse" value=")";
     CHECK_THAT(
         plan_text(R"(<selection type="resampling">)" + by + "power" + reuse + R"(unbiased"/></selection>)"),
-        Contains("32 of 1024 candidates drawn by power, with unbiased reuse") && Contains("at most 108") &&
+        Contains("32 of 256 candidates drawn by power, with unbiased reuse") && Contains("at most 117") &&
             Contains("12 for what draws by power") && !Contains("biased: too dark"));
     CHECK_THAT(
         plan_text(R"(<selection type="resampling">)" + by + "cut" + reuse + R"(biased"/></selection>)"),
@@ -141,8 +141,9 @@ TEST_CASE("Selections are refused where they take more than max_megabytes, to th
          {Case{"lightcuts", "", 105, "light_hierarchy_bytes"},
           Case{"light_tree", "", 60, "light_hierarchy_bytes"},
           Case{"stochastic_lightcuts", "", 60, "light_hierarchy_bytes"},
-          Case{"resampling", "", 117, "light_hierarchy_bytes"},
-          Case{"resampling", R"(<string name="candidates_by" value="cut"/>)", 60, "light_hierarchy_bytes"},
+          Case{"resampling", "", 60, "light_hierarchy_bytes"},
+          Case{"resampling", R"(<string name="candidates_by" value="groups"/>)", 117,
+               "light_hierarchy_bytes"},
           Case{"matrix", R"(<integer name="rows" value="64"/>)", 4 * 16 + 32 + 4 * 12, "matrix_bytes"},
           Case{"matrix", R"(<integer name="shared_passes" value="3"/>)", 336, "matrix_bytes"},
           Case{"matrix", R"(<integer name="slices" value="20"/><integer name="shared_passes" value="3"/>)",
