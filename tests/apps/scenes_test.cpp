@@ -124,7 +124,7 @@ TEST_CASE("The plan names what a scene requires", "[scenes][plan]") {
             plan_of(folder, "smoke_room.xml", integrator, {"-D", "smoke=" + folder.file("smoke.vdb")});
         INFO(smoke);
         CHECK(smoke.find("the grid's majorants") != std::string::npos);
-        CHECK(smoke.find("ratio_tracking") != std::string::npos);
+        CHECK(smoke.find("unbiased_ray_marching") != std::string::npos);
         CHECK(smoke.find("vdbvolume") != std::string::npos);
     }
 }
