@@ -83,7 +83,9 @@ TEST_CASE("ray lights equal paths: max_depth, thick fog, fog without walls, pane
         const std::string limit = fmt::format(R"(<integer name="max_depth" value="{}"/>)", depth);
         check(box(grey, fog("0.8, 1.0, 1.3", "")), paths + limit, limit, long_run);
     }
-    check(box(grey, fog("6, 8, 10", forward)), paths, "", {3000, 30000, 0.25});  // far noisier than thin fog
+    // Far noisier than thin fog, and with tails so long that the spread of 3000 passes tells too little of
+    // them.
+    check(box(grey, fog("6, 8, 10", forward)), paths, "", {30000, 60000, 0.25});
     check(leafy_box(fog("0.8, 1.0, 1.3", "")), paths + R"(<integer name="max_depth" value="5"/>)",
           R"(<integer name="max_depth" value="5"/>)", long_run);
     // Without end: rays that meet nothing.
