@@ -40,24 +40,19 @@ class TileSelection {
     /// The light of drawn() at the same receivers, from which later tiles learn.
     lights::TileLight gather(const lights::GatherContext& context, const lights::VplSet& vpls,
                              const lights::DrawnVpls& drawn, lights::ReceiverTile& receivers) {
-        lights::TileSum sum;
-        if (!receivers.any_active) return sum.value();
         lights::TracedVisibility visibility(context, receivers);
         std::size_t next = 0;  // drawn light: those that send nothing are not heard of
-        const auto add = [&](const lights::LaneLight& light) {
-            sum.add(light);
+        const auto hear = [&](const lights::LaneLight& light) {
             while (drawn.drawn[next].index != light.vpl) sampler_.learn(next++, 0.0);
             double arrived = 0.0;
             for (int i = 0; i < lights::LaneLight::width; ++i)
                 arrived += double(light.r[i] + light.g[i] + light.b[i]);
             sampler_.learn(next++, arrived / 3.0);
         };
-        const auto pairs = [&](const auto& visit) {
-            for (const lights::WeightedVpl& light : drawn.drawn) visit(receivers, light);
-        };
-        lights::gather_pairs(vpls, pairs, lights::BoundedGeometry{bound_}, visibility, context.scratch, add);
-        while (next < drawn.drawn.size()) sampler_.learn(next++, 0.0);
-        return sum.value();
+        const auto sum = lights::gather_with(context, vpls, drawn, lights::BoundedGeometry{bound_}, receivers,
+                                             visibility, hear);
+        while (receivers.any_active && next < drawn.drawn.size()) sampler_.learn(next++, 0.0);
+        return sum;
     }
 
     /// Lightcuts at one tile.

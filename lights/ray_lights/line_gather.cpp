@@ -48,8 +48,8 @@ void LineGather::draw_candidates(Rng& rng, int receivers) {
     LightShare(set_.surface_power, count).choose_all(rng.next_float(), offered_surface_);
 }
 
-void LineGather::offer(const EyeLines& eyes, LineOffer& offer) const {
-    const EyeReceivers receivers(eyes);
+template <typename Receivers>
+void LineGather::offer_to(const Receivers& receivers, LineOffer& offer) const {
     LaneFloats expected;
     for (const WeightedVpl& light : offered_rays_) {
         expected_light(set_.rays[light.index], receivers, width_, expected);
@@ -61,17 +61,9 @@ void LineGather::offer(const EyeLines& eyes, LineOffer& offer) const {
     }
 }
 
-void LineGather::offer(const PointReceivers& points, LineOffer& offer) const {
-    LaneFloats expected;
-    for (const WeightedVpl& light : offered_rays_) {
-        expected_light(set_.rays[light.index], points, width_, expected);
-        offer.add(std::uint32_t(light.index), true, light.weight, expected);
-    }
-    for (const WeightedVpl& light : offered_surface_) {
-        expected_light(set_.surface.lights[light.index], points, expected);
-        offer.add(std::uint32_t(light.index), false, light.weight, expected);
-    }
-}
+void LineGather::offer(const EyeLines& eyes, LineOffer& offer) const { offer_to(EyeReceivers(eyes), offer); }
+
+void LineGather::offer(const PointReceivers& points, LineOffer& offer) const { offer_to(points, offer); }
 
 template <typename Active>
 void LineGather::pick(const LineOffer& offer, const LaneFloats& steps, ReceiverTile& tile,

@@ -43,6 +43,8 @@ class LineGather {
 
   private:
     using Found = std::optional<LineConnection>;
+    template <typename Receivers>
+    void offer_to(const Receivers& receivers, LineOffer& offer) const;
     template <typename Active>
     void pick(const LineOffer& offer, const LaneFloats& steps, ReceiverTile& tile, const Active& active);
     template <typename Connect>

@@ -107,18 +107,28 @@ struct alignas(64) TileSum {
     }
 };
 
-/// The light of `lights` at the receivers of a tile, per lane, with a visibility of the caller's.
-template <typename Lights, typename Weight, typename Visibility>
+/// The light of `lights` at the receivers of a tile, per lane, with a visibility of the caller's. What
+/// arrives of each light that sends anything is told, as a LaneLight, to `hear`, in the order of `lights`.
+template <typename Lights, typename Weight, typename Visibility, typename Hear>
 TileLight gather_with(const GatherContext& context, const VplSet& vpls, const Lights& lights,
-                      const Weight& weight, ReceiverTile& tile, Visibility& visibility) {
+                      const Weight& weight, ReceiverTile& tile, Visibility& visibility, const Hear& hear) {
     TileSum sum;
     if (!tile.any_active) return sum.value();
     const auto pairs = [&](const auto& visit) {
         lights.for_each(vpls.lights.size(), [&](const WeightedVpl& light) { visit(tile, light); });
     };
-    gather_pairs(vpls, pairs, weight, visibility, context.scratch,
-                 [&](const LaneLight& light) { sum.add(light); });
+    gather_pairs(vpls, pairs, weight, visibility, context.scratch, [&](const LaneLight& light) {
+        sum.add(light);
+        hear(light);
+    });
     return sum.value();
+}
+
+/// The same, told to nobody.
+template <typename Lights, typename Weight, typename Visibility>
+TileLight gather_with(const GatherContext& context, const VplSet& vpls, const Lights& lights,
+                      const Weight& weight, ReceiverTile& tile, Visibility& visibility) {
+    return gather_with(context, vpls, lights, weight, tile, visibility, [](const LaneLight&) {});
 }
 
 /// The same with traced visibility.

@@ -50,7 +50,6 @@ IDEAS = {
         "lights/virtual_lights/vpl_gather.h": 1,         # a tile and all its lights, by rays
         "lights/shadow_maps/shadow_map_gather.h": 1,     # a light and all its receivers, by its map
         "lights/selection/matrix_rows.cpp": 1,           # rows of a matrix: all lights, each remembered by itself
-        "integrators/virtual_point_lights/tile_selection.h": 1,  # drawn lights, of each of which later tiles are told
     }),
 }
 
