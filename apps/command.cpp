@@ -21,7 +21,7 @@
 #include "apps/subcommands.h"
 #include "apps/tev_viewer.h"
 #include "apps/trade/trade_command.h"
-#include "core/loading/faults.h"
+#include "core/formats/xml/faults.h"
 #include "core/objects/error.h"
 #include "core/objects/memory_error.h"
 #include "session/borrowed_arena.h"

@@ -8,8 +8,8 @@
 #include "apps/output_files.h"
 #include "apps/picture_file.h"
 #include "apps/subcommands.h"
-#include "core/gltf/gltf_scene.h"
-#include "core/image/image_file.h"
+#include "core/formats/gltf/gltf_scene.h"
+#include "core/formats/pictures/image_file.h"
 #include "core/objects/error.h"
 
 namespace mote::apps {

@@ -6,9 +6,9 @@
 #include "apps/output_files.h"
 #include "apps/picture_file.h"
 #include "apps/subcommands.h"
-#include "core/gltf/scratch_folder.h"
-#include "core/image/image_file.h"
-#include "core/loading/gltf_loader.h"
+#include "core/files/atomic_file.h"
+#include "core/formats/gltf/scratch_folder.h"
+#include "core/formats/xml/gltf_loader.h"
 
 namespace mote::apps {
 

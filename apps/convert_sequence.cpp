@@ -14,8 +14,8 @@
 #include "apps/output_files.h"
 #include "apps/picture_file.h"
 #include "apps/subcommands.h"
-#include "core/image/exposure.h"
-#include "core/image/srgb.h"
+#include "core/film/exposure.h"
+#include "core/math/srgb.h"
 #include "core/objects/error.h"
 
 extern char** environ;

@@ -7,8 +7,8 @@
 
 #include "apps/preview.h"
 #include "apps/subcommands.h"
-#include "core/image/exposure.h"
-#include "core/image/png_text.h"
+#include "core/film/exposure.h"
+#include "core/formats/pictures/png_text.h"
 #include "core/objects/error.h"
 
 namespace mote::apps {

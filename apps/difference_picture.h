@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "core/image/image_file.h"
+#include "core/formats/pictures/image_file.h"
 
 namespace mote::apps {
 

@@ -3,7 +3,7 @@
 
 #include "apps/command.h"
 #include "apps/subcommands.h"
-#include "core/loading/scene_format.h"
+#include "core/formats/xml/scene_format.h"
 
 namespace mote::apps {
 

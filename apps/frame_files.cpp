@@ -4,7 +4,7 @@
 #include <cctype>
 #include <filesystem>
 
-#include "core/loading/frame_files.h"
+#include "core/formats/xml/frame_files.h"
 #include "core/objects/error.h"
 
 namespace mote::apps {

@@ -1,5 +1,5 @@
 // Pictures of a sequence: names in which the longest run of two # or more stands for the frame's number,
-// "smoke.####.exr" (core/loading/frame_files.h).
+// "smoke.####.exr" (core/formats/xml/frame_files.h).
 #pragma once
 
 #include <string>

@@ -10,7 +10,7 @@
 #include "apps/partial_render.h"
 #include "apps/picture_file.h"
 #include "apps/subcommands.h"
-#include "core/image/image_file.h"
+#include "core/files/atomic_file.h"
 #include "core/objects/error.h"
 #include "core/objects/memory_error.h"
 #include "session/number_or_null.h"

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <string>
 
-#include "core/assets/text_scanner.h"
+#include "core/formats/meshes/text_scanner.h"
 #include "core/objects/error.h"
 
 namespace mote::apps {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/subcommands.h"
-#include "core/image/film.h"
+#include "core/film/film.h"
 #include "core/render/statistics.h"
 
 namespace mote::apps {

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "core/image/whole_file.h"
+#include "core/files/whole_file.h"
 #include "core/objects/error.h"
 #include "session/reference_metadata.h"
 

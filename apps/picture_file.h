@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/image/image_file.h"
+#include "core/formats/pictures/image_file.h"
 
 namespace mote::apps {
 

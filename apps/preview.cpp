@@ -4,8 +4,8 @@
 #include <cmath>
 #include <map>
 
-#include "core/image/exposure.h"
-#include "core/image/png_text.h"
+#include "core/film/exposure.h"
+#include "core/formats/pictures/png_text.h"
 
 namespace mote::apps {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "core/image/image_file.h"
+#include "core/film/image_channels.h"
 
 namespace mote::apps {
 

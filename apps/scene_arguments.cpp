@@ -2,7 +2,7 @@
 #include <cstdio>
 
 #include "apps/subcommands.h"
-#include "core/loading/scene_loader.h"
+#include "core/formats/xml/scene_loader.h"
 #include "core/objects/error.h"
 
 namespace mote::apps {

@@ -11,7 +11,7 @@
 #include "apps/number_options.h"
 #include "apps/output_files.h"
 #include "apps/picture_file.h"
-#include "core/image/image_file.h"
+#include "core/formats/pictures/image_file.h"
 #include "core/objects/error.h"
 #include "core/scene/scene.h"
 #include "screenspace/g_buffer/g_buffer.h"

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/loading/scene_loader.h"
+#include "core/formats/xml/scene_loader.h"
 #include "core/objects/registry.h"
 #include "core/render/integrator.h"
 #include "core/render/motion_features.h"

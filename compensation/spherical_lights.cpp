@@ -1,8 +1,8 @@
 #include "compensation/spherical_lights.h"
 
-#include "core/scene/shadow_segment.h"
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include "core/scene/shadow_segment.h"
 
 #include <algorithm>
 
@@ -14,7 +14,6 @@ namespace mote::compensation {
 using namespace core;
 
 namespace {
-
 
 bool is_glossy(const ScatteringVertex& v) { return !v.diffuse_reflectance().has_value(); }
 

@@ -12,10 +12,10 @@ namespace mote::media {
 
 /// Estimators of the transmittance along a ray.
 enum class TransmittanceEstimator {
-    automatic,               ///< ratio tracking, residual where a good part of the extinction is certain
-    ray_marching,            ///< deterministic, biased by a stated tolerance
-    delta_tracking,          ///< 0 or 1: does a particle pass?
-    ratio_tracking,          ///< product of chances to pass (Novák et al. 2014)
+    automatic,                ///< ratio tracking, residual where a good part of the extinction is certain
+    ray_marching,             ///< deterministic, biased by a stated tolerance
+    delta_tracking,           ///< 0 or 1: does a particle pass?
+    ratio_tracking,           ///< product of chances to pass (Novák et al. 2014)
     residual_ratio_tracking,  ///< a cell's lower bound analytically, the rest by ratio tracking
     unbiased_ray_marching     ///< equal steps from a random start, and the rest of the exponential's series
 };

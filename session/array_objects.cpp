@@ -8,10 +8,10 @@
 #include <span>
 #include <vector>
 
+#include "core/files/checksum.h"
 #include "core/geometry/mesh_checks.h"
 #include "core/geometry/mesh_edits.h"
 #include "core/geometry/shape_plugins.h"
-#include "core/image/checksum.h"
 #include "media/grid_volume.h"
 
 namespace mote::session {

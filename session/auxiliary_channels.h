@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "core/image/image_file.h"
+#include "core/film/image_channels.h"
 #include "core/render/first_hit_features.h"
 
 namespace mote::session {

@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "core/image/metrics.h"
-#include "core/image/reference_pair.h"
+#include "core/metrics/metrics.h"
+#include "core/metrics/reference_pair.h"
 
 namespace mote::session {
 

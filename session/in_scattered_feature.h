@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "core/image/image_file.h"
+#include "core/film/image_channels.h"
 #include "core/objects/registry.h"
 #include "core/scene/scene.h"
 

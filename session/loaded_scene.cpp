@@ -4,8 +4,8 @@
 
 #include <chrono>
 
-#include "core/image/checksum.h"
-#include "core/loading/scene_making.h"
+#include "core/files/checksum.h"
+#include "core/formats/xml/scene_making.h"
 #include "core/objects/memory_error.h"
 #include "core/render/render_driver.h"
 #include "session/borrowed_arena.h"

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/loading/scene_loader.h"
+#include "core/formats/xml/scene_loader.h"
 #include "core/render/integrator.h"
 #include "core/scene/scene.h"
 #include "session/scene_tree.h"

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "core/image/image_file.h"
+#include "core/film/image_channels.h"
 #include "core/render/render_driver.h"
 #include "session/loaded_scene.h"
 

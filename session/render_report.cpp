@@ -8,7 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/image/film_image.h"
+#include "core/film/film_image.h"
 #include "git_hash.h"
 #include "session/auxiliary_channels.h"
 #include "session/in_scattered_feature.h"

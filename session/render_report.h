@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/image/image_file.h"
+#include "core/film/image_channels.h"
 #include "core/objects/registry.h"
 #include "core/render/render_driver.h"
 #include "core/scene/scene.h"

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "core/image/checksum.h"
+#include "core/files/checksum.h"
 #include "core/objects/registry.h"
 
 namespace mote::session {

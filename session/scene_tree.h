@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/loading/xml_reader.h"
+#include "core/formats/xml/xml_reader.h"
 #include "session/array_objects.h"
 
 namespace mote::session {

@@ -9,7 +9,7 @@
 #include <mutex>
 #include <optional>
 
-#include "core/image/image_file.h"
+#include "core/film/image_channels.h"
 #include "core/render/render_driver.h"
 
 namespace mote::session {

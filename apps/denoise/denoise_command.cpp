@@ -9,8 +9,6 @@
 #include <vector>
 
 #include "apps/command.h"
-#include "session/denoise/bmfr_sequence.h"
-#include "session/denoise/denoised_layer.h"
 #include "apps/frame_files.h"
 #include "apps/number_options.h"
 #include "apps/output_files.h"
@@ -18,6 +16,8 @@
 #include "apps/preview.h"
 #include "apps/subcommands.h"
 #include "core/objects/error.h"
+#include "session/denoise/bmfr_sequence.h"
+#include "session/denoise/denoised_layer.h"
 
 namespace mote::apps {
 

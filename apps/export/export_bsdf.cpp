@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "apps/export/export_context.h"
-#include "core/loading/scene_values.h"
+#include "core/formats/xml/scene_values.h"
 #include "core/materials/index_of_refraction.h"
 
 namespace mote::apps {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <set>
 
-#include "core/loading/scene_values.h"
+#include "core/formats/xml/scene_values.h"
 
 namespace mote::apps {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "apps/export/mitsuba_export.h"
-#include "core/loading/element_checks.h"
+#include "core/formats/xml/element_checks.h"
 #include "core/scene/scene.h"
 
 namespace mote::apps {

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "apps/export/export_context.h"
-#include "core/loading/scene_values.h"
+#include "core/formats/xml/scene_values.h"
 
 namespace mote::apps {
 

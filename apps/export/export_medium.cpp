@@ -9,7 +9,7 @@
 #include <filesystem>
 
 #include "apps/export/export_context.h"
-#include "core/loading/scene_values.h"
+#include "core/formats/xml/scene_values.h"
 #include "media/vdb_grid.h"
 #include "media/vdb_to_vol.h"
 

@@ -2,7 +2,7 @@
 #include <filesystem>
 
 #include "apps/export/export_context.h"
-#include "core/loading/scene_values.h"
+#include "core/formats/xml/scene_values.h"
 #include "core/materials/bsdf.h"
 
 namespace mote::apps {

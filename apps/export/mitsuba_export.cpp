@@ -6,9 +6,9 @@
 #include <set>
 
 #include "apps/export/export_context.h"
+#include "core/formats/xml/scene_builder.h"
+#include "core/formats/xml/scene_values.h"
 #include "core/geometry/instances.h"
-#include "core/loading/scene_builder.h"
-#include "core/loading/scene_values.h"
 #include "core/materials/bsdf.h"
 
 namespace mote::apps {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "core/formats/xml/scene_loader.h"
 #include "core/geometry/triangle_mesh.h"
-#include "core/loading/scene_loader.h"
 #include "core/objects/registry.h"
 #include "media/vol_file.h"
 

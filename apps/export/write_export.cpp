@@ -5,8 +5,8 @@
 
 #include "apps/export/mitsuba_export.h"
 #include "apps/output_files.h"
-#include "core/assets/ply_writer.h"
-#include "core/image/image_file.h"
+#include "core/files/atomic_file.h"
+#include "core/formats/meshes/ply_writer.h"
 
 namespace mote::apps {
 

@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <limits>
 
-#include "core/image/image_file.h"
-#include "core/image/metrics.h"
-#include "core/image/relative_error.h"
-#include "core/image/whole_file.h"
+#include "core/files/atomic_file.h"
+#include "core/files/whole_file.h"
+#include "core/metrics/metrics.h"
+#include "core/metrics/relative_error.h"
 #include "core/objects/error.h"
 #include "core/render/cpu_clock.h"
 #include "session/render_report.h"
@@ -65,7 +65,7 @@ Tally read_tally(const std::string& path, std::uint32_t passes) {
     throw core::InputError("damaged: the trade cannot be continued, --fresh starts anew", {path, 0});
 }
 
-// The bias of one pass, Eq. (3) of core/image/relative_error.h, plus 1; of a part, its share in that. The
+// The bias of one pass, Eq. (3) of core/metrics/relative_error.h, plus 1; of a part, its share in that. The
 // film's rule: a pixel that is not finite in some layer adds nothing.
 double projection(const core::PassImage& image, const core::Film& film, std::size_t part,
                   const Reference& reference) {

@@ -6,8 +6,8 @@
 #include <set>
 
 #include "apps/trade/json_lines.h"
-#include "core/image/image_file.h"
-#include "core/image/whole_file.h"
+#include "core/files/atomic_file.h"
+#include "core/files/whole_file.h"
 #include "core/objects/error.h"
 
 namespace mote::apps::trade {

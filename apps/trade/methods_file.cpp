@@ -1,4 +1,5 @@
-// From JSON to integrators. Settings go through the checks of a scene file (core/loading/integrator_maker.h).
+// From JSON to integrators. Settings go through the checks of a scene file
+// (core/formats/xml/integrator_maker.h).
 #include "apps/trade/methods_file.h"
 
 #include <algorithm>
@@ -6,9 +7,9 @@
 #include <set>
 
 #include "apps/trade/json_lines.h"
-#include "core/image/whole_file.h"
-#include "core/loading/integrator_maker.h"
-#include "core/loading/scene_values.h"
+#include "core/files/whole_file.h"
+#include "core/formats/xml/integrator_maker.h"
+#include "core/formats/xml/scene_values.h"
 
 namespace mote::apps::trade {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/image/image_file.h"
+#include "core/formats/pictures/image_file.h"
 
 namespace mote::apps::trade {
 

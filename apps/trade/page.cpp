@@ -9,7 +9,7 @@
 #include "apps/trade/packed_picture.h"
 #include "apps/trade/page_text.h"
 #include "apps/trade/plot.h"
-#include "core/image/image_file.h"
+#include "core/formats/pictures/image_file.h"
 #include "core/objects/error.h"
 #include "session/render_report.h"
 

@@ -19,11 +19,11 @@ struct Record {
     double wall = 0.0;          ///< seconds for build, passes and one finish
     double cpu = 0.0;           ///< the same in seconds of processor time, all threads together
     double build = 0.0;         ///< the part of wall that was spent before the first pass
-    double error = unknown;     ///< of core/image/relative_error.h, without the noise of the reference
+    double error = unknown;     ///< of core/metrics/relative_error.h, without the noise of the reference
     double error_se = unknown;  ///< its standard error, from the noise of the reference
     double relmse = unknown,
-           relmse_trimmed = unknown;  ///< what other programs give, see core/image/metrics.h
-    double bias = unknown;            ///< of core/image/relative_error.h
+           relmse_trimmed = unknown;  ///< what other programs give, see core/metrics/metrics.h
+    double bias = unknown;            ///< of core/metrics/relative_error.h
     double bias_se = unknown;         ///< its standard error, from the spread of the passes' biases
     std::uint64_t non_finite = 0;
     double peak_memory_mb = 0.0;   ///< of the process so far, all methods alive

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <sstream>
 
-#include "core/image/metrics.h"
+#include "core/metrics/metrics.h"
 #include "core/objects/error.h"
 #include "session/reference_metadata.h"
 

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "core/image/film.h"
-#include "core/image/image_file.h"
-#include "core/image/relative_error.h"
+#include "core/film/film.h"
+#include "core/film/image_channels.h"
+#include "core/metrics/relative_error.h"
 #include "core/scene/scene.h"
 
 namespace mote::apps::trade {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/image/film_image.h"
+#include "core/film/film_image.h"
 #include "session/render_report.h"
 
 namespace mote::apps::trade {

@@ -1,5 +1,5 @@
 // Film, reconstruction filter and sampler as the scene file describes them. They hold settings only: the
-// picture itself is core/image/film.h, the filter core/render's PixelFilter, the sampler core/math/sampler.h.
+// picture itself is core/film/film.h, the filter core/render's PixelFilter, the sampler core/math/sampler.h.
 #pragma once
 
 #include "core/objects/object.h"

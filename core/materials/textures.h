@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "core/image/image_file.h"
+#include "core/film/bitmap.h"
 #include "core/materials/texture.h"
 #include "core/math/transform.h"
 

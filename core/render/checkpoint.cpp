@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "core/image/whole_file.h"
+#include "core/files/whole_file.h"
 #include "core/objects/error.h"
 #include "core/render/headed_file.h"
 

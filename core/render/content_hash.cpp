@@ -3,7 +3,7 @@
 #include <cstring>
 #include <fstream>
 
-#include "core/image/checksum.h"
+#include "core/files/checksum.h"
 #include "core/objects/error.h"
 #include "core/render/render_driver.h"
 #include "core/scene/scene.h"

@@ -1,7 +1,7 @@
 #include "core/render/headed_file.h"
 
-#include "core/image/checksum.h"
-#include "core/image/image_file.h"
+#include "core/files/atomic_file.h"
+#include "core/files/checksum.h"
 
 namespace mote::core {
 

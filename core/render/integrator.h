@@ -17,8 +17,8 @@
 #include <string>
 #include <vector>
 
-#include "core/image/pass_image.h"
-#include "core/image/tiles.h"
+#include "core/film/pass_image.h"
+#include "core/film/tiles.h"
 #include "core/math/sampler.h"
 #include "core/math/vec.h"
 #include "core/objects/cancellation.h"

@@ -2,8 +2,8 @@
 
 #include <stdexcept>
 
-#include "core/image/packed_numbers.h"
-#include "core/image/whole_file.h"
+#include "core/files/packed_numbers.h"
+#include "core/files/whole_file.h"
 #include "core/objects/error.h"
 #include "core/render/headed_file.h"
 

@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "core/image/film.h"
+#include "core/film/film.h"
 
 namespace mote::core {
 

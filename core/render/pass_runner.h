@@ -7,7 +7,7 @@
 #include <memory>
 #include <optional>
 
-#include "core/image/film.h"
+#include "core/film/film.h"
 #include "core/render/first_hit_features.h"
 #include "core/render/integrator.h"
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "core/image/film.h"
+#include "core/film/film.h"
 #include "core/render/first_hit_features.h"
 #include "core/render/integrator.h"
 

@@ -1,6 +1,6 @@
 // A render loop of one's own with a progress bar: a scene as text, passes until the noise is low enough, and
 // the picture in memory. A ball of reflectance 1/2 under an even sky of radiance 1 looks 1/2 all over.
-#include <mote/core/loading/scene_loader.h>
+#include <mote/core/formats/xml/scene_loader.h>
 #include <mote/core/objects/registry.h>
 #include <mote/core/render/render_driver.h>
 #include <mote/integrators/register_integrators.h>

@@ -1,6 +1,6 @@
 // render_scene SCENE OUT.exr PASSES [NAME=VALUE...]: `mote render SCENE -o OUT.exr --passes PASSES -D
 // NAME=VALUE`, to the bit, as two calls.
-#include <mote/core/image/image_file.h>
+#include <mote/core/formats/pictures/image_file.h>
 #include <mote/core/objects/error.h>
 #include <mote/session/loaded_scene.h>
 #include <mote/session/render.h>

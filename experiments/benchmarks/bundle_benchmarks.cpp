@@ -5,8 +5,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "core/formats/xml/scene_loader.h"
 #include "core/geometry/embree_api.h"
-#include "core/loading/scene_loader.h"
 #include "experiments/benchmarks/half_million.h"
 #include "experiments/benchmarks/turns.h"
 #include "gathering/ray_bundles/bundle_directions.h"

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "core/formats/xml/scene_loader.h"
 #include "core/geometry/triangle_mesh.h"
-#include "core/loading/scene_loader.h"
 #include "core/materials/bsdf.h"
 #include "core/objects/properties.h"
 #include "integrators/register_integrators.h"

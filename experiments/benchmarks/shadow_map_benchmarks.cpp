@@ -11,7 +11,7 @@
 
 #include <filesystem>
 
-#include "core/loading/scene_loader.h"
+#include "core/formats/xml/scene_loader.h"
 #include "core/math/random.h"
 #include "core/scene/scattering_vertex.h"
 #include "experiments/benchmarks/turns.h"

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "core/image/pass_image.h"
+#include "core/film/pass_image.h"
 
 namespace mote::integrators {
 

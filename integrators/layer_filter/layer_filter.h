@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "core/image/film.h"
+#include "core/film/film.h"
 #include "core/objects/properties.h"
 #include "core/objects/registry.h"
 #include "integrators/layer_filter/scene_features.h"

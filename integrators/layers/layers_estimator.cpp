@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "core/image/film.h"
+#include "core/film/film.h"
 #include "core/math/random.h"
 #include "core/objects/error.h"
 #include "core/scene/scene.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/image/relative_error.h"
+#include "core/metrics/relative_error.h"
 
 namespace mote::integrators {
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "compensation/compensation_settings.h"
-#include "core/image/film.h"
+#include "core/film/film.h"
 #include "core/render/plan.h"
 #include "core/scene/requirements.h"
 #include "core/scene/scene.h"

@@ -1,7 +1,7 @@
 #include "lights/emitters/direct_light.h"
 
-#include "core/scene/shadow_segment.h"
 #include "core/scene/media_along.h"
+#include "core/scene/shadow_segment.h"
 
 namespace mote::lights {
 

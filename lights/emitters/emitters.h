@@ -6,7 +6,7 @@
 
 #include <memory>
 
-#include "core/image/image_file.h"
+#include "core/formats/pictures/image_file.h"
 #include "core/materials/texture.h"
 #include "core/math/transform.h"
 #include "core/scene/emitter.h"

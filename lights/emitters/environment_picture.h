@@ -5,7 +5,7 @@
 // are the poles. Between, the lookup is bilinear.
 #pragma once
 
-#include "core/image/image_file.h"
+#include "core/formats/pictures/image_file.h"
 #include "core/math/distribution.h"
 #include "core/objects/error.h"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/loading/faults.h"
+#include "core/formats/xml/faults.h"
 #include "plugins/c/mote.h"
 #include "session/layers.h"
 #include "session/loaded_scene.h"

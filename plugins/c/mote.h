@@ -1,18 +1,20 @@
 /* mote: many-light rendering and participating media, from C (C99).
  *
- * Handles are opaque and hold the text of their last error. Every function that can fail returns a mote_status; where
- * it is not MOTE_OK, mote_scene_error() or mote_picture_error() says why, with the file and line where there is one.
+ * Handles are opaque and hold the text of their last error. Every function that can fail returns a
+ * mote_status; where it is not MOTE_OK, mote_scene_error() or mote_picture_error() says why, with the file
+ * and line where there is one.
  *
- * Structures of options begin with `struct_size`, their sizeof in the caller's header; all other members may be zero
- * and then have their default:
+ * Structures of options begin with `struct_size`, their sizeof in the caller's header; all other members may
+ * be zero and then have their default:
  *
  *     mote_render_options options = {0};
  *     options.struct_size = sizeof options;
  *
- * Texts are UTF-8, ended by a zero; those that are returned belong to the handle and live until its next call. Buffers
- * belong to the caller. Pictures are row by row from the top, the channels of a pixel side by side, float32: light in
- * W/(m^2 sr), lengths in metres. A handle may be used by one thread at a time; a scene that is loaded may be rendered
- * by several at once. No C++ exception leaves the library, and no callback may throw one.
+ * Texts are UTF-8, ended by a zero; those that are returned belong to the handle and live until its next
+ * call. Buffers belong to the caller. Pictures are row by row from the top, the channels of a pixel side by
+ * side, float32: light in W/(m^2 sr), lengths in metres. A handle may be used by one thread at a time; a
+ * scene that is loaded may be rendered by several at once. No C++ exception leaves the library, and no
+ * callback may throw one.
  */
 #ifndef MOTE_H
 #define MOTE_H
@@ -47,23 +49,28 @@ typedef enum mote_status {
 typedef struct mote_scene mote_scene;
 typedef struct mote_picture mote_picture;
 
-/* ---- the library -------------------------------------------------------------------------------------------- */
+/* ---- the library
+ * -------------------------------------------------------------------------------------------- */
 
-MOTE_API const char* mote_version(void);    /* "0.1.0" */
-MOTE_API int mote_version_number(void);     /* MOTE_VERSION_NUMBER of the library, to be held against the header's */
+MOTE_API const char* mote_version(void); /* "0.1.0" */
+MOTE_API int mote_version_number(
+    void); /* MOTE_VERSION_NUMBER of the library, to be held against the header's */
 MOTE_API const char* mote_status_name(mote_status status); /* "MOTE_OK"; never null */
 
-/* ---- scenes ------------------------------------------------------------------------------------------------- */
+/* ---- scenes
+ * ------------------------------------------------------------------------------------------------- */
 
 typedef struct mote_load_options {
     size_t struct_size;
-    const char* integrator;           /* this type instead of the scene's, such as "mote_vpl"; null: its own */
-    const char* const* define_names;  /* as -D NAME=VALUE of the command: $parameters of the scene file, and paths */
+    const char* integrator; /* this type instead of the scene's, such as "mote_vpl"; null: its own */
+    const char* const*
+        define_names; /* as -D NAME=VALUE of the command: $parameters of the scene file, and paths */
     const char* const* define_values; /* such as "integrator.paths" */
     size_t define_count;
-    int lenient;        /* not 0: leave out or approximate what is wrong, and say so as a warning */
-    const char* folder; /* for scenes of text or of arrays: where relative file names are looked up; null: here */
-    const char* name;   /* of such a scene, in messages; null: "<string>", or "scene" */
+    int lenient; /* not 0: leave out or approximate what is wrong, and say so as a warning */
+    const char*
+        folder; /* for scenes of text or of arrays: where relative file names are looked up; null: here */
+    const char* name; /* of such a scene, in messages; null: "<string>", or "scene" */
 } mote_load_options;
 
 /* Never null but where memory is out. */
@@ -71,10 +78,12 @@ MOTE_API mote_scene* mote_scene_new(void);
 /* Null is allowed. Pictures that were rendered from it stay. */
 MOTE_API void mote_scene_free(mote_scene* scene);
 
-/* A scene file (docs/scene-format.md), glTF or GLB; or its text. `options` may be null. A scene that was loaded before
- * is replaced if this succeeds. */
-MOTE_API mote_status mote_scene_load_file(mote_scene* scene, const char* path, const mote_load_options* options);
-MOTE_API mote_status mote_scene_load_text(mote_scene* scene, const char* xml, const mote_load_options* options);
+/* A scene file (docs/scene-format.md), glTF or GLB; or its text. `options` may be null. A scene that was
+ * loaded before is replaced if this succeeds. */
+MOTE_API mote_status mote_scene_load_file(mote_scene* scene, const char* path,
+                                          const mote_load_options* options);
+MOTE_API mote_status mote_scene_load_text(mote_scene* scene, const char* xml,
+                                          const mote_load_options* options);
 
 /* What is wrong: the first of the errors; "" where the last call went well. */
 MOTE_API const char* mote_scene_error(const mote_scene* scene);
@@ -92,7 +101,8 @@ MOTE_API const char* mote_scene_warning(const mote_scene* scene, size_t index);
 /* What will run, with the reason for every choice, as `mote plan` prints it. */
 MOTE_API const char* mote_scene_plan(mote_scene* scene);
 
-/* ---- scenes from arrays ------------------------------------------------------------------------------------- */
+/* ---- scenes from arrays
+ * ------------------------------------------------------------------------------------- */
 /* A scene is written down object by object, in the words of the scene language, and then built:
  *
  *     mote_scene_add_mesh(scene, "floor", &mesh);
@@ -105,15 +115,15 @@ MOTE_API const char* mote_scene_plan(mote_scene* scene);
  *     ... sensor, emitters ...
  *     mote_scene_build(scene, NULL);
  *
- * Materials, lights, cameras, media and integrators are those of the scene language; `arraymesh` stands for a mesh and
- * `arraygrid` for a grid of the host, and "vdbvolume" with "filename" reads a .vdb file. What is written down is used up
- * by mote_scene_build(), whether it succeeds or not. */
+ * Materials, lights, cameras, media and integrators are those of the scene language; `arraymesh` stands for a
+ * mesh and `arraygrid` for a grid of the host, and "vdbvolume" with "filename" reads a .vdb file. What is
+ * written down is used up by mote_scene_build(), whether it succeeds or not. */
 
 typedef struct mote_mesh {
     size_t struct_size;
-    const float* positions;   /* [vertex][3], in metres */
-    const float* normals;     /* [vertex][3], or null: computed, unless face_normals is set on the shape */
-    const float* uvs;         /* [vertex][2], or null */
+    const float* positions; /* [vertex][3], in metres */
+    const float* normals;   /* [vertex][3], or null: computed, unless face_normals is set on the shape */
+    const float* uvs;       /* [vertex][2], or null */
     size_t vertex_count;
     const uint32_t* triangles; /* [triangle][3] */
     size_t triangle_count;
@@ -121,7 +131,7 @@ typedef struct mote_mesh {
 
 typedef struct mote_grid {
     size_t struct_size;
-    const float* values; /* [z][y][x][channel], not negative */
+    const float* values;      /* [z][y][x][channel], not negative */
     int width, height, depth; /* voxels along x, y, z */
     int channels;             /* 1 or 3; 0 is 1 */
     float lower[3], upper[3]; /* its box, where the volume says use_grid_bbox; else it fills the unit cube */
@@ -130,8 +140,8 @@ typedef struct mote_grid {
 /* The arrays are copied. `name` is what `array` names. */
 MOTE_API mote_status mote_scene_add_mesh(mote_scene* scene, const char* name, const mote_mesh* mesh);
 MOTE_API mote_status mote_scene_add_grid(mote_scene* scene, const char* name, const mote_grid* grid);
-/* Opens and closes an object: `kind` is "shape", "bsdf", "emitter", "sensor", "medium", ... `name` (what it is to the
- * object around it) and `id` (for mote_scene_refer) may be null. */
+/* Opens and closes an object: `kind` is "shape", "bsdf", "emitter", "sensor", "medium", ... `name` (what it
+ * is to the object around it) and `id` (for mote_scene_refer) may be null. */
 MOTE_API mote_status mote_scene_begin(mote_scene* scene, const char* kind, const char* type, const char* name,
                                       const char* id);
 MOTE_API mote_status mote_scene_end(mote_scene* scene);
@@ -149,7 +159,8 @@ MOTE_API mote_status mote_scene_set_transform(mote_scene* scene, const char* nam
 MOTE_API mote_status mote_scene_refer(mote_scene* scene, const char* id, const char* name);
 MOTE_API mote_status mote_scene_build(mote_scene* scene, const mote_load_options* options);
 
-/* ---- rendering ---------------------------------------------------------------------------------------------- */
+/* ---- rendering
+ * ---------------------------------------------------------------------------------------------- */
 
 typedef struct mote_progress {
     size_t struct_size;
@@ -162,7 +173,8 @@ typedef struct mote_progress {
 
 typedef struct mote_render_options {
     size_t struct_size;
-    /* The first rule that holds ends the render; 0: no such rule. Without any: the film's sample_count of passes. */
+    /* The first rule that holds ends the render; 0: no such rule. Without any: the film's sample_count of
+     * passes. */
     uint32_t passes;
     double seconds; /* from the call on */
     double noise;   /* relative, such as 0.02 */
@@ -177,30 +189,34 @@ typedef struct mote_render_options {
     void* user;
     void (*progress)(void* user, const mote_progress* progress);
     int (*cancelled)(void* user); /* not 0: stop within two seconds, and keep what there is */
-    void (*preview)(void* user, int width, int height, const float* rgb); /* the picture so far, now and then */
+    void (*preview)(void* user, int width, int height,
+                    const float* rgb); /* the picture so far, now and then */
 } mote_render_options;
 
 /* Never null but where memory is out. */
 MOTE_API mote_picture* mote_picture_new(void);
 MOTE_API void mote_picture_free(mote_picture* picture); /* null is allowed */
 
-/* Renders into `picture`, whose layers it replaces; errors are the picture's. Scene, seed and passes determine every
- * bit, whatever the number of threads. A render that was cancelled is MOTE_OK: mote_picture_interrupted() tells, and
- * mote_picture_passes() what there is. */
-MOTE_API mote_status mote_render(const mote_scene* scene, const mote_render_options* options, mote_picture* picture);
+/* Renders into `picture`, whose layers it replaces; errors are the picture's. Scene, seed and passes
+ * determine every bit, whatever the number of threads. A render that was cancelled is MOTE_OK:
+ * mote_picture_interrupted() tells, and mote_picture_passes() what there is. */
+MOTE_API mote_status mote_render(const mote_scene* scene, const mote_render_options* options,
+                                 mote_picture* picture);
 
 MOTE_API const char* mote_picture_error(const mote_picture* picture);
 MOTE_API const char* mote_picture_error_file(const mote_picture* picture);
 MOTE_API int mote_picture_error_line(const mote_picture* picture);
 
-/* ---- pictures ----------------------------------------------------------------------------------------------- */
+/* ---- pictures
+ * ----------------------------------------------------------------------------------------------- */
 
 MOTE_API int mote_picture_width(const mote_picture* picture);
 MOTE_API int mote_picture_height(const mote_picture* picture);
 MOTE_API uint32_t mote_picture_passes(const mote_picture* picture);
 MOTE_API int mote_picture_interrupted(const mote_picture* picture);
-MOTE_API double mote_picture_noise(const mote_picture* picture);          /* infinity: not known */
-MOTE_API const char* mote_picture_statistics(const mote_picture* picture); /* JSON; "" where it was not rendered */
+MOTE_API double mote_picture_noise(const mote_picture* picture); /* infinity: not known */
+MOTE_API const char* mote_picture_statistics(
+    const mote_picture* picture); /* JSON; "" where it was not rendered */
 MOTE_API size_t mote_picture_warning_count(const mote_picture* picture);
 MOTE_API const char* mote_picture_warning(const mote_picture* picture, size_t index);
 /* An entry of the metadata, such as "seed" or "worldToCamera"; null where there is none. */
@@ -208,48 +224,54 @@ MOTE_API const char* mote_picture_metadata(const mote_picture* picture, const ch
 
 /* Layers by index and name: "beauty", then "direct", "Depth", "Variance", ... */
 MOTE_API size_t mote_picture_layer_count(const mote_picture* picture);
-MOTE_API const char* mote_picture_layer_name(const mote_picture* picture, size_t index);     /* null beyond the last */
-MOTE_API int mote_picture_layer_channels(const mote_picture* picture, const char* layer); /* 0: there is no such layer */
+MOTE_API const char* mote_picture_layer_name(const mote_picture* picture,
+                                             size_t index); /* null beyond the last */
+MOTE_API int mote_picture_layer_channels(const mote_picture* picture,
+                                         const char* layer); /* 0: there is no such layer */
 /* Fills [height][width][channels]; `count` floats have room in `values`. */
 MOTE_API mote_status mote_picture_read(mote_picture* picture, const char* layer, float* values, size_t count);
-/* Adds a layer, or replaces it, of 1 or 3 channels. The first one decides the picture's size. 3 channels are X, Y, Z of
- * layers that hold vectors (P, N, Ns, PreviousP, MotionVector, and what ends in .P, .N, ...), else R, G, B; one is Y. */
-MOTE_API mote_status mote_picture_write(mote_picture* picture, const char* layer, int width, int height, int channels,
-                                        const float* values);
+/* Adds a layer, or replaces it, of 1 or 3 channels. The first one decides the picture's size. 3 channels are
+ * X, Y, Z of layers that hold vectors (P, N, Ns, PreviousP, MotionVector, and what ends in .P, .N, ...), else
+ * R, G, B; one is Y. */
+MOTE_API mote_status mote_picture_write(mote_picture* picture, const char* layer, int width, int height,
+                                        int channels, const float* values);
 MOTE_API mote_status mote_picture_set_metadata(mote_picture* picture, const char* name, const char* value);
 
 /* OpenEXR files. `half` not 0: float16. */
 MOTE_API mote_status mote_picture_load(mote_picture* picture, const char* path);
 MOTE_API mote_status mote_picture_save(mote_picture* picture, const char* path, int half);
 
-/* ---- algorithms on pictures, of whatever renderer ----------------------------------------------------------- */
+/* ---- algorithms on pictures, of whatever renderer
+ * ----------------------------------------------------------- */
 
 typedef struct mote_ssbc_options {
     size_t struct_size;
-    double bound;          /* of the geometry term [1/m^2]; 0: as the picture's metadata says */
-    int steps;             /* how often light is carried on; 0: 2 */
-    int flat;              /* not 0: sum over all pixels, exact and slow */
-    int half_resolution;   /* not 0: gather at one pixel of four */
-    double blur;           /* standard deviation of an edge-preserving blur [pixels] */
-    int replace;           /* not 0: take out the compensation that the picture holds */
+    double bound;        /* of the geometry term [1/m^2]; 0: as the picture's metadata says */
+    int steps;           /* how often light is carried on; 0: 2 */
+    int flat;            /* not 0: sum over all pixels, exact and slow */
+    int half_resolution; /* not 0: gather at one pixel of four */
+    double blur;         /* standard deviation of an edge-preserving blur [pixels] */
+    int replace;         /* not 0: take out the compensation that the picture holds */
 } mote_ssbc_options;
 
 /* Screen-space bias compensation (docs/ssbc.md): adds what a bound took to the beauty, and as the layer
- * "compensation_surface". The picture holds beauty, P, N and DiffuseAlbedo (or those of Center), and the metadata
- * "worldToCamera" unless positions are in camera space. `options` may be null. */
+ * "compensation_surface". The picture holds beauty, P, N and DiffuseAlbedo (or those of Center), and the
+ * metadata "worldToCamera" unless positions are in camera space. `options` may be null. */
 MOTE_API mote_status mote_picture_compensate(mote_picture* picture, const mote_ssbc_options* options);
 
-/* Adds the layer "denoised": `method` is "bmfr" (regression on features) or "oidn" (where it is installed). Uses the
- * layers Albedo, Ns, P, Depth, Variance where the picture has them. `threads` 0: one for every core. */
+/* Adds the layer "denoised": `method` is "bmfr" (regression on features) or "oidn" (where it is installed).
+ * Uses the layers Albedo, Ns, P, Depth, Variance where the picture has them. `threads` 0: one for every core.
+ */
 MOTE_API mote_status mote_picture_denoise(mote_picture* picture, const char* method, int threads);
 
-/* The frames of a sequence, by regression and by what earlier frames show of the same places (docs/denoising.md). */
+/* The frames of a sequence, by regression and by what earlier frames show of the same places
+ * (docs/denoising.md). */
 typedef struct mote_sequence mote_sequence;
-MOTE_API mote_sequence* mote_sequence_new(void); /* never null but where memory is out */
+MOTE_API mote_sequence* mote_sequence_new(void);           /* never null but where memory is out */
 MOTE_API void mote_sequence_free(mote_sequence* sequence); /* null is allowed */
-/* Adds the layer "denoised" to the next frame; errors are the picture's. Frames have one size and the same layers. What
- * moved is known from the layer "MotionVector", else from P and the metadata "worldToCamera"; without either no frame
- * takes anything from those before. */
+/* Adds the layer "denoised" to the next frame; errors are the picture's. Frames have one size and the same
+ * layers. What moved is known from the layer "MotionVector", else from P and the metadata "worldToCamera";
+ * without either no frame takes anything from those before. */
 MOTE_API mote_status mote_sequence_denoise(mote_sequence* sequence, mote_picture* frame);
 
 typedef struct mote_metrics {
@@ -268,31 +290,36 @@ MOTE_API mote_status mote_compare(const float* image, const float* reference, in
                                   const float* image_variance, const float* reference_variance,
                                   mote_metrics* metrics);
 
-/* ---- algorithms over the camera and the lights of another renderer ------------------------------------------ */
+/* ---- algorithms over the camera and the lights of another renderer
+ * ------------------------------------------ */
 
 typedef struct mote_epipolar_options {
     size_t struct_size;
     int width, height;
-    const float* depth;   /* [height][width], along the camera's axis [m]; not above 0, or not finite: nothing is there */
-    double far_distance;  /* [m] along rays that meet nothing: where they end; above 0 */
-    double focal_length;  /* of a pinhole camera [pixels] */
+    const float* depth;  /* [height][width], along the camera's axis [m]; not above 0, or not finite: nothing
+                            is there */
+    double far_distance; /* [m] along rays that meet nothing: where they end; above 0 */
+    double focal_length; /* of a pinhole camera [pixels] */
     double centre_x, centre_y; /* where its axis meets the picture [pixels]; both 0: in the middle */
-    double lamp[3];       /* in camera space: x right, y down, z forward [m] */
-    int lines;            /* around the whole border; 0: 512 */
-    int samples;          /* of a line before it is refined; 0: 16 */
-    double tolerance;     /* of interpolation, relative; 0: 0.05 */
+    double lamp[3];            /* in camera space: x right, y down, z forward [m] */
+    int lines;                 /* around the whole border; 0: 512 */
+    int samples;               /* of a line before it is refined; 0: 16 */
+    double tolerance;          /* of interpolation, relative; 0: 0.05 */
     void* user;
-    /* The light of the lamp that is scattered into the ray through the place (x, y) of the picture [pixels; the middle of
-     * the first pixel is (0.5, 0.5)] before `distance` [m]: radiance [W/(m^2 sr)]. In the thread of mote_epipolar(). */
+    /* The light of the lamp that is scattered into the ray through the place (x, y) of the picture [pixels;
+     * the middle of the first pixel is (0.5, 0.5)] before `distance` [m]: radiance [W/(m^2 sr)]. In the
+     * thread of mote_epipolar(). */
     void (*march)(void* user, double x, double y, double distance, float radiance[3]);
 } mote_epipolar_options;
 
-/* Epipolar sampling (docs/epipolar.md): light that media scatter once, over a whole picture, from few rays that `march` is
- * called for. Fills light [height][width][3], room for `count` floats; `marched` (may be null): calls of `march`. */
-MOTE_API mote_status mote_epipolar(const mote_epipolar_options* options, float* light, size_t count, uint64_t* marched);
+/* Epipolar sampling (docs/epipolar.md): light that media scatter once, over a whole picture, from few rays
+ * that `march` is called for. Fills light [height][width][3], room for `count` floats; `marched` (may be
+ * null): calls of `march`. */
+MOTE_API mote_status mote_epipolar(const mote_epipolar_options* options, float* light, size_t count,
+                                   uint64_t* marched);
 
-/* A hierarchy over lights, of which one is drawn for a receiver in proportion to what it may contribute, unoccluded
- * (Estevez and Kulla 2018). */
+/* A hierarchy over lights, of which one is drawn for a receiver in proportion to what it may contribute,
+ * unoccluded (Estevez and Kulla 2018). */
 typedef struct mote_light_tree mote_light_tree;
 typedef struct mote_light {
     float lower[3], upper[3]; /* a box that holds it [m] */
@@ -300,17 +327,19 @@ typedef struct mote_light {
     double intensity;         /* along the normal, mean of the channels [W/sr]; above 0 */
 } mote_light;
 
-/* The lights are copied. Null, with the reason in `status` (which may be null), where there are none or more than 2^28,
- * or one of them cannot be. */
+/* The lights are copied. Null, with the reason in `status` (which may be null), where there are none or more
+ * than 2^28, or one of them cannot be. */
 MOTE_API mote_light_tree* mote_light_tree_new(const mote_light* lights, size_t count, mote_status* status);
 MOTE_API void mote_light_tree_free(mote_light_tree* tree); /* null is allowed */
-/* A light drawn by u in [0, 1), and the probability of that draw. `normal`: unit, on the side from which light counts;
- * null: from all sides. Several threads may ask at once. */
-MOTE_API mote_status mote_light_tree_sample(const mote_light_tree* tree, const float position[3], const float normal[3],
-                                            double u, size_t* light, double* probability);
-/* Of mote_light_tree_sample() drawing this light; over all lights they sum to 1. NaN for arguments that cannot be. */
-MOTE_API double mote_light_tree_probability(const mote_light_tree* tree, const float position[3], const float normal[3],
-                                            size_t light);
+/* A light drawn by u in [0, 1), and the probability of that draw. `normal`: unit, on the side from which
+ * light counts; null: from all sides. Several threads may ask at once. */
+MOTE_API mote_status mote_light_tree_sample(const mote_light_tree* tree, const float position[3],
+                                            const float normal[3], double u, size_t* light,
+                                            double* probability);
+/* Of mote_light_tree_sample() drawing this light; over all lights they sum to 1. NaN for arguments that
+ * cannot be. */
+MOTE_API double mote_light_tree_probability(const mote_light_tree* tree, const float position[3],
+                                            const float normal[3], size_t light);
 
 #ifdef __cplusplus
 }

@@ -2,7 +2,7 @@
 #include <limits>
 #include <span>
 
-#include "core/image/image_file.h"
+#include "core/formats/pictures/image_file.h"
 #include "plugins/c/handles.h"
 #include "session/denoise/bmfr_sequence.h"
 #include "session/denoise/denoised_layer.h"

@@ -1,5 +1,5 @@
 // The extension module mote._mote: what the package `mote` is written on. Nobody else should use it.
-#include "core/loading/faults.h"
+#include "core/formats/xml/faults.h"
 #include "python/bindings/bindings.h"
 #include "session/render_report.h"
 

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <limits>
 
-#include "core/image/exposure.h"
-#include "core/image/image_file.h"
-#include "core/image/srgb.h"
+#include "core/film/exposure.h"
+#include "core/formats/pictures/image_file.h"
+#include "core/math/srgb.h"
 #include "python/bindings/bindings.h"
 #include "session/compare.h"
 #include "session/denoise/bmfr_sequence.h"

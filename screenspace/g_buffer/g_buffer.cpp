@@ -5,8 +5,8 @@
 #include <span>
 #include <stdexcept>
 
+#include "core/film/tiles.h"
 #include "core/geometry/bsdf_point.h"
-#include "core/image/tiles.h"
 #include "core/scene/camera.h"
 #include "core/scene/ray_queries.h"
 

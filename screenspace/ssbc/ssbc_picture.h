@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/image/image_file.h"
+#include "core/film/image_channels.h"
 #include "screenspace/ssbc/ssbc_layers.h"
 
 namespace mote::screenspace {

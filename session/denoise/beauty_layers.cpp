@@ -10,7 +10,7 @@ using core::ImageChannels, core::Rgb;
 
 namespace {
 
-/// Colours that are no part of the beauty (core/image/film_image.cpp, session/auxiliary_channels.h).
+/// Colours that are no part of the beauty (core/film/film_image.cpp, session/auxiliary_channels.h).
 bool is_auxiliary(const std::string& layer) {
     static const std::array<std::string, 5> names{"Albedo", "DiffuseAlbedo", "Transmittance", "InScattered",
                                                   "Variance"};

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/image/image_file.h"
+#include "core/film/image_channels.h"
 
 namespace mote::session {
 

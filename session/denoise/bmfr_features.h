@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "core/image/image_file.h"
+#include "core/film/image_channels.h"
 #include "screenspace/denoising/sequence_denoiser.h"
 
 namespace mote::session {

@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "core/image/image_file.h"
+#include "core/film/image_channels.h"
 #include "session/denoise/oidn_library.h"
 
 namespace mote::session {

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "core/image/image_file.h"
+#include "core/film/image_channels.h"
 #include "screenspace/denoising/reprojection.h"
 
 namespace mote::session {

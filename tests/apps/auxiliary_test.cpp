@@ -1,5 +1,5 @@
 // mote render --auxiliary: features beside a picture that stays as it is, and surfaces at pixel centres.
-#include "core/image/image_file.h"
+#include "core/formats/pictures/image_file.h"
 #include "tests/apps/run_mote.h"
 #include "tests/support/catch.h"
 

@@ -6,10 +6,10 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "core/image/error_map.h"
-#include "core/image/image_file.h"
-#include "core/image/metrics.h"
+#include "core/formats/pictures/image_file.h"
 #include "core/math/random.h"
+#include "core/metrics/error_map.h"
+#include "core/metrics/metrics.h"
 #include "tests/apps/run_mote.h"
 #include "tests/support/catch.h"
 

@@ -1,9 +1,9 @@
 // glTF scenes on the command line: render, info and plan take them; convert turns them into XML.
 #include <filesystem>
 
-#include "core/image/image_file.h"
+#include "core/formats/pictures/image_file.h"
 #include "tests/apps/run_mote.h"
-#include "tests/core/gltf/gltf_builder.h"
+#include "tests/core/formats/gltf/gltf_builder.h"
 #include "tests/support/catch.h"
 
 using namespace mote::tests;

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "core/image/image_file.h"
+#include "core/formats/pictures/image_file.h"
 #include "tests/apps/run_mote.h"
 #include "tests/support/catch.h"
 

@@ -2,8 +2,8 @@
 // dropped is listed. Mitsuba itself is asked by experiments/peers/mitsuba.py.
 #include <cstring>
 
-#include "core/image/image_file.h"
-#include "core/loading/scene_loader.h"
+#include "core/formats/pictures/image_file.h"
+#include "core/formats/xml/scene_loader.h"
 #include "core/math/random.h"
 #include "media/grid_volume.h"
 #include "media/vdb_grid.h"

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "core/image/image_file.h"
+#include "core/formats/pictures/image_file.h"
 #include "tests/apps/run_mote.h"
 #include "tests/support/catch.h"
 

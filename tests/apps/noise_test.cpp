@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "apps/subcommands.h"
-#include "core/image/relative_error.h"
+#include "core/metrics/relative_error.h"
 #include "core/render/render_driver.h"
 #include "tests/apps/run_mote.h"
 #include "tests/support/catch.h"

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <tuple>
 
-#include "core/image/image_file.h"
-#include "core/image/metrics.h"
+#include "core/formats/pictures/image_file.h"
+#include "core/metrics/metrics.h"
 #include "tests/apps/run_mote.h"
 #include "tests/support/catch.h"
 

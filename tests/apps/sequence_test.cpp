@@ -4,8 +4,8 @@
 
 #include "apps/sequence.h"
 #include "apps/subcommands.h"
-#include "core/image/image_file.h"
-#include "core/loading/frame_files.h"
+#include "core/formats/pictures/image_file.h"
+#include "core/formats/xml/frame_files.h"
 #include "tests/apps/run_mote.h"
 #include "tests/support/catch.h"
 

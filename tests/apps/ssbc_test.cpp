@@ -1,5 +1,5 @@
 // mote ssbc: adds the layer, says what is missing, refuses what cannot be done.
-#include "core/image/image_file.h"
+#include "core/formats/pictures/image_file.h"
 #include "tests/apps/run_mote.h"
 #include "tests/screenspace/ssbc_exr.h"
 #include "tests/support/catch.h"

@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "apps/tev_viewer.h"
-#include "core/image/image_file.h"
+#include "core/formats/pictures/image_file.h"
 #include "core/objects/error.h"
 #include "tests/apps/run_mote.h"
 #include "tests/support/catch.h"

@@ -4,13 +4,13 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "session/reference_metadata.h"
 #include "apps/trade/methods_file.h"
 #include "apps/trade/record.h"
 #include "apps/trade/reference.h"
 #include "apps/trade/trade_command.h"
-#include "core/image/image_file.h"
+#include "core/formats/pictures/image_file.h"
 #include "core/render/render_driver.h"
+#include "session/reference_metadata.h"
 #include "tests/apps/run_mote.h"
 #include "tests/support/catch.h"
 #include "tests/support/render_statistics.h"

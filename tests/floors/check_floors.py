@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Checks the house (docs/design.md): includes go down the floors only, and no path of one machine is committed.
+"""Checks the house (docs/design.md): includes go down the floors only and in no circle, and no path of one machine is committed.
 
 Usage: check_floors.py ROOT
-A file includes from its own folder or from floors below. Folders on the same floor do not know each other.
+A file includes from its own folder or from floors below. Folders on the same floor do not include each other, and
+subfolders of one folder form no circle.
 tests/ and tools/ may include from anywhere. Looks at the committed files where ROOT is a git checkout, else at
 all files. Prints every offence as file:line and ends with 1 if there is one.
 """
@@ -23,8 +24,8 @@ FLOORS = [
 ]
 FLOOR_OF = {folder: level for level, floor in enumerate(FLOORS) for folder in floor}
 # core has floors of its own.
-CORE_FLOORS = [["math"], ["objects"], ["image"], ["materials"], ["geometry"], ["scene", "assets"], ["cameras", "render", "gltf"],
-               ["loading"]]
+CORE_FLOORS = [["math"], ["objects"], ["files", "metrics"], ["film"], ["materials"], ["geometry"], ["scene"],
+               ["cameras", "render"], ["formats"]]
 CORE_FLOOR_OF = {folder: level for level, floor in enumerate(CORE_FLOORS) for folder in floor}
 EXEMPT = {"tests", "tools"}
 SOURCES = {".h", ".hpp", ".cpp", ".c", ".cc", ".inl"}
@@ -95,6 +96,52 @@ def offences_of_file(root, path):
                 yield number, f"a system path that the project does not rely on: {place}"
 
 
+def room_includes(root, files):
+    """Between the subfolders of one folder: {(folder, subfolder): {subfolder it includes: "file:line"}}.
+
+    Subfolders of subfolders (core/formats/xml) are rooms of their parent in the same way.
+    """
+    graph = {}
+    for path in files:
+        relative = path.relative_to(root)
+        if path.suffix not in SOURCES or relative.parts[0] not in FLOOR_OF:
+            continue
+        for number, line in enumerate(path.read_text("utf-8", "replace").splitlines(), 1):
+            found = INCLUDE.match(line)
+            if not found:
+                continue
+            here, there = relative.parts[:-1], tuple(found.group(1).split("/")[:-1])
+            shared = 0
+            while shared < min(len(here), len(there)) and here[shared] == there[shared]:
+                shared += 1
+            if shared and shared < min(len(here), len(there)):
+                room = graph.setdefault(here[:shared], {}).setdefault(here[shared], {})
+                room.setdefault(there[shared], f"{relative}:{number}")
+    return graph
+
+
+def circles(root, files):
+    """An offence for each pair of subfolders of one folder that include each other, directly or by way of others."""
+    for folder, graph in sorted(room_includes(root, files).items()):
+        reached = {room: reachable(graph, room) for room in graph}
+        for first, includes in sorted(graph.items()):
+            for second, where in sorted(includes.items()):
+                if first < second and first in reached.get(second, ()):
+                    yield (f"{where}: {'/'.join(folder)}/{first} and {'/'.join(folder)}/{second} include each other "
+                           f"({graph[second].get(first, 'by way of others')})")
+
+
+def reachable(graph, start):
+    """All rooms that `start` includes, directly or by way of others."""
+    seen, open_rooms = set(), list(graph.get(start, ()))
+    while open_rooms:
+        room = open_rooms.pop()
+        if room not in seen:
+            seen.add(room)
+            open_rooms += graph.get(room, ())
+    return seen
+
+
 def is_exempt_from_paths(relative):
     """These files hold the patterns themselves."""
     return relative.parts[:2] == ("tests", "floors")
@@ -105,7 +152,7 @@ def check(root):
     files = committed_files(root)
     lines = [f"{path.relative_to(root)}:{number}: {reason}"
              for path in files for number, reason in offences_of_file(root, path)]
-    return lines, len(files)
+    return lines + list(circles(root, files)), len(files)
 
 
 def main():

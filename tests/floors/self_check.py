@@ -12,8 +12,8 @@ from check_floors import check
 CASES = [
     ("core/a.cpp", '#include "media/medium.h"\n', True),
     ("core/a.cpp", '#  include <lights/area.h>\n', True),
-    ("core/image/a.cpp", '#include "core/render/b.h"\n', True),
-    ("core/scene/a.h", '#include "core/loading/b.h"\n', True),
+    ("core/film/a.cpp", '#include "core/render/b.h"\n', True),
+    ("core/scene/a.h", '#include "core/formats/xml/b.h"\n', True),
     ("core/render/a.h", '#include "core/cameras/b.h"\n', True),
     ("core/scene/a.h", '#include "core/geometry/b.h"\n#include "core/scene/c.h"\n', False),
     ("media/a.h", '#include "media/b.h"\n#include "core/c.h"\n#include <vector>\n', False),
@@ -84,8 +84,25 @@ def check_loops():
     return 1
 
 
+def check_circles():
+    """How many of these come out wrong: subfolders that include each other, directly or by way of a third."""
+    chains = [(["a", "b"], False), (["a", "b", "a"], True), (["a", "b", "c", "a"], True)]
+    failures = 0
+    for chain, refused in chains:
+        with tempfile.TemporaryDirectory() as folder:
+            for includer, included in zip(chain, chain[1:]):
+                path = Path(folder) / f"lights/{includer}/to_{included}.h"
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_text(f'#include "lights/{included}/x.h"\n')
+            offences, _ = check(Path(folder))
+        if bool(offences) != refused:
+            failures += 1
+            print(f"{chain}: expected {'a circle' if refused else 'none'}, got {offences}")
+    return failures
+
+
 def main():
-    failures = check_citations() + check_loops()
+    failures = check_citations() + check_loops() + check_circles()
     for name, content, refused in CASES:
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / name
@@ -96,7 +113,7 @@ def main():
             failures += 1
             print(f"{name}: {content.strip()!r}: expected {'an offence' if refused else 'none'}, "
                   f"got {offences} in {count} files")
-    print(f"{len(CASES) + len(CITATIONS) + 1} cases, {failures} wrong")
+    print(f"{len(CASES) + len(CITATIONS) + 4} cases, {failures} wrong")
     return 1 if failures else 0
 
 

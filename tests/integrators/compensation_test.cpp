@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "core/loading/scene_loader.h"
+#include "core/formats/xml/scene_loader.h"
 #include "core/objects/error.h"
 #include "core/render/render_driver.h"
 #include "tests/integrators/test_scenes.h"

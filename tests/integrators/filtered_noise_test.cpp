@@ -1,7 +1,7 @@
 // The noise that is stated of a picture with filtered layers is the spread of such pictures over seeds.
 #include <cmath>
 
-#include "core/image/relative_error.h"
+#include "core/metrics/relative_error.h"
 #include "core/render/render_driver.h"
 #include "tests/integrators/test_scenes.h"
 #include "tests/support/catch.h"

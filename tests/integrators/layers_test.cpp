@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "core/image/film.h"
+#include "core/film/film.h"
 #include "core/render/render_driver.h"
 #include "integrators/layers/pass_schedule.h"
 #include "tests/integrators/test_scenes.h"

@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/image/film.h"
+#include "core/film/film.h"
 #include "core/math/frame.h"
 #include "core/objects/error.h"
 #include "core/render/render_driver.h"

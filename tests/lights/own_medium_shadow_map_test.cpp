@@ -1,7 +1,7 @@
 // Shadow maps of a medium that the project does not know: marched through its interface alone.
 #include <cmath>
 
-#include "core/loading/scene_loader.h"
+#include "core/formats/xml/scene_loader.h"
 #include "core/math/random.h"
 #include "core/objects/properties.h"
 #include "core/scene/scene.h"

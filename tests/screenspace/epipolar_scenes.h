@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "core/loading/scene_loader.h"
+#include "core/formats/xml/scene_loader.h"
 #include "core/render/render_driver.h"
 #include "tests/integrators/test_scenes.h"
 #include "tests/support/catch.h"

@@ -3,7 +3,7 @@
 
 #include <sstream>
 
-#include "core/image/image_file.h"
+#include "core/film/image_channels.h"
 #include "tests/screenspace/ssbc_room.h"
 
 namespace mote::tests {

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/image/film.h"
-#include "core/loading/scene_loader.h"
+#include "core/film/film.h"
+#include "core/formats/xml/scene_loader.h"
 #include "core/render/render_driver.h"
 #include "integrators/register_integrators.h"
 #include "lights/register_lights.h"

@@ -7,7 +7,7 @@
 #include <functional>
 #include <stdexcept>
 
-#include "core/image/image_file.h"
+#include "core/formats/pictures/image_file.h"
 #include "tests/support/failure_files.h"
 #include "tests/support/pearson.h"
 #include "tests/support/render_statistics.h"

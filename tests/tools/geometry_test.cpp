@@ -4,9 +4,9 @@
 #include <fstream>
 #include <limits>
 
+#include "core/formats/pictures/image_file.h"
 #include "core/geometry/ray_tracer.h"
 #include "core/geometry/triangle_mesh.h"
-#include "core/image/image_file.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
 #include "tools/geometry/atrium.h"

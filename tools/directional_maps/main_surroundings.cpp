@@ -13,7 +13,7 @@
 #include <functional>
 #include <iostream>
 
-#include "core/loading/scene_loader.h"
+#include "core/formats/xml/scene_loader.h"
 #include "core/objects/error.h"
 #include "lights/directional_maps/directional_map.h"
 #include "lights/directional_maps/summed_area_octahedral.h"

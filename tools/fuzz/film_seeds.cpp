@@ -2,7 +2,7 @@
 #include <cstring>
 #include <span>
 
-#include "core/image/checksum.h"
+#include "core/files/checksum.h"
 #include "core/render/checkpoint.h"
 #include "core/render/partial_film.h"
 #include "tools/fuzz/scratch_file.h"

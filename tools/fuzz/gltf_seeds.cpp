@@ -1,5 +1,5 @@
 // glTF scenes that use much of what is read: one document, with its bytes as text or as a chunk.
-#include "core/image/image_file.h"
+#include "core/formats/pictures/image_file.h"
 #include "tools/fuzz/seeds.h"
 
 namespace mote::fuzz {

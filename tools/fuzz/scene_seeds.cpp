@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "core/image/image_file.h"
+#include "core/formats/pictures/image_file.h"
 #include "tools/fuzz/seeds.h"
 
 namespace mote::fuzz {

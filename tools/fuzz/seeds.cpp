@@ -13,7 +13,7 @@
 #include <span>
 
 #include "apps/trade/record.h"
-#include "core/image/image_file.h"
+#include "core/formats/pictures/image_file.h"
 #include "media/vol_file.h"
 #include "tools/fuzz/scratch_file.h"
 

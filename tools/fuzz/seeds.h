@@ -1,7 +1,7 @@
 // Small sound files of every format.
 #pragma once
 
-#include "core/image/film.h"
+#include "core/film/film.h"
 #include "core/scene/scene.h"
 #include "tools/fuzz/formats.h"
 

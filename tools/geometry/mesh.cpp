@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <unordered_map>
 
-#include "core/image/image_file.h"
+#include "core/files/atomic_file.h"
 #include "core/math/random.h"
 
 namespace mote::tools {

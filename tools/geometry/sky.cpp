@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/image/image_file.h"
+#include "core/formats/pictures/image_file.h"
 
 namespace mote::tools {
 

@@ -1,6 +1,6 @@
 #include "tools/smoke/preview.h"
 
-#include "core/image/image_file.h"
+#include "core/formats/pictures/image_file.h"
 
 namespace mote::tools {
 

@@ -1,6 +1,6 @@
 """Error of a picture against two independent references, free of the noise of both; numpy alone.
 
-As core/image/relative_error.h measures: with <a, b> the mean over channels of a b, r the mean of the references A and
+As core/metrics/relative_error.h measures: with <a, b> the mean over channels of a b, r the mean of the references A and
 B, w = 1 / (|r|^2 + (m / 10)^2), where |r|^2 is that of the neighbourhood (`weights`), and m^2 its median,
 
     norm         = sum w <A, B>                                                          (1)

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <iostream>
 
-#include "core/loading/scene_loader.h"
+#include "core/formats/xml/scene_loader.h"
 #include "gathering/ray_bundles/bundle_directions.h"
 #include "gathering/ray_bundles/bundle_tracer.h"
 #include "gathering/ray_bundles/imperfect_bundles.h"

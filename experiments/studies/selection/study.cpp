@@ -2,7 +2,7 @@
 
 #include <sstream>
 
-#include "core/loading/scene_loader.h"
+#include "core/formats/xml/scene_loader.h"
 #include "integrators/eye_path/eye_ray.h"
 #include "integrators/register_integrators.h"
 #include "lights/register_lights.h"

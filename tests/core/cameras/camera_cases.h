@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "core/loading/scene_loader.h"
+#include "core/formats/xml/scene_loader.h"
 #include "core/scene/camera.h"
 #include "core/scene/scene.h"
 #include "tests/support/render_statistics.h"

@@ -1,5 +1,5 @@
 // Shapes as the scene language makes them: parameters, defaults, errors with a place.
-#include "core/assets/register_assets.h"
+#include "core/formats/register_formats.h"
 #include "core/geometry/triangle_mesh.h"
 #include "core/objects/properties.h"
 #include "core/objects/registry.h"

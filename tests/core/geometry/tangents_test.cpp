@@ -1,5 +1,5 @@
 // The tangent of the shading frame: where the BSDF is anisotropic it must follow the texture coordinates.
-#include "core/loading/scene_loader.h"
+#include "core/formats/xml/scene_loader.h"
 #include "tests/core/geometry/meshes.h"
 #include "tests/support/catch.h"
 #include "tests/support/render_statistics.h"

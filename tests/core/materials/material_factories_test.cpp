@@ -1,7 +1,7 @@
 // The factories behind the scene language: names, defaults, and what they refuse, with file and line.
 #include <set>
 
-#include "core/assets/register_assets.h"
+#include "core/formats/register_formats.h"
 #include "core/materials/register_materials.h"
 #include "core/objects/properties.h"
 #include "tests/core/materials/bsdf_cases.h"

@@ -1,5 +1,5 @@
 // Bitmap and checkerboard textures.
-#include "core/assets/register_assets.h"
+#include "core/formats/register_formats.h"
 #include "core/materials/textures.h"
 
 #include <fstream>

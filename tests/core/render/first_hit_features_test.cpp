@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
-#include "core/image/film_image.h"
-#include "core/loading/scene_loader.h"
+#include "core/film/film_image.h"
+#include "core/formats/xml/scene_loader.h"
 #include "core/objects/error.h"
 #include "core/render/camera_ray.h"
 #include "core/render/render_driver.h"

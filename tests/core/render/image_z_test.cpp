@@ -4,7 +4,7 @@
 #include <fstream>
 #include <limits>
 
-#include "core/image/image_file.h"
+#include "core/formats/pictures/image_file.h"
 #include "core/math/random.h"
 #include "tests/support/catch.h"
 #include "tests/support/failure_files.h"

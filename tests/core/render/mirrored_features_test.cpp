@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "core/loading/scene_loader.h"
+#include "core/formats/xml/scene_loader.h"
 #include "core/render/render_driver.h"
 #include "tests/support/catch.h"
 #include "tests/support/render_statistics.h"

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "core/loading/scene_loader.h"
+#include "core/formats/xml/scene_loader.h"
 #include "core/objects/properties.h"
 #include "core/objects/registry.h"
 #include "core/render/integrator.h"

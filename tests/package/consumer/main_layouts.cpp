@@ -2,7 +2,7 @@
 // twice, as mote is (-march, warnings, MOTE_LAYOUTS_INSIDE) and as a consumer's plain compiler does; both
 // must print the same.
 #include <mote/compensation/vpl_compensation.h>
-#include <mote/core/image/film.h>
+#include <mote/core/film/film.h>
 #include <mote/core/render/render_driver.h>
 #include <mote/core/scene/callback_scene.h>
 #include <mote/core/scene/scattering_vertex.h>

@@ -1,0 +1,307 @@
+// The sums of a film, which take one pass at a time, or all those of another film.
+#include "core/film/film.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <stdexcept>
+#include <string>
+
+#include "core/objects/error.h"
+
+namespace mote::core {
+
+namespace {
+
+constexpr std::size_t grain = 4096;  // pixels a task: large enough to hide the scheduling
+
+// Variance of a mean of n values from their sum and sum of squares: (sum of squares / n - mean^2) / (n - 1).
+// Rounding can leave a tiny negative number where all values are equal.
+double variance_from_sums(double sum, double squares, double n) {
+    if (n < 2.0) return 0.0;
+    const double mean = sum / n;
+    return std::fmax(0.0, (squares / n - mean * mean) / (n - 1.0));
+}
+
+template <typename Body>
+void for_each_pixel(std::size_t pixels, const Body& body) {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels, grain), [&](const auto& range) {
+        for (std::size_t p = range.begin(); p < range.end(); ++p) body(p);
+    });
+}
+
+bool pixel_is_finite(const PassImage& image, std::size_t pixel) {
+    for (std::size_t layer = 0; layer < image.layers(); ++layer)
+        if (!is_finite(image.layer(layer)[pixel])) return false;
+    return true;
+}
+
+}  // namespace
+
+std::uint32_t Film::Part::complete_blocks(std::size_t k) const {
+    const std::uint64_t before = (std::uint64_t(first) + (1ull << (k + 1)) - 1) >> (k + 1);
+    const std::uint64_t end = std::uint64_t(first + passes) >> (k + 1);
+    return std::uint32_t(end - std::min(before, end));
+}
+
+/// A block of passes behind those that a part has: joined with those before it to the largest aligned blocks,
+/// as a binary counter carries.
+class Film::NewBlock {
+  public:
+    NewBlock(Part& part, std::uint32_t level, std::size_t pixels) : part_(part), level_(level) {
+        std::vector<Block>& blocks = part.blocks;
+        for (; joins_ < blocks.size(); ++joins_) {
+            const Block& before = blocks[blocks.size() - 1 - joins_];
+            if (before.level != level + joins_ || (before.first >> before.level) % 2 == 1) break;
+        }
+        while (part.half_squares.size() < level + joins_) part.half_squares.emplace_back(pixels);
+        if (joins_ == 0) blocks.push_back({part.first + part.passes, level, std::vector<float>(pixels)});
+        target_ = blocks.size() - std::max<std::size_t>(joins_, 1);
+    }
+    /// Its sum of a pixel.
+    void put(std::size_t pixel, float sum) {
+        for (std::size_t k = 0; k < joins_; ++k) {
+            const float before = part_.blocks[part_.blocks.size() - 1 - k].sums[pixel];
+            part_.half_squares[level_ + k].add(pixel, (before - sum) * (before - sum));
+            sum += before;
+        }
+        part_.blocks[target_].sums[pixel] = sum;
+    }
+    /// After all pixels.
+    void finish() {
+        part_.blocks[target_].level = level_ + std::uint32_t(joins_);
+        part_.blocks.resize(target_ + 1);
+        part_.passes += 1u << level_;
+    }
+
+  private:
+    Part& part_;
+    std::uint32_t level_;
+    std::size_t joins_ = 0, target_ = 0;
+};
+
+Film::Film(int width, int height, std::vector<Layer> layers, bool all_squares)
+    : width_(width), height_(height), layers_(std::move(layers)), all_squares_(all_squares) {
+    if (width < 1 || height < 1) throw std::invalid_argument("a film needs at least one pixel");
+    sums_.assign(layers_.size(), ExactSums(3 * pixels()));
+    for (const Layer& layer : layers_)
+        layer_squares_.emplace_back(all_squares_ || layer.squares ? 3 * pixels() : 0);
+    replaced_.resize(layers_.size());
+    find_parts();
+    find_where();
+}
+
+void Film::find_parts() {
+    std::size_t count = 1;
+    for (const Layer& layer : layers_) count = std::max(count, layer.part + 1);
+    if (count > layers_.size() && count > 1) throw std::invalid_argument("a part without layers");
+    parts_.assign(count, Part(pixels()));
+    for (std::size_t i = 0; i < layers_.size(); ++i) {
+        Part& part = parts_[layers_[i].part];
+        part.layers.push_back(i);
+        if (!layers_[i].auxiliary) part.beauty_layers.push_back(i);
+    }
+    for (const Part& part : parts_)
+        if (part.layers.empty() && count > 1) throw std::invalid_argument("a part without layers");
+}
+
+void Film::find_where() {
+    std::map<std::string, std::size_t> index;
+    for (std::size_t i = 0; i < layers_.size(); ++i)
+        if (!index.emplace(layers_[i].name, i).second)
+            throw std::invalid_argument("two layers are called '" + layers_[i].name + "'");
+    for (const Layer& layer : layers_) {
+        if (!layer.where.empty() &&
+            (!index.contains(layer.where) || layers_[index[layer.where]].part != layer.part))
+            throw std::invalid_argument("there is no layer '" + layer.where + "'");
+        where_.push_back(layer.where.empty() ? layers_.size() : index[layer.where]);
+    }
+}
+
+std::uint32_t Film::pass_count() const {
+    std::uint32_t count = 0;
+    for (const Part& part : parts_) count += part.passes;
+    return count;
+}
+
+std::uint32_t Film::first_pass() const {
+    std::uint32_t first = 0;
+    for (const Part& part : parts_) first += part.first;
+    return first;
+}
+
+void Film::begin_at(std::size_t part, std::uint32_t first) {
+    if (pass_count(part) > 0) throw std::logic_error("the film has passes already");
+    parts_.at(part).first = first;
+}
+
+bool Film::has_passes(std::uint32_t passes) const {
+    return std::all_of(parts_.begin(), parts_.end(), [&](const Part& part) { return part.passes >= passes; });
+}
+
+double Film::passes_of(std::size_t layer, std::size_t pixel) const {
+    const std::size_t where = where_[layer];
+    return where < layers_.size() ? sums_[where].at(3 * pixel) : double(parts_[layers_[layer].part].passes);
+}
+
+float Film::add_pixel(const PassImage& image, Part& part, std::size_t pixel) {
+    double beauty[3] = {0.0, 0.0, 0.0};
+    for (std::size_t of_image = 0; of_image < part.layers.size(); ++of_image) {
+        const std::size_t layer = part.layers[of_image];
+        const Rgb value = image.layer(of_image)[pixel];
+        for (int c = 0; c < 3; ++c) {
+            const double v = value[c];
+            const std::size_t i = 3 * pixel + std::size_t(c);
+            sums_[layer].add(i, v);
+            if (has_squares(layer)) layer_squares_[layer].add(i, v * v);
+            if (!layers_[layer].auxiliary) beauty[c] += v;
+        }
+    }
+    for (int c = 0; c < 3; ++c) part.beauty_squares.add(3 * pixel + std::size_t(c), beauty[c] * beauty[c]);
+    return float((beauty[0] + beauty[1] + beauty[2]) / 3.0);
+}
+
+void Film::check_room(const Part& part, std::uint32_t more) const {
+    if (more > most_passes - part.passes)
+        throw InputError("a film holds at most " + std::to_string(most_passes) + " passes");
+}
+
+void Film::add_pass(const PassImage& image, std::size_t index, double work) {
+    Part& part = parts_.at(index);
+    if (image.width() != width_ || image.height() != height_ || image.layers() != part.layers.size())
+        throw std::invalid_argument("the pass does not fit the film");
+    check_room(part, 1);
+    for (Replacement& replaced : replaced_) replaced = {};
+
+    NewBlock block(part, 0, pixels());
+    // Pixels are independent of each other, so the order of tasks does not matter to any bit.
+    non_finite_ += tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(0, pixels(), grain), std::uint64_t(0),
+        [&](const auto& range, std::uint64_t dropped) {
+            for (std::size_t pixel = range.begin(); pixel < range.end(); ++pixel) {
+                if (pixel_is_finite(image, pixel))
+                    block.put(pixel, add_pixel(image, part, pixel));
+                else
+                    block.put(pixel, 0.0f), ++dropped;
+            }
+            return dropped;
+        },
+        std::plus<>());
+    part.work += work;
+    block.finish();
+}
+
+void Film::add(const Film& next) {
+    bool fits = next.width_ == width_ && next.height_ == height_ && next.layers_.size() == layers_.size() &&
+                next.parts() == parts() && next.all_squares_ == all_squares_;
+    for (std::size_t i = 0; fits && i < layers_.size(); ++i)
+        fits = layers_[i].name == next.layers_[i].name && layers_[i].part == next.layers_[i].part &&
+               has_squares(i) == next.has_squares(i);
+    for (std::size_t i = 0; fits && i < parts(); ++i) fits = next_pass(i) == next.first_pass(i);
+    if (!fits) throw std::invalid_argument("the film does not continue this one");
+    for (std::size_t i = 0; i < parts(); ++i) check_room(parts_[i], next.parts_[i].passes);
+    for (Replacement& replaced : replaced_) replaced = {};
+
+    const auto add_sums = [](ExactSums& sums, const ExactSums& more) {
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, more.size(), 3 * grain), [&](const auto& range) {
+            for (std::size_t i = range.begin(); i < range.end(); ++i) sums.add(i, more);
+        });
+    };
+    for (std::size_t i = 0; i < layers_.size(); ++i)
+        add_sums(sums_[i], next.sums_[i]), add_sums(layer_squares_[i], next.layer_squares_[i]);
+    for (std::size_t i = 0; i < parts(); ++i) {
+        Part& part = parts_[i];
+        const Part& more = next.parts_[i];
+        add_sums(part.beauty_squares, more.beauty_squares);
+        while (part.half_squares.size() < more.half_squares.size()) part.half_squares.emplace_back(pixels());
+        for (std::size_t k = 0; k < more.half_squares.size(); ++k)
+            add_sums(part.half_squares[k], more.half_squares[k]);
+        for (const Block& of_more : more.blocks) {
+            NewBlock block(part, of_more.level, pixels());
+            for_each_pixel(pixels(), [&](std::size_t p) { block.put(p, of_more.sums[p]); });
+            block.finish();
+        }
+        part.work += more.work;
+    }
+    non_finite_ += next.non_finite_;
+}
+
+std::vector<Rgb> Film::mean(std::size_t layer) const {
+    if (!replaced_.at(layer).mean.empty()) return replaced_[layer].mean;
+    std::vector<Rgb> result(pixels(), Rgb(0.0f));
+    const ExactSums& sums = sums_[layer];
+    for_each_pixel(pixels(), [&](std::size_t p) {
+        const double n = passes_of(layer, p);
+        if (n == 0.0) return;
+        for (int c = 0; c < 3; ++c) result[p][c] = float(sums.at(3 * p + std::size_t(c)) / n);
+    });
+    return result;
+}
+
+std::vector<Rgb> Film::beauty() const {
+    std::vector<Rgb> result(pixels(), Rgb(0.0f));
+    for (std::size_t layer = 0; layer < layers_.size(); ++layer) {
+        if (layers_[layer].auxiliary) continue;
+        const std::vector<Rgb> part = mean(layer);
+        for_each_pixel(pixels(), [&](std::size_t p) { result[p] += part[p]; });
+    }
+    return result;
+}
+
+std::vector<Rgb> Film::variance_of_mean(std::span<const std::size_t> layers, const ExactSums& squares) const {
+    std::vector<Rgb> result(pixels(), Rgb(0.0f));
+    if (layers.empty()) return result;
+    const double passes = parts_[layers_[layers.front()].part].passes;
+    for_each_pixel(pixels(), [&](std::size_t p) {
+        for (int c = 0; c < 3; ++c) {
+            const std::size_t i = 3 * p + std::size_t(c);
+            double sum = 0.0;
+            for (const std::size_t layer : layers) sum += sums_[layer].at(i);
+            const double n = layers.size() == 1 ? passes_of(layers.front(), p) : passes;
+            result[p][c] = float(variance_from_sums(sum, squares.at(i), n));
+        }
+    });
+    return result;
+}
+
+std::vector<Rgb> Film::part_variance_of_mean(std::size_t part) const {
+    return variance_of_mean(parts_.at(part).beauty_layers, parts_.at(part).beauty_squares);
+}
+
+std::vector<Rgb> Film::beauty_variance_of_mean() const {
+    std::vector<Rgb> result = part_variance_of_mean(0);
+    for (std::size_t part = 1; part < parts_.size(); ++part) {
+        const std::vector<Rgb> more = part_variance_of_mean(part);
+        for_each_pixel(pixels(), [&](std::size_t p) { result[p] += more[p]; });
+    }
+    return result;
+}
+
+std::vector<Rgb> Film::layer_variance_of_mean(std::size_t layer) const {
+    if (!has_squares(layer)) throw std::logic_error("the film does not keep the squares of this layer");
+    return variance_of_mean(std::span(&layer, 1), layer_squares_.at(layer));
+}
+
+void Film::set_mean(std::size_t layer, std::span<const Rgb> values, std::span<const float> variance) {
+    if ((!values.empty() && values.size() != pixels()) || (!variance.empty() && variance.size() != pixels()))
+        throw std::invalid_argument("the layer does not fit the film");
+    if (!variance.empty() && !has_squares(layer))
+        throw std::invalid_argument("what is left of a variance that is not known");
+    replaced_.at(layer) = {{values.begin(), values.end()}, {variance.begin(), variance.end()}};
+}
+
+Film::Replacements Film::exchange_replaced(Replacements replaced) {
+    replaced.resize(layers_.size());
+    for (const Replacement& r : replaced)
+        if (!r.mean.empty() && r.mean.size() != pixels())
+            throw std::invalid_argument("the layer does not fit the film");
+    std::swap(replaced, replaced_);
+    return replaced;
+}
+
+}  // namespace mote::core

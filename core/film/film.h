@@ -1,0 +1,160 @@
+// The running sum of every layer of a picture.
+//
+// Sums are exact to the digits that they keep (exact_sums.h), so that the bits of the result depend on which
+// passes it holds alone: not on interruptions, nor on which machine rendered which of them. A film may begin
+// with a later pass than the first, and films of passes that follow each other are added up (add()).
+//
+// A picture may have several parts (Layer::part), each with passes of its own, as many as it needs: the mean
+// of a layer is its sum over the passes of its part, and the variance of the beauty the sum over its parts,
+// which are independent of each other.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/film/exact_sums.h"
+#include "core/film/pass_image.h"
+
+namespace mote::core {
+
+class Film {
+  public:
+    static constexpr std::uint32_t most_passes = ExactSums::most_terms;  ///< of a part
+
+    /// `all_squares`: keep the sum of squares of every layer, not of the beauty and of those that ask for it.
+    /// Throws std::invalid_argument when two layers have one name, a Layer::where names none or one of
+    /// another part, or a part has no layer.
+    Film(int width, int height, std::vector<Layer> layers, bool all_squares = false);
+
+    int width() const { return width_; }                                               ///< [pixels]
+    int height() const { return height_; }                                             ///< [pixels]
+    std::size_t pixels() const { return std::size_t(width_) * std::size_t(height_); }  ///< width times height
+    std::span<const Layer> layers() const { return layers_; }  ///< all of them, in order
+    std::size_t parts() const { return parts_.size(); }        ///< how many
+    bool keeps_all_squares() const { return all_squares_; }    ///< as the constructor was told
+    std::uint32_t pass_count() const;                          ///< of all parts together
+    std::uint32_t pass_count(std::size_t part) const { return parts_.at(part).passes; }  ///< of one part
+    /// Index of the first pass of a part that the film holds, or will hold.
+    std::uint32_t first_pass(std::size_t part) const { return parts_.at(part).first; }
+    /// Index of the pass after the last one.
+    std::uint32_t next_pass(std::size_t part) const { return parts_[part].first + pass_count(part); }
+    /// Of all parts together: 0 for a film that holds all passes so far.
+    std::uint32_t first_pass() const;
+    /// Lets a part of a film without passes begin with this pass.
+    void begin_at(std::size_t part, std::uint32_t first);
+    /// Has every part so many passes? A picture is complete with one.
+    bool has_passes(std::uint32_t passes) const;
+    /// The layers of a part, in order: those of the images of its passes.
+    std::span<const std::size_t> layers_of(std::size_t part) const { return parts_.at(part).layers; }
+    /// What the passes of a part cost in all (add_pass).
+    double work(std::size_t part) const { return parts_.at(part).work; }
+    /// Pixels of passes that held a NaN or an infinity in some layer. Such a pixel adds zero to every layer;
+    /// anything but 0 is a defect.
+    std::uint64_t non_finite() const { return non_finite_; }
+
+    /// Adds the next pass of a part. Must be called in index order. `work` is what it cost, in any unit: the
+    /// film keeps the sum. Undoes set_mean(). Throws InputError beyond most_passes.
+    void add_pass(const PassImage& image, std::size_t part = 0, double work = 0.0);
+    /// Adds the passes that follow, of a film with the same size and layers: to the same bits as if they had
+    /// been added here one by one. Throws std::invalid_argument where the parts of `next` do not begin where
+    /// these end. Undoes set_mean().
+    void add(const Film& next);
+
+    /// Mean over passes of one layer, as float. Over the passes of Layer::where, zero where there are none.
+    std::vector<Rgb> mean(std::size_t layer) const;
+    /// The beauty: the float sum of the float means of all layers that are not auxiliary, in order, so that
+    /// whoever adds up the layers of a written file gets the same bits.
+    std::vector<Rgb> beauty() const;
+    /// Variance of the beauty's mean per pixel and channel: (sum of squares / n - mean^2) / (n - 1), added up
+    /// over parts. Zero for n < 2.
+    std::vector<Rgb> beauty_variance_of_mean() const;
+    /// The share of a part in that.
+    std::vector<Rgb> part_variance_of_mean(std::size_t part) const;
+    /// Does the film know the variance of a layer?
+    bool has_squares(std::size_t layer) const { return !layer_squares_.at(layer).empty(); }
+    /// The same for a layer, over the passes of Layer::where; needs has_squares(layer).
+    std::vector<Rgb> layer_variance_of_mean(std::size_t layer) const;
+    /// Replaces what mean() returns for a layer, for post-processes (Estimator::finish). The sums, and with
+    /// them all variances and the serialised film, stay those of the passes.
+    /// Without values it is the mean of the passes again. `variance`: what the process leaves of the
+    /// variance of the layer's mean, averaged over channels, for noise(); needs has_squares(layer). Without
+    /// it the layer counts there with the noise of its passes.
+    void set_mean(std::size_t layer, std::span<const Rgb> values, std::span<const float> variance = {});
+    /// What set_mean() has put in place of the passes' mean; empty where it has not.
+    struct Replacement {
+        std::vector<Rgb> mean;        ///< by pixel; empty: that of the passes
+        std::vector<float> variance;  ///< of that mean, by pixel; empty: not known
+    };
+    using Replacements = std::vector<Replacement>;  ///< [layer]
+    /// Puts others there, or none, and returns what was there.
+    Replacements exchange_replaced(Replacements replaced = {});
+    /// The noise of the beauty, Eq. (4) of core/metrics/relative_error.h: the error that the passes so far
+    /// are expected to have left, but for the bias of post-processes. Infinity for n < 2.
+    double noise() const { return gain_and_noise().noise; }
+    /// What the passes say of the picture's noise.
+    struct GainAndNoise {
+        /// Passes are Sobol points: how much smaller the variance of the mean is, over the whole picture,
+        /// than beauty_variance_of_mean() says, which takes them for independent. 1 for n < 2.
+        double gain = 1.0;
+        double noise = std::numeric_limits<double>::infinity();
+    };
+    GainAndNoise gain_and_noise() const;  ///< noise() and what it is computed with
+
+    /// The bits of the film, for checkpoints: sums, counts, open blocks, and a checksum.
+    std::vector<std::byte> serialize() const;
+    /// Throws InputError when the bytes are damaged or do not fit this film's size and layers; the film is
+    /// unchanged then.
+    void deserialize(std::span<const std::byte> bytes);
+
+  private:
+    /// 2^level passes from `first` on, a multiple of that: the sum of the mean of the beauty's channels.
+    struct Block {
+        std::uint32_t first = 0, level = 0;
+        std::vector<float> sums;
+    };
+    struct Part {
+        std::uint32_t first = 0, passes = 0;
+        double work = 0.0;
+        ExactSums beauty_squares;                ///< three channels
+        std::vector<Block> blocks;               ///< the largest that its passes consist of, in order
+        std::vector<ExactSums> half_squares;     ///< [k]: how the halves of blocks of 2^(k+1) differ, squared
+        std::vector<std::size_t> layers;         ///< in order
+        std::vector<std::size_t> beauty_layers;  ///< those that are not auxiliary, in order
+        explicit Part(std::size_t pixels) : beauty_squares(3 * pixels) {}
+        /// How many blocks of 2^(k+1) passes are complete.
+        std::uint32_t complete_blocks(std::size_t k) const;
+    };
+    class NewBlock;
+    void find_parts();
+    void find_where();
+    float add_pixel(const PassImage& image, Part& part, std::size_t pixel);
+    void check_room(const Part& part, std::uint32_t more) const;
+    std::vector<Rgb> mean_of_passes() const;  ///< of the beauty, whatever set_mean() says
+    bool has_replaced_variance() const;
+    /// Of the beauty as it is shown: what set_mean() says of a layer in place of its passes' variance.
+    std::vector<Rgb> shown_variance_of_mean() const;
+    /// sum w v of a part as it is shown, where that of its passes is `of_passes`.
+    double shown_sum(const Part& part, double of_passes, std::span<const double> weights) const;
+    /// d[k] of core/film/sobol_gain.h.
+    std::vector<double> differences(const Part& part, std::span<const double> weights) const;
+    std::vector<Rgb> variance_of_mean(std::span<const std::size_t> layers, const ExactSums& squares) const;
+    /// How many passes the mean of a layer is over, for a pixel.
+    double passes_of(std::size_t layer, std::size_t pixel) const;
+    template <typename AnyFilm, typename Body>
+    static void for_each_array(AnyFilm& film, const Body& body);
+
+    int width_, height_;
+    std::vector<Layer> layers_;
+    bool all_squares_;
+    std::uint64_t non_finite_ = 0;
+    std::vector<Part> parts_;
+    std::vector<ExactSums> sums_;           ///< one per layer: [3 pixel + channel]
+    std::vector<ExactSums> layer_squares_;  ///< one per layer, empty where not kept
+    std::vector<std::size_t> where_;        ///< index of Layer::where, or that of no layer
+    Replacements replaced_;
+};
+
+}  // namespace mote::core

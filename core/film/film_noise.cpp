@@ -1,0 +1,107 @@
+// The noise of a film: what core/metrics/relative_error.h makes of the passes' spread, and
+// core/film/sobol_gain.h of the spread of blocks of passes. The gain is pooled over the picture, with the
+// weights of the noise: the pixels' own variances stay what they are. Every part has a gain of its own. Of a
+// layer that was filtered its filter says what is left.
+#include <algorithm>
+#include <cmath>
+
+#include "core/film/film.h"
+#include "core/film/sobol_gain.h"
+#include "core/metrics/relative_error.h"
+
+namespace mote::core {
+
+std::vector<double> Film::differences(const Part& part, std::span<const double> weights) const {
+    std::vector<double> d;
+    for (std::size_t k = 0; part.complete_blocks(k) > 0; ++k) {
+        double squares = 0.0;
+        for (std::size_t p = 0; p < pixels(); ++p) squares += weights[p] * part.half_squares[k].at(p);
+        d.push_back(squares / part.complete_blocks(k) / std::exp2(double(k) + 2.0));
+    }
+    return d;
+}
+
+std::vector<Rgb> Film::mean_of_passes() const {
+    std::vector<Rgb> picture(pixels());
+    for (std::size_t p = 0; p < pixels(); ++p)
+        for (std::size_t c = 0; c < 3; ++c) {
+            double mean = 0.0;
+            for (const Part& part : parts_) {
+                double sum = 0.0;
+                for (const std::size_t layer : part.beauty_layers) sum += sums_[layer].at(3 * p + c);
+                mean += sum / part.passes;
+            }
+            picture[p][int(c)] = float(mean);
+        }
+    return picture;
+}
+
+bool Film::has_replaced_variance() const {
+    return std::any_of(replaced_.begin(), replaced_.end(),
+                       [](const Replacement& r) { return !r.variance.empty(); });
+}
+
+// A layer and the rest of its part come from the same paths, so the rest has what is left when the layer's
+// own variance is taken away, covariance included. Pixel by pixel that may be less than nothing.
+std::vector<Rgb> Film::shown_variance_of_mean() const {
+    std::vector<Rgb> result = beauty_variance_of_mean();
+    for (std::size_t layer = 0; layer < layers_.size(); ++layer) {
+        const std::vector<float>& left = replaced_[layer].variance;
+        if (left.empty() || layers_[layer].auxiliary) continue;
+        const std::vector<Rgb> own = layer_variance_of_mean(layer);
+        for (std::size_t p = 0; p < pixels(); ++p)
+            result[p] = glm::max(result[p] - own[p], Rgb(0.0f)) + Rgb(left[p]);
+    }
+    return result;
+}
+
+double Film::shown_sum(const Part& part, double of_passes, std::span<const double> weights) const {
+    double rest = of_passes, filtered = 0.0;
+    for (const std::size_t layer : part.beauty_layers) {
+        const std::vector<float>& left = replaced_[layer].variance;
+        if (left.empty()) continue;
+        const std::vector<Rgb> own = layer_variance_of_mean(layer);
+        for (std::size_t p = 0; p < pixels(); ++p) {
+            if (weights[p] > 0.0) rest -= weights[p] * mean_of_channels(own[p]);
+            filtered += weights[p] * double(left[p]);
+        }
+    }
+    return std::max(0.0, rest) + filtered;
+}
+
+Film::GainAndNoise Film::gain_and_noise() const {
+    GainAndNoise result;
+    if (!has_passes(2)) return result;
+    const bool replaced = has_replaced_variance();
+    const std::vector<Rgb> picture = replaced ? beauty() : mean_of_passes();
+    const RelativeWeights weights = relative_weights(
+        picture, replaced ? shown_variance_of_mean() : beauty_variance_of_mean(), width_, height_);
+    if (!(weights.noise_norm > 0.0)) {
+        const bool black =
+            std::all_of(picture.begin(), picture.end(), [](const Rgb& c) { return c == Rgb(0.0f); });
+        if (black) result.noise = 0.0;
+        return result;
+    }
+    double independent = 0.0, expected = 0.0, shown = 0.0;
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+        const std::vector<Rgb> variance = part_variance_of_mean(i);
+        double sum = 0.0, squares = 0.0;
+        for (std::size_t p = 0; p < pixels(); ++p) {
+            const double v = weights.weight[p] * mean_of_channels(variance[p]);
+            sum += v, squares += v * v;
+        }
+        if (!(squares > 0.0)) continue;
+        const std::vector<double> d = differences(parts_[i], weights.weight);
+        // A filter weighs the errors of pixels, which are independent: what it leaves is as much smaller.
+        // Where the film begins later, blocks are fewer: what they cannot say of longer ones is not counted.
+        const auto passes = std::uint32_t(std::min<std::uint64_t>(parts_[i].passes, (2ull << d.size()) - 1));
+        const double gain = sobol_gain(d, passes, sum * sum / squares);
+        independent += sum, expected += gain * sum;
+        shown += gain * (replaced ? shown_sum(parts_[i], sum, weights.weight) : sum);
+    }
+    if (independent > 0.0) result.gain = expected / independent;
+    result.noise = std::sqrt(shown / weights.noise_norm);
+    return result;
+}
+
+}  // namespace mote::core

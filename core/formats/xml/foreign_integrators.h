@@ -1,0 +1,30 @@
+// Integrators of Mitsuba as ours.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/formats/xml/xml_reader.h"
+#include "core/objects/registry.h"
+
+namespace mote::core {
+
+/// Replaces the integrators that Mitsuba knows and `registry` does not by what computes the same picture,
+/// each with a warning: a nested one of aov, moment and stokes takes their place. The `aovs` of aov go to
+/// document.features.
+void replace_foreign_integrators(SceneDocument& document, const Registry& registry);
+/// --integrator: the type that the command line asks for, with the parameters of the file that it knows.
+/// Whatever is wrong with the file's own integrator is a warning. Throws InputError for an unknown type.
+void override_integrator(SceneDocument& document, const std::string& type, const Registry& registry);
+
+/// The same with the type that stands in where the file has no integrator, or one that is not known.
+void complete_integrator(SceneDocument& document, const std::string& type, const Registry& registry);
+
+/// What becomes of an integrator of Mitsuba, for the table of documentation.
+struct ForeignIntegrator {
+    const char *from, *to, *note;
+    int max_depth = 0;  ///< above 0: set
+};
+const std::vector<ForeignIntegrator>& foreign_integrators();
+
+}  // namespace mote::core
