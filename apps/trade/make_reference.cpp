@@ -15,6 +15,7 @@
 #include "apps/trade/reference.h"
 #include "apps/trade/trade_command.h"
 #include "core/film/film_image.h"
+#include "core/formats/pictures/image_file.h"
 #include "core/formats/xml/integrator_maker.h"
 #include "core/objects/error.h"
 #include "session/reference_metadata.h"
