@@ -13,6 +13,7 @@
 #include "apps/output_files.h"
 #include "apps/picture_file.h"
 #include "apps/subcommands.h"
+#include "core/formats/pictures/image_file.h"
 #include "core/metrics/error_map.h"
 #include "core/metrics/metrics.h"
 #include "core/metrics/reference_pair.h"

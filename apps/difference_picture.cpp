@@ -8,6 +8,7 @@
 #include "apps/preview.h"
 #include "apps/subcommands.h"
 #include "core/film/exposure.h"
+#include "core/formats/pictures/image_file.h"
 #include "core/formats/pictures/png_text.h"
 #include "core/objects/error.h"
 

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "core/files/whole_file.h"
+#include "core/formats/pictures/image_file.h"
 #include "core/objects/error.h"
 #include "session/reference_metadata.h"
 

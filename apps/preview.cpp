@@ -5,6 +5,7 @@
 #include <map>
 
 #include "core/film/exposure.h"
+#include "core/formats/pictures/image_file.h"
 #include "core/formats/pictures/png_text.h"
 
 namespace mote::apps {

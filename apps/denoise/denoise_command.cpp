@@ -15,6 +15,7 @@
 #include "apps/picture_file.h"
 #include "apps/preview.h"
 #include "apps/subcommands.h"
+#include "core/formats/pictures/image_file.h"
 #include "core/objects/error.h"
 #include "session/denoise/bmfr_sequence.h"
 #include "session/denoise/denoised_layer.h"

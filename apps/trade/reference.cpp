@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "core/formats/pictures/image_file.h"
 #include "core/metrics/metrics.h"
 #include "core/objects/error.h"
 #include "session/reference_metadata.h"

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "core/film/film_image.h"
+#include "core/formats/pictures/image_file.h"
 #include "session/render_report.h"
 
 namespace mote::apps::trade {

@@ -17,6 +17,7 @@
 #include "apps/trade/draw.h"
 #include "apps/trade/run.h"
 #include "core/files/checksum.h"
+#include "core/formats/pictures/image_file.h"
 #include "core/formats/xml/scene_element.h"
 #include "core/objects/error.h"
 #include "session/denoise/denoised_layer.h"

@@ -1,5 +1,6 @@
 // The environment map: light from all around, given by a latitude-longitude picture
 // (environment_picture.h).
+#include "core/formats/pictures/image_file.h"
 #include "core/objects/registry.h"
 #include "lights/emitters/emitters.h"
 #include "lights/emitters/environment_picture.h"

@@ -1,4 +1,5 @@
 // The environment map: orientation, lookup, sampling, and pictures that broke others.
+#include "core/formats/pictures/image_file.h"
 #include "lights/emitters/environment_picture.h"
 #include "tests/lights/emitter_examples.h"
 #include "tests/lights/emitter_statistics.h"

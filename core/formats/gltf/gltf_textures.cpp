@@ -11,6 +11,7 @@
 #include "core/files/whole_file.h"
 #include "core/formats/gltf/scene_xml.h"
 #include "core/formats/pictures/alpha_channel.h"
+#include "core/formats/pictures/image_file.h"
 #include "core/objects/error.h"
 
 namespace mote::core {

@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "core/formats/pictures/image_file.h"
 #include "core/materials/register_materials.h"
 #include "core/materials/texture_slot.h"
 #include "core/objects/properties.h"

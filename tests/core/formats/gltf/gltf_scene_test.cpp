@@ -10,6 +10,7 @@
 
 #include "core/formats/gltf/scratch_folder.h"
 #include "core/formats/meshes/ply_writer.h"
+#include "core/formats/pictures/image_file.h"
 #include "core/formats/xml/faults.h"
 #include "core/formats/xml/scene_loader.h"
 #include "core/materials/bsdf.h"
