@@ -164,9 +164,10 @@ std::string definitions(const Results& results) {
 // For the first seed; the records say after how many passes it ended.
 std::string method_command(const json& method, const Folder& folder, std::uint64_t seed) {
     auto words = method.at("command").get<std::vector<std::string>>();
+    const auto name = method.at("name").get<std::string>();
     std::uint32_t passes = 0;
     for (const Record& r : folder.records())
-        if (r.method == method.at("name") && r.seed == seed) passes = std::max(passes, r.passes);
+        if (r.method == name && r.seed == seed) passes = std::max(passes, r.passes);
     words.insert(words.end(), {"--passes", std::to_string(passes)});
     return quoted(words);
 }

@@ -200,16 +200,15 @@ TEST_CASE("Damaged CSV is refused with its line", "[trade]") {
         }
         return "";
     };
-    using Catch::Contains;
-    CHECK_THAT(message(""), Contains("header"));
-    CHECK_THAT(message("method,seed,passes,wall_s,eror\n"), Contains("'error'"));
-    CHECK_THAT(message("method,seed,passes,wall_s\n"), Contains("no column 'error'"));
+    CHECK_THAT(message(""), ContainsSubstring("header"));
+    CHECK_THAT(message("method,seed,passes,wall_s,eror\n"), ContainsSubstring("'error'"));
+    CHECK_THAT(message("method,seed,passes,wall_s\n"), ContainsSubstring("no column 'error'"));
     const std::string head = "method,seed,passes,wall_s,error\n";
-    CHECK_THAT(message(head + "a,1,1,2,0.1\nb,1,1,x,0.1\n"), Contains("x.csv:3: wall_s"));
-    CHECK_THAT(message(head + "a,1,1,2\n"), Contains("x.csv:2: 4 fields"));
-    CHECK_THAT(message(head + "a,1,1,0,0.1\n"), Contains("above 0"));
-    CHECK_THAT(message(head + "a,-1,1,1,0.1\n"), Contains("whole number"));
-    CHECK_THAT(message(head + "\"a,1,1,1,0.1\n"), Contains("no end"));
+    CHECK_THAT(message(head + "a,1,1,2,0.1\nb,1,1,x,0.1\n"), ContainsSubstring("x.csv:3: wall_s"));
+    CHECK_THAT(message(head + "a,1,1,2\n"), ContainsSubstring("x.csv:2: 4 fields"));
+    CHECK_THAT(message(head + "a,1,1,0,0.1\n"), ContainsSubstring("above 0"));
+    CHECK_THAT(message(head + "a,-1,1,1,0.1\n"), ContainsSubstring("whole number"));
+    CHECK_THAT(message(head + "\"a,1,1,1,0.1\n"), ContainsSubstring("no end"));
     CHECK(records_from_csv(head + "a,1,1,2,0.1\r\n\n", "x.csv").size() == 1);
 }
 
@@ -224,8 +223,8 @@ TEST_CASE("Keys and elements of JSON have lines", "[trade]") {
     CHECK(file.where("/list/1/y").line == 6);
     CHECK(file.where("/a").file == "f.json");
     CHECK_THROWS_WITH(JsonLines("{\"a\": 1,\n\"a\": 2}", "f.json"),
-                      Catch::Contains("f.json:2: 'a' is given twice"));
-    CHECK_THROWS_WITH(JsonLines("{\n\n\"a\": }", "f.json"), Catch::Contains("f.json:3: not JSON"));
+                      ContainsSubstring("f.json:2: 'a' is given twice"));
+    CHECK_THROWS_WITH(JsonLines("{\n\n\"a\": }", "f.json"), ContainsSubstring("f.json:3: not JSON"));
     CHECK_THROWS_AS(JsonLines("", "f.json"), InputError);
 }
 
@@ -267,9 +266,8 @@ TEST_CASE("The plot shows every method by name, the front and the floor, and no 
     auto curves = make_curves(records, 0.15);
     mark_pareto_front(curves);
     const std::string svg = plot_svg(curves, 0.15, "title");
-    using Catch::Contains;
-    CHECK_THAT(svg,
-               Contains("a &lt;b&gt; &amp; c") && Contains(">m</text>") && Contains("judges down to 15 %"));
-    CHECK_THAT(svg, !Contains("nan") && !Contains("inf"));
-    CHECK_THAT(plot_svg({}, 0.0, "empty"), Contains("</svg>"));
+    CHECK_THAT(svg, ContainsSubstring("a &lt;b&gt; &amp; c") && ContainsSubstring(">m</text>") &&
+                        ContainsSubstring("judges down to 15 %"));
+    CHECK_THAT(svg, !ContainsSubstring("nan") && !ContainsSubstring("inf"));
+    CHECK_THAT(plot_svg({}, 0.0, "empty"), ContainsSubstring("</svg>"));
 }

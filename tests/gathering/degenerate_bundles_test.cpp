@@ -208,7 +208,7 @@ TEST_CASE("what no bundle can be made of is refused", "[ray_bundles]") {
         SurfaceTriangles triangles = TriangleBuilder().box(Vec3(0.0f), Vec3(1.0f), true).list();
         triangles.corners[7][1].y = bad;
         CHECK_THROWS_WITH(BundleTracer(triangles),
-                          Catch::Contains("triangle 7 (shape 3) has a corner that is not finite"));
+                          ContainsSubstring("triangle 7 (shape 3) has a corner that is not finite"));
     }
     const Bounds3 box{Vec3(0.0f), Vec3(1.0f)};
     CHECK_THROWS_AS(bundle_grid({0, 0, 1}, box, 0.0f, {0, 0}), InputError);
@@ -219,7 +219,7 @@ TEST_CASE("what no bundle can be made of is refused", "[ray_bundles]") {
     CHECK_THROWS_AS(bundle_grid({0, 0, 1}, box, 1.0f, {1.0f, 0}), InputError);
     CHECK_THROWS_AS(bundle_grid({0, 0, 1}, {Vec3(0.0f), Vec3(infinity)}, 1.0f, {0, 0}), InputError);
     CHECK_THROWS_WITH(bundle_grid({0, 0, 1}, box, 1e-7f, {0, 0}),
-                      Catch::Contains("a spacing of") && Catch::Contains("fits"));
+                      ContainsSubstring("a spacing of") && ContainsSubstring("fits"));
 }
 
 TEST_CASE("bundles keep their budget, and say which one would fit", "[ray_bundles]") {

@@ -110,7 +110,7 @@ TEST_CASE("points on surfaces at the extremes", "[surface_points]") {
     CHECK((is_finite(one.radius) && one.radius > 0.0f));
     CHECK_THROWS_AS(blue_noise_surfels(plate(), 10, {.candidates = 0}), InputError);
     CHECK_THROWS_WITH(blue_noise_surfels(plate(), 1u << 24, {.memory_budget = 1 << 20}),
-                      Catch::Contains("16777216 points") && Catch::Contains("fit into the"));
+                      ContainsSubstring("16777216 points") && ContainsSubstring("fit into the"));
     const Surfels a = blue_noise_surfels(plate(), 500), b = blue_noise_surfels(plate(), 500, {.seed = 2});
     CHECK(a.positions == blue_noise_surfels(plate(), 500).positions);
     CHECK(a.positions != b.positions);

@@ -138,5 +138,5 @@ TEST_CASE("ray lights: nothing to do, and what max_depth leaves", "[ray_lights][
     CHECK_THROWS_WITH(
         integrator_from(
             R"(<integrator type="mote_ray_lights"><float name="width" value="-1"/></integrator>)"),
-        Catch::Contains("width"));
+        ContainsSubstring("width"));
 }

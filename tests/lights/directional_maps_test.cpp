@@ -228,7 +228,7 @@ TEST_CASE("Slip: the sphere map has the viewer's side in its middle", "[directio
 
 TEST_CASE("Unknown kinds and impossible sizes are refused", "[directional_map]") {
     CHECK(parse_map_kind("cube") == MapKind::cube);
-    CHECK_THROWS_WITH(parse_map_kind("octahdral"), Catch::Contains("did you mean 'octahedral'"));
+    CHECK_THROWS_WITH(parse_map_kind("octahdral"), ContainsSubstring("did you mean 'octahedral'"));
     CHECK_THROWS_AS(make_directional_map(MapKind::cube, 0), InputError);
     CHECK_THROWS_AS(make_directional_map(MapKind::cube, 16385), InputError);
     CHECK_THROWS_AS(make_perspective_octahedral_map(4, 0.0f), InputError);

@@ -266,7 +266,7 @@ TEST_CASE("a map larger than its limit is refused with the size that would fit",
     settings.max_bytes = 1 << 20;
     VolumetricShadowMap map;
     CHECK_THROWS_WITH(map.build(*scene, ShadowMapView::of_point(Vec3(0, 0, 3), 256), MediumState(), settings),
-                      Catch::Contains("256 x 256") && Catch::Contains("102 x 102 would fit"));
+                      ContainsSubstring("256 x 256") && ContainsSubstring("102 x 102 would fit"));
     map.build(*scene, ShadowMapView::of_point(Vec3(0, 0, 3), 102), MediumState(), settings);
     CHECK(map.memory_bytes() <= settings.max_bytes);
     // Memory is taken once: a smaller map fits into that of a larger one.

@@ -6,7 +6,6 @@
 #include "tests/support/catch.h"
 
 using namespace mote::tests;
-using Catch::Matchers::Contains;
 
 namespace {
 
@@ -179,9 +178,9 @@ TEST_CASE("points drawn on curves have the density they claim", "[geometry][curv
 
 TEST_CASE("curves that cannot be are refused", "[geometry][curves]") {
     const glm::vec4 p(0, 0, 0, 1);
-    CHECK_THROWS_WITH(curve(CurveBasis::b_spline, {p, p, p}), Contains("no segment"));
-    CHECK_THROWS_WITH(curve(CurveBasis::linear, {p, {1, 0, 0, -1}}), Contains("negative"));
-    CHECK_THROWS_WITH(curve(CurveBasis::linear, {p, {1e19f, 0, 0, 1}}), Contains("1e18"));
-    CHECK_THROWS_WITH(curve(CurveBasis::linear, {{0, 0, 0, 0}, {1, 0, 0, 0}}), Contains("radii"));
+    CHECK_THROWS_WITH(curve(CurveBasis::b_spline, {p, p, p}), ContainsSubstring("no segment"));
+    CHECK_THROWS_WITH(curve(CurveBasis::linear, {p, {1, 0, 0, -1}}), ContainsSubstring("negative"));
+    CHECK_THROWS_WITH(curve(CurveBasis::linear, {p, {1e19f, 0, 0, 1}}), ContainsSubstring("1e18"));
+    CHECK_THROWS_WITH(curve(CurveBasis::linear, {{0, 0, 0, 0}, {1, 0, 0, 0}}), ContainsSubstring("radii"));
     CHECK_THROWS_AS(Curves({CurveBasis::linear, {p, p}, {1}}), InputError);
 }

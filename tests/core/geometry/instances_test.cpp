@@ -8,7 +8,6 @@
 #include "tests/support/catch.h"
 
 using namespace mote::tests;
-using Catch::Matchers::Contains;
 
 namespace {
 
@@ -270,7 +269,7 @@ TEST_CASE("a thousand instances share their mesh", "[geometry][instances][memory
 
 TEST_CASE("instances that cannot be are refused", "[geometry][instances]") {
     const auto group = group_of({mesh(make_cube())});
-    CHECK_THROWS_WITH(place_group(group, scaling(1, 0, 1)), Contains("singular"));
-    CHECK_THROWS_WITH(place_group(group, scaling(1, std::nan(""), 1)), Contains("not finite"));
-    CHECK_THROWS_WITH(place_group(group, translation(1e19, 0, 0)), Contains("1e18"));
+    CHECK_THROWS_WITH(place_group(group, scaling(1, 0, 1)), ContainsSubstring("singular"));
+    CHECK_THROWS_WITH(place_group(group, scaling(1, std::nan(""), 1)), ContainsSubstring("not finite"));
+    CHECK_THROWS_WITH(place_group(group, translation(1e19, 0, 0)), ContainsSubstring("1e18"));
 }

@@ -7,7 +7,6 @@
 #include "tests/support/catch.h"
 
 using namespace mote::tests;
-using Catch::Matchers::Contains;
 
 namespace {
 
@@ -46,9 +45,10 @@ TEST_CASE("the shapes of the scene language", "[geometry][registry]") {
 }
 
 TEST_CASE("bad shapes are refused where they stand", "[geometry][registry]") {
-    CHECK_THROWS_WITH(make("sphere", {{"radius", -1.0}}), Contains("scene.xml:13"));
-    CHECK_THROWS_WITH(make("sphere", {{"to_world", scaling(1, 0, 1)}}), Contains("singular"));
-    CHECK_THROWS_WITH(make("cube", {{"to_world", scaling(1, 0, 1)}}), Contains("singular"));
-    CHECK_THROWS_WITH(make("obj", {}), Contains("filename"));
-    CHECK_THROWS_WITH(make("ply", {{"filename", std::string("/nowhere.ply")}}), Contains("nowhere.ply"));
+    CHECK_THROWS_WITH(make("sphere", {{"radius", -1.0}}), ContainsSubstring("scene.xml:13"));
+    CHECK_THROWS_WITH(make("sphere", {{"to_world", scaling(1, 0, 1)}}), ContainsSubstring("singular"));
+    CHECK_THROWS_WITH(make("cube", {{"to_world", scaling(1, 0, 1)}}), ContainsSubstring("singular"));
+    CHECK_THROWS_WITH(make("obj", {}), ContainsSubstring("filename"));
+    CHECK_THROWS_WITH(make("ply", {{"filename", std::string("/nowhere.ply")}}),
+                      ContainsSubstring("nowhere.ply"));
 }

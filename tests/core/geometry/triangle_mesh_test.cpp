@@ -8,19 +8,18 @@
 #include "tests/support/chi2.h"
 
 using namespace mote::tests;
-using Catch::Matchers::Contains;
 
 TEST_CASE("meshes that cannot be traced are refused", "[geometry][mesh]") {
     MeshData bad = make_cube();
     bad.positions[5].y = std::nanf("");
-    CHECK_THROWS_WITH(TriangleMesh(bad), Contains("vertex 5") && Contains("not finite"));
+    CHECK_THROWS_WITH(TriangleMesh(bad), ContainsSubstring("vertex 5") && ContainsSubstring("not finite"));
     bad.positions[5].y = infinity;
     CHECK_THROWS_AS(TriangleMesh(bad), InputError);
     bad.positions[5].y = 2e18f;
-    CHECK_THROWS_WITH(TriangleMesh(bad), Contains("1e18"));
+    CHECK_THROWS_WITH(TriangleMesh(bad), ContainsSubstring("1e18"));
     bad = make_cube();
     bad.triangles[3][1] = 24;
-    CHECK_THROWS_WITH(TriangleMesh(bad), Contains("triangle 3") && Contains("24"));
+    CHECK_THROWS_WITH(TriangleMesh(bad), ContainsSubstring("triangle 3") && ContainsSubstring("24"));
     CHECK_THROWS_AS(TriangleMesh(MeshData{}), InputError);
     CHECK_THROWS_AS(TriangleMesh(one_triangle({0, 0, 0}, {1, 1, 1}, {2, 2, 2})), InputError);
     bad = make_cube();

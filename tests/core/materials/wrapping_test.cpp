@@ -360,12 +360,12 @@ TEST_CASE("wrapping BSDFs are read, nest in each other, and refuse what Mitsuba 
         loaded(R"(<bsdf type="blendbsdf"><float name="weight" value="0.25"/>)" + white + black + "</bsdf>");
     CHECK(blend->diffuse_reflectance(point, {0, 0, 1})->x == Approx(0.75));
 
-    using Catch::Matchers::Contains;
-    CHECK_THAT(refusal("<bsdf type='twosided'>" + mask + "</bsdf>"), Contains("transmits"));
-    CHECK_THAT(refusal("<bsdf type='mask'/>"), Contains("needs one nested BSDF"));
-    CHECK_THAT(refusal("<bsdf type='mask'>" + white + black + "</bsdf>"), Contains("not more"));
-    CHECK_THAT(refusal("<bsdf type='blendbsdf'>" + diffuse + "</bsdf>"), Contains("needs 2 nested BSDFs"));
-    CHECK_THAT(refusal("<bsdf type='normalmap'>" + diffuse + "</bsdf>"), Contains("'normalmap'"));
-    CHECK_THAT(refusal("<bsdf type='bumpmap'>" + diffuse + "</bsdf>"), Contains("nested texture"));
-    CHECK_THAT(refusal(mask + R"(<emitter type="area"/>)"), Contains("lets light pass straight on"));
+    CHECK_THAT(refusal("<bsdf type='twosided'>" + mask + "</bsdf>"), ContainsSubstring("transmits"));
+    CHECK_THAT(refusal("<bsdf type='mask'/>"), ContainsSubstring("needs one nested BSDF"));
+    CHECK_THAT(refusal("<bsdf type='mask'>" + white + black + "</bsdf>"), ContainsSubstring("not more"));
+    CHECK_THAT(refusal("<bsdf type='blendbsdf'>" + diffuse + "</bsdf>"),
+               ContainsSubstring("needs 2 nested BSDFs"));
+    CHECK_THAT(refusal("<bsdf type='normalmap'>" + diffuse + "</bsdf>"), ContainsSubstring("'normalmap'"));
+    CHECK_THAT(refusal("<bsdf type='bumpmap'>" + diffuse + "</bsdf>"), ContainsSubstring("nested texture"));
+    CHECK_THAT(refusal(mask + R"(<emitter type="area"/>)"), ContainsSubstring("lets light pass straight on"));
 }

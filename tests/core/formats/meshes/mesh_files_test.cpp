@@ -12,7 +12,6 @@
 #include "tests/support/test_data.h"
 
 using namespace mote::tests;
-using Catch::Matchers::Contains;
 
 namespace {
 
@@ -99,7 +98,7 @@ TEST_CASE("OBJ: computed normals are smooth only where vertices are shared", "[g
 
 TEST_CASE("OBJ: faults are refused with their line", "[geometry][obj]") {
     const auto fails = [](const std::string& text, const char* what) {
-        CHECK_THROWS_WITH(obj(text), Contains(what));
+        CHECK_THROWS_WITH(obj(text), ContainsSubstring(what));
         CHECK_THROWS_AS(obj(text), InputError);
     };
     fails("v 0 0 0\nv 1 0 0\nf 1 2 3\n", "test.obj:3: a face refers to element 3 of 2");
@@ -136,7 +135,7 @@ TEST_CASE("PLY: faults are refused", "[geometry][ply]") {
         return text;
     };
     const auto fails = [](const std::string& text, const char* what) {
-        CHECK_THROWS_WITH(ply(text), Contains(what));
+        CHECK_THROWS_WITH(ply(text), ContainsSubstring(what));
         CHECK_THROWS_AS(ply(text), InputError);
     };
     fails(with("vertex 4", "vertex 4000000000000"), "too short for 4000000000000 rows");
@@ -166,7 +165,7 @@ TEST_CASE("files that are not there, or not meshes", "[geometry][mesh_file]") {
     std::ofstream(path) << "v 0 0 0\n";
     std::string message;
     CHECK_FALSE(read_or_refuse(path, message));
-    CHECK_THAT(message, Contains("no triangles"));
+    CHECK_THAT(message, ContainsSubstring("no triangles"));
     CHECK(message.find('\n') == std::string::npos);
 }
 
@@ -194,8 +193,8 @@ TEST_CASE("every damaged mesh is read or refused", "[geometry][mesh_file][damage
             std::string message;
             const bool ok = read_or_refuse(entry.path().string(), message);
             (ok ? read : refused) += 1;
-            CHECK_THAT(message, !Contains("\n"));
-            if (!ok) CHECK_THAT(message, Contains(entry.path().filename().string()));
+            CHECK_THAT(message, !ContainsSubstring("\n"));
+            if (!ok) CHECK_THAT(message, ContainsSubstring(entry.path().filename().string()));
         }
     }
     std::cout << "damaged meshes: " << read << " read, " << refused << " refused\n";

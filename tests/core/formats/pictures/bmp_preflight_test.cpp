@@ -91,7 +91,8 @@ TEST_CASE("Runs in a BMP without a palette are refused", "[image][bmp][damaged]"
     Bmp bmp = runs(24, "\4\1\0\0\4\1\0\1"s);
     bmp.width = 5, bmp.height = 4, bmp.palette = "";
     bmp.pixels += std::string(64, '\0');
-    CHECK_THAT(refusal(bmp.bytes()), Catch::Contains("damaged BMP file: compression 1 of 24 bits per pixel"));
+    CHECK_THAT(refusal(bmp.bytes()),
+               ContainsSubstring("damaged BMP file: compression 1 of 24 bits per pixel"));
 }
 
 TEST_CASE("Sound BMP files with a palette are read", "[image][bmp]") {
@@ -117,15 +118,15 @@ TEST_CASE("Colours that a BMP's palette has not are refused", "[image][bmp][dama
     const std::string beyond = "a pixel of colour 3 in a palette of 3";
     Bmp bmp;
     bmp.pixels[5] = 3;
-    CHECK_THAT(refusal(bmp.bytes()), Catch::Contains(beyond));
+    CHECK_THAT(refusal(bmp.bytes()), ContainsSubstring(beyond));
     bmp.bits = 4, bmp.pixels = "\x01\x20\0\0\x01\x03\0\0"s;
-    CHECK_THAT(refusal(bmp.bytes()), Catch::Contains(beyond));
+    CHECK_THAT(refusal(bmp.bytes()), ContainsSubstring(beyond));
     bmp = Bmp();
     bmp.bits = 1, bmp.palette.resize(4), bmp.pixels = "\x10\0\0\0\0\0\0\0"s;
-    CHECK_THAT(refusal(bmp.bytes()), Catch::Contains("a pixel of colour 1 in a palette of 1"));
-    CHECK_THAT(refusal(runs(8, "\2\3\0\1"s).bytes()), Catch::Contains(beyond));
-    CHECK_THAT(refusal(runs(8, "\0\3\1\2\3\0\0\1"s).bytes()), Catch::Contains(beyond));
-    CHECK_THAT(refusal(runs(4, "\2\x03\0\1"s).bytes()), Catch::Contains(beyond));
+    CHECK_THAT(refusal(bmp.bytes()), ContainsSubstring("a pixel of colour 1 in a palette of 1"));
+    CHECK_THAT(refusal(runs(8, "\2\3\0\1"s).bytes()), ContainsSubstring(beyond));
+    CHECK_THAT(refusal(runs(8, "\0\3\1\2\3\0\0\1"s).bytes()), ContainsSubstring(beyond));
+    CHECK_THAT(refusal(runs(4, "\2\x03\0\1"s).bytes()), ContainsSubstring(beyond));
     CHECK(refusal(runs(4, "\1\x03\0\1"s).bytes()) == "read");  // a run of one value
 }
 
@@ -133,7 +134,7 @@ TEST_CASE("BMP files that contradict themselves are refused", "[image][bmp][dama
     const auto check = [](const auto& change, const std::string& expected) {
         Bmp bmp;
         change(bmp);
-        CHECK_THAT(refusal(bmp.bytes()), Catch::Contains(expected));
+        CHECK_THAT(refusal(bmp.bytes()), ContainsSubstring(expected));
     };
     check([](Bmp& b) { b.width = 0; }, "a picture of 0 x 2 pixels");
     check([](Bmp& b) { b.width = -4; }, "a picture of -4 x 2 pixels");
@@ -154,7 +155,7 @@ TEST_CASE("BMP files that contradict themselves are refused", "[image][bmp][dama
     check([](Bmp& b) { b = runs(8, "\4\1\0\0"s); }, "cut short");
     std::string header = Bmp().bytes();
     header[14] = 41;
-    CHECK_THAT(refusal(header), Catch::Contains("a header of 41 bytes, which is not known"));
+    CHECK_THAT(refusal(header), ContainsSubstring("a header of 41 bytes, which is not known"));
 }
 
 TEST_CASE("A BMP that is cut short anywhere is refused", "[image][bmp][damaged]") {
@@ -164,7 +165,7 @@ TEST_CASE("A BMP that is cut short anywhere is refused", "[image][bmp][damaged]"
         REQUIRE(refusal(bytes) == "read");
         for (std::size_t size = 2; size < bytes.size(); ++size) {
             INFO(size);
-            CHECK_THAT(refusal(bytes.substr(0, size)), Catch::Contains("BMP file"));
+            CHECK_THAT(refusal(bytes.substr(0, size)), ContainsSubstring("BMP file"));
         }
     }
 }
