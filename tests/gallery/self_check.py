@@ -26,6 +26,7 @@ It takes 3.5 s, and {loss} % are lost.
 <!--
 12 ± 1 % = bunny; share; share_error
 3.5 s = bunny; seconds
+3.5 s = scene: bunny; seconds
 {loss} % = claim: the bound
 -->
 """

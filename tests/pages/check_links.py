@@ -1,0 +1,50 @@
+#!/usr/bin/env python3
+"""Finds links that lead nowhere, and pages that neither README.md nor docs/guide.md links to.
+
+Files and folders of relative links exist, and so do the headings of their anchors. Links to other hosts are not followed.
+
+    tests/pages/check_links.py ROOT
+"""
+import re
+import sys
+
+from pages import anchors, pages, read, run, without_code
+
+LINK = re.compile(r"\]\(([^)\s]+)(?: \"[^\"]*\")?\)")
+BEGINNINGS = ("README.md", "docs/guide.md")  # where a reader comes from
+
+
+def links(text):
+    """(line, target) of every relative link."""
+    for number, line in enumerate(without_code(text).split("\n"), 1):
+        for target in LINK.findall(line):
+            if not re.match(r"[a-z]+:", target):
+                yield number, target
+
+
+def leads_nowhere(root, page, target):
+    path, _, anchor = target.partition("#")
+    file = (root / page).parent / path if path else root / page
+    if not file.exists():
+        return f"there is no {path}"
+    if anchor and file.suffix == ".md" and anchor not in anchors(file.read_text(encoding="utf-8")):
+        return f"{file.name} has no heading '#{anchor}'"
+    return None
+
+
+def check(root):
+    offences, reached = [], set()
+    for page in pages(root):
+        for line, target in links(read(root, page)):
+            offence = leads_nowhere(root, page, target)
+            offences += [f"{page}:{line}: {offence}"] if offence else []
+            if page in BEGINNINGS and not offence:
+                reached.add(((root / page).parent / target.partition("#")[0]).resolve())
+    for page in pages(root):
+        if page.startswith("docs/") and page.count("/") == 1 and page not in BEGINNINGS and (root / page).resolve() not in reached:
+            offences.append(f"{page}: neither {' nor '.join(BEGINNINGS)} links to it")
+    return offences
+
+
+if __name__ == "__main__":
+    sys.exit(run(check, sys.argv[1], "every link leads somewhere, and every page can be reached"))

@@ -1,0 +1,122 @@
+#!/usr/bin/env python3
+"""Finds names in pages that the tree no longer has, and what pages say twice.
+
+- Paths in inline code, such as `core/math/ray.h`, are files or folders (with * also several; a suffix may be left out).
+- Names in inline code, such as `LightTree`, `make_vertex()` or `max_depth`, occur in the sources.
+- Tags and cases of `mote_tests_PART "..."` occur in tests/PART.
+- No page holds the same sixteen words twice in its prose, and no entry of references.bib comes twice.
+
+    tests/pages/check_names.py ROOT
+"""
+import re
+import subprocess
+import sys
+from fnmatch import fnmatch
+
+from pages import GENERATED, inline_code, pages, prose, read, run
+
+FOLDERS = ("apps cmake compensation core docs examples experiments gathering integrators lights media plugins python scenes "
+           "screenspace session tests tools trade").split()
+SOURCES = (".h", ".cpp", ".py", ".cmake", ".txt", ".xml", ".json", ".toml", ".c", ".sh")
+NAME = re.compile(r"(?:\w+::)*([A-Za-z]\w*)(\(\))?$")
+REPEATED = 16  # words
+# Names of other programs and of papers, and of files that a reader is to write.
+FOREIGN = {"PMI_RANK", "PMI_SIZE", "DRJIT_LIBLLVM_PATH", "read_native_scanline", "next_p"}
+OWN = "my_"
+
+
+def tracked(root):
+    listed = subprocess.run(["git", "ls-files"], cwd=root, capture_output=True, text=True, check=False)
+    names = listed.stdout.split("\n") if listed.returncode == 0 else []
+    return [n for n in names if n] or [str(p.relative_to(root)) for p in root.rglob("*") if p.is_file()]
+
+
+def words_of_sources(root, files):
+    """Every identifier of the tree's sources, pages apart, and the names of its files."""
+    words = {name.rsplit("/", 1)[-1].split(".")[0] for name in files}
+    for name in files:
+        path = root / name
+        if (path.suffix in SOURCES or path.suffix == "") and not name.startswith("docs/") and path.is_file():
+            words.update(re.findall(r"\w+", path.read_text(encoding="utf-8", errors="ignore")))
+    return words
+
+
+def is_path(word):
+    return "/" in word and word.split("/", 1)[0] in FOLDERS and "generated" not in word and not re.search(r"[<>$:#]", word)
+
+
+def there(path, files, folders):
+    path = path.rstrip("/")
+    return path in folders or any(f == path or f.rsplit(".", 1)[0] == path or fnmatch(f, path) for f in files)
+
+
+def is_name(word):
+    """Identifiers of code: with an underscore, a capital inside, or brackets."""
+    match = NAME.fullmatch(word)
+    return match and (match.group(2) or "_" in word.strip("_") or re.search(r"[a-z][A-Z]", word))
+
+
+def missing_names(root, page, text, files, folders, words):
+    for line, code in inline_code(text):
+        first = code.split()[0] if code.split() else ""
+        if is_path(first):
+            if OWN not in first and not there(first, files, folders):
+                yield f"{page}:{line}: there is no {first}"
+        elif is_name(code):
+            name = NAME.fullmatch(code).group(1)
+            if name not in words and name not in FOREIGN and OWN not in name:
+                yield f"{page}:{line}: no source has the name {code}"
+
+
+def missing_tests(root, page, text, tests):
+    for folder, wanted in re.findall(r'mote_tests_(\w+) "([^"]+)"', text.replace("\n", " ")):
+        cases = tests.get(folder, "")
+        tags = re.findall(r"\[[^\]]+\]", wanted)
+        for tag in tags:
+            if tag not in cases:
+                yield f"{page}: no test of tests/{folder} has the tag {tag}"
+        if not tags and not any(fnmatch(name, wanted) for name in re.findall(r'TEST_CASE(?:_METHOD)?\((?:\w+, *)?"([^"]+)"', cases)):
+            yield f"{page}: tests/{folder} has no case '{wanted}'"
+
+
+def repeats(page, text):
+    """Prose alone: tables may say alike things of unlike rows."""
+    lines = [line for line in prose(text).split("\n") if not line.startswith("|")]
+    words = re.findall(r"[^\s|]+", " ".join(lines))
+    seen, last = {}, -REPEATED
+    for i in range(len(words) - REPEATED + 1):
+        piece = tuple(words[i:i + REPEATED])
+        if piece in seen and i >= last + REPEATED:
+            last = i
+            yield f"{page}: says twice: {' '.join(piece)}"
+        seen.setdefault(piece, i)
+
+
+def repeated_rows(page, text):
+    rows = [re.split(r"\s*\|\s*", line)[1:3] for line in prose(text).split("\n") if line.startswith("| ") and len(line) > 120]
+    for row in {tuple(r) for r in rows if rows.count(r) > 1 and len(r[0]) > 12 and r[1]}:
+        yield f"{page}: two rows of a table begin with '{row[0]} | {row[1]}'"
+
+
+def check(root):
+    files = tracked(root)
+    folders = {"/".join(f.split("/")[:i]) for f in files for i in range(1, f.count("/") + 1)}
+    words = words_of_sources(root, files)
+    tests = {}
+    for name in files:
+        if name.startswith("tests/") and name.endswith((".cpp", ".h")):
+            tests[name.split("/")[1]] = tests.get(name.split("/")[1], "") + (root / name).read_text(encoding="utf-8")
+    offences = []
+    for page in pages(root):
+        if page in GENERATED:
+            continue
+        text = read(root, page)
+        offences += [*missing_names(root, page, text, files, folders, words), *missing_tests(root, page, text, tests),
+                     *repeats(page, text), *repeated_rows(page, text)]
+    bibliography = root / "docs" / "references.bib"
+    keys = re.findall(r"^@\w+\{(\w+),", bibliography.read_text(encoding="utf-8"), flags=re.MULTILINE) if bibliography.is_file() else []
+    return offences + [f"docs/references.bib: {key} comes twice" for key in sorted({k for k in keys if keys.count(k) > 1})]
+
+
+if __name__ == "__main__":
+    sys.exit(run(check, sys.argv[1], "pages name what is there, and nothing twice"))

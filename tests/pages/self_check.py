@@ -1,0 +1,114 @@
+#!/usr/bin/env python3
+"""Proves that the checks of pages can fail: plants one fault at a time in a small tree and expects it to be found."""
+import sys
+import tempfile
+from pathlib import Path
+
+import check_gifs
+import check_links
+import check_names
+import check_numbers
+import numpy as np
+from PIL import Image
+
+README = """# mote
+
+Read [the page](docs/page.md#a-heading-with-code) and [the guide](docs/guide.md).
+"""
+PAGE = """# Page
+
+One sentence that says once what a reader can do after reading this page, and nothing else besides that.
+
+## A heading with `code`
+
+`core/ray.h` holds `make_ray()`; `mote_tests_core "[ray]"` and `mote_tests_core "rays are*"` test it.
+
+| path | 8.9 ± 0.3 % | 12.5 |
+|---|---|---|
+| ≈ 33 | | |
+
+<!-- docs/gallery/table.csv
+8.9 ± 0.3 % | 12.5 = method: path, passes: 8; error; error_se; seconds
+-->
+<!-- docs/gallery/trade.html
+≈ 33 = box / path; s to 5 %
+-->
+"""
+TREE = {
+    "README.md": README,
+    "docs/page.md": PAGE,
+    "docs/guide.md": "# Guide\n",
+    "docs/references.bib": "@book{Veach1997, title = {x}}\n@book{Keller1997, title = {y}}\n",
+    "core/ray.h": "Ray make_ray();\n",
+    "tests/core/ray_test.cpp": 'TEST_CASE("rays are straight", "[ray]") {}\n',
+    "docs/gallery/table.csv": "# Commit: 0123456789ab\nmethod,passes,error,error_se,seconds\npath,8,0.0888,0.0031,12.48\n",
+    "docs/gallery/trade.html": "<h2>box</h2><table><tr><th>method</th><th>s to 5 %</th></tr><tr><td>path</td><td>\u2248 33 (\u2248 59)</td></tr></table>",
+}
+TWICE = " One sentence that says once what a reader can do after reading this page, and nothing else besides that."
+ROW = "\n| a cell that is long enough | another | " + "words " * 20 + "{} |"
+
+CASES = [  # check, file, what is replaced by what, what is found
+    (check_links, "README.md", "docs/page.md#a-heading-with-code", "docs/pages.md", "there is no docs/pages.md"),
+    (check_links, "README.md", "#a-heading-with-code", "#another", "has no heading '#another'"),
+    (check_links, "README.md", "[the page](docs/page.md#a-heading-with-code)", "the page", "docs/page.md: neither"),
+    (check_names, "docs/page.md", "core/ray.h", "core/rays.h", "docs/page.md:7: there is no core/rays.h"),
+    (check_names, "docs/page.md", "make_ray()", "make_rays()", "no source has the name make_rays()"),
+    (check_names, "docs/page.md", "[ray]", "[rays]", "has the tag [rays]"),
+    (check_names, "docs/page.md", "rays are*", "rays were*", "has no case 'rays were*'"),
+    (check_names, "docs/page.md", "\n\n## A", "\n" + TWICE + "\n\n## A", "says twice: One sentence"),
+    (check_names, "docs/page.md", "|---|---|---|", "|---|---|---|" + ROW.format(1) + ROW.format(2), "two rows of a table begin"),
+    (check_names, "docs/references.bib", "Keller1997", "Veach1997", "Veach1997 comes twice"),
+    (check_numbers, "docs/gallery/table.csv", "0.0888", "0.0901", "the table has 0.0901"),
+    (check_numbers, "docs/page.md", "| 12.5 |", "| 12.6 |", "'8.9 ± 0.3 % | 12.5' is not in the text"),
+    (check_numbers, "docs/page.md", "passes: 8", "passes: 9", "no row method: path, passes: 9"),
+    (check_numbers, "docs/gallery/trade.html", "33 ", "34 ", "the table has ≈ 34"),
+    (check_numbers, "docs/page.md", "docs/gallery/table.csv", "docs/gallery/other.csv", "there is no docs/gallery/other.csv"),
+    (check_numbers, "docs/page.md", "<!-- docs/gallery/table.csv", "<!--", "table.csv: no page compares"),
+    (check_numbers, "docs/gallery/table.csv", "0123456789ab", "0123456789ab+", ""),
+]
+LINKED = "\n[table](gallery/table.csv)\n"
+
+
+def found(check, edits):
+    with tempfile.TemporaryDirectory() as folder:
+        for name, text in TREE.items():
+            path = Path(folder) / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            for file, old, new in edits:
+                text = text.replace(old, new) if file == name else text
+            path.write_text(text, encoding="utf-8")
+        return "\n".join(check.check(Path(folder)))
+
+
+def gif_offences(palette_of):
+    """What is found of four frames, the last one bright, with the palette of one of them."""
+    with tempfile.TemporaryDirectory() as folder:
+        gallery = Path(folder) / "docs" / "gallery"
+        gallery.mkdir(parents=True)
+        ramp = np.linspace(0, 1, 64)[None, :, None] * np.ones((48, 1, 3))
+        frames = [Image.fromarray((255 * ramp * (i + 1) / 4).astype(np.uint8)) for i in range(4)]
+        sheet = Image.new("RGB", (128, 96))
+        for i, frame in enumerate(frames):
+            sheet.paste(frame, (i % 2 * 64, i // 2 * 48))
+        sheet.save(gallery / "film.png")
+        palette = frames[palette_of].quantize(64)
+        small = [f.quantize(palette=palette, dither=Image.Dither.NONE) for f in frames]
+        small[0].save(gallery / "film.gif", save_all=True, append_images=small[1:])
+        return "\n".join(check_gifs.check(Path(folder)))
+
+
+def main():
+    judged = [(f"{check.__name__}: a sound tree", found(check, []), "") for check in (check_links, check_names, check_numbers)]
+    judged += [(f"{check.__name__}: {new!r}", found(check, [(file, old, new)]), expected) for check, file, old, new, expected in CASES]
+    dirty = ("docs/gallery/table.csv", "0123456789ab", "0123456789ab+")
+    judged += [("a table with changes", found(check_numbers, [dirty, ("docs/page.md", "\n<!-- docs/gallery/table", LINKED + "\n<!-- docs/gallery/table")]),
+                "has uncommitted changes, which the section does not say"),
+               ("a bright palette", gif_offences(3), ""), ("a dark palette", gif_offences(0), "film.gif: frame 3 has a mean of")]
+    failed = [f"{name}: expected '{expected}', found '{what}'" for name, what, expected in judged
+              if ((expected not in what) if expected else what)]
+    print("\n".join([*failed, f"{len(judged)} trees, {len(failed)} not judged as they should be"]))
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
