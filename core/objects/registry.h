@@ -14,17 +14,11 @@
 #include <vector>
 
 #include "core/objects/object.h"
+#include "core/objects/parameter.h"
 
 namespace mote::core {
 
 class Properties;
-
-/// One row of a manual page. `type` is one of: boolean, integer, float, string, rgb, point, vector,
-/// transform, texture (an rgb, a float or a nested texture), volume, or the name of a category for a nested
-/// object.
-struct Parameter {
-    std::string name, type, default_value, description;  ///< as the page shows them
-};
 
 /// The manual page and the factory of one type.
 struct Manual {

@@ -24,7 +24,7 @@ FLOORS = [
 ]
 FLOOR_OF = {folder: level for level, floor in enumerate(FLOORS) for folder in floor}
 # core has floors of its own.
-CORE_FLOORS = [["math"], ["objects"], ["files", "metrics"], ["film"], ["materials"], ["geometry"], ["scene"],
+CORE_FLOORS = [["math"], ["objects"], ["parameters", "files", "metrics"], ["film"], ["materials"], ["geometry"], ["scene"],
                ["cameras", "render"], ["formats"]]
 CORE_FLOOR_OF = {folder: level for level, floor in enumerate(CORE_FLOORS) for folder in floor}
 EXEMPT = {"tests", "tools"}

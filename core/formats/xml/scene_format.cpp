@@ -188,10 +188,10 @@ std::string cell(const std::string& text) {
 std::string page(const Manual& manual) {
     std::string text = "\n### `" + manual.type + "`\n\n" + manual.summary + "\n";
     if (!manual.parameters.empty()) {
-        text += "\n| parameter | type | default | meaning |\n|---|---|---|---|\n";
+        text += "\n| parameter | type | default | values | meaning |\n|---|---|---|---|---|\n";
         for (const Parameter& p : manual.parameters)
             text += "| `" + p.name + "` | " + p.type + " | " + cell(p.default_value) + " | " +
-                    cell(p.description) + " |\n";
+                    cell(values_text(p)) + " | " + cell(p.description) + " |\n";
     }
     return text + "\n```xml\n" + manual.example + "\n```\n";
 }
