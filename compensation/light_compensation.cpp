@@ -1,6 +1,6 @@
 #include "compensation/light_compensation.h"
 
-#include "lights/emitters/direct_light.h"
+#include "lights/direct_light/direct_light.h"
 
 namespace mote::compensation {
 

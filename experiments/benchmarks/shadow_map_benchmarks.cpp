@@ -151,7 +151,7 @@ Errors errors_of(const VolumetricShadowMap& map, Lamp& lamp, const Points& point
 
 enum class Order { camera, random };
 
-void shadow_map_lookup(benchmark::State& state, ShadowMapSettings::Storage storage, Order order) {
+void shadow_map_lookup(benchmark::State& state, Order order) {
     const std::string file = MOTE_SOURCE_DIR "/scenes/smoke_room.xml";
     if (!std::filesystem::exists(MOTE_SOURCE_DIR "/scenes/generated/smoke.vdb")) {
         state.SkipWithError("no smoke: run scenes/generate");
@@ -161,7 +161,7 @@ void shadow_map_lookup(benchmark::State& state, ShadowMapSettings::Storage stora
     const Medium& smoke = *scene->media().front();
     Lamp lamp{*scene, Vec3(smoke.bounds().center().x, 2.85f, smoke.bounds().center().z)};
     ShadowMapSettings settings;
-    settings.storage = storage, settings.intervals = int(state.range(1));
+    settings.intervals = int(state.range(1));
     VolumetricShadowMap map;
     const auto view = ShadowMapView::of_point(lamp.position, int(state.range(0)));
     const double build = seconds_of([&] { map.build(*scene, view, lamp.state, settings); });
@@ -182,15 +182,8 @@ void shadow_map_lookup(benchmark::State& state, ShadowMapSettings::Storage stora
         double(map.memory_bytes()) * 1e-6, 1e3 * build));
 }
 
-void Shadow_map_camera(benchmark::State& state) {
-    shadow_map_lookup(state, ShadowMapSettings::Storage::intervals, Order::camera);
-}
-void Shadow_map_random(benchmark::State& state) {
-    shadow_map_lookup(state, ShadowMapSettings::Storage::intervals, Order::random);
-}
-void Shadow_map_nodes_camera(benchmark::State& state) {
-    shadow_map_lookup(state, ShadowMapSettings::Storage::nodes, Order::camera);
-}
+void Shadow_map_camera(benchmark::State& state) { shadow_map_lookup(state, Order::camera); }
+void Shadow_map_random(benchmark::State& state) { shadow_map_lookup(state, Order::random); }
 
 /// Texels along an edge, intervals: 19, 35 and 51 fill 64, 96 and 128 bytes a texel.
 void sizes(benchmark::internal::Benchmark* b) {
@@ -202,6 +195,5 @@ void sizes(benchmark::internal::Benchmark* b) {
 
 BENCHMARK(Shadow_map_camera)->Apply(sizes);
 BENCHMARK(Shadow_map_random)->Apply(sizes);
-BENCHMARK(Shadow_map_nodes_camera)->Args({192, 35})->UseManualTime()->Iterations(9);
 
 }  // namespace mote::benchmarks

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Virtual ray lights and beam lights against virtual point lights, photons and paths: processor seconds to 5 % of error.
+"""Virtual ray lights against virtual point lights, photons and paths: processor seconds to 5 % of error.
 
 Two scenes, 48 x 30: a small room full of fog (micro_fog.xml) and the smoke room. Every method has the best of its settings: all
 of them are rendered by three seeds, and the one with the least squared error times seconds is rendered anew by other seeds, which
@@ -36,7 +36,6 @@ def vpls(steps=0, **settings):
 METHODS = {
     "ray lights": {"12 of 128": of("mote_ray_lights"), "8 of 64": of("mote_ray_lights", share=8, candidates=64),
                    "20 of 256": of("mote_ray_lights", share=20, candidates=256)},
-    "beam lights, 0.1 m": {"12 of 128": of("mote_ray_lights", width=0.1)},
     "VPLs, ABC": {"1 step, 64": vpls(1, paths=64), "2 steps, 64": vpls(2, paths=64), "3 steps, 64": vpls(3, paths=64),
                   "2 steps, 16": vpls(2, paths=16), "2 steps, 64, 8 eye paths": vpls(2, paths=64, eye_samples=8),
                   "2 steps, 32, 1-to-n": vpls(2, paths=32) | {"integrator.compensation.strategy": "1-to-n"}},

@@ -5,7 +5,7 @@
 #include <mutex>
 
 #include "core/math/sampler.h"
-#include "lights/emitters/direct_light.h"
+#include "lights/direct_light/direct_light.h"
 #include "media/phase_functions.h"
 
 namespace mote::gathering {

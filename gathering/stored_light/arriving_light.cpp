@@ -6,7 +6,7 @@
 #include <mutex>
 
 #include "core/math/sampler.h"
-#include "lights/emitters/direct_light.h"
+#include "lights/direct_light/direct_light.h"
 #include "lights/virtual_lights/vpl_gather.h"
 
 namespace mote::gathering {

@@ -21,8 +21,8 @@ struct ArrivedLight {
 };
 
 /// Direct light: `samples` lights are drawn for every place, and as many directions, weighed against each
-/// other as at the vertices of eye paths (lights/emitters/direct_light.h). Numbers are keyed by `key` and the
-/// place. Without bias, through media where the scene has any.
+/// other as at the vertices of eye paths (lights/direct_light/direct_light.h). Numbers are keyed by `key` and
+/// the place. Without bias, through media where the scene has any.
 ArrivedLight direct_light_at(const core::LitScene& scene, const LightPlaces& places, int samples,
                              std::uint64_t key, core::CancelToken cancelled);
 

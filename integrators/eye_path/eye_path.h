@@ -12,7 +12,7 @@
 #include "integrators/eye_path/eye_ray.h"
 #include "integrators/eye_path/eye_roulette.h"
 #include "integrators/eye_path/transport_layers.h"
-#include "lights/emitters/direct_light.h"
+#include "lights/direct_light/direct_light.h"
 
 namespace mote::integrators {
 
@@ -73,7 +73,8 @@ class EyePath {
 
     // At a vertex:
     const core::ScatteringVertex& vertex() const { return vertex_; }
-    /// Next-event estimation: the light of one light drawn for the vertex (lights/emitters/direct_light.h).
+    /// Next-event estimation: the light of one light drawn for the vertex
+    /// (lights/direct_light/direct_light.h).
     core::Rgb sample_light(core::WalkContext& context, const lights::LightSampling& how = {}) {
         return lights::sample_light<Media>(lights_, vertex_, weights_, state_, choices_.x, sampler_.next_2d(),
                                            context, how);

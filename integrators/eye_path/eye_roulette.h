@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/scene/russian_roulette.h"
-#include "lights/emitters/direct_light.h"
+#include "lights/direct_light/direct_light.h"
 
 namespace mote::integrators {
 

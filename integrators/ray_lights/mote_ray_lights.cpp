@@ -3,8 +3,7 @@
 // Every pass traces a fresh set of light paths. Their segments in media are lights all along, and eye rays
 // gather them all along: there is no point from which 1/d^2 could blow up, so that nothing has to be bounded
 // or brought back in media. Surfaces keep VPLs, bounded, and what the bound takes is found by eye paths that
-// go on (ray_light_tile.h). So the mean is right, but for light that passes mirrors and glass last; with a
-// width ray lights are beam lights, blurred over it.
+// go on (ray_light_tile.h). So the mean is right, but for light that passes mirrors and glass last.
 #include <fmt/format.h>
 
 #include "integrators/eye_path/counters.h"
@@ -113,7 +112,6 @@ class MoteRayLights final : public Integrator {
         settings_.paths = std::uint32_t(p.get_int_in("paths", 256, 0, std::int64_t(1) << 26));
         settings_.share = std::size_t(p.get_int_in("share", 12, 0, std::int64_t(1) << 26));
         settings_.candidates = std::size_t(p.get_int_in("candidates", 128, 0, std::int64_t(1) << 26));
-        settings_.width = float(p.get_float_in("width", 0.0, 0.0, 1e30));
         settings_.scattering_points = int(p.get_int_in("scattering_points", 8, 1, 64));
         if (p.has("bound")) settings_.bound = float(p.get_float_in("bound", 1.0, 0.0, 1e30));
     }
@@ -144,9 +142,6 @@ void MoteRayLights::plan_lines(Plan& plan) const {
              "a point on the ray light by the asinh of its distance, then one on the eye ray equi-angularly");
     plan.run("single scattering", fmt::format("{} scattering points a ray", settings_.scattering_points),
              "light of lights is not that of virtual ones");
-    if (settings_.width > 0.0f)
-        plan.miss("detail of light scattered in media", fmt::format("blurred over {:.3g} m", settings_.width),
-                  "beam lights: asked for; more passes do not sharpen it, a smaller width does");
 }
 
 Plan MoteRayLights::plan(const Scene& scene, const Requirements& r) const {
@@ -185,10 +180,6 @@ void register_mote_ray_lights(Registry& registry) {
                           "ray lights, and as many VPLs, that these are drawn from, themselves drawn by "
                           "power; 0: all of them"});
     parameters.push_back(
-        {"width", "float", "0",
-         "of beam lights [m]: light that scatters in media is blurred over a ball of this radius, "
-         "a bias; 0: ray lights, unbiased"});
-    parameters.push_back(
         {"bound", "float", "automatic",
          "bound b [1/m^2] on the geometry term from surface to surface, what is above it being found "
          "by eye paths that go on; automatic: light paths that a receiver looks at, at least 16, over R^2"});
@@ -196,8 +187,7 @@ void register_mote_ray_lights(Registry& registry) {
                           "points in media where each eye ray looks for the light of lights, up to 64"});
     registry.add({Category::integrator, "mote_ray_lights",
                   "Virtual ray lights in media and virtual point lights on surfaces (Novak et al. 2012): "
-                  "unbiased, or with a "
-                  "width blurred.",
+                  "unbiased.",
                   parameters,
                   R"(<integrator type="mote_ray_lights"><integer name="paths" value="128"/></integrator>)"},
                  [](const Properties& p) { return std::make_shared<MoteRayLights>(p); });

@@ -39,7 +39,7 @@ class RayLightTile {
           pass_(pass),
           walk_(walk),
           context_{scene, scratch, walk.rays, walk.tracking, walk.cancelled},
-          gather_(context_, pass.set, settings.looked_at(), settings.width) {}
+          gather_(context_, pass.set, settings.looked_at()) {}
 
     void start(int lane, const EyeRay& eye) {
         Lane& l = lanes_[std::size_t(lane)];

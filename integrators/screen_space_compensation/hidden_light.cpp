@@ -5,7 +5,7 @@
 
 #include "core/render/cpu_clock.h"
 #include "integrators/screen_space_compensation/hidden_vertex.h"
-#include "lights/emitters/direct_light.h"
+#include "lights/direct_light/direct_light.h"
 #include "lights/virtual_lights/vpl_gather.h"
 #include "screenspace/g_buffer/g_buffer.h"
 #include "screenspace/ssbc/ssbc_receivers.h"
@@ -34,15 +34,15 @@ Rgb direct_light(const Scene& scene, const HiddenVertex& at, Sampler& sampler, W
 
 }  // namespace
 
-HiddenLight::HiddenLight(const Scene& scene, const RenderOptions& options, const VplSettings& settings,
-                         float bound)
+HiddenLight::HiddenLight(const Scene& scene, const RenderOptions& options,
+                         const ScreenSpaceSettings& settings, int max_depth, float bound)
     : scene_(scene),
       options_(options),
-      layers_(settings.screen_space->layers),
-      max_depth_(settings.eye.max_depth),
-      share_(std::uint32_t(settings.screen_space->vpl_share)),
+      layers_(settings.layers),
+      max_depth_(max_depth),
+      share_(std::uint32_t(settings.vpl_share)),
       bound_(bound) {
-    screenspace::SsbcSettings ssbc = settings.screen_space->ssbc;
+    screenspace::SsbcSettings ssbc = settings.ssbc;
     ssbc.bound = bound;
     const auto buffers =
         screenspace::make_g_buffers(scene, scene.camera(), options.width, options.height, layers_);

@@ -17,16 +17,16 @@
 #include "core/render/integrator.h"
 #include "core/scene/ray_walk.h"
 #include "integrators/screen_space_compensation/screen_space_compensation.h"
-#include "integrators/virtual_point_lights/vpl_settings.h"
 #include "lights/virtual_lights/virtual_point_light.h"
 
 namespace mote::integrators {
 
 class HiddenLight {
   public:
-    /// Keeps references to the scene. `bound` is b [1/m^2].
-    HiddenLight(const core::Scene& scene, const core::RenderOptions& options, const VplSettings& settings,
-                float bound);
+    /// Keeps a reference to the scene. `max_depth` is that of whole paths, -1: no limit; `bound` is b
+    /// [1/m^2].
+    HiddenLight(const core::Scene& scene, const core::RenderOptions& options,
+                const ScreenSpaceSettings& settings, int max_depth, float bound);
 
     /// Adds an estimate to the layers from `first_layer` on, one for each side. Returns false when cancelled.
     template <bool Media>

@@ -16,7 +16,7 @@
 #include "integrators/virtual_point_lights/plan_compensation.h"
 #include "integrators/virtual_point_lights/plan_selection.h"
 #include "integrators/virtual_point_lights/vpl_estimator.h"
-#include "lights/virtual_lights/reflective_shadow_maps.h"
+#include "lights/reflective_shadow_maps/reflective_shadow_maps.h"
 
 namespace mote::integrators {
 
@@ -46,7 +46,6 @@ class MoteVpl final : public Integrator {
         settings_.scattering_points =
             int(properties.get_int_in("scattering_points", settings_.scattering_points, 0, 64));
         settings_.reflective_maps = int(properties.get_int_in("reflective_shadow_maps", 0, 0, 2048));
-        settings_.lists.size = int(properties.get_int_in("light_lists", 0, 0, 256));
         settings_.interleaving = int(properties.get_int_in("interleaving", 1, 1, 8));
         settings_.upsampling = int(properties.get_int_in("upsampling", 1, 1, 8));
         settings_.clamping.enabled = properties.get_bool("roughness_clamping", false);
@@ -128,7 +127,6 @@ void MoteVpl::check_selection() const {
     const SelectionSettings& s = settings_.selection;
     if (!s.selects()) return;
     const char* against = settings_.interleaving > 1 && s.cuts()         ? "interleaving"
-                          : settings_.lists.size > 0                     ? "light_lists"
                           : settings_.compensates()                      ? "compensation"
                           : settings_.clamping.enabled                   ? "roughness_clamping"
                           : settings_.visibility.shadow_maps             ? "shadow maps"
@@ -178,10 +176,6 @@ void MoteVpl::plan_bound(Plan& plan, const Bounds3& surfaces) const {
 }
 
 void MoteVpl::plan_image_space(Plan& plan) const {
-    if (const int size = settings_.lists.size; size > 0)
-        plan.run("light lists", "VPLs by what they see in " + std::to_string(size * size) + " directions",
-                 settings_.visibility.shadow_maps ? "no effect where shadow maps are used"
-                                                  : "unbiased; pays where much is hidden from many VPLs");
     const int n = settings_.interleaving;
     if (n > 1 && settings_.selection.by_hierarchy())
         plan.run("interleaving",
@@ -285,11 +279,6 @@ void register_mote_vpl(Registry& registry) {
                           "points in media where the light of each eye ray is gathered, besides the surface "
                           "behind them, up to 64; 0: "
                           "one collision or the surface, by chance"});
-    parameters.push_back(
-        {"light_lists", "integer", "0",
-         "texels along an edge of each VPL's picture of the surfaces that it sees, up to 256: "
-         "receivers look at the VPLs that see their part of a surface, and at one in 8 of the "
-         "others, which count 8 times; 0: at all of them"});
     parameters.push_back({"roughness_clamping", "boolean", "false",
                           "widen glossy lobes to the density of the light that is known: biased"});
     parameters.push_back(

@@ -11,7 +11,7 @@
 #include "integrators/virtual_point_lights/pass_selection.h"
 #include "integrators/virtual_point_lights/vpl_eye_tile.h"
 #include "integrators/virtual_point_lights/vpl_shadow_maps.h"
-#include "lights/virtual_lights/reflective_shadow_maps.h"
+#include "lights/reflective_shadow_maps/reflective_shadow_maps.h"
 
 namespace mote::integrators {
 
@@ -27,13 +27,12 @@ class VplEstimator final : public Estimator {
           settings_(settings),
           bound_(settings.bound_for(scene.rays().bounds())),
           tile_size_(lane_tile(spacing())),
-          items_(scene.rays().bounds(), settings.lists.cells),
           selection_(scene, settings.selection, options, bound_) {
         settings_.eye.wanted = wanted_transport(options);
         if (settings_.compensation.enabled && std::isfinite(bound_))
             transport_.emplace(scene, bound_, settings_.compensation);
         if (settings_.screen_space && settings_.screen_space->layers > 1 && std::isfinite(bound_))
-            hidden_.emplace(scene, options, settings, bound_);
+            hidden_.emplace(scene, options, *settings.screen_space, settings.eye.max_depth, bound_);
         if (settings_.visibility.used_in(scene)) maps_.emplace(scene, settings_.visibility);
         if (settings_.visibility.imperfect)
             points_ = lights::sample_surface_points(
@@ -67,7 +66,6 @@ class VplEstimator final : public Estimator {
         bytes_ = std::max(bytes_, vpls.memory_bytes());
         if (settings_.visibility.imperfect) make_imperfect_maps(vpls, context);
         selection_.prepare(vpls, context, passes_of_matrix(), counters_);
-        if (settings_.lists.size > 0 && !maps_) make_lists(vpls, context.cancelled);
         const int columns = (options_.width + tile_size_ - 1) / tile_size_;
         const int rows = (options_.height + tile_size_ - 1) / tile_size_;
         std::vector<lights::ReceiverStore> stores(maps_ ? std::size_t(columns) * std::size_t(rows) : 0);
@@ -102,7 +100,6 @@ class VplEstimator final : public Estimator {
             statistics.values["imperfect_shadow_map_bytes"] = double(imperfect_.memory_bytes());
             statistics.lookups["imperfect_shadow_maps"] += imperfect_lookups_;
         }
-        if (settings_.lists.size > 0) statistics.seconds["light_lists"] = list_seconds_;
         selection_.add_statistics(statistics);
         if (cuts_.cuts > 0) {
             statistics.values["lightcuts"] = double(cuts_.cuts);
@@ -153,14 +150,6 @@ class VplEstimator final : public Estimator {
         imperfect_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     }
 
-    /// For the gathers of this pass.
-    void make_lists(const lights::VplSet& vpls, CancelToken cancelled) {
-        const auto begin = std::chrono::steady_clock::now();
-        lists_.emplace(scene_, items_, vpls, settings_.lists, cancelled);
-        list_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-        counters_.add(lists_->rays(), {});
-    }
-
     PassSelection::Passes passes_of_matrix() {
         return {[this](const PassContext& context) { return trace_lights(context); },
                 [this](const PassContext& context, const lights::VplSet& vpls,
@@ -191,7 +180,7 @@ class VplEstimator final : public Estimator {
             EyeShadowMaps{.lights = maps_ ? maps_->of_lights() : nullptr,
                           .receivers = store,
                           .imperfect = settings_.visibility.imperfect ? &imperfect_ : nullptr},
-            EyeLightLists{&items_, lists_ ? &*lists_ : nullptr}, selection_.by());
+            selection_.by());
         render(*tile);
         counters_.add(walk.rays, walk.tracking);
         const std::lock_guard lock(cost_mutex_);
@@ -329,12 +318,9 @@ class VplEstimator final : public Estimator {
     VplSettings settings_;
     float bound_;
     int tile_size_;
-    SurfaceItems items_;
     PassSelection selection_;
     lights::LightcutCounters cuts_;
     lights::ResamplingCounters resampled_;
-    std::optional<VplLightLists> lists_;  ///< of this pass; nothing: all lights are looked at
-    double list_seconds_ = 0.0;
     std::optional<lights::ReflectiveShadowMaps> reflective_;  ///< nothing: lights draw their paths
     lights::SurfacePoints points_;
     lights::ImperfectShadowMaps imperfect_;  ///< of this pass, from these points

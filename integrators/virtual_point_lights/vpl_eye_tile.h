@@ -31,8 +31,7 @@ class EyeTile {
 
     EyeTile(const core::Scene& scene, const VplSettings& settings, float bound, const lights::VplSet& vpls,
             const compensation::ResidualTransport* transport, lights::GatherScratch& scratch,
-            core::WalkContext& walk, const EyeShadowMaps& maps = {}, const EyeLightLists& lists = {},
-            const SelectedBy& selected_by = {})
+            core::WalkContext& walk, const EyeShadowMaps& maps = {}, const SelectedBy& selected_by = {})
         : scene_(scene),
           settings_(settings),
           bound_(bound),
@@ -40,7 +39,6 @@ class EyeTile {
           scratch_(scratch),
           walk_(walk),
           maps_(maps),
-          lists_(lists),
           selection_(settings.selection, selected_by, vpls, bound),
           compensation_(scene, settings.compensation, transport, vpls, scratch, walk) {}
 
@@ -66,8 +64,6 @@ class EyeTile {
     void gathers(bool yes) { gathers_ = yes; }
     CompensationCost compensation_cost() const { return compensation_.cost(); }
     std::uint64_t imperfect_lookups() const { return imperfect_lookups_; }
-    /// Other lights are selected for the same eye paths: for studies of what selecting does.
-    void draw_apart(std::uint64_t key) { selection_.draw_apart(key); }
     lights::LightcutCounters cut_counters() const { return selection_.counters(); }
     lights::ResamplingCounters resampling_counters() const { return selection_.resampling_counters(); }
 
@@ -125,8 +121,6 @@ class EyeTile {
                                  vpl_scale * maps_.scale);
         else if (selection_.active())
             light = gather_selected();
-        else if (lists_.lists)
-            light = gather_lights(listed(range));
         else
             light = gather_lights(range);
         const auto compensated = compensation_.run(range, vpl_scale);
@@ -166,25 +160,6 @@ class EyeTile {
         const auto light = lights::gather_with(own, vpls_, choice, weight, receivers_, visibility);
         imperfect_lookups_ += visibility.lookups();
         return light;
-    }
-
-    /// The lights that any receiver of the tile can see. In a medium that is all of them.
-    lights::ListedVpls listed(const lights::VplRange& range) {
-        list_.assign(lists_.lists->words(), 0);
-        std::size_t last = std::size_t(-1);
-        for (int i = 0; i < lights::ReceiverTile::width; ++i) {
-            if (receivers_.max_vpl_depth[i] == 0) continue;
-            if (receivers_.in_medium[i] != 0.0f) {
-                list_.assign(list_.size(), ~std::uint64_t(0));
-                break;
-            }
-            const std::size_t item =
-                lists_.items->item(receivers_.position(i), receivers_.geometric_normal(i));
-            if (item != last) lists_.lists->add(item, list_);
-            last = item;
-        }
-        const auto rest = std::size_t(settings_.lists.rest);
-        return {range, list_, rest, walk_.rng.next_u32() % rest};
     }
 
     /// The same at the scattering points, the n-th of every lane at once. VPLs are shared out among a few of
@@ -306,8 +281,6 @@ class EyeTile {
     lights::GatherScratch& scratch_;
     core::WalkContext& walk_;
     EyeShadowMaps maps_;
-    EyeLightLists lists_;
-    std::vector<std::uint64_t> list_;  ///< of a tile
     std::uint64_t imperfect_lookups_ = 0;
     TileSelection selection_;
     TileCompensation<Media> compensation_;

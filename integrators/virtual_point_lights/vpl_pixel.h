@@ -2,7 +2,6 @@
 #pragma once
 
 #include "integrators/eye_path/transport_layers.h"
-#include "integrators/virtual_point_lights/vpl_light_lists.h"
 #include "lights/imperfect_shadow_maps/imperfect_visibility.h"
 #include "lights/shadow_maps/shadow_map_gather.h"
 
@@ -31,12 +30,6 @@ struct EyeShadowMaps {
     int spacing = 1;                             ///< of the lanes' pixels
     float scale = 1.0f;                          ///< of the light at receivers
     const lights::ImperfectShadowMaps* imperfect = nullptr;  ///< looked up instead of shadow rays to VPLs
-};
-
-/// Where tiles look at listed lights first; both null where they do not.
-struct EyeLightLists {
-    const SurfaceItems* items = nullptr;
-    const VplLightLists* lists = nullptr;
 };
 
 }  // namespace mote::integrators

@@ -8,7 +8,6 @@
 #include "integrators/eye_path/eye_path_limits.h"
 #include "integrators/layer_filter/layer_filter.h"
 #include "integrators/screen_space_compensation/screen_space_compensation.h"
-#include "integrators/virtual_point_lights/vpl_light_lists.h"
 #include "integrators/virtual_point_lights/vpl_selection.h"
 #include "integrators/virtual_point_lights/vpl_visibility.h"
 #include "lights/virtual_lights/light_path.h"
@@ -30,7 +29,6 @@ struct VplSettings {
     /// collision or the surface, by chance.
     int scattering_points = 8;
 
-    LightListSettings lists;
     int reflective_maps = 0;  ///< texels along an edge of reflective shadow maps; 0: none
 
     /// n: a pixel of n x n gathers every n^2-th VPL, which counts n^2 times.

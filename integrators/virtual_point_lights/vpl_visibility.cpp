@@ -9,7 +9,6 @@
 namespace mote::integrators {
 
 using namespace core;
-using Storage = lights::ShadowMapSettings::Storage;
 
 namespace {
 
@@ -22,11 +21,7 @@ std::shared_ptr<Object> make_shadow_map(const Properties& p) {
     s.size = int(p.get_int_in("size", s.size, 4, 8192));
     s.light_size = int(p.get_int_in("light_size", s.light_size, 0, 8192));
     s.maps = int(p.get_int_in("maps", s.maps, 1, 1024));
-    s.map.storage = p.get_choice("storage", "intervals", {"intervals", "nodes"}) == "nodes"
-                        ? Storage::nodes
-                        : Storage::intervals;
     s.map.intervals = int(p.get_int_in("intervals", s.map.intervals, 1, 4096));
-    s.map.nodes = int(p.get_int_in("nodes", s.map.nodes, 2, 4096));
     s.map.step = float(p.get_float_in("step", 1.0, 1e-3, 1e3));
     s.map.max_bytes = std::size_t(1e6 * p.get_float_in("max_megabytes", 64.0, 1e-6, 1e6));
     s.where = p.has("size") ? p.where_of("size") : p.where;
@@ -105,12 +100,11 @@ void plan_visibility(Plan& plan, const Scene& scene, const VisibilitySettings& s
                      : "exact");
         return;
     }
-    const bool chromatic = lights::needs_chromatic_maps(scene), nodes = s.map.storage == Storage::nodes;
+    const bool chromatic = lights::needs_chromatic_maps(scene);
     const double texels = double(s.size) * double(s.size), even = receivers_per_texel * texels;
     const std::size_t bytes = s.map.bytes(s.size, chromatic);
     plan.run("visibility",
-             fmt::format("shadow maps of {}^2 texels, {} {} each, biased", s.size,
-                         nodes ? s.map.nodes : s.map.intervals, nodes ? "nodes" : "intervals"),
+             fmt::format("shadow maps of {}^2 texels, {} intervals each, biased", s.size, s.map.intervals),
              "asked for; traced is exact");
     plan.run("memory of shadow maps",
              fmt::format("{} of {}, whatever the number of VPLs{}", s.maps, megabytes(bytes),
@@ -158,9 +152,7 @@ void register_visibility(Registry& registry) {
          {{"size", "integer", "64", "texels along an edge of a VPL's map"},
           {"light_size", "integer", "256",
            "the same for the maps of point, spot and directional lights, at vertices in media; 0: traced"},
-          {"storage", "string", "intervals", "intervals, or nodes: smaller, slower to build and to look up"},
-          {"intervals", "integer", "35", "along a ray; nodes are chosen from as many"},
-          {"nodes", "integer", "12", "kept in each texel"},
+          {"intervals", "integer", "35", "along a ray"},
           {"step", "float", "1", "of ray marching, in voxels"},
           {"max_megabytes", "float", "64", "of one map; a larger one is refused"},
           {"maps", "integer", "4", "kept at once, whatever the number of VPLs"}},

@@ -1,6 +1,5 @@
 // Maps of texels over all directions, and over one hemisphere, on the octahedron (Engelhardt 2013, Ch. 7):
-// plain structs for loops that look up millions of directions a second. directional_map.h wraps them for
-// comparisons.
+// plain structs for loops that look up millions of directions a second.
 //
 // Texels are numbered row by row. z is up: the middle of the square looks along +z, its four corners along
 // -z. The border that Fig. 7.5 stores around the map is arithmetic here: a footprint names the texel that a

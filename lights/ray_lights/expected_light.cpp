@@ -136,13 +136,13 @@ EyeReceivers::EyeReceivers(const EyeLines& eyes) {
     }
 }
 
-void expected_light(const RayLight& light, const EyeReceivers& eyes, float width, LaneFloats& out) {
+void expected_light(const RayLight& light, const EyeReceivers& eyes, LaneFloats& out) {
     const Pieces parts(light.line);
     const float power = average(light.power) * parts.length * inv_four_pi;
     out = {};
     for (int k = 0; k < pieces; ++k) {
         LitPoint point{0.5f * (parts.end[k] + parts.end[k + 1]), power * parts.weight[k],
-                       near_on_light * sqr(parts.length) + sqr(width), light.line.direction};
+                       near_on_light * sqr(parts.length), light.line.direction};
         point.near_squared = std::fmax(point.near_squared, min_distance_squared);
         const auto depth = std::int32_t(light.depth);
         if (eyes.directional) {
@@ -180,11 +180,10 @@ PointReceivers::PointReceivers(const ReceiverLanes& points, const LaneFloats& ar
     }
 }
 
-void expected_light(const RayLight& light, const PointReceivers& points, float width, LaneFloats& out) {
+void expected_light(const RayLight& light, const PointReceivers& points, LaneFloats& out) {
     const Pieces parts(light.line);
     const float power = average(light.power) * parts.length * inv_four_pi;
-    const float least = std::fmax(sqr(width), near_on_line * sqr(parts.length));
-    const float near_squared = std::fmax(least, min_distance_squared);
+    const float near_squared = std::fmax(near_on_line * sqr(parts.length), min_distance_squared);
     const float bound = points.bound;
     const auto depth = std::int32_t(light.depth);
     const ReceiverLanes& r = points.lanes;

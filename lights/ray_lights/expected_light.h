@@ -50,9 +50,9 @@ struct PointReceivers {
     PointReceivers(const ReceiverLanes& points, const LaneFloats& extinction, float bound);
 };
 
-/// A ray light; `width` of beam lights [m].
-void expected_light(const RayLight& light, const EyeReceivers& eyes, float width, LaneFloats& out);
-void expected_light(const RayLight& light, const PointReceivers& points, float width, LaneFloats& out);
+/// A ray light.
+void expected_light(const RayLight& light, const EyeReceivers& eyes, LaneFloats& out);
+void expected_light(const RayLight& light, const PointReceivers& points, LaneFloats& out);
 /// A VPL on a surface.
 void expected_light(const VirtualPointLight& vpl, const EyeReceivers& eyes, LaneFloats& out);
 void expected_light(const VirtualPointLight& vpl, const PointReceivers& points, LaneFloats& out);

@@ -16,6 +16,7 @@ constexpr double resolution = 1e-12;
 constexpr float defensive = 0.15f;
 
 double square(double x) { return x * x; }  // core::sqr() is for single precision
+float inverse_square(double distance_squared) { return float(1.0 / distance_squared); }
 
 using CellWeights = std::array<float, most_cells>;
 
@@ -48,13 +49,13 @@ float passes(const MediumLine& line, double distance) {
     return 1.0f / (1.0f + x * (1.0f + x * (0.5f + x * (1.0f / 6.0f))));
 }
 
-/// Around a point, with the width of beams.
-InverseSquare around(const MediumLine& line, const Vec3d& point, float width) {
+/// 1/(d^2 + softening^2) around a point, `softening` in metres.
+InverseSquare around(const MediumLine& line, const Vec3d& point, float softening) {
     const Vec3d to = point - Vec3d(line.origin);
     const double nearest = glm::dot(to, Vec3d(line.direction));
     const Vec3d off = to - nearest * Vec3d(line.direction);
     const double least = resolution * (double(line.length) + std::fabs(nearest));
-    return {nearest, std::sqrt(glm::dot(off, off) + square(double(width)) + square(least))};
+    return {nearest, std::sqrt(glm::dot(off, off) + square(double(softening)) + square(least))};
 }
 
 /// Do weights of cells alone say too little? Not where light scatters evenly, and media are thin.
@@ -87,12 +88,11 @@ std::optional<Part> part_above(const MediumLine& line, const Vec3d& point, const
 
 /// The point on the ray light: by its distance from the eye ray; and, where it has cells, by what would go to
 /// the nearest point of the eye ray.
-std::optional<LineSample> sample_on_light(const RayLight& light, const EyeLine& eye, float u, float width) {
+std::optional<LineSample> sample_on_light(const RayLight& light, const EyeLine& eye, float u) {
     const MediumLine &y = light.line, &x = eye.line;
     const LinePair pair = line_pair(Vec3d(y.origin), Vec3d(y.direction), Vec3d(x.origin), Vec3d(x.direction));
     const double least = resolution * (double(y.length) + double(x.length) + std::fabs(pair.nearest_first));
-    const InverseDistance density{pair.nearest_first,
-                                  std::sqrt(square(pair.distance) + square(double(width)) + square(least)),
+    const InverseDistance density{pair.nearest_first, std::sqrt(square(pair.distance) + square(least)),
                                   pair.sine};
     const double length = double(y.length);
     if (!steers(y)) return sample_line(density, 0.0, length, length, y.cell_weights(), u);
@@ -113,8 +113,8 @@ std::optional<LineSample> sample_on_light(const RayLight& light, const EyeLine& 
 
 /// The point on the eye ray, around one of the light.
 std::optional<LineSample> sample_on_eye(const MediumLine& eye, const MediumLine& light, const Vec3d& point,
-                                        float u, float width) {
-    const InverseSquare density = around(eye, point, width);
+                                        float u) {
+    const InverseSquare density = around(eye, point, 0.0f);
     const double length = double(eye.length);
     if (!steers(eye)) return sample_line(density, 0.0, length, length, eye.cell_weights(), u);
     CellWeights weights;
@@ -131,18 +131,13 @@ std::optional<LineSample> sample_on_eye(const MediumLine& eye, const MediumLine&
 
 }  // namespace
 
-float inverse_square(double distance_squared, float width) {
-    if (distance_squared < square(double(width))) return 3.0f / sqr(width);
-    return float(1.0 / distance_squared);
-}
-
 std::optional<LineConnection> connect(const EyeLine& eye, const RayLight& light, const Vec2& u,
                                       const LineContext& context) {
     if (std::int32_t(light.depth) > eye.max_depth) return std::nullopt;
-    const auto on_light = sample_on_light(light, eye, u.x, context.width);
+    const auto on_light = sample_on_light(light, eye, u.x);
     if (!on_light) return std::nullopt;
     const Vec3d y = light.line.at(on_light->position);
-    const auto on_eye = sample_on_eye(eye.line, light.line, y, u.y, context.width);
+    const auto on_eye = sample_on_eye(eye.line, light.line, y, u.y);
     if (!on_eye) return std::nullopt;
     const Vec3d x = eye.line.at(on_eye->position);
     const Towards towards(x, y);
@@ -153,7 +148,7 @@ std::optional<LineConnection> connect(const EyeLine& eye, const RayLight& light,
     const double density = on_light->pdf_distance * on_eye->pdf_distance;
     const Rgb value = eye.throughput * at_eye * eye.line.phase(towards.direction) * light.power * at_light *
                       light.line.phase(-towards.direction) *
-                      float(double(inverse_square(towards.distance_squared, context.width)) / density);
+                      float(double(inverse_square(towards.distance_squared)) / density);
     if (!(max_component(value) > 0.0f)) return std::nullopt;
     return LineConnection{value, Vec3(x), Vec3(y)};
 }
@@ -171,8 +166,8 @@ std::optional<LineConnection> connect(const ReceiverLanes& receivers, int lane, 
     }
     CellWeights weights;
     const auto by = weights_towards(line, x, weights);
-    const auto on_light = sample_line(around(line, x, std::fmax(context.width, 1.0f / std::sqrt(bound))),
-                                      part->begin, part->end, double(line.length), by, u);
+    const auto on_light = sample_line(around(line, x, 1.0f / std::sqrt(bound)), part->begin, part->end,
+                                      double(line.length), by, u);
     if (!on_light) return std::nullopt;
     const Vec3d y = line.at(on_light->position);
     const Towards towards(x, y);
@@ -189,8 +184,8 @@ std::optional<LineConnection> connect(const ReceiverLanes& receivers, int lane, 
         const bool above = glm::dot(receivers.geometric_normal(lane), towards.direction) > 0.0f;
         cosine = above ? std::fmax(0.0f, glm::dot(shading, towards.direction)) : 0.0f;
     }
-    value *= std::fmin(cosine * inverse_square(towards.distance_squared, context.width), bound) /
-             float(on_light->pdf_distance);
+    value *=
+        std::fmin(cosine * inverse_square(towards.distance_squared), bound) / float(on_light->pdf_distance);
     if (!(max_component(value) > 0.0f)) return std::nullopt;
     value *= light.power * line.scattering(on_light->position, context.rng, context.counters) *
              line.phase(-towards.direction);

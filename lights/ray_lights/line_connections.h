@@ -6,11 +6,6 @@
 //   point, ray light      integral over u of        f*(x)    min(G*, b) V*    f_p(y) sigma_s T P
 //   eye ray, surface VPL  integral over v of        T sigma_s f_p(x)  V* C*(y)/w^2  I
 // without visibility and transmittance between x and y (Novak et al. 2012, Eqs. 5 to 8).
-//
-// Virtual beam lights: with a width r, what scatters at a point of a ray light is spread evenly over a ball
-// of that radius, as far as the inverse square is concerned: within r it is the mean of 1/w^2 over the ball,
-// 3/r^2, so that as much light arrives within r on the whole. Biased by what changes over the ball; nothing
-// is left that could grow without a bound.
 #pragma once
 
 #include "lights/ray_lights/ray_light.h"
@@ -36,11 +31,7 @@ struct LineConnection {
 struct LineContext {
     core::Rng& rng;
     core::TrackingCounters& counters;
-    float width = 0.0f;  ///< of beam lights [m]; 0: ray lights
 };
-
-/// 1/w^2 of a distance squared [1/m^2], spread over the width.
-float inverse_square(double distance_squared, float width);
 
 /// An eye ray and a ray light; `u`: for the point on the light, and for the one on the eye ray. Nothing where
 /// no light comes that way.

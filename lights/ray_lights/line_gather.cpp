@@ -52,7 +52,7 @@ template <typename Receivers>
 void LineGather::offer_to(const Receivers& receivers, LineOffer& offer) const {
     LaneFloats expected;
     for (const WeightedVpl& light : offered_rays_) {
-        expected_light(set_.rays[light.index], receivers, width_, expected);
+        expected_light(set_.rays[light.index], receivers, expected);
         offer.add(std::uint32_t(light.index), true, light.weight, expected);
     }
     for (const WeightedVpl& light : offered_surface_) {
@@ -122,7 +122,7 @@ TileLight LineGather::to_eyes(const EyeLines& eyes, const LineOffer& offer, cons
     pick(offer, steps, tile, [&](int i) { return eyes.of[std::size_t(i)] != nullptr; });
     return gather(tile, [&](int i, const LinePick& pick, const Vec2& u) -> Found {
         const EyeLine& eye = *eyes.of[std::size_t(i)];
-        const LineContext context{tile.rng[i], context_.tracking, pick.ray ? width_ : 0.0f};
+        const LineContext context{tile.rng[i], context_.tracking};
         if (pick.ray) return connect(eye, set_.rays[pick.light], u, context);
         return connect(eye, set_.surface, set_.surface.lights[pick.light], u.x, context);
     });
@@ -133,7 +133,7 @@ TileLight LineGather::to_points(const LineOffer& offer, const LaneFloats& steps,
     pick(offer, steps, tile, [&](int i) { return tile.max_vpl_depth[i] > 0; });
     return gather(tile, [&](int i, const LinePick& pick, const Vec2& u) -> Found {
         if (!pick.ray) return connect_point(tile, i, set_.surface, set_.surface.lights[pick.light], bound);
-        return connect(tile, i, set_.rays[pick.light], u.x, bound, {tile.rng[i], context_.tracking, width_});
+        return connect(tile, i, set_.rays[pick.light], u.x, bound, {tile.rng[i], context_.tracking});
     });
 }
 

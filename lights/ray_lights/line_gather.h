@@ -22,10 +22,9 @@ struct LineCounters {
 /// Gathers for one task; keeps references.
 class LineGather {
   public:
-    /// `candidates`: so many ray lights, and so many VPLs, does a tile look at, 0: all; `width` of beam
-    /// lights [m].
-    LineGather(const GatherContext& context, const RayLightSet& set, std::size_t candidates, float width)
-        : context_(context), set_(set), candidates_(candidates), width_(width) {}
+    /// `candidates`: so many ray lights, and so many VPLs, does a tile look at, 0: all.
+    LineGather(const GatherContext& context, const RayLightSet& set, std::size_t candidates)
+        : context_(context), set_(set), candidates_(candidates) {}
 
     /// Draws the lights that are looked at from here on, by `receivers` lanes; fewer lanes look at fewer.
     void draw_candidates(core::Rng& rng, int receivers);
@@ -53,7 +52,6 @@ class LineGather {
     GatherContext context_;
     const RayLightSet& set_;
     std::size_t candidates_;
-    float width_;
     LineCounters counters_;
     std::vector<WeightedVpl> offered_rays_, offered_surface_;
     LinePicks picks_;

@@ -35,7 +35,6 @@ void ShadowMapBuilder::fill(int texel, std::byte* record) {
     if (!std::isfinite(header.inverse_step)) header.inverse_step = 0.0f;
     std::memcpy(record, &header, sizeof header);
     march(ray, header, step);
-    if (settings.storage == ShadowMapSettings::Storage::nodes) keep_nodes(std::size_t(settings.nodes));
     write(record);
 }
 
@@ -110,9 +109,6 @@ void ShadowMapBuilder::march(const Ray& ray, const VolumetricShadowMap::Header& 
             march_segments(ray, header.enter, step);
         }
     }
-    nodes_.assign(1, Node{header.enter, Rgb(0.0f)});
-    for (std::size_t k = 0; k < intervals; ++k)
-        nodes_.push_back({header.enter + float(k + 1) * step, Rgb(depths_[k])});
 }
 
 /// Several media, or panes: interval by interval.
@@ -134,41 +130,20 @@ void ShadowMapBuilder::march_segments(const Ray& ray, float enter, float step) {
     }
 }
 
-/// Twice the area between the transmittance and what is left of it when `b` goes: what its integral would
-/// lose.
-float ShadowMapBuilder::loss(const Node& a, const Node& b, const Node& c) {
-    const float share = (b.distance - a.distance) / std::max(c.distance - a.distance, 1e-30f);
-    const Rgb without = a.depth + share * (c.depth - a.depth);
-    return max_component(glm::abs(glm::exp(-b.depth) - glm::exp(-without))) * (c.distance - a.distance);
-}
-
-/// Drops nodes, the least important first, until `count` are left. The first and the last always stay.
-void ShadowMapBuilder::keep_nodes(std::size_t count) {
-    while (nodes_.size() > count) {
-        std::size_t least = 1;
-        float least_loss = infinity;
-        for (std::size_t i = 1; i + 1 < nodes_.size(); ++i)
-            if (const float l = loss(nodes_[i - 1], nodes_[i], nodes_[i + 1]); l < least_loss)
-                least = i, least_loss = l;
-        nodes_.erase(nodes_.begin() + std::ptrdiff_t(least));
-    }
-    while (nodes_.size() < count) nodes_.push_back(nodes_.back());
-}
-
 void ShadowMapBuilder::write(std::byte* record) const {
     std::byte* to = record + sizeof(VolumetricShadowMap::Header);
     const auto put = [&to](auto value) {
         std::memcpy(to, &value, sizeof value);
         to += sizeof value;
     };
-    if (map_.settings_.storage == ShadowMapSettings::Storage::nodes)
-        for (const Node& node : nodes_) put(node.distance);
     constexpr float codes = 65535.0f;
-    for (std::size_t channel = 0; channel < map_.channels_; ++channel)
-        for (const Node& node : nodes_) {
-            const float code = node.depth[int(channel)] / VolumetricShadowMap::depth_unit;
+    for (std::size_t channel = 0; channel < map_.channels_; ++channel) {
+        put(std::uint16_t(0));  // where the media begin
+        for (const Vec3d& depth : depths_) {
+            const float code = float(depth[int(channel)]) / VolumetricShadowMap::depth_unit;
             put(std::uint16_t(std::min(code, codes) + 0.5f));
         }
+    }
 }
 
 }  // namespace mote::lights

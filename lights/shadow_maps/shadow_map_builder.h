@@ -30,19 +30,13 @@ class ShadowMapBuilder {
         float distance;
         core::Vec3d depth;
     };
-    struct Node {
-        float distance;
-        core::Rgb depth;
-    };
 
     float find_surface(const core::Ray& ray, VolumetricShadowMap::Header& header);
     void find_segments(const core::Ray& ray, float end);
     void march(const core::Ray& ray, const VolumetricShadowMap::Header& header, float step);
     core::Interval extent(float spacing) const;
     void march_segments(const core::Ray& ray, float enter, float step);
-    void keep_nodes(std::size_t count);
     void write(std::byte* record) const;
-    static float loss(const Node& a, const Node& b, const Node& c);
 
     const core::RayQueries& scene_;
     const VolumetricShadowMap& map_;
@@ -52,8 +46,7 @@ class ShadowMapBuilder {
     core::TrackingCounters counters_;
     std::vector<Segment> segments_;
     std::vector<Pane> panes_;
-    std::vector<core::Vec3d> depths_;
-    std::vector<Node> nodes_;  ///< at the ends of all intervals, or what is left of them
+    std::vector<core::Vec3d> depths_;  ///< at the ends of all intervals
 };
 
 }  // namespace mote::lights

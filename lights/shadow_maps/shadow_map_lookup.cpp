@@ -74,22 +74,6 @@ struct alignas(64) Corner {
         }
     }
 
-    void find_node(const float* distance, int nodes) {
-        for (int i = 0; i < N; ++i) {
-            const std::byte* distances = record[i] + sizeof(VolumetricShadowMap::Header);
-            const auto at = [&](int node) {
-                float d;
-                std::memcpy(&d, distances + std::size_t(node) * sizeof d, sizeof d);
-                return d;
-            };
-            int before = 0;
-            for (int node = 1; node < nodes - 1; ++node) before += at(node) <= distance[i];
-            const float from = at(before), length = at(before + 1) - from;
-            k[i] = before;
-            f[i] = length > 0.0f ? max_of(min_of((distance[i] - from) / length, 1.0f), 0.0f) : 1.0f;
-        }
-    }
-
     /// The values before and after, of the channel whose values start `offset` bytes into the record.
     void load_values(std::size_t offset) {
         for (int i = 0; i < N; ++i) {
@@ -117,19 +101,14 @@ void light_left(const float* sum, const float* weight, float* light) {
 template <int N>
 void VolumetricShadowMap::look_up(const ShadowMapCells<N>& cells, float* r, float* g, float* b) const {
     const std::size_t bytes = blocks_ * sizeof(Block), row = std::size_t(view_.size + 2) * bytes;
-    const bool nodes = settings_.storage == ShadowMapSettings::Storage::nodes;
-    const std::size_t values = settings_.values();
-    const std::size_t first = sizeof(Header) + (nodes ? values * sizeof(float) : 0);
+    const std::size_t values = settings_.values(), first = sizeof(Header);
     alignas(64) float weight[N] = {}, depth[3][N] = {};
     Corner<N> corner;
     for (int c = 0; c < 4; ++c) {
         const bool right = c & 1, upper = c & 2;
         corner.load(records_.data()->bytes + (right ? bytes : 0) + (upper ? row : 0), bytes, cells.corner);
         corner.weigh(cells, right, upper);
-        if (nodes)
-            corner.find_node(cells.distance, settings_.nodes);
-        else
-            corner.find_interval(cells.distance, settings_.intervals);
+        corner.find_interval(cells.distance, settings_.intervals);
         for (std::size_t channel = 0; channel < channels_; ++channel) {
             corner.load_values(first + 2 * channel * values);
             MOTE_INDEPENDENT_LANES

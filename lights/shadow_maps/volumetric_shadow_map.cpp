@@ -16,16 +16,14 @@ namespace mote::lights {
 using namespace core;
 
 std::size_t ShadowMapSettings::bytes(int size, bool chromatic) const {
-    const std::size_t distances = storage == Storage::nodes ? values() * sizeof(float) : 0;
-    const std::size_t record = sizeof(VolumetricShadowMap::Header) + distances +
-                               values() * (chromatic ? 3 : 1) * sizeof(std::uint16_t);
+    const std::size_t record =
+        sizeof(VolumetricShadowMap::Header) + values() * (chromatic ? 3 : 1) * sizeof(std::uint16_t);
     return std::size_t(size + 2) * std::size_t(size + 2) * ((record + 31) / 32 * 32);
 }
 
 void ShadowMapSettings::check(int size, bool chromatic) const {
-    if (intervals < 1 || nodes < 2 || size < 1 || !(step > 0.0f))
-        throw InputError(
-            "a volumetric shadow map needs at least one texel, one interval, two nodes and a step above 0");
+    if (intervals < 1 || size < 1 || !(step > 0.0f))
+        throw InputError("a volumetric shadow map needs at least one texel, one interval and a step above 0");
     if (bytes(size, chromatic) <= max_bytes) return;
     const double texel = double(bytes(1, chromatic)) / 9.0;
     const int fits = int(std::sqrt(double(max_bytes) / texel)) - 2;

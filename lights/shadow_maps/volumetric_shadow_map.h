@@ -2,12 +2,10 @@
 // distance (Salvi et al. 2010, as used in Engelhardt 2013, Sec. 10.3).
 //
 // A texel holds the optical depth along its ray between the points where the ray enters the media and where
-// it leaves them, or a little behind the first surface, in 16 bits a value and one piece of memory with all
-// else that a lookup needs. Two forms: values at fixed intervals, found at once; and nodes of a
-// piecewise-linear function, of which those were dropped whose loss changed the integral of the transmittance
-// least. Optical depth is interpolated, not transmittance: between four rays that is a fifth more accurate
-// (docs/media.md). A surface is kept as the plane through the point that the ray met, so that walls seen at
-// grazing angles do not shadow themselves.
+// it leaves them, or a little behind the first surface, at fixed intervals, in 16 bits a value and one piece
+// of memory with all else that a lookup needs. Optical depth is interpolated, not transmittance: between four
+// rays that is a fifth more accurate (docs/media.md). A surface is kept as the plane through the point that
+// the ray met, so that walls seen at grazing angles do not shadow themselves.
 //
 // Maps are deterministic and biased: by the march's step, by the intervals, and most of all by what lies
 // between their rays. Transmittance is exactly 1 at the light, never rises along a ray, and is 0 behind the
@@ -26,12 +24,8 @@ namespace mote::lights {
 
 /// What a map holds.
 struct ShadowMapSettings {
-    /// See the top of this file.
-    enum class Storage : std::uint8_t { intervals, nodes };
-    Storage storage = Storage::intervals;  ///< of the transmittance along a ray
-    int intervals = 35;  ///< between entry and exit (35 fill 96 bytes); nodes are chosen from as many
-    int nodes = 12;      ///< kept in each texel
-    float step = 1.0f;   ///< of ray marching, in voxels of the medium
+    int intervals = 35;                            ///< between entry and exit (35 fill 96 bytes)
+    float step = 1.0f;                             ///< of ray marching, in voxels of the medium
     std::size_t max_bytes = std::size_t(1) << 30;  ///< of one map
 
     /// Bytes of a map of `size`^2 texels.
@@ -40,9 +34,7 @@ struct ShadowMapSettings {
     void check(int size, bool chromatic) const;
 
     /// Numbers a texel and channel.
-    std::size_t values() const {
-        return storage == Storage::intervals ? std::size_t(intervals) + 1 : std::size_t(nodes);
-    }
+    std::size_t values() const { return std::size_t(intervals) + 1; }
 };
 
 /// Whether maps of this scene need three channels.
@@ -75,8 +67,8 @@ class VolumetricShadowMap {
     std::size_t memory_bytes() const { return records_.capacity() * sizeof(Block); }  ///< of the texels
     const core::RayCounters& rays() const { return rays_; }                           ///< of the last build
 
-    /// What a texel's piece of memory begins with. After it follow, at intervals, the values of all channels
-    /// one after the other; as nodes, their distances first.
+    /// What a texel's piece of memory begins with. After it follow the values of all channels one after the
+    /// other.
     struct Header {
         float enter, inverse_step;  ///< values are at enter + k / inverse_step
         /// Points with plane . p <= limit, in the frame of the view, lie before the surface.

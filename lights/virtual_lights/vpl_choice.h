@@ -36,27 +36,6 @@ struct VplRange {
     }
 };
 
-/// Of a range, the lights that a list names, each once, and of all others every `rest`-th, which counts
-/// `rest` times: which ones begins with `offset`, and the sum is unbiased where that is drawn evenly from [0,
-/// rest).
-struct ListedVpls {
-    VplRange range;                       ///< of all
-    std::span<const std::uint64_t> list;  ///< a bit for each light, 64 a number
-    std::size_t rest = 1, offset = 0;     ///< of the lights that the list does not name
-
-    /// Calls visit(WeightedVpl), as the top of this file says.
-    template <typename Visit>
-    void for_each(std::size_t lights, const Visit& visit) const {
-        std::size_t others = offset;
-        range.for_each(lights, [&](const WeightedVpl& light) {
-            if (list[light.index / 64] >> (light.index % 64) & 1)
-                visit(light);
-            else if (others++ % rest == 0)
-                visit(WeightedVpl{light.index, float(rest)});
-        });
-    }
-};
-
 /// What a selector has drawn for a tile: n lights with weights 1 / (n p). A light may come more than once.
 struct DrawnVpls {
     std::span<const WeightedVpl> drawn;  ///< in the order of the draws

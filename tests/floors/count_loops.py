@@ -18,7 +18,7 @@ IDEAS = {
         "integrators/eye_path/eye_path.h": 1,            # the eye path
         "lights/virtual_lights/light_path.h": 1,         # the light path
         "integrators/bidirectional/subpath_walk.cpp": 1, # both at once, and the densities of every vertex
-        "lights/emitters/direct_light.h": 1,             # the other technique for direct light
+        "lights/direct_light/direct_light.h": 1,             # the other technique for direct light
         "compensation/residual_transport.cpp": 1,        # a step inside the bounding region
         "gathering/eye_bundles/eye_bundles.cpp": 1,      # one ray of a bundle, in a direction that all receivers share
         # Legs that cross media by marching, the last one through tracked media, and lights without a position.
@@ -38,7 +38,7 @@ IDEAS = {
     }),
     "scattering from a vertex of an eye path": (r"\bapply_scattering<\w+>\(", {
         "integrators/eye_path/eye_path.h": 1,
-        "lights/emitters/direct_light.h": 1,
+        "lights/direct_light/direct_light.h": 1,
     }),
     "Russian roulette of eye paths": (r"\bsurvives<\w+>\(", {"integrators/eye_path/eye_path.h": 1}),
     "the light of virtual lights at receivers": (r"(?<!bool )\bcontributions_of\(", {

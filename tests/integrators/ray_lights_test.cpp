@@ -99,21 +99,6 @@ TEST_CASE("ray lights equal paths: max_depth, thick fog, fog without walls, pane
         paths, "", long_run, {"direct", "single_scattering", "multiple_scattering", "beauty"});
 }
 
-TEST_CASE("beam lights: the bias falls with the width", "[ray_lights][beams]") {
-    const auto scene = scene_from(box(grey, fog("2, 2.5, 3", "")), 8);
-    const auto mean_of = [&](const std::string& width) {
-        const auto r = ray_lights(*scene, shared + R"(<integer name="max_depth" value="4"/>)" + width, 60,
-                                  5);  // the same light paths in all
-        return r.whole[r.layer("multiple_scattering")][1].mean;
-    };
-    const double exact = mean_of("");
-    const double wide = mean_of(R"(<float name="width" value="0.8"/>)"),
-                 narrow = mean_of(R"(<float name="width" value="0.1"/>)");
-    INFO("rays " << exact << ", width 0.8 m " << wide << ", 0.1 m " << narrow);
-    CHECK(std::fabs(wide - exact) > 0.04 * exact);
-    CHECK(std::fabs(narrow - exact) < 0.3 * std::fabs(wide - exact));
-}
-
 TEST_CASE("ray lights: nothing to do, and what max_depth leaves", "[ray_lights][extremes]") {
     const auto scene = scene_from(box(grey, fog("1", "")), 8);
     const auto none = ray_lights(*scene, R"(<integer name="paths" value="0"/>)", 2);
@@ -137,6 +122,6 @@ TEST_CASE("ray lights: nothing to do, and what max_depth leaves", "[ray_lights][
     }
     CHECK_THROWS_WITH(
         integrator_from(
-            R"(<integrator type="mote_ray_lights"><float name="width" value="-1"/></integrator>)"),
-        ContainsSubstring("width"));
+            R"(<integrator type="mote_ray_lights"><float name="bound" value="-1"/></integrator>)"),
+        ContainsSubstring("bound"));
 }

@@ -52,7 +52,6 @@ const std::map<std::string, Words> words = {
     {"approximate.receivers", {"all", "surfaces", "media"}},
     {"approximate.transmittance", {"mean", "exact"}},
     {"screen_space.receivers", {"surfaces"}},
-    {"shadow_map.storage", {"intervals", "nodes"}},
     {"matrix.row_visibility", {"rays", "shadow_map", "imperfect_shadow_map"}},
     {"resampling.candidates_by", {"groups", "cut", "light_tree", "power"}},
     {"resampling.reuse", {"none", "unbiased", "biased"}},
@@ -85,7 +84,6 @@ const std::map<std::string, Words> numbers = {
     {"rr_depth", {"", "1"}},
     {"eye_samples", {"", "3"}},
     {"scattering_points", {"3", "0"}},
-    {"light_lists", {"", "4"}},
     {"reflective_shadow_maps", {"", "4"}},
     {"points", {"120", "20"}},
     {"all_points", {"500", "1000"}},
@@ -117,11 +115,10 @@ const std::map<std::string, Words> numbers = {
     {"map_size", {"8"}},
     {"shared_passes", {"", "2"}},
     {"share", {"", "7"}},
-    {"width", {"", "0.2"}},
 };
 
 /// Numbers that are tried on the first level alone: what they change is below whoever nests the type.
-const std::set<std::string> first_level_alone = {"light_lists", "reflective_shadow_maps"};
+const std::set<std::string> first_level_alone = {"reflective_shadow_maps"};
 
 std::string element(const Parameter& p, const std::string& value) {
     return fmt::format(R"(<{} name="{}" value="{}"/>)", p.type, p.name, value);

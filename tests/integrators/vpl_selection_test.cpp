@@ -193,7 +193,6 @@ TEST_CASE("Passes that share the rows of a matrix have the bits that they have a
 TEST_CASE("What does not go together with a selection is refused by name", "[vpl][selection]") {
     const std::string selection = drawn("light_tree", 4);
     const std::vector<std::pair<std::string, std::string>> cases{
-        {R"(<integer name="light_lists" value="4"/>)", "light_lists"},
         {R"(<boolean name="roughness_clamping" value="true"/>)", "roughness_clamping"},
         {R"(<compensation type="exact"/>)", "compensation"},
         {R"(<visibility type="shadow_map"/>)", "shadow maps"}};

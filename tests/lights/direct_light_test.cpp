@@ -1,7 +1,7 @@
 // Direct light at a vertex, by both techniques and their weights: two lamps of different power, so that the
 // chance of each light is part of the weights. Light sampling alone, directions alone and both together are
 // one closed form.
-#include "lights/emitters/direct_light.h"
+#include "lights/direct_light/direct_light.h"
 #include "tests/lights/emitter_statistics.h"
 #include "tests/support/catch.h"
 #include "tests/support/render_statistics.h"

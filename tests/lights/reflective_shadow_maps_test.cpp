@@ -1,6 +1,6 @@
 // Reflective shadow maps: the light that VPLs bring is that of particle tracing, for every kind of light that
 // has a map, alone and among others; and maps stand for all directions.
-#include "lights/virtual_lights/reflective_shadow_maps.h"
+#include "lights/reflective_shadow_maps/reflective_shadow_maps.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-// Volumetric shadow maps against closed forms and quadrature: every view, both storages, surfaces, limits.
+// Volumetric shadow maps against closed forms and quadrature: every view, surfaces, limits.
 #include "lights/shadow_maps/volumetric_shadow_map.h"
 
 #include <fmt/format.h>
@@ -111,23 +111,21 @@ TEST_CASE("a point on a texel's ray is seen by that texel at its distance", "[sh
         }
 }
 
-// Along a ray the optical depth is linear between entry and exit, so that intervals and nodes lose nothing;
+// Along a ray the optical depth is linear between entry and exit, so that intervals lose nothing;
 // between rays it is interpolated. What is left is the rounding of stored depths to half of depth_unit, that
 // of entry and step in single precision (a millionth of some metres), and that of the exponential.
 TEST_CASE("shadow maps of homogeneous fog are the closed form, per channel", "[shadow_map]") {
     const auto scene = ball("0.1, 0.5, 2");
-    for (const auto storage : {ShadowMapSettings::Storage::intervals, ShadowMapSettings::Storage::nodes})
+    {
         for (const ShadowMapView& view : all_views(64)) {
             VolumetricShadowMap map;
-            ShadowMapSettings settings;
-            settings.storage = storage;
-            map.build(*scene, view, MediumState(), settings);
+            map.build(*scene, view, MediumState(), ShadowMapSettings());
             Rng rng(1);
             for (int i = 0; i < 500; ++i) {
                 const Vec3 p = 2.0f * Vec3(rng.next_float(), rng.next_float(), rng.next_float()) - 1.0f;
                 const double length = interpolated_length(view, p);
                 const Rgb t = map.transmittance(p);
-                INFO("kind " << int(view.kind) << " storage " << int(storage));
+                INFO("kind " << int(view.kind));
                 for (const auto& [channel, sigma_t] : {std::pair{0, 0.1}, {1, 0.5}, {2, 2.0}}) {
                     const double rounding =
                         0.5 * double(VolumetricShadowMap::depth_unit) + 1e-5 * sigma_t + 1e-5;
@@ -139,17 +137,18 @@ TEST_CASE("shadow maps of homogeneous fog are the closed form, per channel", "[s
             CHECK(map.transmittance(Vec3(0.3f, 0.1f, -4.5f)) == Rgb(0.0f));
             CHECK(map.transmittance(Vec3(0.3f, 0.1f, -2.99f)).x > 0.0f);
         }
+    }
 }
 
-// The optical depth is linear along every ray, so nodes lose nothing wherever they are and however few: what
+// The optical depth is linear along every ray, so intervals lose nothing however few: what
 // is left is the rounding of stored depths, half of depth_unit, and that of the exponential, 4e-6.
-TEST_CASE("fog up to the walls: few nodes are the closed form, also on the walls", "[shadow_map]") {
+TEST_CASE("fog up to the walls: few intervals are the closed form, also on the walls", "[shadow_map]") {
     const auto scene = full_box();
     const Rgb sigma_t(0.3f, 0.8f, 1.5f);
     const Vec3 light(0.1f, 0.2f, -0.3f);
-    for (const int nodes : {2, 4, 12}) {
+    for (const int intervals : {1, 3, 11}) {
         ShadowMapSettings settings;
-        settings.storage = ShadowMapSettings::Storage::nodes, settings.nodes = nodes;
+        settings.intervals = intervals;
         VolumetricShadowMap map;
         map.build(*scene, ShadowMapView::of_point(light, 64), scene->medium_state_at(light, nullptr),
                   settings);
@@ -160,7 +159,7 @@ TEST_CASE("fog up to the walls: few nodes are the closed form, also on the walls
             REQUIRE(wall);
             const float distance = i % 2 == 0 ? wall->t : wall->t * rng.next_float();
             const Rgb t = map.transmittance(light + distance * d);
-            INFO(nodes << " nodes, " << distance << " of " << wall->t << " m");
+            INFO(intervals << " intervals, " << distance << " of " << wall->t << " m");
             for (int c = 0; c < 3; ++c) {
                 const double depth = double(sigma_t[c]) * double(distance);
                 CHECK(double(t[c]) ==
@@ -218,20 +217,17 @@ TEST_CASE("shadow maps of smoke approach quadrature with size and intervals", "[
         return std::exp(-depth.y * double(glm::distance(p, small.origin)) / steps);
     };
     const Bounds3 inside{Vec3(-0.8f, -0.3f, -0.8f), Vec3(0.8f, 0.8f, 0.8f)};  // above the block
-    const auto error = [&](const ShadowMapView& view, int intervals, ShadowMapSettings::Storage storage) {
+    const auto error = [&](const ShadowMapView& view, int intervals) {
         ShadowMapSettings settings;
-        settings.intervals = intervals, settings.storage = storage;
+        settings.intervals = intervals;
         VolumetricShadowMap map;
         map.build(*scene, view, scene->medium_state_at(view.origin, nullptr), settings);
         return rms_error(map, inside, exact, 300);
     };
-    using Storage = ShadowMapSettings::Storage;
-    const double coarse = error(small, 8, Storage::intervals), fine = error(large, 128, Storage::intervals);
-    const double nodes = error(large, 128, Storage::nodes);
-    INFO("32^2 x 8: " << coarse << ", 128^2 x 128: " << fine << ", 12 nodes of them: " << nodes);
+    const double coarse = error(small, 8), fine = error(large, 128);
+    INFO("32^2 x 8: " << coarse << ", 128^2 x 128: " << fine);
     CHECK(coarse > 0.01);
     CHECK(fine < 0.006);
-    CHECK(nodes < 0.03);
     CHECK(fine < 0.25 * coarse);
 }
 
@@ -239,9 +235,8 @@ TEST_CASE("transmittance never rises along a ray, and is exactly one at the ligh
     const tests::TemporaryFolder folder;
     const auto scene =
         tests::scene_from(tests::box(tests::grey, tests::smoke_medium(folder.file("smoke.vol"))), 8);
-    for (const auto storage : {ShadowMapSettings::Storage::intervals, ShadowMapSettings::Storage::nodes}) {
+    {
         ShadowMapSettings settings;
-        settings.storage = storage, settings.nodes = 5;
         VolumetricShadowMap map;
         const ShadowMapView view = ShadowMapView::of_point(Vec3(0.0f, 0.1f, 0.2f), 48);  // inside the smoke
         map.build(*scene, view, scene->medium_state_at(view.origin, nullptr), settings);

@@ -12,12 +12,13 @@
 #include <iostream>
 
 #include "core/objects/error.h"
-#include "lights/directional_maps/directional_map.h"
+#include "tools/directional_maps/directional_map.h"
 
 namespace {
 
 using namespace mote;
 using namespace mote::lights;
+using namespace mote::tools;
 using core::Vec3;
 
 struct Options {

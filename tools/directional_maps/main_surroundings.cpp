@@ -15,15 +15,16 @@
 
 #include "core/formats/xml/scene_loader.h"
 #include "core/objects/error.h"
-#include "lights/directional_maps/directional_map.h"
-#include "lights/directional_maps/summed_area_octahedral.h"
 #include "lights/register_lights.h"
 #include "media/register_media.h"
+#include "tools/directional_maps/directional_map.h"
+#include "tools/directional_maps/summed_area_octahedral.h"
 
 namespace {
 
 using namespace mote;
 using namespace mote::lights;
+using namespace mote::tools;
 using core::Rgb;
 using core::Vec3;
 

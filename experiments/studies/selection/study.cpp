@@ -138,7 +138,7 @@ Pixels Study::render(std::size_t index, const SelectionSettings& selection, Tile
     settings.selection = selection;
     core::WalkContext walk;
     const auto scratch = std::make_unique<lights::GatherScratch>();
-    EyeTile<true> eye(*scene_, settings, arguments_.bound, vpls_, nullptr, *scratch, walk, {}, {},
+    EyeTile<true> eye(*scene_, settings, arguments_.bound, vpls_, nullptr, *scratch, walk, {},
                       SelectedBy{&*hierarchy_, &*tree_, &*power_, matrix ? &matrix->selection() : nullptr});
     const bool learns = selection.cuts() ||
                         ((selection.draws() || (selection.resamples() && selection.resampling.by_tree())) &&

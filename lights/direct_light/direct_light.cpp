@@ -1,4 +1,4 @@
-#include "lights/emitters/direct_light.h"
+#include "lights/direct_light/direct_light.h"
 
 #include "core/scene/media_along.h"
 #include "core/scene/shadow_segment.h"

@@ -1,4 +1,4 @@
-#include "lights/virtual_lights/reflective_shadow_maps.h"
+#include "lights/reflective_shadow_maps/reflective_shadow_maps.h"
 
 #include <algorithm>
 #include <stdexcept>

@@ -1,18 +1,19 @@
 // Directional maps: directions survive the round trip, solid angles are those of the texels, and the slips of
 // the printed equations.
 
-#include "lights/directional_maps/directional_map.h"
+#include "tools/directional_maps/directional_map.h"
 
 #include "core/math/random.h"
 #include "core/math/warp.h"
 #include "core/objects/error.h"
 #include "lights/directional_maps/octahedral_map.h"
-#include "lights/directional_maps/texel_solid_angle.h"
 #include "tests/support/catch.h"
 #include "tests/support/pearson.h"
+#include "tools/directional_maps/texel_solid_angle.h"
 
 using namespace mote::core;
 using namespace mote::lights;
+using namespace mote::tools;
 using mote::tests::chi2_survival;
 
 namespace {

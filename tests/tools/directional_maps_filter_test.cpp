@@ -4,12 +4,13 @@
 
 #include "core/math/random.h"
 #include "core/math/warp.h"
-#include "lights/directional_maps/directional_map.h"
 #include "lights/directional_maps/octahedral_map.h"
 #include "tests/support/catch.h"
+#include "tools/directional_maps/directional_map.h"
 
 using namespace mote::core;
 using namespace mote::lights;
+using namespace mote::tools;
 
 namespace {
 

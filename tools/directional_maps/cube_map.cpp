@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "lights/directional_maps/directional_map_kinds.h"
-#include "lights/directional_maps/texel_solid_angle.h"
+#include "tools/directional_maps/directional_map_kinds.h"
+#include "tools/directional_maps/texel_solid_angle.h"
 
-namespace mote::lights {
+namespace mote::tools {
 
 using namespace core;
 
@@ -58,4 +58,4 @@ class CubeMap : public DirectionalMap {
 
 std::unique_ptr<DirectionalMap> make_cube_map(int size) { return std::make_unique<CubeMap>(size); }
 
-}  // namespace mote::lights
+}  // namespace mote::tools

@@ -1,12 +1,13 @@
-#include "lights/directional_maps/summed_area_octahedral.h"
+#include "tools/directional_maps/summed_area_octahedral.h"
 
 #include <fmt/format.h>
 
 #include "core/objects/error.h"
 
-namespace mote::lights {
+namespace mote::tools {
 
 using namespace core;
+using namespace lights;
 
 namespace {
 
@@ -72,4 +73,4 @@ glm::dvec4 SummedAreaOctahedral::corner(double x, double y) const {
     return (1.0 - t) * ((1.0 - s) * low[0] + s * low[1]) + t * ((1.0 - s) * high[0] + s * high[1]);
 }
 
-}  // namespace mote::lights
+}  // namespace mote::tools

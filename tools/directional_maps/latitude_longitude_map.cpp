@@ -2,9 +2,9 @@
 // Sec. 5.1.1). Unlike emitters/environment_picture.h, which follows the pictures of environments, no row of
 // texels lies on a pole.
 
-#include "lights/directional_maps/directional_map_kinds.h"
+#include "tools/directional_maps/directional_map_kinds.h"
 
-namespace mote::lights {
+namespace mote::tools {
 
 using namespace core;
 
@@ -51,4 +51,4 @@ std::unique_ptr<DirectionalMap> make_latitude_longitude_map(int size) {
     return std::make_unique<LatitudeLongitudeMap>(size);
 }
 
-}  // namespace mote::lights
+}  // namespace mote::tools

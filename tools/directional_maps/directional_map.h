@@ -14,7 +14,7 @@
 
 #include "core/math/vec.h"
 
-namespace mote::lights {
+namespace mote::tools {
 
 enum class MapKind {
     octahedral,              ///< planar projection, all directions on one square (Eqs. 7.1 and 7.2)
@@ -129,4 +129,4 @@ Value bilinear(const DirectionalMap& map, std::span<const Value> values, const c
     return sum;
 }
 
-}  // namespace mote::lights
+}  // namespace mote::tools

@@ -11,12 +11,12 @@
 
 #include "lights/directional_maps/octahedral_map.h"
 
-namespace mote::lights {
+namespace mote::tools {
 
 class SummedAreaOctahedral {
   public:
     /// `texels` are map.size^2 values. Throws InputError when they are not.
-    SummedAreaOctahedral(OctahedralMap map, std::span<const core::Rgb> texels);
+    SummedAreaOctahedral(lights::OctahedralMap map, std::span<const core::Rgb> texels);
 
     struct Mean {
         core::Rgb value;
@@ -37,8 +37,8 @@ class SummedAreaOctahedral {
     /// The sum over [0, x] * [0, y], linear within a texel.
     glm::dvec4 corner(double x, double y) const;
 
-    OctahedralMap map_;
+    lights::OctahedralMap map_;
     std::vector<glm::dvec4> table_;  ///< (size + 1)^2 sums of value * solid angle, and of solid angle
 };
 
-}  // namespace mote::lights
+}  // namespace mote::tools

@@ -1,10 +1,10 @@
 // What mirrors show to a viewer who looks along -z from far away: a sphere (Engelhardt 2013, Sec. 5.1.2), and
 // two paraboloids back to back (Heidrich & Seidel 1998; Sec. 5.1.4). The pictures are discs in squares.
 
-#include "lights/directional_maps/directional_map_kinds.h"
-#include "lights/directional_maps/texel_solid_angle.h"
+#include "tools/directional_maps/directional_map_kinds.h"
+#include "tools/directional_maps/texel_solid_angle.h"
 
-namespace mote::lights {
+namespace mote::tools {
 
 using namespace core;
 
@@ -80,4 +80,4 @@ std::unique_ptr<DirectionalMap> make_paraboloid_map(int size) {
     return std::make_unique<ParaboloidMap>(size);
 }
 
-}  // namespace mote::lights
+}  // namespace mote::tools

@@ -1,6 +1,6 @@
 // Means over boxes of an octahedral map: against sums over the texels, and over the cuts of the map.
 
-#include "lights/directional_maps/summed_area_octahedral.h"
+#include "tools/directional_maps/summed_area_octahedral.h"
 
 #include <array>
 
@@ -11,6 +11,7 @@
 
 using namespace mote::core;
 using namespace mote::lights;
+using namespace mote::tools;
 
 namespace {
 

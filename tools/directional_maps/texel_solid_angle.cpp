@@ -1,9 +1,9 @@
-#include "lights/directional_maps/texel_solid_angle.h"
+#include "tools/directional_maps/texel_solid_angle.h"
 
 #include <algorithm>
 #include <array>
 
-namespace mote::lights {
+namespace mote::tools {
 
 using core::Vec3d;
 using Polygon = std::vector<glm::dvec2>;
@@ -110,4 +110,4 @@ double paraboloid_rectangle(const Rectangle& r) {
     });
 }
 
-}  // namespace mote::lights
+}  // namespace mote::tools

@@ -6,7 +6,7 @@
 
 #include "core/math/vec.h"
 
-namespace mote::lights {
+namespace mote::tools {
 
 /// Axis-parallel, from low to high.
 struct Rectangle {
@@ -29,4 +29,4 @@ double disc_area(const Rectangle& r);
 /// int 4 / (1 + x^2 + y^2)^2: the solid angle of what a mirror paraboloid shows there.
 double paraboloid_rectangle(const Rectangle& r);
 
-}  // namespace mote::lights
+}  // namespace mote::tools

@@ -1,14 +1,15 @@
-#include "lights/directional_maps/directional_map.h"
+#include "tools/directional_maps/directional_map.h"
 
 #include <fmt/format.h>
 
 #include "core/objects/error.h"
-#include "lights/directional_maps/directional_map_kinds.h"
 #include "lights/directional_maps/octahedral_map.h"
+#include "tools/directional_maps/directional_map_kinds.h"
 
-namespace mote::lights {
+namespace mote::tools {
 
 using namespace core;
+using namespace lights;
 
 namespace {
 
@@ -116,4 +117,4 @@ std::unique_ptr<DirectionalMap> make_directional_map(MapKind kind, int size) {
     throw std::logic_error("no such kind of directional map");
 }
 
-}  // namespace mote::lights
+}  // namespace mote::tools

@@ -5,12 +5,13 @@
 #include <fmt/format.h>
 
 #include "core/objects/error.h"
-#include "lights/directional_maps/directional_map_kinds.h"
-#include "lights/directional_maps/texel_solid_angle.h"
+#include "tools/directional_maps/directional_map_kinds.h"
+#include "tools/directional_maps/texel_solid_angle.h"
 
-namespace mote::lights {
+namespace mote::tools {
 
 using namespace core;
+using namespace lights;
 
 namespace {
 
@@ -123,4 +124,4 @@ std::unique_ptr<DirectionalMap> make_perspective_octahedral_map(int size, float 
     return std::make_unique<SquareOctahedral>(size, up);
 }
 
-}  // namespace mote::lights
+}  // namespace mote::tools
