@@ -277,7 +277,7 @@ TEST_CASE("expected light is about what arrives, and nowhere 0 where any does", 
         for (int i = 0; i < n; ++i)
             for (int j = 0; j < n; ++j) {
                 const Vec2 u{(float(i) + 0.5f) / n, (float(j) + 0.5f) / n};
-                const LineContext context{rng, counters, 0.0f};
+                const LineContext context{rng, counters};
                 if (const auto c = connect(eye, light, u, context)) mean[0] += double(c->value.x) / (n * n);
                 if (const auto c = connect(eye, vpls, vpl, u.x, context))
                     mean[1] += double(c->value.x) / (n * n);
