@@ -52,23 +52,30 @@ def kill(run, how, seconds):
 
 
 def interrupted(mote, frames, size, passes, seconds):
-    """The sequence made in four attempts. Returns how many of three kills met it at work."""
-    folder = mote.folder / "resumed"
+    """The sequence made in four attempts. Returns how many of three kills met it at work; with --redraw, of the last run."""
+    folder, record = mote.folder / "resumed", mote.folder / "kills.txt"
+    if mote.redraw and record.is_file():
+        return int(record.read_text())
     kills = 0
     for i, how in enumerate((signal.SIGKILL, signal.SIGINT, signal.SIGKILL)):
         more = ["--resume"] * (i > 0) + ["--checkpoint-every", "0"]
         kills += kill(subprocess.Popen(command(mote, frames, size, passes, folder, *more)), how, seconds * (0.2 + 0.03 * i))
     subprocess.run(command(mote, frames, size, passes, folder, "--resume"), check=True)
+    record.write_text(f"{kills}\n")
     return kills
 
 
 def animate(pictures, exposure, path):
-    """Writes the GIF, with one palette for all frames. Returns the largest relative difference of a frame's mean brightness."""
+    """Writes the GIF, each frame with a palette of its own: one of a dark frame would darken all. Returns the largest relative
+    difference of a frame's mean brightness."""
     frames = [(255 * np.clip(p * exposure, 0, 1) ** (1 / 2.2)).astype(np.uint8) for p in pictures]
-    palette = Image.fromarray(np.concatenate([f[::2, ::2] for f in frames])).quantize(256)
-    small = [Image.fromarray(f).quantize(palette=palette, dither=Image.Dither.NONE) for f in frames]
+    small = [Image.fromarray(f).quantize(128, dither=Image.Dither.NONE) for f in frames]
     small[0].save(path, save_all=True, append_images=small[1:], duration=1000 // 24, loop=0, optimize=True)
-    return max(abs(np.asarray(s.convert("RGB"), float).mean() / f.mean() - 1) for s, f in zip(small, frames))
+    gif, differences = Image.open(path), []
+    for i, frame in enumerate(frames):
+        gif.seek(i)
+        differences.append(abs(np.asarray(gif.convert("RGB"), float).mean() / frame.mean() - 1))
+    return max(differences)
 
 
 def figure(mote, quick, output):
