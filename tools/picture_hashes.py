@@ -9,6 +9,7 @@ covers the pixels of every channel (oiiotool --hash, from openimageio-tools), no
 takes half a minute to load.
 """
 import argparse
+import os
 import re
 import subprocess
 import sys
@@ -55,11 +56,11 @@ def main():
               if s.stem not in LEFT_OUT and re.search(options.scenes, s.stem)]
     types = [t for t in integrators(options.mote) if re.search(options.integrators, t)]
     pairs = [(s, t) for s in scenes for t in types]
-    with ThreadPoolExecutor(options.jobs) as pool:
-        hashes = list(pool.map(lambda pair: picture_hash(options.mote, *pair, 1), pairs))
-    lines = [f"{scene.stem} {kind} {value}" for (scene, kind), value in zip(pairs, hashes)]
-    if options.output:
-        Path(options.output).write_text("\n".join(lines) + "\n")
+    lines = []
+    with ThreadPoolExecutor(options.jobs) as pool, open(options.output or os.devnull, "w", encoding="utf-8") as output:
+        for (scene, kind), value in zip(pairs, pool.map(lambda pair: picture_hash(options.mote, *pair, 1), pairs)):
+            lines.append(f"{scene.stem} {kind} {value}")
+            print(lines[-1], file=output, flush=True)
     failed = [line for line in lines if line.split()[2].startswith("exit_")]
     changed = []
     if options.against:
