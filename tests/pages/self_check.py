@@ -8,6 +8,7 @@ import check_gifs
 import check_links
 import check_names
 import check_numbers
+import check_words
 import numpy as np
 from PIL import Image
 
@@ -58,6 +59,8 @@ CASES = [  # check, file, what is replaced by what, what is found
     (check_names, "docs/page.md", "\n\n## A", "\n" + TWICE + "\n\n## A", "says twice: One sentence"),
     (check_names, "docs/page.md", "|---|---|---|", "|---|---|---|" + ROW.format(1) + ROW.format(2), "two rows of a table begin"),
     (check_names, "docs/references.bib", "Keller1997", "Veach1997", "Veach1997 comes twice"),
+    (check_words, "docs/guide.md", "# Guide", "# Guide\n\nA light that is drawn knows its place.", "docs/guide.md:3: 'light that is drawn': sampled"),
+    (check_words, "docs/guide.md", "# Guide", "# Guide\n\nA node asks its parent.", "docs/guide.md:3: 'asks'"),
     (check_numbers, "docs/gallery/table.csv", "0.0888", "0.0901", "the table has 0.0901"),
     (check_numbers, "docs/page.md", "| 12.5 |", "| 12.6 |", "'8.9 ± 0.3 % | 12.5' is not in the text"),
     (check_numbers, "docs/page.md", "passes: 8", "passes: 9", "no row method: path, passes: 9"),
@@ -98,7 +101,7 @@ def gif_offences(palette_of):
 
 
 def main():
-    judged = [(f"{check.__name__}: a sound tree", found(check, []), "") for check in (check_links, check_names, check_numbers)]
+    judged = [(f"{check.__name__}: a sound tree", found(check, []), "") for check in (check_links, check_names, check_numbers, check_words)]
     judged += [(f"{check.__name__}: {new!r}", found(check, [(file, old, new)]), expected) for check, file, old, new, expected in CASES]
     dirty = ("docs/gallery/table.csv", "0123456789ab", "0123456789ab+")
     judged += [("a table with changes", found(check_numbers, [dirty, ("docs/page.md", "\n<!-- docs/gallery/table", LINKED + "\n<!-- docs/gallery/table")]),
