@@ -4,6 +4,7 @@
 - Paths in inline code, such as `core/math/ray.h`, are files or folders (with * also several; a suffix may be left out).
 - Names in inline code, such as `LightTree`, `make_vertex()` or `max_depth`, occur in the sources.
 - Tags and cases of `mote_tests_PART "..."` occur in tests/PART.
+- Tables of floors in docs/design.md name every folder of core, lights, gathering and screenspace.
 - No page holds the same sixteen words twice in its prose, and no entry of references.bib comes twice.
 
     tests/pages/check_names.py ROOT
@@ -20,6 +21,7 @@ FOLDERS = ("apps cmake compensation core docs examples experiments gathering int
 SOURCES = (".h", ".cpp", ".py", ".cmake", ".txt", ".xml", ".json", ".toml", ".c", ".sh")
 NAME = re.compile(r"(?:\w+::)*([A-Za-z]\w*)(\(\))?$")
 REPEATED = 16  # words
+DESIGN = "docs/design.md"
 # Names of other programs and of papers, and of files that a reader is to write.
 FOREIGN = {"PMI_RANK", "PMI_SIZE", "DRJIT_LIBLLVM_PATH", "read_native_scanline", "next_p"}
 OWN = "my_"
@@ -68,6 +70,14 @@ def missing_names(root, page, text, files, folders, words):
                 yield f"{page}:{line}: no source has the name {code}"
 
 
+def missing_rooms(text, folders):
+    """A folder of these rooms that the page on the house does not name."""
+    named = {code for _, code in inline_code(text)}
+    for folder in sorted(folders):
+        if folder.count("/") == 1 and folder.startswith(("core/", "lights/", "gathering/", "screenspace/")) and folder.split("/")[1] not in named:
+            yield f"{DESIGN}: no table of floors names {folder}"
+
+
 def missing_tests(root, page, text, tests):
     for folder, wanted in re.findall(r'mote_tests_(\w+) "([^"]+)"', text.replace("\n", " ")):
         cases = tests.get(folder, "")
@@ -112,7 +122,7 @@ def check(root):
             continue
         text = read(root, page)
         offences += [*missing_names(root, page, text, files, folders, words), *missing_tests(root, page, text, tests),
-                     *repeats(page, text), *repeated_rows(page, text)]
+                     *repeats(page, text), *repeated_rows(page, text), *(missing_rooms(text, folders) if page == DESIGN else [])]
     bibliography = root / "docs" / "references.bib"
     keys = re.findall(r"^@\w+\{(\w+),", bibliography.read_text(encoding="utf-8"), flags=re.MULTILINE) if bibliography.is_file() else []
     return offences + [f"docs/references.bib: {key} comes twice" for key in sorted({k for k in keys if keys.count(k) > 1})]

@@ -14,7 +14,7 @@ from PIL import Image
 
 README = """# mote
 
-Read [the page](docs/page.md#a-heading-with-code) and [the guide](docs/guide.md).
+Read [the page](docs/page.md#a-heading-with-code) and [the guide](docs/guide.md), [the design](docs/design.md).
 """
 PAGE = """# Page
 
@@ -39,6 +39,8 @@ TREE = {
     "README.md": README,
     "docs/page.md": PAGE,
     "docs/guide.md": "# Guide\n",
+    "docs/design.md": "# Design\n\n`math` is a floor of core.\n",
+    "core/math/ray_math.h": "Ray ray_math();\n",
     "docs/references.bib": "@book{Veach1997, title = {x}}\n@book{Keller1997, title = {y}}\n",
     "core/ray.h": "Ray make_ray();\n",
     "tests/core/ray_test.cpp": 'TEST_CASE("rays are straight", "[ray]") {}\n',
@@ -58,6 +60,7 @@ CASES = [  # check, file, what is replaced by what, what is found
     (check_names, "docs/page.md", "rays are*", "rays were*", "has no case 'rays were*'"),
     (check_names, "docs/page.md", "\n\n## A", "\n" + TWICE + "\n\n## A", "says twice: One sentence"),
     (check_names, "docs/page.md", "|---|---|---|", "|---|---|---|" + ROW.format(1) + ROW.format(2), "two rows of a table begin"),
+    (check_names, "docs/design.md", "`math`", "math", "no table of floors names core/math"),
     (check_names, "docs/references.bib", "Keller1997", "Veach1997", "Veach1997 comes twice"),
     (check_words, "docs/guide.md", "# Guide", "# Guide\n\nA light that is drawn knows its place.", "docs/guide.md:3: 'light that is drawn': sampled"),
     (check_words, "docs/guide.md", "# Guide", "# Guide\n\nA node asks its parent.", "docs/guide.md:3: 'asks'"),
