@@ -4,6 +4,7 @@
 - Paths in inline code, such as `core/math/ray.h`, are files or folders (with * also several; a suffix may be left out).
 - Names in inline code, such as `LightTree`, `make_vertex()` or `max_depth`, occur in the sources.
 - Tags and cases of `mote_tests_PART "..."` occur in tests/PART.
+- README.md names every integrator of docs/scene-format.md and every command that the sources add.
 - Tables of floors in docs/design.md name every folder of core, lights, gathering and screenspace.
 - No page holds the same sixteen words twice in its prose, and no entry of references.bib comes twice.
 
@@ -21,7 +22,7 @@ FOLDERS = ("apps cmake compensation core docs examples experiments gathering int
 SOURCES = (".h", ".cpp", ".py", ".cmake", ".txt", ".xml", ".json", ".toml", ".c", ".sh")
 NAME = re.compile(r"(?:\w+::)*([A-Za-z]\w*)(\(\))?$")
 REPEATED = 16  # words
-DESIGN = "docs/design.md"
+README, DESIGN, FORMATS = "README.md", "docs/design.md", "docs/scene-format.md"
 # Names of other programs and of papers, and of files that a reader is to write.
 FOREIGN = {"PMI_RANK", "PMI_SIZE", "DRJIT_LIBLLVM_PATH", "read_native_scanline", "next_p"}
 OWN = "my_"
@@ -78,6 +79,19 @@ def missing_rooms(text, folders):
             yield f"{DESIGN}: no table of floors names {folder}"
 
 
+def missing_features(root, files):
+    """Integrators and commands that README.md does not name."""
+    readme, formats = (read(root, name) if (root / name).is_file() else "" for name in (README, FORMATS))
+    part = re.search(r"^## Integrators\n(.*?)(?=^## |\Z)", formats, flags=re.MULTILINE | re.DOTALL)
+    for name in re.findall(r"^### `(\w+)`", part.group(1) if part else "", flags=re.MULTILINE):
+        if f"`{name}`" not in readme:
+            yield f"{README}: does not name the integrator {name}"
+    for name in (n for n in files if n.startswith("apps/") and n.endswith(".cpp")):
+        for command in re.findall(r'add_subcommand\(\s*"(\w+)"', (root / name).read_text(encoding="utf-8")):
+            if not re.search(rf"\bmote {command}\b", readme):
+                yield f"{README}: does not name the command mote {command}"
+
+
 def missing_tests(root, page, text, tests):
     for folder, wanted in re.findall(r'mote_tests_(\w+) "([^"]+)"', text.replace("\n", " ")):
         cases = tests.get(folder, "")
@@ -116,7 +130,7 @@ def check(root):
     for name in files:
         if name.startswith("tests/") and name.endswith((".cpp", ".h")):
             tests[name.split("/")[1]] = tests.get(name.split("/")[1], "") + (root / name).read_text(encoding="utf-8")
-    offences = []
+    offences = [*missing_features(root, files)]
     for page in pages(root):
         if page in GENERATED:
             continue
