@@ -11,7 +11,7 @@ of this repository, without changes; its table lies beside it, with the same ori
 
 The words before '=' stand in the section or in its row of the first table. Behind it: the first cells of a row of the CSV
 file, or cells by the names of their columns, and the columns with the numbers, which must be those of the text as it rounds them; or the
-beginning of a claim, whose measured value holds these numbers in this order. Cells of the text are parted by '|', and each is per
+beginning of a claim, whose measured value holds these numbers in this order. Each row of a table that is measured has such a line. Cells of the text are parted by '|', and each is per
 cent or not. A picture that was not made anew since pictures carry their origin says
 'Recorded: afterwards', and its section says so in the words NOT_ANEW, and may be as narrow as it was.
 
@@ -160,6 +160,18 @@ def lines_of(comments):
     return [line.strip() for comment in comments for line in comment.split("\n") if " = " in line]
 
 
+def rows_without_check(section, lines):
+    """Rows of tables, headers apart, that hold measured numbers and no words of a comment's line."""
+    said = [line.partition(" = ")[0].strip() for line in lines]
+    text = re.sub(r"<!--.*?-->", "", section, flags=re.DOTALL).replace("**", "").split("\n")
+    for line, below in zip(text, [*text[1:], ""]):
+        row = " ".join(line.split())
+        cells = row.split("|")[2:]
+        measured = any(re.search(r"\d\.\d|\d [%s]", cell) for cell in cells)
+        if row.startswith("|") and measured and not below.startswith("|--") and not any(words in row for words in said):
+            yield row[:80]
+
+
 def is_commit(root, commit):
     """Of this repository; where there is none, or only its end, nobody can tell."""
     git = lambda *words: subprocess.run(["git", *words], cwd=root, capture_output=True, text=True, check=False)
@@ -204,6 +216,7 @@ def check_picture(root, name, section, first_rows):
         offences.append("no number of the text is compared with the table")
     visible = visible_text(section + first_rows)
     numbers = Table(table)
+    offences += [f"no number of this row is compared with the table: {row}" for row in rows_without_check(section, lines)]
     return offences + [o for o in (check_number(line, visible, numbers) for line in lines) if o]
 
 
