@@ -3,6 +3,7 @@
 
 - Paths in inline code, such as `core/math/ray.h`, are files or folders (with * also several; a suffix may be left out).
 - Names in inline code, such as `LightTree`, `make_vertex()` or `max_depth`, occur in the sources.
+- Options such as --passes occur in the sources.
 - Tags and cases of `mote_tests_PART "..."` occur in tests/PART.
 - README.md names every integrator of docs/scene-format.md and every command that the sources add.
 - Tables of floors in docs/design.md name every folder of core, lights, gathering and screenspace.
@@ -15,7 +16,7 @@ import subprocess
 import sys
 from fnmatch import fnmatch
 
-from pages import GENERATED, inline_code, pages, prose, read, run
+from pages import GENERATED, inline_code, pages, prose, read, run, shown
 
 FOLDERS = ("apps cmake compensation core docs examples experiments gathering integrators lights media plugins python scenes "
            "screenspace session tests tools trade").split()
@@ -24,6 +25,7 @@ NAME = re.compile(r"(?:\w+::)*([A-Za-z]\w*)(\(\))?$")
 REPEATED = 16  # words
 README, DESIGN, FORMATS = "README.md", "docs/design.md", "docs/scene-format.md"
 # Names of other programs and of papers, and of files that a reader is to write.
+FOREIGN_OPTIONS = set("--nworkers --nthreads --array --cpus-per-task --parsable --dependency --wrap --map-by".split())
 FOREIGN = {"PMI_RANK", "PMI_SIZE", "DRJIT_LIBLLVM_PATH", "read_native_scanline", "next_p"}
 OWN = "my_"
 
@@ -34,13 +36,17 @@ def tracked(root):
     return [n for n in names if n] or [str(p.relative_to(root)) for p in root.rglob("*") if p.is_file()]
 
 
+OPTION = re.compile(r"(?<![\w-])--[a-z][a-z0-9-]+")
+
+
 def words_of_sources(root, files):
-    """Every identifier of the tree's sources, pages apart, and the names of its files."""
+    """Every identifier and option of the tree's sources, pages apart, and the names of its files."""
     words = {name.rsplit("/", 1)[-1].split(".")[0] for name in files}
     for name in files:
         path = root / name
         if (path.suffix in SOURCES or path.suffix == "") and not name.startswith("docs/") and path.is_file():
-            words.update(re.findall(r"\w+", path.read_text(encoding="utf-8", errors="ignore")))
+            source = path.read_text(encoding="utf-8", errors="ignore")
+            words.update(re.findall(r"\w+", source), OPTION.findall(source))
     return words
 
 
@@ -77,6 +83,13 @@ def missing_rooms(text, folders):
     for folder in sorted(folders):
         if folder.count("/") == 1 and folder.startswith(("core/", "lights/", "gathering/", "screenspace/")) and folder.split("/")[1] not in named:
             yield f"{DESIGN}: no table of floors names {folder}"
+
+
+def missing_options(page, text, words):
+    for number, line in enumerate(shown(text).split("\n"), 1):
+        for option in OPTION.findall(line):
+            if option not in words and option not in FOREIGN_OPTIONS:
+                yield f"{page}:{number}: no source has the option {option}"
 
 
 def missing_features(root, files):
@@ -135,7 +148,7 @@ def check(root):
         if page in GENERATED:
             continue
         text = read(root, page)
-        offences += [*missing_names(root, page, text, files, folders, words), *missing_tests(root, page, text, tests),
+        offences += [*missing_names(root, page, text, files, folders, words), *missing_tests(root, page, text, tests), *missing_options(page, text, words),
                      *repeats(page, text), *repeated_rows(page, text), *(missing_rooms(text, folders) if page == DESIGN else [])]
     bibliography = root / "docs" / "references.bib"
     keys = re.findall(r"^@\w+\{(\w+),", bibliography.read_text(encoding="utf-8"), flags=re.MULTILINE) if bibliography.is_file() else []

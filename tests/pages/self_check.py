@@ -16,7 +16,7 @@ README = """# mote
 
 Read [the page](docs/page.md#a-heading-with-code) and [the guide](docs/guide.md), [the design](docs/design.md), [formats](docs/scene-format.md).
 
-`path`, by `mote render`.
+`path`, by `mote render` with `--passes 8`.
 """
 PAGE = """# Page
 
@@ -43,7 +43,7 @@ TREE = {
     "docs/guide.md": "# Guide\n",
     "docs/design.md": "# Design\n\n`math` is a floor of core.\n",
     "docs/scene-format.md": "# Formats\n\n## Integrators\n\n### `path`\n\n## Visibility\n\n### `traced`\n",
-    "apps/command.cpp": 'app.add_subcommand(\n        "render", "Renders");\n',
+    "apps/command.cpp": 'app.add_subcommand(\n        "render", "Renders").add_option("--passes");\n',
     "core/math/ray_math.h": "Ray ray_math();\n",
     "docs/references.bib": "@book{Veach1997, title = {x}}\n@book{Keller1997, title = {y}}\n",
     "core/ray.h": "Ray make_ray();\n",
@@ -64,8 +64,9 @@ CASES = [  # check, file, what is replaced by what, what is found
     (check_names, "docs/page.md", "rays are*", "rays were*", "has no case 'rays were*'"),
     (check_names, "docs/page.md", "\n\n## A", "\n" + TWICE + "\n\n## A", "says twice: One sentence"),
     (check_names, "docs/page.md", "|---|---|---|", "|---|---|---|" + ROW.format(1) + ROW.format(2), "two rows of a table begin"),
+    (check_names, "README.md", "--passes", "--pases", "no source has the option --pases"),
     (check_names, "README.md", "`path`", "path", "does not name the integrator path"),
-    (check_names, "README.md", "`mote render`", "the command", "does not name the command mote render"),
+    (check_names, "README.md", "`mote render`", "it", "does not name the command mote render"),
     (check_names, "docs/design.md", "`math`", "math", "no table of floors names core/math"),
     (check_names, "docs/references.bib", "Keller1997", "Veach1997", "Veach1997 comes twice"),
     (check_words, "docs/guide.md", "# Guide", "# Guide\n\nA light that is drawn knows its place.", "docs/guide.md:3: 'light that is drawn': sampled"),
