@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 """Finds links that lead nowhere, and pages that neither README.md nor docs/guide.md links to.
 
-Files and folders of relative links exist, and so do the headings of their anchors. Links to other hosts are not followed.
+Files and folders of relative links exist, and so do the headings of their anchors. Links to other hosts are not followed. Sources
+that name a page and a heading, as in docs/testing.md, "Error and noise", name one that is there.
 
     tests/pages/check_links.py ROOT
 """
 import re
 import sys
 
-from pages import anchors, pages, read, run, without_code
+from pages import anchors, pages, read, run, tracked, without_code
 
 LINK = re.compile(r"\]\(([^)\s]+)(?: \"[^\"]*\")?\)")
 BEGINNINGS = ("README.md", "docs/guide.md")  # where a reader comes from
@@ -33,8 +34,24 @@ def leads_nowhere(root, page, target):
     return None
 
 
+QUOTED = re.compile(r'docs/([a-z_-]+\.md), "([^"]{3,60})"')
+
+
+def missing_headings(root):
+    """Headings that comments of sources quote and no page has."""
+    for name in tracked(root):
+        path = root / name
+        if name.endswith(".md") or name.startswith("tests/pages/") or not path.is_file():
+            continue
+        text = re.sub(r"\n\s*(?://+|#|\*)?\s*", " ", path.read_text(encoding="utf-8", errors="ignore"))
+        for page, heading in QUOTED.findall(text):
+            headings = re.findall(r"^#+ (.*)$", read(root, f"docs/{page}"), flags=re.MULTILINE) if (root / "docs" / page).is_file() else []
+            if not any(h.startswith(heading) for h in headings):
+                yield f"{name}: docs/{page} has no heading '{heading}'"
+
+
 def check(root):
-    offences, reached = [], set()
+    offences, reached = list(missing_headings(root)), set()
     for page in pages(root):
         for line, target in links(read(root, page)):
             offence = leads_nowhere(root, page, target)

@@ -12,11 +12,10 @@
     tests/pages/check_names.py ROOT
 """
 import re
-import subprocess
 import sys
 from fnmatch import fnmatch
 
-from pages import GENERATED, inline_code, pages, prose, read, run, shown
+from pages import GENERATED, inline_code, pages, prose, read, run, shown, tracked
 
 FOLDERS = ("apps cmake compensation core docs examples experiments gathering integrators lights media plugins python scenes "
            "screenspace session tests tools trade").split()
@@ -28,12 +27,6 @@ README, DESIGN, FORMATS = "README.md", "docs/design.md", "docs/scene-format.md"
 FOREIGN_OPTIONS = set("--nworkers --nthreads --array --cpus-per-task --parsable --dependency --wrap --map-by".split())
 FOREIGN = {"PMI_RANK", "PMI_SIZE", "DRJIT_LIBLLVM_PATH", "read_native_scanline", "next_p"}
 OWN = "my_"
-
-
-def tracked(root):
-    listed = subprocess.run(["git", "ls-files"], cwd=root, capture_output=True, text=True, check=False)
-    names = listed.stdout.split("\n") if listed.returncode == 0 else []
-    return [n for n in names if n] or [str(p.relative_to(root)) for p in root.rglob("*") if p.is_file()]
 
 
 OPTION = re.compile(r"(?<![\w-])--[a-z][a-z0-9-]+")

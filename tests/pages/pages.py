@@ -16,6 +16,14 @@ def pages(root):
     return sorted(name for name in names if name and (root / name).is_file())
 
 
+def tracked(root):
+    """Names of all files under version control, else of all files."""
+    listed = subprocess.run(["git", "ls-files"], cwd=root, capture_output=True, text=True, check=False)
+    names = listed.stdout.split("\n") if listed.returncode == 0 else []
+    names = names or [str(p.relative_to(root)) for p in root.rglob("*") if p.is_file()]
+    return [n for n in names if n and n.split("/")[0] not in ("build", "out")]
+
+
 def read(root, name):
     return (root / name).read_text(encoding="utf-8")
 
