@@ -49,7 +49,7 @@ def render(mote, quick):
                                          **settings}, passes=1)
     table = {(n, k): epipolar(n, k) for n in LINES for k in (SAMPLES if not quick else SAMPLES[1::2])}
     # The paper marches in steps of equal length, 150 of them, which were too few.
-    uniform = {"integrator.march": "uniform"}
+    uniform = {"integrator.in_scattering": "uniform_steps"}
     few = 20
     return {"table": table, "full": marched("full", steps), "true": marched("true", many), "few": few,
             "few_full": marched("few_full", few, **uniform),

@@ -56,7 +56,6 @@ def cases(size, quick):
                ("mote_photon_map", {"integrator.photon_paths": 10**7}, 1)]
     media = [("volpath", {}, 1), ("mote_layers", {}, 1), ("mote_vpl", big, 1), ("mote_photon_map", {"integrator.photon_paths": 10**7}, 1),
              ("mote_single_scattering", {}, many), ("mote_epipolar", {}, many),
-             ("mote_epipolar", {"integrator.crossings": "true"}, many),
              ("mote_vpl", {**big, "integrator.visibility": "shadow_map", "integrator.visibility.size": 64}, 1),
              ("mote_single_scattering", {"integrator.visibility": "shadow_map", "integrator.visibility.light_size": 256}, many)]
     for kind, medium, list_of in (("surfaces", "", surface), ("fog", FOG, media)):

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include "screenspace/in_scattering/in_scattering_grid.h"
-#include "screenspace/in_scattering/shared_eye_rays.h"
+#include "screenspace/epipolar/in_scattering_grid.h"
 
 namespace mote::integrators {
 
@@ -71,7 +70,7 @@ bool InterpolatedScattering::upsample(const PassContext& context, const PassNumb
         });
 }
 
-/// The light's lines, searched for edges; null for a light at the eye.
+/// The light's lines, marched; null for a light at the eye.
 auto InterpolatedScattering::find_lines(const PassNumbers& numbers, const InScattering& light,
                                         const InScatteringRays& source,
                                         const EpipolarPicture::Loop& loop) const -> Lines {
@@ -86,42 +85,16 @@ auto InterpolatedScattering::find_lines(const PassNumbers& numbers, const InScat
         EpipolarLines(at, frame(), settings_.lines, double(numbers.lines.x)), sampling, source, loop);
 }
 
-/// The lines of all lights, with what was marched for two of them at once.
-auto InterpolatedScattering::share_rays(const PassContext& context, const PassNumbers& numbers,
-                                        std::span<const InScattering> lights) -> std::vector<Lines> {
-    std::vector<Lines> all;
-    std::vector<EpipolarPicture*> pictures;
-    std::vector<const InScattering*> with_lines;
-    const CancelToken cancelled = context.cancelled;
-    for (const InScattering& light : lights) {
-        cancelled.check();
-        const InScatteringRays source(scene_, light, numbers.lens);
-        all.push_back(find_lines(numbers, light, source, loop_of(context)));
-        counters_.add(source.rays(), source.tracking());
-        if (all.back()) pictures.push_back(all.back().get()), with_lines.push_back(&light);
-    }
-    const SharedEyeRays rays(scene_, with_lines, settings_.march.voxels, numbers.lens);
-    const std::size_t shared = march_crossings(pictures, rays, loop_of(context), cancelled);
-    std::size_t bytes = shared * crossing_bytes + points_.capacity() * sizeof(EyePoint);
-    for (const EpipolarPicture* picture : pictures) bytes += picture->counts().bytes;
-    counts_.shared += shared, counts_.bytes = std::max(counts_.bytes, bytes);
-    counts_.rays += rays.done().rays, counts_.steps += rays.done().steps;
-    counts_.unoccluded += rays.done().unoccluded;
-    counters_.add(rays.done().walk.rays, rays.done().walk.tracking);
-    return all;
-}
-
 bool InterpolatedScattering::scatter(const PassContext& context, const PassNumbers& numbers,
-                                     const InScattering& light, Lines lines, PassImage& image) {
+                                     const InScattering& light, PassImage& image) {
     CancelToken(context.cancelled).check();
     const InScatteringRays source(scene_, light, numbers.lens);
     const auto loop = loop_of(context);
     const bool epipolar = settings_.sampling == ScatteringSampling::epipolar;
-    if (epipolar && !lines) lines = find_lines(numbers, light, source, loop);
+    const Lines lines = epipolar ? find_lines(numbers, light, source, loop) : nullptr;
     bool done;
     std::size_t bytes;
     if (lines) {
-        lines->march(source, loop);
         if (context.cancelled) return false;
         done = upsample(context, numbers, light, source, image,
                         [&](const Vec2d& film, const RayEnd& end, InScatteringTask& task) {
@@ -153,10 +126,8 @@ bool InterpolatedScattering::scatter(const PassContext& context, const PassNumbe
 
 bool InterpolatedScattering::run(const PassContext& context, const PassNumbers& numbers,
                                  std::span<const InScattering> lights, PassImage& image) {
-    std::vector<Lines> lines(lights.size());
-    if (settings_.crossings && lights.size() > 1) lines = share_rays(context, numbers, lights);
-    for (std::size_t i = 0; i < lights.size(); ++i)
-        if (!scatter(context, numbers, lights[i], std::move(lines[i]), image)) return false;
+    for (const InScattering& light : lights)
+        if (!scatter(context, numbers, light, image)) return false;
     return true;
 }
 

@@ -18,7 +18,7 @@ struct PassNumbers {
     PassNumbers(const core::RenderOptions& options, std::uint32_t pass);
 };
 
-/// What interpolation needs to know of a pixel's first ray: 24 bytes.
+/// A pixel's first ray, for interpolation: 24 bytes.
 struct EyePoint {
     core::Vec2 film;
     screenspace::FirstSurface surface;
@@ -26,8 +26,8 @@ struct EyePoint {
 
 struct ScatteringCounts {
     std::uint64_t rays = 0, steps = 0, unoccluded = 0,
-                  candidates = 0;                                 ///< of marched rays; pixels that are lit
-    std::uint64_t filled = 0, lines = 0, texels = 0, shared = 0;  ///< of interpolation
+                  candidates = 0;                     ///< of marched rays; pixels that are lit
+    std::uint64_t filled = 0, lines = 0, texels = 0;  ///< of interpolation
     std::size_t bytes = 0;
 };
 
@@ -53,10 +53,8 @@ class InterpolatedScattering {
     Lines find_lines(const PassNumbers& numbers, const screenspace::InScattering& light,
                      const screenspace::InScatteringRays& source,
                      const screenspace::EpipolarPicture::Loop& loop) const;
-    std::vector<Lines> share_rays(const core::PassContext& context, const PassNumbers& numbers,
-                                  std::span<const screenspace::InScattering> lights);
     bool scatter(const core::PassContext& context, const PassNumbers& numbers,
-                 const screenspace::InScattering& light, Lines lines, core::PassImage& image);
+                 const screenspace::InScattering& light, core::PassImage& image);
     void show(const std::vector<screenspace::Vec2d>& places, core::PassImage& image) const;
     template <typename LightAt>
     bool upsample(const core::PassContext& context, const PassNumbers& numbers,

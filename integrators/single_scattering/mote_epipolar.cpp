@@ -19,10 +19,8 @@ class MoteEpipolar final : public Integrator {
         settings_.sampling = ScatteringSampling::epipolar;
         settings_.lines = int(p.get_int_in("lines", 1024, 1, 1 << 20));
         settings_.line.initial = int(p.get_int_in("samples", 16, 2, 1 << 20));
-        settings_.line.cap = int(p.get_int_in("max_samples", 1024, 2, 1 << 20));
         settings_.line.texels = p.get_float_in("texels", 1.0, 1e-3, 64.0);
         settings_.line.tolerance = float(p.get_float_in("tolerance", 0.05, 0.0, 1e6));
-        settings_.crossings = p.get_bool("crossings", false);
     }
 
     std::string type() const override { return "mote_epipolar"; }
@@ -56,11 +54,6 @@ Plan MoteEpipolar::plan(const Scene& scene, const Requirements& r) const {
              fmt::format("{} evenly spread, two at every discontinuity, {} at most", settings_.line.initial,
                          settings_.line.cap),
              "pixels that no line continues are marched themselves");
-    if (settings_.crossings && lights > 1)
-        plan.run("crossings", "samples where lines of two lights cross share their eye ray",
-                 "Engelhardt 2013, Sec. 9.5; shadow rays are not shared");
-    else if (settings_.crossings)
-        plan.leave_out("crossings", "nothing to share", "one light alone has lines");
     if (settings_.line.tolerance > 0.0f)
         plan.run("refinement",
                  fmt::format("where light or transmittance varies by more than {}", settings_.line.tolerance),
@@ -87,14 +80,11 @@ void register_mote_epipolar(Registry& registry) {
     parameters.push_back(
         {"lines", "integer", "1024", "epipolar lines of every light, around the whole picture"});
     parameters.push_back({"samples", "integer", "16", "marched rays spread evenly along a line"});
-    parameters.push_back({"max_samples", "integer", "1024", "marched rays of one line, at most"});
     parameters.push_back(
         {"texels", "float", "1", "places for samples, and for edges to be found, a pixel of a line"});
     parameters.push_back(
         {"tolerance", "float", "0.05",
          "lines are refined where light or transmittance varies by more; 0: at edges in depth alone"});
-    parameters.push_back({"crossings", "boolean", "false",
-                          "samples move to where lines of two lights cross, and share their eye ray"});
     registry.add(
         {Category::integrator, "mote_epipolar",
          "Light scattered at most once; in media from rays marched along epipolar lines.", parameters,

@@ -35,7 +35,7 @@ struct AnalyticCounts {
 
 void plan_exact(Plan& plan, const AnalyticCounts& analytic, const AccelerationSettings& settings, int steps) {
     if (!settings.exact) {
-        plan.leave_out("exact in-scattering", "all rays are marched", "in_scattering is steps");
+        plan.leave_out("exact in-scattering", "all rays are marched", "in_scattering is not exact");
         return;
     }
     if (!analytic.any()) {

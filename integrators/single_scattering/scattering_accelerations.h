@@ -1,5 +1,5 @@
-// What spares the single-scattering integrators steps and shadow rays, made once for all passes: the tree of
-// surfaces for exact integrals, and the shadow maps of the lights.
+// Accelerations of the single-scattering integrators, made once for all passes: the tree of surfaces for
+// exact integrals, and the shadow maps of the lights.
 #pragma once
 
 #include "core/render/plan.h"

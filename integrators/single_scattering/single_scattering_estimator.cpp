@@ -11,7 +11,7 @@ namespace {
 
 constexpr int tile_size = 16;
 /// With more lights than this one of all is drawn: connecting to each would take longer than it saves.
-constexpr std::size_t most_connected_lights = 16;
+constexpr std::size_t max_connected_lights = 16;
 
 template <bool Media>
 class SingleScatteringEstimator final : public Estimator {
@@ -25,7 +25,7 @@ class SingleScatteringEstimator final : public Estimator {
             if (settings_.lights == lights)
                 settings_.eye.limits.wanted.of[std::size_t(Transport::single_scattering)] =
                     options.wants(cell);
-        if (positional_.size() <= most_connected_lights) {
+        if (positional_.size() <= max_connected_lights) {
             others_.emplace(scene, positional_);
             settings_.eye.connected = positional_, settings_.eye.others = &*others_;
         }
@@ -138,7 +138,6 @@ void SingleScatteringEstimator<Media>::add_statistics(Statistics& statistics) co
     if (settings_.sampling != ScatteringSampling::epipolar) return;
     statistics.values["epipolar_lines"] += double(more.lines);
     statistics.values["epipolar_texels"] += double(more.texels);
-    if (settings_.crossings) statistics.values["shared_rays"] += double(more.shared);
 }
 
 }  // namespace

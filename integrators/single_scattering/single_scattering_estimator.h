@@ -17,8 +17,8 @@ namespace mote::integrators {
 
 enum class ScatteringSampling : std::uint8_t { full, sub_sampled, epipolar };
 
-/// Whose light scattered in media: that of lights with a position is marched and nearly free of noise, that
-/// of all others is drawn at one distance.
+/// Lights whose light scatters in media: that of lights with a position is marched and nearly free of noise,
+/// that of all others is sampled at one distance.
 enum class ScatteringLights : std::uint8_t { all, positional, other };
 
 struct ScatteringSettings {
@@ -30,7 +30,6 @@ struct ScatteringSettings {
     double spacing = 4.0;  ///< of sub-sampling [pixels]
     int lines = 1024;      ///< epipolar lines of a light
     screenspace::LineSampling line;
-    bool crossings = false;     ///< samples move to where lines of two lights cross
     bool show_samples = false;  ///< a layer that counts the marched rays of every pixel
 };
 
@@ -38,7 +37,7 @@ std::unique_ptr<core::Estimator> make_single_scattering_estimator(const core::Sc
                                                                   const core::RenderOptions& options,
                                                                   const ScatteringSettings& settings);
 
-/// What a scene file says that names these limits alone, and whose light scatters in media.
+/// Properties of a scene file that names these limits and `lights` alone.
 core::Properties scattering_properties(const EyePathLimits& limits, const std::string& lights);
 
 /// The settings that both integrators share, checked. Throws InputError.
@@ -56,7 +55,7 @@ inline const std::string other_scattering = "single_scattering_other";
 /// emission, direct, and where there are media single_scattering, and the marched rays when asked for.
 std::vector<core::Layer> single_scattering_layers(bool media, const ScatteringSettings& settings);
 
-/// What both integrators do alike, and what they leave to others.
+/// Plan entries of both integrators.
 void plan_single_scattering(core::Plan& plan, const core::Scene& scene,
                             const core::Requirements& requirements, const ScatteringSettings& settings);
 /// Lights that are marched: those with a position, not black.

@@ -73,7 +73,7 @@ class MarchedLegs {
             found_.sum[Transport::single_scattering] +=
                 before.throughput * light.march(ray, path_.state(), scratch_).radiance;
     }
-    /// What media take from the light at the ray's end, and the media there.
+    /// Multiplies the throughput by the transmittance to the ray's end, and sets the media there.
     void cross_media(const Ray& ray) {
         find_segments(scene_, ray, path_.state(), scratch_.eye, scratch_.walk);
         path_.weights().throughput *=

@@ -12,14 +12,13 @@ using namespace core;
 ScatteringSettings read_scattering_settings(const Properties& p) {
     ScatteringSettings s;
     s.march.steps = int(p.get_int_in("steps", 64, 1, 1 << 20));
-    s.march.rule = p.get_choice("march", "equiangular", {"equiangular", "uniform"}) == "uniform"
-                       ? screenspace::MarchRule::uniform
-                       : screenspace::MarchRule::equiangular;
-    s.accelerations.exact = p.get_choice("in_scattering", "exact", {"exact", "steps"}) == "exact";
+    const std::string how = p.get_choice("in_scattering", "exact", {"exact", "steps", "uniform_steps"});
+    s.accelerations.exact = how == "exact";
+    s.march.rule =
+        how == "uniform_steps" ? screenspace::MarchRule::uniform : screenspace::MarchRule::equiangular;
     if (const auto visibility = p.child_of<Visibility>(Category::visibility))
         s.accelerations.visibility = visibility->settings();
     s.march.voxels = float(p.get_float_in("voxels", 1.0, 1e-3, 1e6));
-    s.line.depth_tolerance = float(p.get_float_in("depth_tolerance", 0.02, 0.0, 1e6));
     s.eye.limits.max_depth = 1 + int(p.get_int_in("max_depth", 32, 1, 1 << 20));
     s.eye.limits.hide_emitters = p.get_bool("hide_emitters", false);
     s.show_samples = p.get_bool("show_samples", false);
@@ -44,20 +43,15 @@ std::vector<Parameter> scattering_parameters() {
          "steps of every marched ray, or places that exact integrals are traced from"},
         {"in_scattering", "string", "exact",
          "exact: integrals where one homogeneous medium lies between ray and light, without shadow rays "
-         "where "
-         "nothing else does; steps: all rays are marched"},
+         "where nothing else does, and steps elsewhere; steps: all rays are marched, in equal angles as seen "
+         "from the light; uniform_steps: in equal lengths, as in the paper"},
         {"visibility", "visibility", "traced",
          "what stands between light and march steps: traced, or shadow_map with its light_size"},
-        {"march", "string", "equiangular",
-         "equiangular: equal angles as seen from the light; uniform: equal lengths"},
         {"voxels", "float", "1", "step of optical depths through grids, in voxels"},
-        {"depth_tolerance", "float", "0.02",
-         "share by which distances to one surface may differ between neighbouring rays"},
         {"show_samples", "boolean", "false", "adds a layer MarchedRays: rays marched in every pixel, a pass"},
         {"lights", "string", "all",
          "whose light scatters in media: all, positional (those that are marched), or other (all but those); "
-         "a "
-         "nested integrator of mote_layers may do either"},
+         "a nested integrator of mote_layers may do either"},
         {"max_depth", "integer", "32", "longest eye path through mirrors and glass, in rays"},
         hide_emitters_parameter()};
 }

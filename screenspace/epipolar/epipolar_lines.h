@@ -52,11 +52,11 @@ class EpipolarLines {
     struct Pair {
         std::size_t before, after;  ///< indices of lines
     };
-    /// Of a place on the film.
+    /// Lines around a place on the film.
     Pair around(Vec2d p) const;
     /// The line next to i, one further in the direction of `step` (-1 or 1); nothing beyond the last.
     std::optional<std::size_t> next(std::size_t i, int step) const;
-    bool light_inside() const { return inside_; }  ///< is its projection within the rectangle?
+    bool light_inside() const { return inside_; }  ///< its projection is within the rectangle
 
   private:
     Vec2d away_from_light(const Vec2d& p) const;

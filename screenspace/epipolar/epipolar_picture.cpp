@@ -19,14 +19,10 @@ EpipolarPicture::EpipolarPicture(EpipolarLines lines, const LineSampling& settin
     for (auto& line : found) {
         if (line) sampled_.push_back(std::move(*line));
     }
-    if (sampled_.size() < found.size()) sampled_.clear();  // the loop was cancelled
-}
-
-void EpipolarPicture::march(const InScatteringSource& source, const Loop& loop) {
-    loop(int(sampled_.size()), [&](int i) {
-        const auto task = source.start();
-        sampled_[std::size_t(i)].march(settings_, *task);
-    });
+    if (sampled_.size() < found.size()) {  // the loop was cancelled
+        sampled_.clear();
+        return;
+    }
     double sum = 0.0, weights = 0.0;
     for (const SampledLine& line : sampled_)
         for (const LineSample& s : line.samples()) {

@@ -15,7 +15,7 @@
 
 namespace mote::screenspace {
 
-/// What it took.
+/// Counted work of a picture.
 struct PictureCounts {
     std::uint64_t lines = 0, texels = 0, marched = 0;  ///< lines, their texels, rays marched
     std::size_t bytes = 0;                             ///< of memory, at most
@@ -27,24 +27,19 @@ class EpipolarPicture {
     /// Runs body(i) for i in [0, count), in parallel or not; every body is independent of the others.
     using Loop = std::function<void(int count, const std::function<void(int)>& body)>;
 
-    /// Finds what is lit along all lines, and its edges.
+    /// Finds the lit runs of all lines, marches, refines and interpolates. Holds no lines if the loop was
+    /// cancelled.
     EpipolarPicture(EpipolarLines lines, const LineSampling& settings, const InScatteringSource& source,
                     const Loop& loop);
-    /// Marches, refines and interpolates.
-    void march(const InScatteringSource& source, const Loop& loop);
 
     /// The light scattered into the ray through `film`, whose end is `end`.
     std::optional<core::Rgb> light_at(const Vec2d& film, const RayEnd& end, InScatteringTask& task) const;
 
-    const EpipolarLines& lines() const { return lines_; }  ///< all lines
-    /// With their light, in the order of lines().
-    std::span<const SampledLine> sampled() const { return sampled_; }
-    SampledLine& line(std::size_t i) { return sampled_[i]; }    ///< to add samples to
-    const LineSampling& settings() const { return settings_; }  ///< as given
-    /// So far.
+    std::span<const SampledLine> sampled() const {
+        return sampled_;
+    }  ///< with their light, around the border
     PictureCounts counts() const;
-    /// Where rays were marched.
-    std::vector<Vec2d> marched_at() const;
+    std::vector<Vec2d> marched_at() const;  ///< film positions of the marched rays
 
   private:
     struct Tap {

@@ -18,12 +18,13 @@ namespace mote::screenspace {
 /// How densely rays are marched.
 struct LineSampling {
     int initial = 16;  ///< samples spread over the lit part, at least 2
-    int cap = 1024;    ///< samples of one line, at most
+    int cap = 1024;  ///< samples of one line, at most: far above what shafts need, so that memory is bounded
     float tolerance =
         0.05f;  ///< of interpolation, as a share of the light there and in the mean; 0: no refinement
-    float depth_tolerance = 0.02f;  ///< discontinuities of distance, see continues()
-    double texels = 1.0;            ///< a pixel along the line: where samples can be, and edges are found
-    double shift = 0.0;             ///< of the spread samples, in [0, 1) of their distance
+    /// Discontinuities of distance, as a share of it, see continues().
+    float depth_tolerance = 0.02f;
+    double texels = 1.0;  ///< a pixel along the line: where samples can be, and edges are found
+    double shift = 0.0;   ///< of the spread samples, in [0, 1) of their distance
 };
 
 /// 24 bytes.
@@ -36,37 +37,19 @@ struct LineTexel {
 
 /// A ray that was marched.
 struct LineSample {
-    float texel;       ///< whole, but where a line of another light crosses (epipolar_crossings.h)
-    float weight;      ///< RayEnd::weight
-    MarchedRay light;  ///< its radiance over that weight
+    std::size_t texel;  ///< index in the line
+    float weight;       ///< RayEnd::weight
+    MarchedRay light;   ///< its radiance over that weight
 };
 
 /// A line with its texels.
 class SampledLine {
   public:
-    /// Finds the runs, and where spread samples are wanted.
+    /// Finds the runs, and marches the samples that do not depend on light: run ends and evenly spread ones.
     SampledLine(const EpipolarLine& line, const LineSampling& settings, InScatteringTask& task);
 
-    /// `count` places at first + i * spacing, in texels; not all of them need be lit.
-    struct Spread {
-        double first = 0.0, spacing = 1.0;                         ///< [texels]
-        int count = 0;                                             ///< of places
-        double place(int i) const { return first + i * spacing; }  ///< of the i-th [texels]
-        /// The place nearest to a texel.
-        int nearest(double texel) const { return int(std::lround((texel - first) / spacing)); }
-    };
-    const Spread& spread() const { return spread_; }  ///< the evenly spread samples
-    /// Is this place between texels of one run, or on one?
-    bool lit(double texel) const;
-    /// Is this texel the first of its run, or the last? It is marched then, spread sample or not.
-    bool ends_run(std::ptrdiff_t texel) const;
-    /// A ray that was marched at a lit place; it stands for the spread sample nearest to it.
-    void add(double texel, const RayEnd& end, const MarchedRay& light);
-    /// Places and marches the samples that do not depend on light: run ends, and the spread ones that were
-    /// not added.
-    void march(const LineSampling& settings, InScatteringTask& task);
-    /// Refines where light or transmittance varies, and interpolates. `mean`: of the light over all lines'
-    /// samples.
+    /// Refines where light or transmittance varies, and interpolates. `mean`: light averaged over the samples
+    /// of all lines.
     void finish(const LineSampling& settings, float mean, InScatteringTask& task);
 
     const EpipolarLine& line() const { return line_; }                   ///< on the film
@@ -78,21 +61,18 @@ class SampledLine {
     std::size_t memory_bytes() const;
 
   private:
-    LineSample march_texel(float texel, InScatteringTask& task);
+    LineSample march_texel(std::size_t texel, InScatteringTask& task);
     void find_runs(float tolerance, InScatteringTask& task);
-    void find_spread(const LineSampling& settings);
-    void sort_samples();
-    void place(const LineSampling& settings);
+    std::vector<bool> spread(const LineSampling& settings) const;
+    bool ends_run(std::size_t texel) const;
+    void march(const LineSampling& settings, InScatteringTask& task);
     void refine(const LineSampling& settings, float mean, std::size_t from, std::size_t to,
                 InScatteringTask& task, std::vector<LineSample>& added);
     void interpolate();
 
-    LineTexel& at(float texel) { return texels_[std::size_t(std::lround(texel))]; }
-
     EpipolarLine line_;
-    Spread spread_;
     std::vector<LineTexel> texels_;
-    std::vector<LineSample> samples_;  ///< by texel, ascending; thrown away by finish()
+    std::vector<LineSample> samples_;  ///< by texel, ascending; discarded by finish()
     std::size_t marched_ = 0;
 };
 

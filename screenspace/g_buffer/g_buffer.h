@@ -1,8 +1,8 @@
-// What the camera sees at pixel centres: plain buffers, one value a pixel, row by row from the top.
+// G-buffer: the surface at each pixel centre as plain buffers, row by row from the top.
 //
-// Screen-space methods read these buffers and nothing else of the scene. Whoever has other sources than
-// primary rays fills them himself: every buffer has width * height entries. Several layers hold what lies
-// behind: layer k the k-th surface along the ray of each pixel (depth peeling).
+// Screen-space methods read these buffers and nothing else of the scene. Sources other than primary rays fill
+// them directly: every buffer has width * height entries. Several layers are a depth peeling: layer k holds
+// the k-th surface along the ray of each pixel.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,6 @@
 #include "core/math/vec.h"
 
 namespace mote::core {
-class Camera;
 class Camera;
 class RayQueries;
 class Shape;
@@ -30,7 +29,7 @@ struct GBuffer {
     std::vector<core::Vec3> geometric_normal, shading_normal;  ///< unit, turned to the viewer
     std::vector<core::Vec3> view;        ///< unit, along the ray, away from the viewer; set for misses too
     std::vector<core::Rgb> reflectance;  ///< albedo of the BSDF seen from the viewer, [0, 1]
-    std::vector<core::Rgb> reflectance_behind;  ///< the same of its other side, seen along the ray
+    std::vector<core::Rgb> reflectance_behind;  ///< albedo of its other side, seen along the ray
     std::vector<float> solid_angle;  ///< of the pixel [sr]; set for misses too; 0 for parallel projections
     std::vector<std::uint8_t> hit;   ///< 1 where there is a surface
     std::vector<std::uint8_t> emissive;        ///< 1 where that surface is a light
@@ -41,7 +40,7 @@ struct GBuffer {
     /// All misses. Throws std::invalid_argument unless both sizes are positive.
     GBuffer(int width, int height);
 
-    /// Of a pixel.
+    /// Index of a pixel.
     std::size_t index(int x, int y) const { return std::size_t(y) * std::size_t(width) + std::size_t(x); }
     /// Width times height.
     std::size_t pixel_count() const { return std::size_t(width) * std::size_t(height); }
@@ -60,12 +59,12 @@ GBuffer make_g_buffer(const core::RayQueries& scene, const core::Camera& camera,
 void peel(const core::RayQueries& scene, const core::Ray& ray, int count,
           std::vector<core::SurfaceHit>& hits);
 
-/// Layer after layer, the first of which is make_g_buffer(). Light passes none of the surfaces here: behind a
-/// mirror or glass lies what stands there. Throws std::invalid_argument unless `layers` is positive.
+/// Layers from front to back; the first is make_g_buffer(). No ray is reflected or refracted: behind a mirror
+/// or glass is the next surface along the ray. Throws std::invalid_argument unless `layers` is positive.
 std::vector<GBuffer> make_g_buffers(const core::RayQueries& scene, const core::Camera& camera, int width,
                                     int height, int layers);
 
-/// The other side of the same surfaces, as a viewer behind them would see it who looks back along the rays.
+/// Other side of each surface, as seen from behind along the reversed rays.
 GBuffer seen_from_behind(GBuffer buffer);
 
 /// Solid angle that pixel (x, y) covers as seen from a camera [sr].

@@ -90,7 +90,7 @@ double integrate(const PassingRay& ray, double t0, double t1, double sigma_t, do
         }
         total += 0.5 * growth.length * panel;
         begin += growth.length;
-        // What is left is at most its largest exponential and lobe times the integral of dy/d.
+        // The rest is at most its largest exponential and lobe times the integral of dy/d.
         const double ahead = piece.sum * std::exp(begin), back = piece.rest * std::exp(-begin);
         const double d = 0.5 * (ahead + back), s = 0.5 * (ahead - back), left = piece.span - begin;
         const double of_distance =

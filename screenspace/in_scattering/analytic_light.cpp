@@ -7,7 +7,7 @@ namespace mote::screenspace {
 using namespace core;
 
 namespace {
-/// Of the cone, at least, for its rim to be smooth enough for eight points a panel.
+/// Smallest beam, as a share of the cone, whose rim is smooth enough for eight points a panel.
 constexpr double smallest_beam = 0.25;
 }  // namespace
 

@@ -1,5 +1,5 @@
-// What marching along eye rays asks besides what lies along them: a camera, the media where its rays begin,
-// and where media scatter at all. A Scene knows all three; other renderers give them.
+// View that eye rays are marched from: a camera, the media where its rays begin, and the extent of the media
+// that scatter. Made from a Scene, or given by another renderer.
 #pragma once
 
 #include <functional>
@@ -22,7 +22,7 @@ struct EyeView {
         media;  ///< at ray.t_min of an eye ray, from any thread
 };
 
-/// Of a scene, which must outlive it.
+/// View of a scene, which must outlive it.
 EyeView eye_view(const core::Scene& scene);
 
 /// Holds every point where a medium can scatter light; all of space where one does so outside of all shapes.

@@ -5,7 +5,6 @@
 
 #include "core/scene/media_along.h"
 #include "core/scene/scene.h"
-#include "screenspace/in_scattering/eye_media.h"
 #include "screenspace/in_scattering/eye_view.h"
 
 namespace mote::screenspace {
@@ -91,22 +90,16 @@ double InScattering::unshadowed(const Ray& ray, double t0, double t1) const {
     return (passing.angle(t1) - passing.angle(t0)) / passing.distance;
 }
 
-/// Of the media up to `to`; scratch.eye holds the segments.
-Rgb InScattering::eye_transmittance(const Ray& ray, float to, MarchScratch& scratch,
-                                    const EyeMedia* shared) const {
-    if (shared) return shared->transmittance(to, scratch.walk);
+/// Transmittance of the media up to `to`; scratch.eye holds the segments.
+Rgb InScattering::eye_transmittance(const Ray& ray, float to, MarchScratch& scratch) const {
     return marched_transmittance({ray.origin, ray.direction, ray.t_min, to}, scratch.eye, settings_.voxels,
                                  scratch.walk);
 }
 
-MarchedRay InScattering::march(const Ray& ray, const MediumState& state, MarchScratch& scratch,
-                               const EyeMedia* shared) const {
+MarchedRay InScattering::march(const Ray& ray, const MediumState& state, MarchScratch& scratch) const {
     MarchedRay result;
     ++scratch.rays;
-    if (shared)
-        shared->segments_up_to(ray.t_max, scratch.eye);
-    else
-        find_segments(scene_, ray, state, scratch.eye, scratch.walk);
+    find_segments(scene_, ray, state, scratch.eye, scratch.walk);
     const auto lit = lit_part(ray);
     double t0 = 0.0, t1 = 0.0;  // of the media within the lit part
     const MediumSegment* only = nullptr;
@@ -120,11 +113,11 @@ MarchedRay InScattering::march(const Ray& ray, const MediumState& state, MarchSc
         }
     if (media == 1)
         if (const auto exact = integrate(ray, t0, t1, *only, scratch)) {
-            result.radiance = eye_transmittance(ray, float(t0), scratch, shared) * *exact;
-            result.transmittance = eye_transmittance(ray, ray.t_max, scratch, shared);
+            result.radiance = eye_transmittance(ray, float(t0), scratch) * *exact;
+            result.transmittance = eye_transmittance(ray, ray.t_max, scratch);
             return result;
         }
-    march_steps(ray, t0, t1, scratch, shared, result);
+    march_steps(ray, t0, t1, scratch, result);
     return result;
 }
 

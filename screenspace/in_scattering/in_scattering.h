@@ -38,7 +38,7 @@ struct MarchSettings {
     float voxels = 1.0f;                      ///< step of optical depths through grids, in voxels
 };
 
-/// What can stand in for steps and shadow rays. Not owned.
+/// Replacements for steps and shadow rays. Not owned.
 struct MarchAccelerations {
     const UnoccludedSpace* space = nullptr;            ///< null: all is marched
     const lights::VolumetricShadowMap* map = nullptr;  ///< of this light; null: shadow rays
@@ -92,11 +92,9 @@ core::Rgb marched_transmittance(const core::Medium& medium, const core::Ray& ray
 /// Through all segments and panes, up to ray.t_max.
 core::Rgb marched_transmittance(const core::Ray& ray, const std::vector<MediumSegment>& segments,
                                 float voxels, core::WalkContext& walk);
-/// The same of the media alone: for paths that passed the panes by chance.
+/// Transmittance of the media alone, for paths that passed the panes by chance.
 core::Rgb transmittance_of_media(const core::Ray& ray, const std::vector<MediumSegment>& segments,
                                  float voxels, core::WalkContext& walk);
-
-class EyeMedia;
 
 /// One light's march along any ray.
 class InScattering {
@@ -106,7 +104,7 @@ class InScattering {
     /// scene and light.
     InScattering(const core::RayQueries& scene, const core::Bounds3& scattering, const core::Emitter& light,
                  const MarchSettings& settings, const MarchAccelerations& accelerations = {});
-    /// The same, with what a Scene knows of its media.
+    /// In-scattering over scattering_extent(scene).
     InScattering(const core::Scene& scene, const core::Emitter& light, const MarchSettings& settings,
                  const MarchAccelerations& accelerations = {});
 
@@ -116,10 +114,8 @@ class InScattering {
     /// The integral of 1/d^2 over a part of the ray, where d is the distance from the light [1/m].
     double unshadowed(const core::Ray& ray, double t0, double t1) const;
     /// The light that reaches ray.t_min from points up to ray.t_max, where the first surface is. `state`
-    /// holds the media at ray.t_min. `shared`: what another light has found along this ray, at least up to
-    /// its end.
-    MarchedRay march(const core::Ray& ray, const core::MediumState& state, MarchScratch& scratch,
-                     const EyeMedia* shared = nullptr) const;
+    /// holds the media at ray.t_min.
+    MarchedRay march(const core::Ray& ray, const core::MediumState& state, MarchScratch& scratch) const;
 
   private:
     std::optional<core::Rgb> integrate(const core::Ray& ray, double t0, double t1, const MediumSegment& at,
@@ -131,9 +127,8 @@ class InScattering {
     core::Rgb end_piece(const core::Ray& ray, double t0, double t1, const MediumSegment& at,
                         const AnalyticMedium& medium, MarchScratch& scratch) const;
     void march_steps(const core::Ray& ray, double t0, double t1, MarchScratch& scratch,
-                     const EyeMedia* shared, MarchedRay& result) const;
-    core::Rgb eye_transmittance(const core::Ray& ray, float to, MarchScratch& scratch,
-                                const EyeMedia* shared) const;
+                     MarchedRay& result) const;
+    core::Rgb eye_transmittance(const core::Ray& ray, float to, MarchScratch& scratch) const;
     void look_up_steps(const core::Ray& ray, MarchScratch& scratch) const;
     void place_steps(const StepRule& rule, std::vector<float>& distances) const;
     core::Rgb scattered_at(const core::Ray& ray, float t, const MediumSegment& at, MarchScratch& scratch,

@@ -7,7 +7,6 @@
 // touch surfaces and the borders of media, are left out of the triangle; each has a shadow ray of its own.
 #include <algorithm>
 
-#include "screenspace/in_scattering/eye_media.h"
 #include "screenspace/in_scattering/in_scattering.h"
 
 namespace mote::screenspace {
@@ -38,7 +37,7 @@ bool InScattering::is_free(const Ray& ray, double t0, double t1) const {
                     : space.free_of_boundaries(light, from, direction);
 }
 
-/// Whether the light reaches the steps.
+/// Traces shadow rays from the steps to the light; sets scratch.lit.
 void InScattering::trace_steps(const Ray& ray, const StepRule& rule, MarchScratch& scratch) const {
     constexpr int width = ShadowPacket::width;
     place_steps(rule, scratch.distances);
@@ -62,7 +61,8 @@ void InScattering::trace_steps(const Ray& ray, const StepRule& rule, MarchScratc
     scratch.walk.rays.occlusion += steps, scratch.steps += steps;
 }
 
-/// One shadow ray from the middle of a short piece whose triangle was not looked at.
+/// Light scattered in a short piece that the test of the triangle leaves out, by one shadow ray from its
+/// middle.
 Rgb InScattering::end_piece(const Ray& ray, double t0, double t1, const MediumSegment& at,
                             const AnalyticMedium& medium, MarchScratch& scratch) const {
     if (!(t0 < t1)) return Rgb(0.0f);

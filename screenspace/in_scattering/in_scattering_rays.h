@@ -1,5 +1,4 @@
-// In-scattering of one light through a camera: what in_scattering_source.h asks for, answered by rays into a
-// scene.
+// In-scattering of one light through a camera: in_scattering_source.h implemented by rays into a scene.
 #pragma once
 
 #include <mutex>
@@ -20,7 +19,7 @@ class InScatteringRays final : public InScatteringSource {
     InScatteringRays(const core::Scene& scene, const InScattering& light, const core::Vec2& u_lens);
     std::unique_ptr<InScatteringTask> start() const override;
 
-    /// What all tasks that have ended did; call it when none is running.
+    /// Counts over all tasks that have ended; call it when none is running.
     const core::RayCounters& rays() const { return rays_; }
     const core::TrackingCounters& tracking() const { return tracking_; }  ///< the same in media
     std::uint64_t marched() const { return marched_; }                    ///< rays

@@ -1,7 +1,7 @@
-// What sampling methods in screen space ask of the light that is scattered into eye rays.
+// Interface through which screen-space sampling evaluates the light scattered into eye rays.
 //
-// Film positions are in pixels. The methods (epipolar_picture.h, in_scattering_grid.h) know nothing of
-// scenes: tests give them functions, in_scattering.h gives them rays.
+// Film positions are in pixels. The sampling methods (screenspace/epipolar) are independent of scenes: tests
+// implement the interface by functions, in_scattering_rays.h by rays.
 #pragma once
 
 #include <memory>
@@ -17,12 +17,12 @@ struct RayEnd {
     float distance =
         0.0f;  ///< along the ray [m]: to the surface, or to where the ray leaves the light's cone and the
                ///< media before it gets there; 0 where no light can be scattered into the ray
-    bool surface = false;  ///< the surface is what ends it
-    /// What the light would be if nothing but 1/d^2 counted: the integral over the lit part [1/m]. Methods
-    /// interpolate light over weight, which neither the light's closeness nor the length of the ray changes.
+    bool surface = false;  ///< it ends at the surface
+    /// Integral of 1/d^2 over the lit part [1/m]. Light over weight is interpolated, because it depends
+    /// neither on how close the light is nor on the length of the ray.
     float weight = 1.0f;
     core::Vec3 position{0.0f}, normal{0.0f};  ///< of that surface; normal: geometric, unit, either side
-    bool dark() const { return !(distance > 0.0f); }  ///< can nothing be scattered into the ray?
+    bool dark() const { return !(distance > 0.0f); }  ///< no light can be scattered into the ray
 };
 
 /// One ray marched to its end.
@@ -38,7 +38,8 @@ class InScatteringTask {
     /// Through a place of the film.
     virtual core::Ray ray(const Vec2d& film) = 0;
     virtual RayEnd end_of(const Vec2d& film) = 0;
-    virtual MarchedRay march(const Vec2d& film, const RayEnd& end) = 0;  ///< what all the trouble is to avoid
+    virtual MarchedRay march(const Vec2d& film,
+                             const RayEnd& end) = 0;  ///< the costly part, to be done for few rays
 };
 
 /// Gives each thread its task.
@@ -49,7 +50,7 @@ class InScatteringSource {
     virtual std::unique_ptr<InScatteringTask> start() const = 0;
 };
 
-/// Do two rays end at one surface, or both beyond all light, so that light may be interpolated between them?
+/// True if two rays end at one surface, or both beyond all light: then light is interpolated between them.
 /// The second ends at `distance`; `ray()` returns it where it is needed. Surfaces continue where distances
 /// differ by less than the share `tolerance`, or where the second ray meets the first end's tangent plane as
 /// closely to its own end as that: floors seen at a flat angle.

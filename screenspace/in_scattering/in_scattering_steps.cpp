@@ -1,7 +1,6 @@
 // In-scattering by steps: where they are, what each scatters, and their sum along the media of a ray.
 #include <algorithm>
 
-#include "screenspace/in_scattering/eye_media.h"
 #include "screenspace/in_scattering/in_scattering.h"
 
 namespace mote::screenspace {
@@ -64,7 +63,7 @@ void InScattering::look_up_steps(const Ray& ray, MarchScratch& scratch) const {
 }
 
 void InScattering::march_steps(const Ray& ray, double t0, double t1, MarchScratch& scratch,
-                               const EyeMedia* shared, MarchedRay& result) const {
+                               MarchedRay& result) const {
     scratch.distances.clear();
     const StepRule rule(settings_.rule, ray, position_, t0, t1);
     if (t0 < t1 && (std::isfinite(t1) || settings_.rule == MarchRule::equiangular))
@@ -74,11 +73,9 @@ void InScattering::march_steps(const Ray& ray, double t0, double t1, MarchScratc
     std::size_t next = 0;
     for (const MediumSegment& s : scratch.eye) {
         float t = s.t0;
-        if (!shared) result.transmittance *= s.panes;
+        result.transmittance *= s.panes;
         const auto advance = [&](float to) {
-            if (shared)
-                result.transmittance = shared->transmittance(to, scratch.walk);
-            else if (s.medium && t < to)
+            if (s.medium && t < to)
                 result.transmittance *= marched_transmittance(*s.medium, {ray.origin, ray.direction, t, to},
                                                               settings_.voxels, scratch.walk);
             t = std::max(t, to);

@@ -12,10 +12,10 @@ namespace {
 
 constexpr std::size_t leaf_size = 4;
 /// Nodes that a query opens before it gives up: where so much is near, something is likely in the way.
-constexpr std::size_t most_nodes = 200;
+constexpr std::size_t max_nodes = 200;
 constexpr std::uint32_t whole = ~std::uint32_t(0);
-/// What rounding moves a shadow ray or its hit by, as a share of the largest coordinate: 16 units in the last
-/// place.
+/// Displacement of a shadow ray or its hit by rounding, relative to the largest coordinate: 16 units in the
+/// last place.
 constexpr double rounding = 1e-6;
 
 /// Null BSDFs and panes, as RayTracer groups them.
@@ -23,7 +23,7 @@ bool passes_straight(const Shape& shape) { return shape.bsdf && shape.bsdf->trai
 
 double largest_of(const Vec3d& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
-/// Is there a gap wider than the margin between two sets of points, seen along `axis` of any length?
+/// True if two sets of points are farther apart than the margin along `axis`, of any length.
 bool gap(const Vec3d& axis, const auto& a, const auto& b, double margin) {
     double a0 = double(infinity), a1 = -a0, b0 = a0, b1 = a1;
     for (const Vec3d& p : a) a0 = std::min(a0, glm::dot(axis, p)), a1 = std::max(a1, glm::dot(axis, p));
@@ -175,7 +175,7 @@ bool UnoccludedSpace::Tree::clear(const Triangle& t) const {
         const std::uint32_t at = open[--count];
         const Node& node = nodes_[at];
         if (query.apart(node.bounds)) continue;
-        if (++visited > most_nodes) return false;
+        if (++visited > max_nodes) return false;
         if (node.count == 0) {
             open[count++] = node.first, open[count++] = at + 1;
             continue;
@@ -186,8 +186,7 @@ bool UnoccludedSpace::Tree::clear(const Triangle& t) const {
     return true;
 }
 
-/// What is further away than all shapes together is as good as infinity; so far out the two sides are two
-/// triangles.
+/// Beyond all shapes any distance is as good as infinity; out there the two sides are two triangles.
 bool UnoccludedSpace::Tree::clear(const Vec3d& point, const Vec3d& from, const Vec3d& direction) const {
     if (nodes_.empty()) return true;
     const double far = 4.0 * (largest_ + largest_of(point) + largest_of(from));

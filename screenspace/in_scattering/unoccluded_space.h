@@ -22,11 +22,11 @@ class UnoccludedSpace {
     explicit UnoccludedSpace(std::span<const std::shared_ptr<core::Shape>> shapes);
 
     using Triangle = std::array<core::Vec3d, 3>;
-    /// Of everything that stops shadow rays.
+    /// True if nothing that stops shadow rays reaches into the triangle.
     bool free_of_surfaces(const Triangle& t) const { return surfaces_.clear(t); }
-    /// Of everything that only separates media: all of the triangle is in one medium.
+    /// True if no boundary between media reaches into the triangle: all of it is in one medium.
     bool free_of_boundaries(const Triangle& t) const { return boundaries_.clear(t); }
-    /// The same for all that lies between a point and a ray without end that starts at `from`.
+    /// Both for the space between a point and an infinite ray that starts at `from`.
     bool free_of_surfaces(const core::Vec3d& point, const core::Vec3d& from,
                           const core::Vec3d& direction) const;
     bool free_of_boundaries(const core::Vec3d& point, const core::Vec3d& from,

@@ -13,7 +13,7 @@
 #include <cmath>
 
 #include "core/math/vectorize.h"
-#include "screenspace/g_buffer/mip_pyramid.h"
+#include "screenspace/ssbc/mip_pyramid.h"
 
 namespace mote::screenspace {
 
@@ -54,7 +54,7 @@ inline void residual_of(const ReceiverPacket& r, const SurfaceNode& node, float 
     }
 }
 
-/// What G does not exceed between the receivers and any pixel of a node [1/m^2].
+/// Upper bound of G between the receivers and any pixel of a node [1/m^2].
 inline void largest_geometry_term(const ReceiverPacket& r, const SurfaceNode& node, bool discontinuity,
                                   Lanes& largest) {
     const core::Vec3 p = node.position, n = node.normal;

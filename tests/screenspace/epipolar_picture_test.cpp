@@ -2,7 +2,7 @@
 #include "screenspace/epipolar/epipolar_picture.h"
 
 #include "core/math/random.h"
-#include "screenspace/in_scattering/in_scattering_grid.h"
+#include "screenspace/epipolar/in_scattering_grid.h"
 #include "tests/support/catch.h"
 
 using namespace mote;
@@ -83,9 +83,7 @@ Error error_of(const Shafts& source, std::uint64_t marched, const LightAt& light
 }
 
 EpipolarPicture sampled(const Shafts& source, EpipolarLines lines, const LineSampling& sampling) {
-    EpipolarPicture picture(std::move(lines), sampling, source, in_turn);
-    picture.march(source, in_turn);
-    return picture;
+    return {std::move(lines), sampling, source, in_turn};
 }
 
 Error epipolar(const Shafts& source, int lines, LineSampling sampling) {

@@ -1,5 +1,5 @@
 // Pyramids: what must be conserved, what must be bounded, what must be marked.
-#include "screenspace/g_buffer/mip_pyramid.h"
+#include "screenspace/ssbc/mip_pyramid.h"
 
 #include "tests/screenspace/ssbc_room.h"
 #include "tests/support/catch.h"

@@ -1,4 +1,4 @@
-#include "screenspace/in_scattering/in_scattering_grid.h"
+#include "screenspace/epipolar/in_scattering_grid.h"
 
 #include <algorithm>
 #include <cmath>

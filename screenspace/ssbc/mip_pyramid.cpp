@@ -1,4 +1,4 @@
-#include "screenspace/g_buffer/mip_pyramid.h"
+#include "screenspace/ssbc/mip_pyramid.h"
 
 #include <tbb/parallel_for.h>
 
@@ -22,7 +22,7 @@ struct Children {
     }
 };
 
-/// Can b be taken for a part of a's surface? The angle is given by its cosine and its sine.
+/// True if b continues a's surface up to an angle, given by its cosine and its sine.
 bool continues(const SurfaceNode& a, const SurfaceNode& b, float cosine, float sine) {
     const Vec3 na = glm::normalize(a.normal), d = b.position - a.position;
     if (glm::dot(na, glm::normalize(b.normal)) < cosine) return false;
