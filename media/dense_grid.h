@@ -11,7 +11,7 @@
 
 namespace mote::media {
 
-/// What stands beyond the first and the last voxel of an axis, as in Mitsuba 3.
+/// Continuation beyond the first and the last voxel of an axis, as in Mitsuba 3.
 enum class WrapMode {
     clamp,   ///< the border's voxel
     repeat,  ///< the grid again

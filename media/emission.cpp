@@ -1,4 +1,4 @@
-// What a medium emits, and its parameters.
+// Emission of a medium, and its parameters.
 #include "media/emission.h"
 
 #include "core/objects/properties.h"

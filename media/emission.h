@@ -1,4 +1,4 @@
-// What a medium emits: a constant or varying radiance, or a black body by temperature (as in pbrt-v4).
+// Emission of a medium: a constant or varying radiance, or a black body by temperature (as in pbrt-v4).
 #pragma once
 
 #include <memory>

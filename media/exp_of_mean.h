@@ -10,20 +10,20 @@
 
 namespace mote::media {
 
-/// The chance that the series is asked for at all. It has a k-th term with the chance series_chance / k!, so
-/// the k! of the series cancels.
+/// Probability that the series is evaluated at all. It has a k-th term with probability series_chance / k!,
+/// so the k! of the series cancels.
 inline constexpr double series_chance = 0.1;
-/// More are asked for with a chance of 2e-11.
-inline constexpr std::size_t most_terms = 12;
+/// Largest order; a higher one has a probability of 2e-11.
+inline constexpr std::size_t max_terms = 12;
 /// Wide is double, or a vector of them.
 template <typename Wide>
-using MeanEstimates = std::array<Wide, most_terms + 1>;
+using MeanEstimates = std::array<Wide, max_terms + 1>;
 
-/// How many estimates exp_of_mean() is to have.
+/// Samples the number of estimates for exp_of_mean().
 inline std::size_t draw_estimates(core::Rng& rng) {
     if (!sample_event(series_chance, rng)) return 1;
     std::size_t count = 2;
-    while (count <= most_terms && sample_event(1.0 / double(count), rng)) ++count;
+    while (count <= max_terms && sample_event(1.0 / double(count), rng)) ++count;
     return count;
 }
 

@@ -15,7 +15,7 @@ struct VdbLoadOptions;
 class AlignedBuffer {
   public:
     AlignedBuffer() = default;
-    /// Of so many bytes, not set.
+    /// Buffer of so many bytes, not set.
     explicit AlignedBuffer(std::size_t size);
     std::byte* data() { return bytes_.get(); }              ///< the first byte, or null
     const std::byte* data() const { return bytes_.get(); }  ///< the first byte, or null
@@ -30,7 +30,7 @@ class AlignedBuffer {
     std::size_t size_ = 0;
 };
 
-/// What the helper program says.
+/// Answer of the helper program.
 struct GridReaderAnswer {
     std::string text;      ///< JSON, see grid_reader_protocol.h
     AlignedBuffer buffer;  ///< the NanoVDB grid; empty for "list"

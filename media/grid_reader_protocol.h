@@ -1,4 +1,4 @@
-// What the helper program that reads VDB files hands back: a header, a JSON text, and the NanoVDB buffer, in
+// Answer of the helper program that reads VDB files: a header, a JSON text, and the NanoVDB buffer, in
 // a memory file that it inherits. The header is written last, so that a helper that died leaves none.
 #pragma once
 

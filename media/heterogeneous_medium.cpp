@@ -72,7 +72,6 @@ void register_heterogeneous_medium(core::Registry& registry) {
            "Estimator of shadow rays: ray_marching, delta_tracking, ratio_tracking, residual_ratio_tracking, "
            "unbiased_ray_marching (little noise in smooth grids, docs/media.md), or the better of ratio and "
            "residual tracking for the grid."},
-          {"majorants", "string", "local", "Bounds that tracking runs against: local (by cells) or global."},
           {"marching_tolerance", "float", "0.001",
            "Relative error of the optical depth that ray_marching aims at."}},
          R"(<medium type="heterogeneous"><volume name="sigma_t" type="constvolume"><rgb name="value" value="1 2 3"/></volume><rgb name="albedo" value="0.9"/></medium>)"},

@@ -31,16 +31,18 @@ struct MediumParts {
     /// 0), which darkens, rather than spins. 2^24 take 0.8 s; they pass an optical depth of 16 in a
     /// part a million times thinner than its majorant.
     std::uint64_t step_limit = std::uint64_t(1) << 24;
-    float plant_majorant_factor = 1.0f;  ///< for tests that need a wrong majorant; 1 in every other use
+    /// Multiplies all majorants, for tests of wrong and of loose ones; 1 in every other use. Any other value
+    /// also turns regular tracking off.
+    float plant_majorant_factor = 1.0f;
 };
 
-/// What media over grids share.
+/// Base of media over grids.
 class HeterogeneousMedium : public core::Medium {
   public:
     const core::PhaseFunction& phase() const override { return *parts_.phase; }
     std::shared_ptr<core::Emitter> make_emitter(const core::Bounds3& box) override;
 
-    /// What Medium::transmittance() uses: settings.transmittance, or what `automatic` chose for this grid.
+    /// Estimator of Medium::transmittance(): settings.transmittance, or the choice of `automatic`.
     TransmittanceEstimator estimator() const { return estimator_; }
     /// The transmittance by a chosen estimator (`automatic` is estimator()); all but ray marching are
     /// unbiased.
@@ -66,23 +68,22 @@ class HeterogeneousMedium : public core::Medium {
     /// segment must be finite unless the medium is bounded.
     virtual core::Vec3d optical_depth_by_marching(const core::Ray& ray, float step,
                                                   core::TrackingCounters& counters) const = 0;
-    /// The same from ray.t_min to the end of each of depths.size() equal parts of a finite segment, in one go
-    /// that passes over empty cells.
+    /// Optical depths from ray.t_min to the end of each of depths.size() equal parts of a finite segment, in
+    /// one walk that leaps over empty cells.
     virtual void optical_depths_by_marching(const core::Ray& ray, float step, std::span<core::Vec3d> depths,
                                             core::TrackingCounters& counters) const = 0;
 
   protected:
-    /// Of all but the grid.
     explicit HeterogeneousMedium(MediumParts parts);
     core::Rgb albedo_at(const core::Vec3& p) const;
-    /// Nothing scatters and nothing glows: the transmittance says everything.
+    /// True if nothing scatters or emits: the transmittance is all there is.
     bool absorbs_alone() const { return absorbs_alone_; }
 
     MediumParts parts_;                         ///< as given
     std::optional<core::Rgb> constant_albedo_;  ///< where it is the same everywhere
-    bool emissive_, absorbs_alone_;             ///< does it glow; does it do nothing but absorb?
-    TransmittanceEstimator estimator_ = TransmittanceEstimator::ratio_tracking;  ///< of connections
-    float voxel_size_ = core::infinity;                                          ///< of the grid [m]
+    bool emissive_, absorbs_alone_;             ///< emits; neither scatters nor emits
+    TransmittanceEstimator estimator_ = TransmittanceEstimator::residual_ratio_tracking;  ///< of connections
+    float voxel_size_ = core::infinity;                                                   ///< of the grid [m]
     std::shared_ptr<MediumEmitter> emitter_;  ///< null until make_emitter()
 };
 

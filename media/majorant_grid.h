@@ -60,8 +60,6 @@ class MajorantGrid {
     const Range& outside() const { return outside_; }
     /// Bounds over all of space.
     Range total() const;
-    /// One cell instead of many: a global majorant.
-    void merge_cells();
     /// The sum of the cells' lower bounds over that of their upper ones: 1 for a constant, 0 where every cell
     /// touches vacuum.
     double certain_share() const;

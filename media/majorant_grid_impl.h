@@ -131,19 +131,6 @@ auto MajorantGrid<Value>::total() const -> Range {
 }
 
 template <typename Value>
-void MajorantGrid<Value>::merge_cells() {
-    if (cells_.empty()) return;
-    Range all = cells_.front();
-    for (const Range& r : cells_)
-        all.lower = glm::min(all.lower, r.lower), all.upper = glm::max(all.upper, r.upper);
-    const Voxel extent = glm::max(upper_ - lower_, Voxel(1));
-    edge_ = std::max({extent.x, extent.y, extent.z});
-    resolution_ = glm::ivec3(1);
-    cells_.assign(1, all);
-    find_distances();
-}
-
-template <typename Value>
 double MajorantGrid<Value>::certain_share() const {
     double lower = detail::largest(outside_.lower), upper = detail::largest(outside_.upper);
     if (!cells_.empty()) lower = upper = 0.0;

@@ -19,8 +19,8 @@ class MeanExtinction {
   public:
     static constexpr std::size_t default_bytes = std::size_t(64) << 20;
 
-    /// Of `medium` inside `box`, vacuum beyond. Keeps a reference to the medium. Cells are as small as the
-    /// medium's voxels where `max_bytes` allow, else larger. Homogeneous media take no memory.
+    /// Pyramid of `medium` inside `box`, vacuum beyond. Keeps a reference to the medium. Cells are as small
+    /// as the medium's voxels where `max_bytes` allow, else larger. Homogeneous media take no memory.
     MeanExtinction(const core::Medium& medium, const core::Bounds3& box,
                    std::size_t max_bytes = default_bytes);
 

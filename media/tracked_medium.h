@@ -80,7 +80,6 @@ class TrackedMedium final : public HeterogeneousMedium {
 
     TrackedMedium(Grid grid, MediumParts parts)
         : HeterogeneousMedium(std::move(parts)), grid_(std::move(grid)) {
-        if (parts_.tracking.majorants == Majorants::global) grid_.majorants.merge_cells();
         grid_.majorants.scale_upper(parts_.plant_majorant_factor);
         certain_share_ = grid_.majorants.certain_share();
         estimator_ = parts_.tracking.transmittance;
@@ -97,7 +96,7 @@ class TrackedMedium final : public HeterogeneousMedium {
                 copy_ = VoxelCopy(grid_.majorants.lower(), grid_.majorants.upper(),
                                   [&](const Voxel& v) { return cursor.lookup(core::Vec3d(v)); });
             }
-        if (parts_.tracking.majorants == Majorants::local)
+        if (parts_.plant_majorant_factor == 1.0f)
             regular_from_ = detail::regular_depth_per_voxel / (double(voxel_size_) * double(parts_.scale));
     }
 
@@ -188,8 +187,7 @@ class TrackedMedium final : public HeterogeneousMedium {
     Grid grid_;
     VoxelCopy copy_;  ///< for unbiased ray marching through one channel, where it is not too large
     float majorant_ = 0.0f;
-    /// From this rate on a cell may be tracked regularly. The same wherever a ray ends, so that two
-    /// techniques agree.
+    /// Rate from which a cell may be tracked regularly, wherever a ray ends, so that two techniques agree.
     double regular_from_ = core::infinity;
     double certain_share_ = 0.0;  ///< of the majorants: a sum over all cells, taken once
 };

@@ -20,7 +20,7 @@ class TrackedMedium<Grid>::Voxels {
         ++counters_.lookups;
         return detail::widen(cursor_.lookup(ray_.origin + t * ray_.direction));
     }
-    /// The optical depth between two places in one voxel.
+    /// Optical depth between two positions in one voxel.
     Wide depth_within(double from, double to) const {
         return detail::integral_within_voxel(counted(), ray_, from, to) * scale_;
     }
@@ -341,7 +341,7 @@ template <typename Grid>
 core::Rgb TrackedMedium<Grid>::by_marching(const core::Ray& ray, core::TrackingCounters& counters) const {
     // Midpoints of equal parts, one a voxel to begin with, then three times as many (the old ones among them)
     // until the optical depth of the piece moves by less than the tolerance.
-    constexpr std::uint64_t most_points = 6561;
+    constexpr std::uint64_t max_points = 6561;
     if (parts_.scale == 0.0f) return core::Rgb(1.0f);
     const core::Vec3d origin = index_origin(ray), direction = index_direction(ray);
     const double voxels_per_metre = glm::length(direction);
@@ -372,8 +372,7 @@ core::Rgb TrackedMedium<Grid>::by_marching(const core::Ray& ray, core::TrackingC
             n *= 3;
             const Wide fine = sum / double(n);
             const double moved = std::fmax(detail::largest(fine - coarse), detail::largest(coarse - fine));
-            if (moved <= parts_.tracking.marching_tolerance * detail::largest(fine) || n >= most_points)
-                break;
+            if (moved <= parts_.tracking.marching_tolerance * detail::largest(fine) || n >= max_points) break;
         }
         depth += sum * (length / double(n));
         return true;
@@ -546,13 +545,14 @@ core::MediumTraits TrackedMedium<Grid>::traits() const {
 template <typename Grid>
 float TrackedMedium<Grid>::find_voxel_size() const {
     const core::Vec3d origin = grid_.world_to_index.point(core::Vec3d(0.0));
-    double most_voxels = 0.0;  // a metre holds, along any axis
+    double voxels_per_metre = 0.0;  // largest, over the axes
     for (int axis = 0; axis < 3; ++axis) {
         core::Vec3d along(0.0);
         along[axis] = 1.0;
-        most_voxels = std::fmax(most_voxels, glm::length(grid_.world_to_index.point(along) - origin));
+        voxels_per_metre =
+            std::fmax(voxels_per_metre, glm::length(grid_.world_to_index.point(along) - origin));
     }
-    return float(1.0 / most_voxels);
+    return float(1.0 / voxels_per_metre);
 }
 
 }  // namespace mote::media

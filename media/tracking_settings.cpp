@@ -16,7 +16,6 @@ const std::vector<std::string> estimator_names = {"automatic",
                                                   "ratio_tracking",
                                                   "residual_ratio_tracking",
                                                   "unbiased_ray_marching"};
-const std::vector<std::string> majorant_names = {"local", "global"};
 
 /// Place of the parameter's word in `known`; the first where it is not given.
 std::size_t choice_of(const core::Properties& p, const std::string& name,
@@ -39,7 +38,6 @@ const std::string& name_of(TransmittanceEstimator estimator) {
 TrackingSettings tracking_settings_of(const core::Properties& p) {
     TrackingSettings settings;
     settings.transmittance = TransmittanceEstimator(choice_of(p, "transmittance", estimator_names));
-    settings.majorants = Majorants(choice_of(p, "majorants", majorant_names));
     settings.marching_tolerance = p.get_float("marching_tolerance", settings.marching_tolerance);
     if (!(settings.marching_tolerance >= 1e-6 && settings.marching_tolerance <= 1.0))
         throw core::InputError("marching_tolerance must lie between 1e-6 and 1",

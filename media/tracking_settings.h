@@ -20,19 +20,15 @@ enum class TransmittanceEstimator {
     unbiased_ray_marching     ///< equal steps from a random start, and the rest of the exponential's series
 };
 
-/// Upper bounds that tracking runs against.
-enum class Majorants { local, global };  ///< cell by cell, or one for the whole grid
-
 struct TrackingSettings {
     TransmittanceEstimator transmittance = TransmittanceEstimator::automatic;
-    Majorants majorants = Majorants::local;
     double marching_tolerance =
         1e-3;  ///< of ray marching: relative error of the optical depth that it aims at
 };
 
 const std::string& name_of(TransmittanceEstimator estimator);
 
-/// From the parameters `transmittance`, `majorants` and `marching_tolerance`. Throws InputError with the
+/// From the parameters `transmittance` and `marching_tolerance`. Throws InputError with the
 /// nearest known word.
 TrackingSettings tracking_settings_of(const core::Properties& properties);
 

@@ -14,8 +14,8 @@ namespace detail {
 
 /// Steps per optical depth of the majorant.
 inline constexpr double steps_per_depth = 0.7;
-/// Ways that need more are tracked.
-inline constexpr double most_steps = 96.0;
+/// Rays that need more are tracked.
+inline constexpr double max_steps = 96.0;
 
 }  // namespace detail
 
@@ -28,7 +28,7 @@ core::Rgb TrackedMedium<Grid>::by_unbiased_marching(const core::Ray& ray, core::
     const bool bounded = ends_with_cells();
     if (bounded && !grid_.majorants.clip(origin, direction, begin, end)) return core::Rgb(1.0f);
     const double wanted = std::ceil(detail::steps_per_depth * double(majorant_) * (end - begin));
-    if (!(wanted <= detail::most_steps)) return by_residual_tracking(ray, rng, counters);
+    if (!(wanted <= detail::max_steps)) return by_residual_tracking(ray, rng, counters);
     const int steps = (std::max(int(wanted), 1) + VoxelCopy::width - 1) / VoxelCopy::width * VoxelCopy::width;
     const double length = (end - begin) / double(steps);
     const core::Vec3d from = origin + begin * direction, step = length * direction;

@@ -55,7 +55,7 @@ class VdbGrid {
     std::uint64_t active_voxels() const;
     std::uint64_t bytes() const;
     std::uint64_t clamped_voxels() const;  ///< negative values raised to 0
-    /// What the user should know: several grids of that name, clamped values, odd metadata.
+    /// Warnings for the user: several grids of that name, clamped values, odd metadata.
     const std::vector<std::string>& warnings() const;
 
     /// The NanoVDB grid: a `const nanovdb::FloatGrid*` for those who include NanoVDB.

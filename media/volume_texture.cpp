@@ -13,7 +13,7 @@ class VolumeTexture final : public core::Texture {
     explicit VolumeTexture(std::shared_ptr<const Volume> volume) : volume_(std::move(volume)) {}
 
     core::Rgb eval(const core::TextureCoordinates& uv) const override { return volume_->eval(uv.position); }
-    /// Of which part a surface shows, nothing is known here: half of the largest value.
+    /// Half of the largest value, since the part that a surface shows is not known here.
     core::Rgb mean() const override { return 0.5f * volume_->upper_bound(); }
     float maximum() const override { return core::max_component(volume_->upper_bound()); }
     float minimum() const override { return 0.0f; }

@@ -13,7 +13,7 @@ namespace mote::media {
 
 class VoxelCopy {
   public:
-    static constexpr std::int64_t most_voxels = std::int64_t(1) << 24;
+    static constexpr std::int64_t max_voxels = std::int64_t(1) << 24;
     static constexpr int width = 8;  ///< points of a step of mean_along()
 
     VoxelCopy() = default;
@@ -21,7 +21,7 @@ class VoxelCopy {
     template <typename ValueAt>
     VoxelCopy(const Voxel& lower, const Voxel& upper, const ValueAt& value_at) : lower_(lower) {
         const Voxel size = upper - lower + Voxel(1);
-        if (double(size.x) * double(size.y) * double(size.z) > double(most_voxels)) return;
+        if (double(size.x) * double(size.y) * double(size.z) > double(max_voxels)) return;
         if (size.x < 2 || size.y < 2 || size.z < 2) return;
         size_ = glm::ivec3(size);
         values_.reserve(std::size_t(size.x * size.y * size.z));

@@ -116,8 +116,6 @@ def measure(mote, name, quick, rows, plots):
     print(f"  a pass of it takes {exact_cost:.3f} s", flush=True)
     for n in LAYERS:
         layered(f"{n} layers", n)
-    layered("1, shadow rays", 1, visibility=True)
-    layered("4, shadow rays", 4, visibility=True)
     layered("4, all VPLs", 4, hidden_share=1)
     wide = row("1, twice as wide", variants.larger(1, True))
     fine = [row(f"{n}, twice as fine", variants.larger(n, False)) for n in (1, 4)]
@@ -128,12 +126,11 @@ def measure(mote, name, quick, rows, plots):
     mean = sum(exact) / len(exact)
     missing = (mean - sum(result["4 layers"]["images"]) / 2)[~even].sum() / (3 * even.size * total)
     at_uneven = float(mean[~even].sum() / (3 * even.size * total))
-    shares = {k: result[k]["share"] for k in ("1 layers", "4 layers", "4, shadow rays")}
+    shares = {k: result[k]["share"] for k in ("1 layers", "4 layers")}
     parts = {"seen": shares["1 layers"], "hidden": shares["4 layers"] - shares["1 layers"],
              "beyond the frame": wide["share"] - shares["1 layers"], "size of pixels": fine[1]["share"] - shares["4 layers"],
              "receivers not Lambertian": float(missing)}
     parts["neither"] = 1 - sum(parts.values())
-    parts["through walls"] = shares["4 layers"] - shares["4, shadow rays"]
     for part, value in parts.items():
         rows.append([name, f"part: {part}", value, "", "", "", "", ""])
         print(f"  {part:26} {value:+7.1%}" + (f", of {at_uneven:.1%} there" if part.startswith("receivers") else ""))

@@ -9,8 +9,8 @@ using namespace core;
 
 namespace {
 
-constexpr int most_steps = 65536;
-/// Of a homogeneous medium, whose steps are exact; between them S is taken to be linear.
+constexpr int max_steps = 65536;
+/// Steps through a homogeneous medium; they are exact, and S is linear between them.
 constexpr int even_steps = 32;
 
 int steps_of(const Medium& medium, const Ray& part, float voxels) {
@@ -18,7 +18,7 @@ int steps_of(const Medium& medium, const Ray& part, float voxels) {
     const float step = medium.marching_step(voxels, length);
     if (!std::isfinite(length)) return 1;
     if (!std::isfinite(step)) return even_steps;
-    return int(std::clamp(std::ceil(length / step), 1.0f, float(most_steps)));
+    return int(std::clamp(std::ceil(length / step), 1.0f, float(max_steps)));
 }
 
 Rgb ratio(const Rgb& a, const Rgb& b) {

@@ -1,4 +1,4 @@
-// What the media along an eye ray take from the light behind them and scatter towards the eye, without noise:
+// Transmittance of the media along an eye ray, and their scattering towards the eye, without noise:
 //   T(t) per channel,   S(t) = int_0^t T sigma_s dt',
 // marched once a pixel and asked at the surface of every sample, whose rays run so close that they share it.
 #pragma once

@@ -40,7 +40,7 @@ class LayerFilter {
     /// and stays as it is. Throws std::invalid_argument where a layer has no squares, and Cancelled.
     void apply(core::Film& film, std::span<const Choice> layers, core::CancelToken cancelled = {});
 
-    /// What was left of the variance of a layer by the last apply(), mean over channels; in its order.
+    /// Remaining variance of each layer of the last apply(), mean over channels, in its order.
     const std::vector<std::vector<float>>& variances() const { return variances_; }
     double feature_seconds() const { return feature_seconds_; }  ///< wall time
     double filter_seconds() const { return filter_seconds_; }    ///< of all calls

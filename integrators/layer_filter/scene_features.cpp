@@ -78,7 +78,7 @@ class FeatureRow {
         return s;
     }
 
-    /// What thin glass lets through: all paths pass it alike, masks they pass by chance.
+    /// Transmittance of thin glass, which all paths pass alike; masks they pass by chance.
     Rgb glass_before(Ray ray, float t) const {
         Rgb product(1.0f);
         if (!scene_.has_panes()) return product;

@@ -6,7 +6,6 @@
 #include "core/objects/registry.h"
 #include "core/render/cpu_clock.h"
 #include "screenspace/g_buffer/g_buffer.h"
-#include "screenspace/ssbc/ssbc_visibility.h"
 
 namespace mote::integrators {
 
@@ -27,7 +26,6 @@ std::shared_ptr<Object> make(const Properties& p) {
     settings.ssbc.blur = float(p.get_float_in("blur", 0.0, 0.0, 100.0));
     settings.layers = int(p.get_int_in("layers", 1, 1, 16));
     settings.vpl_share = int(p.get_int_in("hidden_share", settings.vpl_share, 1, 1 << 20));
-    settings.visibility = p.get_bool("visibility", false);
     compensation::CompensationSettings media;
     if (const auto nested = p.child<compensation::Compensation>("media")) media = nested->settings();
     media.surfaces = false;
@@ -63,8 +61,7 @@ ScreenSpaceCost add_screen_space_compensation(const Scene& scene, const ScreenSp
     screenspace::SsbcSettings ssbc = settings.ssbc;
     cancelled.check();
     ssbc.refinement.cancelled = cancelled;
-    const screenspace::TracedVisibility traced(scene);
-    ssbc.bound = bound, ssbc.visibility = settings.visibility ? &traced : nullptr;
+    ssbc.bound = bound;
     const screenspace::SsbcResult result =
         screenspace::compensate(screenspace::ssbc_surfaces(buffers[0]), light, hidden, ssbc);
     film.set_mean(layers.target, result.compensation);
@@ -102,8 +99,6 @@ void register_screen_space_compensation(Registry& registry) {
            "surfaces along every ray that send light; from 2 on also hidden ones, gathered in every pass"},
           {"hidden_share", "integer", "4",
            "hidden points share out the VPLs of a pass: each meets one of so many"},
-          {"visibility", "boolean", "false",
-           "shadow rays to what is summed, to measure what is lost without"},
           {"receivers", "string", "surfaces", "nothing else: media are not in the picture's G-buffer"},
           {"media", "compensation", "none", "compensation of light first scattered in media"}},
          R"(<compensation type="screen_space"><integer name="steps" value="3"/></compensation>)"},

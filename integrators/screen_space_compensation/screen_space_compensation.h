@@ -16,7 +16,6 @@ struct ScreenSpaceSettings {
     screenspace::SsbcSettings ssbc;  ///< but for the bound, which is that of the render
     int layers = 1;                  ///< of surfaces along a ray; 1: what the picture shows
     int vpl_share = 4;               ///< at each hidden point: one VPL of so many, in turn
-    bool visibility = false;         ///< trace shadow rays, to measure what is lost without
 
     /// Of the light that hidden sides reflect, auxiliary; see hidden_light.h.
     std::vector<core::Layer> film_layers() const;

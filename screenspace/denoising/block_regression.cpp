@@ -40,7 +40,7 @@ struct BlockGrid {
     }
 };
 
-/// Of the cell, what lies within the picture; and as large a block within the picture.
+/// Part of the cell within the picture; and the cell moved to lie within it.
 PixelRectangle clipped(const PixelRectangle& c, int width, int height) {
     return {std::max(c.x0, 0), std::max(c.y0, 0), std::min(c.x1, width), std::min(c.y1, height)};
 }

@@ -9,13 +9,12 @@
 //   colours nor to the 1, and not where the fit is evaluated. Being independent of colours, it does what a
 //   ridge of its variance would. It makes fits differ from (1) by about its square.
 // - A block that reaches over the border is fitted where it fits into the picture; only its own pixels are
-// set.
+//   set.
 // - The sum of a block is kept: the residual is orthogonal to the 1. Where a fit is negative it becomes zero,
 //   which adds what it was.
 // - Beyond the paper: noise grows with brightness, and in a block that holds a lamp's reflection the error of
-// the bright
-//   pixels, spread over the fit, is many times what dark ones hold. Such blocks are solved a second time with
-//   weights,
+//   the bright pixels, spread over the fit, is many times the values of dark ones. Such blocks are solved a
+//   second time with weights,
 //
 //     minimise over x:  sum_p w_p^2 |b_p - sum_k f_pk x_k|^2,     w_p = 1 / (y_p / y + 0.3)              (2)
 //
@@ -38,7 +37,7 @@ struct FeaturePlane {
     bool squared = false;           ///< its square is a feature as well
 };
 
-/// Of block_regression().
+/// Settings of block_regression().
 struct RegressionSettings {
     int block = 32;            ///< side [pixels]
     core::Vec2i offset{0, 0};  ///< of the blocks' grid, other ones in every frame
@@ -53,13 +52,13 @@ struct RegressionSettings {
 /// The grid of a frame: a fixed order that covers the block evenly.
 core::Vec2i block_offset(int frame, int block = 32);
 
-/// What block_regression() makes.
+/// Result of block_regression().
 struct Regression {
     std::vector<core::Rgb> colour;  ///< by pixel
     std::uint64_t filled = 0;       ///< pixels that were not finite
 };
 
-/// The same for any number of threads. Throws std::invalid_argument when sizes differ or the picture is
+/// Independent of the number of threads. Throws std::invalid_argument when sizes differ or the picture is
 /// empty, and Cancelled.
 Regression block_regression(int width, int height, std::span<const FeaturePlane> features,
                             std::span<const core::Rgb> colour, const RegressionSettings& settings,

@@ -6,8 +6,8 @@
 
 namespace mote::screenspace {
 
-/// Sums over windows of (2 radius + 1)^2 pixels, cut off at the border. The same bits for any number
-/// of threads.
+/// Sums over windows of (2 radius + 1)^2 pixels, cut off at the border, with the same bits for any number of
+/// threads.
 std::vector<float> box_sums(int width, int height, std::span<const float> values, int radius);
 
 }  // namespace mote::screenspace

@@ -12,12 +12,12 @@ using namespace core;
 
 namespace {
 
-// Of weighted fits. A block is uneven where its brightest pixel is so many times its mean; the weight of the
+// Weighted fits. A block is uneven where its brightest pixel is so many times its mean; the weight of the
 // darkest is that of a pixel of this share of the mean; and a fit whose energy is further off than this is
-// thrown away. Found on three boxes with reflected lamps and caustics: a floor of 0.2 to 0.4 does as well,
+// discarded. Found on three boxes with reflected lamps and caustics: a floor of 0.2 to 0.4 does as well,
 // 0.03 leaves a fifth more error.
 constexpr float uneven_block = 1.5f, darkest_weight = 0.3f;
-constexpr double most_correction = 4.0;
+constexpr double max_correction = 4.0;
 
 }  // namespace
 
@@ -90,7 +90,7 @@ void FeatureBlock::fit_weighted(const PixelRectangle& block, float noise, std::u
     const auto n = std::size_t(matrix_.features());
     for (std::size_t c = 0; c < 3; ++c) {
         const double factor = kept[int(c)] > 0.0 ? energy[int(c)] / kept[int(c)] : 0.0;
-        const bool trusted = factor > 1.0 / most_correction && factor < most_correction;
+        const bool trusted = factor > 1.0 / max_correction && factor < max_correction;
         for (std::size_t k = c * n; k < (c + 1) * n; ++k)
             coefficients_[k] = trusted ? coefficients_[k] * float(factor) : before[k];
     }

@@ -12,7 +12,7 @@ struct PixelRectangle {
     int pixels() const { return (x1 - x0) * (y1 - y0); }
 };
 
-/// Of a feature in [-1, 1]: how it was centred and scaled.
+/// Centre and scale that map a feature to [-1, 1].
 struct FeatureScale {
     float centre = 0.0f, scale = 0.0f;  ///< (f - centre) * scale; 0 where it does not vary
 };

@@ -20,7 +20,7 @@ class TallMatrix {
 
     /// All zero.
     TallMatrix(int rows, int features, int colours);
-    /// The same with other rows; what was there is gone.
+    /// Sets the number of rows; all values become zero.
     void reset(int rows);
 
     int rows() const { return rows_; }
@@ -40,8 +40,8 @@ class TallMatrix {
     std::vector<float> values_;
 };
 
-/// What is left of a column behind the reflections of those before it, as a share of the column: below it the
-/// column depends on them (rounding leaves some 1e-6) and gets the coefficient zero.
+/// Smallest remainder of a column behind the reflections of those before it, as a share of the column: below
+/// it the column depends on them (rounding leaves some 1e-6) and gets the coefficient zero.
 inline constexpr float dependent_share = 1e-4f;
 
 /// Coefficients x that make |A x - b| smallest for every colour b, colour by colour: features() numbers each.

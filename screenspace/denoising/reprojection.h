@@ -14,7 +14,7 @@
 
 namespace mote::screenspace {
 
-/// What a frame knows of its pixels without noise, row by row from the top. An empty span: nothing.
+/// Noise-free features of a frame's pixels, row by row from the top. Empty spans: not known.
 struct FrameFeatures {
     int width = 0, height = 0;
     std::span<const core::Vec3> position;  ///< in the world [m]; not finite where nothing was hit

@@ -16,10 +16,10 @@ using namespace core;
 
 namespace {
 
-/// Below it a channel of the albedo says nothing of the light there, and what it reflects is left as it is.
-constexpr float least_albedo = 0.01f;
+/// Smallest albedo that light is divided by; channels below it keep their reflected light as it is.
+constexpr float min_albedo = 0.01f;
 
-bool divisible(float albedo) { return albedo > least_albedo && std::isfinite(albedo); }
+bool divisible(float albedo) { return albedo > min_albedo && std::isfinite(albedo); }
 
 /// Light before it is reflected. A channel that is not reflected takes the mean of the others: zero would be
 /// wrong, and the neighbours are fitted to it. Nothing (NaN) where none is.
@@ -126,7 +126,7 @@ std::vector<Rgb> SequenceDenoiser::add(const DenoiserFrame& frame, bool connecte
     remember(frame.features), ++frame_;
     if (!settings_.regress) return noisy;
     if (!settings_.blend || frame.variance.empty()) return denoised;
-    // What is left of a frame's variance: 1 / n, or less beyond the longest history.
+    // Remaining share of a frame's variance: 1 / n, or less beyond the longest history.
     std::vector<Rgb> variance(frame.variance.begin(), frame.variance.end());
     const std::span<const float> length = history();
     if (variance.size() == length.size())

@@ -27,7 +27,7 @@ struct DenoiserFrame {
     std::span<const core::Rgb> variance;  ///< of the layers' sum; empty: not known
 };
 
-/// Of all frames.
+/// Settings for all frames.
 struct DenoiserSettings {
     RegressionSettings regression;                     ///< its offset and seed are those of the frame
     RejectionSettings rejection;                       ///< which pixels of the frame before are taken

@@ -15,7 +15,7 @@ Vec3 unit(const Vec3& v) {
     return length > 0.0f ? v / length : Vec3(0.0f);
 }
 
-/// Do all samples lie on one smooth surface?
+/// True if all samples lie on one smooth surface.
 bool one_surface(const FilterFeatures& f, std::size_t pixel, std::span<const FeatureSample> samples) {
     const float tolerance = surface_tolerance * f.frame[pixel].footprint;
     for (const FeatureSample& s : samples)

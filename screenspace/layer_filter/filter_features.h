@@ -1,5 +1,5 @@
-// What the filter of layers knows of a picture without noise: which surface a pixel sees, how much of what
-// that surface reflects reaches the eye, and how much the media before it scatter.
+// Noise-free features for the filter of layers: the surface that a pixel sees, the share of its reflected
+// light that reaches the eye, and the light that the media before it scatter.
 //
 // Only these decide which pixels may be averaged, never the noisy layer. A pixel whose samples see one
 // surface is `single`; where they see several, a silhouette or an edge, it is `mixed` and keeps its samples,
@@ -14,7 +14,7 @@
 
 namespace mote::screenspace {
 
-/// What one eye ray of a pixel meets.
+/// Features along one eye ray of a pixel.
 struct FeatureSample {
     bool hit = false;         ///< a surface; all but `scattering` and `transmittance` are zero otherwise
     bool filterable = true;   ///< false: a mirror or glass, whose picture lies elsewhere
@@ -61,8 +61,8 @@ struct FilterFeatures {
     FilterFeatures(int width, int height, int samples_per_pixel);
     std::size_t pixels() const { return std::size_t(width) * std::size_t(height); }
 
-    /// Sets a pixel from its samples. Whether it is mixed is returned; the caller then adds it to `mixed` and
-    /// its samples to `samples`, in order.
+    /// Sets a pixel from its samples. Returns true if it is mixed; the caller then adds it to `mixed` and its
+    /// samples to `samples`, in order.
     bool set_pixel(std::size_t pixel, std::span<const FeatureSample> samples, const PixelFrame& at);
 };
 

@@ -22,7 +22,7 @@ struct FilterPlanes {
     std::size_t index(int x, int y) const { return std::size_t(y) * std::size_t(width) + std::size_t(x); }
 };
 
-/// What a layer is divided by, per channel; 1 where that is nothing.
+/// Divisor of a layer, per channel; 1 where that would be zero.
 core::Rgb modulation(const FilterFeatures& features, LayerKind kind, std::size_t pixel);
 
 }  // namespace mote::screenspace

@@ -35,7 +35,7 @@ struct LayerToFilter {
 
 struct FilteredLayer {
     std::vector<core::Rgb> mean;
-    /// What is left of the variance, mean over channels: smoothed, of the filter with its gains as they are,
+    /// Remaining variance, mean over channels: smoothed, of the filter with its gains as they are,
     /// and as if the noise of the channels were in proportion to what the layer was divided by.
     std::vector<float> variance;
 };

@@ -92,7 +92,7 @@ void LevelKernel::weigh_volume(int tap, float k) {
 }
 
 void LevelKernel::normalise() {
-    float sum[most_pixels] = {};
+    float sum[max_pixels] = {};
     for (int tap = 0; tap < taps; ++tap)
         for (int i = 0; i < count_; ++i) sum[i] += mean_[tap][i];
     for (int i = 0; i < count_; ++i)
@@ -125,8 +125,8 @@ void LevelKernel::place(int tap, Taps& x, Taps& y) const {
 
 void LevelKernel::make_linear() {
     Taps xs, ys;
-    float mx[most_pixels] = {}, my[most_pixels] = {}, xx[most_pixels] = {}, yy[most_pixels] = {},
-          xy[most_pixels] = {};
+    float mx[max_pixels] = {}, my[max_pixels] = {}, xx[max_pixels] = {}, yy[max_pixels] = {},
+          xy[max_pixels] = {};
     for (int tap = 0; tap < taps; ++tap) {
         place(tap, xs, ys);
         const float *w = mean_[tap], *x = xs[tap], *y = ys[tap];

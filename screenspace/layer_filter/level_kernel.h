@@ -16,9 +16,9 @@ namespace mote::screenspace {
 
 class LevelKernel {
   public:
-    static constexpr int taps = 25, most_pixels = 64;
+    static constexpr int taps = 25, max_pixels = 64;
 
-    /// For the pixels x0 ... x1 - 1 of row y, at most `most_pixels`.
+    /// For the pixels x0 ... x1 - 1 of row y, at most `max_pixels`.
     LevelKernel(const FilterPlanes& planes, int step, int y, int x0, int x1);
 
     /// Weighted mean with the taps' weights, all of which are positive.
@@ -28,7 +28,7 @@ class LevelKernel {
     void make_linear();
 
   private:
-    using Taps = float[taps][most_pixels];
+    using Taps = float[taps][max_pixels];
     void weigh_surface(int tap, float spline);
     void weigh_volume(int tap, float spline);
     void place(int tap, Taps& x, Taps& y) const;

@@ -91,7 +91,7 @@ class MixedPixel {
 
     bool surface() const { return layer_.kind == LayerKind::surface; }
 
-    /// Of a neighbour that sees one surface, or one depth of a medium, as the sample does.
+    /// Weight of a neighbour that sees the surface of the sample alone, or its depth of a medium.
     float weight(const FeatureSample& s, std::uint32_t q) const {
         if (!(p_.weight[q] > 0.0f) || f_.kind[q] == PixelKind::mixed) return 0.0f;
         const Vec3 d = f_.position[q] - s.position;
@@ -111,7 +111,7 @@ class MixedPixel {
         return tukey(sqr(share / depth_tolerance));
     }
 
-    /// Of another surface: one over the squared distance, in footprints.
+    /// Weight of another surface: one over the squared distance, in footprints.
     float nearness(const FeatureSample& s, std::uint32_t q) const {
         if (f_.kind[q] == PixelKind::none || !is_finite(filtered_.mean[q])) return 0.0f;
         const Vec3 d = f_.position[q] - s.position;

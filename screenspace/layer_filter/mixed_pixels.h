@@ -1,6 +1,7 @@
 // Pixels that see several surfaces, put together from their neighbours.
 //
-// What each sample of such a pixel meets is also seen by neighbours that see nothing else, so the pixel is
+// The surface that each sample of such a pixel meets is also seen by neighbours that see nothing else, so the
+// pixel is
 //   r = 1/n sum_s m_s E(s), (4)
 // E(s) being the demodulated light of those neighbours, already filtered. r is wrong by its own sampling and
 // by how the light varies between the neighbours, y by its noise; both are weighed by that,

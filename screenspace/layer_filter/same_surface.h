@@ -28,7 +28,7 @@ inline float same_surface(float off_plane, float footprint, float cosine) {
     return plane * tukey(bend * bend);
 }
 
-/// Of the light that a medium scatters into two neighbouring rays, how much lies between their ends: with the
+/// Share of the light that a medium scatters into two neighbouring rays between their ends: with the
 /// mean extinction s up to the nearer end at t, T the transmittance there and d the distance between both,
 ///   T (1 - exp(-s d)) / (1 - T exp(-s d)),   1 - exp(-x) taken as x / (1 + x).
 /// `log_transmittance` is ln T of the nearer one. Slanted walls have no step: d is their distance from the

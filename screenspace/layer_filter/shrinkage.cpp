@@ -23,13 +23,13 @@ template <typename Body>
 void for_each_piece(const FilterPlanes& p, CancelToken cancelled, const Body& body) {
     tbb::parallel_for(0, p.height, [&](int y) {
         if (cancelled.requested()) return;
-        for (int x = 0; x < p.width; x += LevelKernel::most_pixels)
-            body(y, x, std::min(p.width, x + LevelKernel::most_pixels));
+        for (int x = 0; x < p.width; x += LevelKernel::max_pixels)
+            body(y, x, std::min(p.width, x + LevelKernel::max_pixels));
     });
     cancelled.check();
 }
 
-/// What one level makes of the channels: the next, coarser ones, and the energies of the details between.
+/// Result of one level: the coarser channels, and the energies of the details between.
 struct Level {
     FilterChannels coarse;
     std::vector<float> energy, noise;  ///< mean over colours, over probes
@@ -85,11 +85,11 @@ void add_shrunk(const FilterPlanes& p, int step, const FilterChannels& fine, con
     });
     for_each_piece(p, cancelled, [&](int y, int x0, int x1) {
         const LevelKernel kernel(p, step, y, x0, x1);
-        float energy[LevelKernel::most_pixels], noise[LevelKernel::most_pixels];
-        float squared_noise[LevelKernel::most_pixels];
+        float energy[LevelKernel::max_pixels], noise[LevelKernel::max_pixels];
+        float squared_noise[LevelKernel::max_pixels];
         kernel.average(level.energy, energy), kernel.average(level.noise, noise);
         kernel.average(squared, squared_noise);
-        float change[LevelKernel::most_pixels];  // g - 1, Eq. (2)
+        float change[LevelKernel::max_pixels];  // g - 1, Eq. (2)
         for (int i = 0; i < x1 - x0; ++i)
             change[i] = noise[i] > 0.0f ? -min_of(1.0f, needed_ratio(confidence, noise[i], squared_noise[i]) *
                                                             noise[i] / max_of(energy[i], 1e-38f))

@@ -28,7 +28,7 @@ FilterChannels demodulated(const FilterFeatures& features, const FilterPlanes& p
 /// sum_l (g_l - 1) d_l of Eq. (1), for the colours and for the probes.
 struct ShrunkDetails {
     FilterChannels change;
-    /// What the probes do not see of the variance that is left: gains follow the noise, which probes do not.
+    /// Remaining variance that the probes miss: gains follow the noise, probes do not.
     std::vector<float> of_gains;
 };
 /// Throws Cancelled.

@@ -90,7 +90,7 @@ std::vector<std::vector<std::uint8_t>> sides_that_matter(const SsbcSurfaces& sur
                                                          const SsbcSettings& settings) {
     // G is the same both ways: what the picture would light up is what lights the picture.
     SsbcSettings s = settings;
-    s.half_resolution = false, s.visibility = nullptr;
+    s.half_resolution = false;
     s.check(), surfaces.check();
     std::vector<const SsbcSurfaces*> sides;
     for (const SsbcSurfaces& side : hidden) side.check(), sides.push_back(&side);

@@ -36,16 +36,13 @@ struct SsbcSettings {
 
     bool half_resolution = false;  ///< gather at one pixel of four, see ssbc_upsampling.h
     UpsamplingRules upsampling{};  ///< where pixels are evaluated again
-    /// Shadow rays between receivers and what they sum: no longer in screen space, to measure what is lost
-    /// without. Null: light passes everything. Must outlive the call.
-    const ResidualVisibility* visibility = nullptr;
     float blur = 0.0f;  ///< standard deviation of an edge-preserving blur of the result [pixels]; 0: none
 
     /// Throws std::invalid_argument naming what is out of range.
     void check() const;
 };
 
-/// What compensate() finds.
+/// Result of compensate().
 struct SsbcResult {
     std::vector<core::Rgb> compensation;  ///< to be added to the picture; zero where pixels take no part
     SumCounts counts;                     ///< over all steps
@@ -58,7 +55,7 @@ struct SsbcResult {
 /// range.
 SsbcResult compensate(const SsbcSurfaces& surfaces, std::span<const core::Rgb> reflected,
                       const SsbcSettings& settings);
-/// The same with surfaces that the picture does not show. What is returned is of those that it shows.
+/// Compensation with surfaces that the picture does not show; returned for those that it shows.
 SsbcResult compensate(const SsbcSurfaces& surfaces, std::span<const core::Rgb> reflected,
                       std::span<const HiddenSide> hidden, const SsbcSettings& settings);
 

@@ -31,7 +31,7 @@ std::vector<SsbcSurfaces> hidden_sides(std::span<const GBuffer> layers);
 
 /// How many sides n layers hide, and what they are called: "1_back", "2", "2_back", ...
 constexpr std::size_t hidden_side_count(int layers) { return layers > 1 ? 2 * std::size_t(layers) - 1 : 0; }
-/// Of one side, counted from 0.
+/// Name of one side, counted from 0.
 std::string hidden_side_name(std::size_t side);
 
 /// Pictures of one size below each other in a tall one.

@@ -26,7 +26,7 @@ struct PixelPatch {
 /// line that joins them and their planes.
 std::vector<PixelPatch> pixel_patches(const SsbcSurfaces& surfaces, float angle);
 
-/// The same for pictures below each other: `surfaces` has the height of all.
+/// Patches of pictures below each other: `surfaces` has the height of all.
 std::vector<PixelPatch> pixel_patches(const SsbcSurfaces& surfaces, const SideLayout& layout, float angle);
 
 }  // namespace mote::screenspace

@@ -69,7 +69,7 @@ SsbcSteps::Gathering SsbcSteps::gathering(std::vector<std::uint32_t> pixels, boo
 }
 
 void SsbcSteps::gather(const Gathering& at, std::span<Rgb> irradiance, SsbcResult& result) const {
-    const ResidualSum sum{*pyramid_, *light_, settings_.bound, settings_.visibility};
+    const ResidualSum sum{*pyramid_, *light_, settings_.bound};
     std::vector<Rgb> gathered(at.pixels.size());
     result.counts += settings_.hierarchical ? sum.hierarchical(settings_.refinement, at.receivers, gathered)
                                             : sum.flat(settings_.refinement, at.receivers, gathered);

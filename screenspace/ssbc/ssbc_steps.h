@@ -20,7 +20,7 @@ class SsbcSteps {
     SsbcSteps(const SsbcSurfaces& visible, const std::vector<const SsbcSurfaces*>& hidden,
               std::span<const std::uint8_t> dark, const SsbcSettings& settings);
 
-    /// Of all sides.
+    /// Surfaces of all sides.
     const SsbcSurfaces& surfaces() const { return surfaces_; }
 
     /// E = T_r L / reflectance, from the light of all sides. `of_all`: at hidden pixels as well, and not just

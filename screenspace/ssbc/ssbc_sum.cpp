@@ -12,7 +12,7 @@ using namespace core;
 
 namespace {
 
-/// What the receivers of a packet have gathered.
+/// Sums gathered by the receivers of a packet.
 template <class Real>
 struct PacketSums {
     alignas(32) std::array<Real, packet_size> r{}, g{}, b{}, form_factor{};
@@ -72,7 +72,6 @@ class PatchSum {
     }
     void add(const SurfaceNode& node, const Rgb& radiance, SumCounts& counts) {
         residual_of(packet_, node, sum_.bound, lanes_);
-        if (sum_.visibility) sum_.visibility->shadow(packet_, node, lanes_);
         sums.add(lanes_, node.area * radiance, node.area);  // G_r A_i L_i of Engelhardt 2013, Eq. 11.5
         ++counts.samples;
     }

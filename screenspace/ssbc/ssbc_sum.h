@@ -10,7 +10,7 @@
 #include <span>
 
 #include "core/objects/cancellation.h"
-#include "screenspace/g_buffer/mip_pyramid.h"
+#include "screenspace/ssbc/mip_pyramid.h"
 #include "screenspace/ssbc/ssbc_residual.h"
 
 namespace mote::screenspace {
@@ -35,25 +35,16 @@ struct SumCounts {
     void operator+=(const SumCounts& other);
 };
 
-/// What stands between receivers and a node: for measurements, since screen space knows nothing of it.
-class ResidualVisibility {
-  public:
-    virtual ~ResidualVisibility() = default;
-    /// Sets those terms of `residual` to zero whose receivers do not see the middle of the node.
-    virtual void shadow(const ReceiverPacket& receivers, const SurfaceNode& node, Lanes& residual) const = 0;
-};
-
 /// Sums for one picture and bound b [1/m^2]; b must not be negative.
 struct ResidualSum {
     const SurfacePyramid& surfaces;
     const LightPyramid& light;
     float bound;
-    const ResidualVisibility* visibility = nullptr;  ///< null: left out
 
     /// E at the receivers, from every pixel of the picture; of the rules, those for pixels apply.
     SumCounts flat(const RefinementRules& rules, std::span<const SsbcReceiver> receivers,
                    std::span<core::Rgb> irradiance) const;
-    /// The same over nodes. Receivers are taken in packets that refine together, so neighbours should be next
+    /// Sum over nodes. Receivers are taken in packets that refine together, so neighbours should be next
     /// to each other: a node that one of them must refine is refined for all.
     SumCounts hierarchical(const RefinementRules& rules, std::span<const SsbcReceiver> receivers,
                            std::span<core::Rgb> irradiance) const;

@@ -26,7 +26,7 @@ Rgb even_part(const Bsdf& bsdf, const BsdfPoint& p, const Vec3& wo) {
     return least;
 }
 
-/// What the pixel reflects to all sides alike. The albedo in the buffer knows which side of the surface is
+/// Diffuse reflectance of a pixel. The albedo in the buffer knows which side of the surface is
 /// seen; the normals are turned to the viewer.
 Rgb diffuse_part(const GBuffer& buffer, std::size_t i) {
     if (!buffer.shape[i]) return buffer.reflectance[i];
@@ -60,7 +60,7 @@ Vec3 pixel_step(const GBuffer& buffer, bool along_rows) {
     return step;
 }
 
-/// Of the beam of a pixel, for parallel projections, where solid angles are zero [m^2].
+/// Cross-section of a pixel's beam in a parallel projection, where solid angles are zero [m^2].
 float beam_area(const GBuffer& buffer) {
     const bool parallel = std::all_of(buffer.solid_angle.begin(), buffer.solid_angle.end(),
                                       [](float angle) { return angle == 0.0f; });

@@ -1,4 +1,4 @@
-// What screen-space bias compensation reads of a picture: one patch of surface per pixel.
+// Input of screen-space bias compensation: one patch of surface per pixel.
 //
 // Plain buffers, row by row from the top, so that pictures of other renderers can go through it. A pixel
 // whose area is zero takes no part: it neither receives nor sends light. That is the sky, and every surface
@@ -18,7 +18,7 @@ namespace mote::screenspace {
 
 struct GBuffer;
 
-/// What a BSDF reflects to all sides alike, seen from wo (in its local frame), [0, 1]: all of a diffuse one,
+/// Diffuse reflectance of a BSDF seen from wo (in its local frame), [0, 1]: all of a diffuse one,
 /// the base of a plastic, next to nothing of a metal, nothing of a mirror or glass.
 core::Rgb diffuse_reflectance(const core::Bsdf& bsdf, const core::BsdfPoint& p, const core::Vec3& wo);
 

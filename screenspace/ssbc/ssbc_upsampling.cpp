@@ -24,7 +24,7 @@ struct Mean {
         least = std::min(least, average(sample)), most = std::max(most, average(sample));
     }
     bool defective(const UpsamplingRules& rules) const {
-        return !(weight > 0.0f) || weight < rules.least_weight ||
+        return !(weight > 0.0f) || weight < rules.min_weight ||
                most - least > rules.contrast * std::abs(average(value)) / weight;
     }
 };

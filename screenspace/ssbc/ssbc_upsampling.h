@@ -15,9 +15,9 @@
 namespace mote::screenspace {
 
 struct UpsamplingRules {
-    float angle = 0.35f;        ///< between normals, and of the joining line to the planes: weight 0 [rad]
-    float least_weight = 0.6f;  ///< a sum of weights below is defective; that of one plane is 1
-    float contrast = 0.2f;      ///< defective: samples differ by more than this times their mean
+    float angle = 0.35f;      ///< between normals, and of the joining line to the planes: weight 0 [rad]
+    float min_weight = 0.6f;  ///< a sum of weights below is defective; that of one plane is 1
+    float contrast = 0.2f;    ///< defective: samples differ by more than this times their mean
 };
 
 /// 1 where b continues the plane of a, 0 from `angle` on: pixels of one picture.

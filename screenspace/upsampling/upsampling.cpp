@@ -12,8 +12,8 @@ using namespace core;
 
 namespace {
 
-/// Of the bilinear weights, so much must fit. Less would be one far corner that stands for the pixel.
-constexpr float least_share = 1.0f / 16.0f;
+/// Smallest share of the bilinear weights that must fit: below it one far corner would decide the pixel.
+constexpr float min_share = 1.0f / 16.0f;
 
 float off_plane(const UpsamplingPoint& a, const UpsamplingPoint& b) {
     const Vec3 d = b.position - a.position;
@@ -86,7 +86,7 @@ bool Upsampling::fit(std::size_t pixel, const Neighbours& n) const {
     const Rgb there = modulation_of(n), &here = points_[pixel].modulation;
     bool channels = true;
     for (int c = 0; c < 3; ++c) channels = channels && (there[c] > 0.0f || !(here[c] > 0.0f));
-    return channels && n.fits > least_share * n.all;
+    return channels && n.fits > min_share * n.all;
 }
 
 void Upsampling::fill(std::span<Rgb> light) const {

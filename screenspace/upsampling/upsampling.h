@@ -20,7 +20,7 @@
 
 namespace mote::screenspace {
 
-/// What the ray of a pixel meets.
+/// First surface or medium along the ray of a pixel.
 struct UpsamplingPoint {
     core::Vec3 position{0.0f};
     core::Vec3 normal{0.0f}, shading_normal{0.0f};  ///< unit, towards the viewer

@@ -12,7 +12,7 @@ ChannelSums::ChannelSums(int width, int height)
       stride_(std::size_t(width) + 1),
       local_(std::make_unique_for_overwrite<std::uint64_t[]>(stride_ * std::size_t(height))),
       zeros_(stride_) {
-    if (width > most_columns) throw std::invalid_argument("summed areas take 65535 columns at most");
+    if (width > max_columns) throw std::invalid_argument("summed areas take 65535 columns at most");
 }
 
 void ChannelSums::finish() {

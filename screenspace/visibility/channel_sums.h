@@ -14,9 +14,9 @@ namespace mote::screenspace {
 
 class ChannelSums {
   public:
-    static constexpr int channels = 4, most_columns = 65535;
+    static constexpr int channels = 4, max_columns = 65535;
 
-    /// Throws std::invalid_argument where a picture has more columns than `most_columns`.
+    /// Throws std::invalid_argument where a picture has more columns than `max_columns`.
     ChannelSums(int width, int height);
 
     int bands() const { return (height_ + band_rows_ - 1) / band_rows_; }
@@ -53,7 +53,7 @@ class ChannelSums {
         });
         advance(width_, 0);
     }
-    /// Of the pixels left of column x and above row y.
+    /// Sum over the pixels left of column x and above row y.
     std::uint32_t at(int x, int y, int channel) const {
         if (y == 0) return 0;
         const std::size_t band = std::size_t((y - 1) / band_rows_);

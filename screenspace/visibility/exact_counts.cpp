@@ -9,12 +9,12 @@
 namespace mote::screenspace {
 
 namespace {
-constexpr int most_bands = 16;  // of rows, that are read side by side
+constexpr int max_bands = 16;  // of rows, that are read side by side
 }
 
 ExactCounts::ExactCounts(const IdPicture& picture, std::uint32_t items) : first_(items + std::size_t(1)) {
     check(picture);
-    const int bands = items <= picture.items.size() ? std::clamp(picture.height / 32, 1, most_bands) : 1;
+    const int bands = items <= picture.items.size() ? std::clamp(picture.height / 32, 1, max_bands) : 1;
     const auto for_each_row_of = [&](int band, const auto& visit) {
         for (int y = picture.height * band / bands; y < picture.height * (band + 1) / bands; ++y)
             for_each_run(picture.row(y), 0, picture.width, [&](std::uint32_t item, int x0, int x1) {

@@ -1,8 +1,8 @@
-// What granular visibility queries read: a picture of numbers, one a pixel, which say what is seen there, and
-// rectangles of pixels (Engelhardt 2013, Ch. 6).
+// Input of granular visibility queries: a picture of item numbers, one a pixel, and rectangles of pixels
+// (Engelhardt 2013, Ch. 6).
 //
-// A number stands for an *item*: an object, one of its instances, or any part of it that somebody asks about.
-// Where pictures come from is not said here: from a camera, or from a light, whose view is a picture as well.
+// An *item* is an object, one of its instances, or any part of it that is queried. The picture is that of a
+// camera or of a light.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace mote::screenspace {
 
-/// A pixel that shows nothing anybody asks about.
+/// Pixel that shows no item.
 inline constexpr std::uint32_t no_item = 0xffffffffu;
 
 /// Pixels x0 <= x < x1 and y0 <= y < y1; none where an end is not above its beginning.

@@ -1,7 +1,7 @@
 // Where on the screen an item can be: a rectangle of pixels, and how far it reaches along the diagonals. An
 // octagon, that is, which stands for the silhouette of a bounding volume (Engelhardt 2013, Sec. 6.1.3).
 //
-// It must hold every pixel that shows the item; whoever knows no more than a rectangle gives that.
+// It must hold every pixel that shows the item; a rectangle alone will do.
 #pragma once
 
 #include <limits>
@@ -12,22 +12,22 @@ namespace mote::screenspace {
 
 struct ItemBounds {
     PixelRectangle rectangle;
-    // Of the pixels: least and largest x + y and x - y.
+    // Smallest and largest x + y and x - y of the pixels.
     int sum0 = std::numeric_limits<int>::min(), sum1 = std::numeric_limits<int>::max();
     int difference0 = std::numeric_limits<int>::min(), difference1 = std::numeric_limits<int>::max();
 
-    /// Does the octagon have a pixel in `r`, part of its rectangle? It may say yes where it has not.
+    /// False only if the octagon has no pixel in `r`, part of its rectangle.
     bool meets(const PixelRectangle& r) const {
         return !r.empty() && r.x0 + r.y0 <= sum1 && r.x1 + r.y1 - 2 >= sum0 &&
                r.x0 - r.y1 + 1 <= difference1 && r.x1 - 1 - r.y0 >= difference0;
     }
 };
 
-/// Of an outline that is its own mirror image about (x, y): how far it reaches along x and y, and how far x +
-/// y and x - y go. All in pixels, whose middles count.
+/// Bounds of an outline that is symmetric about (x, y), from its reach along x, y, x + y and x - y [pixels];
+/// pixels count by their middles.
 ItemBounds bounds_of_outline(float x, float y, float reach_x, float reach_y, float reach_sum,
                              float reach_difference);
-/// Of a convex outline through these points, or of whatever lies within it; two numbers a point, in pixels.
+/// Bounds of a convex outline through these points, or of anything within it.
 struct ScreenPoint {
     float x, y;
 };

@@ -11,7 +11,7 @@ namespace {
 int tile_begin(int i, int n, int pixels) { return int((std::int64_t(i) * pixels + n - 1) / n); }
 
 /// Bands of rows that are counted apart, at least: more than cores, so that they share the work evenly.
-constexpr int least_bands = 16;
+constexpr int min_bands = 16;
 
 }  // namespace
 
@@ -31,7 +31,7 @@ void ItemHistogram::count(const IdPicture& picture) {
     const int side = layout_.side(), t = layout_.t();
     const std::size_t bins = std::size_t(layout_.items()) << t;  // of one row of tiles
     // Copies of more bins than there are pixels would cost more than they save.
-    const int cuts = bins <= picture.items.size() ? std::max(1, least_bands / side) : 1;
+    const int cuts = bins <= picture.items.size() ? std::max(1, min_bands / side) : 1;
     std::vector<std::uint32_t>& all = levels_.front();
     tbb::parallel_for(0, side, [&](int ty) {
         const int top = tile_begin(ty, side, height_), rows = tile_begin(ty + 1, side, height_) - top;

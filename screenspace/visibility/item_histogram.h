@@ -34,7 +34,7 @@ class ItemHistogram {
         const std::size_t tile = std::size_t(x) + (std::size_t(y) << shift);
         return levels_[std::size_t(level)][(std::size_t(item) << (2 * shift)) + tile];
     }
-    /// Of level 0; empty where there are more tiles than pixels.
+    /// Pixels of a tile of level 0; empty where there are more tiles than pixels.
     PixelRectangle tile(int x, int y) const;
     /// The pixels of an item in all tiles of level 0 that a rectangle touches: never less than there are in
     /// the rectangle, and all of them where its sides are those of tiles.

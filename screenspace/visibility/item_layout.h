@@ -26,7 +26,7 @@ class ItemLayout {
     std::uint32_t objects() const { return std::uint32_t(first_item_.size() - 1); }
 
     std::uint32_t first_item(std::uint32_t object) const { return first_item_[object]; }
-    /// What a picture holds where it shows this instance: (base + instance 4^t) / 4^t. Throws
+    /// Number in a picture where it shows this instance: (base + instance 4^t) / 4^t. Throws
     /// std::out_of_range where there is no such instance.
     std::uint32_t item(std::uint32_t object, std::uint32_t instance) const;
     std::uint32_t base(std::uint32_t object) const { return first_item_[object] << (2 * t_); }

@@ -40,7 +40,7 @@ class Splitting {
             if (!mine && !theirs) continue;  // an empty overlap
             if (both == parts_[i].rectangle) {
                 parts_[i].taken |= bit;
-            } else if (int(parts_.size()) + 4 <= settings_.most_rectangles) {
+            } else if (int(parts_.size()) + 4 <= settings_.max_rectangles) {
                 split(i, both, mine, bit);
             } else {
                 parts_[i].taken |= bit;
@@ -69,7 +69,7 @@ class Splitting {
         for (const Part& part : parts_) {
             if (!own_.meets(part.rectangle)) continue;
             const std::uint32_t free = all_ & ~part.taken;
-            const int channel = free ? std::countr_zero(free) : least_shared(part.rectangle);
+            const int channel = free ? std::countr_zero(free) : least_conflicting(part.rectangle);
             regions.push_back({part.rectangle, std::uint8_t(channel)});
             shared += free == 0;
         }
@@ -103,7 +103,7 @@ class Splitting {
 
     /// The channel whose other rectangles cover least of `r`, counted for each of both that may be seen
     /// there.
-    int least_shared(const PixelRectangle& r) const {
+    int least_conflicting(const PixelRectangle& r) const {
         std::array<std::int64_t, 32> area{};
         for (const Other& other : others_) {
             const PixelRectangle both = intersection(r, other.rectangle);
@@ -124,7 +124,7 @@ class Splitting {
 RegionSets::RegionSets(std::span<const ItemBounds> bounds, const PixelRectangle& frame,
                        const RegionSettings& settings)
     : channels_(settings.channels), sets_(bounds.size()) {
-    if (settings.channels < 1 || settings.channels > 16 || settings.most_rectangles < 1)
+    if (settings.channels < 1 || settings.channels > 16 || settings.max_rectangles < 1)
         throw std::invalid_argument("region sets have 1 to 16 channels, and at least one rectangle an item");
     std::vector<PixelRectangle> rectangles;
     for (const ItemBounds& b : bounds) rectangles.push_back(intersection(b.rectangle, frame));

@@ -15,8 +15,8 @@
 namespace mote::screenspace {
 
 struct RegionSettings {
-    int channels = 4;          ///< 1 to 16; a texture has four
-    int most_rectangles = 64;  ///< that an item is split into, before they are merged; 1: none is
+    int channels = 4;         ///< 1 to 16; a texture has four
+    int max_rectangles = 64;  ///< that an item is split into, before they are merged; 1: none is
 };
 
 struct Region {

@@ -27,10 +27,8 @@ constexpr std::array estimators = {
     TransmittanceEstimator::unbiased_ray_marching};
 
 std::shared_ptr<media::HeterogeneousMedium> medium_with(const std::shared_ptr<const media::VdbGrid>& grid,
-                                                        float scale, media::Majorants majorants) {
-    auto parts = tests::medium_parts(Rgb(0.8f), scale);
-    parts.tracking.majorants = majorants;
-    return media::VdbVolume(grid, {}).make_medium(std::move(parts));
+                                                        float scale) {
+    return media::VdbVolume(grid, {}).make_medium(tests::medium_parts(Rgb(0.8f), scale));
 }
 
 /// Rays from a sphere around the medium, through points of the middle half of its box, out on the other side.
@@ -82,13 +80,11 @@ Cost check_estimator(const media::HeterogeneousMedium& m, TransmittanceEstimator
     return cost;
 }
 
-struct GridCosts {
-    std::array<Cost, estimators.size()> local, global;
-};
+using GridCosts = std::array<Cost, estimators.size()>;
 
 GridCosts costs_of(const std::string& path, const std::string& grid_name, double optical_depth) {
     const auto grid = media::load_vdb_grid(path, grid_name);
-    const auto probe = medium_with(grid, 1.0f, media::Majorants::local);
+    const auto probe = medium_with(grid, 1.0f);
     const auto rays = rays_through(probe->bounds(), 24);
     core::TrackingCounters counters;
     std::vector<double> tau;
@@ -100,21 +96,14 @@ GridCosts costs_of(const std::string& path, const std::string& grid_name, double
     const auto scale = float(optical_depth / largest);
     for (double& t : tau) t *= double(scale);
     GridCosts costs;
-    for (const auto majorants : {media::Majorants::local, media::Majorants::global}) {
-        const auto medium = medium_with(grid, scale, majorants);
-        auto& row = majorants == media::Majorants::local ? costs.local : costs.global;
-        for (std::size_t e = 0; e < estimators.size(); ++e)
-            row[e] = check_estimator(*medium, estimators[e], rays, tau, 4000);
-    }
+    const auto medium = medium_with(grid, scale);
+    for (std::size_t e = 0; e < estimators.size(); ++e)
+        costs[e] = check_estimator(*medium, estimators[e], rays, tau, 4000);
     std::cout << fmt::format("{} up to optical depth {}, {}: variance, lookups and ns of one estimate\n",
                              grid->name(), optical_depth, probe->traits().estimator_reason);
-    for (std::size_t e = 0; e < estimators.size(); ++e) {
-        const auto row = [](const Cost& c) {
-            return fmt::format("{:8.5f} {:8.2f} {:8.0f}", c.variance, c.lookups, c.nanoseconds);
-        };
-        std::cout << fmt::format("  {:24} local {}   global {}\n", media::name_of(estimators[e]),
-                                 row(costs.local[e]), row(costs.global[e]));
-    }
+    for (std::size_t e = 0; e < estimators.size(); ++e)
+        std::cout << fmt::format("  {:24} {:8.5f} {:8.2f} {:8.0f}\n", media::name_of(estimators[e]),
+                                 costs[e].variance, costs[e].lookups, costs[e].nanoseconds);
     return costs;
 }
 
@@ -125,12 +114,10 @@ TEST_CASE("every estimator of the transmittance agrees with quadrature on a real
     const auto path = tests::test_data("vdb/openusd/smoke_000002.vdb");
     if (!path) return;
     const GridCosts costs = costs_of(*path, "density", 4.0);
-    // The grid is cut close around the smoke and filled with it; even so cells of their own save lookups.
-    for (std::size_t e = 1; e < 4; ++e) CHECK(costs.global[e].lookups > 1.4 * costs.local[e].lookups);
     // Ratio tracking is never noisier than delta tracking, and residual tracking never noisier than that.
-    CHECK(costs.local[2].variance < costs.local[1].variance);
-    CHECK(costs.local[3].variance < 1.02 * costs.local[2].variance);
-    CHECK(costs.local[4].variance < 0.2 * costs.local[3].variance);
+    CHECK(costs[2].variance < costs[1].variance);
+    CHECK(costs[3].variance < 1.02 * costs[2].variance);
+    CHECK(costs[4].variance < 0.2 * costs[3].variance);
 }
 
 TEST_CASE("estimators agree on grids of tiles and of one smooth lump", "[media][estimators]") {
@@ -138,7 +125,7 @@ TEST_CASE("estimators agree on grids of tiles and of one smooth lump", "[media][
     for (const char* kind : {"tiles", "lump"}) {
         INFO(kind);
         const GridCosts costs = costs_of(folder.grid(kind), "density", 3.0);
-        CHECK(costs.local[3].variance < 1.02 * costs.local[2].variance);
+        CHECK(costs[3].variance < 1.02 * costs[2].variance);
     }
 }
 
@@ -164,7 +151,7 @@ TEST_CASE("the exponential of a mean is right in the mean, whatever the spread o
 TEST_CASE("unbiased ray marching looks up the same in a copy of the grid", "[media][estimators]") {
     const tests::GridFolder folder;
     const auto grid = media::load_vdb_grid(folder.grid("lump"));
-    const auto plain = medium_with(grid, 0.2f, media::Majorants::local);
+    const auto plain = medium_with(grid, 0.2f);
     auto parts = tests::medium_parts(Rgb(0.8f), 0.2f);
     parts.tracking.transmittance = TransmittanceEstimator::unbiased_ray_marching;
     const auto copied = media::VdbVolume(grid, {}).make_medium(parts);
@@ -181,7 +168,7 @@ TEST_CASE("unbiased ray marching looks up the same in a copy of the grid", "[med
 TEST_CASE("ray marching keeps its tolerance", "[media][estimators]") {
     const tests::GridFolder folder;
     const auto grid = media::load_vdb_grid(folder.grid("lump"));
-    const auto probe = medium_with(grid, 1.0f, media::Majorants::local);
+    const auto probe = medium_with(grid, 1.0f);
     const auto rays = rays_through(probe->bounds(), 24);
     for (const double tolerance : {1e-1, 1e-2, 1e-3, 1e-4, 1e-5}) {
         auto parts = tests::medium_parts(Rgb(0.8f), 0.02f);  // thin: the optical depth is read off well
@@ -198,36 +185,6 @@ TEST_CASE("ray marching keeps its tolerance", "[media][estimators]") {
         std::cout << fmt::format("marching to {:g}: {:.2g} off at most, {:.0f} lookups\n", tolerance, worst,
                                  double(marching.lookups) / double(rays.size()));
         CHECK(worst < 3.0 * tolerance);  // it aims at the tolerance, by how much the last refinement moved
-    }
-}
-
-TEST_CASE("local majorants save most lookups in sparse smoke", "[media][estimators]") {
-    // Three thick puffs in a grid of 64^3 voxels.
-    const auto puffs = tests::vol_grid(glm::ivec3(64), 1, [](int x, int y, int z) {
-        float density = 0.0f;
-        for (const Vec3& c : {Vec3(14, 20, 30), Vec3(40, 45, 25), Vec3(50, 12, 50)}) {
-            const Vec3 d = Vec3(float(x), float(y), float(z)) - c;
-            density += 40.0f * std::max(0.0f, 1.0f - glm::dot(d, d) / 60.0f);
-        }
-        return Rgb(density);
-    });
-    const auto lookups = [&](media::Majorants majorants, TransmittanceEstimator estimator) {
-        auto parts = tests::medium_parts(Rgb(0.8f));
-        parts.tracking.majorants = majorants;
-        const auto medium = tests::medium_of(puffs, parts);
-        core::Rng rng(5);
-        core::TrackingCounters counters;
-        for (const Ray& ray : rays_through(medium->bounds(), 2000))
-            medium->transmittance_by(estimator, ray, rng, counters);
-        return double(counters.lookups);
-    };
-    for (const auto estimator : {estimators[1], estimators[2], estimators[3]}) {
-        const double factor =
-            lookups(media::Majorants::global, estimator) / lookups(media::Majorants::local, estimator);
-        INFO(media::name_of(estimator) << ": " << factor << " times as many against one bound");
-        std::cout << media::name_of(estimator) << " in sparse puffs: " << factor
-                  << " times as many lookups against one bound\n";
-        CHECK(factor > 3.0);
     }
 }
 
@@ -264,10 +221,9 @@ TEST_CASE("a wrong estimator of the transmittance is caught", "[media][estimator
 TEST_CASE("the automatic estimator is residual tracking where bounds make much certain",
           "[media][estimators]") {
     const tests::GridFolder folder;
-    const auto tiles = medium_with(media::load_vdb_grid(folder.grid("tiles")), 1.0f, media::Majorants::local);
+    const auto tiles = medium_with(media::load_vdb_grid(folder.grid("tiles")), 1.0f);
     CHECK(tiles->estimator() == TransmittanceEstimator::residual_ratio_tracking);
-    const auto single =
-        medium_with(media::load_vdb_grid(folder.grid("single")), 1.0f, media::Majorants::local);
+    const auto single = medium_with(media::load_vdb_grid(folder.grid("single")), 1.0f);
     CHECK(single->estimator() == TransmittanceEstimator::ratio_tracking);
     CHECK(single->traits().estimator == "ratio_tracking");
 }

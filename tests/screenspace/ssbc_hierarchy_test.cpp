@@ -144,7 +144,7 @@ TEST_CASE("Half resolution is near, because defective pixels are evaluated again
     CHECK(half.counts.receivers < room.flat.counts.receivers);
     const SsbcResult careless = room.run([](SsbcSettings& s) {
         s.half_resolution = true;
-        s.upsampling.contrast = infinity, s.upsampling.least_weight = 0.0f;
+        s.upsampling.contrast = infinity, s.upsampling.min_weight = 0.0f;
     });
     CHECK(room.error(careless) > 2.0 * room.error(half));
 }

@@ -10,7 +10,6 @@
 #include "core/scene/scene.h"
 #include "screenspace/g_buffer/g_buffer.h"
 #include "screenspace/ssbc/ssbc.h"
-#include "screenspace/ssbc/ssbc_visibility.h"
 #include "tests/screenspace/ssbc_pictures.h"
 #include "tests/screenspace/ssbc_wedge.h"
 #include "tests/support/catch.h"
@@ -325,7 +324,7 @@ TEST_CASE("What matters is what can send light that comes to be seen", "[ssbc][l
     CHECK(after(2) == 1);
 }
 
-TEST_CASE("Light comes through a thin wall from behind it, and not past shadow rays", "[ssbc][layers]") {
+TEST_CASE("Light comes through a thin wall from behind it", "[ssbc][layers]") {
     // A floor, a wall on it, and another close behind that one: it faces the floor before both.
     const auto scene = scene_from(
         "<scene version=\"3.0.0\">" +
@@ -347,22 +346,5 @@ TEST_CASE("Light comes through a thin wall from behind it, and not past shadow r
             if (seen.normal[i].y > 0.5f && seen.position[i].z > -0.19f) sum += double(found[i].x);
         return sum;
     };
-    const double through = leak();
-    CHECK(through > 0.1);
-    const TracedVisibility traced(*scene);
-    s.visibility = &traced;
-    CHECK(leak() < 1e-6 * through);
-    // Where nothing is in the way, shadow rays take nothing: the floor's own light on the wall.
-    std::vector<Rgb> lit = black;
-    for (std::size_t i = 0; i < lit.size(); ++i)
-        if (seen.normal[i].y > 0.5f) lit[i] = Rgb(1.0f);
-    const auto with = compensate(seen, lit, s).compensation;
-    s.visibility = nullptr;
-    const auto without = compensate(seen, lit, s).compensation;
-    CHECK(largest(without) > 0.01);
-    double difference = 0.0, sum = 0.0;
-    for (std::size_t i = 0; i < lit.size(); ++i)
-        if (seen.position[i].z > -0.21f)
-            difference += std::abs(double(with[i].x - without[i].x)), sum += double(without[i].x);
-    CHECK(difference < 0.01 * sum);
+    CHECK(leak() > 0.1);
 }

@@ -217,7 +217,7 @@ TEST_CASE("Region sets never count too few pixels, and are exact for items that 
     for (int k = 0; k < 40; ++k) {
         const Picture picture = random_picture(rng, 1 + draw(rng, 90), 1 + draw(rng, 90), 20);
         const auto bounds = bounds_of(picture, rng);
-        const RegionSettings settings{.channels = 1 + draw(rng, 16), .most_rectangles = 1 + draw(rng, 40)};
+        const RegionSettings settings{.channels = 1 + draw(rng, 16), .max_rectangles = 1 + draw(rng, 40)};
         const RegionQueries queries(picture.view(), bounds, settings);
         int below = 0, wrong = 0;
         for (int i = 0; i < 200; ++i) {
@@ -250,7 +250,7 @@ TEST_CASE("Region sets of 100 to 300 ellipses count 2.7 pixels too many in the m
     }
     CHECK(errors_of_ellipses(300, {}).conflicts > 50);
     // With one rectangle an item it is more, with eight channels next to nothing.
-    CHECK(errors_of_ellipses(300, {.most_rectangles = 1}).mean > 2.7);
+    CHECK(errors_of_ellipses(300, {.max_rectangles = 1}).mean > 2.7);
     CHECK(errors_of_ellipses(300, {.channels = 8}).mean < 0.1);
 }
 

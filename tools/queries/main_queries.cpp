@@ -140,7 +140,7 @@ int main(int argc, char** argv) {
     command->add_option("--spread", o.ellipses.spread,
                         "share of the picture that middles lie in, along an edge");
     command->add_option("--channels", o.regions.channels, "of colour");
-    command->add_option("--rectangles", o.regions.most_rectangles, "that an item is split into at most");
+    command->add_option("--rectangles", o.regions.max_rectangles, "that an item is split into at most");
     command->add_option("--pictures", o.pictures, "that means are over");
     command->add_option("--tiles", o.t, "t: 2^t x 2^t tiles of the item buffer");
     command->add_option("--repeat", o.repeat, "times that everything is timed");
