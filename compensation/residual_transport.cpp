@@ -202,7 +202,7 @@ bool ResidualTransport::place_in_mean_medium(ResidualPath& path, const Ray& ray,
 
 template <bool Media>
 bool ResidualTransport::step(ResidualPath& path, WalkContext& context) const {
-    const float before = max_component(path.throughput());
+    const float before = max_component(glm::abs(path.throughput()));  // estimates may be negative
     const float u_lobe = context.rng.next_float();
     const auto next = path.vertex.sample(u_lobe, context.rng.next_vec2(), TransportMode::radiance);
     if (!next || next->delta) return false;   // light through mirrors and glass is no VPL's
@@ -224,7 +224,7 @@ bool ResidualTransport::step(ResidualPath& path, WalkContext& context) const {
     // receiver and the geometric one at the other end, as VPLs are gathered.
     path.weights.throughput *=
         residual_share(cosine * path.vertex.geometric_cosine(path.vertex.wo), distance, bound_);
-    const float remaining = max_component(path.throughput());
+    const float remaining = max_component(glm::abs(path.throughput()));
     if (!(remaining > 0.0f)) return false;
     if (remaining < before) {
         const float q = remaining / before;

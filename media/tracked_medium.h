@@ -49,10 +49,6 @@ inline core::Rgb exp_minus_rgb(const core::Vec3d& v) {
 /// medium much thinner than its majorant. Survivors carry the threshold itself: no weight ever grows.
 inline constexpr double roulette_threshold = 1e-3;
 
-/// Share of the majorants' sum that lower bounds make certain, from which residual tracking costs less than
-/// it saves (docs/media.md).
-inline constexpr double residual_pays_from = 0.05;
-
 /// Returns false when the walk dies.
 template <typename Wide>
 bool russian_roulette(Wide& weight, core::Rng& rng) {
@@ -84,9 +80,8 @@ class TrackedMedium final : public HeterogeneousMedium {
         certain_share_ = grid_.majorants.certain_share();
         estimator_ = parts_.tracking.transmittance;
         if (estimator_ == TransmittanceEstimator::automatic)
-            estimator_ = certain_share_ > detail::residual_pays_from
-                             ? TransmittanceEstimator::residual_ratio_tracking
-                             : TransmittanceEstimator::ratio_tracking;
+            estimator_ = certain_share_ == 1.0 ? TransmittanceEstimator::residual_ratio_tracking
+                                               : TransmittanceEstimator::unbiased_ray_marching;
         majorant_ = float(detail::largest(grid_.majorants.total().upper) * double(parts_.scale));
         if (majorant_ == 0.0f) return;
         voxel_size_ = find_voxel_size();

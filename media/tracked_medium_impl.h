@@ -120,7 +120,10 @@ std::optional<float> TrackedMedium<Grid>::sample_collision(const core::Ray& ray,
                                                            core::Rgb& emitted, core::Rng& rng,
                                                            core::TrackingCounters& counters) const {
     if (absorbs_alone_) {
-        weights.throughput *= transmittance(ray, rng, counters);
+        // Russian roulette of paths takes no negative throughput, which marching may estimate.
+        weights.throughput *= estimator_ == TransmittanceEstimator::unbiased_ray_marching
+                                  ? by_residual_tracking(ray, rng, counters)
+                                  : transmittance(ray, rng, counters);
         return std::nullopt;
     }
     std::optional<float> found;
@@ -536,7 +539,9 @@ core::MediumTraits TrackedMedium<Grid>::traits() const {
     t.estimator = name_of(estimator_);
     t.estimator_reason =
         parts_.tracking.transmittance == TransmittanceEstimator::automatic
-            ? fmt::format("lower bounds make {:.0f} % of the majorants certain", 100.0 * certain_share_)
+            ? std::string(certain_share_ == 1.0
+                              ? "every cell is constant: in closed form"
+                              : "least variance at the time of tracking, which takes over in dense parts")
             : std::string("asked for");
     t.voxel_size = voxel_size_;
     return t;

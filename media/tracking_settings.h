@@ -12,7 +12,7 @@ namespace mote::media {
 
 /// Estimators of the transmittance along a ray.
 enum class TransmittanceEstimator {
-    automatic,                ///< ratio tracking, residual where a good part of the extinction is certain
+    automatic,                ///< unbiased ray marching; residual ratio tracking where all cells are constant
     ray_marching,             ///< deterministic, biased by a stated tolerance
     delta_tracking,           ///< 0 or 1: does a particle pass?
     ratio_tracking,           ///< product of chances to pass (Novák et al. 2014)

@@ -76,16 +76,17 @@ std::optional<MediumLine> varying_line(MediumLine line, float voxel, Rng& rng, T
         line.transmittance[i + 1] = after;
         // Whoever stands in a cell counts with the transmittance to its beginning: where that is black, so is
         // he.
-        const float there = average(before);
-        line.weights[i] =
-            there > 0.0f
-                ? average(0.5f * (before + after) * look_at(line, double(t0), double(t1), rng, counters))
-                : 0.0f;
+        const float there = std::fabs(average(before));  // estimates may be negative
+        line.weights[i] = there > 0.0f
+                              ? std::fabs(average(0.5f * (before + after) *
+                                                  look_at(line, double(t0), double(t1), rng, counters)))
+                              : 0.0f;
         sum += line.weights[i], rest += there;
     }
     // Between what was looked at there may be more.
     const float floor = sum > 0.0f ? certain_share * sum / rest : 1.0f;
-    for (std::uint32_t i = 0; i < line.cells; ++i) line.weights[i] += floor * average(line.transmittance[i]);
+    for (std::uint32_t i = 0; i < line.cells; ++i)
+        line.weights[i] += floor * std::fabs(average(line.transmittance[i]));
     return line;
 }
 

@@ -48,7 +48,12 @@ bool agrees(const media::HeterogeneousMedium& m, TransmittanceEstimator estimato
     bool in_range = true;
     for (int i = 0; i < trials; ++i) {
         const float t = m.transmittance_by(estimator, ray, rng, counters).x;
-        in_range &= t >= 0.0f && t <= 1.0f;
+        // Marching's series may leave the range by a little, tracking never does.
+        const float beyond = m.estimator() == TransmittanceEstimator::unbiased_ray_marching &&
+                                     estimator == TransmittanceEstimator::automatic
+                                 ? 0.5f
+                                 : 0.0f;
+        in_range &= t >= -beyond && t <= 1.0f + beyond;
         mean.add(t);
     }
     const double spread = std::sqrt(expected * -std::expm1(-tau) / trials);
@@ -243,12 +248,17 @@ TEST_CASE("marching, shares of the way and mean extinction stay finite beside 1e
 }
 
 TEST_CASE("a hopeless majorant ends within a second, and is counted", "[media][extremes][step_limit]") {
-    // Nothing on the left, under a majorant of optical depth 4e8: no event would ever end the walk.
-    const auto m = tests::medium_of(step_of(0.0f, 1e6f), parts_with(1e3f, 1.5f));
+    // Nothing along the ray, in a cell with a majorant of optical depth 4e8: no event would ever end the
+    // walk.
+    const auto step =
+        tests::vol_grid(glm::ivec3(16, 4, 4), 1, [](int x, int, int) { return Rgb(x < 7 ? 0.0f : 1e6f); });
+    const auto m = tests::medium_of(step, parts_with(1e3f, 1.5f));
+    Ray through_nothing = through_thin;
+    through_nothing.t_max = 0.3f;
     core::Rng rng(1);
     core::TrackingCounters counters;
     const std::clock_t start = std::clock();
-    CHECK(m->transmittance_by(TransmittanceEstimator::ratio_tracking, through_thin, rng, counters) ==
+    CHECK(m->transmittance_by(TransmittanceEstimator::ratio_tracking, through_nothing, rng, counters) ==
           Rgb(1.0f));
     const double seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
     std::cout << "a walk of " << counters.lookups << " lookups took " << seconds << " s\n";
@@ -265,7 +275,9 @@ TEST_CASE("beyond the step limit estimates keep their mean", "[media][extremes][
             parts.step_limit = limit;
             const auto m = tests::medium_of(file, parts);
             for (const auto estimator : estimators) {
-                if (estimator == TransmittanceEstimator::ray_marching) continue;
+                if (estimator == TransmittanceEstimator::ray_marching ||
+                    estimator == TransmittanceEstimator::automatic)
+                    continue;  // neither walks from collision to collision
                 core::TrackingCounters counters;
                 INFO(media::name_of(estimator) << ", depth " << tau << ", at most " << limit << " steps");
                 CHECK(agrees(*m, estimator, oblique, tau, 4000, counters));
@@ -348,21 +360,23 @@ TEST_CASE("rays that start on, end on, or graze the boundary of a grid", "[media
 }
 
 TEST_CASE("albedo 0 absorbs, albedo 1 does not", "[media][extremes]") {
-    for (const float albedo : {0.0f, 1.0f}) auto parts = parts_with(1e3f);
-    parts.albedo = std::make_shared<media::ConstantVolume>(Rgb(albedo));
-    const auto m = tests::medium_of(waves(), parts);
-    CHECK(m->traits().scattering == (albedo > 0.0f));
-    core::Rng rng(1);
-    core::TrackingCounters counters;
-    for (int i = 0; i < 1000; ++i) {
-        PathWeights w;
-        w.light = Rgb(1.0f);  // as after a scattering of density 1
-        Rgb emitted(0.0f);
-        // What only absorbs is passed, and nothing is left of the light.
-        const bool collided = m->sample_collision(oblique, w, emitted, rng, counters).has_value();
-        REQUIRE(collided == (albedo > 0.0f));
-        REQUIRE(w.throughput == Rgb(albedo));
-        REQUIRE(core::is_finite(w.unidirectional));
-        REQUIRE(core::is_finite(w.light));
+    for (const float albedo : {0.0f, 1.0f}) {
+        auto parts = parts_with(1e3f);
+        parts.albedo = std::make_shared<media::ConstantVolume>(Rgb(albedo));
+        const auto m = tests::medium_of(waves(), parts);
+        CHECK(m->traits().scattering == (albedo > 0.0f));
+        core::Rng rng(1);
+        core::TrackingCounters counters;
+        for (int i = 0; i < 1000; ++i) {
+            PathWeights w;
+            w.light = Rgb(1.0f);  // as after a scattering of density 1
+            Rgb emitted(0.0f);
+            // What only absorbs is passed, and nothing is left of the light.
+            const bool collided = m->sample_collision(oblique, w, emitted, rng, counters).has_value();
+            REQUIRE(collided == (albedo > 0.0f));
+            REQUIRE(w.throughput == Rgb(albedo));
+            REQUIRE(core::is_finite(w.unidirectional));
+            REQUIRE(core::is_finite(w.light));
+        }
     }
 }

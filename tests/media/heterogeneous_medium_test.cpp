@@ -79,6 +79,7 @@ TEST_CASE("a majorant that is too low is caught", "[media][heterogeneous][plante
     const auto sigmas = [&](float factor) {
         auto parts = tests::medium_parts(albedo, 3.0f);
         parts.plant_majorant_factor = factor;
+        parts.tracking.transmittance = media::TransmittanceEstimator::ratio_tracking;  // reads majorants
         // A peak in every cell, so that the bound is met
         const auto m = tests::medium_of(
             tests::vol_grid({12, 12, 12}, 1,

@@ -218,12 +218,14 @@ TEST_CASE("a wrong estimator of the transmittance is caught", "[media][estimator
     }
 }
 
-TEST_CASE("the automatic estimator is residual tracking where bounds make much certain",
+TEST_CASE("the automatic estimator is unbiased marching, but where all cells are constant",
           "[media][estimators]") {
     const tests::GridFolder folder;
-    const auto tiles = medium_with(media::load_vdb_grid(folder.grid("tiles")), 1.0f);
-    CHECK(tiles->estimator() == TransmittanceEstimator::residual_ratio_tracking);
-    const auto single = medium_with(media::load_vdb_grid(folder.grid("single")), 1.0f);
-    CHECK(single->estimator() == TransmittanceEstimator::ratio_tracking);
-    CHECK(single->traits().estimator == "ratio_tracking");
+    for (const char* kind : {"tiles", "lump", "single"}) {
+        const auto medium = medium_with(media::load_vdb_grid(folder.grid(kind)), 1.0f);
+        CHECK(medium->estimator() == TransmittanceEstimator::unbiased_ray_marching);
+        CHECK(medium->traits().estimator == "unbiased_ray_marching");
+    }
+    const auto constant = media::ConstantVolume(Rgb(2.0f)).make_medium(tests::medium_parts(Rgb(0.8f)));
+    CHECK(constant->estimator() == TransmittanceEstimator::residual_ratio_tracking);
 }

@@ -86,12 +86,6 @@ Comparison on_the_floor(const TwoLayers& layers, const std::vector<Rgb>& found,
     return {difference / sum, std::sqrt(squares / sum_squares)};
 }
 
-double largest(const std::vector<Rgb>& pixels) {
-    float result = 0.0f;
-    for (const Rgb& p : pixels) result = std::max(result, max_component(p));
-    return double(result);
-}
-
 /// A patch that looks up, and a hidden one above it that looks down.
 struct Pair {
     SsbcSurfaces seen{1, 1};
