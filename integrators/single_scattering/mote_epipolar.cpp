@@ -4,6 +4,7 @@
 // homogeneous and heterogeneous media. Surfaces, and lights without a position, are rendered at full rate.
 #include <fmt/format.h>
 
+#include "core/parameters/add_type.h"
 #include "integrators/register_parts.h"
 #include "integrators/single_scattering/single_scattering_estimator.h"
 
@@ -15,12 +16,8 @@ namespace {
 
 class MoteEpipolar final : public Integrator {
   public:
-    explicit MoteEpipolar(const Properties& p) : settings_(read_scattering_settings(p)) {
+    explicit MoteEpipolar(ScatteringSettings settings) : settings_(std::move(settings)) {
         settings_.sampling = ScatteringSampling::epipolar;
-        settings_.lines = int(p.get_int_in("lines", 1024, 1, 1 << 20));
-        settings_.line.initial = int(p.get_int_in("samples", 16, 2, 1 << 20));
-        settings_.line.texels = p.get_float_in("texels", 1.0, 1e-3, 64.0);
-        settings_.line.tolerance = float(p.get_float_in("tolerance", 0.05, 0.0, 1e6));
     }
 
     std::string type() const override { return "mote_epipolar"; }
@@ -69,27 +66,31 @@ Plan MoteEpipolar::plan(const Scene& scene, const Requirements& r) const {
 }  // namespace
 
 std::shared_ptr<const Integrator> make_epipolar(const EyePathLimits& limits, int lines, int samples) {
-    Properties properties = scattering_properties(limits, "positional");
-    properties.values["lines"] = {std::int64_t(lines), {}};
-    properties.values["samples"] = {std::int64_t(samples), {}};
-    return std::make_shared<const MoteEpipolar>(properties);
+    ScatteringSettings settings = scattering_settings(limits, ScatteringLights::positional);
+    settings.lines = lines, settings.line.initial = samples;
+    return std::make_shared<const MoteEpipolar>(std::move(settings));
 }
 
 void register_mote_epipolar(Registry& registry) {
-    auto parameters = scattering_parameters();
-    parameters.push_back(
-        {"lines", "integer", "1024", "epipolar lines of every light, around the whole picture"});
-    parameters.push_back({"samples", "integer", "16", "marched rays spread evenly along a line"});
-    parameters.push_back(
-        {"texels", "float", "1", "places for samples, and for edges to be found, a pixel of a line"});
-    parameters.push_back(
-        {"tolerance", "float", "0.05",
-         "lines are refined where light or transmittance varies by more; 0: at edges in depth alone"});
-    registry.add(
-        {Category::integrator, "mote_epipolar",
-         "Light scattered at most once; in media from rays marched along epipolar lines.", parameters,
-         R"(<integrator type="mote_epipolar"><integer name="lines" value="512"/></integrator>)"},
-        [](const Properties& p) { return std::make_shared<MoteEpipolar>(p); });
+    using S = ScatteringSettings;
+    using screenspace::LineSampling;
+    const ParameterList<S> parameters{
+        scattering_parameters(),
+        row("lines", &S::lines, between(1, 1 << 20),
+            "epipolar lines of every light, around the whole picture: finer shafts, cost in proportion"),
+        within(
+            &S::line,
+            row("samples", &LineSampling::initial, between(2, 1 << 20),
+                "marched rays spread evenly along a line: from 8 on hardly any error is left to them"),
+            row("texels", &LineSampling::texels, between(1e-3, 64, "1/pixel"),
+                "positions of samples along a line, and of edges: thinner shafts are found, for a ray each"),
+            row("tolerance", &LineSampling::tolerance, between(0, 1e6),
+                "lines are refined where light or transmittance varies by more: fewer rays and more "
+                "error along lines; 0: at edges in depth alone"))};
+    add_type(registry, Category::integrator, "mote_epipolar",
+             "Light scattered at most once; in media from rays marched along epipolar lines.", parameters,
+             R"(<integrator type="mote_epipolar"><integer name="lines" value="512"/></integrator>)",
+             [](S settings) { return std::make_shared<MoteEpipolar>(std::move(settings)); });
 }
 
 }  // namespace mote::integrators

@@ -3,6 +3,7 @@
 // At full rate it is the reference of `mote_epipolar`; sub-sampled, with bilateral upsampling, its rival.
 #include <fmt/format.h>
 
+#include "core/parameters/add_type.h"
 #include "integrators/register_parts.h"
 #include "integrators/single_scattering/single_scattering_estimator.h"
 
@@ -14,12 +15,7 @@ namespace {
 
 class MoteSingleScattering final : public Integrator {
   public:
-    explicit MoteSingleScattering(const Properties& p) : settings_(read_scattering_settings(p)) {
-        const bool sub_sampled = p.get_choice("sampling", "full", {"full", "sub_sampled"}) == "sub_sampled";
-        settings_.sampling = sub_sampled ? ScatteringSampling::sub_sampled : ScatteringSampling::full;
-        settings_.spacing = p.get_float_in("spacing", 4.0, 0.25, 1e6);
-        if (p.has("spacing") && !sub_sampled) p.warn("spacing has no effect: sampling is full");
-    }
+    explicit MoteSingleScattering(ScatteringSettings settings) : settings_(std::move(settings)) {}
 
     std::string type() const override { return "mote_single_scattering"; }
     std::vector<Layer> layers(const Scene& scene) const override {
@@ -49,25 +45,31 @@ class MoteSingleScattering final : public Integrator {
 }  // namespace
 
 std::shared_ptr<const Integrator> make_single_scattering(const EyePathLimits& limits) {
-    return std::make_shared<const MoteSingleScattering>(scattering_properties(limits, "other"));
+    return std::make_shared<const MoteSingleScattering>(scattering_settings(limits, ScatteringLights::other));
 }
 
 std::shared_ptr<const Integrator> make_all_single_scattering(const EyePathLimits& limits) {
-    return std::make_shared<const MoteSingleScattering>(scattering_properties(limits, "all"));
+    return std::make_shared<const MoteSingleScattering>(scattering_settings(limits, ScatteringLights::all));
 }
 
 void register_mote_single_scattering(Registry& registry) {
-    auto parameters = scattering_parameters();
-    parameters.push_back(
-        {"sampling", "string", "full",
-         "full: every pixel is marched; sub_sampled: rays on a grid, with bilateral upsampling"});
-    parameters.push_back({"spacing", "float", "4", "of the grid when sub-sampled [pixels]"});
-    registry.add(
-        {Category::integrator, "mote_single_scattering",
-         "Light scattered at most once, by ray marching: at full rate the reference of mote_epipolar.",
-         parameters,
-         R"(<integrator type="mote_single_scattering"><integer name="steps" value="128"/></integrator>)"},
-        [](const Properties& p) { return std::make_shared<MoteSingleScattering>(p); });
+    using S = ScatteringSettings;
+    const ParameterList<S> parameters{
+        scattering_parameters(),
+        row("sampling", &S::sampling,
+            {{"full", ScatteringSampling::full}, {"sub_sampled", ScatteringSampling::sub_sampled}},
+            "full: every pixel is marched; sub_sampled: rays on a grid, with bilateral upsampling"),
+        row("spacing", &S::spacing, between(0.25, 1e6, "pixels"),
+            "spacing of the grid when sub-sampled: time falls with its square, shafts are blurred by it")};
+    add_type(registry, Category::integrator, "mote_single_scattering",
+             "Light scattered at most once, by ray marching: at full rate the reference of mote_epipolar.",
+             parameters,
+             R"(<integrator type="mote_single_scattering"><integer name="steps" value="128"/></integrator>)",
+             [](S settings, const Properties& p) {
+                 if (p.has("spacing") && settings.sampling == ScatteringSampling::full)
+                     p.warn("spacing has no effect: sampling is full");
+                 return std::make_shared<MoteSingleScattering>(std::move(settings));
+             });
 }
 
 }  // namespace mote::integrators

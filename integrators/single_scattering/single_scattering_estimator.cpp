@@ -19,6 +19,7 @@ class SingleScatteringEstimator final : public Estimator {
     SingleScatteringEstimator(const Scene& scene, const RenderOptions& options,
                               const ScatteringSettings& settings)
         : scene_(scene), options_(options), settings_(settings), positional_(positional_lights(scene)) {
+        settings_.eye.limits.max_depth = 1 + settings.rays;
         settings_.eye.limits.wanted = wanted_transport(options);
         for (const auto& [lights, cell] : {std::pair(ScatteringLights::positional, positional_scattering),
                                            std::pair(ScatteringLights::other, other_scattering)})
@@ -30,7 +31,7 @@ class SingleScatteringEstimator final : public Estimator {
             settings_.eye.connected = positional_, settings_.eye.others = &*others_;
         }
         if (!Media) return;
-        accelerations_.emplace(scene, settings.accelerations);
+        accelerations_.emplace(scene, settings.accelerations());
         settings_.eye.maps = accelerations_->maps();
         settings_.eye.voxels = settings.march.voxels;
         settings_.eye.other_lights =
@@ -97,6 +98,8 @@ bool SingleScatteringEstimator<Media>::pass(const PassContext& context, PassImag
     const PassNumbers numbers(options_, context.index);
     MarchSettings march = settings_.march;
     march.offset = numbers.march.x;
+    march.rule =
+        settings_.in_scattering == AlongRay::uniform_steps ? MarchRule::uniform : MarchRule::equiangular;
     std::vector<InScattering> lights;
     if (Media && settings_.eye.limits.wanted[Transport::single_scattering] &&
         settings_.lights != ScatteringLights::other)

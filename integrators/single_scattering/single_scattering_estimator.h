@@ -6,14 +6,16 @@
 // and the point on the lens that its rays pass, all of them together, by numbers of its own.
 #pragma once
 
-#include "core/objects/properties.h"
-#include "core/objects/registry.h"
+#include "core/parameters/parameter_list.h"
 #include "core/render/integrator.h"
 #include "integrators/single_scattering/scattering_accelerations.h"
 #include "integrators/single_scattering/single_scattering_eye.h"
 #include "screenspace/epipolar/epipolar_sampling.h"
 
 namespace mote::integrators {
+
+/// Light along a marched ray: integrals where there can be, or steps everywhere, of equal angles or lengths.
+enum class AlongRay : std::uint8_t { exact, steps, uniform_steps };
 
 enum class ScatteringSampling : std::uint8_t { full, sub_sampled, epipolar };
 
@@ -23,27 +25,31 @@ enum class ScatteringLights : std::uint8_t { all, positional, other };
 
 struct ScatteringSettings {
     ScatteringLights lights = ScatteringLights::all;
+    AlongRay in_scattering = AlongRay::exact;
+    std::shared_ptr<Visibility> visibility;  ///< null: traced
+    int rays = 32;                           ///< of an eye path through mirrors and glass
     EyeSettings eye;
     screenspace::MarchSettings march;
-    AccelerationSettings accelerations;
     ScatteringSampling sampling = ScatteringSampling::full;
     double spacing = 4.0;  ///< of sub-sampling [pixels]
     int lines = 1024;      ///< epipolar lines of a light
     screenspace::LineSampling line;
     bool show_samples = false;  ///< a layer that counts the marched rays of every pixel
+
+    AccelerationSettings accelerations() const {
+        return {in_scattering == AlongRay::exact, visibility ? visibility->settings() : VisibilitySettings()};
+    }
 };
 
 std::unique_ptr<core::Estimator> make_single_scattering_estimator(const core::Scene& scene,
                                                                   const core::RenderOptions& options,
                                                                   const ScatteringSettings& settings);
 
-/// Properties of a scene file that names these limits and `lights` alone.
-core::Properties scattering_properties(const EyePathLimits& limits, const std::string& lights);
+/// Parameters of both integrators.
+core::ParameterList<ScatteringSettings> scattering_parameters();
 
-/// The settings that both integrators share, checked. Throws InputError.
-ScatteringSettings read_scattering_settings(const core::Properties& properties);
-/// Their rows in a manual page.
-std::vector<core::Parameter> scattering_parameters();
+/// Default settings with these limits of eye paths and these lights.
+ScatteringSettings scattering_settings(const EyePathLimits& limits, ScatteringLights lights);
 
 /// In the order of single_scattering_layers(); the last two only in media.
 enum class ScatteringLayer : std::uint8_t { emission, direct, single_scattering, marched_rays };

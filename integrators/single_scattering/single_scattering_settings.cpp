@@ -1,6 +1,7 @@
 // Settings, layers and plan entries that `mote_single_scattering` and `mote_epipolar` share.
 #include <fmt/format.h>
 
+#include "core/parameters/nested.h"
 #include "integrators/eye_path/eye_path_parameters.h"
 #include "integrators/register_parts.h"
 #include "integrators/single_scattering/single_scattering_estimator.h"
@@ -9,51 +10,47 @@ namespace mote::integrators {
 
 using namespace core;
 
-ScatteringSettings read_scattering_settings(const Properties& p) {
-    ScatteringSettings s;
-    s.march.steps = int(p.get_int_in("steps", 64, 1, 1 << 20));
-    const std::string how = p.get_choice("in_scattering", "exact", {"exact", "steps", "uniform_steps"});
-    s.accelerations.exact = how == "exact";
-    s.march.rule =
-        how == "uniform_steps" ? screenspace::MarchRule::uniform : screenspace::MarchRule::equiangular;
-    if (const auto visibility = p.child_of<Visibility>(Category::visibility))
-        s.accelerations.visibility = visibility->settings();
-    s.march.voxels = float(p.get_float_in("voxels", 1.0, 1e-3, 1e6));
-    s.eye.limits.max_depth = 1 + int(p.get_int_in("max_depth", 32, 1, 1 << 20));
-    s.eye.limits.hide_emitters = p.get_bool("hide_emitters", false);
-    s.show_samples = p.get_bool("show_samples", false);
-    const std::string lights = p.get_choice("lights", "all", {"all", "positional", "other"});
-    s.lights = lights == "positional" ? ScatteringLights::positional
-               : lights == "other"    ? ScatteringLights::other
-                                      : ScatteringLights::all;
-    return s;
-}
-
-Properties scattering_properties(const EyePathLimits& limits, const std::string& lights) {
-    Properties properties;
-    if (limits.max_depth > 1) properties.values["max_depth"] = {std::int64_t(limits.max_depth - 1), {}};
-    properties.values["hide_emitters"] = {limits.hide_emitters, {}};
-    properties.values["lights"] = {lights, {}};
-    return properties;
-}
-
-std::vector<Parameter> scattering_parameters() {
+ParameterList<ScatteringSettings> scattering_parameters() {
+    using S = ScatteringSettings;
+    using screenspace::MarchSettings;
     return {
-        {"steps", "integer", "64",
-         "steps of every marched ray, or places that exact integrals are traced from"},
-        {"in_scattering", "string", "exact",
-         "exact: integrals where one homogeneous medium lies between ray and light, without shadow rays "
-         "where nothing else does, and steps elsewhere; steps: all rays are marched, in equal angles as seen "
-         "from the light; uniform_steps: in equal lengths, as in the paper"},
-        {"visibility", "visibility", "traced",
-         "what stands between light and march steps: traced, or shadow_map with its light_size"},
-        {"voxels", "float", "1", "step of optical depths through grids, in voxels"},
-        {"show_samples", "boolean", "false", "adds a layer MarchedRays: rays marched in every pixel, a pass"},
-        {"lights", "string", "all",
-         "whose light scatters in media: all, positional (those that are marched), or other (all but those); "
-         "a nested integrator of mote_layers may do either"},
-        {"max_depth", "integer", "32", "longest eye path through mirrors and glass, in rays"},
-        hide_emitters_parameter()};
+        within(&S::march,
+               row("steps", &MarchSettings::steps, between(1, 1 << 20),
+                   "steps of every marched ray, or places that exact integrals are traced from: time grows "
+                   "with it, the error of shafts falls with it")),
+        row("in_scattering", &S::in_scattering,
+            {{"exact", AlongRay::exact},
+             {"steps", AlongRay::steps},
+             {"uniform_steps", AlongRay::uniform_steps}},
+            "exact: integrals where one homogeneous medium lies between ray and light, without shadow rays "
+            "where nothing else does, and steps elsewhere; steps: all rays are marched, in equal angles as "
+            "seen from the light; uniform_steps: in equal lengths, as in the paper"),
+        nested("visibility", &S::visibility, Category::visibility, "traced",
+               "occlusion between light and march steps: traced, or shadow_map with its light_size, which "
+               "takes half the time a step and is biased by a texel"),
+        within(
+            &S::march,
+            row("voxels", &MarchSettings::voxels, between(1e-3, 1e6, "voxels"),
+                "step of optical depths through grids: larger ones take less time and bias transmittance")),
+        row("show_samples", &S::show_samples,
+            "adds a layer MarchedRays: rays marched in every pixel, a pass"),
+        row("lights", &S::lights,
+            {{"all", ScatteringLights::all},
+             {"positional", ScatteringLights::positional},
+             {"other", ScatteringLights::other}},
+            "lights whose light scatters in media: all, positional (those that are marched), or other (all "
+            "but those); a nested integrator of mote_layers may do either"),
+        row("max_depth", &S::rays, between(1, 1 << 20),
+            "longest eye path through mirrors and glass, in rays: light behind more of them is missing"),
+        within(&S::eye, within(&EyeSettings::limits, row("hide_emitters", &EyePathLimits::hide_emitters,
+                                                         hide_emitters_parameter().description)))};
+}
+
+ScatteringSettings scattering_settings(const EyePathLimits& limits, ScatteringLights lights) {
+    ScatteringSettings settings;
+    if (limits.max_depth > 1) settings.rays = limits.max_depth - 1;
+    settings.eye.limits.hide_emitters = limits.hide_emitters, settings.lights = lights;
+    return settings;
 }
 
 std::vector<Layer> single_scattering_layers(bool media, const ScatteringSettings& settings) {
@@ -112,14 +109,14 @@ void plan_single_scattering(Plan& plan, const Scene& scene, const Requirements& 
     if (s.lights == ScatteringLights::other)
         plan.leave_out("marching", "no ray is marched", "lights is 'other'");
     else if (lights > 0)
-        plan.run("marching",
-                 fmt::format("{} steps a ray, {}", s.march.steps,
-                             s.march.rule == screenspace::MarchRule::uniform ? "of equal lengths"
-                                                                             : "of equal angles"),
-                 fmt::format("{} light{} with a position", lights, lights == 1 ? "" : "s"));
+        plan.run(
+            "marching",
+            fmt::format("{} steps a ray, {}", s.march.steps,
+                        s.in_scattering == AlongRay::uniform_steps ? "of equal lengths" : "of equal angles"),
+            fmt::format("{} light{} with a position", lights, lights == 1 ? "" : "s"));
     else
         plan.leave_out("marching", "no ray is marched", "no light has a position");
-    plan_scattering_accelerations(plan, scene, s.accelerations, s.march.steps);
+    plan_scattering_accelerations(plan, scene, s.accelerations(), s.march.steps);
     if (s.lights != ScatteringLights::positional && has_other_lights(scene))
         plan.run("other lights and emission of media",
                  "one sampled distance per pixel and pass, at full rate", "they have no position");
