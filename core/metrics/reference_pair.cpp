@@ -26,19 +26,6 @@ double neighbours_square(std::span<const Rgb> picture, int width, int height, in
                        : mean_square(picture[std::size_t(y) * std::size_t(width) + std::size_t(x)]);
 }
 
-std::vector<double> weights_of_pair(const PairMean& mean, int width, int height) {
-    std::vector<double> squares(mean.picture.size());
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
-            const std::size_t p = std::size_t(y) * std::size_t(width) + std::size_t(x);
-            const double certain = std::sqrt(mean_square(mean.picture[p])) -
-                                   certain_deviations * std::sqrt(mean_of_channels(mean.variance[p]));
-            squares[p] = neighbours_square(mean.picture, width, height, x, y);
-            if (certain > 0.0) squares[p] = std::max(squares[p], certain * certain);
-        }
-    return weights_of_squares(squares);
-}
-
 }  // namespace
 
 PairMean mean_of(const ReferencePair& pair) {
@@ -54,11 +41,24 @@ PairMean mean_of(const ReferencePair& pair) {
     return mean;
 }
 
+std::vector<double> weights_of_pair(const PairMean& mean, int width, int height) {
+    if (mean.picture.size() != std::size_t(width) * std::size_t(height))
+        throw std::invalid_argument("the pictures differ in size");
+    std::vector<double> squares(mean.picture.size());
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const std::size_t p = std::size_t(y) * std::size_t(width) + std::size_t(x);
+            const double certain = std::sqrt(mean_square(mean.picture[p])) -
+                                   certain_deviations * std::sqrt(mean_of_channels(mean.variance[p]));
+            squares[p] = neighbours_square(mean.picture, width, height, x, y);
+            if (certain > 0.0) squares[p] = std::max(squares[p], certain * certain);
+        }
+    return weights_of_squares(squares);
+}
+
 RelativeError relative_error(std::span<const Rgb> image, const ReferencePair& pair, int width, int height,
                              std::span<const Rgb> image_variance) {
     const PairMean mean = mean_of(pair);
-    if (mean.picture.size() != std::size_t(width) * std::size_t(height))
-        throw std::invalid_argument("the pictures differ in size");
     RelativeWeights weights{weights_of_pair(mean, width, height)};
     for (std::size_t p = 0; p < mean.picture.size(); ++p)
         weights.norm += weights.weight[p] * mean_square(mean.picture[p]);

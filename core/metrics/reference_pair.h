@@ -36,6 +36,10 @@ struct PairMean {
 /// Throws std::invalid_argument when the sizes differ.
 PairMean mean_of(const ReferencePair& pair);
 
+/// The weights w of a pair, row by row [1 / radiance^2]. Throws std::invalid_argument when a size does not
+/// fit.
+std::vector<double> weights_of_pair(const PairMean& mean, int width, int height);
+
 /// error and bias against the truth that both are estimates of. As always, the error is never below the bias.
 /// `image_variance` may be empty. Throws std::invalid_argument when a size does not fit.
 RelativeError relative_error(std::span<const Rgb> image, const ReferencePair& pair, int width, int height,

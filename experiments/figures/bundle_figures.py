@@ -1,9 +1,10 @@
-"""What the figures of Tokuyoshi and Ogaki 2012 share: pictures by seeds of one method, and their errors against two
-references of `path`, whose noise cancels out of the squares."""
+"""Views of the figures of Tokuyoshi and Ogaki 2012: pictures by seeds of one method, and their relative RMSE (measure.py)
+against two references of `path`."""
 from pathlib import Path
 
 import numpy as np
-from renders import error_weight, luminance
+from measure import pixel_errors, series_error
+from renders import luminance
 
 SCENES = Path(__file__).resolve().parent / "scenes"
 BUNDLES = {"integrator": "mote_vpl_ray_bundles"}
@@ -21,20 +22,17 @@ class View:
         self.depth = {} if depth is None else with_options(max_depth=depth)
         self.references = [self.render("reference", {"integrator": "path"}, passes, seed) for seed in (91, 92)]
         self.truth = np.mean([r[""] for r in self.references], axis=0)
-        self.weight = error_weight(luminance(self.truth))
 
     def render(self, name, settings, passes, seed=1):
         return self.mote.render(self.scene, f"{self.name}_{name}".replace(" ", "_"), self.settings | self.depth | settings, passes=passes, seed=seed)
 
     def squares(self, picture):
-        """Of the relative error, by pixel, free of the references' noise in the mean."""
-        p, a, b = (luminance(x[""] if not isinstance(x, np.ndarray) else x) for x in (picture, *self.references))
-        return (p - a) * (p - b) * self.weight
+        """Squared relative errors by pixel, free of the references' noise in the mean."""
+        return pixel_errors(picture[""], [r[""] for r in self.references])
 
     def error(self, pictures, region=None):
-        """Root mean square of one picture, over pictures of several seeds, in a region (a mask of pixels)."""
-        region = np.ones(self.truth.shape[:2], bool) if region is None else region
-        return max(0.0, float(np.mean([self.squares(p)[region].mean() for p in pictures]))) ** 0.5
+        """Relative RMSE of one picture, from pictures of several seeds, in a region (a mask of pixels)."""
+        return series_error([p[""] for p in pictures], [r[""] for r in self.references], region)["error"]
 
     def bias(self, pictures):
         """Of the picture's mean, relative, with its standard error over seeds."""

@@ -1,32 +1,25 @@
-"""What the figures of Hermes 2010 share: the room, errors against a reference, and panels."""
+"""The room of the figures of Hermes 2010, errors against a reference, and panels."""
 from pathlib import Path
 
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
-from renders import around, luminance, show
+import measure
+from renders import luminance, show
 
 ROOM = Path(__file__).resolve().parent / "scenes" / "sky_room.xml"
 BUNDLES = {"integrator": "mote_ray_bundles", "integrator.eye_samples": 1}
 
 
 def error(picture, reference, layer=""):
-    """docs/testing.md, Eq. (2), without the reference's own noise where it is the beauty, whose variance is known."""
-    x, r = picture[layer], reference[layer]
-    square = (r ** 2).mean(axis=2)
-    weight = 1 / (square + (np.median(r[r > 0]) / 10) ** 2)
-    variance = reference["Variance"].mean(axis=2) if layer == "" else 0
-    return max(0.0, (weight * (((x - r) ** 2).mean(axis=2) - variance)).sum() / (weight * square).sum()) ** 0.5
+    """Relative RMSE, without the reference's own noise where it is the beauty, whose variance is known."""
+    return measure.error(picture[layer], [reference[layer]], variances=[reference["Variance"]] if layer == "" else None)
 
 
 def error_of_two(picture, references, layer=""):
-    """The same against two references of other seeds: free of the noise of both, which neither weighs nor counts."""
-    x, a, b = (p[layer] for p in (picture, *references))
-    light = ((a + b) ** 2).mean(axis=2) / 4
-    mean = around(light).mean(axis=0)
-    weight = 1 / (mean + np.median(mean[mean > 0]) / 100)
-    return max(0.0, (weight * ((x - a) * (x - b)).mean(axis=2)).sum() / (weight * light).sum()) ** 0.5
+    """Relative RMSE against two references of other seeds."""
+    return measure.error(picture[layer], [r[layer] for r in references])
 
 
 def bias(picture, reference, layer=""):
@@ -34,12 +27,9 @@ def bias(picture, reference, layer=""):
 
 
 def noise(pictures, layer=""):
-    """Of one picture, from how independent ones differ."""
-    stack = np.array([p[layer] for p in pictures])
-    mean = stack.mean(axis=0)
-    square = (mean ** 2).mean(axis=2)
-    weight = 1 / (square + (np.median(mean[mean > 0]) / 10) ** 2)
-    return ((weight * stack.var(axis=0, ddof=1).mean(axis=2)).sum() / (weight * square).sum()) ** 0.5
+    """Noise of one picture, relative as its RMSE is, from how independent ones differ."""
+    stack = [p[layer] for p in pictures]
+    return measure.series_error(stack, [np.mean(stack, axis=0)])["noise"]
 
 
 def draw(path, panels, columns=2):

@@ -20,6 +20,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+import measure
 from claims import Claims
 from origin import ROOT, Origin
 from renders import finish
@@ -39,9 +40,9 @@ def run(program, command, *options):
 
 
 def relative_error(r):
-    """Root mean square of the difference to the lobe's mean, over the picture's mean."""
-    box, cone = (np.stack([r[prefix + c] for c in "rgb"], axis=1) for prefix in ("", "cone_"))
-    return np.sqrt(np.mean((box - cone) ** 2)) / cone.mean()
+    """Relative RMSE of the means over boxes, against those over the lobe."""
+    box, cone = (np.stack([[r[prefix + c]] for c in "rgb"], axis=2) for prefix in ("", "cone_"))
+    return measure.error(box, [cone])
 
 
 def check(layouts, views, build_ms):

@@ -18,6 +18,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from claims import Claims
 from occluders import crown, sculpture
+from measure import LABEL, series_error
 from renders import luminance, main, show, write_csv
 
 SCENES = Path(__file__).resolve().parent / "scenes"
@@ -42,9 +43,8 @@ def scenes(mote, quick):
 
 
 def relative_mse(picture, full):
-    """Mean of d^2 / (r + m)^2, where m is the mean of the picture at full rate r."""
-    d, r = picture[LAYER] - full[LAYER], full[LAYER]
-    return np.mean((d / (r + r.mean())) ** 2)
+    """Square of the relative RMSE, against the picture at full rate."""
+    return series_error([picture[LAYER]], [full[LAYER]])["squared_error"]
 
 
 def gradient(picture):
@@ -84,7 +84,7 @@ def draw(all_pictures, path):
         exposure = 0.6 / max(np.percentile(luminance(full[LAYER])[piece], 95), 1e-9)
         for axes, (kind, title) in zip(row, columns.items()):
             rays = pictures[kind].value("marched_rays") / full.value("lit_pixels")
-            error = f", error {relative_mse(pictures[kind], full):.1e}" if kind != "full" else ""
+            error = f", relative MSE {relative_mse(pictures[kind], full):.1e}" if kind != "full" else ""
             show(axes, pictures[kind][LAYER][piece], exposure, f"{name}: {title}, {100 * rays:.1f} %{error}")
     figure.tight_layout()
     figure.savefig(path.with_suffix(".png"), dpi=75)
@@ -101,7 +101,7 @@ def figure(mote, quick, output):
         seconds = {k: p.cpu for k, p in pictures.items()}
         share, speed = rays["lines"] / rays["full"], seconds["full"] / seconds["lines"]
         print(f"{name}, {size[0]} x {size[1]}: {100 * share:.1f} % of the rays, {speed:.1f} times as fast as every pixel, "
-              f"relative error {error['lines'] ** 0.5:.4f}")
+              f"{LABEL} {error['lines'] ** 0.5:.4f}")
         crisp = {k: gradient(p) / gradient(pictures["full"]) for k, p in pictures.items()}
         rows += [(name, k, int(rays[k]), rays[k] / rays["full"], float(error[k]), float(crisp[k]), seconds[k])
                  for k in pictures]

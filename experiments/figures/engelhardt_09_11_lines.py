@@ -14,6 +14,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+import measure
 from claims import Claims
 from occluders import sculpture
 from renders import luminance, main, show, write_csv
@@ -24,9 +25,7 @@ LINES, SAMPLES = (256, 512, 1024), (4, 8, 16, 32)
 
 
 def error(picture, reference):
-    """Root mean square of d / (r + m), where m is the mean of the reference r."""
-    d, r = picture[LAYER] - reference[LAYER], reference[LAYER]
-    return float(np.sqrt(np.mean((d / (r + r.mean())) ** 2)))
+    return measure.error(picture[LAYER], [reference[LAYER]])
 
 
 def render(mote, quick):
@@ -74,7 +73,7 @@ def draw(pictures, path):
     grid[1, 2].set_xticks(LINES, [str(n) for n in LINES])
     grid[1, 2].minorticks_off()
     grid[1, 2].set_xlabel("lines")
-    grid[1, 2].set_ylabel("error against every pixel")
+    grid[1, 2].set_ylabel(f"{measure.LABEL} against every pixel")
     grid[1, 2].legend()
     figure.tight_layout()
     figure.savefig(path.with_suffix(".png"), dpi=80)

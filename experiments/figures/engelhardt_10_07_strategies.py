@@ -3,8 +3,8 @@
 
 Light that the smoke scatters more than once, by the four strategies of Sec. 10.2.3, each with as many passes as fit the
 same processor time. Where every vertex of an eye path meets all VPLs, a pass takes one eye path a pixel; the 1-to-1
-strategies share the VPLs out among 64. The error is the root mean square of the difference to `volpath` over the
-pixels, without the noise of `volpath`; the clean picture, by `mote_layers`, is for the eye alone. Exit code 0: all is
+strategies share the VPLs out among 64. The error is the relative RMSE (measure.py) against two pictures of `volpath`;
+the clean picture, by `mote_layers`, is for the eye alone. Exit code 0: all is
 as documented; 1: it is not; 2: wrong usage, or mote is missing. A full run takes 4 minutes of one core, --quick 45 s.
 
     experiments/figures/engelhardt_10_07_strategies.py [--quick] [--redraw] [--output FOLDER] [--bin FOLDER]
@@ -12,6 +12,7 @@ as documented; 1: it is not; 2: wrong usage, or mote is missing. A full run take
 import sys
 
 import numpy as np
+import measure
 from claims import Claims
 from panels import TITLE, Canvas, clean, show, title
 from renders import RECOVERED, approximate, compensation, luminance, main, mean_and_error, write_csv
@@ -50,16 +51,13 @@ def render(mote, quick):
 
 
 def error_of(picture, references):
-    """Root mean square over the pixels, relative to the mean of the references. Two independent ones cancel their noise out of
-    the square."""
-    p, r, s = (luminance(x.multiple()) for x in (picture, *references))
-    return max(np.mean((p - r) * (p - s)), 0.0) ** 0.5 / (0.5 * (r + s).mean())
+    return measure.error(picture.multiple(), [r.multiple() for r in references])
 
 
 def spread_of_a_pass(pictures):
-    """Of what compensation brings back: the standard deviation over seeds, for one pass, relative to the mean."""
-    values = np.stack([luminance(p[RECOVERED]) for p in pictures])
-    return (values.var(axis=0, ddof=1).mean() * pictures[0].passes) ** 0.5 / values.mean()
+    """Noise of one pass in what compensation brings back, from how seeds differ."""
+    values = [p[RECOVERED] for p in pictures]
+    return measure.series_error(values, [np.mean(values, axis=0)])["noise"] * pictures[0].passes ** 0.5
 
 
 def check(rmse, pictures):
@@ -94,7 +92,7 @@ def draw(clean, pictures, rmse, equal, path):
         mean, error = mean_and_error(errors)
         axes.bar(x, 100 * mean, yerr=100 * error, color=["0.6", "0.6", "tab:blue", "tab:green"][x], width=0.6)
     axes.set_xticks(range(len(rmse)), [name.replace("1-to-1 ", "") for name in rmse])
-    axes.set_ylabel("RMSE, % of the mean")
+    axes.set_ylabel(f"{measure.LABEL} [%]")
     title(axes, f"after {equal.seconds} s of processor time")
     canvas.save(path)
 
@@ -104,7 +102,7 @@ def figure(mote, quick, output):
     rmse = {name: [error_of(p, references) for p in ps] for name, ps in pictures.items()}
     rows = [[name, *map(float, mean_and_error(rmse[name])), ps[0].passes, float(np.mean([p.cpu for p in ps]) - equal.start[name])]
             for name, ps in pictures.items()]
-    write_csv(output.with_suffix(".csv"), ["strategy", "rmse", "standard_error", "passes", "cpu_seconds"], rows)
+    write_csv(output.with_suffix(".csv"), ["strategy", "relative_rmse", "standard_error", "passes", "cpu_seconds"], rows)
     for row in rows:
         print(f"                {row[0]}: {row[3]} passes, {row[4]:.1f} s")
     picture = clean(mote, "smoke_room", {"resx": 160, "resy": 100} if quick else {"resx": 640, "resy": 400}, passes=32)

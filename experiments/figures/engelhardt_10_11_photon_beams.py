@@ -14,6 +14,7 @@ import sys
 import numpy as np
 import panels
 from claims import Claims
+from measure import LABEL, series_error
 from panels import TITLE, Canvas, clean, enlarged, show, show_difference, title
 from renders import approximate, luminance, main, mean_and_error, write_csv
 
@@ -52,10 +53,9 @@ def render(mote, quick):
 
 
 def error(picture, references, block):
-    """Root mean square over blocks of pixels, relative to the mean. Two independent references cancel their noise out of
-    the square."""
-    p, r, s = (luminance(panels.blocks(x.multiple(), block)) for x in (picture, *references))
-    return max(np.mean((p - r) * (p - s)), 0.0) ** 0.5 / (0.5 * (r + s).mean())
+    """Relative RMSE of means over blocks of pixels, against two independent references."""
+    shown, *exact = (panels.blocks(x.multiple(), block) for x in (picture, *references))
+    return series_error([shown], exact)["error"]
 
 
 def measure(references, pictures):
@@ -82,7 +82,7 @@ def bars(axes, table):
         axes.bar(np.arange(len(table)) + 0.4 * i - 0.2, values[0], yerr=values[1], width=0.38, color=["tab:blue", "tab:orange"][i],
                  label="pixels" if block == 1 else f"blocks of {block} x {block} pixels")
     axes.set_xticks(range(len(table)), [name.replace(", ", ",\n") for name in table])
-    axes.set_ylabel("RMSE, % of the mean")
+    axes.set_ylabel(f"{LABEL} [%]")
     axes.legend(fontsize=11)
     title(axes, "error against volpath at equal processor time")
 
@@ -108,7 +108,7 @@ def figure(mote, quick, output):
     table = measure(references, pictures)
     rows = [[name, float(times[name]), *map(float, np.ravel(np.column_stack(values)))] for name, values in table.items()]
     write_csv(output.with_suffix(".csv"), ["method", "cpu_seconds", "bias", "bias_error"] +
-              [f"{what}_{b}" for b in BLOCKS for what in ("rmse", "rmse_error")], rows)
+              [f"{what}_{b}" for b in BLOCKS for what in ("relative_rmse", "standard_error")], rows)
     for name, ps in pictures.items():
         what = "vpls" if name == VPLS else "photons_in_media"
         count = np.mean([p.statistics.get(what) or p.value(what) for p in ps])

@@ -13,6 +13,7 @@ import sys
 
 import numpy as np
 from claims import Claims
+from measure import series_error
 from panels import TITLE, Canvas, blocks, cleanest, enlarged, show
 from renders import RECOVERED, approximate, compensation, luminance, main, mean_and_error, write_csv
 
@@ -40,10 +41,10 @@ def render(mote, quick):
 
 
 def spread(pictures):
-    """How much the sets of VPLs differ: the standard deviation of pixels over the sets, relative to the mean. Pixels are
-    blocks of 5 x 5, so that it is the VPLs that differ rather than the samples along an eye ray."""
-    pictures = np.stack([luminance(blocks(p.multiple(), 5)) for p in pictures])
-    return np.sqrt(np.mean(pictures.var(axis=0, ddof=1))) / pictures.mean()
+    """Noise of one set of VPLs, from how sets differ. Pixels are blocks of 5 x 5, so that it is the VPLs that differ rather
+    than the samples along an eye ray."""
+    pictures = [blocks(p.multiple(), 5) for p in pictures]
+    return series_error(pictures, [np.mean(pictures, axis=0)])["noise"]
 
 
 def check(pairs, more, cost):

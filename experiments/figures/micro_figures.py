@@ -1,10 +1,11 @@
-"""What the figures of Engelhardt 2013, Ch. 8 share: indirect light by `mote_micro_rendering`, and its error against two
-references of `path`, whose noise cancels out of the squares."""
+"""Indirect light by `mote_micro_rendering`, for the figures of Engelhardt 2013, Ch. 8, and its relative RMSE (measure.py)
+against two references of `path`."""
 from pathlib import Path
 
 import numpy as np
 from bundle_figures import SCENES, with_options
-from renders import around, error_weight, luminance
+from measure import error, pixel_errors
+from renders import around, luminance
 
 MICRO = {"integrator": "mote_micro_rendering"}
 CORNELL = SCENES.parents[2] / "scenes" / "cornell_box.xml"
@@ -32,8 +33,7 @@ class IndirectView:
         self.settings = dict(size) | ({} if depth is None else with_options(max_depth=depth))
         self.references = [self.light(self.render("reference", {"integrator": "path"}, passes, seed)) for seed in (91, 92)]
         self.truth = np.mean(self.references, axis=0)
-        light = luminance(self.truth)
-        self.weight, nearby = error_weight(light), around(light, 1)
+        nearby = around(luminance(self.truth), 1)
         self.smooth = nearby.max(axis=0) < 1.5 * nearby.min(axis=0)
 
     @staticmethod
@@ -44,18 +44,14 @@ class IndirectView:
     def render(self, name, settings, passes, seed=1, **more):
         return self.mote.render(self.scene, f"{self.name}_{name}".replace(" ", "_"), self.settings | settings, passes=passes, seed=seed, **more)
 
-    def squares(self, picture):
-        """Of the relative error, by pixel, free of the references' noise in the mean."""
-        p, a, b = (luminance(self.light(x)) for x in (picture, *self.references))
-        return (p - a) * (p - b) * self.weight
-
     def error(self, picture, region=None):
-        """In a region (a mask of pixels) instead of the smooth ones."""
-        return max(0.0, float(self.squares(picture)[self.smooth if region is None else region].mean())) ** 0.5
+        """Relative RMSE of the smooth pixels, or in a region (a mask of pixels)."""
+        return error(self.light(picture), self.references, self.smooth if region is None else region)
 
     def worst(self, picture, share=0.99):
         """The relative error that so many of the pixels do not exceed."""
-        return float(np.quantile(np.maximum(self.squares(picture)[self.smooth], 0), share)) ** 0.5
+        squares = pixel_errors(self.light(picture), self.references, self.smooth)[self.smooth]
+        return float(np.quantile(np.maximum(squares, 0), share)) ** 0.5
 
     def ratio(self, picture, region=None):
         """Of the mean light to the truth's."""

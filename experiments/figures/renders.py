@@ -17,6 +17,7 @@ import time
 from pathlib import Path
 
 import numpy as np
+import measure
 from claims import Claims
 from exr import read_exr
 from origin import ROOT, Origin
@@ -59,7 +60,8 @@ class Mote:
         self.program = options.bin / "mote"
         self.folder = options.output / name
         self.redraw, self.own, self.compare = options.redraw, options.own, options.compare
-        self.module = import_mote(options.bin) if options.in_process else None
+        measure.use(options.bin)
+        self.module = measure.module() if options.in_process else None
         if not self.program.is_file():
             raise FileNotFoundError(f"no {self.program}: build it first (tools/build_release.sh mote)")
         self.folder.mkdir(parents=True, exist_ok=True)
@@ -119,13 +121,6 @@ class Mote:
         return path, said, children_cpu() - before
 
 
-def import_mote(bin_folder):
-    """The module of the same build, else an installed one."""
-    sys.path.insert(0, str(bin_folder.parent / "python"))
-    import mote  # pylint: disable=import-outside-toplevel
-    return mote
-
-
 def word(value):
     return str(value).lower() if isinstance(value, bool) else str(value)
 
@@ -153,12 +148,6 @@ def around(plane, radius=2):
     padded, (height, width) = np.pad(plane, radius, mode="edge"), plane.shape
     steps = range(2 * radius + 1)
     return np.array([padded[i:i + height, k:k + width] for i in steps for k in steps])
-
-
-def error_weight(light):
-    """As mote compare weighs, 1 / (|r|^2 + (m / 10)^2), but of means of 5 x 5 neighbours: no pixel's own noise is in it."""
-    mean = around(light).mean(axis=0)
-    return 1 / (mean ** 2 + (np.median(mean) / 10) ** 2)
 
 
 def mean_and_error(values):

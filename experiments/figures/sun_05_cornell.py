@@ -2,8 +2,8 @@
 """Bidirectional paths against paths from the eye in three Cornell boxes: Sun 2020, Figs. 5.1 to 5.6.
 
 Two mirroring spheres; a mirror as the back wall; waves that throw the light of a lamp onto the walls. Equal numbers of samples,
-as in the thesis. Errors are relative, root mean square over pixels, against two long bidirectional pictures, whose noise is in
-neither. A full run takes about 5 minutes of one core, --quick half a minute.
+as in the thesis. Errors are the relative RMSE (measure.py) of all but the brightest 0.1 % of the pixels, against two long
+bidirectional pictures. A full run takes about 5 minutes of one core, --quick half a minute.
 
     experiments/figures/sun_05_cornell.py [--quick] [--redraw] [--output FOLDER] [--bin FOLDER]
 """

@@ -1,8 +1,9 @@
-"""Bidirectional paths beside paths from the eye alone, in the scenes of both figures of Sun 2020 and some more: errors against
-two independent references, processor time, rays."""
+"""Bidirectional paths beside paths from the eye alone, in the scenes of both figures of Sun 2020 and some more: relative RMSE
+against two independent references, processor time, rays."""
 from pathlib import Path
 
 import numpy as np
+from measure import series_error
 from occluders import water
 
 SCENES = Path(__file__).resolve().parent / "scenes"
@@ -32,25 +33,20 @@ def render(mote, name, integrator, size, passes, seed, what, **settings):
                        threads=1)
 
 
-def squared_error(picture, a, b):
-    """Relative to the light, as in docs/testing.md, with the noise of neither reference; the brightest 0.1 % of the pixels of
-    the references (a caustic's grains, lamps) are left out."""
-    mean = np.maximum(0.5 * (a + b), 0)
-    r2 = (a * b).mean(axis=2)
-    smooth = (mean ** 2).mean(axis=2)
-    weights = 1 / (smooth + (np.median(np.sqrt(smooth[smooth > 0])) / 10) ** 2)
-    weights = np.where(smooth > np.quantile(smooth, 0.999), 0, weights)
-    return ((weights * ((picture - a) * (picture - b)).mean(axis=2)).sum() / (weights * r2).sum())
+def usual_pixels(a, b):
+    """All pixels but the brightest 0.1 % of the references: a caustic's grains, lamps."""
+    light = ((a + b) / 2).clip(min=0).max(axis=2)
+    return light <= np.quantile(light, 0.999)
 
 
 def errors(mote, name, size, passes, seeds, references):
-    """By integrator: squared error and processor seconds of a picture, as means over seeds, with the error's standard error;
-    and the pictures. `passes` and `seeds` of each; `references` passes of bidirectional paths, twice."""
+    """By integrator: squared relative RMSE and processor seconds of a picture, as means over seeds, with the square's standard
+    error; and the pictures. `passes` and `seeds` of each; `references` passes of bidirectional paths, twice."""
     a, b = (render(mote, name, BOTH, size, references, seed, "reference")[""] for seed in (101, 102))
     found = {}
     for integrator in (EYE, BOTH):
         pictures = [render(mote, name, integrator, size, passes[integrator], s, "test") for s in seeds]
-        e = [squared_error(p[""], a, b) for p in pictures]
+        e = [series_error([p[""]], [a, b], usual_pixels(a, b))["squared_error"] for p in pictures]
         found[integrator] = {"error": np.mean(e), "sigma": np.std(e, ddof=1) / len(e) ** 0.5,
                              "seconds": np.mean([p.cpu for p in pictures]), "pictures": pictures,
                              "rays": np.mean([sum(p.statistics["rays"].values()) for p in pictures]) / passes[integrator]}

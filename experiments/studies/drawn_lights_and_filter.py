@@ -4,7 +4,7 @@
 Usage: drawn_lights_and_filter.py [--mote build/release/bin/mote] [--size N] [--passes N] [--scene NAME] [--reference N]
          [--keep FILE] [--quick] [METHOD...]
 A million VPLs shared out among the passes, atrium in haze and smoke room. Eye paths, points along them and VPLs are the
-same for all, so errors are those of selecting alone: relative, with 1 / (r^2 + 1e-4 mean^2) as weights, each against a picture of
+same for all, so errors are those of selecting alone: the relative RMSE (measure.py), each against a picture of
 `--reference` drawn lights a tile and pass that went through the same filter, or through none; its own noise is not subtracted.
 `--keep` keeps references for the next time.
 METHOD: stochastic:LIGHTS, tree:LIGHTS, ris:CANDIDATES:SAMPLES:BY, lightcuts:ERROR:MOST:ANGLE, multidimensional:ERROR:MOST:ANGLE,
@@ -24,6 +24,7 @@ import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "experiments/figures"))
+import measure
 from exr import read_exr
 
 # Light paths of a million VPLs, bound [1/m^2], generated files.
@@ -84,11 +85,6 @@ def references(args, scene, folder):
     return {"true": kept[key], "false": kept[key + "!"]}
 
 
-def error(picture, reference):
-    weights = 1 / (reference ** 2 + 1e-4 * reference.mean() ** 2)
-    return np.sqrt((weights * (picture - reference) ** 2).mean())
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--mote", default=ROOT / "build/release/bin/mote")
@@ -100,6 +96,7 @@ def main():
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("methods", nargs="*", default=METHODS)
     args = parser.parse_args()
+    measure.use(Path(args.mote).parent)
     if args.quick:
         args.size, args.reference = 48, 128
     with tempfile.TemporaryDirectory() as name:
@@ -109,7 +106,7 @@ def main():
             for method in args.methods:
                 picture, seconds = render(args, scene, method, Path(name))
                 filtered = selection(method)[2]
-                print(f"{scene}, {method}: {error(picture, reference[filtered]):.2%}, "
+                print(f"{scene}, {method}: {measure.error(picture, [reference[filtered]]):.2%}, "
                       f"bias {picture.mean() / reference['false'].mean() - 1:+.2%}; {seconds:.1f} s, "
                       f"{(seconds - least) * (512 / args.size) ** 2:.0f} s of a picture", flush=True)
 

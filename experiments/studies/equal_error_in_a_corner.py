@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """Screen-space against exact compensation at equal error, in a corner whose light is known by quadrature (corner.py).
 
-Both are given the same passes of virtual point lights. The error is the root mean square over all pixels of the layer
-`compensation_surface` against the quadrature, with all the noise there is, over the root mean square of the quadrature.
+Both are given the same passes of virtual point lights. The error is the relative RMSE (measure.py) of the layer
+`compensation_surface` against the quadrature, with all the noise there is.
 Exact compensation has no bias, so its error falls with the root of its passes; what it takes to come down to that of screen
 space follows from its variance. Its time is what the render spends on it alone; that of screen space is the whole of `mote ssbc`,
 which reads and writes EXR files. Processor time. 1368 light paths leave 1024 virtual point lights. About 3 minutes.
@@ -14,6 +14,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "figures"))
 import numpy as np
 from claims import Claims
 from corner import picture, reflected, transported
+from measure import series_error
 from renders import compensation, luminance, main, mean_and_error, write_csv
 from exr import read_exr
 
@@ -39,10 +40,6 @@ def screen_space(mote, render, name):
     return read_exr(path)[LAYER], seconds
 
 
-def square(difference):
-    return np.mean(luminance(difference) ** 2)
-
-
 def measure(mote, paths, settings, truth, passes, seeds):
     """Squared errors after `passes`, and seconds, of exact and screen-space compensation, over seeds."""
     errors, seconds, sums = {"exact": [], "screen space": []}, {"exact": [], "screen space": []}, []
@@ -53,7 +50,7 @@ def measure(mote, paths, settings, truth, passes, seeds):
         found, took = screen_space(mote, f"bounded_{paths}_{seed}", f"ssbc_{paths}_{seed}")
         took_exact = exact.value("compensation_thread_seconds")
         for name, picture_of, time in (("exact", exact[LAYER], took_exact), ("screen space", found, took)):
-            errors[name].append(square(picture_of - truth))
+            errors[name].append(series_error([picture_of], [truth])["squared_error"])
             seconds[name].append(time)
         sums.append(luminance(exact[LAYER]).mean() / luminance(truth).mean() - 1)
     return errors, seconds, mean_and_error(sums), luminance(found).mean() / luminance(truth).mean()
@@ -68,7 +65,7 @@ def study(mote, quick, output):
     for paths in ([1368] if quick else [64, 1368]):
         errors, seconds, (bias, spread), share = measure(mote, paths, settings, truth, passes, seeds)
         of = {name: np.mean(values) for name, values in errors.items()}
-        relative = {name: (value / square(truth)) ** 0.5 for name, value in of.items()}
+        relative = {name: value ** 0.5 for name, value in of.items()}
         equal = np.mean(seconds["exact"]) * of["exact"] / of["screen space"]
         ratio = equal / np.mean(seconds["screen space"])
         print(f"{paths} light paths, {passes} passes: exact {relative['exact']:.1%} in {np.mean(seconds['exact']):.2f} s, "

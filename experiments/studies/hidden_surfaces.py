@@ -6,8 +6,7 @@ reaches a quarter of it, the atrium without haze, and rows of thin boards. In ea
 is compared with what three steps of screen-space compensation add with one to four layers. What is still missing is told
 apart: hidden (more layers), beyond the frame (twice as wide a picture, cut back), the size of pixels (twice as many),
 receivers that are not Lambertian (from their albedos). Shadow rays instead of none tell how much comes through walls.
-Image errors are relative rms errors, of pixels and of blocks of them, without noise: products of differences of independent
-seeds. Times are processor time.
+Image errors are relative RMSE (measure.py) of pixels and of blocks of them, what two seeds share: without noise. Times are processor time.
 A full run takes some eight minutes of processor time, --quick without the atrium half a minute.
 """
 import math
@@ -21,6 +20,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from claims import Claims
+from measure import series_error
 from renders import compensation, luminance, main, mean_and_error, show, show_difference, write_csv
 
 ADDED = "compensation_surface"
@@ -79,11 +79,8 @@ def blocks(image):
 
 
 def error(found, exact):
-    """Relative rms error without the noise of either: every product is of two differences that share no render."""
-    pairs = [((found[0] - exact[i]) * (found[1] - exact[j])).mean()
-             for i in range(len(exact)) for j in range(len(exact)) if i != j]
-    scale = [(exact[i] * exact[j]).mean() for i in range(len(exact)) for j in range(i)]
-    return math.sqrt(max(0.0, np.mean(pairs) / np.mean(scale)))
+    """Relative RMSE that two seeds share, against two references, of two seeds each."""
+    return series_error(found, [np.mean(exact[:2], axis=0), np.mean(exact[2:], axis=0)])["systematic"]
 
 
 def measure(mote, name, quick, rows, plots):
@@ -158,7 +155,7 @@ def run(mote, quick, output):
     rows, plots = [], []
     names = [name for name in SCENES if not (quick and name == "atrium")]
     results = {name: measure(mote, name, quick, rows, plots) for name in names}
-    write_csv(output.with_suffix(".csv"), ["scene", "variant", "share", "rms", "rms of blocks", "seconds a pass",
+    write_csv(output.with_suffix(".csv"), ["scene", "variant", "share", "relative RMSE", "relative RMSE of blocks", "seconds a pass",
                                            "seconds at the end", "hidden points"], rows)
     plot(plots, output.with_suffix(".png"))
     claims = Claims()

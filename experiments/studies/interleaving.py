@@ -2,8 +2,8 @@
 """Virtual point lights in image space (mote_vpl): interleaving, the filter, and upsampling: error against counted work, and bias.
 
 Usage: interleaving.py [--mote build/release/bin/mote] [--seeds N] [--reference PASSES] [--scale N]
-For the smoke room and the Cornell box, with the same bounded lights throughout: squared error against a long render without
-either (relative as in docs/testing.md, the reference's own noise taken off), counted work of a pixel
+For the smoke room and the Cornell box, with the same bounded lights throughout: squared relative RMSE (measure.py) against a
+long render without either, whose own noise is taken off, counted work of a pixel
 (core/render/counted_work.h) and processor seconds of a picture, their products, and the signed bias of the mean over seeds.
 """
 import argparse
@@ -17,6 +17,7 @@ import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "experiments/figures"))
+import measure
 from exr import read_exr
 
 SCENES = {"smoke_room": (64, 40), "cornell_box": (56, 56)}
@@ -47,25 +48,15 @@ def render(args, scene, settings, passes, seed, folder):
     return read_exr(exr), counted_work(s) / (width * height), s["seconds"]["render"] + s["seconds"].get("finish", 0)
 
 
-def beauty(picture):
-    """The sum of the layers that a filter may have changed."""
-    return picture[""]
-
-
 def study(args, scene, folder):
     long, _, _ = render(args, scene, {}, args.reference, 99, folder)
-    reference, noise = beauty(long), long["Variance"].mean(axis=2)
-    r2 = (reference ** 2).mean(axis=2)
-    weights = 1 / (r2 + (np.median(np.sqrt(r2[r2 > 0])) / 10) ** 2)
-    whole = (weights * r2).sum()
     for name, settings, passes in METHODS:
         pictures, works, seconds = zip(*(render(args, scene, settings, passes, s, folder) for s in range(1, args.seeds + 1)))
-        errors = [((weights * (((beauty(p) - reference) ** 2).mean(axis=2) - noise)).sum() / whole) for p in pictures]
-        signed = [((beauty(p) - reference).mean(axis=2) * weights * np.sqrt(r2)).sum() / whole for p in pictures]
-        error, work, time = np.mean(errors), np.mean(works), np.mean(seconds)
+        found = measure.series_error([p[""] for p in pictures], [long[""]], variances=[long["Variance"]])
+        error, work, time = found["squared_error"], np.mean(works), np.mean(seconds)
         print(f"{scene}, {name}, {passes} passes: error^2 {error:.4f}; work {work:.0f}, {time:.1f} s; error^2 x work "
-              f"{error * work:.1f}, x s {error * time:.4f}; bias {np.mean(signed):+.2%} +- "
-              f"{np.std(signed, ddof=1) / len(signed) ** 0.5:.2%}", flush=True)
+              f"{error * work:.1f}, x s {error * time:.4f}; bias {found['bias']:+.2%} +- "
+              f"{found['bias_standard_error']:.2%}", flush=True)
 
 
 def main():
@@ -75,6 +66,7 @@ def main():
     parser.add_argument("--reference", type=int, default=200)
     parser.add_argument("--scale", type=int, default=1, help="pictures so many times as wide and high")
     args = parser.parse_args()
+    measure.use(Path(args.mote).parent)
     with tempfile.TemporaryDirectory() as folder:
         for scene in SCENES:
             study(args, scene, Path(folder))

@@ -4,8 +4,8 @@
 Two scenes are written: a long hall with 10,000 small panels of light, and 1,000 spot lights in fog. Each is rendered
 with a number of passes that takes about the processor seconds asked for, and held against a long render of the same
 program (in the fog by equi-angular sampling, another estimator); with --against PROGRAM also another program, such as
-the `mote` of a commit before, is given the same seconds. A long render that is there already is not made again. Prints
-relMSE and processor seconds, and the ratio of their products.
+the `mote` of a commit before, is given the same seconds. A long render that is there already is not made again. Prints the
+squared relative RMSE (measure.py) and processor seconds, and the ratio of their products.
 """
 import argparse
 import random
@@ -17,6 +17,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "figures"))
 import numpy as np
 from exr import read_exr
+from measure import series_error, use
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 
@@ -104,12 +105,11 @@ def render(program, scene, output, passes, seed, *more):
 
 
 def relative_error(picture, reference):
-    scale = (0.1 * float(reference.mean())) ** 2
-    return float(np.mean((picture - reference) ** 2 / (reference ** 2 + scale)))
+    return series_error([picture], [reference])["squared_error"]
 
 
 def measure(program, scene, output, seconds, seeds, reference):
-    """Passes, processor seconds of them without loading, and relMSE, means over the seeds."""
+    """Passes, processor seconds of them without loading, and squared relative RMSE, means over the seeds."""
     _, load = render(program, scene, output, 1, 1)
     _, some = render(program, scene, output, 9, 1)
     passes = max(1, round(seconds / max((some - load) / 8, 1e-3)))
@@ -132,11 +132,12 @@ def main():
     parser.add_argument("--only", choices=["hall", "spots"], help="one of the two scenes")
     parser.add_argument("--csv", type=Path, help="also write the numbers there")
     options = parser.parse_args()
+    use(options.bin)
     share, seconds = (20, 0.5) if options.quick else (1, options.seconds)
     size = (64, 40) if options.quick else (320, 200)
     options.output.mkdir(parents=True, exist_ok=True)
     programs = {"mote": options.bin / "mote"} | ({"against": options.against} if options.against else {})
-    lines = ["scene,lights,program,passes,processor_seconds,relmse,relmse_times_seconds"]
+    lines = ["scene,lights,program,passes,processor_seconds,squared_relative_rmse,square_times_seconds"]
     for name, text, lights, passes, better in (
             ("hall", hall(10000 // share, *size), 10000 // share, 600, []),
             ("spots", spots(1000 // share, *size), 1000 // share, 1500, ["-D", "integrator.equiangular=true"])):
@@ -156,7 +157,7 @@ def main():
             lines.append(f"{name},{lights},{label},{passes},{time:.2f},{error:.6f},{products[label]:.5f}")
             print(lines[-1], flush=True)
         if "against" in products:
-            print(f"{name}: relMSE x time is {products['against'] / products['mote']:.1f} times less than the other's")
+            print(f"{name}: squared error x time is {products['against'] / products['mote']:.1f} times less than the other's")
     if options.csv:
         options.csv.write_text("# Script: experiments/studies/many_lights.py\n" + "\n".join(lines) + "\n")
 

@@ -15,6 +15,7 @@ import argparse
 import csv
 import json
 import math
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -63,11 +64,10 @@ def table(lines):
 
 
 def slope(lines):
-    """Of the logarithm of the seconds by that of the lights, by least squares."""
+    """Slope of the logarithm of the seconds over that of the lights, by least squares."""
     x = [math.log(float(l["lights"])) for l in lines]
     y = [math.log(float(l["gather_seconds"])) for l in lines]
-    mx, my = sum(x) / len(x), sum(y) / len(y)
-    return sum((a - mx) * (b - my) for a, b in zip(x, y)) / sum((a - mx) ** 2 for a in x)
+    return statistics.linear_regression(x, y).slope
 
 
 def origin_of(options):

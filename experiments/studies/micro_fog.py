@@ -3,19 +3,19 @@
 
 Two scenes: a small room full of fog (micro_fog.xml) and the smoke room, 96 x 60, micro-buffers with
 8 x 8 texels, 8192 points on surfaces and 4096 in the fog. Every method takes about the same processor
-seconds, two seeds; errors are root mean squares over pixels with the weights of `mote compare`, of all light and of the light
-that micro-buffers gather (indirect, multiple_scattering), against two references of volpath, whose noise is taken off.
+seconds, two seeds; errors are the relative RMSE (measure.py) of all light and of the light that micro-buffers gather (indirect,
+multiple_scattering), against two references of volpath.
 Biases are of the picture's mean, with the spread of the two seeds. A full run takes about
 seven minutes of processor time.
 """
-import math
 import sys
 from pathlib import Path
 
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "figures"))
-from renders import approximate, error_weight, luminance, main, write_csv
+from measure import series_error
+from renders import approximate, luminance, main, write_csv
 
 FOG = Path(__file__).resolve().parent / "micro_fog.xml"
 METHODS = {
@@ -36,14 +36,10 @@ def light_of(picture, layers):
 
 
 def error_of(pictures, references):
-    """Mean over seeds of sum w (x - r1)(x - r2) / sum w r1 r2, whose root is the error."""
-    first, second = references
-    weight = error_weight(0.5 * (first + second))
-    norm = np.sum(weight * first * second)
-    errors = [np.sum(weight * (x - first) * (x - second)) / norm for x in pictures]
-    truth = 0.5 * (first + second).mean()
+    """Relative RMSE of a picture, bias of its mean, and half the difference of two seeds in it."""
+    truth = np.mean(references)
     biases = [x.mean() / truth - 1 for x in pictures]
-    return math.sqrt(max(0.0, np.mean(errors))), np.mean(biases), abs(biases[0] - biases[1]) / 2
+    return series_error(pictures, references)["error"], np.mean(biases), abs(biases[0] - biases[1]) / 2
 
 
 def run(mote, quick, output):

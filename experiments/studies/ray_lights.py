@@ -3,12 +3,11 @@
 
 Two scenes, 48 x 30: a small room full of fog (micro_fog.xml) and the smoke room. Every method has the best of its settings: all
 of them are rendered by three seeds, and the one with the least squared error times seconds is rendered anew by other seeds, which
-are judged. Starting is taken off (a render of one pass tells it); errors are root mean squares over pixels of all light with the weights of `mote
-compare`, against two references, one of volpath and one of long ray lights, whose noise is taken off. The time to 5 % is that of
+are judged. Starting is taken off (a render of one pass tells it); errors are the relative RMSE (measure.py) of all light, against two
+references, one of volpath and one of long ray lights. The time to 5 % is that of
 an error that falls with the root of the time, above the bias, which is the part that pairs of seeds share: where that alone is
 above 5 %, there is none ("never"). `--quick`: the foggy room in less than a minute, numbers without a meaning.
 """
-import itertools
 import math
 import sys
 from pathlib import Path
@@ -17,7 +16,8 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "figures"))
 from claims import Claims
-from renders import approximate, error_weight, luminance, main, write_csv
+from measure import series_error
+from renders import approximate, luminance, main, write_csv
 
 FOG = Path(__file__).resolve().parent / "micro_fog.xml"
 TARGET = 0.05
@@ -50,20 +50,15 @@ OWN_NAMES = {"integrator.paths": "paths"}
 def seconds_to_target(pictures, references, bias_stays):
     """By picture: its error and its seconds to the target; and the error that pairs of pictures share. Few seeds do not tell
     bias from the noise of virtual lights, which pixels have in common: without `bias_stays` all of it is noise."""
-    first, second = references
-    weight = error_weight(0.5 * (first + second))
-    norm = np.sum(weight * first * second)
-    pairs = [np.sum(weight * ((a - first) * (b - second) + (b - first) * (a - second)) / 2) / norm
-             for (a, _), (b, _) in itertools.combinations(pictures, 2)]
-    shared = max(0.0, float(np.mean(pairs)))
-    stays = shared if bias_stays else 0.0
+    shared = series_error([light for light, _ in pictures], references)["systematic"]
+    stays = shared**2 if bias_stays else 0.0
     errors, times = [], []
     for light, cpu in pictures:
-        alone = float(np.sum(weight * (light - first) * (light - second)) / norm)
+        alone = series_error([light], references)["squared_error"]
         left = TARGET**2 - stays
         errors.append(math.sqrt(max(alone, 0.0)))
         times.append(cpu * max(alone - stays, 0.0) / left if left > 0 else math.inf)
-    return errors, times, math.sqrt(shared)
+    return errors, times, shared
 
 
 class Scene:
@@ -137,7 +132,7 @@ def plot(rows, path):
                             fmt=style, color="C0" if stage == "judged" else "0.7", zorder=2 if stage == "judged" else 1)
             if not any(row[:2] == [scene, method] and row[3] == "judged" and math.isfinite(row[8]) for row in rows):
                 ax.text(0.98, i, "never", transform=ax.get_yaxis_transform(), ha="right", va="center")
-        ax.set(xscale="log", xlabel="processor seconds to 5 % of error", title=scene)
+        ax.set(xscale="log", xlabel="processor seconds to a relative RMSE of 5 %", title=scene)
         ax.set_yticks(range(len(METHODS)), list(METHODS))
         ax.grid(True, axis="x", which="both", alpha=0.3)
     axes[0][0].invert_yaxis()

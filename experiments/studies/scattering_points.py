@@ -2,8 +2,8 @@
 """Eye rays through media: one distance by chance, or scattering points and the surface behind them (mote_vpl).
 
 Usage: scattering_points.py [--mote build/release/bin/mote] [--seeds N] [--passes N] [--size 96x60] [--points 0,1,2,4,8]
-For the smoke room and the fog behind a grille: the variance of one pass, summed over pixels with the weights
-1 / (|r|^2 + (m / 10)^2) of docs/testing.md and relative to the beauty's, layer by layer, times the counted work of a
+For the smoke room and the fog behind a grille: the variance of one pass, the square of the noise of
+docs/testing.md, Eq. 4, relative to the beauty, layer by layer, times the counted work of a
 pass and pixel (core/render/counted_work.h): less is better, and all settings have the same mean. Variances are those
 between seeds, so that what pixels of a pass share counts; r is a picture of mote_layers, since weights by what is
 measured itself would hide its outliers.
@@ -20,6 +20,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "experiments/figures"))
 from exr import read_exr
+from measure import series_error, use
 
 SCENES = ("smoke_room", "fog_grille")
 LAYERS = ("", "single_scattering", "multiple_scattering_bounded", "direct", "indirect_bounded")
@@ -48,10 +49,7 @@ def render(args, scene, points, seed, folder):
 
 def measure(args, scene, points, reference, folder):
     pictures, works, seconds = zip(*(render(args, scene, points, s, folder) for s in range(1, args.seeds + 1)))
-    r2 = (reference ** 2).mean(axis=2)
-    weights = 1 / (r2 + (np.median(np.sqrt(r2[r2 > 0])) / 10) ** 2)
-    whole = (weights * r2).sum()
-    variance = {layer: args.passes * (weights * np.var([p[layer] for p in pictures], axis=0, ddof=1).mean(axis=2)).sum() / whole
+    variance = {layer: args.passes * series_error([p[layer] for p in pictures], [reference])["noise"] ** 2
                 for layer in LAYERS if layer in pictures[0]}
     return variance, np.mean(works), np.mean(seconds) / args.passes
 
@@ -65,6 +63,7 @@ def main():
     parser.add_argument("--size", default="96x60")
     parser.add_argument("--points", default="0,1,2,4,8")
     args = parser.parse_args()
+    use(Path(args.mote).parent)
     print("scene, points: variance of a pass by layer; work, seconds; variance x work, variance x seconds")
     with tempfile.TemporaryDirectory() as folder:
         for scene in SCENES:

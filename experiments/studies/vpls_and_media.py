@@ -19,6 +19,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "figures"))
 from claims import Claims
+from measure import series_error
 from renders import approximate, compensation, main, mean_and_error, write_csv
 
 SCENE = Path(__file__).with_suffix(".xml")
@@ -38,7 +39,7 @@ def measure(mote, name, settings, reference, passes, seeds):
     pictures = [mote.render(SCENE, name, settings, passes, seed=s).multiple().mean(axis=2) for s in range(1, seeds + 1)]
     scale = reference[0]
     bias, error = mean_and_error([p.mean() / scale - 1 for p in pictures])
-    spread = (np.var(pictures, axis=0, ddof=1).mean() * passes) ** 0.5 / scale
+    spread = series_error(pictures, [np.mean(pictures, axis=0)])["noise"] * passes ** 0.5
     return bias, (error ** 2 + (reference[1] / scale) ** 2) ** 0.5, spread
 
 

@@ -25,6 +25,7 @@ using Floats = nb::ndarray<const float, nb::c_contig, nb::device::cpu>;
 using Indices = nb::ndarray<const std::uint32_t, nb::c_contig, nb::device::cpu>;
 using Pixels =
     nb::ndarray<const float, nb::ndim<3>, nb::c_contig, nb::device::cpu>;  ///< [row][column][channel]
+using Mask = nb::ndarray<const std::uint8_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;  ///< [row][column]
 
 /// A picture as Python has it: what a render returned, what was read, or what was put together.
 struct Picture {

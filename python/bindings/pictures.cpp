@@ -5,6 +5,7 @@
 #include "core/film/exposure.h"
 #include "core/formats/pictures/image_file.h"
 #include "core/math/srgb.h"
+#include "core/metrics/series_error.h"
 #include "python/bindings/bindings.h"
 #include "session/compare.h"
 #include "session/denoise/bmfr_sequence.h"
@@ -86,6 +87,45 @@ nb::dict compare(const Pixels& image, const Pixels& reference, const std::option
     return metrics(m);
 }
 
+/// One reference or two, their variances where known, and the pixels that count.
+core::ErrorMeasure measure_of(const Pixels& reference, const std::optional<Pixels>& variance,
+                              const std::optional<Pixels>& second,
+                              const std::optional<Pixels>& second_variance, const std::optional<Mask>& mask) {
+    const auto given = [](const std::optional<Pixels>& p) {
+        return p ? colours(*p) : std::vector<core::Rgb>();
+    };
+    const int width = int(reference.shape(1)), height = int(reference.shape(0));
+    if (mask && (mask->shape(0) != reference.shape(0) || mask->shape(1) != reference.shape(1)))
+        throw std::invalid_argument("mask and reference have different shapes");
+    const auto counted = mask ? std::span(mask->data(), mask->size()) : std::span<const std::uint8_t>();
+    const auto r = colours(reference), r_variance = given(variance);
+    if (!second) return {r, r_variance, width, height, counted};
+    const auto s = given(second), s_variance = given(second_variance);
+    return {core::ReferencePair{r, s, r_variance, s_variance}, width, height, counted};
+}
+
+nb::dict series_error(const std::vector<Pixels>& images, const core::ErrorMeasure& measure) {
+    std::vector<std::vector<core::Rgb>> pictures;
+    for (const Pixels& image : images) pictures.push_back(colours(image));
+    core::SeriesError e;
+    {
+        const nb::gil_scoped_release others_go_on;
+        e = measure.measure(pictures);
+    }
+    nb::dict d;
+    d["error"] = e.error, d["error_standard_error"] = e.error_standard_error;
+    d["squared_error"] = e.squared_error, d["bias"] = e.bias;
+    d["bias_standard_error"] = e.bias_standard_error, d["systematic"] = e.systematic;
+    d["systematic_standard_error"] = e.systematic_standard_error, d["noise"] = e.noise;
+    return d;
+}
+
+nb::object pixel_errors(const Pixels& image, const core::ErrorMeasure& measure) {
+    auto* values = new std::vector<double>(measure.pixel_errors(colours(image)));
+    const nb::capsule owner(values, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
+    return nb::cast(nb::ndarray<nb::numpy, double>(values->data(), {image.shape(0), image.shape(1)}, owner));
+}
+
 void compensate(Picture& picture, float bound, int steps, bool flat, bool half_resolution, float blur,
                 bool replace) {
     screenspace::SsbcSettings settings;
@@ -164,6 +204,11 @@ void bind_pictures(nb::module_& m) {
             nb::arg("picture"));
     m.def("compare", &compare, nb::arg("image"), nb::arg("reference"), nb::arg("image_variance").none(),
           nb::arg("reference_variance").none(), nb::arg("second").none(), nb::arg("second_variance").none());
+    nb::class_<core::ErrorMeasure>(m, "ErrorMeasure");
+    m.def("error_measure", &measure_of, nb::arg("reference"), nb::arg("variance").none(),
+          nb::arg("second").none(), nb::arg("second_variance").none(), nb::arg("mask").none());
+    m.def("series_error", &series_error);
+    m.def("pixel_errors", &pixel_errors);
     m.def("metric_definitions", [] {
         std::map<std::string, std::string> definitions;
         for (const core::MetricDefinition& d : core::metric_definitions()) definitions[d.name] = d.definition;

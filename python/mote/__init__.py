@@ -20,9 +20,9 @@ else:
     from ._picture import Picture
     from ._rendering import render
     from ._scene import Scene, load, load_string
-    from ._measuring import compare, denoise, denoise_sequence, metric_definitions, ssbc
+    from ._measuring import compare, denoise, denoise_sequence, metric_definitions, pixel_errors, series_error, ssbc
     from ._trade import trade
     from ._transform import ScalarTransform4f, Transform
 
     __all__ = ["Error", "Picture", "ScalarTransform4f", "Scene", "Transform", "compare", "denoise", "denoise_sequence", "load",
-               "load_string", "metric_definitions", "render", "ssbc", "trade"]
+               "load_string", "metric_definitions", "pixel_errors", "render", "series_error", "ssbc", "trade"]

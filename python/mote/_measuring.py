@@ -1,7 +1,7 @@
 """What is measured of pictures and done to them: `mote compare`, `mote ssbc` and `mote denoise` on arrays."""
 from __future__ import annotations
 
-from typing import Any, Dict, Iterable, Iterator, Mapping, Optional, Union
+from typing import Any, Dict, Iterable, Iterator, Mapping, Optional, Sequence, Union
 
 import numpy as np
 
@@ -31,6 +31,37 @@ def _variance(image: Optional[Image], given: Optional[np.ndarray], layer: str) -
     # Passes are Sobol points: the mean varies less than independent ones would (docs/testing.md).
     gain = float(image.metadata.get("varianceGain", 1.0)) if layer == "beauty" else 1.0
     return np.ascontiguousarray(image[name] * np.float32(gain))
+
+
+def _measure(reference: Image, second: Optional[Image], layer: str, reference_variance: Optional[np.ndarray],
+             second_variance: Optional[np.ndarray], mask: Optional[np.ndarray]) -> Any:
+    counted = None if mask is None else np.ascontiguousarray(mask, dtype=bool).view(np.uint8)
+    return _mote.error_measure(_pixels(reference, layer), _variance(reference, reference_variance, layer),
+                               _pixels(second, layer), _variance(second, second_variance, layer), counted)
+
+
+def series_error(images: Sequence[Image], reference: Image, second: Optional[Image] = None, *, layer: str = "beauty",
+                 mask: Optional[np.ndarray] = None, reference_variance: Optional[np.ndarray] = None,
+                 second_variance: Optional[np.ndarray] = None) -> Dict[str, float]:
+    """The error of one method from pictures that differ in their seeds, in the measure of compare().
+
+    "error": relative RMSE of one picture, the root of "squared_error", which noise may turn negative; "bias"; both with
+    their "..._standard_error" from the spread of pictures (the error of one picture: from that of pixels). "systematic":
+    the relative RMSE that any two pictures share, with its standard error; "noise": the rest, of one picture; NaN for one.
+    With `second`, a reference of another seed, all are free of the noise of both. mask: which pixels count (height,
+    width). Pictures, references and variances are as in compare().
+    """
+    return _mote.series_error([_pixels(image, layer) for image in images],
+                              _measure(reference, second, layer, reference_variance, second_variance, mask))
+
+
+def pixel_errors(image: Image, reference: Image, second: Optional[Image] = None, *, layer: str = "beauty",
+                 mask: Optional[np.ndarray] = None, reference_variance: Optional[np.ndarray] = None,
+                 second_variance: Optional[np.ndarray] = None) -> np.ndarray:
+    """The squared error pixel by pixel (height, width): the mean of the pixels that count is "squared_error" of
+    series_error(), so single pixels, and with two references also means, may be negative."""
+    return _mote.pixel_errors(_pixels(image, layer),
+                              _measure(reference, second, layer, reference_variance, second_variance, mask))
 
 
 def compare(image: Image, reference: Image, second: Optional[Image] = None, *, layer: str = "beauty",

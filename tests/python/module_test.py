@@ -259,6 +259,24 @@ class ModuleTest(unittest.TestCase):
         with self.assertRaises(ValueError):
             mote.compare(picture["beauty"], reference["beauty"][1:])
 
+    def test_series_error(self):
+        pictures = [mote.render(self.scene, passes=4, seed=seed) for seed in (1, 2)]
+        reference, second = (mote.render(self.scene, passes=32, seed=seed) for seed in (3, 4))
+        for references in ([reference], [reference, second]):
+            one = mote.series_error(pictures[:1], *references)
+            self.assertAlmostEqual(one["error"], mote.compare(pictures[0], *references)["error"], delta=1e-6)
+            self.assertTrue(np.isnan(one["noise"]))
+        both = mote.series_error(pictures, reference, second)
+        self.assertGreater(both["noise"], 2 * both["systematic"])
+        mask = np.zeros(reference["beauty"].shape[:2])
+        mask[: len(mask) // 2] = 1
+        half = mote.series_error(pictures[:1], reference, second, mask=mask)
+        errors = mote.pixel_errors(pictures[0], reference, second, mask=mask)
+        self.assertAlmostEqual(errors[mask > 0].mean(), half["squared_error"], delta=1e-9)
+        self.assertEqual(np.count_nonzero(errors[mask == 0]), 0)
+        with self.assertRaises(ValueError):
+            mote.series_error(pictures, reference["beauty"][1:])
+
     def test_ssbc_and_denoise(self):
         picture = mote.render(self.scene, passes=4, auxiliary=True)
         path, out = (Path(self.folder.name) / name for name in ("aux.exr", "ssbc.exr"))

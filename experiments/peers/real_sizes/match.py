@@ -1,13 +1,14 @@
 """Do the peers render the same scene? Their mean radiance against that of our path tracer, at low resolution.
 
 Every program renders some pictures with seeds of their own, and the standard errors come from their spread. What is no
-noise by pixels is seen in the column `pattern`: the root of Eq. (4) of error_measure.py, between the halves of both.
+noise by pixels is seen in the column `pattern`: the systematic error of the halves of one against those of the other
+(figures/measure.py).
 """
 import csv
 from pathlib import Path
 
 import numpy as np
-from error_measure import by_blocks, dot, ratio_and_error, root
+from measure import series_error
 from mote_runs import Mote
 from peer_runs import export, pictures, run_cycles, run_mitsuba
 
@@ -23,8 +24,8 @@ def mean_and_error(shown):
 def pattern(ours, theirs):
     """What the mean pictures differ by in every pixel, relative to ours: (value, standard error)."""
     halves = lambda shown: (np.mean(shown[::2], axis=0), np.mean(shown[1::2], axis=0))
-    (a, b), (x, y) = halves(ours), halves(theirs)
-    return root(*ratio_and_error(by_blocks(dot(x - a, y - b)), by_blocks(dot(a, b))))
+    found = series_error(halves(theirs), halves(ours))
+    return found["systematic"], found["systematic_standard_error"]
 
 
 def match(program, names, settings, output):

@@ -60,9 +60,9 @@ def html_table(methods):
 
 LEGEND = """Seconds of rendering on the wall of two cores, loading and compiling apart; processor seconds in brackets.
 No mark: between two measured pictures; ≈: by 1/sqrt(t) from the last one; ≤: the first picture was better already.
-The error is the root of the weighted relative square error (docs/testing.md, "Error and noise"), measured with two
-independent references so that it is free of their noise. Bias: signed, of the last picture. Systematic: what two
-independent pictures have in common, the root of Eq. (4) of error_measure.py, without noise; where it is below its
+The error is the relative RMSE of docs/testing.md, "Error and noise", Eq. 1 and 2, measured with two independent references
+so that it is free of their noise. Bias: signed, of the last picture. Systematic: what two
+independent pictures have in common, without noise; where it is below its
 standard error it is 0. For other renderers the systematic part is taken off the times: there it is a difference of models."""
 
 

@@ -34,6 +34,7 @@ class Axes:
             strong = any(abs(e - target) < 1e-9 for target in (0.05, 0.02, 0.01))
             lines.append(line(LEFT, self.y(e), WIDTH - RIGHT, self.y(e), "#999999" if strong else "#e4e4e4"))
             lines.append(text(LEFT - 6, self.y(e) + 4, f"{100 * e:g} %", "end"))
+        lines.append(text(LEFT, TOP - 6, "relative RMSE"))
         lines.append(text((LEFT + WIDTH - RIGHT) / 2, HEIGHT - 10, "seconds of rendering, two cores", "middle"))
         return lines
 

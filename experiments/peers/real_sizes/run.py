@@ -21,14 +21,14 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent.parent
 sys.path.append(str(ROOT / "experiments" / "figures"))
-from error_measure import Judge  # noqa: E402
+import measure  # noqa: E402
 from match import match  # noqa: E402
 from mote_runs import Mote, beauty_and_variance, filter_of, found_references, make_reference  # noqa: E402
 from origin import commit  # noqa: E402
 from page import markdown, write_csv, write_page  # noqa: E402
 from peer_runs import export, pictures, run_cycles, run_mitsuba  # noqa: E402
 from plot import svg  # noqa: E402
-from times import judged  # noqa: E402
+from times import References, judged  # noqa: E402
 
 
 def arguments():
@@ -113,9 +113,9 @@ def scene_page(name, scene, settings, options):
     settings = {**settings, "height": a.shape[0], "width": a.shape[1], "filter": filters.pop()}
     settings["cycles"] = {**settings["cycles"], "filter": settings["filter"]}
     mote.sizes = [f"resx={settings['width']}", f"resy={settings['height']}", f"film.rfilter={settings['filter']}"]
-    judge, methods, notes = Judge(a, b, va, vb), [], []
+    references, methods, notes = References([a, b], [va, vb]), [], []
     for method, text, peer, unbiased, folder, log in methods_of(mote, scene, settings, options, output):
-        systematic = judged(judge, log["runs"], list(pictures(folder, log)))
+        systematic = judged(references, log["runs"], list(pictures(folder, log)))
         methods.append({"name": method, "settings": text, "peer": peer, "unbiased": unbiased, "runs": log["runs"],
                         "version": log["version"], "build_s": log["build_s"], "systematic": systematic})
         notes += [f"{method}: {note}" for note in log["notes"]]
@@ -123,10 +123,10 @@ def scene_page(name, scene, settings, options):
         print(f"{name}: {method}: {last['passes']} passes, {last['wall_s']:.1f} s, error {100 * last['error']:.2f} ± "
               f"{100 * last['error_se']:.2f} %, bias {100 * last['bias']:+.2f} ± {100 * last['bias_se']:.2f} %, mean "
               f"{100 * last['mean']:+.2f} ± {100 * last['mean_se']:.2f} %", flush=True)
-    if judge.broken:
-        notes.append(f"{judge.broken} pixels are left out: one reference is a thousand times brighter there than the other "
+    if references.broken:
+        notes.append(f"{references.broken} pixels are left out: one reference is a thousand times brighter there than the other "
                      "is anywhere")
-    notes.append(f"noise of each reference: {100 * judge.reference_noise():.2f} %")
+    notes.append(f"noise of each reference: {100 * references.noise():.2f} %")
     notes.append(f"{settings['width']} x {settings['height']} pixels, {settings['filter']} filter")
     facts = {**facts_of(settings, options), "References": " ".join(f"{f.name} ({f.stat().st_size} bytes)" for f in files)}
     write_csv(output / "peers.csv", facts, name, methods)
@@ -146,6 +146,7 @@ def facts_of(settings, options):
 
 def main():
     options, settings = arguments()
+    measure.use(Path(options.mote).parent)
     if not os.access(options.mote, os.X_OK):
         print(f"no {options.mote}: build it first (./quickstart does)", file=sys.stderr)
         return 2

@@ -1,22 +1,52 @@
-"""Rows of errors, and the time to an error: between measured pictures, or beyond them where that is known to hold."""
+"""Rows of errors, and the time to an error: between measured pictures, or beyond them where that is known to hold.
+
+Errors are those of figures/measure.py, against two references of other seeds.
+"""
+import measure
 import numpy as np
-from error_measure import root
 
 TARGETS = (0.05, 0.02, 0.01)
 
 
-def judged(judge, runs, pictures):
+def broken_pixels(a, b):
+    """Where one reference is a thousand times brighter than the other one is anywhere: that is no noise to average over."""
+    bright = lambda x: np.abs(x).max(axis=2)
+    x, y = bright(a), bright(b)
+    return (x > 1000 * y.max()) | (y > 1000 * x.max()) | ~np.isfinite(x) | ~np.isfinite(y)
+
+
+class References:
+    """Two references, the variances of their means, and the pixels that count."""
+
+    def __init__(self, pictures, variances):
+        broken = broken_pixels(*pictures)
+        self.broken = int(broken.sum())
+        clean = lambda arrays: [np.where(broken[..., np.newaxis], 0.0, x) for x in arrays]
+        self.pictures, self.options = clean(pictures), {"mask": ~broken, "variances": clean(variances)}
+
+    def series_error(self, pictures):
+        return measure.series_error(pictures, self.pictures, **self.options)
+
+    def noise(self):
+        """That of one reference, from how the two differ."""
+        return self.series_error(self.pictures)["noise"]
+
+
+def judged(references, runs, pictures):
     """Adds to every run its error, bias and their standard errors; returns the systematic error of the two longest runs,
     with its standard error."""
+    mean = np.mean(references.pictures, axis=0)
     for run, picture in zip(runs, pictures):
-        squared, its_error = judge.squared_error(picture)
-        run["error"], run["error_se"] = root(squared, its_error)
-        run["bias"], run["bias_se"] = judge.bias(picture)
-        run["mean"], run["mean_se"] = judge.mean_difference(picture)
+        found = references.series_error([picture])
+        run["error"], run["error_se"] = found["error"], found["error_standard_error"]
+        run["bias"], run["bias_se"] = found["bias"], found["bias_standard_error"]
+        plain = measure.module().compare(picture, mean)
+        run["mean"], run["mean_se"] = plain["mean_difference"], plain["mean_difference_standard_error"]
         run["non_finite"] = int(np.count_nonzero(~np.isfinite(picture)))
     if len(runs) < 2:
         return 0.0, float("nan")
-    return root(*judge.squared_systematic(pictures[-1], pictures[-2]))
+    shared = references.series_error(pictures[-2:])
+    return shared["systematic"], shared["systematic_standard_error"]
 
 
 def noise_alone(runs, systematic):

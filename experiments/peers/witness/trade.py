@@ -6,6 +6,7 @@ the slowest method of the trade took. Then `mote trade --redraw -o DIR` draws al
 import csv
 import json
 import shlex
+import sys
 import tempfile
 import time
 from pathlib import Path
@@ -13,6 +14,9 @@ from pathlib import Path
 import mitsuba as mi
 import numpy as np
 import renderers
+
+sys.path.append(str(Path(__file__).resolve().parents[2] / "figures"))
+import measure  # noqa: E402
 
 COLUMNS = ("method", "integrator", "settings", "seed", "passes", "wall_s", "cpu_s", "build_s", "error", "relmse",
            "relmse_trimmed", "bias", "bias_se", "non_finite", "final")
@@ -22,16 +26,6 @@ def defines_of(command):
     """The words after every -D of a command line."""
     words = shlex.split(command)
     return [words[i + 1] for i, word in enumerate(words[:-1]) if word in ("-D", "--define")]
-
-
-def measures(picture, reference):
-    """Error, relMSE, relMSE without the worst 0.1 % of the pixels, and bias, as defined in docs/guide.md."""
-    difference = picture - reference
-    squares = difference**2 / (reference**2 + 0.01)
-    by_pixel = np.sort(squares.mean(axis=2).ravel())
-    kept = len(by_pixel) - int(np.floor(0.001 * len(by_pixel)))
-    relmse = squares.mean()
-    return np.sqrt(relmse), relmse, by_pixel[:kept].mean(), difference.mean() / reference.mean()
 
 
 class Clock:
@@ -56,10 +50,11 @@ def one_seed(folder, method, integrator, seed, limit, reference):
         wall, cpu = wall + spent[0], cpu + spent[1]
         total, passes = total + more * picture.astype(float), passes + more
         brightness.append((more, picture.mean(dtype=float)))
-        error, relmse, trimmed, bias = measures(total / passes, reference)
+        found = measure.module().compare((total / passes).astype(np.float32), reference)
         rows.append({"method": method, "integrator": integrator, "settings": "", "seed": seed, "passes": passes,
-                     "wall_s": wall + build, "cpu_s": cpu + build, "build_s": build, "error": error, "relmse": relmse,
-                     "relmse_trimmed": trimmed, "bias": bias, "bias_se": bias_error(brightness, reference),
+                     "wall_s": wall + build, "cpu_s": cpu + build, "build_s": build, "error": found["error"], "relmse": found["relmse"],
+                     "relmse_trimmed": found["relmse_trimmed"], "bias": found["bias"],
+                     "bias_se": bias_error(brightness, reference["beauty"]),
                      "non_finite": int(np.count_nonzero(~np.isfinite(picture))), "final": 0})
     rows[-1]["final"] = 1
     return rows
@@ -71,16 +66,18 @@ def bias_error(brightness, reference):
         return ""
     n, mean = np.array([b[0] for b in brightness], float), np.array([b[1] for b in brightness])
     overall = (n * mean).sum() / n.sum()
-    of_one_pass = (n * (mean - overall) ** 2).sum() / (len(n) - 1)
+    from_overall = mean - overall
+    of_one_pass = (n * from_overall**2).sum() / (len(n) - 1)
     return np.sqrt(of_one_pass / n.sum()) / reference.mean()
 
 
 def write_peer(options):
     folder = Path(options.trade)
+    measure.use(Path(options.mote).parent)
     facts = json.loads((folder / "trade.json").read_text())["facts"]
     with open(folder / "trade.csv", newline="") as file:
         limit = max(float(row["wall_s"]) for row in csv.DictReader(file))
-    reference = renderers.read_exr(folder / "reference.exr").astype(float)
+    reference = measure.module().Picture.load(folder / "reference.exr")
     rows = []
     with tempfile.TemporaryDirectory() as exported:
         for line in renderers.export(options.mote, facts["scene"], options.defines or defines_of(facts["command"]),
