@@ -36,12 +36,7 @@ void check(const std::string& xml, const std::string& settings, const std::strin
         {4, effort.path_passes, 32});
     CHECK(lights.non_finite == 0);
     for (const std::string& layer : layers) {
-        const ZTest test = same_mean(lights, layer, reference, layer);
-        INFO(test.report);
-        CHECK(test.passed);
-        INFO(layer << " with a planted error");
-        CHECK_FALSE(same_mean(lights.scaled(1.0 + effort.planted), layer, reference, layer).passed);
-        CHECK_FALSE(same_mean(lights.scaled(1.0 - effort.planted), layer, reference, layer).passed);
+        check_same_mean(lights, layer, reference, layer, {1.0 + effort.planted, 1.0 - effort.planted});
     }
 }
 

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <initializer_list>
 #include <memory>
 #include <string>
 #include <vector>
@@ -77,7 +78,14 @@ enum class OnFailure {
 ZTest same_mean(const RenderStatistics& A, const std::string& a, const RenderStatistics& B,
                 const std::string& b, OnFailure on_failure = OnFailure::write);
 
-/// The same against an exact value for the picture's mean.
+/// Test of the picture's mean against an exact value.
 ZTest mean_is(const RenderStatistics& A, const std::string& a, double value);
+
+/// CHECKs same_mean(), with its report, and that it would see A times each of `planted`.
+void check_same_mean(const RenderStatistics& A, const std::string& a, const RenderStatistics& B,
+                     const std::string& b, std::initializer_list<double> planted = {});
+/// CHECKs mean_is() likewise.
+void check_mean_is(const RenderStatistics& A, const std::string& a, double value,
+                   std::initializer_list<double> planted = {});
 
 }  // namespace mote::tests

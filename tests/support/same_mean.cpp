@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "core/formats/pictures/image_file.h"
+#include "tests/support/catch.h"
 #include "tests/support/failure_files.h"
 #include "tests/support/pearson.h"
 #include "tests/support/render_statistics.h"
@@ -120,6 +121,24 @@ ZTest mean_is(const RenderStatistics& A, const std::string& a, double value) {
     }
     result.passed = result.passed && result.worst_z <= result.critical_z;
     return result;
+}
+
+void check_same_mean(const RenderStatistics& A, const std::string& a, const RenderStatistics& B,
+                     const std::string& b, std::initializer_list<double> planted) {
+    check_same_mean(A, a, B, b);
+    for (const double factor : planted) {
+        INFO("layer '" << a << "' with a planted error of " << factor);
+        CHECK_FALSE(same_mean(A.scaled(factor), a, B, b).passed);
+    }
+}
+
+void check_mean_is(const RenderStatistics& A, const std::string& a, double value,
+                   std::initializer_list<double> planted) {
+    check_mean_is(A, a, value);
+    for (const double factor : planted) {
+        INFO("layer '" << a << "' with a planted error of " << factor);
+        CHECK_FALSE(mean_is(A.scaled(factor), a, value).passed);
+    }
 }
 
 }  // namespace mote::tests
