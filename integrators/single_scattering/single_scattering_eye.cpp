@@ -50,7 +50,7 @@ class MarchedLegs {
         const bool first = path_.depth() == 1;
         if (first) found_.first.reset();  // a light that is hidden was not the first surface
         if (hit && first) found_.first = event.reflected ? scene_.rays().closest(ray) : event.hit;
-        if (hit && first) found_.first->t += path_.passed();
+        if (hit && first && found_.first) found_.first->t += path_.passed();
         if constexpr (Media) {
             Ray part = ray;
             part.t_max = event.surface_distance;
