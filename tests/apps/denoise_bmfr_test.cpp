@@ -1,4 +1,6 @@
 // mote denoise --method bmfr: single pictures with and without features, in fog too, and sequences.
+#include <fmt/format.h>
+
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>

@@ -1,4 +1,6 @@
 // Motion vectors and ids of sequences, and what denoising makes of them: a ball that moves before a wall.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>

@@ -1,4 +1,6 @@
 // Sequences of pictures: mote render scene.xml -D t=0:47 -o frames/####.exr.
+#include <fmt/format.h>
+
 #include <csignal>
 #include <filesystem>
 
