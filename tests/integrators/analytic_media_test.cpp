@@ -32,7 +32,7 @@ const std::string camera_inside = R"(<sensor type="perspective"><float name="fov
 }  // namespace
 
 // A medium that absorbs nothing, under a constant environment of radiance 1, is in equilibrium: 1 everywhere.
-TEST_CASE("albedo-1 medium under a constant environment is 1", "[analytic][furnace][media]") {
+TEST_CASE("albedo-1 medium under a constant environment is 1", "[analytic][furnace][media][long]") {
     for (const double depth : {0.01, 1.0, 30.0})
         for (const double g : {-0.9, 0.0, 0.9})
             for (const std::string& camera : {camera_at_minus_4, camera_inside}) {

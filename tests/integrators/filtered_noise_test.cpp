@@ -60,7 +60,7 @@ Spread spread_of(const Scene& scene, const Integrator& integrator, std::uint32_t
 
 }  // namespace
 
-TEST_CASE("the noise of filtered layers is the spread over seeds", "[filtered_noise][statistics]") {
+TEST_CASE("the noise of filtered layers is the spread over seeds", "[filtered_noise][statistics][long]") {
     const std::string fog =
         R"(<medium type="homogeneous" name="interior"><rgb name="sigma_t" value="0.7, 0.5, 0.3"/>
         <rgb name="albedo" value="0.8, 0.6, 0.4"/></medium>)";

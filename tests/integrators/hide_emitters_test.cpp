@@ -127,7 +127,7 @@ TEST_CASE("fog before and behind a hidden lamp dims alike", "[hide_emitters]") {
 
 // Mitsuba 3.9.1's volpath: a sheet that lets the eye's ray straight on is passed, and hides no less behind
 // it. (Its path counts a sheet as a bounce and sees lamps behind it; every method here takes volpath's way.)
-TEST_CASE("lamps are hidden behind panes as well", "[hide_emitters]") {
+TEST_CASE("lamps are hidden behind panes as well", "[hide_emitters][long]") {
     struct Case {
         std::string bsdf;
         double passes;

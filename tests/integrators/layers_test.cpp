@@ -134,7 +134,7 @@ TEST_CASE("paths through fog in which a lamp stands look for its light along eve
 }
 
 TEST_CASE("a method that is asked for one cell gives it its own mean and traces fewer rays",
-          "[mote_layers]") {
+          "[mote_layers][long]") {
     const auto foggy = foggy_box(), dry = scene_from(box(mixed, ""), 8);
     for (const std::string& type : registry().types(Category::integrator)) {
         if (type == "mote_layers") continue;

@@ -133,7 +133,7 @@ TEST_CASE("beams in homogeneous fog agree with volpath", "[photon_map][equality]
     }
 }
 
-TEST_CASE("beams in smoke approach volpath as kernels shrink", "[photon_map]") {
+TEST_CASE("beams in smoke approach volpath as kernels shrink", "[photon_map][long]") {
     const TemporaryFolder folder;
     const auto scene = scene_from(box(grey, smoke_medium(folder.file("smoke.vol"))), 8);
     const auto reference = render(*scene, "volpath", "", 20000, 4);
