@@ -2,6 +2,8 @@
 // changes.
 #include "core/formats/meshes/mesh_cache.h"
 
+#include <fmt/format.h>
+
 #include <fstream>
 
 #include "tests/core/geometry/meshes.h"
