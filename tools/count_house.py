@@ -38,8 +38,8 @@ TWINS = {
     "places that set a lane's shadow ray": (r"\bt_max\[\w+\] = [^;]*\bshadow_t_max\b", 1),
 }
 
-# Errors of pictures computed outside core/metrics, in Python: the squared difference from one reference or two, and the
-# weights of squares.
+# Errors of pictures computed outside core/metrics: the squared difference from one reference or two, and the weights of
+# squares.
 ERROR_FOLDERS = ["experiments", "tests", "tools", "scenes", "docs", "python"]
 NAME = r"[A-Za-z_][\w.\[\]\"']*"
 ERROR = re.compile("|".join([
@@ -51,6 +51,8 @@ ERROR = re.compile("|".join([
     rf"np\.median\([^\n]*\)\s*/\s*10\)\s*\*\*\s*2",           # (m / 10)^2
     rf"\({NAME} / \({NAME} \+ {NAME}\(\)\)\)\s*\*\*\s*2",   # (d / (r + m))^2
 ]))
+
+CPP_ERROR = re.compile(r"\b(\w+) \* \1 / \((?!\1\b)(\w+) \* \2 \+|\bsqr\(\w+\) / \((?:core::)?sqr\(\w+\) \+")  # d^2 / (r^2 + ...)
 
 
 class House:
@@ -116,18 +118,21 @@ class House:
         return len(places)
 
     def error_measures(self):
-        """The files that hold one: core/metrics together, and every Python file."""
+        """The files that hold one: core/metrics together, every Python file and every other C++ file."""
         places = self.places.setdefault("error implementations", [])
         own = any(self.name(p).startswith("core/metrics/") for p in self.files)
         if own:
             places.append("core/metrics")
         for path in self.files:
-            if path.suffix != ".py" or path.relative_to(self.root).parts[0] not in ERROR_FOLDERS or "floors" in path.parts:
+            name, pattern = self.name(path), CPP_ERROR if path.suffix in CPP else ERROR
+            if (path.suffix not in CPP | {".py"} or name.startswith(("core/metrics/", "tests/floors/", "tools/count_house.py"))
+                    or path.suffix == ".py" and path.relative_to(self.root).parts[0] not in ERROR_FOLDERS):
                 continue
-            found = next((n for n, line in enumerate(path.read_text("utf-8", "replace").splitlines(), 1)
-                          if ERROR.search(line.split("#")[0])), None)
-            if found and self.name(path) != "tools/count_house.py":
-                places.append(f"{self.name(path)}:{found}")
+            comment = "//" if path.suffix in CPP else "#"
+            found = next((number for number, line in enumerate(path.read_text("utf-8", "replace").splitlines(), 1)
+                          if pattern.search(line.split(comment)[0])), None)
+            if found:
+                places.append(f"{name}:{found}")
         return len(places)
 
 

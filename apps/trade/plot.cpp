@@ -126,7 +126,7 @@ class Plot {
             left, top, right - left, bottom - top);
         put("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">wall time</text>\n", 0.5 * (left + right),
             bottom + 40.0);
-        put("<text x=\"18\" y=\"{0}\" text-anchor=\"middle\" transform=\"rotate(-90 18 {0})\">error</text>\n",
+        put("<text x=\"18\" y=\"{0}\" text-anchor=\"middle\" transform=\"rotate(-90 18 {0})\">relative RMSE</text>\n",
             0.5 * (top + bottom));
         put("<text x=\"{}\" y=\"{}\" font-size=\"12\" fill=\"#444444\">Lines: mean over seeds; bands: their "
             "range. "

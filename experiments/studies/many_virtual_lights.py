@@ -106,7 +106,7 @@ def draw(path, lines, growths):
         growth.loglog([float(l["lights"]) for l in growths[scene]], [float(l["gather_seconds"]) for l in growths[scene]], "o-",
                       label=f"{scene.replace('_', ' ')}, exponent {slope(growths[scene]):.2f}")
     errors.axhline(2.0, color="gray", linewidth=0.5), errors.axvline(40.0, color="gray", linewidth=0.5)
-    errors.set(xlabel="processor seconds", ylabel="error against all lights [%]", title="512 x 512, a million lights")
+    errors.set(xlabel="processor seconds", ylabel="relative RMSE against all lights [%]", title="512 x 512, a million lights")
     growth.set(xlabel="lights", ylabel="processor seconds", title="lightcuts by an estimated error of 4 %, at most 4000 groups")
     for ax in (errors, growth):
         ax.legend(), ax.grid(True, which="both", alpha=0.3)

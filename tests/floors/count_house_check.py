@@ -68,6 +68,9 @@ CASES = [
     ("experiments/a.py", "e = np.mean(luminance(difference) ** 2)\n", {"errors": 1}),
     ("tests/a.py", "e = d**2 / (r**2 + 0.01)\n", {"errors": 1}),
     ("tests/a.py", "w = 1 / (r2 + (np.median(r) / 10) ** 2)\nw = 1.0 / (r2 + 0.01 * np.median(r2))\n", {"errors": 1}),
+    ("experiments/a.cpp", "sum += d * d / (r * r + 0.01);\n", {"errors": 1}),
+    ("experiments/a.cpp", "near = r * r / (r * r + 25.0);\n", {}),
+    ("experiments/a.cpp", "sum += d * e / (r * r + 0.01);  // d * d / (r * r + 1)\n", {}),
     ("tests/a.py", "e = mote.compare(x, r)['error']  # (x - r) ** 2\n", {}),
     ("tests/a.py", "x = (eta - 1)**2 + k**2\n", {}),
 ]

@@ -5,9 +5,12 @@
 #include <tbb/global_control.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <iostream>
 
+#include "core/metrics/series_error.h"
 #include "experiments/studies/selection/references.h"
 
 namespace {
@@ -15,36 +18,28 @@ namespace {
 using namespace mote;
 using namespace mote::studies;
 
-/// Relative to what stands in all light; dark pixels count as if they had a hundredth of the mean.
+/// Over all pixels of the tiles, against all lights (core/metrics/series_error.h).
 struct Errors {
-    double relative = 0.0, deviation = 0.0;  ///< root of the mean square, and its standard error over tiles
-    double of_mean = 0.0, bias = 0.0, median = 0.0, worst = 0.0;
+    double relative = 0.0, standard_error = 0.0, bias = 0.0;
+    double median = 0.0, worst = 0.0;  ///< of single pixels
 };
 
+/// A row of grey pixels a tile.
+std::vector<core::Rgb> picture_of(const std::vector<Pixels>& tiles) {
+    std::vector<core::Rgb> picture;
+    for (const Pixels& tile : tiles)
+        for (const double v : tile) picture.emplace_back(float(v));
+    return picture;
+}
+
 Errors errors_of(const std::vector<Pixels>& references, const std::vector<Pixels>& lights) {
-    Errors e;
-    const double n = double(16 * references.size());
-    double mean = 0.0, squares = 0.0;
-    for (const Pixels& tile : references)
-        for (const double v : tile) mean += v / n;
-    std::vector<double> of_tiles, of_pixels;
-    for (std::size_t t = 0; t < references.size(); ++t) {
-        double sum = 0.0;
-        for (std::size_t i = 0; i < 16; ++i) {
-            const double r = references[t][i], d = lights[t][i] - r;
-            e.bias += d / n / mean, squares += d * d / n, sum += d * d / (r * r + 1e-4 * mean * mean) / 16.0;
-            of_pixels.push_back(std::fabs(d) / (r + 0.01 * mean));
-        }
-        of_tiles.push_back(sum);
-    }
-    double square = 0.0, spread = 0.0;
-    for (const double v : of_tiles) square += v / double(of_tiles.size());
-    for (const double v : of_tiles) spread += (v - square) * (v - square);
-    e.relative = std::sqrt(square), e.of_mean = std::sqrt(squares) / mean;
-    if (square > 0.0) e.deviation = 0.5 * std::sqrt(spread) / double(of_tiles.size()) / e.relative;
-    std::sort(of_pixels.begin(), of_pixels.end());
-    e.median = of_pixels[of_pixels.size() / 2], e.worst = of_pixels.back();
-    return e;
+    const core::ErrorMeasure measure(picture_of(references), {}, 16, int(references.size()));
+    const std::vector<std::vector<core::Rgb>> picture = {picture_of(lights)};
+    const core::SeriesError e = measure.measure(picture);
+    std::vector<double> squares = measure.pixel_errors(picture.front());
+    std::sort(squares.begin(), squares.end());
+    return {e.error, e.error_standard_error, e.bias, std::sqrt(squares[squares.size() / 2]),
+            std::sqrt(squares.back())};
 }
 
 void measure(const Study& study, const std::vector<Pixels>& references, const std::string& method,
@@ -71,12 +66,12 @@ void measure(const Study& study, const std::vector<Pixels>& references, const st
     const double cuts = double(std::max<std::uint64_t>(cost.cuts.cuts, 1));
     const double own = cost.seconds / seen - nothing.seconds / (16.0 * double(nothing.tiles));
     std::cout << fmt::format(
-                     "{},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.2f},{:.2f},{:.0f},{:.0f},"
+                     "{},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.2f},{:.2f},{:.0f},{:.0f},"
                      "{:.0f},{:.2f},{:.2f}\n",
-                     method, study.lights(), 100.0 * e.relative, 100.0 * e.deviation,
-                     100.0 * std::sqrt(cost.cuts.predicted_squares / cuts), 100.0 * e.of_mean, 100.0 * e.bias,
-                     100.0 * e.median, 100.0 * e.worst, cost.seconds / seen * pixels, own * pixels,
-                     cost.rays / seen, double(cost.cuts.pairs) / cuts, double(cost.cuts.evaluated) / cuts,
+                     method, study.lights(), 100.0 * e.relative, 100.0 * e.standard_error,
+                     100.0 * std::sqrt(cost.cuts.predicted_squares / cuts), 100.0 * e.bias, 100.0 * e.median,
+                     100.0 * e.worst, cost.seconds / seen * pixels, own * pixels, cost.rays / seen,
+                     double(cost.cuts.pairs) / cuts, double(cost.cuts.evaluated) / cuts,
                      double(cost.cuts.at_limit) / cuts, preparing)
               << std::flush;
 }
@@ -112,7 +107,7 @@ int main(int argc, char** argv) try {
     const std::vector<Pixels> references = a.costs_only ? std::vector<Pixels>{} : references_of(study, a);
     std::cerr << fmt::format("reference in {:.1f} s\n", now(CLOCK_PROCESS_CPUTIME_ID) - begin);
     std::cout << "method,lights,relative_error_percent,its_standard_error,predicted_percent,"
-                 "error_of_mean_percent,bias_percent,median_percent,worst_percent,picture_seconds,"
+                 "bias_percent,median_percent,worst_percent,picture_seconds,"
                  "gather_seconds,rays_a_pixel,groups_a_cut,estimates_a_cut,at_limit,prepare_seconds\n";
     for (const std::string& method : a.methods) measure(study, references, method, a);
 } catch (const std::exception& e) {
