@@ -125,7 +125,9 @@ ZTest mean_is(const RenderStatistics& A, const std::string& a, double value) {
 
 void check_same_mean(const RenderStatistics& A, const std::string& a, const RenderStatistics& B,
                      const std::string& b, std::initializer_list<double> planted) {
-    check_same_mean(A, a, B, b);
+    const ZTest test = same_mean(A, a, B, b);
+    INFO(test.report);
+    CHECK(test.passed);
     for (const double factor : planted) {
         INFO("layer '" << a << "' with a planted error of " << factor);
         CHECK_FALSE(same_mean(A.scaled(factor), a, B, b).passed);
@@ -134,7 +136,9 @@ void check_same_mean(const RenderStatistics& A, const std::string& a, const Rend
 
 void check_mean_is(const RenderStatistics& A, const std::string& a, double value,
                    std::initializer_list<double> planted) {
-    check_mean_is(A, a, value);
+    const ZTest test = mean_is(A, a, value);
+    INFO(test.report);
+    CHECK(test.passed);
     for (const double factor : planted) {
         INFO("layer '" << a << "' with a planted error of " << factor);
         CHECK_FALSE(mean_is(A.scaled(factor), a, value).passed);
