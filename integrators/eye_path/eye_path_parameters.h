@@ -1,11 +1,13 @@
 // What every method reads from a scene file for its eye paths.
 #pragma once
 
-#include "core/objects/properties.h"
-#include "core/objects/registry.h"
+#include "core/parameters/add_type.h"
 #include "integrators/eye_path/eye_path_limits.h"
 
 namespace mote::integrators {
+
+/// max_depth, rr_depth and hide_emitters: `within(&Settings::eye, eye_path_rows())`.
+const core::ParameterList<EyePathLimits>& eye_path_rows();
 
 /// max_depth, rr_depth and hide_emitters of a scene file, checked. Throws InputError.
 EyePathLimits read_eye_path_limits(const core::Properties& properties);

@@ -17,23 +17,23 @@ double seconds_since(Clock::time_point start) {
 
 }  // namespace
 
-LayerFilterParameters read_layer_filter(const Properties& p) {
-    LayerFilterParameters result;
-    result.filter.levels = int(p.get_int_in("filter_levels", result.filter.levels, 1, 12));
-    result.filter.confidence =
-        float(p.get_float_in("filter_confidence", double(result.filter.confidence), 0.0, 1e6));
-    result.features.samples = int(p.get_int_in("filter_samples", result.features.samples, 1, 256));
-    return result;
+const ParameterList<LayerFilterParameters>& layer_filter_rows() {
+    using S = LayerFilterParameters;
+    using Filter = screenspace::LayerFilterSettings;
+    static const ParameterList<S> list{
+        within(&S::filter,
+               row("filter_levels", &Filter::levels, between(1, 12),
+                   "Levels of details that the filter separates: pixels up to 2^(levels + 1) away are "
+                   "averaged."),
+               row("filter_confidence", &Filter::confidence, between(0, 1e6),
+                   "A detail is kept if its energy is so many times that of the noise; 0 filters nothing.")),
+        within(&S::features, row("filter_samples", &FeatureSettings::samples, between(1, 256),
+                                 "Eye rays a pixel that find edges, in addition to those of the passes."))};
+    return list;
 }
 
-std::vector<Parameter> layer_filter_parameters() {
-    return {{"filter_levels", "integer", "4",
-             "levels of details that the filter takes apart: pixels up to 2^(levels + 1) away are averaged"},
-            {"filter_confidence", "float", "2",
-             "how many times the energy of noise a detail must have to be kept; 0 filters nothing"},
-            {"filter_samples", "integer", "16",
-             "eye rays a pixel that look for edges, apart from those of the passes"}};
-}
+LayerFilterParameters read_layer_filter(const Properties& p) { return layer_filter_rows().read(p); }
+std::vector<Parameter> layer_filter_parameters() { return layer_filter_rows().parameters(); }
 
 LayerFilter::LayerFilter(const Scene& scene, const RenderOptions& options,
                          const LayerFilterParameters& parameters)

@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "core/film/film.h"
-#include "core/objects/properties.h"
-#include "core/objects/registry.h"
+#include "core/parameters/add_type.h"
 #include "integrators/layer_filter/scene_features.h"
 #include "screenspace/layer_filter/layer_filter.h"
 
@@ -19,6 +18,9 @@ struct LayerFilterParameters {
     screenspace::LayerFilterSettings filter;
     FeatureSettings features;
 };
+
+/// filter_levels, filter_confidence and filter_samples: `within(&Settings::filter, layer_filter_rows())`.
+const core::ParameterList<LayerFilterParameters>& layer_filter_rows();
 
 /// filter_levels, filter_confidence and filter_samples of a scene file, checked. Throws InputError.
 LayerFilterParameters read_layer_filter(const core::Properties& properties);
