@@ -2,10 +2,7 @@
 // value itself, so that every tentative collision is real and transmittance is analytic.
 #include "media/constant_volume.h"
 
-#include "core/objects/properties.h"
-#include "core/objects/registry.h"
 #include "media/grid_volume.h"
-#include "media/medium_parameters.h"
 #include "media/tracked_medium.h"
 #include "media/vol_file.h"
 
@@ -56,29 +53,49 @@ std::shared_ptr<HeterogeneousMedium> ConstantVolume::make_medium(MediumParts par
     return grey ? tracked(value_.x, std::move(parts)) : tracked(value_, std::move(parts));
 }
 
-std::shared_ptr<const Volume> volume_of(const core::Properties& p, const std::string& name,
-                                        const Rgb& default_value) {
-    if (auto nested = p.child<Volume>(name)) return nested;
-    return std::make_shared<ConstantVolume>(p.get_rgb_in(name, default_value, 0.0f, unlimited));
-}
+VolumePtr make_constant_volume(float value) { return std::make_shared<ConstantVolume>(Rgb(value)); }
 
 void register_constant_volume(core::Registry& registry) {
-    registry.add(
-        {core::Category::volume,
-         "constvolume",
-         "The same value everywhere.",
-         {{"value", "rgb", "1", "The value, not negative."},
-          {"to_world", "transform", "none",
-           "As an extinction it ends at the transformed unit cube (at the smallest box along the world's "
-           "axes "
-           "around it), as in Mitsuba 3; without one it goes on to the shapes that hold the medium."}},
-         R"(<volume type="constvolume"><rgb name="value" value="0.9 0.8 0.7"/></volume>)"},
-        [](const core::Properties& p) {
-            std::optional<core::Transform> to_world;
-            if (p.has("to_world")) to_world = p.get_transform();
-            return std::make_shared<ConstantVolume>(p.get_rgb_in("value", Rgb(1.0f), 0.0f, unlimited),
-                                                    to_world);
-        });
+    using namespace core;
+    struct Settings {
+        Rgb value{1.0f};
+        std::optional<Transform> to_world;
+    };
+    add_type<Settings>(
+        registry, Category::volume, "constvolume", "The same value everywhere.",
+        {row("value", &Settings::value, at_least(0), "The value."),
+         row("to_world", &Settings::to_world,
+             "As an extinction it ends at the transformed unit cube (at the smallest box along the world's "
+             "axes "
+             "around it), as in Mitsuba 3; without one it goes on to the shapes that hold the medium.")
+             .when_absent("none")},
+        R"(<volume type="constvolume"><rgb name="value" value="0.9 0.8 0.7"/></volume>)",
+        [](const Settings& s) { return std::make_shared<ConstantVolume>(s.value, s.to_world); });
 }
 
 }  // namespace mote::media
+
+namespace mote::core {
+namespace {
+
+class VolumeKind final : public ValueKind {
+    std::string type(const Row&) const override { return "volume"; }
+    void read(const Properties& p, const Row& row, void* member) const override {
+        auto& volume = *static_cast<media::VolumePtr*>(member);
+        volume = p.child<media::Volume>(row.parameter.name);
+        if (!volume) volume = std::make_shared<media::ConstantVolume>(read_rgb(p, row));
+    }
+    std::string text(const Row&, const void* member) const override {
+        const auto& volume = *static_cast<const media::VolumePtr*>(member);
+        return volume ? rgb_text(volume->upper_bound()) : "none";
+    }
+};
+
+}  // namespace
+
+const ValueKind& KindOf<media::VolumePtr>::kind() {
+    static const VolumeKind kind;
+    return kind;
+}
+
+}  // namespace mote::core

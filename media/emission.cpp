@@ -1,10 +1,7 @@
 // Emission of a medium, and its parameters.
 #include "media/emission.h"
 
-#include "core/objects/properties.h"
 #include "media/blackbody.h"
-#include "media/medium_parameters.h"
-#include "media/volume.h"
 
 namespace mote::media {
 
@@ -18,14 +15,25 @@ Rgb Emission::at(const core::Vec3& p) const {
     return radiance ? scale * radiance->eval(p) : Rgb(0.0f);
 }
 
-Emission emission_of(const core::Properties& p) {
-    Emission e;
-    e.scale = float(p.get_float_in("Lescale", 1.0, 0.0, unlimited));
-    e.temperature_scale = float(p.get_float("temperature_scale", 1.0));
-    e.temperature_offset = float(p.get_float("temperature_offset", 0.0));
-    e.temperature = p.child<Volume>("temperature");
-    const auto radiance = volume_of(p, "Le", Rgb(0.0f));
-    if (!core::is_black(radiance->upper_bound())) e.radiance = radiance;
+const core::ParameterList<Emission>& emission_rows() {
+    using namespace core;
+    static const ParameterList<Emission> list{
+        row("Le", &Emission::radiance, at_least(0, "W/(m^2 sr)"),
+            "Emitted radiance; the source term is sigma_a Le, as in pbrt.")
+            .when_absent("0"),
+        row("Lescale", &Emission::scale, at_least(0),
+            "Multiplies Le, or the black body's relative radiance."),
+        row("temperature", &Emission::temperature, at_least(0),
+            "Black-body emission instead of Le: temperature, see the next two.")
+            .when_absent("none"),
+        row("temperature_scale", &Emission::temperature_scale,
+            "Kelvin = (temperature - temperature_offset) * temperature_scale."),
+        row("temperature_offset", &Emission::temperature_offset, "See temperature_scale.")};
+    return list;
+}
+
+void finish_emission(Emission& e, const core::Properties& p) {
+    if (e.radiance && core::is_black(e.radiance->upper_bound())) e.radiance = nullptr;
     if (e.temperature && e.radiance)
         throw core::InputError("give either 'Le' or a 'temperature' volume, not both", p.where);
     if (e.temperature) {
@@ -36,7 +44,6 @@ Emission emission_of(const core::Properties& p) {
     } else if (p.has("temperature_scale") || p.has("temperature_offset")) {
         p.warn("'temperature_scale' and 'temperature_offset' have no effect without a 'temperature' volume");
     }
-    return e;
 }
 
 }  // namespace mote::media

@@ -4,22 +4,17 @@
 #include <memory>
 
 #include "core/math/vec.h"
-
-namespace mote::core {
-class Properties;
-struct Parameter;
-}  // namespace mote::core
+#include "media/volume.h"
 
 namespace mote::media {
 
-class Volume;
 class BlackbodyTable;
 
 /// The L_e [W/(m^2 sr)] that sigma_a multiplies in the source term.
 struct Emission {
-    float scale = 1.0f;                         ///< Lescale
-    std::shared_ptr<const Volume> radiance;     ///< Le; or
-    std::shared_ptr<const Volume> temperature;  ///< (temperature - offset) * temperature_scale is in kelvin
+    float scale = 1.0f;     ///< Lescale
+    VolumePtr radiance;     ///< Le; or
+    VolumePtr temperature;  ///< (temperature - offset) * temperature_scale is in kelvin
     float temperature_scale = 1.0f, temperature_offset = 0.0f;
     std::shared_ptr<const BlackbodyTable> blackbody;  ///< goes with temperature
 
@@ -27,7 +22,9 @@ struct Emission {
     core::Rgb at(const core::Vec3& p) const;
 };
 
-/// Reads Le, Lescale, temperature, temperature_scale and temperature_offset.
-Emission emission_of(const core::Properties& properties);
+/// Le, Lescale, temperature, temperature_scale and temperature_offset.
+const core::ParameterList<Emission>& emission_rows();
+/// Completes what was read. Throws InputError where both Le and temperature are given.
+void finish_emission(Emission& emission, const core::Properties& properties);
 
 }  // namespace mote::media

@@ -3,24 +3,14 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
-#include <vector>
 
-#include "core/objects/properties.h"
-#include "core/objects/registry.h"
 #include "media/tracked_medium.h"
 #include "media/vol_file.h"
 
 namespace mote::media {
 
 using core::Rgb, core::Transform, core::Vec3d;
-
-namespace {
-
-const std::vector<std::string> wrap_names = {"clamp", "repeat", "mirror"};  // as in WrapMode
-
-}  // namespace
 
 GridVolume::GridVolume(VolFile file, const Transform& to_world, bool use_grid_bbox, std::string name,
                        WrapMode wrap) {
@@ -60,45 +50,67 @@ std::shared_ptr<HeterogeneousMedium> GridVolume::make_medium(MediumParts parts) 
     return voxels_->channels == 1 ? make(0.0f) : make(Rgb(0.0f));
 }
 
+const core::ParameterList<GridPlacement>& grid_placement_rows() {
+    using namespace core;
+    using S = GridPlacement;
+    static const ParameterList<S> list{
+        row("to_world", &S::to_world, "Places the unit cube (or the grid's own box) in the world."),
+        row("use_grid_bbox", &S::use_grid_bbox, "Use the grid's own bounding box instead of the unit cube."),
+        row("wrap_mode", &S::wrap,
+            {{"clamp", WrapMode::clamp}, {"repeat", WrapMode::repeat}, {"mirror", WrapMode::mirror}},
+            "Outside the grid: the border's voxels, the grid again, or reversed in turns.")};
+    return list;
+}
+
+namespace {
+
+enum class GridFilter : std::uint8_t { trilinear };
+
+struct GridFileSettings : GridPlacement {
+    core::FileName file;
+    bool clamp_negative = false, raw = true;
+    GridFilter filter = GridFilter::trilinear;
+};
+
+const core::ParameterList<GridFileSettings>& grid_file_rows() {
+    using namespace core;
+    using S = GridFileSettings;
+    static const ParameterList<S> list{
+        row("filename", &S::file, "The .vol file: float32, one or three channels.").required(),
+        row("clamp_negative", &S::clamp_negative, "Raise negative voxels to 0 instead of refusing them."),
+        row("filter_type", &S::filter, {{"trilinear", GridFilter::trilinear}}, "Interpolation."),
+        grid_placement_rows(), row("raw", &S::raw, "Without effect: values are used as they are.")};
+    return list;
+}
+
+std::shared_ptr<GridVolume> make_grid(const GridFileSettings& s, const core::Properties& p) {
+    if (p.has("raw")) p.warn("gridvolume: 'raw' has no effect, values are used as they are");
+    const std::string& path = s.file.path;
+    VolFile file = read_vol_file(path, s.clamp_negative);
+    if (file.clamped > 0)
+        p.warn(fmt::format("{}: {} negative voxels raised to 0, the lowest was {}", path, file.clamped,
+                           file.lowest));
+    try {
+        return std::make_shared<GridVolume>(std::move(file), s.to_world, s.use_grid_bbox,
+                                            std::filesystem::path(path).filename().string(), s.wrap);
+    } catch (const core::InputError& e) {
+        throw core::InputError(e.what(), p.where);
+    }
+}
+
+}  // namespace
+
 void register_grid_volume(core::Registry& registry) {
-    registry.add(
-        {core::Category::volume,
-         "gridvolume",
-         "A dense grid from a .vol file: cell-centred, trilinear. As an extinction it ends at its box, as in "
-         "Mitsuba 3: the smallest one along the world's axes around the transformed unit cube (or file's "
-         "box), "
-         "with vacuum outside. `wrap_mode` says what lies in the corners between the two where the transform "
-         "rotates or shears, what the half voxel between the last centre and the box's face is interpolated "
-         "with, and how an albedo or an emission goes on outside.",
-         {{"filename", "string", "", "The .vol file: float32, one or three channels."},
-          {"to_world", "transform", "identity", "Places the unit cube (or the file's box) in the world."},
-          {"use_grid_bbox", "boolean", "false", "Use the bounding box in the file instead of the unit cube."},
-          {"clamp_negative", "boolean", "false", "Raise negative voxels to 0 instead of refusing them."},
-          {"filter_type", "string", "trilinear", "Only trilinear."},
-          {"wrap_mode", "string", "clamp",
-           "Outside the grid: clamp (the border's voxels), repeat (the grid again) or mirror (reversed in "
-           "turns)."},
-          {"raw", "boolean", "true", "Without effect: values are used as they are."}},
-         R"(<volume type="gridvolume"><string name="filename" value="smoke.vol"/></volume>)"},
-        [](const core::Properties& p) {
-            p.get_choice("filter_type", "trilinear", {"trilinear"});
-            const std::string wrap = p.get_choice("wrap_mode", "clamp", wrap_names);
-            const auto mode =
-                WrapMode(std::find(wrap_names.begin(), wrap_names.end(), wrap) - wrap_names.begin());
-            if (p.has("raw")) p.warn("gridvolume: 'raw' has no effect, values are used as they are");
-            const std::string path = p.require_file("filename");
-            VolFile file = read_vol_file(path, p.get_bool("clamp_negative", false));
-            if (file.clamped > 0)
-                p.warn(fmt::format("{}: {} negative voxels raised to 0, the lowest was {}", path,
-                                   file.clamped, file.lowest));
-            try {
-                return std::make_shared<GridVolume>(std::move(file), p.get_transform(),
-                                                    p.get_bool("use_grid_bbox", false),
-                                                    std::filesystem::path(path).filename().string(), mode);
-            } catch (const core::InputError& e) {
-                throw core::InputError(e.what(), p.where);
-            }
-        });
+    core::add_type(
+        registry, core::Category::volume, "gridvolume",
+        "A dense grid from a .vol file: cell-centred, trilinear. As an extinction it ends at its box, as in "
+        "Mitsuba 3: the smallest one along the world's axes around the transformed unit cube (or file's "
+        "box), "
+        "with vacuum outside. `wrap_mode` says what lies in the corners between the two where the transform "
+        "rotates or shears, what the half voxel between the last centre and the box's face is interpolated "
+        "with, and how an albedo or an emission goes on outside.",
+        grid_file_rows(), R"(<volume type="gridvolume"><string name="filename" value="smoke.vol"/></volume>)",
+        make_grid);
 }
 
 }  // namespace mote::media

@@ -32,6 +32,14 @@ class GridVolume final : public Volume {
     std::string description_;
 };
 
+/// Where a grid lies, and its continuation outside.
+struct GridPlacement {
+    core::Transform to_world;
+    bool use_grid_bbox = false;
+    WrapMode wrap = WrapMode::clamp;
+};
+const core::ParameterList<GridPlacement>& grid_placement_rows();
+
 void register_grid_volume(core::Registry& registry);
 
 }  // namespace mote::media

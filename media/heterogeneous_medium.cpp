@@ -1,9 +1,7 @@
 // <medium type="heterogeneous">: the extinction is a volume; that volume builds the medium.
 #include "media/heterogeneous_medium.h"
 
-#include "core/objects/properties.h"
-#include "core/objects/registry.h"
-#include "media/medium_parameters.h"
+#include "media/phase_functions.h"
 #include "media/volume.h"
 
 namespace mote::media {
@@ -29,21 +27,37 @@ std::shared_ptr<core::Emitter> HeterogeneousMedium::make_emitter(const core::Bou
 
 namespace {
 
-std::shared_ptr<HeterogeneousMedium> make_heterogeneous(const core::Properties& p) {
-    if (p.has("sigma_t") && p.has("density"))
+struct HeterogeneousSettings : MediumParts {
+    VolumePtr sigma_t = make_constant_volume(1.0f), density;
+    HeterogeneousSettings() {
+        albedo = make_constant_volume(0.75f), phase = std::make_shared<IsotropicPhase>();
+    }
+};
+
+const core::ParameterList<HeterogeneousSettings>& heterogeneous_rows() {
+    using namespace core;
+    using S = HeterogeneousSettings;
+    static const ParameterList<S> list{
+        row("sigma_t", &S::sigma_t, at_least(0, "1/m"), "Extinction, times `scale`."),
+        row("density", &S::density, at_least(0, "1/m"), "Another name for sigma_t (that of version 0.x).")
+            .when_absent("none"),
+        row("albedo", &S::albedo, between(0, 1), "Single-scattering albedo."),
+        row("scale", &S::scale, at_least(0), "Multiplies the extinction."),
+        nested("phase", &S::phase, Category::phase, "isotropic", "The phase function."),
+        within(&S::emission, emission_rows()),
+        within(&S::tracking, tracking_rows())};
+    return list;
+}
+
+std::shared_ptr<HeterogeneousMedium> make_heterogeneous(HeterogeneousSettings s, const core::Properties& p) {
+    if (p.has("sigma_t") && s.density)
         throw core::InputError("'density' is another name for 'sigma_t': give one of them", p.where);
-    const auto extinction = volume_of(p, p.has("density") ? "density" : "sigma_t", Rgb(1.0f));
-    MediumParts parts;
-    parts.scale = float(p.get_float_in("scale", 1.0, 0.0, unlimited));
-    parts.albedo = volume_of(p, "albedo", Rgb(0.75f));
-    parts.phase = phase_of(p);
-    parts.emission = emission_of(p);
-    parts.tracking = tracking_settings_of(p);
-    const float largest_albedo = core::max_component(parts.albedo->upper_bound());
+    finish_emission(s.emission, p);
+    const float largest_albedo = core::max_component(s.albedo->upper_bound());
     if (largest_albedo > 1.0f)
         throw core::InputError("'albedo' reaches " + std::to_string(largest_albedo) + ", above 1",
                                p.where_of("albedo"));
-    auto medium = extinction->make_medium(std::move(parts));
+    auto medium = (s.density ? s.density : s.sigma_t)->make_medium(s);
     if (!std::isfinite(medium->majorant()))
         throw core::InputError("the extinction times 'scale' is too large for a number", p.where);
     if (medium->traits().empty) p.warn("the medium is empty: it is treated as vacuum");
@@ -53,31 +67,11 @@ std::shared_ptr<HeterogeneousMedium> make_heterogeneous(const core::Properties& 
 }  // namespace
 
 void register_heterogeneous_medium(core::Registry& registry) {
-    registry.add(
-        {core::Category::medium,
-         "heterogeneous",
-         "Coefficients that vary over space, by delta and ratio tracking with majorants on a coarse grid.",
-         {{"sigma_t", "volume", "1", "Extinction, times `scale` [1/m]."},
-          {"density", "volume", "", "Another name for sigma_t (that of version 0.x)."},
-          {"albedo", "volume", "0.75", "Single-scattering albedo, 0 to 1."},
-          {"scale", "float", "1", "Multiplies the extinction."},
-          {"phase", "phase", "isotropic", "The phase function."},
-          {"Le", "volume", "0", "Emitted radiance [W/(m^2 sr)]; the source term is sigma_a Le, as in pbrt."},
-          {"Lescale", "float", "1", "Multiplies Le, or the black body's relative radiance."},
-          {"temperature", "volume", "", "Black-body emission instead of Le: temperature, see the next two."},
-          {"temperature_scale", "float", "1",
-           "Kelvin = (temperature - temperature_offset) * temperature_scale."},
-          {"temperature_offset", "float", "0", "See temperature_scale."},
-          {"transmittance", "string", "automatic",
-           "Estimator of shadow rays: unbiased_ray_marching (a tenth of the variance of tracking at its "
-           "time, "
-           "and automatic wherever cells vary), residual_ratio_tracking (exact in constant cells), "
-           "ratio_tracking, delta_tracking (most variance), or ray_marching (a small bias, 20 to 80 times "
-           "the "
-           "time); docs/media.md has the table."},
-          {"marching_tolerance", "float", "0.001",
-           "Relative error of the optical depth that ray_marching aims at."}},
-         R"(<medium type="heterogeneous"><volume name="sigma_t" type="constvolume"><rgb name="value" value="1 2 3"/></volume><rgb name="albedo" value="0.9"/></medium>)"},
+    core::add_type(
+        registry, core::Category::medium, "heterogeneous",
+        "Coefficients that vary over space, by delta and ratio tracking with majorants on a coarse grid.",
+        heterogeneous_rows(),
+        R"(<medium type="heterogeneous"><volume name="sigma_t" type="constvolume"><rgb name="value" value="1 2 3"/></volume><rgb name="albedo" value="0.9"/></medium>)",
         make_heterogeneous);
 }
 

@@ -3,8 +3,7 @@
 // wo and wi both point away from the point, so light that keeps its direction has wi = -wo: for g > 0 the
 // preferred direction is -wo, for g < 0 it is wo.
 #include "core/math/frame.h"
-#include "core/objects/properties.h"
-#include "core/objects/registry.h"
+#include "core/parameters/add_type.h"
 #include "media/henyey_greenstein.h"
 #include "media/phase_functions.h"
 
@@ -35,18 +34,15 @@ core::PhaseSample HenyeyGreensteinPhase::sample(const Vec3& wo, const Vec2& u) c
 }
 
 void register_hg_phase(core::Registry& registry) {
-    registry.add({core::Category::phase,
-                  "hg",
-                  "Henyey-Greenstein: prefers one direction, forward for g > 0 and backward for g < 0.",
-                  {{"g", "float", "0.8", "Mean cosine of the scattering angle, -1 < g < 1."}},
-                  R"(<phase type="hg"><float name="g" value="0.8"/></phase>)"},
-                 [](const core::Properties& p) {
-                     const double g = p.get_float("g", 0.8);
-                     if (!(std::fabs(float(g)) < 1.0f))
-                         throw core::InputError("'g' must lie between -1 and 1, both excluded",
-                                                p.where_of("g"));
-                     return std::make_shared<HenyeyGreensteinPhase>(float(g));
-                 });
+    using namespace core;
+    struct Settings {
+        float g = 0.8f;
+    };
+    add_type<Settings>(registry, Category::phase, "hg",
+                       "Henyey-Greenstein: prefers one direction, forward for g > 0 and backward for g < 0.",
+                       {row("g", &Settings::g, inside(-1, 1), "Mean cosine of the scattering angle.")},
+                       R"(<phase type="hg"><float name="g" value="0.8"/></phase>)",
+                       [](const Settings& s) { return std::make_shared<HenyeyGreensteinPhase>(s.g); });
 }
 
 }  // namespace mote::media

@@ -8,11 +8,10 @@
 
 #include <array>
 
-#include "core/objects/properties.h"
-#include "core/objects/registry.h"
+#include "core/parameters/add_type.h"
 #include "core/scene/scattering_points.h"
 #include "media/medium_emitter.h"
-#include "media/medium_parameters.h"
+#include "media/phase_functions.h"
 #include "media/tracking_random.h"
 
 namespace mote::media {
@@ -168,46 +167,55 @@ core::Vec3d HomogeneousMedium::optical_depth_along(const Ray& ray, float, core::
 
 namespace {
 
-std::shared_ptr<HomogeneousMedium> make_homogeneous(const core::Properties& p) {
-    const bool by_albedo = p.has("albedo") || p.has("sigma_t");
-    const bool by_parts = p.has("sigma_s") || p.has("sigma_a");
-    if (by_albedo && by_parts)
+struct HomogeneousSettings {
+    Rgb sigma_t{1.0f}, albedo{0.75f};
+    std::optional<Rgb> sigma_s, sigma_a;
+    float scale = 1.0f;
+    Rgb radiance{0.0f};
+    float radiance_scale = 1.0f;
+    std::shared_ptr<core::PhaseFunction> phase = std::make_shared<IsotropicPhase>();
+};
+
+const core::ParameterList<HomogeneousSettings>& homogeneous_rows() {
+    using namespace core;
+    using S = HomogeneousSettings;
+    static const ParameterList<S> list{
+        row("sigma_t", &S::sigma_t, at_least(0, "1/m"), "Extinction, times `scale`."),
+        row("albedo", &S::albedo, between(0, 1), "Single-scattering albedo."),
+        row("sigma_s", &S::sigma_s, at_least(0, "1/m"),
+            "Scattering, times `scale`; with sigma_a instead of sigma_t and albedo.")
+            .when_absent("none"),
+        row("sigma_a", &S::sigma_a, at_least(0, "1/m"),
+            "Absorption, times `scale`; with sigma_s instead of sigma_t and albedo.")
+            .when_absent("none"),
+        row("scale", &S::scale, at_least(0), "Multiplies the coefficients."),
+        row("Le", &S::radiance, at_least(0, "W/(m^2 sr)"),
+            "Emitted radiance; the source term is sigma_a Le, as in pbrt."),
+        row("Lescale", &S::radiance_scale, at_least(0), "Multiplies Le."),
+        nested("phase", &S::phase, Category::phase, "isotropic", "The phase function.")};
+    return list;
+}
+
+std::shared_ptr<HomogeneousMedium> make_homogeneous(const HomogeneousSettings& s, const core::Properties& p) {
+    const bool by_parts = s.sigma_s || s.sigma_a;
+    if (by_parts && (p.has("albedo") || p.has("sigma_t")))
         throw core::InputError("give either 'sigma_t' and 'albedo', or 'sigma_s' and 'sigma_a'", p.where);
-    const float scale = float(p.get_float_in("scale", 1.0, 0.0, unlimited));
-    const auto coefficient = [&](const char* name, float value) {
-        return p.get_rgb_in(name, Rgb(value), 0.0f, unlimited);
-    };
-    Rgb sigma_t, sigma_s;
+    Rgb sigma_t = s.sigma_t, sigma_s = s.sigma_t * s.albedo;
     if (by_parts) {
-        sigma_s = coefficient("sigma_s", 0.0f);
-        sigma_t = sigma_s + coefficient("sigma_a", 0.0f);
-    } else {
-        sigma_t = coefficient("sigma_t", 1.0f);
-        sigma_s = sigma_t * p.get_rgb_in("albedo", Rgb(0.75f), 0.0f, 1.0f);
+        sigma_s = s.sigma_s.value_or(Rgb(0.0f));
+        sigma_t = sigma_s + s.sigma_a.value_or(Rgb(0.0f));
     }
-    const Rgb radiance = p.get_rgb_in("Le", Rgb(0.0f), 0.0f, unlimited) *
-                         float(p.get_float_in("Lescale", 1.0, 0.0, unlimited));
-    return std::make_shared<HomogeneousMedium>(scale * sigma_t, scale * sigma_s, radiance, phase_of(p));
+    return std::make_shared<HomogeneousMedium>(s.scale * sigma_t, s.scale * sigma_s,
+                                               s.radiance * s.radiance_scale, s.phase);
 }
 
 }  // namespace
 
 void register_homogeneous_medium(core::Registry& registry) {
-    registry.add(
-        {core::Category::medium,
-         "homogeneous",
-         "The same coefficients everywhere; transmittance and distances are analytic.",
-         {{"sigma_t", "rgb", "1", "Extinction [1/m], times `scale`."},
-          {"albedo", "rgb", "0.75", "Single-scattering albedo, 0 to 1."},
-          {"sigma_s", "rgb", "",
-           "Scattering [1/m], times `scale`; with sigma_a instead of sigma_t and albedo."},
-          {"sigma_a", "rgb", "",
-           "Absorption [1/m], times `scale`; with sigma_s instead of sigma_t and albedo."},
-          {"scale", "float", "1", "Multiplies the coefficients."},
-          {"Le", "rgb", "0", "Emitted radiance [W/(m^2 sr)]; the source term is sigma_a Le, as in pbrt."},
-          {"Lescale", "float", "1", "Multiplies Le."},
-          {"phase", "phase", "isotropic", "The phase function."}},
-         R"(<medium type="homogeneous"><rgb name="sigma_t" value="1 2 3"/><rgb name="albedo" value="0.9"/></medium>)"},
+    core::add_type(
+        registry, core::Category::medium, "homogeneous",
+        "The same coefficients everywhere; transmittance and distances are analytic.", homogeneous_rows(),
+        R"(<medium type="homogeneous"><rgb name="sigma_t" value="1 2 3"/><rgb name="albedo" value="0.9"/></medium>)",
         make_homogeneous);
 }
 

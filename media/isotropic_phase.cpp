@@ -1,7 +1,6 @@
 // <phase type="isotropic">: the same value in every direction.
 #include "core/math/warp.h"
-#include "core/objects/properties.h"
-#include "core/objects/registry.h"
+#include "core/parameters/add_type.h"
 #include "media/phase_functions.h"
 
 namespace mote::media {
@@ -11,12 +10,8 @@ core::PhaseSample IsotropicPhase::sample(const core::Vec3&, const core::Vec2& u)
 }
 
 void register_isotropic_phase(core::Registry& registry) {
-    registry.add({core::Category::phase,
-                  "isotropic",
-                  "Scatters equally into all directions.",
-                  {},
-                  R"(<phase type="isotropic"/>)"},
-                 [](const core::Properties&) { return std::make_shared<IsotropicPhase>(); });
+    core::add_type(registry, core::Category::phase, "isotropic", "Scatters equally into all directions.",
+                   R"(<phase type="isotropic"/>)", [] { return std::make_shared<IsotropicPhase>(); });
 }
 
 }  // namespace mote::media

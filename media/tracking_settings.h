@@ -4,9 +4,7 @@
 
 #include <string>
 
-namespace mote::core {
-class Properties;
-}
+#include "core/parameters/parameter_list.h"
 
 namespace mote::media {
 
@@ -26,10 +24,9 @@ struct TrackingSettings {
         1e-3;  ///< of ray marching: relative error of the optical depth that it aims at
 };
 
-const std::string& name_of(TransmittanceEstimator estimator);
+std::string name_of(TransmittanceEstimator estimator);
 
-/// From the parameters `transmittance` and `marching_tolerance`. Throws InputError with the
-/// nearest known word.
-TrackingSettings tracking_settings_of(const core::Properties& properties);
+/// transmittance and marching_tolerance.
+const core::ParameterList<TrackingSettings>& tracking_rows();
 
 }  // namespace mote::media

@@ -3,8 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "core/objects/properties.h"
-#include "core/objects/registry.h"
+#include "core/parameters/add_type.h"
 #include "media/nano_grid.h"
 #include "media/tracked_medium.h"
 
@@ -33,30 +32,44 @@ std::shared_ptr<HeterogeneousMedium> VdbVolume::make_medium(MediumParts parts) c
     return std::make_shared<TrackedMedium<NanoGrid>>(std::move(grid), std::move(parts));
 }
 
+namespace {
+
+struct VdbSettings {
+    core::FileName file;
+    std::string grid = "density";
+    Transform to_world;
+    VdbLoadOptions options;
+};
+
+const core::ParameterList<VdbSettings>& vdb_rows() {
+    using namespace core;
+    using S = VdbSettings;
+    static const ParameterList<S> list{
+        row("filename", &S::file, "The .vdb file.").required(),
+        row("grid", &S::grid, "Name of the grid; 'name[1]' is the second of several of one name."),
+        row("to_world", &S::to_world, "Applied after the grid's own transform; any linear one."),
+        within(&S::options, row("clamp_negative", &VdbLoadOptions::clamp_negative,
+                                "Raise negative values to 0 instead of refusing them."))};
+    return list;
+}
+
+std::shared_ptr<VdbVolume> make_vdb(const VdbSettings& s, const core::Properties& p) {
+    const auto grid = load_vdb_grid(s.file.path, s.grid, s.options);
+    for (const std::string& w : grid->warnings())
+        p.warn(fmt::format("{}: grid '{}': {}", s.file.path, grid->name(), w));
+    if (!(s.to_world * grid->index_to_world()).valid())
+        throw core::InputError("the grid's transform is singular or not finite", p.where_of("to_world"));
+    return std::make_shared<VdbVolume>(grid, s.to_world);
+}
+
+}  // namespace
+
 void register_vdb_volume(core::Registry& registry) {
-    registry.add(
-        {core::Category::volume,
-         "vdbvolume",
-         "A fog volume of an OpenVDB file (float, half, double, integers): trilinear, its background "
-         "outside.",
-         {{"filename", "string", "", "The .vdb file."},
-          {"grid", "string", "density", "Name of the grid; 'name[1]' is the second of several of one name."},
-          {"to_world", "transform", "identity", "Applied after the grid's own transform; any linear one."},
-          {"clamp_negative", "boolean", "false", "Raise negative values to 0 instead of refusing them."}},
-         R"(<volume type="vdbvolume"><string name="filename" value="smoke.vdb"/></volume>)"},
-        [](const core::Properties& p) {
-            const std::string path = p.require_file("filename");
-            VdbLoadOptions options;
-            options.clamp_negative = p.get_bool("clamp_negative", false);
-            const auto grid = load_vdb_grid(path, p.get_string("grid", "density"), options);
-            for (const std::string& w : grid->warnings())
-                p.warn(fmt::format("{}: grid '{}': {}", path, grid->name(), w));
-            const Transform to_world = p.get_transform();
-            if (!(to_world * grid->index_to_world()).valid())
-                throw core::InputError("the grid's transform is singular or not finite",
-                                       p.where_of("to_world"));
-            return std::make_shared<VdbVolume>(grid, to_world);
-        });
+    core::add_type(
+        registry, core::Category::volume, "vdbvolume",
+        "A fog volume of an OpenVDB file (float, half, double, integers): trilinear, its background outside.",
+        vdb_rows(), R"(<volume type="vdbvolume"><string name="filename" value="smoke.vdb"/></volume>)",
+        make_vdb);
 }
 
 }  // namespace mote::media

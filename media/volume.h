@@ -10,10 +10,7 @@
 
 #include "core/math/vec.h"
 #include "core/objects/object.h"
-
-namespace mote::core {
-class Properties;
-}
+#include "core/parameters/add_type.h"
 
 namespace mote::media {
 
@@ -32,9 +29,16 @@ class Volume : public core::Object {
     virtual std::shared_ptr<HeterogeneousMedium> make_medium(MediumParts parts) const = 0;
 };
 
-/// The parameter `name` as a volume: a nested one, or a constant from an rgb or a float. `default_value` when
-/// it is not given.
-std::shared_ptr<const Volume> volume_of(const core::Properties& properties, const std::string& name,
-                                        const core::Rgb& default_value);
+/// A volume that others share.
+using VolumePtr = std::shared_ptr<const Volume>;
+
+/// A volume of one value.
+VolumePtr make_constant_volume(float value);
 
 }  // namespace mote::media
+
+/// Volumes as declared parameters: nested ones, or a constant from an rgb or a float.
+template <>
+struct mote::core::KindOf<mote::media::VolumePtr> {
+    static const ValueKind& kind();
+};

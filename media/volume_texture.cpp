@@ -1,8 +1,6 @@
 #include "media/volume_texture.h"
 
-#include "core/materials/textures.h"
-#include "core/objects/properties.h"
-#include "core/objects/registry.h"
+#include "core/materials/texture.h"
 #include "media/volume.h"
 
 namespace mote::media {
@@ -22,27 +20,27 @@ class VolumeTexture final : public core::Texture {
     std::shared_ptr<const Volume> volume_;
 };
 
-std::shared_ptr<core::Object> create(const core::Properties& p) {
-    const auto volume = volume_of(p, "volume", core::Rgb(1.0f));
-    if (const auto value = volume->constant()) return core::make_constant_texture(*value);
-    return std::make_shared<VolumeTexture>(volume);
-}
-
 }  // namespace
 
 void register_volume_texture(core::Registry& registry) {
-    registry.add({core::Category::texture,
-                  "volume",
-                  "A volume as a texture: a surface has the value of the volume where it stands in the "
-                  "world, whatever "
-                  "its texture coordinates. No slopes: as a bump map it has no effect.",
-                  {{"volume", "volume", "1", "a gridvolume, vdbvolume or constvolume, a colour or a number"}},
-                  R"(<texture type="volume" name="reflectance">
+    using namespace core;
+    struct Settings {
+        VolumePtr volume = make_constant_volume(1.0f);
+    };
+    add_type<Settings>(registry, Category::texture, "volume",
+                       "A volume as a texture: a surface has the value of the volume at its position in the "
+                       "world, whatever its texture coordinates. No slopes: as a bump map it has no effect.",
+                       {row("volume", &Settings::volume, at_least(0),
+                            "A gridvolume, vdbvolume or constvolume, a colour or a number.")},
+                       R"(<texture type="volume" name="reflectance">
     <volume type="gridvolume" name="volume">
         <string name="filename" value="marble.vol"/>
     </volume>
-</texture>)"},
-                 create);
+</texture>)",
+                       [](const Settings& s) -> std::shared_ptr<Texture> {
+                           if (const auto value = s.volume->constant()) return make_constant_texture(*value);
+                           return std::make_shared<VolumeTexture>(s.volume);
+                       });
 }
 
 }  // namespace mote::media

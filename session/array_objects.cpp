@@ -56,29 +56,26 @@ void check_grid(const media::VolFile& grid, const std::string& name) {
                          where);
 }
 
+struct ArrayMesh : core::ShapePlacement {
+    std::string array;
+    bool face_normals = false;
+};
+
 /// As the shapes `ply` and `obj` do with what they read.
-std::shared_ptr<core::Object> make_mesh(const Properties& p, const ArrayStore& store) {
-    const core::Transform to_world = p.get_transform();
-    if (!to_world.valid())
-        throw InputError("the transform is singular or not finite", p.where_of("to_world"));
-    MeshData data = store.mesh(p.require_string("array"));
-    if (p.get_bool("face_normals", false))
+std::shared_ptr<core::Object> make_mesh(const ArrayMesh& s, const Properties& p, const ArrayStore& store) {
+    MeshData data = store.mesh(s.array);
+    if (s.face_normals)
         data.normals.clear();
     else if (data.normals.empty())
         core::compute_vertex_normals(data);
-    core::transform_mesh(data, to_world);
-    if (p.get_bool("flip_normals", false)) core::flip_orientation(data);
+    core::transform_mesh(data, s.to_world);
+    if (s.flip_normals) core::flip_orientation(data);
     return core::at_element(p, [&] { return std::make_shared<core::TriangleMesh>(std::move(data)); });
 }
 
-std::shared_ptr<core::Object> make_grid(const Properties& p, const ArrayStore& store) {
-    const std::string name = p.require_string("array");
-    const std::vector<std::string> wraps = {"clamp", "repeat", "mirror"};  // as in media::WrapMode
-    const std::string wrap = p.get_choice("wrap_mode", "clamp", wraps);
-    const auto mode = media::WrapMode(std::find(wraps.begin(), wraps.end(), wrap) - wraps.begin());
-    return std::make_shared<media::GridVolume>(store.grid(name), p.get_transform(),
-                                               p.get_bool("use_grid_bbox", false), name, mode);
-}
+struct ArrayGrid : media::GridPlacement {
+    std::string array;
+};
 
 }  // namespace
 
@@ -115,25 +112,21 @@ std::string ArrayStore::checksum() const {
 }
 
 void register_arrays(core::Registry& registry, std::shared_ptr<const ArrayStore> store) {
-    registry.add({core::Category::shape,
-                  "arraymesh",
-                  "Triangles of a host's arrays. Smooth normals are computed when it gives none.",
-                  {{"array", "string", "", "name of the arrays"},
-                   {"face_normals", "boolean", "false", "drop the normals and compute none: a faceted look"},
-                   core::flip_normals_parameter(),
-                   core::to_world_parameter("any affine transform; mirroring keeps the outside out")},
-                  ""},
-                 [store](const Properties& p) { return make_mesh(p, *store); });
-    registry.add(
-        {core::Category::volume,
-         "arraygrid",
-         "A dense grid of a host's array; otherwise a `gridvolume`.",
-         {{"array", "string", "", "name of the array"},
-          {"to_world", "transform", "identity", "Places the unit cube (or the array's box) in the world."},
-          {"use_grid_bbox", "boolean", "false", "Use the array's bounding box instead of the unit cube."},
-          {"wrap_mode", "string", "clamp", "Outside the grid: clamp, repeat or mirror."}},
-         ""},
-        [store](const Properties& p) { return make_grid(p, *store); });
+    using namespace core;
+    add_type<ArrayMesh>(
+        registry, Category::shape, "arraymesh",
+        "Triangles of a host's arrays. Smooth normals are computed when it gives none.",
+        {row("array", &ArrayMesh::array, "Name of the arrays.").required(),
+         row("face_normals", &ArrayMesh::face_normals, "Drop the normals and compute none: a faceted look."),
+         placement_rows("Any affine transform; mirroring keeps the outside out.")},
+        "", [store](const ArrayMesh& s, const Properties& p) { return make_mesh(s, p, *store); });
+    add_type<ArrayGrid>(
+        registry, Category::volume, "arraygrid", "A dense grid of a host's array; otherwise a `gridvolume`.",
+        {row("array", &ArrayGrid::array, "Name of the array.").required(), media::grid_placement_rows()}, "",
+        [store](const ArrayGrid& s) {
+            return std::make_shared<media::GridVolume>(store->grid(s.array), s.to_world, s.use_grid_bbox,
+                                                       s.array, s.wrap);
+        });
 }
 
 }  // namespace mote::session

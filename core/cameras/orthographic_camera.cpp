@@ -1,6 +1,5 @@
 // Parallel projection: the picture is the square [-1, 1] (in x) of the camera's own space, so that the size
 // of the view is set by a scale in to_world.
-#include "core/cameras/film_objects.h"
 #include "core/cameras/sensors.h"
 
 namespace mote::core {
@@ -8,10 +7,12 @@ namespace {
 
 class OrthographicCamera final : public Camera {
   public:
-    explicit OrthographicCamera(const Properties& p)
-        : clip_(clip_planes(p)), to_world_(p.get_transform()), to_camera_(to_world_.inverse()) {
-        const FilmObject film = film_of_sensor(p);
-        width_ = float(film.width), height_ = float(film.height);
+    OrthographicCamera(const SensorSettings& s, const Properties& p)
+        : clip_(clip_planes(s, p)),
+          to_world_(s.to_world),
+          to_camera_(to_world_.inverse()),
+          width_(float(s.film.width)),
+          height_(float(s.film.height)) {
         const Vec3d along = to_world_.vector(Vec3d(0, 0, 1));
         depth_ = glm::length(along);
         direction_ = Vec3(along / depth_);
@@ -62,8 +63,8 @@ class OrthographicCamera final : public Camera {
 
     ClipPlanes clip_;
     Transform to_world_, to_camera_;
+    float width_, height_;
     Vec3 direction_{0, 0, 1};
-    float width_ = 1.0f, height_ = 1.0f;
     double depth_ = 1.0;            ///< length of the camera's z axis in the world
     float pixels_per_area_ = 0.0f;  ///< perpendicular to the rays [pixels/m^2]
 };
@@ -71,16 +72,14 @@ class OrthographicCamera final : public Camera {
 }  // namespace
 
 void register_orthographic(Registry& registry) {
-    Manual manual{Category::sensor,
-                  "orthographic",
-                  "Parallel projection of [-1, 1] in x; a scale in to_world sets the size of the view.",
-                  {},
-                  R"(<sensor type="orthographic">
+    add_type(registry, Category::sensor, "orthographic",
+             "Parallel projection of [-1, 1] in x; a scale in to_world sets the size of the view.",
+             sensor_rows(), R"(<sensor type="orthographic">
     <transform name="to_world"><scale x="5" y="5"/><lookat origin="0, 0, 4" target="0, 0, 0" up="0, 1, 0"/></transform>
-</sensor>)"};
-    add_common_parameters(manual.parameters);
-    registry.add(std::move(manual),
-                 [](const Properties& p) { return std::make_shared<OrthographicCamera>(p); });
+</sensor>)",
+             [](const SensorSettings& s, const Properties& p) {
+                 return std::make_shared<OrthographicCamera>(s, p);
+             });
 }
 
 }  // namespace mote::core

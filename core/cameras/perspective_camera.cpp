@@ -4,12 +4,16 @@
 namespace mote::core {
 namespace {
 
+struct PerspectiveSettings : SensorSettings {
+    ViewSettings view;
+};
+
 class PerspectiveCamera final : public Camera {
   public:
-    explicit PerspectiveCamera(const Properties& p)
-        : view_(p),
-          clip_(clip_planes(p)),
-          to_world_(rigid_to_world(p)),
+    PerspectiveCamera(const PerspectiveSettings& s, const Properties& p)
+        : view_(s.film, s.view, p),
+          clip_(clip_planes(s, p)),
+          to_world_(rigid_to_world(s.to_world, p)),
           to_camera_(to_world_.inverse()),
           origin_(to_world_.point(Vec3d(0.0))) {}
 
@@ -63,15 +67,16 @@ class PerspectiveCamera final : public Camera {
 }  // namespace
 
 void register_perspective(Registry& registry) {
-    Manual manual{Category::sensor, "perspective", "A pinhole camera.", {}, R"(<sensor type="perspective">
+    add_type<PerspectiveSettings>(registry, Category::sensor, "perspective", "A pinhole camera.",
+                                  {within(&PerspectiveSettings::view, view_rows()), sensor_rows()},
+                                  R"(<sensor type="perspective">
     <float name="fov" value="45"/>
     <transform name="to_world"><lookat origin="0, 1, 4" target="0, 1, 0" up="0, 1, 0"/></transform>
     <film type="hdrfilm"><integer name="width" value="640"/><integer name="height" value="480"/></film>
-</sensor>)"};
-    add_view_parameters(manual.parameters);
-    add_common_parameters(manual.parameters);
-    registry.add(std::move(manual),
-                 [](const Properties& p) { return std::make_shared<PerspectiveCamera>(p); });
+</sensor>)",
+                                  [](const PerspectiveSettings& s, const Properties& p) {
+                                      return std::make_shared<PerspectiveCamera>(s, p);
+                                  });
 }
 
 }  // namespace mote::core

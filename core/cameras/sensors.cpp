@@ -1,15 +1,13 @@
 // Field of view and clipping planes after the conventions of Mitsuba 3.
 #include "core/cameras/sensors.h"
 
-#include "core/cameras/film_objects.h"
 #include "core/objects/number_text.h"
 
 namespace mote::core {
 namespace {
 
 /// "50mm" or "50": a focal length on 35 mm film.
-double parse_focal_length(const Properties& p) {
-    std::string text = p.get_string("focal_length", "50mm");
+double parse_focal_length(std::string text, const Properties& p) {
     if (text.size() > 2 && text.ends_with("mm")) text.resize(text.size() - 2);
     const double millimetres = parse_number(text, p.where_of("focal_length"));
     if (!(millimetres > 0.0)) throw InputError("'focal_length' must be positive", p.where_of("focal_length"));
@@ -22,52 +20,71 @@ double from_diagonal(double tan_half_diagonal, double aspect) {
 
 }  // namespace
 
-ClipPlanes clip_planes(const Properties& p) {
-    const double near = p.get_float("near_clip", 1e-2), far = p.get_float("far_clip", 1e4);
-    if (!(near > 0.0)) throw InputError("'near_clip' must be positive", p.where_of("near_clip"));
-    if (!(far > near)) throw InputError("'far_clip' must be larger than 'near_clip'", p.where_of("far_clip"));
-    return {float(near), float(far)};
+const ParameterList<SensorSettings>& sensor_rows() {
+    using S = SensorSettings;
+    static const ParameterList<S> list{
+        row("to_world", &S::to_world,
+            "Camera to world; looks along +Z, +Y is up, +X is to the left of the image."),
+        row("near_clip", &S::near_clip, above(0, "m"), "Nothing nearer along the view is seen."),
+        row("far_clip", &S::far_clip, above(0, "m"), "Nothing farther along the view is seen."),
+        nested("film", &S::film, Category::film, "hdrfilm", "The image."),
+        nested("sampler", &S::sampler, Category::sampler, "sobol", "Where samples fall."),
+        nested("medium", &S::medium, Category::medium, "automatic",
+               "The medium around the camera; when absent, that of the shapes around it, or the outermost "
+               "one.")};
+    return list;
 }
 
-void add_common_parameters(std::vector<Parameter>& parameters) {
-    parameters.push_back({"to_world", "transform", "identity",
-                          "camera to world; looks along +Z, +Y is up, +X is to the picture's left"});
-    parameters.push_back({"near_clip", "float", "0.01", "nothing nearer is seen, m along the view"});
-    parameters.push_back({"far_clip", "float", "10000", "nothing farther is seen, m along the view"});
-    parameters.push_back({"film", "film", "hdrfilm", "the picture"});
-    parameters.push_back({"sampler", "sampler", "sobol", "where samples fall"});
-    parameters.push_back(
-        {"medium", "medium", "",
-         "the medium around the camera; when absent, that of the shapes around it, or the outermost one"});
+const ParameterList<ViewSettings>& view_rows() {
+    using S = ViewSettings;
+    static const ParameterList<S> list{
+        row("fov", &S::fov, inside(0, 180, "degrees"), "Field of view along fov_axis.")
+            .when_absent("from focal_length"),
+        row("fov_axis", &S::axis,
+            {{"x", FovAxis::x},
+             {"y", FovAxis::y},
+             {"diagonal", FovAxis::diagonal},
+             {"smaller", FovAxis::smaller},
+             {"larger", FovAxis::larger}},
+            "Axis of the image that fov lies along."),
+        row("focal_length", &S::focal_length, "On 35 mm film, along the diagonal; instead of fov.")};
+    return list;
 }
 
-void add_view_parameters(std::vector<Parameter>& parameters) {
-    parameters.push_back({"fov", "float", "from focal_length", "field of view along fov_axis, degrees"});
-    parameters.push_back({"fov_axis", "string", "x", "x, y, diagonal, smaller or larger"});
-    parameters.push_back(
-        {"focal_length", "string", "50mm", "on 35 mm film, along the diagonal; instead of fov"});
+FilmSettings film_settings(const Properties& properties) {
+    const SensorSettings sensor = sensor_rows().read(properties);
+    const FilterSettings& filter = sensor.film.filter;
+    FilmSettings settings;
+    settings.width = sensor.film.width, settings.height = sensor.film.height;
+    settings.half = sensor.film.half;
+    settings.filter = filter.name;
+    settings.filter_radius = filter.radius, settings.filter_stddev = filter.stddev;
+    settings.sampler = sensor.sampler.kind, settings.sample_count = sensor.sampler.sample_count;
+    return settings;
 }
 
-double tan_half_fov_x(const Properties& p, double aspect) {
-    if (p.has("fov") && p.has("focal_length"))
+ClipPlanes clip_planes(const SensorSettings& s, const Properties& p) {
+    if (!(s.far_clip > s.near_clip))
+        throw InputError("'far_clip' must be larger than 'near_clip'", p.where_of("far_clip"));
+    return {float(s.near_clip), float(s.far_clip)};
+}
+
+double tan_half_fov_x(const ViewSettings& view, double aspect, const Properties& p) {
+    if (view.fov && p.has("focal_length"))
         throw InputError("give either 'fov' or 'focal_length'", p.where_of("focal_length"));
-    const std::string axis = p.get_choice("fov_axis", "x", {"x", "y", "diagonal", "smaller", "larger"});
     // The diagonal of a 36 mm x 24 mm frame.
-    if (!p.has("fov")) return from_diagonal(0.5 * std::hypot(36.0, 24.0) / parse_focal_length(p), aspect);
-    const double degrees = p.get_float("fov", 0.0);
-    if (!(degrees > 0.0 && degrees < 180.0))
-        throw InputError("'fov' must lie between 0 and 180 degrees", p.where_of("fov"));
-    const double t = std::tan(glm::radians(0.5 * degrees));
+    if (!view.fov)
+        return from_diagonal(0.5 * std::hypot(36.0, 24.0) / parse_focal_length(view.focal_length, p), aspect);
+    const double t = std::tan(glm::radians(0.5 * *view.fov));
     if (!std::isfinite(t) || !(t < 1e6))
-        throw InputError("'fov' must lie between 0 and 180 degrees", p.where_of("fov"));
-    if (axis == "diagonal") return from_diagonal(t, aspect);
-    const bool vertical =
-        axis == "y" || (axis == "smaller" && aspect > 1.0) || (axis == "larger" && aspect <= 1.0);
+        throw InputError("'fov' must lie between 0 and 180 degrees, both excluded", p.where_of("fov"));
+    if (view.axis == FovAxis::diagonal) return from_diagonal(t, aspect);
+    const bool vertical = view.axis == FovAxis::y || (view.axis == FovAxis::smaller && aspect > 1.0) ||
+                          (view.axis == FovAxis::larger && aspect <= 1.0);
     return vertical ? t * aspect : t;
 }
 
-Transform rigid_to_world(const Properties& p) {
-    const Transform t = p.get_transform();
+Transform rigid_to_world(const Transform& t, const Properties& p) {
     const glm::dmat3 m(t.matrix);
     const glm::dmat3 product = glm::transpose(m) * m;
     for (int c = 0; c < 3; ++c)
@@ -77,10 +94,9 @@ Transform rigid_to_world(const Properties& p) {
     return t;
 }
 
-PinholeView::PinholeView(const Properties& p) {
-    const FilmObject film = film_of_sensor(p);
-    width = float(film.width), height = float(film.height);
-    half_width = float(tan_half_fov_x(p, double(width) / double(height)));
+PinholeView::PinholeView(const FilmFormat& film, const ViewSettings& view, const Properties& p)
+    : width(float(film.width)), height(float(film.height)) {
+    half_width = float(tan_half_fov_x(view, double(width) / double(height), p));
     half_height = half_width * height / width;
 }
 

@@ -1,9 +1,9 @@
 // What the sensors share: the field of view, the frame of a camera, and one registration each.
 #pragma once
 
-#include "core/objects/properties.h"
-#include "core/objects/registry.h"
+#include "core/cameras/film_objects.h"
 #include "core/scene/camera.h"
+#include "core/scene/scene.h"
 
 namespace mote::core {
 
@@ -11,22 +11,41 @@ void register_perspective(Registry& registry);
 void register_thinlens(Registry& registry);
 void register_orthographic(Registry& registry);
 
+/// Parameters that all sensors share.
+struct SensorSettings {
+    Transform to_world;                       ///< camera to world
+    double near_clip = 1e-2, far_clip = 1e4;  ///< along the view [m]
+    FilmFormat film;
+    SamplerSettings sampler;
+    std::vector<Nested<Medium>> medium;  ///< attached by the scene loader
+};
+const ParameterList<SensorSettings>& sensor_rows();
+
+/// The film, filter and sampler of a sensor as settings of a scene.
+FilmSettings film_settings(const Properties& sensor);
+
 /// Near and far clipping plane, along the viewing direction [m].
 struct ClipPlanes {
     float near, far;
 };
-/// near_clip (1e-2) and far_clip (1e4). Throws InputError unless 0 < near < far.
-ClipPlanes clip_planes(const Properties& properties);
-/// The rows of a manual page for them.
-void add_common_parameters(std::vector<Parameter>& parameters);
-void add_view_parameters(std::vector<Parameter>& parameters);
+/// Throws InputError unless near < far.
+ClipPlanes clip_planes(const SensorSettings& settings, const Properties& properties);
 
-/// Width of the picture at distance 1 over two, tan(fov_x / 2), from fov and fov_axis, or focal_length;
-/// `aspect` is width over height. Throws InputError when both are given or the angle is not inside (0, 180)
-/// degrees.
-double tan_half_fov_x(const Properties& properties, double aspect);
-/// to_world. Throws InputError when it scales or shears; a mirror is allowed, as in Mitsuba 3.
-Transform rigid_to_world(const Properties& properties);
+enum class FovAxis : std::uint8_t { x, y, diagonal, smaller, larger };
+
+/// The field of view.
+struct ViewSettings {
+    std::optional<double> fov;  ///< along the axis [degrees]; else by the focal length
+    FovAxis axis = FovAxis::x;
+    std::string focal_length = "50mm";  ///< on 35 mm film
+};
+const ParameterList<ViewSettings>& view_rows();
+
+/// Width of the image at distance 1 over two, tan(fov_x / 2); `aspect` is width over height. Throws
+/// InputError when both fov and focal_length are given.
+double tan_half_fov_x(const ViewSettings& view, double aspect, const Properties& properties);
+/// The transform itself. Throws InputError when it scales or shears; a mirror is allowed, as in Mitsuba 3.
+Transform rigid_to_world(const Transform& to_world, const Properties& properties);
 
 /// Is a film position on the film of `size` pixels, or at most `margin` pixels off?
 inline bool on_film(const Vec2& film_position, const Vec2& size, float margin) {
@@ -39,7 +58,7 @@ struct PinholeView {
     float width, height;            ///< pixels
     float half_width, half_height;  ///< of the picture at distance 1
 
-    explicit PinholeView(const Properties& properties);
+    PinholeView(const FilmFormat& film, const ViewSettings& view, const Properties& properties);
     Vec3 direction(const Vec2& film_position) const {
         return {half_width * (1.0f - 2.0f * film_position.x / width),
                 half_height * (1.0f - 2.0f * film_position.y / height), 1.0f};

@@ -5,23 +5,22 @@
 namespace mote::core {
 namespace {
 
+struct ThinLensSettings : SensorSettings {
+    ViewSettings view;
+    float aperture_radius = 0.0f;
+    std::optional<float> focus_distance;
+};
+
 class ThinLensCamera final : public Camera {
   public:
-    explicit ThinLensCamera(const Properties& p)
-        : view_(p),
-          clip_(clip_planes(p)),
-          to_world_(rigid_to_world(p)),
+    ThinLensCamera(const ThinLensSettings& s, const Properties& p)
+        : view_(s.film, s.view, p),
+          clip_(clip_planes(s, p)),
+          to_world_(rigid_to_world(s.to_world, p)),
           to_camera_(to_world_.inverse()),
-          origin_(to_world_.point(Vec3d(0.0))) {
-        const double radius = p.require_float("aperture_radius");
-        if (!(radius > 0.0))
-            throw InputError("'aperture_radius' must be positive; 'perspective' is the camera without a lens",
-                             p.where_of("aperture_radius"));
-        const double focus = p.get_float("focus_distance", double(clip_.far));
-        if (!(focus > 0.0))
-            throw InputError("'focus_distance' must be positive", p.where_of("focus_distance"));
-        radius_ = float(radius), focus_ = float(focus);
-    }
+          origin_(to_world_.point(Vec3d(0.0))),
+          radius_(s.aperture_radius),
+          focus_(s.focus_distance.value_or(clip_.far)) {}
 
     Ray sample_ray(const Vec2& film_position, const Vec2& u_lens) const override {
         const Vec3 in_focus = focus_ * view_.direction(film_position);
@@ -80,24 +79,28 @@ class ThinLensCamera final : public Camera {
     ClipPlanes clip_;
     Transform to_world_, to_camera_;
     Vec3 origin_;
-    float radius_ = 0.0f, focus_ = 1.0f;
+    float radius_, focus_;
 };
 
 }  // namespace
 
 void register_thinlens(Registry& registry) {
-    Manual manual{
-        Category::sensor, "thinlens", "A camera with depth of field.", {}, R"(<sensor type="thinlens">
+    add_type<ThinLensSettings>(registry, Category::sensor, "thinlens", "A camera with depth of field.",
+                               {row("aperture_radius", &ThinLensSettings::aperture_radius, above(0, "m"),
+                                    "Radius of the lens; 'perspective' is the camera without one.")
+                                    .required(),
+                                row("focus_distance", &ThinLensSettings::focus_distance, above(0, "m"),
+                                    "From the lens to the plane of focus, along the view.")
+                                    .when_absent("far_clip"),
+                                within(&ThinLensSettings::view, view_rows()), sensor_rows()},
+                               R"(<sensor type="thinlens">
     <float name="fov" value="45"/>
     <float name="aperture_radius" value="0.05"/>
     <float name="focus_distance" value="3"/>
-</sensor>)"};
-    manual.parameters.push_back({"aperture_radius", "float", "required", "of the lens, m"});
-    manual.parameters.push_back(
-        {"focus_distance", "float", "far_clip", "from the lens to the plane of focus, m along the view"});
-    add_view_parameters(manual.parameters);
-    add_common_parameters(manual.parameters);
-    registry.add(std::move(manual), [](const Properties& p) { return std::make_shared<ThinLensCamera>(p); });
+</sensor>)",
+                               [](const ThinLensSettings& s, const Properties& p) {
+                                   return std::make_shared<ThinLensCamera>(s, p);
+                               });
 }
 
 }  // namespace mote::core

@@ -5,9 +5,13 @@
 namespace mote::core {
 namespace {
 
-std::shared_ptr<Object> shape_group(const Properties& p) {
+struct GroupSettings {
+    std::vector<Nested<Object>> shapes;
+};
+
+std::shared_ptr<Object> shape_group(const GroupSettings& settings, const Properties& p) {
     auto group = std::make_shared<ShapeGroup>();
-    for (const Properties::Child& child : p.children) {
+    for (const auto& child : settings.shapes) {
         if (std::dynamic_pointer_cast<ShapeGroup>(child.object))
             throw InputError("a shapegroup cannot hold another one", child.where);
         if (std::dynamic_pointer_cast<Instance>(child.object))
@@ -23,17 +27,23 @@ std::shared_ptr<Object> shape_group(const Properties& p) {
     return group;
 }
 
-std::shared_ptr<Object> instance(const Properties& p) {
-    if (p.children.size() != 1)
+struct InstanceSettings {
+    std::vector<Nested<Object>> groups;
+    Transform to_world;
+};
+
+std::shared_ptr<Object> instance(const InstanceSettings& settings, const Properties& p) {
+    if (settings.groups.size() != 1)
         throw InputError("an instance places one shapegroup: name it with <ref>", p.where);
-    const Properties::Child& child = p.children.front();
-    auto group = std::dynamic_pointer_cast<ShapeGroup>(child.object);
-    if (!group) throw InputError("only a shapegroup can be instanced: put the shape into one", child.where);
+    auto group = std::dynamic_pointer_cast<ShapeGroup>(settings.groups[0].object);
+    if (!group)
+        throw InputError("only a shapegroup can be instanced: put the shape into one",
+                         settings.groups[0].where);
     auto result = std::make_shared<Instance>();
     try {
-        result->shapes = place_group(std::move(group), p.get_transform());
+        result->shapes = place_group(std::move(group), settings.to_world);
     } catch (const InputError& error) {
-        throw InputError(error.what(), p.has("to_world") ? p.where_of("to_world") : p.where);
+        throw InputError(error.what(), p.where_of("to_world"));
     }
     return result;
 }
@@ -41,34 +51,35 @@ std::shared_ptr<Object> instance(const Properties& p) {
 }  // namespace
 
 void register_instances(Registry& registry) {
-    registry.add({Category::shape,
-                  "shapegroup",
-                  "Shapes that instances place, all together; they are not in the scene themselves. A group "
-                  "holds no lights, no groups and no instances. Materials and media are those of its shapes.",
-                  {{"shape", "shape", "", "any number of nested shapes"}},
-                  R"(<shape type="shapegroup" id="lantern">
+    add_type<GroupSettings>(
+        registry, Category::shape, "shapegroup",
+        "Shapes that instances place, all together; they are not in the scene themselves. A group holds no "
+        "lights, no groups and no instances. Materials and media are those of its shapes.",
+        {nested("shape", &GroupSettings::shapes, Category::shape, "none", "Any number of nested shapes.")},
+        R"(<shape type="shapegroup" id="lantern">
     <shape type="cylinder">
         <float name="radius" value="0.4"/>
     </shape>
     <shape type="disk"/>
-</shape>)"},
-                 shape_group);
-    registry.add(
-        {Category::shape,
-         "instance",
-         "A shapegroup placed in the scene. Its meshes are in memory once, however many instances "
-         "there are. It takes no BSDF, light or medium of its own.",
-         {{"shapegroup", "shape", "", "the group, mostly a <ref>"},
-          to_world_parameter("any affine transform that can be inverted; the outside stays outside")},
-         R"(<shape type="instance">
+</shape>)",
+        shape_group);
+    add_type<InstanceSettings>(registry, Category::shape, "instance",
+                               "A shapegroup placed in the scene. Its meshes are in memory once, however "
+                               "many instances there are. It "
+                               "takes no BSDF, light or medium of its own.",
+                               {nested("shapegroup", &InstanceSettings::groups, Category::shape, "required",
+                                       "The group, mostly a <ref>."),
+                                row("to_world", &InstanceSettings::to_world,
+                                    "Any affine transform that can be inverted; the outside stays outside.")},
+                               R"(<shape type="instance">
     <shape type="shapegroup">
         <shape type="cube"/>
     </shape>
     <transform name="to_world">
         <scale x="-1" y="2" z="0.5"/>
     </transform>
-</shape>)"},
-        instance);
+</shape>)",
+                               instance);
 }
 
 }  // namespace mote::core

@@ -5,13 +5,12 @@
 namespace mote::core {
 namespace {
 
-std::shared_ptr<Object> make_primitive(const Properties& p, MeshData data) {
-    const Transform to_world = p.get_transform();
-    if (!to_world.valid())
-        throw InputError("the transform is singular or not finite", p.where_of("to_world"));
+template <MeshData (*Make)()>
+std::shared_ptr<Object> make_primitive(const ShapePlacement& place, const Properties& p) {
     return at_element(p, [&] {
-        transform_mesh(data, to_world);
-        if (p.get_bool("flip_normals", false)) flip_orientation(data);
+        MeshData data = Make();
+        transform_mesh(data, place.to_world);
+        if (place.flip_normals) flip_orientation(data);
         return std::make_shared<TriangleMesh>(std::move(data));
     });
 }
@@ -19,26 +18,22 @@ std::shared_ptr<Object> make_primitive(const Properties& p, MeshData data) {
 }  // namespace
 
 void register_primitives(Registry& registry) {
-    registry.add({Category::shape,
-                  "rectangle",
-                  "The square [-1, 1] x [-1, 1] in the xy plane, facing +z.",
-                  {flip_normals_parameter(), to_world_parameter("any affine transform")},
-                  R"(<shape type="rectangle">
+    add_type(registry, Category::shape, "rectangle",
+             "The square [-1, 1] x [-1, 1] in the xy plane, facing +z.", placement_rows(),
+             R"(<shape type="rectangle">
     <transform name="to_world">
         <scale value="2"/>
     </transform>
-</shape>)"},
-                 [](const Properties& p) { return make_primitive(p, make_rectangle()); });
-    registry.add({Category::shape,
-                  "cube",
-                  "The cube [-1, 1]^3, facing outwards. Each face has texture coordinates of its own.",
-                  {flip_normals_parameter(), to_world_parameter("any affine transform")},
-                  R"(<shape type="cube">
+</shape>)",
+             make_primitive<make_rectangle>);
+    add_type(registry, Category::shape, "cube",
+             "The cube [-1, 1]^3, facing outwards. Each face has texture coordinates of its own.",
+             placement_rows(), R"(<shape type="cube">
     <transform name="to_world">
         <translate y="1"/>
     </transform>
-</shape>)"},
-                 [](const Properties& p) { return make_primitive(p, make_cube()); });
+</shape>)",
+             make_primitive<make_cube>);
 }
 
 }  // namespace mote::core

@@ -4,11 +4,10 @@
 
 namespace mote::core {
 
-Parameter to_world_parameter(const std::string& description) {
-    return {"to_world", "transform", "identity", description};
+ParameterList<ShapePlacement> placement_rows(std::string transforms) {
+    return {row("flip_normals", &ShapePlacement::flip_normals, "Turn the outside in."),
+            row("to_world", &ShapePlacement::to_world, std::move(transforms))};
 }
-
-Parameter flip_normals_parameter() { return {"flip_normals", "boolean", "false", "turn the outside in"}; }
 
 void register_geometry(Registry& registry) {
     register_primitives(registry);

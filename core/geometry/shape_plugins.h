@@ -1,8 +1,7 @@
 // The shapes of the scene language: each function hands one or more types to the registry.
 #pragma once
 
-#include "core/objects/properties.h"
-#include "core/objects/registry.h"
+#include "core/parameters/add_type.h"
 
 namespace mote::core {
 
@@ -10,9 +9,13 @@ void register_primitives(Registry& registry);  // rectangle, cube
 void register_quadrics(Registry& registry);    // sphere, disk, cylinder
 void register_instances(Registry& registry);   // shapegroup, instance
 
-/// The rows of the manual pages that many shapes share.
-Parameter to_world_parameter(const std::string& description);
-Parameter flip_normals_parameter();
+/// Where a shape stands, and which side is its outside.
+struct ShapePlacement {
+    Transform to_world;
+    bool flip_normals = false;
+};
+/// flip_normals and to_world, of which `transforms` says what is allowed.
+ParameterList<ShapePlacement> placement_rows(std::string transforms = "Any affine transform.");
 
 /// Runs `make` and gives errors that name no place the place of the element.
 template <typename Make>

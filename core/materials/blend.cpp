@@ -6,8 +6,6 @@
 #include "core/materials/nested_bsdf.h"
 #include "core/materials/register_materials.h"
 #include "core/materials/texture_slot.h"
-#include "core/materials/textures.h"
-#include "core/objects/properties.h"
 
 namespace mote::core {
 namespace {
@@ -15,7 +13,7 @@ namespace {
 class Blend final : public Bsdf {
   public:
     Blend(BsdfPtr first, BsdfPtr second, TexturePtr weight)
-        : nested_{std::move(first), std::move(second)}, weight_(std::move(weight), 0.5f) {
+        : nested_{std::move(first), std::move(second)}, weight_(std::move(weight)) {
         const BsdfTraits a = nested_[0]->traits(), b = nested_[1]->traits();
         traits_ = {.smooth = a.smooth || b.smooth,
                    .delta = a.delta || b.delta,
@@ -118,37 +116,41 @@ std::shared_ptr<Bsdf> make_mask(BsdfPtr nested, TexturePtr opacity) {
 }
 
 void register_blend(Registry& registry) {
-    Manual manual{Category::bsdf,
-                  "blendbsdf",
-                  "Two BSDFs at once: (1 - weight) of the first and weight of the second.",
-                  {{"weight", "texture", "0.5",
-                    "share of the second BSDF, cut to 0 to 1; of a picture its "
-                    "luminance"},
-                   {"bsdf", "bsdf", "", "two, in this order (any names)"}},
-                  R"(<bsdf type="blendbsdf">
+    struct Settings : NestedBsdfs {
+        TexturePtr weight = grey_texture(0.5f);
+    };
+    add_type<Settings>(
+        registry, Category::bsdf, "blendbsdf",
+        "Two BSDFs at once: (1 - weight) of the first and weight of the second.",
+        {row("weight", &Settings::weight,
+             "Share of the second BSDF, clamped to 0 to 1; of a picture its luminance."),
+         nested("bsdf", &Settings::nested, Category::bsdf, "required", "Two, in this order (any names).")},
+        R"(<bsdf type="blendbsdf">
     <float name="weight" value="0.25"/>
     <bsdf type="diffuse"/>
     <bsdf type="roughconductor"/>
-</bsdf>)"};
-    registry.add(std::move(manual), [](const Properties& p) -> std::shared_ptr<Object> {
-        const auto nested = nested_bsdfs(p, 2);
-        return make_blend(nested[0], nested[1], texture_or_constant(p, "weight", Rgb(0.5f)));
-    });
+</bsdf>)",
+        [](const Settings& s, const Properties& p) {
+            const auto nested = s.exactly(2, p);
+            return make_blend(nested[0], nested[1], s.weight);
+        });
 }
 
 void register_mask(Registry& registry) {
-    Manual manual{
-        Category::bsdf,
-        "mask",
+    struct Settings : NestedBsdfs {
+        TexturePtr opacity = grey_texture(0.5f);
+    };
+    add_type<Settings>(
+        registry, Category::bsdf, "mask",
         "Holes in a surface: a share of the light passes straight on as if nothing were there, the rest "
         "meets "
         "the nested BSDF. What passes is no scattering and counts no depth, in all integrators, as through "
         "'thindielectric' (Mitsuba's volpath does the same; its path counts it). Such a surface is no area "
         "light.",
-        {{"opacity", "texture", "0.5",
-          "share that the nested BSDF gets, cut to 0 to 1; of a picture its "
-          "luminance"},
-         {"bsdf", "bsdf", "", "what the rest meets (any name)"}},
+        {row("opacity", &Settings::opacity,
+             "Share that the nested BSDF gets, clamped to 0 to 1; of a picture its luminance."),
+         nested("bsdf", &Settings::nested, Category::bsdf, "required",
+                "The BSDF that the rest meets (any name).")},
         R"(<bsdf type="mask">
     <texture type="bitmap" name="opacity">
         <string name="filename" value="leaf.png"/>
@@ -156,10 +158,8 @@ void register_mask(Registry& registry) {
     <bsdf type="twosided">
         <bsdf type="diffuse"/>
     </bsdf>
-</bsdf>)"};
-    registry.add(std::move(manual), [](const Properties& p) -> std::shared_ptr<Object> {
-        return make_mask(nested_bsdfs(p, 1)[0], texture_or_constant(p, "opacity", Rgb(0.5f)));
-    });
+</bsdf>)",
+        [](const Settings& s, const Properties& p) { return make_mask(s.exactly(1, p)[0], s.opacity); });
 }
 
 }  // namespace mote::core

@@ -1,5 +1,5 @@
 // Factories of the BSDFs, for code that builds scenes itself and for tests. The scene loader reaches the same
-// classes through the registry. A null texture stands for 1 (for diffuse_reflectance: 0.5).
+// classes through the registry.
 #pragma once
 
 #include <memory>
@@ -7,56 +7,63 @@
 #include "core/materials/bsdf.h"
 #include "core/materials/index_of_refraction.h"
 #include "core/materials/roughness.h"
-#include "core/materials/texture.h"
+#include "core/materials/texture_rows.h"
 
 namespace mote::core {
 
-/// A texture that BSDFs share.
-using TexturePtr = std::shared_ptr<const Texture>;
 /// A BSDF that others nest.
 using BsdfPtr = std::shared_ptr<const Bsdf>;
 
+/// A texture of one grey value.
+inline TexturePtr grey_texture(float value) { return make_constant_texture(Rgb(value)); }
+
 struct ConductorParameters {
-    ComplexIndex index;               ///< of refraction, per channel
-    TexturePtr specular_reflectance;  ///< multiplies what is reflected
+    ComplexIndex index;                                    ///< of refraction, per channel
+    TexturePtr specular_reflectance = grey_texture(1.0f);  ///< multiplies what is reflected
 };
-/// Of glass.
+/// Glass and the like.
 struct DielectricParameters {
-    float int_ior = 1.5046f, ext_ior = 1.000277f;             ///< below and above the surface (bk7 in air)
-    TexturePtr specular_reflectance, specular_transmittance;  ///< multiply what is reflected and let through
+    IndexOfRefraction int_ior = "bk7", ext_ior = "air";      ///< below and above the surface
+    TexturePtr specular_reflectance = grey_texture(1.0f);    ///< multiplies what is reflected
+    TexturePtr specular_transmittance = grey_texture(1.0f);  ///< multiplies what is let through
 };
-/// Of a diffuse base under a coat.
+/// A diffuse base under a coat.
 struct PlasticParameters {
-    float int_ior = 1.49f, ext_ior = 1.000277f;            ///< polypropylene in air
-    TexturePtr diffuse_reflectance, specular_reflectance;  ///< of the base, and a factor on the coat
-    bool nonlinear = false;                                ///< colour shifts by multiple scattering inside
+    IndexOfRefraction int_ior = "polypropylene", ext_ior = "air";  ///< of the coat and above it
+    TexturePtr diffuse_reflectance = grey_texture(0.5f);           ///< of the base
+    TexturePtr specular_reflectance = grey_texture(1.0f);          ///< factor on the coat's reflection
+    bool nonlinear = false;        ///< colour shifts by multiple scattering inside
     bool conserve_energy = false;  ///< rough only: what facets send to each other is not lost
 };
-/// Of the modified Phong model.
+/// The modified Phong model.
 struct PhongParameters {
     float exponent = 30.0f;                                ///< of the cosine around the mirrored direction
-    TexturePtr diffuse_reflectance, specular_reflectance;  ///< null: 0.5 and 0.2
+    TexturePtr diffuse_reflectance = grey_texture(0.5f);   ///< of the diffuse part
+    TexturePtr specular_reflectance = grey_texture(0.2f);  ///< of the lobe
 };
 
-/// Weights lie in [0, 1]; null textures stand for 0, those of base_color and roughness for 0.5.
-struct PrincipledParameters {
-    /// As Burley (2012, 2015) calls them.
-    TexturePtr base_color, roughness, anisotropic, metallic, spec_trans, spec_tint;
-    /// The same.
-    TexturePtr sheen, sheen_tint, flatness, clearcoat, clearcoat_gloss;
-    float eta = 1.5f;  ///< below the surface over above
-    /// How often lobes are drawn, relatively.
+/// Weights that both principled models share, as Burley (2012, 2015) calls them; they lie in [0, 1].
+struct PrincipledWeights {
+    TexturePtr base_color = grey_texture(0.5f), roughness = grey_texture(0.5f);    ///< of all lobes
+    TexturePtr anisotropic = grey_texture(0.0f), spec_trans = grey_texture(0.0f);  ///< of glossy lobes
+    TexturePtr spec_tint = grey_texture(0.0f), sheen = grey_texture(0.0f);         ///< tint; cloth
+    TexturePtr sheen_tint = grey_texture(0.0f), flatness = grey_texture(0.0f);     ///< of diffuse lobes
+};
+struct PrincipledParameters : PrincipledWeights {
+    TexturePtr metallic = grey_texture(0.0f);         ///< weight of the metal
+    TexturePtr clearcoat = grey_texture(0.0f);        ///< weight of a second coating
+    TexturePtr clearcoat_gloss = grey_texture(0.0f);  ///< its smoothness
+    float eta = 1.5f;                                 ///< below the surface over above
+    /// How often lobes are sampled, relative to each other.
     struct Rates {
         float diffuse = 1.0f, specular = 1.0f, clearcoat = 1.0f;  ///< one a lobe
-    } rates{};                                                    ///< how often lobes are drawn, relatively
+    } rates{};                                                    ///< see Rates
 };
-/// The same for sheets without an inside.
-struct PrincipledThinParameters {
-    /// As above.
-    TexturePtr base_color, roughness, anisotropic, spec_trans, spec_tint, sheen, sheen_tint, flatness;
-    TexturePtr eta;         ///< null: 1.5
-    TexturePtr diff_trans;  ///< 0 to 2
-    /// How often lobes are drawn, relatively.
+/// The principled model for sheets without an inside.
+struct PrincipledThinParameters : PrincipledWeights {
+    TexturePtr eta = grey_texture(1.5f);         ///< index of refraction
+    TexturePtr diff_trans = grey_texture(0.0f);  ///< 0 to 2
+    /// How often lobes are sampled, relative to each other.
     struct Rates {
         /// One a lobe, reflected and let through.
         float diffuse = 1.0f, diffuse_through = 1.0f, specular = 1.0f, specular_through = 1.0f;
@@ -64,7 +71,7 @@ struct PrincipledThinParameters {
 };
 
 /// Lambertian reflection, on the side of the normal.
-std::shared_ptr<Bsdf> make_diffuse(TexturePtr reflectance);
+std::shared_ptr<Bsdf> make_diffuse(TexturePtr reflectance = grey_texture(0.5f));
 std::shared_ptr<Bsdf> make_conductor(const ConductorParameters& parameters);
 /// Rough metal.
 std::shared_ptr<Bsdf> make_rough_conductor(const ConductorParameters& parameters, const Roughness& roughness);
@@ -85,9 +92,9 @@ std::shared_ptr<Bsdf> make_principled(const PrincipledParameters& parameters);
 /// The same for sheets without an inside.
 std::shared_ptr<Bsdf> make_principled_thin(const PrincipledThinParameters& parameters);
 std::shared_ptr<Bsdf> make_null();
-/// (1 - weight) of the first and weight of the second. A null texture stands for 0.5.
+/// (1 - weight) of the first and weight of the second.
 std::shared_ptr<Bsdf> make_blend(BsdfPtr first, BsdfPtr second, TexturePtr weight);
-/// 1 - opacity of the light passes straight on, the rest meets `nested`. A null texture stands for 0.5.
+/// 1 - opacity of the light passes straight on, the rest meets `nested`.
 std::shared_ptr<Bsdf> make_mask(BsdfPtr nested, TexturePtr opacity);
 
 /// Of normal and bump maps.
@@ -105,10 +112,11 @@ std::shared_ptr<Bsdf> make_bump_map(BsdfPtr nested, TexturePtr heights, float sc
 /// Throws InputError when one of them transmits light.
 std::shared_ptr<Bsdf> make_twosided(BsdfPtr front, BsdfPtr back = nullptr);
 
-class Properties;
+/// specular_reflectance.
+const ParameterList<ConductorParameters>& conductor_rows();
 /// int_ior, ext_ior, specular_reflectance, specular_transmittance.
-DielectricParameters dielectric_parameters(const Properties& properties);
+const ParameterList<DielectricParameters>& dielectric_rows();
 /// int_ior, ext_ior, diffuse_reflectance, specular_reflectance, nonlinear.
-PlasticParameters plastic_parameters(const Properties& properties);
+const ParameterList<PlasticParameters>& plastic_rows();
 
 }  // namespace mote::core

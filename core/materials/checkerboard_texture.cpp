@@ -2,17 +2,16 @@
 #include <algorithm>
 
 #include "core/materials/register_materials.h"
+#include "core/materials/texture_rows.h"
 #include "core/materials/textures.h"
 #include "core/materials/uv_transform.h"
-#include "core/objects/properties.h"
 
 namespace mote::core {
 namespace {
 
 class CheckerboardTexture final : public Texture {
   public:
-    CheckerboardTexture(std::shared_ptr<Texture> color0, std::shared_ptr<Texture> color1,
-                        const Transform& to_uv)
+    CheckerboardTexture(TexturePtr color0, TexturePtr color1, const Transform& to_uv)
         : color0_(std::move(color0)), color1_(std::move(color1)), to_uv_(to_uv) {}
 
     Rgb eval(const TextureCoordinates& uv) const override { return (even(uv) ? color0_ : color1_)->eval(uv); }
@@ -43,34 +42,34 @@ class CheckerboardTexture final : public Texture {
         return u == v;
     }
 
-    std::shared_ptr<Texture> color0_, color1_;
+    TexturePtr color0_, color1_;
     UvTransform to_uv_;
 };
 
 }  // namespace
 
-std::shared_ptr<Texture> make_checkerboard_texture(std::shared_ptr<Texture> color0,
-                                                   std::shared_ptr<Texture> color1, const Transform& to_uv) {
+std::shared_ptr<Texture> make_checkerboard_texture(TexturePtr color0, TexturePtr color1,
+                                                   const Transform& to_uv) {
     return std::make_shared<CheckerboardTexture>(std::move(color0), std::move(color1), to_uv);
 }
 
 void register_checkerboard_texture(Registry& registry) {
-    Manual manual{Category::texture,
-                  "checkerboard",
-                  "Squares of two alternating colours, two by two in every unit of uv.",
-                  {{"color0", "texture", "0.4", "colour of the square at the origin"},
-                   {"color1", "texture", "0.2", "colour of its neighbours"},
-                   {"to_uv", "transform", "identity", "applied to the uv coordinates first"}},
-                  R"(<texture type="checkerboard" name="reflectance">
+    struct Settings {
+        TexturePtr color0 = make_constant_texture(Rgb(0.4f)), color1 = make_constant_texture(Rgb(0.2f));
+        Transform to_uv;
+    };
+    add_type<Settings>(
+        registry, Category::texture, "checkerboard",
+        "Squares of two alternating colours, two by two in every unit of uv.",
+        {row("color0", &Settings::color0, "Colour of the square at the origin."),
+         row("color1", &Settings::color1, "Colour of its neighbours."),
+         row("to_uv", &Settings::to_uv, "Applied to the uv coordinates first.")},
+        R"(<texture type="checkerboard" name="reflectance">
     <rgb name="color0" value="0.7, 0.7, 0.7"/>
     <rgb name="color1" value="0.1, 0.1, 0.2"/>
     <transform name="to_uv"><scale x="10" y="10"/></transform>
-</texture>)"};
-    registry.add(std::move(manual), [](const Properties& p) -> std::shared_ptr<Object> {
-        return make_checkerboard_texture(texture_or_constant(p, "color0", Rgb(0.4f)),
-                                         texture_or_constant(p, "color1", Rgb(0.2f)),
-                                         p.get_transform("to_uv"));
-    });
+</texture>)",
+        [](const Settings& s) { return make_checkerboard_texture(s.color0, s.color1, s.to_uv); });
 }
 
 }  // namespace mote::core

@@ -3,8 +3,6 @@
 #include "core/materials/fresnel.h"
 #include "core/materials/register_materials.h"
 #include "core/materials/texture_slot.h"
-#include "core/materials/textures.h"
-#include "core/objects/properties.h"
 
 namespace mote::core {
 namespace {
@@ -40,22 +38,29 @@ std::shared_ptr<Bsdf> make_conductor(const ConductorParameters& parameters) {
     return std::make_shared<Conductor>(parameters);
 }
 
+const ParameterList<ConductorParameters>& conductor_rows() {
+    using S = ConductorParameters;
+    static const ParameterList<S> list{
+        row("specular_reflectance", &S::specular_reflectance, between(0, 1), "Factor on the reflection.")};
+    return list;
+}
+
 void register_conductor(Registry& registry) {
-    Manual manual{Category::bsdf,
-                  "conductor",
-                  "A smooth metal. Reflects in the mirror direction, on the side of the normal.",
-                  {{"material", "string", "none",
-                    "name of a conductor (Cu, Au, a-C, ...: all of Mitsuba's); none: a mirror"},
-                   {"eta", "rgb", "0", "real part of the index of refraction, instead of material"},
-                   {"k", "rgb", "1", "imaginary part (absorption)"},
-                   {"specular_reflectance", "texture", "1", "factor on the reflection, 0 to 1"}},
-                  R"(<bsdf type="conductor">
+    struct Settings {
+        ConductorIndexSettings index;
+        ConductorParameters parameters;
+    };
+    add_type<Settings>(
+        registry, Category::bsdf, "conductor",
+        "A smooth metal. Reflects in the mirror direction, on the side of the normal.",
+        {within(&Settings::index, conductor_index_rows()), within(&Settings::parameters, conductor_rows())},
+        R"(<bsdf type="conductor">
     <string name="material" value="Au"/>
-</bsdf>)"};
-    registry.add(std::move(manual), [](const Properties& p) -> std::shared_ptr<Object> {
-        return make_conductor(
-            {conductor_parameters(p), reflectance_texture(p, "specular_reflectance", Rgb(1.0f))});
-    });
+</bsdf>)",
+        [](Settings s, const Properties& p) {
+            s.parameters.index = conductor_index_of(s.index, p);
+            return make_conductor(s.parameters);
+        });
 }
 
 }  // namespace mote::core

@@ -3,8 +3,6 @@
 #include "core/materials/fresnel.h"
 #include "core/materials/register_materials.h"
 #include "core/materials/texture_slot.h"
-#include "core/materials/textures.h"
-#include "core/objects/properties.h"
 
 namespace mote::core {
 namespace {
@@ -63,28 +61,26 @@ std::shared_ptr<Bsdf> make_dielectric(const DielectricParameters& parameters) {
     return std::make_shared<Dielectric>(parameters);
 }
 
-DielectricParameters dielectric_parameters(const Properties& p) {
-    return {dielectric_index_parameter(p, "int_ior", "bk7"), dielectric_index_parameter(p, "ext_ior", "air"),
-            reflectance_texture(p, "specular_reflectance", Rgb(1.0f)),
-            reflectance_texture(p, "specular_transmittance", Rgb(1.0f))};
+const ParameterList<DielectricParameters>& dielectric_rows() {
+    using S = DielectricParameters;
+    static const ParameterList<S> list{
+        row("int_ior", &S::int_ior, between(0.01, 100),
+            "Index of refraction inside (against the normal; of a pane): a number or a name."),
+        row("ext_ior", &S::ext_ior, between(0.01, 100), "Index of refraction outside: a number or a name."),
+        row("specular_reflectance", &S::specular_reflectance, between(0, 1), "Factor on reflected light."),
+        row("specular_transmittance", &S::specular_transmittance, between(0, 1),
+            "Factor on transmitted light.")};
+    return list;
 }
 
 void register_dielectric(Registry& registry) {
-    Manual manual{
-        Category::bsdf,
-        "dielectric",
-        "A smooth boundary between transparent materials such as glass and air.",
-        {{"int_ior", "float", "bk7", "index of refraction inside (against the normal): number or name"},
-         {"ext_ior", "float", "air", "index of refraction outside: number or name"},
-         {"specular_reflectance", "texture", "1", "factor on reflected light, 0 to 1"},
-         {"specular_transmittance", "texture", "1", "factor on transmitted light, 0 to 1"}},
-        R"(<bsdf type="dielectric">
+    add_type(registry, Category::bsdf, "dielectric",
+             "A smooth boundary between transparent materials such as glass and air.", dielectric_rows(),
+             R"(<bsdf type="dielectric">
     <string name="int_ior" value="water"/>
     <float name="ext_ior" value="1.0"/>
-</bsdf>)"};
-    registry.add(std::move(manual), [](const Properties& p) -> std::shared_ptr<Object> {
-        return make_dielectric(dielectric_parameters(p));
-    });
+</bsdf>)",
+             make_dielectric);
 }
 
 }  // namespace mote::core

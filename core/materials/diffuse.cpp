@@ -3,16 +3,14 @@
 #include "core/materials/lobe_bounds.h"
 #include "core/materials/register_materials.h"
 #include "core/materials/texture_slot.h"
-#include "core/materials/textures.h"
 #include "core/math/warp.h"
-#include "core/objects/properties.h"
 
 namespace mote::core {
 namespace {
 
 class Diffuse final : public Bsdf {
   public:
-    explicit Diffuse(TexturePtr reflectance) : reflectance_(std::move(reflectance), Rgb(0.5f)) {}
+    explicit Diffuse(TexturePtr reflectance) : reflectance_(std::move(reflectance)) {}
 
     BsdfTraits traits() const override {
         return {.smooth = true, .diffuse = true, .textured = reflectance_.textured()};
@@ -51,16 +49,17 @@ std::shared_ptr<Bsdf> make_diffuse(TexturePtr reflectance) {
 }
 
 void register_diffuse(Registry& registry) {
-    Manual manual{Category::bsdf,
-                  "diffuse",
-                  "Lambertian reflection: the same brightness from everywhere, black from behind.",
-                  {{"reflectance", "texture", "0.5", "share of the light that is reflected, 0 to 1"}},
-                  R"(<bsdf type="diffuse">
+    struct Settings {
+        TexturePtr reflectance = grey_texture(0.5f);
+    };
+    add_type<Settings>(registry, Category::bsdf, "diffuse",
+                       "Lambertian reflection: the same brightness from everywhere, black from behind.",
+                       {row("reflectance", &Settings::reflectance, between(0, 1),
+                            "Fraction of the light that is reflected.")},
+                       R"(<bsdf type="diffuse">
     <rgb name="reflectance" value="0.6, 0.4, 0.3"/>
-</bsdf>)"};
-    registry.add(std::move(manual), [](const Properties& p) -> std::shared_ptr<Object> {
-        return make_diffuse(reflectance_texture(p, "reflectance", Rgb(0.5f)));
-    });
+</bsdf>)",
+                       [](const Settings& s) { return make_diffuse(s.reflectance); });
 }
 
 }  // namespace mote::core

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "core/materials/conductor_table.h"
-#include "core/objects/properties.h"
 
 namespace mote::core {
 namespace {
@@ -41,6 +40,26 @@ std::vector<std::string> names_of(const Table& table) {
         p.where_of(parameter));
 }
 
+class IndexKind final : public ValueKind {
+    std::string type(const Row&) const override { return "float"; }
+    void read(const Properties& p, const Row& row, void* member) const override {
+        auto& index = *static_cast<IndexOfRefraction*>(member);
+        const std::string& name = row.parameter.name;
+        const auto it = p.values.find(name);
+        const auto* word = it == p.values.end() ? nullptr : std::get_if<std::string>(&it->second.value);
+        if (!word)
+            index = float(read_number(p, row));
+        else if (dielectric_index(*word))
+            index = word->c_str();
+        else
+            unknown(p, name, *word, names_of(dielectrics));
+    }
+    std::string text(const Row&, const void* member) const override {
+        const auto& index = *static_cast<const IndexOfRefraction*>(member);
+        return index.name().empty() ? short_number(double(float(index))) : index.name();
+    }
+};
+
 }  // namespace
 
 std::optional<float> dielectric_index(std::string_view name) {
@@ -65,25 +84,28 @@ std::optional<ComplexIndex> conductor_index(std::string_view name) {
     return ComplexIndex{rgb(found->eta), rgb(found->k)};
 }
 
-float dielectric_index_parameter(const Properties& p, const std::string& name,
-                                 const std::string& default_name) {
-    const auto it = p.values.find(name);
-    if (it != p.values.end() && !std::holds_alternative<std::string>(it->second.value))
-        return float(p.get_float_in(name, 1.0, 0.01, 100.0));
-    const std::string word = p.get_string(name, default_name);
-    const auto index = dielectric_index(word);
-    if (!index) unknown(p, name, word, names_of(dielectrics));
-    return *index;
+const ValueKind& KindOf<IndexOfRefraction>::kind() {
+    static const IndexKind kind;
+    return kind;
 }
 
-ComplexIndex conductor_parameters(const Properties& p) {
-    const std::string material = p.get_string("material", "none");
-    const auto named = conductor_index(material);
-    if (!named) unknown(p, "material", material, names_of(conductor_table()));
-    const bool explicit_index = p.has("eta") || p.has("k");
-    if (explicit_index && material != "none")
+const ParameterList<ConductorIndexSettings>& conductor_index_rows() {
+    using S = ConductorIndexSettings;
+    static const ParameterList<S> list{
+        row("material", &S::material,
+            "Name of a conductor (Cu, Au, a-C, ...: all of Mitsuba's); none is a mirror."),
+        row("eta", &S::eta, between(0, 1e4), "Real part of the index of refraction, instead of material.")
+            .when_absent("0"),
+        row("k", &S::k, between(0, 1e4), "Imaginary part of the index (absorption).").when_absent("1")};
+    return list;
+}
+
+ComplexIndex conductor_index_of(const ConductorIndexSettings& settings, const Properties& p) {
+    const auto named = conductor_index(settings.material);
+    if (!named) unknown(p, "material", settings.material, names_of(conductor_table()));
+    if ((settings.eta || settings.k) && settings.material != "none")
         throw InputError("give either 'material' or 'eta' and 'k', not both", p.where_of("material"));
-    return {p.get_rgb_in("eta", named->eta, 0.0f, 1e4f), p.get_rgb_in("k", named->k, 0.0f, 1e4f)};
+    return {settings.eta.value_or(named->eta), settings.k.value_or(named->k)};
 }
 
 }  // namespace mote::core

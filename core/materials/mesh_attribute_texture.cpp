@@ -1,8 +1,6 @@
 // Texture "mesh_attribute": values that a mesh carries for its vertices or faces.
 #include "core/materials/register_materials.h"
-#include "core/materials/texture.h"
-#include "core/objects/error.h"
-#include "core/objects/properties.h"
+#include "core/materials/texture_rows.h"
 
 namespace mote::core {
 namespace {
@@ -28,32 +26,35 @@ class MeshAttributeTexture final : public Texture {
     float scale_;
 };
 
-std::shared_ptr<Object> create(const Properties& p) {
-    const std::string name = p.require_string("name");
-    if (!name.starts_with("vertex_") && !name.starts_with("face_"))
+struct MeshAttributeSettings {
+    std::string name;
+    float scale = 1.0f;
+};
+
+std::shared_ptr<Texture> create(const MeshAttributeSettings& s, const Properties& p) {
+    if (!s.name.starts_with("vertex_") && !s.name.starts_with("face_"))
         throw InputError("the name of an attribute begins with 'vertex_' or 'face_', not as '" +
-                             printable(name) + "' does",
+                             printable(s.name) + "' does",
                          p.where_of("name"));
-    return std::make_shared<MeshAttributeTexture>(name, float(p.get_float_in("scale", 1.0, 0.0, 1e6)));
+    return std::make_shared<MeshAttributeTexture>(s.name, s.scale);
 }
 
 }  // namespace
 
 void register_mesh_attribute_texture(Registry& registry) {
-    Manual manual{
-        Category::texture,
-        "mesh_attribute",
+    add_type<MeshAttributeSettings>(
+        registry, Category::texture, "mesh_attribute",
         "Values that a mesh carries: of its vertices, interpolated, or of its faces. PLY files hold them as "
         "properties r, g, b (or red, green, blue) in 'vertex_color' and 'face_color', foo_r, foo_g, foo_b in "
         "'vertex_foo_color', and foo_x, foo_y, foo_z or foo_x alone in 'vertex_foo'; serialized files as "
         "'vertex_color'. Colours that are integers are divided by the largest one (Mitsuba takes 255 for "
         "255).",
-        {{"name", "string", "", "vertex_color, face_color, ...: see above"},
-         {"scale", "float", "1", "factor of the values"}},
+        {row("name", &MeshAttributeSettings::name, "vertex_color, face_color, ...: see above.").required(),
+         row("scale", &MeshAttributeSettings::scale, between(0, 1e6), "Factor on the values.")},
         R"(<texture type="mesh_attribute" name="reflectance">
     <string name="name" value="vertex_color"/>
-</texture>)"};
-    registry.add(std::move(manual), create);
+</texture>)",
+        create);
 }
 
 }  // namespace mote::core

@@ -83,8 +83,4 @@ inline Vec3 half_vector(const Vec3& a, const Vec3& b) {
     return Vec3(h * (1.0 / glm::length(h)));
 }
 
-class Properties;
-/// Reads distribution and alpha, a number: for surfaces that have one roughness everywhere.
-Microfacet microfacet_parameters(const Properties& properties);
-
 }  // namespace mote::core

@@ -3,21 +3,17 @@
 #include <fmt/format.h>
 
 #include "core/objects/error.h"
-#include "core/objects/properties.h"
 
 namespace mote::core {
 
-std::vector<BsdfPtr> nested_bsdfs(const Properties& p, std::size_t count) {
-    std::vector<BsdfPtr> nested;
+std::vector<BsdfPtr> NestedBsdfs::exactly(std::size_t count, const Properties& p) const {
     const std::string wanted = count == 1 ? "one nested BSDF" : fmt::format("{} nested BSDFs", count);
-    for (const Properties::Child& c : p.children) {
-        auto bsdf = std::dynamic_pointer_cast<const Bsdf>(c.object);
-        if (!bsdf) continue;
-        if (nested.size() == count) throw InputError(p.type + " holds " + wanted + ", not more", c.where);
-        nested.push_back(std::move(bsdf));
-    }
+    if (nested.size() > count)
+        throw InputError(p.type + " holds " + wanted + ", not more", nested[count].where);
     if (nested.size() < count) throw InputError(p.type + " needs " + wanted, p.where);
-    return nested;
+    std::vector<BsdfPtr> bsdfs;
+    for (const auto& one : nested) bsdfs.push_back(one.object);
+    return bsdfs;
 }
 
 StraightPassage mixed_passage(const StraightPassage& a, const StraightPassage& b, float share_of_b) {

@@ -7,9 +7,12 @@
 
 namespace mote::core {
 
-/// The nested BSDFs, whatever their names, in the order of the file. Throws InputError (file, line) unless
-/// there are `count` of them.
-std::vector<BsdfPtr> nested_bsdfs(const Properties& properties, std::size_t count);
+/// Settings of BSDFs that hold others.
+struct NestedBsdfs {
+    std::vector<Nested<const Bsdf>> nested;  ///< whatever their names, in the order of the file
+    /// All of them. Throws InputError (file, line) unless there are `count`.
+    std::vector<BsdfPtr> exactly(std::size_t count, const Properties& properties) const;
+};
 
 /// What passes a BSDF straight on: all through `null`, a part through panes, nothing through others.
 inline StraightPassage straight_passage_of(const Bsdf& bsdf, const BsdfPoint& p, const Vec3& wo) {

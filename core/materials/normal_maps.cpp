@@ -2,9 +2,6 @@
 #include "core/materials/bent_normal.h"
 #include "core/materials/register_materials.h"
 #include "core/materials/texture_slot.h"
-#include "core/materials/textures.h"
-#include "core/objects/error.h"
-#include "core/objects/properties.h"
 
 namespace mote::core {
 namespace {
@@ -39,21 +36,14 @@ class BumpMap final : public BentNormal {
     float scale_;
 };
 
-BentNormalSettings settings_of(const Properties& p) {
-    return {p.get_bool("flip_invalid_normals", true), p.get_bool("use_shadowing_function", true)};
-}
-
-void append_settings(Manual& manual) {
-    manual.parameters.push_back({"flip_invalid_normals", "boolean", "true",
-                                 "turn a normal over that the viewer would see from behind"});
-    manual.parameters.push_back(
-        {"use_shadowing_function", "boolean", "true", "fade light that comes from near the horizon"});
-}
-
-std::shared_ptr<Texture> height_texture(const Properties& p) {
-    auto heights = p.child_of<Texture>(Category::texture);
-    if (!heights) throw InputError("bumpmap needs a nested texture", p.where);
-    return heights;
+/// The settings that both share.
+template <typename S>
+Rows<S> bent_normal_rows() {
+    return within(&S::bent,
+                  row("flip_invalid_normals", &BentNormalSettings::flip_invalid_normals,
+                      "Turn a normal over that the viewer would see from behind."),
+                  row("use_shadowing_function", &BentNormalSettings::use_shadowing_function,
+                      "Fade light that comes from near the horizon."));
 }
 
 }  // namespace
@@ -68,39 +58,45 @@ std::shared_ptr<Bsdf> make_bump_map(BsdfPtr nested, TexturePtr heights, float sc
 }
 
 void register_normal_map(Registry& registry) {
-    Manual manual{Category::bsdf,
-                  "normalmap",
-                  "Bends the normal of the nested BSDF. Colours 0 to 1 stand for components -1 to 1 along "
-                  "dp/du, across "
-                  "it, and along the normal: (0.5, 0.5, 1) changes nothing. Pictures of normals want raw.",
-                  {{"normalmap", "texture", "", "the normals; required"},
-                   {"bsdf", "bsdf", "", "the nested one (any name)"}},
-                  R"(<bsdf type="normalmap">
+    struct Settings : NestedBsdfs {
+        TexturePtr normals;
+        BentNormalSettings bent;
+    };
+    add_type<Settings>(
+        registry, Category::bsdf, "normalmap",
+        "Bends the normal of the nested BSDF. Colours 0 to 1 are components -1 to 1 along dp/du, across it, "
+        "and "
+        "along the normal: (0.5, 0.5, 1) changes nothing. Pictures of normals want raw.",
+        {row("normalmap", &Settings::normals, "The normals.").required(),
+         nested("bsdf", &Settings::nested, Category::bsdf, "required", "The nested one (any name)."),
+         bent_normal_rows<Settings>()},
+        R"(<bsdf type="normalmap">
     <texture type="bitmap" name="normalmap">
         <string name="filename" value="normals.png"/>
         <boolean name="raw" value="true"/>
     </texture>
     <bsdf type="roughplastic"/>
-</bsdf>)"};
-    append_settings(manual);
-    registry.add(std::move(manual), [](const Properties& p) -> std::shared_ptr<Object> {
-        if (!p.has("normalmap") && !p.child<Texture>("normalmap"))
-            throw InputError("normalmap needs a texture 'normalmap'", p.where);
-        return make_normal_map(nested_bsdfs(p, 1)[0], texture_or_constant(p, "normalmap", Rgb(0.0f)),
-                               settings_of(p));
-    });
+</bsdf>)",
+        [](const Settings& s, const Properties& p) {
+            return make_normal_map(s.exactly(1, p)[0], s.normals, s.bent);
+        });
 }
 
 void register_bump_map(Registry& registry) {
-    Manual manual{
-        Category::bsdf,
-        "bumpmap",
+    struct Settings : NestedBsdfs {
+        std::shared_ptr<Texture> heights;
+        float scale = 1.0f;
+        BentNormalSettings bent;
+    };
+    add_type<Settings>(
+        registry, Category::bsdf, "bumpmap",
         "Bends the normal of the nested BSDF as if the surface were moved along its normal by the texture's "
         "height (of a picture its luminance), in metres times scale. Only slopes count, so nearest "
         "filtering and checkerboards have no effect. Pictures of heights want raw.",
-        {{"texture", "texture", "", "the heights; required (any name)"},
-         {"scale", "float", "1", "factor on the heights"},
-         {"bsdf", "bsdf", "", "the nested one (any name)"}},
+        {nested("texture", &Settings::heights, Category::texture, "", "The heights (any name).").required(),
+         row("scale", &Settings::scale, "Factor on the heights."),
+         nested("bsdf", &Settings::nested, Category::bsdf, "required", "The nested one (any name)."),
+         bent_normal_rows<Settings>()},
         R"(<bsdf type="bumpmap">
     <texture type="bitmap">
         <string name="filename" value="heights.png"/>
@@ -108,12 +104,10 @@ void register_bump_map(Registry& registry) {
     </texture>
     <float name="scale" value="0.1"/>
     <bsdf type="roughplastic"/>
-</bsdf>)"};
-    append_settings(manual);
-    registry.add(std::move(manual), [](const Properties& p) -> std::shared_ptr<Object> {
-        const auto scale = float(p.get_float("scale", 1.0));
-        return make_bump_map(nested_bsdfs(p, 1)[0], height_texture(p), scale, settings_of(p));
-    });
+</bsdf>)",
+        [](const Settings& s, const Properties& p) {
+            return make_bump_map(s.exactly(1, p)[0], s.heights, s.scale, s.bent);
+        });
 }
 
 }  // namespace mote::core

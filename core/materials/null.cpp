@@ -29,12 +29,8 @@ class Null final : public Bsdf {
 std::shared_ptr<Bsdf> make_null() { return std::make_shared<Null>(); }
 
 void register_null(Registry& registry) {
-    Manual manual{Category::bsdf,
-                  "null",
-                  "An invisible surface: the boundary of a medium.",
-                  {},
-                  R"(<bsdf type="null"/>)"};
-    registry.add(std::move(manual), [](const Properties&) -> std::shared_ptr<Object> { return make_null(); });
+    add_type(registry, Category::bsdf, "null", "An invisible surface: the boundary of a medium.",
+             R"(<bsdf type="null"/>)", [] { return make_null(); });
 }
 
 }  // namespace mote::core

@@ -5,9 +5,7 @@
 #include "core/materials/bsdfs.h"
 #include "core/materials/register_materials.h"
 #include "core/materials/texture_slot.h"
-#include "core/materials/textures.h"
 #include "core/math/warp.h"
-#include "core/objects/properties.h"
 
 namespace mote::core {
 namespace {
@@ -15,9 +13,7 @@ namespace {
 class Phong final : public Bsdf {
   public:
     explicit Phong(const PhongParameters& p)
-        : exponent_(p.exponent),
-          diffuse_(p.diffuse_reflectance, Rgb(0.5f)),
-          specular_(p.specular_reflectance, Rgb(0.2f)) {
+        : exponent_(p.exponent), diffuse_(p.diffuse_reflectance), specular_(p.specular_reflectance) {
         scale_ = 1.0f / std::max(1.0f, diffuse_.maximum() + specular_.maximum());
         const float d = average(diffuse_.mean()), s = average(specular_.mean());
         specular_weight_ = d + s > 0.0f ? s / (d + s) : 0.5f;
@@ -85,27 +81,26 @@ std::shared_ptr<Bsdf> make_phong(const PhongParameters& parameters) {
 }
 
 void register_phong(Registry& registry) {
-    Manual manual{
-        Category::bsdf,
-        "phong",
+    using S = PhongParameters;
+    add_type<S>(
+        registry, Category::bsdf, "phong",
         "The modified Phong model of version 0.x files: a diffuse part and a lobe around the mirror "
         "direction.",
-        {{"exponent", "float", "30", "sharpness of the lobe, 0 to 1000000"},
-         {"diffuse_reflectance", "texture", "0.5", "reflectance of the diffuse part, 0 to 1"},
-         {"specular_reflectance", "texture", "0.2",
-          "reflectance of the lobe, 0 to 1; when both add up to more than 1 they are scaled down"}},
+        {row("exponent", &S::exponent, between(0, 1e6), "Sharpness of the lobe."),
+         row("diffuse_reflectance", &S::diffuse_reflectance, between(0, 1),
+             "Reflectance of the diffuse part."),
+         row("specular_reflectance", &S::specular_reflectance, between(0, 1),
+             "Reflectance of the lobe; when both add up to more than 1 they are scaled down.")},
         R"(<bsdf type="phong">
     <float name="exponent" value="100"/>
     <rgb name="diffuse_reflectance" value="0.4, 0.3, 0.2"/>
     <rgb name="specular_reflectance" value="0.3"/>
-</bsdf>)"};
-    registry.add(std::move(manual), [](const Properties& p) -> std::shared_ptr<Object> {
-        const auto diffuse = reflectance_texture(p, "diffuse_reflectance", Rgb(0.5f));
-        const auto specular = reflectance_texture(p, "specular_reflectance", Rgb(0.2f));
-        if (diffuse->maximum() + specular->maximum() > 1.0f)
-            p.warn("the reflectances of phong add up to more than 1 and are scaled down together");
-        return make_phong({float(p.get_float_in("exponent", 30.0, 0.0, 1e6)), diffuse, specular});
-    });
+</bsdf>)",
+        [](const S& s, const Properties& p) {
+            if (s.diffuse_reflectance->maximum() + s.specular_reflectance->maximum() > 1.0f)
+                p.warn("the reflectances of phong add up to more than 1 and are scaled down together");
+            return make_phong(s);
+        });
 }
 
 }  // namespace mote::core

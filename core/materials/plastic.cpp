@@ -6,9 +6,7 @@
 #include "core/materials/fresnel.h"
 #include "core/materials/register_materials.h"
 #include "core/materials/texture_slot.h"
-#include "core/materials/textures.h"
 #include "core/math/warp.h"
-#include "core/objects/properties.h"
 
 namespace mote::core {
 namespace {
@@ -21,7 +19,7 @@ class Plastic final : public Bsdf {
           internal_(float(fresnel_diffuse_reflectance(1.0 / double(eta_)))),
           mean_transmittance_(float(1.0 - fresnel_diffuse_reflectance(double(eta_)))),
           nonlinear_(p.nonlinear),
-          diffuse_(p.diffuse_reflectance, Rgb(0.5f)),
+          diffuse_(p.diffuse_reflectance),
           specular_(p.specular_reflectance) {
         const float d = average(diffuse_.mean()), s = average(specular_.mean());
         specular_weight_ = d + s > 0.0f ? s / (d + s) : 0.5f;
@@ -86,30 +84,26 @@ std::shared_ptr<Bsdf> make_plastic(const PlasticParameters& parameters) {
     return std::make_shared<Plastic>(parameters);
 }
 
-PlasticParameters plastic_parameters(const Properties& p) {
-    return {dielectric_index_parameter(p, "int_ior", "polypropylene"),
-            dielectric_index_parameter(p, "ext_ior", "air"),
-            reflectance_texture(p, "diffuse_reflectance", Rgb(0.5f)),
-            reflectance_texture(p, "specular_reflectance", Rgb(1.0f)), p.get_bool("nonlinear", false)};
+const ParameterList<PlasticParameters>& plastic_rows() {
+    using S = PlasticParameters;
+    static const ParameterList<S> list{
+        row("int_ior", &S::int_ior, between(0.01, 100),
+            "Index of refraction of the coating: a number or a name."),
+        row("ext_ior", &S::ext_ior, between(0.01, 100), "Index of refraction outside: a number or a name."),
+        row("diffuse_reflectance", &S::diffuse_reflectance, between(0, 1), "Reflectance of the base."),
+        row("specular_reflectance", &S::specular_reflectance, between(0, 1),
+            "Factor on the coating's reflection."),
+        row("nonlinear", &S::nonlinear, "Let multiple scattering inside shift the colour.")};
+    return list;
 }
 
 void register_plastic(Registry& registry) {
-    Manual manual{
-        Category::bsdf,
-        "plastic",
-        "A diffuse base under a smooth clear coating.",
-        {{"int_ior", "float", "polypropylene", "index of refraction of the coating: number or name"},
-         {"ext_ior", "float", "air", "index of refraction outside: number or name"},
-         {"diffuse_reflectance", "texture", "0.5", "reflectance of the base, 0 to 1"},
-         {"specular_reflectance", "texture", "1", "factor on the coating's reflection, 0 to 1"},
-         {"nonlinear", "boolean", "false", "let multiple scattering inside shift the colour"}},
-        R"(<bsdf type="plastic">
+    add_type(registry, Category::bsdf, "plastic", "A diffuse base under a smooth clear coating.",
+             plastic_rows(), R"(<bsdf type="plastic">
     <rgb name="diffuse_reflectance" value="0.1, 0.27, 0.36"/>
     <float name="int_ior" value="1.9"/>
-</bsdf>)"};
-    registry.add(std::move(manual), [](const Properties& p) -> std::shared_ptr<Object> {
-        return make_plastic(plastic_parameters(p));
-    });
+</bsdf>)",
+             make_plastic);
 }
 
 }  // namespace mote::core

@@ -21,8 +21,8 @@ class Principled final : public Bsdf {
     explicit Principled(const PrincipledParameters& p)
         : rates_(p.rates),
           eta_(p.eta),
-          base_color_(p.base_color, Rgb(0.5f)),
-          roughness_(p.roughness, 0.5f),
+          base_color_(p.base_color),
+          roughness_(p.roughness),
           anisotropic_(p.anisotropic),
           metallic_(p.metallic),
           spec_trans_(p.spec_trans),

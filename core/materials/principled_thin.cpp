@@ -35,11 +35,11 @@ class PrincipledThin final : public Bsdf {
   public:
     explicit PrincipledThin(const PrincipledThinParameters& p)
         : rates_(p.rates),
-          base_color_(p.base_color, Rgb(0.5f)),
-          roughness_(p.roughness, 0.5f),
+          base_color_(p.base_color),
+          roughness_(p.roughness),
           anisotropic_(p.anisotropic),
           spec_trans_(p.spec_trans),
-          eta_(p.eta, 1.5f),
+          eta_(p.eta),
           spec_tint_(p.spec_tint),
           sheen_(p.sheen),
           sheen_tint_(p.sheen_tint),

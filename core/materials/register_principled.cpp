@@ -3,133 +3,113 @@
 
 #include "core/materials/bsdfs.h"
 #include "core/materials/register_materials.h"
-#include "core/materials/textures.h"
-#include "core/objects/properties.h"
 
 namespace mote::core {
 namespace {
 
-std::shared_ptr<const Texture> weight(const Properties& p, const std::string& name,
-                                      float default_value = 0.0f) {
-    return scalar_texture(p, name, default_value, 0.0f, 1.0f);
+/// How often a lobe is sampled, relative to the others.
+const Range rate = between(0, 1e6), weight = between(0, 1);
+
+const ParameterList<PrincipledWeights>& weight_rows() {
+    using S = PrincipledWeights;
+    static const ParameterList<S> list{
+        row("base_color", &S::base_color, weight,
+            "Colour of the base and of metal; glass has its square root."),
+        row("roughness", &S::roughness, weight,
+            "Roughness of all glossy lobes but the clearcoat: GGX of alpha = roughness^2."),
+        row("anisotropic", &S::anisotropic, weight, "Stretches the reflection along the tangent."),
+        row("spec_trans", &S::spec_trans, weight, "Share of the surface that is glass."),
+        row("spec_tint", &S::spec_tint, weight, "Tints the dielectric's reflection with base_color."),
+        row("sheen", &S::sheen, weight, "Light at grazing angles as of cloth; adds light."),
+        row("sheen_tint", &S::sheen_tint, weight, "Tints the sheen with base_color."),
+        row("flatness", &S::flatness, weight,
+            "From a diffuse base to one that looks like subsurface scattering.")};
+    return list;
 }
 
-/// How often a lobe is drawn, relative to the others.
-float rate(const Properties& p, const std::string& name) {
-    return float(p.get_float_in(name, 1.0, 0.0, 1e6));
-}
+struct PrincipledSettings : PrincipledParameters {
+    std::optional<float> given_eta;
+    double specular = 0.5;  ///< a scale of reflectances head on from 0 to 0.08 (Burley 2012, Sec. 5.1)
 
-/// Index of the facets; `specular` 0 to 1 is a scale of reflectances head on from 0 to 0.08 (Burley 2012,
-/// Sec. 5.1).
-float index_parameter(const Properties& p, bool transmits) {
-    if (p.has("eta")) {
-        if (p.has("specular")) throw InputError("give either 'eta' or 'specular'", p.where_of("specular"));
-        return float(p.get_float_in("eta", 1.5, 0.01, 100.0));
+    /// Index of the facets.
+    float index(const Properties& p) const {
+        if (given_eta) {
+            if (p.has("specular"))
+                throw InputError("give either 'eta' or 'specular'", p.where_of("specular"));
+            return *given_eta;
+        }
+        // As in Mitsuba: glass needs an index.
+        const bool glass_without = specular == 0.0 && spec_trans->maximum() > 0.0f;
+        return float(2.0 / (1.0 - std::sqrt(0.08 * (glass_without ? 1e-3 : specular))) - 1.0);
     }
-    double specular = p.get_float_in("specular", 0.5, 0.0, 1.0);
-    if (transmits && specular == 0.0) specular = 1e-3;  // as in Mitsuba: glass needs an index
-    return float(2.0 / (1.0 - std::sqrt(0.08 * specular)) - 1.0);
-}
-
-const std::vector<Parameter> shared_rows = {
-    {"base_color", "texture", "0.5", "colour of the base and of metal, 0 to 1; glass has its square root"},
-    {"roughness", "texture", "0.5",
-     "of all glossy lobes but the clearcoat, 0 to 1: GGX of alpha = roughness^2"},
-    {"anisotropic", "texture", "0", "0 to 1: stretches the reflection along the tangent"},
-    {"spec_trans", "texture", "0", "0 to 1: share of the surface that is glass"},
-    {"spec_tint", "texture", "0", "0 to 1: tints the dielectric's reflection with base_color"},
-    {"sheen", "texture", "0", "0 to 1: light at grazing angles as of cloth; adds light"},
-    {"sheen_tint", "texture", "0", "0 to 1: tints the sheen with base_color"},
-    {"flatness", "texture", "0", "0 to 1: from a diffuse base to one that looks like subsurface scattering"},
-    {"diffuse_reflectance_sampling_rate", "float", "1", "how often the diffuse lobe is drawn, relatively"},
 };
 
-Manual manual_of(const std::string& type, const std::string& summary, const std::vector<Parameter>& rows,
-                 const std::string& example) {
-    Manual manual{Category::bsdf, type, summary, shared_rows, example};
-    manual.parameters.insert(manual.parameters.end(), rows.begin(), rows.end());
-    return manual;
+const ParameterList<PrincipledSettings>& principled_rows() {
+    using S = PrincipledSettings;
+    using Rates = PrincipledParameters::Rates;
+    static const ParameterList<S> list{
+        weight_rows(),
+        within(&S::rates, row("diffuse_reflectance_sampling_rate", &Rates::diffuse, rate,
+                              "How often the diffuse lobe is sampled, relatively.")),
+        row("metallic", &S::metallic, weight, "Share of the surface that is metal."),
+        row("eta", &S::given_eta, between(0.01, 100),
+            "Index of refraction inside over outside, instead of specular.")
+            .when_absent("specular"),
+        row("specular", &S::specular, weight, "Reflectance of the dielectric head on, over 0.08."),
+        row("clearcoat", &S::clearcoat, weight, "Strength of a second, clear coating."),
+        row("clearcoat_gloss", &S::clearcoat_gloss, weight, "From a satin coating to a glossy one."),
+        within(&S::rates,
+               row("main_specular_sampling_rate", &Rates::specular, rate,
+                   "How often the glossy lobes are sampled, relatively."),
+               row("clearcoat_sampling_rate", &Rates::clearcoat, rate,
+                   "How often the clearcoat is sampled, relatively."))};
+    return list;
 }
 
-std::shared_ptr<Object> create_principled(const Properties& p) {
-    PrincipledParameters q;
-    q.base_color = reflectance_texture(p, "base_color", Rgb(0.5f));
-    q.roughness = weight(p, "roughness", 0.5f);
-    q.anisotropic = weight(p, "anisotropic");
-    q.metallic = weight(p, "metallic");
-    q.spec_trans = weight(p, "spec_trans");
-    q.spec_tint = weight(p, "spec_tint");
-    q.sheen = weight(p, "sheen");
-    q.sheen_tint = weight(p, "sheen_tint");
-    q.flatness = weight(p, "flatness");
-    q.clearcoat = weight(p, "clearcoat");
-    q.clearcoat_gloss = weight(p, "clearcoat_gloss");
-    q.eta = index_parameter(p, q.spec_trans->maximum() > 0.0f);
-    q.rates.diffuse = rate(p, "diffuse_reflectance_sampling_rate");
-    q.rates.specular = rate(p, "main_specular_sampling_rate");
-    q.rates.clearcoat = rate(p, "clearcoat_sampling_rate");
-    return make_principled(q);
-}
-
-std::shared_ptr<Object> create_principled_thin(const Properties& p) {
-    PrincipledThinParameters q;
-    q.base_color = reflectance_texture(p, "base_color", Rgb(0.5f));
-    q.roughness = weight(p, "roughness", 0.5f);
-    q.anisotropic = weight(p, "anisotropic");
-    q.spec_trans = weight(p, "spec_trans");
-    q.eta = scalar_texture(p, "eta", 1.5f, 0.01f, 100.0f);
-    q.spec_tint = weight(p, "spec_tint");
-    q.sheen = weight(p, "sheen");
-    q.sheen_tint = weight(p, "sheen_tint");
-    q.flatness = weight(p, "flatness");
-    q.diff_trans = scalar_texture(p, "diff_trans", 0.0f, 0.0f, 2.0f);
-    q.rates.diffuse = rate(p, "diffuse_reflectance_sampling_rate");
-    q.rates.diffuse_through = rate(p, "diffuse_transmittance_sampling_rate");
-    q.rates.specular = rate(p, "specular_reflectance_sampling_rate");
-    q.rates.specular_through = rate(p, "specular_transmittance_sampling_rate");
-    return make_principled_thin(q);
+const ParameterList<PrincipledThinParameters>& principled_thin_rows() {
+    using S = PrincipledThinParameters;
+    static const ParameterList<S> list{
+        weight_rows(), row("eta", &S::eta, between(0.01, 100), "Index of refraction."),
+        row("diff_trans", &S::diff_trans, between(0, 2),
+            "Share of the diffuse light that passes, times two."),
+        within(&S::rates,
+               row("diffuse_reflectance_sampling_rate", &S::Rates::diffuse, rate,
+                   "How often the diffuse lobe is sampled, relatively."),
+               row("diffuse_transmittance_sampling_rate", &S::Rates::diffuse_through, rate,
+                   "How often diffuse transmission is sampled, relatively."),
+               row("specular_reflectance_sampling_rate", &S::Rates::specular, rate,
+                   "How often glossy reflection is sampled, relatively."),
+               row("specular_transmittance_sampling_rate", &S::Rates::specular_through, rate,
+                   "How often glossy transmission is sampled, relatively."))};
+    return list;
 }
 
 }  // namespace
 
 void register_principled(Registry& registry) {
-    registry.add(
-        manual_of(
-            "principled", "Metal, plastic, cloth or glass from one set of weights (Burley's, of Disney).",
-            {{"metallic", "texture", "0", "0 to 1: share of the surface that is metal"},
-             {"eta", "float", "specular", "index of refraction inside over outside, instead of specular"},
-             {"specular", "float", "0.5", "0 to 1: reflectance of the dielectric head on, over 0.08"},
-             {"clearcoat", "texture", "0", "0 to 1: strength of a second, clear coating"},
-             {"clearcoat_gloss", "texture", "0", "0 to 1: from a satin coating to a glossy one"},
-             {"main_specular_sampling_rate", "float", "1",
-              "how often the glossy lobes are drawn, relatively"},
-             {"clearcoat_sampling_rate", "float", "1", "how often the clearcoat is drawn, relatively"}},
-            R"(<bsdf type="principled">
+    add_type(registry, Category::bsdf, "principled",
+             "Metal, plastic, cloth or glass from one set of weights (Burley's, of Disney).",
+             principled_rows(),
+             R"(<bsdf type="principled">
     <rgb name="base_color" value="0.7, 0.3, 0.1"/>
     <float name="metallic" value="0.7"/>
     <float name="roughness" value="0.2"/>
     <float name="clearcoat" value="0.6"/>
-</bsdf>)"),
-        create_principled);
-    registry.add(
-        manual_of(
-            "principledthin", "A sheet such as paper, a leaf or a frosted pane, from one set of weights.",
-            {{"eta", "texture", "1.5", "index of refraction, 0.01 to 100"},
-             {"diff_trans", "texture", "0", "0 to 2: share of the diffuse light that passes, times two"},
-             {"diffuse_transmittance_sampling_rate", "float", "1",
-              "how often diffuse transmission is drawn, relatively"},
-             {"specular_reflectance_sampling_rate", "float", "1",
-              "how often glossy reflection is drawn, relatively"},
-             {"specular_transmittance_sampling_rate", "float", "1",
-              "how often glossy transmission is drawn, relatively"}},
-            R"(<bsdf type="principledthin">
+</bsdf>)",
+             [](PrincipledSettings s, const Properties& p) {
+                 s.eta = s.index(p);
+                 return make_principled(s);
+             });
+    add_type(registry, Category::bsdf, "principledthin",
+             "A sheet such as paper, a leaf or a frosted pane, from one set of weights.",
+             principled_thin_rows(), R"(<bsdf type="principledthin">
     <rgb name="base_color" value="0.7, 0.1, 0.1"/>
     <float name="roughness" value="0.15"/>
     <float name="spec_trans" value="0.8"/>
     <float name="diff_trans" value="0.3"/>
     <float name="eta" value="1.33"/>
-</bsdf>)"),
-        create_principled_thin);
+</bsdf>)",
+             make_principled_thin);
 }
 
 }  // namespace mote::core

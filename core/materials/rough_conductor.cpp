@@ -2,11 +2,8 @@
 #include "core/materials/bsdfs.h"
 #include "core/materials/fresnel.h"
 #include "core/materials/lobe_bounds.h"
-#include "core/materials/microfacet_manual.h"
 #include "core/materials/register_materials.h"
 #include "core/materials/texture_slot.h"
-#include "core/materials/textures.h"
-#include "core/objects/properties.h"
 
 namespace mote::core {
 namespace {
@@ -77,26 +74,26 @@ std::shared_ptr<Bsdf> make_rough_conductor(const ConductorParameters& parameters
 }
 
 void register_rough_conductor(Registry& registry) {
-    Manual manual{Category::bsdf,
-                  "roughconductor",
-                  "A rough metal: mirror-like facets whose slopes spread the reflection.",
-                  {{"material", "string", "none",
-                    "name of a conductor (Cu, Au, a-C, ...: all of Mitsuba's); none: a mirror"},
-                   {"eta", "rgb", "0", "real part of the index of refraction, instead of material"},
-                   {"k", "rgb", "1", "imaginary part (absorption)"},
-                   {"specular_reflectance", "texture", "1", "factor on the reflection, 0 to 1"}},
-                  R"(<bsdf type="roughconductor">
+    struct Settings {
+        ConductorIndexSettings index;
+        ConductorParameters parameters;
+        RoughnessSettings roughness;
+    };
+    add_type<Settings>(
+        registry, Category::bsdf, "roughconductor",
+        "A rough metal: mirror-like facets whose slopes spread the reflection.",
+        {within(&Settings::index, conductor_index_rows()), within(&Settings::parameters, conductor_rows()),
+         within(&Settings::roughness, roughness_rows())},
+        R"(<bsdf type="roughconductor">
     <string name="material" value="Al"/>
     <string name="distribution" value="ggx"/>
     <float name="alpha_u" value="0.05"/>
     <float name="alpha_v" value="0.3"/>
-</bsdf>)"};
-    append_microfacet_parameters(manual, true);
-    registry.add(std::move(manual), [](const Properties& p) -> std::shared_ptr<Object> {
-        return make_rough_conductor(
-            {conductor_parameters(p), reflectance_texture(p, "specular_reflectance", Rgb(1.0f))},
-            roughness_parameters(p));
-    });
+</bsdf>)",
+        [](Settings s, const Properties& p) {
+            s.parameters.index = conductor_index_of(s.index, p);
+            return make_rough_conductor(s.parameters, roughness_of(s.roughness, p));
+        });
 }
 
 }  // namespace mote::core

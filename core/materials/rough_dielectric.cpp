@@ -2,12 +2,9 @@
 // scattering.
 #include "core/materials/bsdfs.h"
 #include "core/materials/dielectric_facet.h"
-#include "core/materials/microfacet_manual.h"
 #include "core/materials/register_materials.h"
 #include "core/materials/texture_slot.h"
-#include "core/materials/textures.h"
 #include "core/objects/error.h"
-#include "core/objects/properties.h"
 
 namespace mote::core {
 namespace {
@@ -97,27 +94,25 @@ std::shared_ptr<Bsdf> make_rough_dielectric(const DielectricParameters& paramete
 }
 
 void register_rough_dielectric(Registry& registry) {
-    Manual manual{
-        Category::bsdf,
-        "roughdielectric",
+    struct Settings {
+        DielectricParameters parameters;
+        RoughnessSettings roughness;
+    };
+    add_type<Settings>(
+        registry, Category::bsdf, "roughdielectric",
         "A rough boundary between transparent materials, such as ground glass.",
-        {{"int_ior", "float", "bk7", "index of refraction inside (against the normal): number or name"},
-         {"ext_ior", "float", "air", "index of refraction outside: number or name"},
-         {"specular_reflectance", "texture", "1", "factor on reflected light, 0 to 1"},
-         {"specular_transmittance", "texture", "1", "factor on transmitted light, 0 to 1"}},
+        {within(&Settings::parameters, dielectric_rows()), within(&Settings::roughness, roughness_rows())},
         R"(<bsdf type="roughdielectric">
     <string name="distribution" value="beckmann"/>
     <float name="alpha" value="0.2"/>
     <string name="int_ior" value="bk7"/>
     <string name="ext_ior" value="air"/>
-</bsdf>)"};
-    append_microfacet_parameters(manual, true);
-    registry.add(std::move(manual), [](const Properties& p) -> std::shared_ptr<Object> {
-        const DielectricParameters parameters = dielectric_parameters(p);
-        if (!(std::fabs(parameters.int_ior / parameters.ext_ior - 1.0f) > 1e-4f))
-            throw InputError("'int_ior' and 'ext_ior' of a roughdielectric must differ", p.where);
-        return make_rough_dielectric(parameters, roughness_parameters(p));
-    });
+</bsdf>)",
+        [](const Settings& s, const Properties& p) {
+            if (!(std::fabs(s.parameters.int_ior / s.parameters.ext_ior - 1.0f) > 1e-4f))
+                throw InputError("'int_ior' and 'ext_ior' of a roughdielectric must differ", p.where);
+            return make_rough_dielectric(s.parameters, roughness_of(s.roughness, p));
+        });
 }
 
 }  // namespace mote::core

@@ -7,13 +7,10 @@
 #include "core/materials/bsdfs.h"
 #include "core/materials/fresnel.h"
 #include "core/materials/lobe_bounds.h"
-#include "core/materials/microfacet_manual.h"
 #include "core/materials/register_materials.h"
 #include "core/materials/rough_transmittance.h"
 #include "core/materials/texture_slot.h"
-#include "core/materials/textures.h"
 #include "core/math/warp.h"
-#include "core/objects/properties.h"
 
 namespace mote::core {
 namespace {
@@ -29,7 +26,7 @@ class RoughPlastic final : public Bsdf {
           internal_(p.conserve_energy ? 1.0f - inv_eta2_ * transmittance_.mean()
                                       : rough_internal_reflectance(microfacet_, eta_)),
           nonlinear_(p.nonlinear),
-          diffuse_(p.diffuse_reflectance, Rgb(0.5f)),
+          diffuse_(p.diffuse_reflectance),
           specular_(p.specular_reflectance) {
         const float d = average(diffuse_.mean()), s = average(specular_.mean());
         specular_weight_ = d + s > 0.0f ? s / (d + s) : 0.5f;
@@ -111,30 +108,27 @@ std::shared_ptr<Bsdf> make_rough_plastic(const PlasticParameters& parameters, co
 }
 
 void register_rough_plastic(Registry& registry) {
-    Manual manual{
-        Category::bsdf,
-        "roughplastic",
-        "A diffuse base under a rough clear coating.",
-        {{"int_ior", "float", "polypropylene", "index of refraction of the coating: number or name"},
-         {"ext_ior", "float", "air", "index of refraction outside: number or name"},
-         {"diffuse_reflectance", "texture", "0.5", "reflectance of the base, 0 to 1"},
-         {"specular_reflectance", "texture", "1", "factor on the coating's reflection, 0 to 1"},
-         {"nonlinear", "boolean", "false", "let multiple scattering inside shift the colour"},
-         {"conserve_energy", "boolean", "false",
-          "keep the light that facets of the coating send to each other, which is lost otherwise; not in "
-          "Mitsuba"}},
+    struct Settings {
+        PlasticParameters parameters;
+        MicrofacetSettings microfacet;
+    };
+    add_type<Settings>(
+        registry, Category::bsdf, "roughplastic", "A diffuse base under a rough clear coating.",
+        {within(
+             &Settings::parameters, plastic_rows(),
+             row("conserve_energy", &PlasticParameters::conserve_energy,
+                 "Keep the light that facets of the coating send to each other, which is lost otherwise; not "
+                 "in Mitsuba.")),
+         within(&Settings::microfacet, microfacet_rows())},
         R"(<bsdf type="roughplastic">
     <string name="distribution" value="beckmann"/>
     <float name="int_ior" value="1.61"/>
     <rgb name="diffuse_reflectance" value="0.07, 0.09, 0.13"/>
     <float name="alpha" value="0.3"/>
-</bsdf>)"};
-    append_microfacet_parameters(manual, false);
-    registry.add(std::move(manual), [](const Properties& p) -> std::shared_ptr<Object> {
-        PlasticParameters parameters = plastic_parameters(p);
-        parameters.conserve_energy = p.get_bool("conserve_energy", false);
-        return make_rough_plastic(parameters, microfacet_parameters(p));
-    });
+</bsdf>)",
+        [](const Settings& s, const Properties& p) {
+            return make_rough_plastic(s.parameters, microfacet_of(s.microfacet, p));
+        });
 }
 
 }  // namespace mote::core

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/materials/microfacet.h"
+#include "core/materials/texture_rows.h"
 #include "core/materials/texture_slot.h"
 
 namespace mote::core {
@@ -10,10 +11,12 @@ class Roughness {
   public:
     /// The same everywhere; meant to be implicit.
     Roughness(const Microfacet& everywhere)
-        : everywhere_(everywhere), alpha_u_(nullptr), alpha_v_(nullptr), textured_(false) {}
+        : everywhere_(everywhere),
+          alpha_u_(everywhere.alpha_u()),
+          alpha_v_(everywhere.alpha_v()),
+          textured_(false) {}
     /// One texture for both directions is isotropic.
-    Roughness(MicrofacetKind kind, const std::shared_ptr<const Texture>& alpha_u,
-              const std::shared_ptr<const Texture>& alpha_v)
+    Roughness(MicrofacetKind kind, const TexturePtr& alpha_u, const TexturePtr& alpha_v)
         : everywhere_(kind, ScalarSlot(alpha_u).eval({}), ScalarSlot(alpha_v).eval({})),
           alpha_u_(alpha_u),
           alpha_v_(alpha_v),
@@ -32,9 +35,25 @@ class Roughness {
     bool textured_, anisotropic_ = false;
 };
 
-class Properties;
-/// Reads distribution, and alpha or alpha_u and alpha_v, each a number or a texture. Throws InputError when
-/// they contradict each other.
-Roughness roughness_parameters(const Properties& properties);
+/// The parameters of a rough BSDF.
+struct RoughnessSettings {
+    MicrofacetKind distribution = MicrofacetKind::beckmann;  ///< of the facets' normals
+    TexturePtr alpha = make_constant_texture(Rgb(0.1f));     ///< root mean square slope
+    TexturePtr alpha_u, alpha_v;                             ///< along the tangent and across it, or null
+};
+/// distribution, alpha, alpha_u and alpha_v.
+const ParameterList<RoughnessSettings>& roughness_rows();
+/// Throws InputError where alpha contradicts alpha_u and alpha_v; warns of surfaces that are too smooth.
+Roughness roughness_of(const RoughnessSettings& settings, const Properties& properties);
+
+/// The parameters of a rough BSDF whose roughness is one number.
+struct MicrofacetSettings {
+    MicrofacetKind distribution = MicrofacetKind::beckmann;  ///< of the facets' normals
+    float alpha = 0.1f;                                      ///< root mean square slope
+};
+/// distribution and alpha.
+const ParameterList<MicrofacetSettings>& microfacet_rows();
+/// Warns of surfaces that are too smooth.
+Microfacet microfacet_of(const MicrofacetSettings& settings, const Properties& properties);
 
 }  // namespace mote::core

@@ -30,4 +30,10 @@ class Texture : public Object {
     virtual bool constant() const { return false; }
 };
 
+/// A texture that others share.
+using TexturePtr = std::shared_ptr<const Texture>;
+
+/// The same value everywhere.
+std::shared_ptr<Texture> make_constant_texture(const Rgb& value);
+
 }  // namespace mote::core

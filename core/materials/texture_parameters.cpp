@@ -1,8 +1,7 @@
 // Constant textures, and textures as parameters: an rgb, a float or a nested texture.
 #include <fmt/format.h>
 
-#include "core/materials/textures.h"
-#include "core/objects/properties.h"
+#include "core/materials/texture_rows.h"
 
 namespace mote::core {
 namespace {
@@ -24,20 +23,34 @@ class ConstantTexture final : public Texture {
     Rgb value_;
 };
 
-/// Throws InputError where `texture`, the parameter `name`, has values outside.
-void require_range(const Texture& texture, const Properties& p, const std::string& name, float lower,
-                   float upper) {
+/// Throws InputError where the values of a nested texture leave the row's range.
+void require_range(const Texture& texture, const Row& row, const SourceLocation& where) {
     constexpr float rounding =
         1e-5f;  // conversions of file formats may miss 1 by a few units in the last place
+    const auto lower = float(row.parameter.range.lower), upper = float(row.parameter.range.upper);
     const float least = texture.minimum(), most = texture.maximum();
     if (least >= lower && most <= upper + rounding) return;
     const std::string file = texture.file().empty() ? "" : "'" + printable(texture.file(), 300) + "' ";
-    throw InputError(
-        fmt::format("the texture {}of '{}' has values from {:f} to {:f} but they must lie between "
-                    "{:g} and {:g}",
-                    file, name, least, most, lower, upper),
-        p.where_of(name));
+    throw InputError(fmt::format("the texture {}of '{}' has values from {:f} to {:f} but they {}", file,
+                                 row.parameter.name, least, most, row.parameter.range.demand()),
+                     where);
 }
+
+class TextureKind final : public ValueKind {
+    std::string type(const Row&) const override { return "texture"; }
+    void read(const Properties& p, const Row& row, void* member) const override {
+        auto& texture = *static_cast<TexturePtr*>(member);
+        texture = p.child<Texture>(row.parameter.name);
+        if (texture)
+            require_range(*texture, row, p.where_of(row.parameter.name));
+        else
+            texture = make_constant_texture(read_rgb(p, row));
+    }
+    std::string text(const Row&, const void* member) const override {
+        const auto& texture = *static_cast<const TexturePtr*>(member);
+        return texture ? rgb_text(texture->mean()) : "none";
+    }
+};
 
 }  // namespace
 
@@ -45,26 +58,9 @@ std::shared_ptr<Texture> make_constant_texture(const Rgb& value) {
     return std::make_shared<ConstantTexture>(value);
 }
 
-std::shared_ptr<Texture> texture_or_constant(const Properties& p, const std::string& name,
-                                             const Rgb& default_value) {
-    if (auto nested = p.child<Texture>(name)) return nested;
-    return make_constant_texture(p.get_rgb(name, default_value));
-}
-
-std::shared_ptr<Texture> reflectance_texture(const Properties& p, const std::string& name,
-                                             const Rgb& default_value) {
-    auto nested = p.child<Texture>(name);
-    if (!nested) return make_constant_texture(p.get_rgb_in(name, default_value, 0.0f, 1.0f));
-    require_range(*nested, p, name, 0.0f, 1.0f);
-    return nested;
-}
-
-std::shared_ptr<Texture> scalar_texture(const Properties& p, const std::string& name, float default_value,
-                                        float lower, float upper) {
-    auto nested = p.child<Texture>(name);
-    if (!nested) return make_constant_texture(p.get_rgb_in(name, Rgb(default_value), lower, upper));
-    require_range(*nested, p, name, lower, upper);
-    return nested;
+const ValueKind& KindOf<TexturePtr>::kind() {
+    static const TextureKind kind;
+    return kind;
 }
 
 }  // namespace mote::core

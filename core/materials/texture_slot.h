@@ -9,11 +9,11 @@ namespace mote::core {
 
 class TextureSlot {
   public:
-    /// A null texture stands for the constant `value`.
-    explicit TextureSlot(std::shared_ptr<const Texture> texture, const Rgb& value = Rgb(1.0f))
+    /// The texture must not be null.
+    explicit TextureSlot(TexturePtr texture)
         : texture_(std::move(texture)),
-          constant_(!texture_ || texture_->constant()),
-          value_(!texture_ ? value : (constant_ ? texture_->eval({0.0f, 0.0f}) : Rgb(0.0f))) {}
+          constant_(texture_->constant()),
+          value_(constant_ ? texture_->eval({0.0f, 0.0f}) : Rgb(0.0f)) {}
 
     Rgb eval(const TextureCoordinates& uv) const { return constant_ ? value_ : texture_->eval(uv); }
     bool textured() const { return !constant_; }
@@ -22,19 +22,20 @@ class TextureSlot {
     float maximum() const { return constant_ ? max_component(value_) : texture_->maximum(); }
 
   private:
-    std::shared_ptr<const Texture> texture_;
+    TexturePtr texture_;
     bool constant_;
     Rgb value_;
 };
 
-/// The same for one number: Texture::scalar().
+/// A texture of one number: Texture::scalar().
 class ScalarSlot {
   public:
-    /// A null texture stands for the constant `value`.
-    explicit ScalarSlot(std::shared_ptr<const Texture> texture, float value = 0.0f)
+    /// The texture must not be null.
+    explicit ScalarSlot(TexturePtr texture)
         : texture_(std::move(texture)),
-          constant_(!texture_ || texture_->constant()),
-          value_(texture_ && constant_ ? texture_->scalar({0.0f, 0.0f}) : value) {}
+          constant_(texture_->constant()),
+          value_(constant_ ? texture_->scalar({0.0f, 0.0f}) : 0.0f) {}
+    explicit ScalarSlot(float value) : constant_(true), value_(value) {}
 
     float eval(const TextureCoordinates& uv) const { return constant_ ? value_ : texture_->scalar(uv); }
     bool textured() const { return !constant_; }
@@ -42,7 +43,7 @@ class ScalarSlot {
     bool zero() const { return constant_ && value_ == 0.0f; }
 
   private:
-    std::shared_ptr<const Texture> texture_;
+    TexturePtr texture_;
     bool constant_;
     float value_;
 };

@@ -1,4 +1,4 @@
-// Factories of textures, for the scene loader, for code that builds scenes itself, and for tests.
+// Factories of textures, for code that builds scenes itself and for tests.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,8 @@
 
 namespace mote::core {
 
-class Properties;
-
-/// The same everywhere.
-std::shared_ptr<Texture> make_constant_texture(const Rgb& value);
-
 /// Squares of half a unit of the transformed uv; color0 holds at the origin.
-std::shared_ptr<Texture> make_checkerboard_texture(std::shared_ptr<Texture> color0,
-                                                   std::shared_ptr<Texture> color1,
+std::shared_ptr<Texture> make_checkerboard_texture(TexturePtr color0, TexturePtr color1,
                                                    const Transform& to_uv = {});
 
 /// Between texels: mixed of four, or the nearest one.
@@ -35,15 +29,5 @@ struct BitmapTextureParameters {
 /// The first row of the bitmap lies at v = 0, texel centres at half-integers (Mitsuba 3; its OBJ reader turns
 /// v over). Throws InputError when the bitmap is empty or holds values that are not finite.
 std::shared_ptr<Texture> make_bitmap_texture(Bitmap bitmap, const BitmapTextureParameters& parameters = {});
-
-/// The nested texture called `name`, or a constant one from an rgb or a float, or from the default.
-std::shared_ptr<Texture> texture_or_constant(const Properties& properties, const std::string& name,
-                                             const Rgb& default_value);
-/// The same, and throws InputError (file, line) where a value lies outside [0, 1].
-std::shared_ptr<Texture> reflectance_texture(const Properties& properties, const std::string& name,
-                                             const Rgb& default_value);
-/// The same for one number (Texture::scalar), with limits of its own.
-std::shared_ptr<Texture> scalar_texture(const Properties& properties, const std::string& name,
-                                        float default_value, float lower, float upper);
 
 }  // namespace mote::core

@@ -3,8 +3,6 @@
 #include "core/materials/fresnel.h"
 #include "core/materials/register_materials.h"
 #include "core/materials/texture_slot.h"
-#include "core/materials/textures.h"
-#include "core/objects/properties.h"
 
 namespace mote::core {
 namespace {
@@ -68,19 +66,12 @@ std::shared_ptr<Bsdf> make_thin_dielectric(const DielectricParameters& parameter
 }
 
 void register_thin_dielectric(Registry& registry) {
-    Manual manual{Category::bsdf,
-                  "thindielectric",
-                  "A thin pane of glass: reflects like a mirror, or lets light pass straight on.",
-                  {{"int_ior", "float", "bk7", "index of refraction of the pane: number or name"},
-                   {"ext_ior", "float", "air", "index of refraction around it: number or name"},
-                   {"specular_reflectance", "texture", "1", "factor on reflected light, 0 to 1"},
-                   {"specular_transmittance", "texture", "1", "factor on transmitted light, 0 to 1"}},
-                  R"(<bsdf type="thindielectric">
+    add_type(registry, Category::bsdf, "thindielectric",
+             "A thin pane of glass: reflects like a mirror, or lets light pass straight on.",
+             dielectric_rows(), R"(<bsdf type="thindielectric">
     <string name="int_ior" value="bk7"/>
-</bsdf>)"};
-    registry.add(std::move(manual), [](const Properties& p) -> std::shared_ptr<Object> {
-        return make_thin_dielectric(dielectric_parameters(p));
-    });
+</bsdf>)",
+             make_thin_dielectric);
 }
 
 }  // namespace mote::core

@@ -4,7 +4,6 @@
 #include "core/materials/bsdfs.h"
 #include "core/materials/register_materials.h"
 #include "core/objects/error.h"
-#include "core/objects/properties.h"
 
 namespace mote::core {
 namespace {
@@ -60,18 +59,13 @@ class TwoSided final : public Bsdf {
     BsdfTraits traits_;
 };
 
-std::shared_ptr<Object> create_twosided(const Properties& p) {
-    std::vector<BsdfPtr> sides;
-    for (const Properties::Child& c : p.children) {
-        const auto bsdf = std::dynamic_pointer_cast<const Bsdf>(c.object);
-        if (!bsdf) throw InputError("twosided holds BSDFs only", c.where);
-        if (sides.size() == 2) throw InputError("twosided holds one BSDF or two, not more", c.where);
-        if (bsdf->traits().transmissive)
-            throw InputError("a twosided BSDF cannot hold one that transmits light", c.where);
-        sides.push_back(bsdf);
-    }
-    if (sides.empty()) throw InputError("twosided needs a nested BSDF", p.where);
-    return make_twosided(sides.front(), sides.size() == 2 ? sides.back() : nullptr);
+std::shared_ptr<Bsdf> create_twosided(const NestedBsdfs& s, const Properties& p) {
+    if (s.nested.size() > 2) throw InputError("twosided holds one BSDF or two, not more", s.nested[2].where);
+    for (const auto& side : s.nested)
+        if (side.object->traits().transmissive)
+            throw InputError("a twosided BSDF cannot hold one that transmits light", side.where);
+    if (s.nested.empty()) throw InputError("twosided needs a nested BSDF", p.where);
+    return make_twosided(s.nested.front().object, s.nested.size() == 2 ? s.nested.back().object : nullptr);
 }
 
 }  // namespace
@@ -81,16 +75,16 @@ std::shared_ptr<Bsdf> make_twosided(BsdfPtr front, BsdfPtr back) {
 }
 
 void register_twosided(Registry& registry) {
-    Manual manual{Category::bsdf,
-                  "twosided",
-                  "Lets opaque BSDFs scatter on both sides: one for both, or one for each.",
-                  {{"bsdf", "bsdf", "", "one for both sides, or two: the front and the back (any names)"}},
-                  R"(<bsdf type="twosided">
+    add_type<NestedBsdfs>(registry, Category::bsdf, "twosided",
+                          "Lets opaque BSDFs scatter on both sides: one for both, or one for each.",
+                          {nested("bsdf", &NestedBsdfs::nested, Category::bsdf, "required",
+                                  "One for both sides, or two: the front and the back (any names).")},
+                          R"(<bsdf type="twosided">
     <bsdf type="diffuse">
         <rgb name="reflectance" value="0.4"/>
     </bsdf>
-</bsdf>)"};
-    registry.add(std::move(manual), create_twosided);
+</bsdf>)",
+                          create_twosided);
 }
 
 }  // namespace mote::core

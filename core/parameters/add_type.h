@@ -27,4 +27,13 @@ void add_type(Registry& registry, Category category, std::string type, std::stri
              [](S settings) { return std::make_shared<SettingsObject<S>>(std::move(settings)); });
 }
 
+/// A type without parameters; `make` takes nothing.
+template <typename Make>
+requires std::is_invocable_v<Make>
+void add_type(Registry& registry, Category category, std::string type, std::string summary,
+              std::string example, Make make) {
+    registry.add({category, std::move(type), std::move(summary), {}, std::move(example)},
+                 [make](const Properties&) -> std::shared_ptr<Object> { return make(); });
+}
+
 }  // namespace mote::core

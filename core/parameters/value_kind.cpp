@@ -53,7 +53,11 @@ template <typename T>
 class FloatKind final : public ValueKind {
     std::string type(const Row&) const override { return "float"; }
     void read(const Properties& p, const Row& row, void* member) const override {
-        *static_cast<T*>(member) = T(read_number(p, row));
+        const T value = T(read_number(p, row));
+        if (!std::isfinite(value))
+            throw InputError("'" + row.parameter.name + "' is not a finite number",
+                             p.where_of(row.parameter.name));
+        *static_cast<T*>(member) = value;
     }
     std::string text(const Row&, const void* member) const override {
         return fmt::format("{}", *static_cast<const T*>(member));

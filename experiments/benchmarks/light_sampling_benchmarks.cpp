@@ -50,7 +50,7 @@ class Walls {
     }
 
   private:
-    std::shared_ptr<Bsdf> bsdf_ = make_diffuse(nullptr);
+    std::shared_ptr<Bsdf> bsdf_ = make_diffuse();
     lights::VplSet vpls_;
     std::optional<lights::LightTree> tree_;
     std::vector<lights::ReceiverBounds> tiles_, single_;

@@ -4,7 +4,6 @@
 #include "core/geometry/bsdf_point.h"
 #include "core/geometry/shape.h"
 #include "core/math/warp.h"
-#include "core/objects/registry.h"
 #include "lights/emitters/emitters.h"
 #include "lights/emitters/light_values.h"
 
@@ -16,8 +15,7 @@ using namespace core;
 class AreaLight final : public Emitter {
   public:
     /// `scale` multiplies the texture.
-    AreaLight(const Rgb& radiance, std::shared_ptr<Texture> texture, SourceLocation where = {},
-              float scale = 1.0f)
+    AreaLight(const Rgb& radiance, TexturePtr texture, SourceLocation where = {}, float scale = 1.0f)
         : radiance_(radiance), scale_(scale), texture_(std::move(texture)), where_(std::move(where)) {}
 
     EmitterTraits traits() const override {
@@ -101,30 +99,32 @@ class AreaLight final : public Emitter {
 
     Rgb radiance_;
     float scale_;
-    std::shared_ptr<Texture> texture_;  ///< takes the place of radiance_ where there is one
+    TexturePtr texture_;  ///< takes the place of radiance_ where there is one
     SourceLocation where_;
     const Shape* shape_ = nullptr;
 };
 
-std::shared_ptr<Texture> checked_texture(std::shared_ptr<Texture> texture, const SourceLocation& where,
-                                         float scale = 1.0f) {
+TexturePtr checked_texture(TexturePtr texture, const SourceLocation& where, float scale = 1.0f) {
     checked_brightness(scale * Rgb(texture->minimum()), "radiance", where);
     checked_brightness(scale * Rgb(texture->maximum()), "radiance", where);
     return texture;
 }
 
-std::shared_ptr<Object> create(const Properties& properties) {
-    const auto scale = float(properties.get_float_in("scale", 1.0, 0.0, double(brightest)));
-    if (auto texture = properties.child<Texture>("radiance")) {
-        if (!(scale * texture->maximum() > 0.0f))
-            properties.warn("'radiance' is a black texture: this light emits nothing");
+struct AreaLightSettings {
+    TexturePtr radiance = make_constant_texture(Rgb(1.0f));
+    float scale = 1.0f;
+};
+
+std::shared_ptr<Emitter> create_area(const AreaLightSettings& s, const Properties& p) {
+    if (p.child<Texture>("radiance")) {
+        warn_of_black(p, "radiance", s.scale * s.radiance->maximum());
         return std::make_shared<AreaLight>(
-            Rgb(0.0f), checked_texture(std::move(texture), properties.where_of("radiance"), scale),
-            properties.where, scale);
+            Rgb(0.0f), checked_texture(s.radiance, p.where_of("radiance"), s.scale), p.where, s.scale);
     }
-    const Rgb radiance = scale * read_brightness(properties, "radiance");
-    return std::make_shared<AreaLight>(checked_brightness(radiance, "radiance", properties.where_of("scale")),
-                                       nullptr, properties.where);
+    const Rgb radiance = s.radiance->mean();
+    warn_of_black(p, "radiance", max_component(radiance));
+    return std::make_shared<AreaLight>(
+        checked_brightness(s.scale * radiance, "radiance", p.where_of("scale")), nullptr, p.where);
 }
 
 }  // namespace
@@ -132,20 +132,22 @@ std::shared_ptr<Object> create(const Properties& properties) {
 std::shared_ptr<Emitter> make_area_light(const Rgb& radiance) {
     return std::make_shared<AreaLight>(checked_brightness(radiance, "radiance"), nullptr);
 }
-std::shared_ptr<Emitter> make_area_light(std::shared_ptr<Texture> radiance) {
+std::shared_ptr<Emitter> make_area_light(TexturePtr radiance) {
     return std::make_shared<AreaLight>(Rgb(0.0f), checked_texture(std::move(radiance), {}));
 }
 
 void register_area(Registry& registry) {
-    registry.add({Category::emitter,
-                  "area",
-                  "Makes the shape around it emit from its front side, where the normal points to.",
-                  {{"radiance", "texture", "1", "emitted radiance [W/(m^2 sr)], a colour or a texture"},
-                   {"scale", "float", "1", "multiplies the radiance (not known to Mitsuba)"}},
-                  R"(<emitter type="area">
+    add_type<AreaLightSettings>(
+        registry, Category::emitter, "area",
+        "Makes the shape around it emit from its front side, where the normal points to.",
+        {row("radiance", &AreaLightSettings::radiance, brightness("W/(m^2 sr)"),
+             "Emitted radiance, a colour or a texture."),
+         row("scale", &AreaLightSettings::scale, brightness(),
+             "Multiplies the radiance (not known to Mitsuba).")},
+        R"(<emitter type="area">
     <rgb name="radiance" value="18, 14, 7"/>
-</emitter>)"},
-                 create);
+</emitter>)",
+        create_area);
 }
 
 }  // namespace mote::lights

@@ -1,5 +1,4 @@
 // The constant environment: the same radiance from every direction.
-#include "core/objects/registry.h"
 #include "lights/emitters/emitters.h"
 #include "lights/emitters/light_values.h"
 #include "lights/emitters/scene_sphere.h"
@@ -48,10 +47,6 @@ class ConstantLight final : public Emitter {
     SceneSphere scene_;
 };
 
-std::shared_ptr<Object> create(const Properties& properties) {
-    return std::make_shared<ConstantLight>(read_brightness(properties, "radiance"));
-}
-
 }  // namespace
 
 std::shared_ptr<Emitter> make_constant_light(const Rgb& radiance) {
@@ -59,14 +54,19 @@ std::shared_ptr<Emitter> make_constant_light(const Rgb& radiance) {
 }
 
 void register_constant(Registry& registry) {
-    registry.add({Category::emitter,
-                  "constant",
-                  "An environment of the same radiance in every direction.",
-                  {{"radiance", "rgb", "1", "radiance [W/(m^2 sr)]"}},
-                  R"(<emitter type="constant">
+    struct Settings {
+        Rgb radiance{1.0f};
+    };
+    add_type<Settings>(registry, Category::emitter, "constant",
+                       "An environment of the same radiance in every direction.",
+                       {row("radiance", &Settings::radiance, brightness("W/(m^2 sr)"), "Radiance.")},
+                       R"(<emitter type="constant">
     <rgb name="radiance" value="0.5"/>
-</emitter>)"},
-                 create);
+</emitter>)",
+                       [](const Settings& s, const Properties& p) {
+                           warn_of_black(p, "radiance", max_component(s.radiance));
+                           return std::make_shared<ConstantLight>(s.radiance);
+                       });
 }
 
 }  // namespace mote::lights

@@ -1,5 +1,4 @@
 // The directional light: parallel rays from infinity, such as sunlight.
-#include "core/objects/registry.h"
 #include "lights/emitters/emitters.h"
 #include "lights/emitters/light_values.h"
 #include "lights/emitters/scene_sphere.h"
@@ -50,15 +49,21 @@ class DirectionalLight final : public Emitter {
     SceneSphere scene_;
 };
 
-std::shared_ptr<Object> create(const Properties& properties) {
-    if (properties.has("direction") && properties.has("to_world"))
+struct DirectionalLightSettings {
+    Rgb irradiance{1.0f};
+    Vec3d direction{0.0, 0.0, 1.0};
+    Transform to_world;
+};
+
+std::shared_ptr<Emitter> create_directional(const DirectionalLightSettings& s, const Properties& p) {
+    const bool turned = p.has("to_world");
+    if (turned && p.has("direction"))
         throw InputError("a directional light takes 'direction' or 'to_world', not both",
-                         properties.where_of("to_world"));
-    const bool named = properties.has("direction");
-    const Vec3d forward = properties.get_transform().vector(Vec3d(0, 0, 1));
-    const Vec3 direction = checked_direction(properties.get_vec3("direction", forward),
-                                             properties.where_of(named ? "direction" : "to_world"));
-    return std::make_shared<DirectionalLight>(direction, read_brightness(properties, "irradiance"));
+                         p.where_of("to_world"));
+    const Vec3d direction = turned ? s.to_world.vector(Vec3d(0, 0, 1)) : s.direction;
+    warn_of_black(p, "irradiance", max_component(s.irradiance));
+    return std::make_shared<DirectionalLight>(
+        checked_direction(direction, p.where_of(turned ? "to_world" : "direction")), s.irradiance);
 }
 
 }  // namespace
@@ -69,17 +74,17 @@ std::shared_ptr<Emitter> make_directional_light(const Vec3d& direction, const Rg
 }
 
 void register_directional(Registry& registry) {
-    registry.add({Category::emitter,
-                  "directional",
-                  "Parallel light from infinity.",
-                  {{"irradiance", "rgb", "1", "what a surface facing the light receives [W/m^2]"},
-                   {"direction", "vector", "0, 0, 1", "in which the light travels"},
-                   {"to_world", "transform", "identity", "instead of direction: turns +z"}},
-                  R"(<emitter type="directional">
+    add_type<DirectionalLightSettings>(
+        registry, Category::emitter, "directional", "Parallel light from infinity.",
+        {row("irradiance", &DirectionalLightSettings::irradiance, brightness("W/m^2"),
+             "Irradiance of a surface that faces it."),
+         row("direction", &DirectionalLightSettings::direction, "In which the light travels."),
+         row("to_world", &DirectionalLightSettings::to_world, "Instead of direction: turns +z.")},
+        R"(<emitter type="directional">
     <vector name="direction" x="1" y="-2" z="0.5"/>
     <rgb name="irradiance" value="3, 2.9, 2.7"/>
-</emitter>)"},
-                 create);
+</emitter>)",
+        create_directional);
 }
 
 }  // namespace mote::lights

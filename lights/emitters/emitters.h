@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "core/formats/pictures/image_file.h"
-#include "core/materials/texture.h"
+#include "core/materials/texture_rows.h"
 #include "core/math/transform.h"
 #include "core/scene/emitter.h"
 
@@ -27,7 +27,7 @@ struct SpotSettings {
     core::Rgb intensity{1.0f};                                    ///< [W/sr]
     double cutoff_angle = 20.0 * 3.14159265358979323846 / 180.0;  ///< [radians]
     double beam_width = 15.0 * 3.14159265358979323846 / 180.0;    ///< [radians]
-    std::shared_ptr<core::Texture> texture{};                     ///< may be null
+    core::TexturePtr texture{};                                   ///< may be null
 };
 /// A cone of light.
 std::shared_ptr<core::Emitter> make_spot_light(const SpotSettings& settings);
@@ -35,9 +35,9 @@ std::shared_ptr<core::Emitter> make_spot_light(const SpotSettings& settings);
 /// A picture thrown along +z of to_world (which must not scale): on a surface that faces the projector at
 /// distance 1 it gives the irradiance pi times `scale` times `irradiance` [W/m^2]. Null: white.
 struct ProjectorSettings {
-    core::Transform to_world{};                   ///< of the projector
-    std::shared_ptr<core::Texture> irradiance{};  ///< the picture
-    float scale = 1.0f;                           ///< of the picture
+    core::Transform to_world{};     ///< of the projector
+    core::TexturePtr irradiance{};  ///< the picture
+    float scale = 1.0f;             ///< of the picture
     double tan_half_fov_x =
         0.5;  ///< half the picture's width at distance 1; the height follows from its aspect
 };
@@ -52,7 +52,7 @@ std::shared_ptr<core::Emitter> make_directional_light(const core::Vec3d& directi
 /// directions. One light belongs to one shape: call set_shape() before use.
 std::shared_ptr<core::Emitter> make_area_light(const core::Rgb& radiance);
 /// The same with radiance by the shape's texture coordinates.
-std::shared_ptr<core::Emitter> make_area_light(std::shared_ptr<core::Texture> radiance);
+std::shared_ptr<core::Emitter> make_area_light(core::TexturePtr radiance);
 
 /// The same radiance [W/(m^2 sr)] from every direction.
 std::shared_ptr<core::Emitter> make_constant_light(const core::Rgb& radiance);

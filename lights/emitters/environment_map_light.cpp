@@ -1,7 +1,6 @@
 // The environment map: light from all around, given by a latitude-longitude picture
 // (environment_picture.h).
 #include "core/formats/pictures/image_file.h"
-#include "core/objects/registry.h"
 #include "lights/emitters/emitters.h"
 #include "lights/emitters/environment_picture.h"
 #include "lights/emitters/light_values.h"
@@ -63,17 +62,21 @@ class EnvironmentMap final : public Emitter {
     SceneSphere scene_;
 };
 
-std::shared_ptr<Object> create(const Properties& properties) {
-    const std::string name = properties.require_string("filename");
-    Bitmap picture = read_bitmap(properties.require_file("filename"), false);
-    check_pixels(picture, name, properties.where_of("filename"));
-    const auto scale = float(properties.get_float_in("scale", 1.0, 0.0, double(brightest)));
-    if (properties.get_bool("mis_compensation", false))
-        properties.warn("'mis_compensation' has no effect: every lit direction keeps its chance");
-    const glm::mat3 rotation = checked_rotation(properties.get_transform(), properties.where_of("to_world"));
+struct EnvironmentMapSettings {
+    FileName file;
+    float scale = 1.0f;
+    bool mis_compensation = false;
+    Transform to_world;
+};
+
+std::shared_ptr<Emitter> create_environment_map(const EnvironmentMapSettings& s, const Properties& p) {
+    Bitmap picture = read_bitmap(s.file.path, false);
+    check_pixels(picture, s.file.written, p.where_of("filename"));
+    if (s.mis_compensation) p.warn("'mis_compensation' has no effect: every lit direction keeps its chance");
+    const glm::mat3 rotation = checked_rotation(s.to_world, p.where_of("to_world"));
     EnvironmentPicture map(std::move(picture));
-    if (map.black() || scale == 0.0f) properties.warn("this environment map is black: it emits nothing");
-    return std::make_shared<EnvironmentMap>(std::move(map), rotation, scale);
+    if (map.black() || s.scale == 0.0f) p.warn("this environment map is black: it emits nothing");
+    return std::make_shared<EnvironmentMap>(std::move(map), rotation, s.scale);
 }
 
 }  // namespace
@@ -86,20 +89,22 @@ std::shared_ptr<Emitter> make_environment_map(Bitmap picture, const Transform& t
 }
 
 void register_envmap(Registry& registry) {
-    registry.add(
-        {Category::emitter,
-         "envmap",
-         "Light from all around, from a latitude-longitude picture: y is up, u = atan2(x, -z) / 2 pi, "
-         "v = acos(y) / pi. Columns wrap around, the first and the last row lie at the poles.",
-         {{"filename", "string", "", "the picture (EXR, HDR, PNG, ...) [W/(m^2 sr)]"},
-          {"scale", "float", "1", "multiplies the picture"},
-          {"mis_compensation", "boolean", "false", "known from Mitsuba 3, without effect"},
-          {"to_world", "transform", "identity", "turns the picture; no stretching"}},
-         R"(<emitter type="envmap">
+    add_type<EnvironmentMapSettings>(
+        registry, Category::emitter, "envmap",
+        "Light from all around, from a latitude-longitude picture: y is up, u = atan2(x, -z) / 2 pi, "
+        "v = acos(y) / pi. Columns wrap around, the first and the last row lie at the poles.",
+        {row("filename", &EnvironmentMapSettings::file, any("W/(m^2 sr)"),
+             "The picture (EXR, HDR, PNG, ...).")
+             .required(),
+         row("scale", &EnvironmentMapSettings::scale, brightness(), "Multiplies the picture."),
+         row("mis_compensation", &EnvironmentMapSettings::mis_compensation,
+             "Known from Mitsuba 3, without effect."),
+         row("to_world", &EnvironmentMapSettings::to_world, "Turns the picture; no stretching.")},
+        R"(<emitter type="envmap">
     <string name="filename" value="sky.exr"/>
     <float name="scale" value="2"/>
-</emitter>)"},
-        create);
+</emitter>)",
+        create_environment_map);
 }
 
 }  // namespace mote::lights

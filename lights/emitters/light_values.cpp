@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "core/scene/medium.h"
-
 namespace mote::lights {
 
 using namespace core;
@@ -17,11 +15,10 @@ Rgb checked_brightness(const Rgb& value, const std::string& name, const SourceLo
         where);
 }
 
-Rgb read_brightness(const Properties& properties, const std::string& name) {
-    const Rgb value =
-        checked_brightness(properties.get_rgb(name, Rgb(1.0f)), name, properties.where_of(name));
-    if (is_black(value)) properties.warn("'" + name + "' is zero: this light emits nothing");
-    return value;
+Range brightness(std::string unit) { return between(0, double(brightest), std::move(unit)); }
+
+void warn_of_black(const Properties& properties, const std::string& name, float largest) {
+    if (!(largest > 0.0f)) properties.warn("'" + name + "' is zero: this light emits nothing");
 }
 
 Vec3 checked_direction(const Vec3d& direction, const SourceLocation& where) {
@@ -45,10 +42,6 @@ glm::mat3 checked_rotation(const Transform& to_world, const SourceLocation& wher
                     "move and scale evenly",
                     where);
     return glm::mat3(rotation);
-}
-
-std::shared_ptr<Medium> read_medium(const Properties& properties) {
-    return properties.child_of<Medium>(Category::medium);
 }
 
 }  // namespace mote::lights

@@ -1,6 +1,5 @@
 // The point light: equal intensity in all directions from one point.
 #include "core/math/warp.h"
-#include "core/objects/registry.h"
 #include "core/scene/medium.h"
 #include "lights/emitters/emitters.h"
 #include "lights/emitters/light_values.h"
@@ -48,14 +47,19 @@ class PointLight final : public Emitter {
     std::shared_ptr<Medium> around_;
 };
 
-std::shared_ptr<Object> create(const Properties& properties) {
-    if (properties.has("position") && properties.has("to_world"))
-        throw InputError("a point light takes 'position' or 'to_world', not both",
-                         properties.where_of("to_world"));
-    const Vec3d origin = properties.get_transform().point(Vec3d(0.0));
-    const Vec3d position = properties.get_vec3("position", origin);
-    return std::make_shared<PointLight>(Vec3(position), read_brightness(properties, "intensity"),
-                                        read_medium(properties));
+struct PointLightSettings {
+    Rgb intensity{1.0f};
+    Vec3d position{0.0};
+    Transform to_world;
+    std::shared_ptr<Medium> medium;
+};
+
+std::shared_ptr<Emitter> create_point(const PointLightSettings& s, const Properties& p) {
+    if (p.has("position") && p.has("to_world"))
+        throw InputError("a point light takes 'position' or 'to_world', not both", p.where_of("to_world"));
+    warn_of_black(p, "intensity", max_component(s.intensity));
+    const Vec3d position = p.has("to_world") ? s.to_world.point(Vec3d(0.0)) : s.position;
+    return std::make_shared<PointLight>(Vec3(position), s.intensity, s.medium);
 }
 
 }  // namespace
@@ -65,20 +69,17 @@ std::shared_ptr<Emitter> make_point_light(const Vec3d& position, const Rgb& inte
 }
 
 void register_point(Registry& registry) {
-    registry.add(
-        {Category::emitter,
-         "point",
-         "A light at one point, equally bright in all directions.",
-         {{"intensity", "rgb", "1", "radiant intensity [W/sr]"},
-          {"position", "point", "0, 0, 0", "where it stands [m]"},
-          {"to_world", "transform", "identity", "instead of position: moves the origin"},
-          {"medium", "medium", "",
-           "the medium around the light; when absent, that of the shapes around it, or the outermost one"}},
-         R"(<emitter type="point">
+    add_type<PointLightSettings>(
+        registry, Category::emitter, "point", "A light at one point, equally bright in all directions.",
+        {row("intensity", &PointLightSettings::intensity, brightness("W/sr"), "Radiant intensity."),
+         point_row("position", &PointLightSettings::position, "m", "Its position."),
+         row("to_world", &PointLightSettings::to_world, "Instead of position: moves the origin."),
+         medium_row<PointLightSettings>()},
+        R"(<emitter type="point">
     <point name="position" x="0" y="2" z="0"/>
     <rgb name="intensity" value="10"/>
-</emitter>)"},
-        create);
+</emitter>)",
+        create_point);
 }
 
 }  // namespace mote::lights

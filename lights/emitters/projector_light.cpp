@@ -9,7 +9,6 @@
 #include "core/materials/pictured_texture.h"
 #include "core/materials/textures.h"
 #include "core/math/distribution.h"
-#include "core/objects/registry.h"
 #include "core/scene/medium.h"
 #include "lights/emitters/emitters.h"
 #include "lights/emitters/light_cone.h"
@@ -153,7 +152,7 @@ class ProjectorLight final : public Emitter, public ConeLight {
     glm::mat3 world_from_local_;
     float scale_;
     Vec2 half_;  ///< half width and height of the picture at distance 1
-    std::shared_ptr<Texture> picture_;
+    TexturePtr picture_;
     std::shared_ptr<Medium> around_;
     Distribution2D table_;  ///< empty: even
     Rgb power_{0.0f};
@@ -170,19 +169,23 @@ std::shared_ptr<Emitter> checked_projector(ProjectorSettings s, const SourceLoca
     return std::make_shared<ProjectorLight>(s, checked_rotation(s.to_world, where), std::move(around));
 }
 
-std::shared_ptr<Object> create(const Properties& p) {
-    ProjectorSettings s;
-    s.to_world = rigid_to_world(p);
-    s.irradiance = p.child<Texture>("irradiance");
-    if (!s.irradiance)
-        s.irradiance = make_constant_texture(read_brightness(p, "irradiance"));
-    else if (!(s.irradiance->maximum() > 0.0f))
-        p.warn("'irradiance' is black: this light emits nothing");
-    s.scale = float(p.get_float_in("scale", 1.0, 0.0, double(brightest)));
+struct ProjectorFileSettings {
+    TexturePtr irradiance = make_constant_texture(Rgb(1.0f));
+    float scale = 1.0f;
+    Transform to_world;
+    ViewSettings view;
+    std::shared_ptr<Medium> medium;
+};
+
+std::shared_ptr<Emitter> create_projector(const ProjectorFileSettings& s, const Properties& p) {
+    ProjectorSettings projector;
+    projector.to_world = rigid_to_world(s.to_world, p);
+    projector.irradiance = s.irradiance, projector.scale = s.scale;
+    warn_of_black(p, "irradiance", s.irradiance->maximum());
     const glm::ivec2 size = size_of(*s.irradiance);
-    s.tan_half_fov_x = tan_half_fov_x(p, double(size.x) / double(size.y));
-    if (s.scale == 0.0f) p.warn("'scale' is zero: this light emits nothing");
-    return checked_projector(s, p.where, read_medium(p));
+    projector.tan_half_fov_x = tan_half_fov_x(s.view, double(size.x) / double(size.y), p);
+    warn_of_black(p, "scale", s.scale);
+    return checked_projector(projector, p.where, s.medium);
 }
 
 }  // namespace
@@ -192,25 +195,21 @@ std::shared_ptr<Emitter> make_projector_light(const ProjectorSettings& settings)
 }
 
 void register_projector(Registry& registry) {
-    Manual manual{
-        Category::emitter,
-        "projector",
+    add_type<ProjectorFileSettings>(
+        registry, Category::emitter, "projector",
         "Throws a picture along +z, as a perspective camera with these parameters would see it; +X is to the "
         "picture's left. Multiplied by pi: a white diffuse wall at distance 1 shows its values.",
-        {{"irradiance", "texture", "1",
-          "the picture: irradiance over pi at distance 1 [W/(m^2 sr)], on a surface that faces the "
-          "projector"},
-         {"scale", "float", "1", "multiplies the picture"},
-         {"to_world", "transform", "identity", "places and turns the light; no scaling"},
-         {"medium", "medium", "",
-          "the medium around the light; when absent, that of the shapes around it, or the outermost one"}},
+        {row("irradiance", &ProjectorFileSettings::irradiance, brightness("W/(m^2 sr)"),
+             "The picture: irradiance over pi at distance 1, on a surface that faces the projector."),
+         row("scale", &ProjectorFileSettings::scale, brightness(), "Multiplies the picture."),
+         row("to_world", &ProjectorFileSettings::to_world, "Places and turns the light; no scaling."),
+         medium_row<ProjectorFileSettings>(), within(&ProjectorFileSettings::view, view_rows())},
         R"(<emitter type="projector">
     <transform name="to_world"><lookat origin="0, 2, 3" target="0, 0, 0" up="0, 1, 0"/></transform>
     <float name="fov" value="30"/>
     <texture name="irradiance" type="checkerboard"/>
-</emitter>)"};
-    add_view_parameters(manual.parameters);
-    registry.add(std::move(manual), create);
+</emitter>)",
+        create_projector);
 }
 
 }  // namespace mote::lights

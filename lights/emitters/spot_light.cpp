@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "core/math/warp.h"
-#include "core/objects/registry.h"
 #include "core/scene/medium.h"
 #include "lights/emitters/emitters.h"
 #include "lights/emitters/light_cone.h"
@@ -114,7 +113,7 @@ class SpotLight final : public Emitter, public ConeLight {
     float cutoff_, beam_;  ///< radians
     float one_minus_cos_cutoff_;
     float texture_scale_;
-    std::shared_ptr<Texture> texture_;
+    TexturePtr texture_;
     std::shared_ptr<Medium> around_;
     Rgb power_;
 };
@@ -137,16 +136,26 @@ std::shared_ptr<Emitter> checked_spot(const SpotSettings& s, const SourceLocatio
     return std::make_shared<SpotLight>(s, checked_rotation(s.to_world, where), std::move(around));
 }
 
-std::shared_ptr<Object> create(const Properties& properties) {
-    SpotSettings s;
-    s.to_world = properties.get_transform();
-    s.intensity = read_brightness(properties, "intensity");
-    s.cutoff_angle = properties.get_float("cutoff_angle", 20.0) * degrees;
-    s.beam_width = properties.get_float("beam_width", 0.75 * s.cutoff_angle / degrees) * degrees;
-    s.texture = properties.child<Texture>("texture");
-    if (s.texture && !(s.texture->maximum() > 0.0f))
-        properties.warn("'texture' is black: this light emits nothing");
-    return checked_spot(s, properties.where, read_medium(properties));
+/// As a scene file gives it: angles in degrees.
+struct SpotFileSettings {
+    Rgb intensity{1.0f};
+    double cutoff_angle = 20.0;
+    std::optional<double> beam_width;
+    TexturePtr texture;
+    Transform to_world;
+    std::shared_ptr<Medium> medium;
+};
+
+std::shared_ptr<Emitter> create_spot(const SpotFileSettings& s, const Properties& p) {
+    SpotSettings spot;
+    spot.to_world = s.to_world;
+    spot.intensity = s.intensity;
+    spot.cutoff_angle = s.cutoff_angle * degrees;
+    spot.beam_width = s.beam_width.value_or(0.75 * spot.cutoff_angle / degrees) * degrees;
+    spot.texture = s.texture;
+    warn_of_black(p, "intensity", max_component(s.intensity));
+    if (s.texture) warn_of_black(p, "texture", s.texture->maximum());
+    return checked_spot(spot, p.where, s.medium);
 }
 
 }  // namespace
@@ -156,23 +165,25 @@ std::shared_ptr<Emitter> make_spot_light(const SpotSettings& settings) {
 }
 
 void register_spot(Registry& registry) {
-    registry.add(
-        {Category::emitter,
-         "spot",
-         "A cone of light from one point along +z, with a linear fall-off at its rim.",
-         {{"intensity", "rgb", "1", "radiant intensity inside the beam [W/sr]"},
-          {"cutoff_angle", "float", "20", "half angle of the cone, black beyond [degrees]"},
-          {"beam_width", "float", "0.75 cutoff_angle", "half angle of full intensity [degrees]"},
-          {"texture", "texture", "", "projected through the cone; its square touches the cone; multiplies"},
-          {"to_world", "transform", "identity", "places and turns the light; no stretching"},
-          {"medium", "medium", "",
-           "the medium around the light; when absent, that of the shapes around it, or the outermost one"}},
-         R"(<emitter type="spot">
+    add_type<SpotFileSettings>(
+        registry, Category::emitter, "spot",
+        "A cone of light from one point along +z, with a linear fall-off at its rim.",
+        {row("intensity", &SpotFileSettings::intensity, brightness("W/sr"),
+             "Radiant intensity inside the beam."),
+         row("cutoff_angle", &SpotFileSettings::cutoff_angle, any("degrees"),
+             "Half angle of the cone, black beyond."),
+         row("beam_width", &SpotFileSettings::beam_width, any("degrees"), "Half angle of full intensity.")
+             .when_absent("0.75 cutoff_angle"),
+         row("texture", &SpotFileSettings::texture,
+             "Projected through the cone; its square touches the cone; multiplies."),
+         row("to_world", &SpotFileSettings::to_world, "Places and turns the light; no stretching."),
+         medium_row<SpotFileSettings>()},
+        R"(<emitter type="spot">
     <transform name="to_world"><lookat origin="0, 3, 0" target="0, 0, 0" up="0, 0, 1"/></transform>
     <rgb name="intensity" value="20"/>
     <float name="cutoff_angle" value="30"/>
-</emitter>)"},
-        create);
+</emitter>)",
+        create_spot);
 }
 
 }  // namespace mote::lights

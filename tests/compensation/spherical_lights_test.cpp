@@ -19,10 +19,10 @@ using compensation::SphericalLight;
 namespace {
 
 const double pi_d = std::acos(-1.0);
-const auto diffuse = make_twosided(make_diffuse(nullptr));  // reflectance 0.5
+const auto diffuse = make_twosided(make_diffuse());  // reflectance 0.5
 
 BsdfPtr metal(float alpha) {
-    return make_twosided(make_rough_conductor({{Rgb(0.2f, 0.9f, 1.2f), Rgb(3.9f, 2.4f, 2.2f)}, nullptr},
+    return make_twosided(make_rough_conductor({{Rgb(0.2f, 0.9f, 1.2f), Rgb(3.9f, 2.4f, 2.2f)}},
                                               Microfacet(MicrofacetKind::ggx, alpha)));
 }
 BsdfPtr coated() { return make_twosided(make_rough_plastic({}, Microfacet(MicrofacetKind::ggx, 0.2f))); }

@@ -23,7 +23,7 @@ lights::VirtualPointLight light_at(const Vec3& position, const Vec3& normal = Ve
 
 /// Sixteen diffuse receivers around a point, facing up.
 struct Floor {
-    std::shared_ptr<Bsdf> bsdf = make_diffuse(nullptr);
+    std::shared_ptr<Bsdf> bsdf = make_diffuse();
     std::array<ScatteringVertex, 16> vertices;
     lights::ReceiverTile tile;
 

@@ -39,7 +39,7 @@ struct Materials {
         using namespace core;
         PlasticParameters diamond;
         diamond.int_ior = 2.4f;
-        const ConductorParameters copper{{Rgb(0.2f, 0.9f, 1.1f), Rgb(3.9f, 2.4f, 2.2f)}, nullptr};
+        const ConductorParameters copper{{Rgb(0.2f, 0.9f, 1.1f), Rgb(3.9f, 2.4f, 2.2f)}};
         for (const auto kind : {MicrofacetKind::ggx, MicrofacetKind::beckmann})
             for (const float alpha : {0.02f, 0.1f, 0.4f, 1.0f}) {
                 bsdfs.push_back(make_rough_plastic({}, Microfacet(kind, alpha)));
@@ -107,7 +107,7 @@ inline lights::VplSet random_lights(core::Rng& rng, const Materials& materials, 
 struct RandomReceivers {
     std::array<core::ScatteringVertex, 16> vertices;
     lights::ReceiverTile tile;
-    std::shared_ptr<core::Bsdf> diffuse = core::make_diffuse(nullptr);
+    std::shared_ptr<core::Bsdf> diffuse = core::make_diffuse();
 
     RandomReceivers(core::Rng& rng, const Materials& materials, const core::Vec3& light, bool glossy = true) {
         using namespace core;

@@ -63,46 +63,50 @@ class CurveReader {
     CurveData data_;
 };
 
-std::shared_ptr<Object> make_curves(const Properties& p, CurveBasis basis) {
-    const std::string path = p.require_file("filename");
-    const Transform to_world = p.get_transform();
-    if (!to_world.valid())
-        throw InputError("the transform is singular or not finite", p.where_of("to_world"));
+struct CurveFileSettings {
+    FileName file;
+    Transform to_world;
+};
+
+template <CurveBasis Basis>
+std::shared_ptr<Object> make_curves(const CurveFileSettings& s) {
     try {
-        const std::vector<std::byte> bytes = read_whole_file(path);
+        const std::vector<std::byte> bytes = read_whole_file(s.file.path);
         const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-        return std::make_shared<Curves>(CurveReader(basis, path, to_world).read(text));
+        return std::make_shared<Curves>(CurveReader(Basis, s.file.path, s.to_world).read(text));
     } catch (const InputError& error) {
         if (!error.where().file.empty()) throw;
-        throw InputError(error.what(), {path, 0});
+        throw InputError(error.what(), {s.file.path, 0});
     }
 }
 
-Manual curve_manual(const char* type, const std::string& what) {
-    return {Category::shape,
-            type,
-            what +
-                " The file holds a control point a line, x y z and the radius, and an empty line between "
-                "curves. Curves are met from outside only; they take no light and no medium.",
-            {{"filename", "string", "", "the file, relative to the scene file"},
-             to_world_parameter("any affine transform of the control points; radii stay as they are")},
-            std::string("<shape type=\"") + type + R"(">
+template <CurveBasis Basis>
+void add_curves(Registry& registry, const std::string& type, const std::string& summary) {
+    add_type<CurveFileSettings>(
+        registry, Category::shape, type,
+        summary +
+            " The file holds a control point a line, x y z and the radius, and an empty line between curves. "
+            "Curves are met from outside only; they take no light and no medium.",
+        {row("filename", &CurveFileSettings::file, "The file, relative to the scene file.").required(),
+         row("to_world", &CurveFileSettings::to_world,
+             "Any affine transform of the control points; radii stay as they are.")},
+        "<shape type=\"" + type + R"(">
     <string name="filename" value="hair.txt"/>
-</shape>)"};
+</shape>)",
+        make_curves<Basis>);
 }
 
 }  // namespace
 
 void register_curve_files(Registry& registry) {
-    registry.add(curve_manual("bsplinecurve",
-                              "Round tubes along uniform cubic B-splines, at least four control points each, "
-                              "cut off at the ends."),
-                 [](const Properties& p) { return make_curves(p, CurveBasis::b_spline); });
-    registry.add(
-        curve_manual("linearcurve",
-                     "Round tubes along straight pieces, at least two control points, with round joints and "
-                     "ends. Pieces shorter than about 0.01 are met inexactly near their joints (by Embree)."),
-        [](const Properties& p) { return make_curves(p, CurveBasis::linear); });
+    add_curves<CurveBasis::b_spline>(
+        registry, "bsplinecurve",
+        "Round tubes along uniform cubic B-splines, at least four control points "
+        "each, cut off at the ends.");
+    add_curves<CurveBasis::linear>(
+        registry, "linearcurve",
+        "Round tubes along straight pieces, at least two control points, with round joints and ends. Pieces "
+        "shorter than about 0.01 are met inexactly near their joints (by Embree).");
 }
 
 }  // namespace mote::core

@@ -2,26 +2,21 @@
 #include "core/formats/pictures/image_file.h"
 #include "core/formats/register_formats.h"
 #include "core/materials/textures.h"
-#include "core/objects/error.h"
-#include "core/objects/properties.h"
+#include "core/parameters/add_type.h"
 
 namespace mote::core {
 namespace {
 
-std::shared_ptr<Object> create_bitmap_texture(const Properties& p) {
-    BitmapTextureParameters parameters;
-    parameters.filter = p.get_choice("filter_type", "bilinear", {"bilinear", "nearest"}) == "nearest"
-                            ? TextureFilter::nearest
-                            : TextureFilter::bilinear;
-    const std::string wrap = p.get_choice("wrap_mode", "repeat", {"repeat", "mirror", "clamp"});
-    parameters.wrap = wrap == "repeat"   ? TextureWrap::repeat
-                      : wrap == "mirror" ? TextureWrap::mirror
-                                         : TextureWrap::clamp;
-    parameters.to_uv = p.get_transform("to_uv");
-    parameters.name = p.get_string("filename", "");
-    const std::string path = p.require_file("filename");
+struct BitmapFileSettings {
+    FileName file;
+    BitmapTextureParameters texture;
+    bool raw = false;
+};
+
+std::shared_ptr<Object> create_bitmap_texture(BitmapFileSettings s, const Properties& p) {
+    s.texture.name = s.file.written;
     try {
-        return make_bitmap_texture(read_bitmap(path, p.get_bool("raw", false)), parameters);
+        return make_bitmap_texture(read_bitmap(s.file.path, s.raw), s.texture);
     } catch (const InputError& e) {
         if (e.where().line > 0) throw;
         throw InputError(e.what(), p.where_of("filename"));
@@ -31,21 +26,29 @@ std::shared_ptr<Object> create_bitmap_texture(const Properties& p) {
 }  // namespace
 
 void register_bitmap_texture(Registry& registry) {
-    Manual manual{
-        Category::texture,
-        "bitmap",
+    using Parameters = BitmapTextureParameters;
+    add_type<BitmapFileSettings>(
+        registry, Category::texture, "bitmap",
         "A picture file over the unit square of uv. The top row of the picture lies at v = 0 (the OBJ reader "
         "turns v over, as in Mitsuba).",
-        {{"filename", "string", "", "the picture: PNG, JPEG, EXR, HDR, TGA, ..."},
-         {"filter_type", "string", "bilinear", "bilinear or nearest"},
-         {"wrap_mode", "string", "repeat", "repeat, mirror or clamp: what lies outside the unit square"},
-         {"raw", "boolean", "false", "take 8-bit values as linear instead of sRGB"},
-         {"to_uv", "transform", "identity", "applied to the uv coordinates first"}},
+        {row("filename", &BitmapFileSettings::file, "The picture: PNG, JPEG, EXR, HDR, TGA, ...").required(),
+         within(&BitmapFileSettings::texture,
+                row("filter_type", &Parameters::filter,
+                    {{"bilinear", TextureFilter::bilinear}, {"nearest", TextureFilter::nearest}},
+                    "Values between texels."),
+                row("wrap_mode", &Parameters::wrap,
+                    {{"repeat", TextureWrap::repeat},
+                     {"mirror", TextureWrap::mirror},
+                     {"clamp", TextureWrap::clamp}},
+                    "Values outside the unit square.")),
+         row("raw", &BitmapFileSettings::raw, "Take 8-bit values as linear instead of sRGB."),
+         within(&BitmapFileSettings::texture,
+                row("to_uv", &Parameters::to_uv, "Applied to the uv coordinates first."))},
         R"(<texture type="bitmap" name="reflectance">
     <string name="filename" value="wood.png"/>
     <string name="wrap_mode" value="mirror"/>
-</texture>)"};
-    registry.add(std::move(manual), create_bitmap_texture);
+</texture>)",
+        create_bitmap_texture);
 }
 
 }  // namespace mote::core

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/cameras/film_objects.h"
+#include "core/cameras/sensors.h"
 #include "core/formats/xml/attribute_checks.h"
 #include "core/formats/xml/scene_values.h"
 #include "core/geometry/curves.h"

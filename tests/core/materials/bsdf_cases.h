@@ -68,7 +68,7 @@ inline std::shared_ptr<core::Texture> board(float a, float b) {
                                            core::make_constant_texture(core::Rgb(b)));
 }
 
-inline core::ConductorParameters gold() { return {*core::conductor_index("Au"), nullptr}; }
+inline core::ConductorParameters gold() { return {*core::conductor_index("Au")}; }
 
 /// The colour that stands for a normal in a normal map.
 inline core::TexturePtr normal_colour(const core::Vec3& n) {
@@ -120,7 +120,7 @@ inline std::vector<BsdfCase> principled_cases() {
         return make_principled_thin(p);
     };
     PrincipledParameters bubble = principled_mixture(), boards = principled_mixture();
-    bubble.eta = 0.8f, bubble.metallic = bubble.anisotropic = nullptr, bubble.roughness = grey(0.4f);
+    bubble.eta = 0.8f, bubble.metallic = bubble.anisotropic = grey(0.0f), bubble.roughness = grey(0.4f);
     boards.roughness = board(0.6f, 0.4f), boards.spec_trans = board(0.7f, 0.3f),
     boards.metallic = board(0.1f, 0.4f);
     boards.rates = {0.4f, 2.0f, 3.0f};
@@ -159,12 +159,12 @@ inline std::vector<BsdfCase> smooth_cases() {
     using namespace core;
     const Microfacet stretched_b(MicrofacetKind::beckmann, 0.1f, 0.5f);
     const Microfacet stretched_g(MicrofacetKind::ggx, 0.6f, 0.15f);
-    const DielectricParameters glass{1.5f, 1.0f, nullptr, nullptr};
+    const DielectricParameters glass{1.5f, 1.0f};
     const DielectricParameters tinted{1.5f, 1.0f, colour(0.8f, 0.5f, 0.3f), colour(0.2f, 0.6f, 0.9f)};
-    const DielectricParameters bubble{1.0f, 1.333f, nullptr, nullptr};
-    const PlasticParameters plastic{1.49f, 1.000277f, colour(0.6f, 0.9f, 0.1f), nullptr, false};
+    const DielectricParameters bubble{1.0f, 1.333f};
+    const PlasticParameters plastic{1.49f, 1.000277f, colour(0.6f, 0.9f, 0.1f), grey(1.0f), false};
     const PlasticParameters nonlinear{1.9f, 1.0f, colour(0.9f, 0.5f, 0.1f), colour(0.3f, 0.7f, 1.0f), true};
-    const PlasticParameters conserving{1.49f, 1.0f, colour(0.2f, 0.6f, 0.9f), nullptr, true, true};
+    const PlasticParameters conserving{1.49f, 1.0f, colour(0.2f, 0.6f, 0.9f), grey(1.0f), true, true};
     const Roughness boards(MicrofacetKind::ggx, board(0.2f, 0.6f), board(0.5f, 0.3f));
     std::vector<BsdfCase> all = {
         {"diffuse", make_diffuse(colour(0.7f, 0.4f, 0.1f))},
@@ -238,8 +238,8 @@ inline std::vector<BsdfCase> delta_cases() {
         {"thindielectric_tinted",
          make_thin_dielectric({1.5f, 1.0f, colour(0.8f, 0.5f, 0.3f), colour(0.2f, 0.6f, 0.9f)})},
         {"dielectric", make_dielectric({})},
-        {"dielectric_water", make_dielectric({1.333f, 1.0f, nullptr, nullptr}), 1.333f},
-        {"dielectric_equal", make_dielectric({1.4f, 1.4f, nullptr, nullptr})},
+        {"dielectric_water", make_dielectric({1.333f, 1.0f}), 1.333f},
+        {"dielectric_equal", make_dielectric({1.4f, 1.4f})},
         {"thindielectric", make_thin_dielectric({})},
         {"null", make_null()},
         {"mask_null", make_mask(make_null(), grey(0.5f))},

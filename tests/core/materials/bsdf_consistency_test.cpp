@@ -194,7 +194,7 @@ TEST_CASE("twosided mirrors its front to the back", "[materials]") {
     CHECK(diffuse->diffuse_reflectance(point, {0, 0, -1})->x == 0.75f);
     CHECK_FALSE(core::make_twosided(core::make_plastic({}))->diffuse_reflectance(point, {0, 0, 1}));
     CHECK_THROWS_AS(core::make_twosided(core::make_dielectric({})), core::InputError);
-    CHECK_THROWS_AS(core::make_twosided(core::make_diffuse(nullptr), core::make_null()), core::InputError);
+    CHECK_THROWS_AS(core::make_twosided(core::make_diffuse(), core::make_null()), core::InputError);
 }
 
 TEST_CASE("null passes everything straight on", "[materials]") {

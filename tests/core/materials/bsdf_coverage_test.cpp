@@ -41,7 +41,7 @@ TEST_CASE("cases without a chi-square test have no smooth part", "[materials][bs
 TEST_CASE("a BSDF registered without a case is found", "[materials][bsdf][chi2][planted]") {
     core::Registry larger = registry();
     larger.add({Category::bsdf, "velvet", "", {}, ""},
-               [](const core::Properties&) { return core::make_diffuse(nullptr); });
+               [](const core::Properties&) { return core::make_diffuse(); });
     CHECK(untested_types(larger, Category::bsdf, tested_types()) ==
           std::vector<std::string>{"no chi² case for bsdf 'velvet'"});
     std::set<std::string> misspelt = tested_types();

@@ -105,7 +105,7 @@ TEST_CASE("parameters reach the BSDFs", "[materials][factories]") {
     const auto water = made.bsdf("dielectric", {{"int_ior", std::string("Water")}, {"ext_ior", 1.0}});
     CHECK(water->sample(point, {0, 0, 1}, 0.9f, {}, TransportMode::radiance)->eta == Approx(1.333f));
     const Rgb base(0.8f, 0.5f, 0.1f);
-    const core::PlasticParameters nonlinear{1.49f, 1.000277f, core::make_constant_texture(base), nullptr,
+    const core::PlasticParameters nonlinear{1.49f, 1.000277f, core::make_constant_texture(base), grey(1.0f),
                                             true};
     CHECK(eval(*made.bsdf("plastic", {{"nonlinear", true}, {"diffuse_reflectance", base}})) ==
           eval(*core::make_plastic(nonlinear)));
@@ -141,7 +141,7 @@ TEST_CASE("bad values are refused with file and line", "[materials][factories]")
     made.refused("phong", {{"exponent", -1.0}}, "exponent");
     made.refused("twosided", {}, "needs a nested BSDF");
     made.refused("twosided", {}, "transmits", {core::make_dielectric({})});
-    const auto d = core::make_diffuse(nullptr);
+    const auto d = core::make_diffuse();
     made.refused("twosided", {}, "not more", {d, d, d});
 }
 

@@ -40,7 +40,7 @@ const Vec3 wo = direction_at(0.7, 0.5);
 }  // namespace
 
 TEST_CASE("the unharmed pair passes with the options of the planted errors", "[materials][chi2][planted]") {
-    for (const core::BsdfPtr& bsdf : {core::BsdfPtr(core::make_diffuse(nullptr)),
+    for (const core::BsdfPtr& bsdf : {core::BsdfPtr(core::make_diffuse()),
                                       core::BsdfPtr(core::make_rough_conductor(gold(), beckmann(0.3f)))}) {
         const Chi2Result result = chi2_test(sampler_of(bsdf, wo), density_of(bsdf, wo), options(1000000));
         INFO(result.message);
@@ -49,13 +49,13 @@ TEST_CASE("the unharmed pair passes with the options of the planted errors", "[m
 }
 
 TEST_CASE("a dropped cosine is found", "[materials][chi2][planted]") {
-    const core::BsdfPtr diffuse = core::make_diffuse(nullptr);
+    const core::BsdfPtr diffuse = core::make_diffuse();
     const auto uniform = [](const Vec3& w) { return w.z > 0.0f ? double(core::inv_two_pi) : 0.0; };
     CHECK_FALSE(chi2_test(sampler_of(diffuse, wo), uniform, options()).passed);
 }
 
 TEST_CASE("a density off by two percent is found", "[materials][chi2][planted]") {
-    for (const core::BsdfPtr& bsdf : {core::BsdfPtr(core::make_diffuse(nullptr)),
+    for (const core::BsdfPtr& bsdf : {core::BsdfPtr(core::make_diffuse()),
                                       core::BsdfPtr(core::make_rough_conductor(gold(), ggx(0.2f))),
                                       core::BsdfPtr(core::make_plastic({}))})
         for (const double factor : {0.98, 1.02}) {
@@ -88,7 +88,7 @@ TEST_CASE("a lobe shifted by a degree is found", "[materials][chi2][planted]") {
 }
 
 TEST_CASE("samples where the density is zero are found", "[materials][chi2][planted]") {
-    const core::BsdfPtr diffuse = core::make_diffuse(nullptr);
+    const core::BsdfPtr diffuse = core::make_diffuse();
     const auto straight = sampler_of(diffuse, wo);
     const auto stray = [&](core::Rng& rng) -> std::optional<Vec3> {
         const auto w = straight(rng);

@@ -89,7 +89,6 @@ TEST_CASE("a single texel and a single value are constant", "[materials][texture
     CHECK(t->eval({0.7f, -3.0f}).x == Approx(0.3f));
     CHECK(TextureSlot(t).eval({0, 0}).x == Approx(0.3f));
     CHECK_FALSE(TextureSlot(t).textured());
-    CHECK(TextureSlot(nullptr, Rgb(0.25f)).eval({0, 0}) == Rgb(0.25f));
 }
 
 TEST_CASE("bitmaps with bad values are refused with the first position", "[materials][texture]") {

@@ -57,20 +57,20 @@ TEST_CASE("a mask divides light between passing and its BSDF, where its texture 
     CHECK_FALSE(leaf->traits().tints);
 
     // Values beyond 0 to 1 are cut; in a mask in a mask shares multiply; tinted glass tints what passes.
-    CHECK(core::make_mask(core::make_diffuse(nullptr), grey(3.0f))->straight_passage(point, wo).stops ==
+    CHECK(core::make_mask(core::make_diffuse(), grey(3.0f))->straight_passage(point, wo).stops ==
           1.0f);
-    CHECK(core::make_mask(core::make_diffuse(nullptr), grey(-1.0f))->straight_passage(point, wo).stops ==
+    CHECK(core::make_mask(core::make_diffuse(), grey(-1.0f))->straight_passage(point, wo).stops ==
           0.0f);
-    const auto twice = core::make_mask(core::make_mask(core::make_diffuse(nullptr), grey(0.5f)), grey(0.4f));
+    const auto twice = core::make_mask(core::make_mask(core::make_diffuse(), grey(0.5f)), grey(0.4f));
     CHECK(twice->straight_passage(point, wo).stops == Approx(0.2));
     const auto red = core::make_constant_texture({0.9f, 0.5f, 0.1f});
-    const auto pane = core::make_thin_dielectric({1.5f, 1.0f, nullptr, red});
+    const auto pane = core::make_thin_dielectric({1.5f, 1.0f, grey(1.0f), red});
     const auto masked = core::make_mask(pane, grey(0.25f));
     const Rgb expected = 0.75f + 0.25f * pane->straight_passage(point, wo).transmittance();
     const Rgb passes = masked->straight_passage(point, wo).transmittance();
     for (int c = 0; c < 3; ++c) CHECK(passes[c] == Approx(expected[c]));
     CHECK((masked->traits().tints &&
-           !core::make_mask(core::make_thin_dielectric({}), nullptr)->traits().tints));
+           !core::make_mask(core::make_thin_dielectric({}), grey(0.5f))->traits().tints));
 }
 
 TEST_CASE("a blend whose one part is black reflects all of the other's share", "[materials][mask]") {
@@ -112,9 +112,9 @@ TEST_CASE("the chances of sample() are those of straight_passage()", "[materials
 }
 
 TEST_CASE("a vertex on a mask that stopped a path scatters as if there were no holes", "[materials][mask]") {
-    const auto inner = core::make_rough_plastic({1.5f, 1.0f, grey(0.5f), nullptr, false}, beckmann(0.3f));
+    const auto inner = core::make_rough_plastic({1.5f, 1.0f, grey(0.5f), grey(1.0f), false}, beckmann(0.3f));
     const auto mask = core::make_mask(inner, grey(0.3f)),
-               diffuse = core::make_mask(core::make_diffuse(nullptr), grey(0.3f));
+               diffuse = core::make_mask(core::make_diffuse(), grey(0.3f));
     core::Rng rng(32);
     core::ScatteringVertex plain, stopped;
     plain.bsdf = inner.get(), stopped.bsdf = mask.get();
