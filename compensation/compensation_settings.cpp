@@ -1,95 +1,87 @@
 #include "compensation/compensation_settings.h"
 
-#include "core/objects/properties.h"
-#include "core/objects/registry.h"
-
 namespace mote::compensation {
 
 using namespace core;
 
 namespace {
 
-const std::vector<std::string> strategies = {"1-to-n", "n-to-1", "1-to-1", "1-to-1-homogeneous"};
+/// Strategy and placement together, as scene files name them.
+enum class Joining : std::uint8_t { one_to_n, n_to_one, one_to_one, one_to_one_homogeneous };
+enum class Receivers : std::uint8_t { all, surfaces, media };
 
-void read_strategy(const Properties& p, CompensationSettings& s, const std::string& default_strategy) {
-    const std::string word = p.get_choice("strategy", default_strategy, strategies);
-    s.strategy = word == "1-to-n"   ? Strategy::one_to_n
-                 : word == "n-to-1" ? Strategy::n_to_one
-                                    : Strategy::one_to_one;
-    s.placement = word == "1-to-1-homogeneous" ? Placement::in_region : Placement::free_path;
+const Choices<Joining> joinings{{"1-to-n", Joining::one_to_n},
+                                {"n-to-1", Joining::n_to_one},
+                                {"1-to-1", Joining::one_to_one},
+                                {"1-to-1-homogeneous", Joining::one_to_one_homogeneous}};
+
+/// The parameters of a scene file, and what they set.
+struct CompensationFile {
+    Joining joining = Joining::one_to_n;
+    Receivers receivers = Receivers::all;
+    CompensationSettings settings;
+};
+
+Rows<CompensationFile> common_rows() {
+    using S = CompensationFile;
+    return {row("strategy", &S::joining, joinings,
+                "1-to-n: a receiver makes one vertex, joined to all VPLs; n-to-1: one vertex for each VPL; "
+                "1-to-1: like n-to-1, and VPLs are shared out among the receivers along the eye ray; "
+                "1-to-1-homogeneous: like 1-to-1, with vertices always inside the bounding region."),
+            row("receivers", &S::receivers,
+                {{"all", Receivers::all}, {"surfaces", Receivers::surfaces}, {"media", Receivers::media}},
+                "Receivers whose light is compensated.")};
 }
 
-void read_receivers(const Properties& p, CompensationSettings& s) {
-    const std::string word = p.get_choice("receivers", "all", {"all", "surfaces", "media"});
-    s.surfaces = word != "media", s.media = word != "surfaces";
-}
-
-CompensationSettings read_exact(const Properties& p) {
-    CompensationSettings s;
-    s.enabled = true;
-    read_strategy(p, s, "1-to-n");
-    read_receivers(p, s);
-    return s;
-}
-
-CompensationSettings read_approximate(const Properties& p) {
-    CompensationSettings s;
-    s.enabled = true;
-    read_strategy(p, s, "1-to-1-homogeneous");
-    read_receivers(p, s);
-    const auto depth = p.get_int("depth", 1);
-    if (depth < -1 || depth > 1000)
-        throw InputError("depth must lie between 0 and 1000, or be -1 for no limit", p.where_of("depth"));
-    s.depth = int(depth);
-    s.local_visibility = p.get_bool("local_visibility", false);
-    s.transmittance = p.get_choice("transmittance", "mean", {"mean", "exact"}) == "mean"
-                          ? LocalTransmittance::mean
-                          : LocalTransmittance::exact;
-    return s;
-}
-
-std::vector<Parameter> common_parameters(const std::string& strategy) {
+ParameterList<CompensationFile> approximate_rows() {
+    using S = CompensationSettings;
+    CompensationFile defaults;
+    defaults.joining = Joining::one_to_one_homogeneous;
+    defaults.settings.depth = 1, defaults.settings.local_visibility = false;
+    defaults.settings.transmittance = LocalTransmittance::mean;
     return {
-        {"strategy", "string", strategy,
-         "1-to-n: a receiver makes one vertex, joined to all VPLs; n-to-1: one vertex for each VPL; 1-to-1: "
-         "the same, and VPLs are shared out among the receivers along the eye ray; 1-to-1-homogeneous: the "
-         "same with vertices always inside the bounding region"},
-        {"receivers", "string", "all", "which light is compensated: all, surfaces or media"}};
+        defaults,
+        {common_rows(),
+         within(&CompensationFile::settings,
+                row("depth", &S::depth, between(0, 1000).or_else(-1, "no limit"), "Steps of the recursion."),
+                row("local_visibility", &S::local_visibility,
+                    "Rays from receivers in media look for surfaces and boundaries; from surfaces they "
+                    "always do."),
+                row("transmittance", &S::transmittance,
+                    {{"mean", LocalTransmittance::mean}, {"exact", LocalTransmittance::exact}},
+                    "Inside the bounding region: from the mean extinction there, or exact."))}};
 }
 
-std::shared_ptr<Object> make(const CompensationSettings& settings) {
-    return std::make_shared<Compensation>(settings);
+std::shared_ptr<Compensation> make(const CompensationFile& file) {
+    CompensationSettings s = file.settings;
+    s.enabled = true;
+    s.strategy = file.joining == Joining::one_to_n   ? Strategy::one_to_n
+                 : file.joining == Joining::n_to_one ? Strategy::n_to_one
+                                                     : Strategy::one_to_one;
+    s.placement =
+        file.joining == Joining::one_to_one_homogeneous ? Placement::in_region : Placement::free_path;
+    s.surfaces = file.receivers != Receivers::media, s.media = file.receivers != Receivers::surfaces;
+    return std::make_shared<Compensation>(s);
 }
 
 }  // namespace
 
 std::string CompensationSettings::strategy_name() const {
-    const bool homogeneous = placement == Placement::in_region;
-    return strategies[strategy == Strategy::one_to_one && homogeneous ? 3 : std::size_t(strategy)];
+    if (strategy == Strategy::one_to_one && placement == Placement::in_region)
+        return joinings.word(Joining::one_to_one_homogeneous);
+    return joinings.word(Joining(strategy));
 }
 
 void register_compensation(Registry& registry) {
-    registry.add({Category::compensation,
-                  "none",
-                  "Nothing: the bound darkens light over short distances.",
-                  {},
-                  R"(<compensation type="none"/>)"},
-                 [](const Properties&) { return make({}); });
-    registry.add({Category::compensation, "exact",
-                  "Brings back all light that the bound takes (Kollig and Keller 2006; Raab et al. 2008).",
-                  common_parameters("1-to-n"), R"(<compensation type="exact"/>)"},
-                 [](const Properties& p) { return make(read_exact(p)); });
-    auto parameters = common_parameters("1-to-1-homogeneous");
-    parameters.push_back({"depth", "integer", "1", "steps of the recursion; -1: no limit"});
-    parameters.push_back({"local_visibility", "boolean", "false",
-                          "rays from receivers in media look for surfaces and boundaries; from surfaces they "
-                          "always do"});
-    parameters.push_back({"transmittance", "string", "mean",
-                          "inside the bounding region: from the mean extinction there, or exact"});
-    registry.add(
-        {Category::compensation, "approximate", "Approximate bias compensation (Engelhardt 2013, Sec. 10.2).",
-         parameters, R"(<compensation type="approximate"><integer name="depth" value="2"/></compensation>)"},
-        [](const Properties& p) { return make(read_approximate(p)); });
+    add_type(registry, Category::compensation, "none",
+             "Nothing: the bound darkens light over short distances.", R"(<compensation type="none"/>)",
+             [] { return std::make_shared<Compensation>(CompensationSettings{}); });
+    add_type(registry, Category::compensation, "exact",
+             "Brings back all light that the bound takes (Kollig and Keller 2006; Raab et al. 2008).",
+             ParameterList<CompensationFile>{common_rows()}, R"(<compensation type="exact"/>)", make);
+    add_type(registry, Category::compensation, "approximate",
+             "Approximate bias compensation (Engelhardt 2013, Sec. 10.2).", approximate_rows(),
+             R"(<compensation type="approximate"><integer name="depth" value="2"/></compensation>)", make);
 }
 
 }  // namespace mote::compensation

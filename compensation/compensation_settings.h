@@ -4,11 +4,7 @@
 
 #include <string>
 
-#include "core/objects/object.h"
-
-namespace mote::core {
-class Registry;
-}
+#include "core/parameters/add_type.h"
 
 namespace mote::compensation {
 
@@ -52,16 +48,7 @@ struct CompensationSettings {
 };
 
 /// A nested <compensation> of a scene file.
-class Compensation : public core::Object {
-  public:
-    /// Of settings, as scene files nest it.
-    explicit Compensation(const CompensationSettings& settings) : settings_(settings) {}
-    /// As given.
-    const CompensationSettings& settings() const { return settings_; }
-
-  private:
-    CompensationSettings settings_;
-};
+using Compensation = core::SettingsObject<CompensationSettings>;
 
 /// none, exact, approximate.
 void register_compensation(core::Registry& registry);

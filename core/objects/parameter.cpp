@@ -6,6 +6,12 @@
 
 namespace mote::core {
 
+Range Range::up_to(double its_upper) const {
+    Range result = *this;
+    result.upper = its_upper;
+    return result;
+}
+
 Range Range::or_else(double number, std::string its_meaning) const {
     Range result = *this;
     result.word = number, result.meaning = std::move(its_meaning);
@@ -14,50 +20,55 @@ Range Range::or_else(double number, std::string its_meaning) const {
 
 bool Range::contains(double number) const {
     if (word && number == *word) return true;
-    if (number == lower || number == upper) return !open && std::isfinite(number);
-    return number > lower && number < upper;
+    return (above ? number > lower : number >= lower) && (below ? number < upper : number <= upper);
 }
 
 std::string Range::text() const {
     std::string result;
     if (std::isfinite(lower) && std::isfinite(upper))
-        result = short_number(lower) + " to " + short_number(upper) + (open ? ", both excluded" : "");
+        result = (above ? "above " : "") + short_number(lower) + (below ? " to below " : " to ") +
+                 short_number(upper);
     else if (std::isfinite(lower))
-        result = open ? "above " + short_number(lower) : short_number(lower) + " or more";
+        result = above ? "above " + short_number(lower) : short_number(lower) + " or more";
     else if (std::isfinite(upper))
-        result = open ? "below " + short_number(upper) : short_number(upper) + " or less";
+        result = below ? "below " + short_number(upper) : short_number(upper) + " or less";
     return word ? result + "; " + short_number(*word) + ": " + meaning : result;
 }
 
 std::string Range::demand() const {
     const std::string of_unit = unit.empty() ? "" : " " + unit;
+    const std::string from = (above ? "be above " : "be at least ") + short_number(lower),
+                      to = (below ? "below " : "at most ") + short_number(upper);
     std::string result;
-    if (std::isfinite(lower) && std::isfinite(upper))
-        result = "must lie between " + short_number(lower) + " and " + short_number(upper) + of_unit +
-                 (open ? ", both excluded" : "");
-    else if (std::isfinite(lower))
-        result = (open ? "must be above " : "must be at least ") + short_number(lower) + of_unit;
+    if (!std::isfinite(upper))
+        result = from + of_unit;
+    else if (!std::isfinite(lower))
+        result = "be " + to + of_unit;
+    else if (above == below)
+        result = "lie between " + short_number(lower) + " and " + short_number(upper) + of_unit +
+                 (above ? ", both excluded" : "");
     else
-        result = (open ? "must be below " : "must be at most ") + short_number(upper) + of_unit;
-    return word ? result + ", or " + short_number(*word) + " (" + meaning + ")" : result;
+        result = from + " and " + to + of_unit;
+    return "must " + result + (word ? ", or " + short_number(*word) + " (" + meaning + ")" : "");
 }
 
 Range between(double lower, double upper, std::string unit) {
     return {.lower = lower, .upper = upper, .unit = std::move(unit)};
 }
 Range inside(double lower, double upper, std::string unit) {
-    return {.lower = lower, .upper = upper, .open = true, .unit = std::move(unit)};
+    return {.lower = lower, .upper = upper, .above = true, .below = true, .unit = std::move(unit)};
 }
 Range at_least(double lower, std::string unit) { return {.lower = lower, .unit = std::move(unit)}; }
 Range above(double lower, std::string unit) {
-    return {.lower = lower, .open = true, .unit = std::move(unit)};
+    return {.lower = lower, .above = true, .unit = std::move(unit)};
 }
 Range any(std::string unit) { return {.unit = std::move(unit)}; }
 
 std::string short_number(double value) {
     int exponent = 0;
     if (value >= 1 << 17 && std::frexp(value, &exponent) == 0.5) return fmt::format("2^{}", exponent - 1);
-    return fmt::format("{}", value);
+    const std::string exact = fmt::format("{}", value);
+    return exact.size() > 9 ? fmt::format("{:.6g}", value) : exact;
 }
 
 std::string values_text(const Parameter& parameter) {

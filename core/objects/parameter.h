@@ -13,16 +13,19 @@ namespace mote::core {
 struct Range {
     double lower = -std::numeric_limits<double>::infinity();  ///< smallest number, or infinite
     double upper = std::numeric_limits<double>::infinity();   ///< largest number, or infinite
-    bool open = false;                                        ///< the finite ends are excluded
+    bool above = false;                                       ///< the lower end is excluded
+    bool below = false;                                       ///< the upper end is excluded
     std::string unit{};            ///< "m", "1/m", "degrees", ...; "" for pure numbers
     std::optional<double> word{};  ///< a number outside that is allowed, too,
     std::string meaning{};         ///< and its meaning
 
+    /// Adds an upper end: `above(0).up_to(1)`.
+    Range up_to(double its_upper) const;
     /// Adds one number outside of the range: `at_least(1).or_else(-1, "no limit")`.
     Range or_else(double number, std::string its_meaning) const;
     /// False for every number outside, and for NaN.
     bool contains(double number) const;
-    /// "0 to 1", "above 0", "1 or more; -1: no limit"; "" where every number will do.
+    /// "0 to 1", "above 0 to 1", "1 or more; -1: no limit"; "" where every number will do.
     std::string text() const;
     /// "must lie between 0 and 1", "must be above 0 m", ...: the end of an error's sentence.
     std::string demand() const;

@@ -12,8 +12,12 @@ namespace mote::core {
 template <typename S>
 class SettingsObject final : public Object {
   public:
-    explicit SettingsObject(S its_settings) : settings(std::move(its_settings)) {}
-    const S settings;
+    explicit SettingsObject(S settings) : settings_(std::move(settings)) {}
+    /// As they were read.
+    const S& settings() const { return settings_; }
+
+  private:
+    S settings_;
 };
 
 /// One of any number of nested objects.
@@ -40,7 +44,7 @@ template <typename T>
 struct NestedMember {
     static constexpr bool single = true;
     static void set(T& member, const Properties::Child& child) {
-        member = object_of<SettingsObject<T>>(child)->settings;
+        member = object_of<SettingsObject<T>>(child)->settings();
     }
 };
 template <typename T>

@@ -60,7 +60,9 @@ class FloatKind final : public ValueKind {
         *static_cast<T*>(member) = value;
     }
     std::string text(const Row&, const void* member) const override {
-        return fmt::format("{}", *static_cast<const T*>(member));
+        const T value = *static_cast<const T*>(member);
+        const std::string exact = fmt::format("{}", value);  // of this precision
+        return exact.size() > 9 ? short_number(double(value)) : exact;
     }
 };
 

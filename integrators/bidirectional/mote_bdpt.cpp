@@ -10,23 +10,9 @@ using namespace core;
 
 namespace {
 
-Heuristic heuristic_from(const Properties& properties) {
-    const std::string name = properties.get_string("heuristic", "power");
-    if (name == "power") return Heuristic::power;
-    if (name == "balance") return Heuristic::balance;
-    if (name == "none") return Heuristic::none;
-    throw InputError("heuristic is one of power, balance, none, not '" + name + "'",
-                     properties.where_of("heuristic"));
-}
-
 class MoteBdpt final : public Integrator {
   public:
-    explicit MoteBdpt(const Properties& properties) {
-        settings_.limits = read_eye_path_limits(properties);
-        settings_.heuristic = heuristic_from(properties);
-        settings_.all_connections = properties.get_bool("all_connections", false);
-        settings_.strategies = int(properties.get_int_in("strategies", 0, 0, 8));
-    }
+    explicit MoteBdpt(const BidirectionalSettings& settings) : settings_(settings) {}
 
     std::string type() const override { return "mote_bdpt"; }
     std::vector<Layer> layers(const Scene& scene) const override {
@@ -74,21 +60,23 @@ Plan MoteBdpt::plan(const Scene& scene, const Requirements& r) const {
 }  // namespace
 
 void register_mote_bdpt(Registry& registry) {
-    auto parameters = eye_path_parameters();
-    parameters.push_back(
-        {"heuristic", "string", "power",
-         "weights of the techniques that find the same path: power, balance; none: all count "
-         "in full, to look at them by `strategies`"});
-    parameters.push_back({"all_connections", "boolean", "false",
-                          "test every connection of an eye vertex with the light path; false: one, drawn by "
-                          "what they would bring if nothing were in between"});
-    parameters.push_back({"strategies", "integer", "0",
-                          "a layer s<vertices from a light>_t<vertices from the camera> for every technique "
-                          "of paths of up to so many edges, at most 8"});
-    registry.add(
-        {Category::integrator, "mote_bdpt", "Unbiased bidirectional path tracer for surfaces and media.",
-         parameters, R"(<integrator type="mote_bdpt"><integer name="max_depth" value="-1"/></integrator>)"},
-        [](const Properties& p) { return std::make_shared<MoteBdpt>(p); });
+    using S = BidirectionalSettings;
+    add_type<S>(
+        registry, Category::integrator, "mote_bdpt",
+        "Unbiased bidirectional path tracer for surfaces and media.",
+        {within(&S::limits, eye_path_rows()),
+         row("heuristic", &S::heuristic,
+             {{"power", Heuristic::power}, {"balance", Heuristic::balance}, {"none", Heuristic::none}},
+             "Weights of the techniques that find the same path; none: all count in full, to look at "
+             "them by `strategies`."),
+         row("all_connections", &S::all_connections,
+             "Test every connection of an eye vertex with the light path; false: one, sampled by its "
+             "unoccluded contribution."),
+         row("strategies", &S::strategies, between(0, 8),
+             "A layer s<vertices from a light>_t<vertices from the camera> for every technique of "
+             "paths of up to so many edges.")},
+        R"(<integrator type="mote_bdpt"><integer name="max_depth" value="-1"/></integrator>)",
+        [](const S& s) { return std::make_shared<MoteBdpt>(s); });
 }
 
 }  // namespace mote::integrators

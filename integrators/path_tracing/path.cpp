@@ -46,10 +46,9 @@ std::shared_ptr<const Integrator> make_path(const EyePathLimits& limits) {
 }
 
 void register_path(Registry& registry) {
-    registry.add({Category::integrator, "path", "Unbiased path tracer for surfaces; media are not seen.",
-                  eye_path_parameters(),
-                  R"(<integrator type="path"><integer name="max_depth" value="8"/></integrator>)"},
-                 [](const Properties& p) { return std::make_shared<Path>(read_eye_path_limits(p)); });
+    add_type(registry, Category::integrator, "path", "Unbiased path tracer for surfaces; media are not seen.",
+             eye_path_rows(), R"(<integrator type="path"><integer name="max_depth" value="8"/></integrator>)",
+             [](const EyePathLimits& limits) { return std::make_shared<Path>(limits); });
 }
 
 }  // namespace mote::integrators

@@ -16,19 +16,16 @@ using namespace core;
 
 namespace {
 
+struct VolpathSettings {
+    EyePathLimits limits;
+    float vpl_bound = 0.0f;  ///< b [1/m^2]; 0: none
+    bool equiangular = false;
+};
+
 class Volpath final : public Integrator {
   public:
-    Volpath(const EyePathLimits& limits, bool equiangular) : settings_{limits}, equiangular_(equiangular) {}
-    explicit Volpath(const Properties& properties) : settings_{read_eye_path_limits(properties)} {
-        const double bound = properties.get_float("vpl_bound", 0.0);
-        if (bound < 0.0) throw InputError("vpl_bound must not be negative", properties.where_of("vpl_bound"));
-        if (bound > 0.0) settings_.bound = float(bound);
-        equiangular_ = properties.get_bool("equiangular", false);
-        if (equiangular_ && bounded())
-            throw InputError(
-                "equiangular and vpl_bound do not go together: the bound weighs edges that end at "
-                "collisions",
-                properties.where_of("equiangular"));
+    explicit Volpath(const VolpathSettings& s) : settings_{s.limits}, equiangular_(s.equiangular) {
+        if (s.vpl_bound > 0.0f) settings_.bound = s.vpl_bound;
     }
 
     std::string type() const override { return "volpath"; }
@@ -47,7 +44,7 @@ class Volpath final : public Integrator {
     bool bounded() const { return std::isfinite(settings_.bound); }
     void plan_equiangular(Plan& plan, const Requirements& requirements) const;
     PathSettings settings_;
-    bool equiangular_ = false;
+    bool equiangular_;
 };
 
 void Volpath::plan_equiangular(Plan& plan, const Requirements& r) const {
@@ -81,21 +78,29 @@ Plan Volpath::plan(const Scene& scene, const Requirements& requirements) const {
 }  // namespace
 
 std::shared_ptr<const Integrator> make_volpath(const EyePathLimits& limits, bool equiangular) {
-    return std::make_shared<const Volpath>(limits, equiangular);
+    return std::make_shared<const Volpath>(VolpathSettings{limits, 0.0f, equiangular});
 }
 
 void register_volpath(Registry& registry) {
-    auto parameters = eye_path_parameters();
-    parameters.push_back({"vpl_bound", "float", "0",
-                          "bound b [1/m^2] on the geometry term of the edge where VPLs connect; 0: none"});
-    parameters.push_back({"equiangular", "boolean", "false",
-                          "light of point and spot lights in media by equi-angular sampling along every ray, "
-                          "instead of at collisions"});
-    registry.add(
-        {Category::integrator, "volpath",
-         "Unbiased volumetric path tracer: the reference that approximations are held against.", parameters,
-         R"(<integrator type="volpath"><integer name="max_depth" value="-1"/></integrator>)"},
-        [](const Properties& p) { return std::make_shared<Volpath>(p); });
+    using S = VolpathSettings;
+    add_type<S>(
+        registry, Category::integrator, "volpath",
+        "Unbiased volumetric path tracer: the reference that approximations are held against.",
+        {within(&S::limits, eye_path_rows()),
+         row("vpl_bound", &S::vpl_bound, at_least(0, "1/m^2"),
+             "Bound b on the geometry term of the edge where VPLs connect; 0: none."),
+         row("equiangular", &S::equiangular,
+             "Light of point and spot lights in media by equi-angular sampling along every ray, "
+             "instead of at collisions.")},
+        R"(<integrator type="volpath"><integer name="max_depth" value="-1"/></integrator>)",
+        [](const S& s, const Properties& p) {
+            if (s.equiangular && s.vpl_bound > 0.0f)
+                throw InputError(
+                    "equiangular and vpl_bound do not go together: the bound weighs edges that end at "
+                    "collisions",
+                    p.where_of("equiangular"));
+            return std::make_shared<Volpath>(s);
+        });
 }
 
 }  // namespace mote::integrators

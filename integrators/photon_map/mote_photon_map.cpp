@@ -108,24 +108,8 @@ class PhotonMapEstimator final : public Estimator {
 
 class MotePhotonMap final : public Integrator {
   public:
-    explicit MotePhotonMap(const Properties& p) {
-        settings_.eye = read_eye_path_limits(p);
+    explicit MotePhotonMap(const PhotonMapSettings& settings) : settings_(settings) {
         settings_.eye.max_scatterings = 1;  // from then on photons take over
-        settings_.paths = std::uint32_t(p.get_int_in("photon_paths", 100000, 1, std::int64_t(1) << 26));
-        settings_.neighbours = std::size_t(p.get_int_in("neighbours", 50, 2, 1 << 16));
-        settings_.max_photons =
-            std::size_t(p.get_int_in("max_photons", std::int64_t(1) << 23, 1, std::int64_t(1) << 31));
-        settings_.alpha = p.get_float("alpha", 2.0 / 3.0);
-        if (!(settings_.alpha > 0.0 && settings_.alpha <= 1.0))
-            throw InputError("alpha must lie above 0 and not above 1 (1: kernels do not shrink)",
-                             p.where_of("alpha"));
-        const std::string single = p.get_string("single_scattering", "sampled");
-        const std::vector<std::string> known{"sampled", "photons"};
-        if (single != known[0] && single != known[1])
-            throw InputError("single_scattering is 'sampled' or 'photons', not '" + printable(single) + "'" +
-                                 suggestion(single, known),
-                             p.where_of("single_scattering"));
-        settings_.single_scattering = single == "photons";
     }
 
     std::string type() const override { return "mote_photon_map"; }
@@ -173,20 +157,22 @@ Plan MotePhotonMap::plan(const Scene& scene, const Requirements& r) const {
 }  // namespace
 
 void register_mote_photon_map(Registry& registry) {
-    auto parameters = eye_path_parameters();
-    parameters.push_back({"photon_paths", "integer", "100000", "light paths traced in every pass"});
-    parameters.push_back({"neighbours", "integer", "50", "photons that an estimate of the first pass holds"});
-    parameters.push_back({"alpha", "float", "0.6667",
-                          "how fast kernels shrink: their area falls as passes^(alpha - 1); 1: not at all"});
-    parameters.push_back({"single_scattering", "string", "sampled",
-                          "light scattered once in a medium: 'sampled' at collisions, or from 'photons'"});
-    parameters.push_back({"max_photons", "integer", "8388608",
-                          "more photons than this in a pass are thinned out, without bias"});
-    registry.add(
-        {Category::integrator, "mote_photon_map",
-         "Progressive photon mapping on surfaces, with the beam radiance estimate in media.", parameters,
-         R"(<integrator type="mote_photon_map"><integer name="photon_paths" value="50000"/></integrator>)"},
-        [](const Properties& p) { return std::make_shared<MotePhotonMap>(p); });
+    using S = PhotonMapSettings;
+    add_type<S>(
+        registry, Category::integrator, "mote_photon_map",
+        "Progressive photon mapping on surfaces, with the beam radiance estimate in media.",
+        {within(&S::eye, eye_path_rows()),
+         row("photon_paths", &S::paths, between(1, 1 << 26), "Light paths traced in every pass."),
+         row("neighbours", &S::neighbours, between(2, 1 << 16),
+             "Photons that an estimate of the first pass holds."),
+         row("alpha", &S::alpha, above(0).up_to(1),
+             "How fast kernels shrink: their area falls as passes^(alpha - 1); 1: not at all."),
+         row("single_scattering", &S::single_scattering, {{"sampled", false}, {"photons", true}},
+             "Light scattered once in a medium: sampled at collisions, or from photons."),
+         row("max_photons", &S::max_photons, between(1, std::ldexp(1.0, 31)),
+             "More photons than this in a pass are thinned out, without bias.")},
+        R"(<integrator type="mote_photon_map"><integer name="photon_paths" value="50000"/></integrator>)",
+        [](const S& s) { return std::make_shared<MotePhotonMap>(s); });
 }
 
 }  // namespace mote::integrators

@@ -115,17 +115,8 @@ class VslEstimator final : public Estimator {
 
 class MoteVsl final : public Integrator {
   public:
-    explicit MoteVsl(const Properties& properties) {
-        settings_.eye = read_eye_path_limits(properties);
+    explicit MoteVsl(const VslSettings& settings) : settings_(settings) {
         settings_.eye.max_scatterings = 1;  // from then on spherical lights take over
-        settings_.paths = std::uint32_t(properties.get_int_in("paths", 256, 0, std::int64_t(1) << 26));
-        auto& gather = settings_.gather;
-        gather.neighbours = std::uint32_t(properties.get_int_in("neighbours", 10, 1, 1000));
-        gather.samples = int(properties.get_int_in("samples", 4, 1, 4096));
-        gather.radius_scale = float(properties.get_float_in("radius_scale", 1.0, 0.0, 1e6));
-        gather.visibility = properties.get_choice("visibility", "sample", {"sample", "light"}) == "light"
-                                ? compensation::SphereVisibility::per_light
-                                : compensation::SphereVisibility::per_sample;
     }
 
     std::string type() const override { return "mote_vsl"; }
@@ -177,23 +168,28 @@ Plan MoteVsl::plan(const Scene& scene, const Requirements& r) const {
 }  // namespace
 
 void register_mote_vsl(Registry& registry) {
-    auto parameters = eye_path_parameters();
-    parameters.push_back({"paths", "integer", "256", "light paths traced in every pass"});
-    parameters.push_back(
-        {"neighbours", "integer", "10", "k: a sphere reaches to the k-th nearest other light of its pass"});
-    parameters.push_back(
-        {"radius_scale", "float", "1", "factor on the radius; 0: points, as mote_vpl without a bound"});
-    parameters.push_back({"samples", "integer", "4", "directions a light, for every receiver"});
-    parameters.push_back({"visibility", "string", "sample",
-                          "sample: a shadow ray along every direction, up to the sphere; light: one to the "
-                          "centre, faster with shadow edges as hard as a point's"});
-    registry.add(
-        {Category::integrator, "mote_vsl",
-         "Virtual spherical lights (Hasan et al. 2009), for scenes without media: no splotches "
-         "between glossy surfaces, and nothing bounded, but indirect light is blurred over the "
-         "spheres. More passes remove noise only; the blur shrinks with more light paths a pass.",
-         parameters, R"(<integrator type="mote_vsl"><integer name="paths" value="512"/></integrator>)"},
-        [](const Properties& p) { return std::make_shared<MoteVsl>(p); });
+    using S = VslSettings;
+    using Gather = compensation::SphericalGather;
+    using compensation::SphereVisibility;
+    add_type<S>(
+        registry, Category::integrator, "mote_vsl",
+        "Virtual spherical lights (Hasan et al. 2009), for scenes without media: no splotches between "
+        "glossy surfaces, and nothing bounded, but indirect light is blurred over the spheres. More "
+        "passes remove noise only; the blur shrinks with more light paths a pass.",
+        {within(&S::eye, eye_path_rows()),
+         row("paths", &S::paths, between(0, 1 << 26), "Light paths traced in every pass."),
+         within(&S::gather,
+                row("neighbours", &Gather::neighbours, between(1, 1000),
+                    "k: a sphere reaches to the k-th nearest other light of its pass."),
+                row("radius_scale", &Gather::radius_scale, between(0, 1e6),
+                    "Factor on the radius; 0: points, as mote_vpl without a bound."),
+                row("samples", &Gather::samples, between(1, 4096), "Directions a light, for every receiver."),
+                row("visibility", &Gather::visibility,
+                    {{"sample", SphereVisibility::per_sample}, {"light", SphereVisibility::per_light}},
+                    "sample: a shadow ray along every direction, up to the sphere; light: one to the "
+                    "centre, faster with shadow edges as hard as a point's."))},
+        R"(<integrator type="mote_vsl"><integer name="paths" value="512"/></integrator>)",
+        [](const S& s) { return std::make_shared<MoteVsl>(s); });
 }
 
 }  // namespace mote::integrators

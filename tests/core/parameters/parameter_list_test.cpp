@@ -174,7 +174,7 @@ TEST_CASE("Nested objects are objects, settings, or any number of them", "[param
 TEST_CASE("The manual page follows from rows and defaults", "[parameters]") {
     CHECK(parameter("density").default_value == "0.1");
     CHECK(parameter("density").type == "float");
-    CHECK(parameter("density").range.text() == "0 to 10, both excluded");
+    CHECK(parameter("density").range.text() == "above 0 to below 10");
     CHECK(parameter("density").range.unit == "1/m");
     CHECK(parameter("height").default_value == "that of the scene");
     CHECK(parameter("falloff").default_value == "linear");
@@ -187,7 +187,7 @@ TEST_CASE("The manual page follows from rows and defaults", "[parameters]") {
     CHECK(parameter("grid").default_value == "required");
     CHECK(parameter("max_depth").range.text() == "1 or more; -1: no limit");
     CHECK(parameter("light_depth").default_value == "5");
-    CHECK(values_text(parameter("density")) == "0 to 10, both excluded [1/m]");
+    CHECK(values_text(parameter("density")) == "above 0 to below 10 [1/m]");
     CHECK(values_text(parameter("position")) == "[m]");
     CHECK(values_text(parameter("falloff")) == "none, linear");
     CHECK(values_text(parameter("to_world")).empty());
@@ -218,7 +218,7 @@ TEST_CASE("A type is registered with its page and its factory", "[parameters]") 
     const auto made = std::dynamic_pointer_cast<SettingsObject<Limits>>(
         registry.factory(Category::medium, "fog")(with("max_depth", std::int64_t(2))));
     REQUIRE(made);
-    CHECK(made->settings.depth == 2);
+    CHECK(made->settings().depth == 2);
     CHECK(registry.factory(Category::medium, "mist")(with("paths", std::int64_t(40))));
     CHECK(warned == 42);
 }
@@ -230,4 +230,16 @@ TEST_CASE("Numbers are shown short", "[parameters]") {
     CHECK(short_number(131072) == "2^17");
     CHECK(short_number(100000) == "100000");
     CHECK(short_number(1e30) == "1e+30");
+    CHECK(short_number(2.0 / 3.0) == "0.666667");
+}
+
+TEST_CASE("Ranges say what they take", "[parameters]") {
+    CHECK(above(0).up_to(1).text() == "above 0 to 1");
+    CHECK(above(0).up_to(1).demand() == "must be above 0 and at most 1");
+    CHECK(above(0).up_to(1).contains(1.0));
+    CHECK_FALSE(above(0).up_to(1).contains(0.0));
+    CHECK_FALSE(inside(-1, 1).contains(1.0));
+    CHECK_FALSE(at_least(0).contains(std::numeric_limits<double>::quiet_NaN()));
+    CHECK(at_least(0).contains(std::numeric_limits<double>::max()));
+    CHECK(any("m").text().empty());
 }
