@@ -36,7 +36,7 @@ std::string ExportContext::find_file(const Element& object) const {
     p.search_paths.insert(p.search_paths.begin(), object.folder);
     for (const Element& c : object.children)
         if (c.get("name") == "filename") p.values["filename"] = {c.get("value"), c.where};
-    return p.require_file("filename");
+    return p.find_file("filename");
 }
 
 void ExportContext::copy_file(Element& object, const std::string& folder) const {

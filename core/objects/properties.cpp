@@ -171,7 +171,7 @@ Rgb Properties::get_rgb_in(const std::string& name, const Rgb& default_value, fl
     return value;
 }
 
-std::string Properties::require_file(const std::string& name) const {
+std::string Properties::find_file(const std::string& name) const {
     namespace fs = std::filesystem;
     const std::string file = require_string(name);
     std::error_code ignored;  // a path that cannot be looked at is not there

@@ -42,7 +42,7 @@ class Properties {
     // The two sinks live as long as the call of the factory.
     std::vector<std::string> search_paths;         ///< folders that relative file names are looked up in
     std::vector<std::string>* warnings = nullptr;  ///< sink for warnings; may be null
-    std::vector<std::string>* files = nullptr;     ///< sink for the paths require_file() found; may be null
+    std::vector<std::string>* files = nullptr;     ///< sink for the paths find_file() found; may be null
 
     std::map<std::string, Value> values;
     std::vector<Child> children;
@@ -72,7 +72,7 @@ class Properties {
 
     /// The file's full path: relative names are looked up in search_paths. Throws InputError when it is not
     /// there.
-    std::string require_file(const std::string& name) const;
+    std::string find_file(const std::string& name) const;
 
     /// The nested object of type T called `name`, or null. Throws when the name holds an object of another
     /// kind.

@@ -139,7 +139,7 @@ class FileKind final : public ValueKind {
     void read(const Properties& p, const Row& row, void* member) const override {
         auto& file = *static_cast<FileName*>(member);
         file.written = read_string(p, row);
-        file.path = p.require_file(row.parameter.name);
+        file.path = p.find_file(row.parameter.name);
     }
     std::string text(const Row&, const void* member) const override {
         return static_cast<const FileName*>(member)->written;

@@ -16,8 +16,7 @@
 #include "core/formats/xml/scene_loader.h"
 #include "core/geometry/triangle_mesh.h"
 #include "core/objects/error.h"
-#include "core/objects/properties.h"
-#include "core/objects/registry.h"
+#include "core/parameters/add_type.h"
 #include "core/render/checkpoint.h"
 #include "core/render/integrator.h"
 #include "lights/register_lights.h"
@@ -43,27 +42,28 @@ class NoIntegrator final : public core::Integrator {
     }
 };
 
+struct FuzzedParameters {
+    int max_depth = -1, rr_depth = 5;
+    bool hide_emitters = false;
+    double clamp = 0.0;
+    core::Rgb tint{1.0f};
+    std::string mode;
+};
+
 std::shared_ptr<const core::Registry> make_registry() {
     auto registry = std::make_shared<core::Registry>();
     core::register_core(*registry);
     media::register_media(*registry);
     lights::register_lights(*registry);
     for (const char* type : {"path", "volpath"})
-        registry->add({core::Category::integrator,
-                       type,
-                       "",
-                       {{"max_depth", "integer", "-1", ""},
-                        {"rr_depth", "integer", "5", ""},
-                        {"hide_emitters", "boolean", "false", ""},
-                        {"clamp", "float", "0", ""},
-                        {"tint", "rgb", "1", ""},
-                        {"mode", "string", "", ""}},
-                       ""},
-                      [](const core::Properties& p) {
-                          p.get_int("max_depth", -1), p.get_float("clamp", 0.0), p.get_string("mode", "");
-                          p.get_bool("hide_emitters", false), p.get_rgb("tint", core::Rgb(1.0f));
-                          return std::make_shared<NoIntegrator>();
-                      });
+        core::add_type<FuzzedParameters>(
+            *registry, core::Category::integrator, type, "",
+            {core::row("max_depth", &FuzzedParameters::max_depth, ""),
+             core::row("rr_depth", &FuzzedParameters::rr_depth, ""),
+             core::row("hide_emitters", &FuzzedParameters::hide_emitters, ""),
+             core::row("clamp", &FuzzedParameters::clamp, ""), core::row("tint", &FuzzedParameters::tint, ""),
+             core::row("mode", &FuzzedParameters::mode, "")},
+            "", [](const FuzzedParameters&) { return std::make_shared<NoIntegrator>(); });
     return registry;
 }
 

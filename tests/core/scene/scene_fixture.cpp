@@ -26,41 +26,33 @@ MediumTraits FakeMedium::traits() const {
 
 namespace {
 
-Factory emitter_factory(const EmitterTraits& traits, const char* strength) {
-    return [=](const Properties& p) {
-        auto e = std::make_shared<FakeEmitter>();
-        e->kind = traits;
-        e->position = Vec3(p.get_vec3("position", Vec3d(0.0)));
-        e->strength = p.get_rgb_in(strength, Rgb(1.0f), 0.0f, 1e30f);
-        return e;
-    };
+struct FakeLight {
+    Vec3d position{0.0};
+    Rgb strength{1.0f};
+};
+
+void add_emitter(Registry& r, const std::string& type, const EmitterTraits& traits,
+                 const Rows<FakeLight>& rows) {
+    add_type<FakeLight>(r, Category::emitter, type, "", {rows}, "<emitter type='" + type + "'/>",
+                        [=](const FakeLight& s) {
+                            auto e = std::make_shared<FakeEmitter>();
+                            e->kind = traits, e->position = Vec3(s.position), e->strength = s.strength;
+                            return e;
+                        });
 }
 
 void register_fakes(Registry& r) {
-    const EmitterTraits point{EmitterKind::point, true};
-    const EmitterTraits area{EmitterKind::area};
-    const EmitterTraits constant{EmitterKind::environment, false, false, true};
-    r.add({Category::emitter,
-           "point",
-           "",
-           {{"position", "point", "", ""}, {"intensity", "rgb", "", ""}},
-           "<emitter type='point'/>"},
-          emitter_factory(point, "intensity"));
-    r.add({Category::emitter, "area", "", {{"radiance", "texture", "", ""}}, "<emitter type='area'/>"},
-          emitter_factory(area, "radiance"));
-    r.add({Category::emitter, "constant", "", {{"radiance", "rgb", "", ""}}, "<emitter type='constant'/>"},
-          emitter_factory(constant, "radiance"));
-    r.add({Category::medium,
-           "homogeneous",
-           "",
-           {{"sigma_t", "volume", "1", ""}, {"emissive", "boolean", "false", ""}},
-           "<medium type='homogeneous'/>"},
-          [](const Properties& p) {
-              auto m = std::make_shared<FakeMedium>();
-              m->sigma_t = p.get_rgb("sigma_t", Rgb(1.0f));
-              m->emissive = p.get_bool("emissive", false);
-              return m;
-          });
+    const auto strength = [](const char* name) {
+        return row(name, &FakeLight::strength, between(0, 1e30), "");
+    };
+    add_emitter(r, "point", {EmitterKind::point, true},
+                {point_row("position", &FakeLight::position, "", ""), strength("intensity")});
+    add_emitter(r, "area", {EmitterKind::area}, strength("radiance"));
+    add_emitter(r, "constant", {EmitterKind::environment, false, false, true}, strength("radiance"));
+    add_type<FakeMedium>(
+        r, Category::medium, "homogeneous", "",
+        {row("sigma_t", &FakeMedium::sigma_t, ""), row("emissive", &FakeMedium::emissive, "")},
+        "<medium type='homogeneous'/>", [](const FakeMedium& m) { return std::make_shared<FakeMedium>(m); });
     const Factory integrator = [](const Properties& p) {
         auto i = std::make_shared<FakeIntegrator>();
         i->properties = p;

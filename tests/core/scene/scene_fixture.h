@@ -6,7 +6,7 @@
 
 #include "core/formats/xml/scene_loader.h"
 #include "core/objects/properties.h"
-#include "core/objects/registry.h"
+#include "core/parameters/add_type.h"
 #include "core/render/integrator.h"
 #include "core/scene/emitter.h"
 #include "core/scene/medium.h"
@@ -91,6 +91,16 @@ inline std::unique_ptr<core::Scene> load_body(const std::string& body,
 }
 /// The properties of the fake integrator of a scene.
 const core::Properties& integrator_of(const core::Scene& scene);
+/// A value that an element was given, or another one.
+template <typename T>
+T value_of(const core::Properties& properties, const std::string& name, T otherwise = T()) {
+    struct Holder {
+        T value{};
+    };
+    return core::ParameterList<Holder>(Holder{std::move(otherwise)}, {core::row(name, &Holder::value, "")})
+        .read(properties)
+        .value;
+}
 /// The message of the InputError that loading ends with; "" when it loads. The file is called "test.xml".
 std::string load_error(const std::string& xml, const core::LoadOptions& options = {});
 

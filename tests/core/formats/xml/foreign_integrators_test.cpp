@@ -84,7 +84,7 @@ TEST_CASE("With --integrator whatever is wrong with the file's own is a warning"
         "<integrator type='other'>\n<integer name='max_depth' value='many'/>\n"
         "<boolean name='flg' value='1'/></integrator>" +
         rest);
-    CHECK(integrator_of(*bad).get_int("max_depth", -7) == -7);
+    CHECK(value_of<int>(integrator_of(*bad), "max_depth", -7) == -7);
     CHECK(warned(*bad, "test.xml:3: 'many' is not an integer"));
     CHECK(warned(*bad, "test.xml:4: 'flg' is ignored"));
     const auto two = with_integrator("<integrator type='other'/><integrator type='other'/>" + rest);
@@ -95,11 +95,11 @@ TEST_CASE("With --integrator whatever is wrong with the file's own is a warning"
         "<integrator type='fake'><integer name='max_depth' value='6'/></integrator>";
     const auto chosen = with_integrator(settings + rest);
     CHECK(integrator_of(*chosen).type == "fake");
-    CHECK(integrator_of(*chosen).get_int("max_depth", 0) == 6);
+    CHECK(value_of<int>(integrator_of(*chosen), "max_depth") == 6);
     CHECK(chosen->parts().warnings.empty());
     const auto kept =
         with_integrator("<integrator type='other'><integer name='max_depth' value='5'/></integrator>" + rest);
-    CHECK(integrator_of(*kept).get_int("max_depth", 0) == 5);
+    CHECK(value_of<int>(integrator_of(*kept), "max_depth") == 5);
     CHECK(kept->parts().warnings.empty());
     CHECK(load_error(scene_xml("<integrator type='erpt'/>" + rest)) != "");
 }

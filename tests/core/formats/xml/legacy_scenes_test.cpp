@@ -23,8 +23,8 @@ TEST_CASE("camelCase of version 0.x is converted, and only there", "[scene][lega
     const std::string body = R"(<integrator type="fake"><integer name="maxDepth" value="5"/>
         <integer name="depthOfThings" value="6"/><boolean name="strictNormals" value="true"/></integrator>)";
     const auto scene = load_legacy(body);
-    CHECK(integrator_of(*scene).get_int("max_depth", 0) == 5);
-    CHECK(integrator_of(*scene).get_int("depth_of_things", 0) == 6);
+    CHECK(value_of<int>(integrator_of(*scene), "max_depth") == 5);
+    CHECK(value_of<int>(integrator_of(*scene), "depth_of_things") == 6);
     CHECK(warned(*scene, "test.xml:2: 'strict_normals' of integrator 'fake' has no effect here"));
     CHECK(load_error(scene_xml(body)) ==
           "test.xml:2: integrator 'fake' has no parameter 'maxDepth' (did you mean 'max_depth'?) (and 2 more "
@@ -80,13 +80,13 @@ TEST_CASE("Colours as on the web are display values", "[scene][legacy]") {
     // IEC 61966-2-1: ((v + 0.055) / 1.055)^2.4 of 0xb0 / 255, and v / 12.92 of 0x05 / 255.
     const auto scene =
         load_legacy(R"(<integrator type="fake"><rgb name="colour" value="#b00510"/></integrator>)");
-    const Rgb colour = integrator_of(*scene).get_rgb("colour", Rgb(0.0f));
+    const Rgb colour = value_of<Rgb>(integrator_of(*scene), "colour", Rgb(0.0f));
     CHECK(colour.x == Approx(0.434154).epsilon(1e-5));
     CHECK(colour.y == Approx(5.0 / 255.0 / 12.92).epsilon(1e-5));
     CHECK(colour.z == Approx(0.00518152).epsilon(1e-4));
     const auto srgb = load_legacy(
         R"(<integrator type="fake"><srgb name="colour" value="0.5, 0.0392157, 1"/></integrator>)");
-    const Rgb decoded = integrator_of(*srgb).get_rgb("colour", Rgb(0.0f));
+    const Rgb decoded = value_of<Rgb>(integrator_of(*srgb), "colour", Rgb(0.0f));
     CHECK(decoded.x == Approx(0.2140411).epsilon(1e-5));
     CHECK(decoded.z == Approx(1.0));
     for (const char* wrong : {"#b0302", "#b030200", "#b0302g", "#", "b03020"})

@@ -158,7 +158,8 @@ TEST_CASE("Cameras that cannot see are refused", "[scene][errors]") {
     };
     for (const char* fov : {"0", "180", "-5", "200"})
         CHECK(error("<float name='fov' value='" + std::string(fov) + "'/>") ==
-              "test.xml:3: 'fov' is " + std::string(fov) + " but must lie between 0 and 180 degrees, both excluded");
+              "test.xml:3: 'fov' is " + std::string(fov) +
+                  " but must lie between 0 and 180 degrees, both excluded");
     CHECK(error("<string name='fov_axis' value='smaler'/>") ==
           "test.xml:3: 'fov_axis' cannot be 'smaler' (did you mean 'smaller'?)");
     CHECK(error("<float name='fov' value='40'/>\n<string name='focal_length' value='50mm'/>") ==
@@ -166,7 +167,8 @@ TEST_CASE("Cameras that cannot see are refused", "[scene][errors]") {
     CHECK(error("<transform name='to_world'><scale value='2'/></transform>") ==
           "test.xml:3: the transform of a camera must not scale or shear");
     CHECK(error("<transform name='to_world'><scale x='-1'/></transform>") == "");
-    CHECK(error("<float name='near_clip' value='0'/>") == "test.xml:3: 'near_clip' is 0 but must be above 0 m");
+    CHECK(error("<float name='near_clip' value='0'/>") ==
+          "test.xml:3: 'near_clip' is 0 but must be above 0 m");
     CHECK(error("<float name='far_clip' value='0.001'/>") ==
           "test.xml:3: 'far_clip' must be larger than 'near_clip'");
     CHECK(error("<film type='hdrfilm'><integer name='width' value='0'/></film>") ==

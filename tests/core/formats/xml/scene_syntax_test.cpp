@@ -40,23 +40,21 @@ TEST_CASE("Values of every kind are read", "[scene][syntax]") {
         <rgb name="colour" value="0.1, 0.2 0.3"/><point name="centre" x="1" y="-2" z="3e0"/>
         <vector name="axis" value="4,5,6"/><float name="picture" value="0.25"/>)");
     const Properties& p = integrator_of(*scene);
-    CHECK(p.get_int("max_depth", 0) == -7);
-    CHECK(p.get_float("bound", 0) == 5.0);
-    CHECK(p.get_bool("flag", false));
-    CHECK(p.get_string("word", "") == "a & b");
-    CHECK(p.get_rgb("colour", Rgb(0)) == Rgb(0.1f, 0.2f, 0.3f));
-    CHECK(p.get_vec3("centre", Vec3d(0)) == Vec3d(1, -2, 3));
-    CHECK(p.get_vec3("axis", Vec3d(0)) == Vec3d(4, 5, 6));
-    CHECK(p.get_rgb("picture", Rgb(0)) == Rgb(0.25f));
-    CHECK(p.get_float("missing", 9.0) == 9.0);
-    CHECK_THROWS_AS(p.get_bool("bound", false), InputError);
-    CHECK_THROWS_AS(p.get_float_in("bound", 0.0, 0.0, 1.0), InputError);
-    CHECK_THROWS_AS(p.require_float("missing"), InputError);
+    CHECK(value_of<int>(p, "max_depth") == -7);
+    CHECK(value_of<double>(p, "bound") == 5.0);
+    CHECK(value_of<bool>(p, "flag"));
+    CHECK(value_of<std::string>(p, "word") == "a & b");
+    CHECK(value_of<Rgb>(p, "colour") == Rgb(0.1f, 0.2f, 0.3f));
+    CHECK(value_of<Vec3d>(p, "centre") == Vec3d(1, -2, 3));
+    CHECK(value_of<Vec3d>(p, "axis") == Vec3d(4, 5, 6));
+    CHECK(value_of<Rgb>(p, "picture") == Rgb(0.25f));
+    CHECK(value_of<double>(p, "missing", 9.0) == 9.0);
+    CHECK_THROWS_AS(value_of<bool>(p, "bound"), InputError);
 }
 
 TEST_CASE("An rgb of one number is grey", "[scene][syntax]") {
     const auto scene = with_integrator("<rgb name='colour' value='0.7'/>");
-    CHECK(integrator_of(*scene).get_rgb("colour", Rgb(0)) == Rgb(0.7f));
+    CHECK(value_of<Rgb>(integrator_of(*scene), "colour") == Rgb(0.7f));
 }
 
 TEST_CASE("Parameters: default, -D, and the type of an element", "[scene][syntax]") {
@@ -64,11 +62,11 @@ TEST_CASE("Parameters: default, -D, and the type of an element", "[scene][syntax
         "<default name='type' value='fake'/><default name='n' value='3'/><default name='w' value='x$n'/>"
         "<integrator type='$type'><integer name='max_depth' value='$n'/><string name='word' value='$w-$n'/>"
         "</integrator>");
-    CHECK(integrator_of(*load(xml)).get_int("max_depth", 0) == 3);
-    CHECK(integrator_of(*load(xml)).get_string("word", "") == "x3-3");
+    CHECK(value_of<int>(integrator_of(*load(xml)), "max_depth") == 3);
+    CHECK(value_of<std::string>(integrator_of(*load(xml)), "word") == "x3-3");
     const auto changed = load(xml, {{{"n", "12"}}, ""});
-    CHECK(integrator_of(*changed).get_int("max_depth", 0) == 12);
-    CHECK(integrator_of(*changed).get_string("word", "") == "x12-12");
+    CHECK(value_of<int>(integrator_of(*changed), "max_depth") == 12);
+    CHECK(value_of<std::string>(integrator_of(*changed), "word") == "x12-12");
     CHECK(load_error(xml, {{{"m", "1"}}, ""}) == "-D m: the scene does not use $m (known: n, type, w)");
     CHECK(load_error(xml, {{{"typ", "1"}}, ""}) ==
           "-D typ: the scene does not use $typ (did you mean 'type'?)");
@@ -90,9 +88,9 @@ TEST_CASE("-D with a path sets a parameter of an element", "[scene][syntax]") {
                                    {"sampler.sample_count", "5"},
                                    {"wall.reflectance", "0.2"}},
                                   ""});
-    CHECK(integrator_of(*scene).get_float("bound", 0) == 0.5);
-    CHECK(integrator_of(*scene).get_int("max_depth", 0) == 9);
-    CHECK(integrator_of(*scene).get_rgb("colour", Rgb(0)) == Rgb(1, 2, 3));
+    CHECK(value_of<double>(integrator_of(*scene), "bound") == 0.5);
+    CHECK(value_of<int>(integrator_of(*scene), "max_depth") == 9);
+    CHECK(value_of<Rgb>(integrator_of(*scene), "colour") == Rgb(1, 2, 3));
     CHECK(scene->film().width == 64);
     CHECK(scene->film().height == 32);
     CHECK(scene->film().sample_count == 5);
@@ -118,7 +116,7 @@ TEST_CASE("Another integrator keeps the parameters that it knows", "[scene][synt
         "value='4'/></integrator>");
     const auto scene = load(xml, {{}, "other"});
     CHECK(integrator_of(*scene).type == "other");
-    CHECK(integrator_of(*scene).get_int("max_depth", 0) == 4);
+    CHECK(value_of<int>(integrator_of(*scene), "max_depth") == 4);
     CHECK_FALSE(integrator_of(*scene).has("bound"));
     CHECK(integrator_of(*load(scene_xml(""), {{}, "other"})).type == "other");
     CHECK(load_error(xml, {{}, "fakee"}) ==
@@ -148,7 +146,7 @@ TEST_CASE("Includes are relative to their file, nest, and are hashed", "[scene][
         scene_xml("<include filename='parts/bsdfs.xml'/>\n<shape type='rectangle'><ref id='white'/>"
                   "</shape><integrator type='fake'><integer name='max_depth' value='$n'/></integrator>"));
     const auto scene = load_scene(main, test_registry());
-    CHECK(integrator_of(*scene).get_int("max_depth", 0) == 5);
+    CHECK(value_of<int>(integrator_of(*scene), "max_depth") == 5);
     CHECK(scene->parts().input_files.size() == 3);
     CHECK(scene->parts().file == main);
 
@@ -172,13 +170,13 @@ TEST_CASE("Files are looked up beside the file that names them, then in <path>",
                  "</integrator></scene>");
     const std::string main = folder.write("main.xml", scene_xml("<include filename='sub/part.xml'/>"));
     const auto scene = load_scene(main, test_registry());
-    CHECK(std::filesystem::equivalent(integrator_of(*scene).require_file("filename"),
+    CHECK(std::filesystem::equivalent(integrator_of(*scene).find_file("filename"),
                                       folder.path / "sub/near.txt"));
     const std::string second =
         folder.write("second.xml", scene_xml("<path value='assets'/><integrator type='fake'>"
                                              "<string name='filename' value='thing.txt'/></integrator>"));
     const auto found = load_scene(second, test_registry());
-    CHECK(std::filesystem::equivalent(integrator_of(*found).require_file("filename"),
+    CHECK(std::filesystem::equivalent(integrator_of(*found).find_file("filename"),
                                       folder.path / "assets/thing.txt"));
     const std::string third = folder.write(
         "third.xml", scene_xml("<shape type='obj'>\n<string name='filename' value='absent.obj'/></shape>"));

@@ -9,7 +9,7 @@ namespace {
 Transform transform_of(const std::string& operations) {
     const auto scene = load_body("<integrator type='fake'><transform name='to_world'>" + operations +
                                  "</transform></integrator>");
-    return integrator_of(*scene).get_transform();
+    return value_of<Transform>(integrator_of(*scene), "to_world");
 }
 
 /// The rows of the matrix that is expected.
