@@ -66,16 +66,26 @@ nb::list entries(const std::vector<core::PlanEntry>& list) {
     return result;
 }
 
-/// [(category, type, [(parameter, type)])] of everything that a scene can name.
-std::vector<std::pair<std::pair<std::string, std::string>, std::vector<std::pair<std::string, std::string>>>>
-manuals() {
+nb::dict described(const core::Parameter& p) {
+    nb::dict d;
+    d["name"] = p.name, d["type"] = p.type, d["default"] = p.default_value, d["required"] = p.required;
+    d["values"] = core::values_text(p), d["choices"] = p.choices, d["unit"] = p.range.unit;
+    d["lower"] = p.range.lower, d["upper"] = p.range.upper, d["description"] = p.description;
+    return d;
+}
+
+/// The manual page of everything that a scene can name.
+nb::list manuals() {
     core::Registry registry = session::make_registry();
     session::register_arrays(registry, std::make_shared<session::ArrayStore>());
-    decltype(manuals()) result;
+    nb::list result;
     for (const core::Manual* manual : registry.manuals()) {
-        std::vector<std::pair<std::string, std::string>> parameters;
-        for (const core::Parameter& p : manual->parameters) parameters.emplace_back(p.name, p.type);
-        result.push_back({{core::category_name(manual->category), manual->type}, parameters});
+        nb::list parameters;
+        for (const core::Parameter& p : manual->parameters) parameters.append(described(p));
+        nb::dict d;
+        d["category"] = core::category_name(manual->category), d["type"] = manual->type;
+        d["summary"] = manual->summary, d["example"] = manual->example, d["parameters"] = parameters;
+        result.append(d);
     }
     return result;
 }

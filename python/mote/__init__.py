@@ -17,6 +17,7 @@ except ImportError as problem:  # `python -m mote.cluster` needs the command alo
 else:
     from ._errors import Error
     from ._mote import version as __version__
+    from ._manual import Manual, manual
     from ._picture import Picture
     from ._rendering import render
     from ._scene import Scene, load, load_string
@@ -24,5 +25,6 @@ else:
     from ._trade import trade
     from ._transform import ScalarTransform4f, Transform
 
-    __all__ = ["Error", "Picture", "ScalarTransform4f", "Scene", "Transform", "compare", "denoise", "denoise_sequence", "load",
-               "load_string", "metric_definitions", "pixel_errors", "render", "series_error", "ssbc", "trade"]
+    __all__ = ["Error", "Manual", "Picture", "ScalarTransform4f", "Scene", "Transform", "compare", "denoise",
+               "denoise_sequence", "load", "load_string", "manual", "metric_definitions", "pixel_errors", "render",
+               "series_error", "ssbc", "trade"]

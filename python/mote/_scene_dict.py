@@ -13,6 +13,7 @@ import numpy as np
 
 from . import _mote
 from ._errors import Error
+from ._manual import manuals
 
 _PREFERRED = ["shape", "emitter", "sensor", "bsdf", "integrator", "medium", "film", "sampler", "rfilter", "phase",
               "texture", "volume", "compensation", "visibility"]
@@ -22,8 +23,8 @@ _PREFERRED = ["shape", "emitter", "sensor", "bsdf", "integrator", "medium", "fil
 def _manuals() -> Dict[str, Dict[str, Dict[str, str]]]:
     """{type: {category: {parameter: kind}}}"""
     pages: Dict[str, Dict[str, Dict[str, str]]] = {}
-    for (category, name), parameters in _mote.manuals():
-        pages.setdefault(name, {})[category] = dict(parameters)
+    for page in manuals():
+        pages.setdefault(page["type"], {})[page["category"]] = {p["name"]: p["type"] for p in page["parameters"]}
     return pages
 
 

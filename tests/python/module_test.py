@@ -60,6 +60,21 @@ def same_bits(a, b):
     return set(a) == set(b) and all(np.array_equal(a[name].view(np.uint32), b[name].view(np.uint32)) for name in a)
 
 
+class ManualPages(unittest.TestCase):
+    def test_page_of_a_type(self):
+        page = mote.manual("volpath")
+        parameters = {p["name"]: p for p in page["parameters"]}
+        self.assertEqual((page["category"], parameters["max_depth"]["default"]), ("integrator", "-1"))
+        self.assertEqual((parameters["vpl_bound"]["lower"], parameters["vpl_bound"]["unit"]), (0.0, "1/m^2"))
+        self.assertEqual(mote.manual("roughplastic", "bsdf")["parameters"][6]["choices"], ["beckmann", "ggx"])
+        for p in page["parameters"]:
+            self.assertIn(p["name"], str(page))
+
+    def test_unknown_type(self):
+        with self.assertRaisesRegex(mote.Error, "volpathh"):
+            mote.manual("volpathh")
+
+
 class ModuleTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
