@@ -1,4 +1,4 @@
-// What the sensors share: the field of view, the frame of a camera, and one registration each.
+// Shared by the sensors: the field of view, the frame of a camera, and one registration each.
 #pragma once
 
 #include "core/cameras/film_objects.h"

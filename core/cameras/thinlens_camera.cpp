@@ -67,8 +67,8 @@ class ThinLensCamera final : public Camera {
   private:
     Vec3 point_on_lens(const Vec2& u) const { return {radius_ * square_to_disk(u), 0.0f}; }
     double lens_area() const { return double(pi) * double(radius_) * double(radius_); }
-    /// Of the ray from `on_lens` along `direction` (camera space): rays to one point in focus belong
-    /// together.
+    /// Film position of the ray from `on_lens` along `direction` (camera space): rays to one point in focus
+    /// belong together.
     Vec2 film_position(const Vec3d& on_lens, const Vec3d& direction) const {
         const double focus(focus_);
         const Vec3d in_focus = on_lens + direction * (focus / direction.z);

@@ -1,4 +1,4 @@
-// What BSDFs and textures ask about a place on a surface.
+// Arguments of BSDFs and textures at a point of a surface.
 #pragma once
 
 #include "core/geometry/shape.h"
@@ -6,7 +6,7 @@
 
 namespace mote::core {
 
-/// Of a hit or a sample: the texture coordinates, with the position that they belong to.
+/// Of hits and samples: texture coordinates, with the position that they belong to.
 template <typename Point>
 TextureCoordinates texture_place(const Point& point) {
     TextureCoordinates place = point.uv;

@@ -34,7 +34,7 @@ class Curves final : public Shape {
     void fill_hit(std::uint32_t segment, float along, const Vec3d& near, SurfaceHit& hit) const;
 
     Bounds3 bounds() const override { return bounds_; }
-    /// Of the tubes without their round joints and ends; what overlaps at bends is counted.
+    /// Area of the tubes without their round joints and ends; what overlaps at bends is counted.
     float area() const override { return area_; }
     /// Even along the parameter of each segment and around it; pdf_area says where that is dense.
     ShapeSample sample_area(const Vec2& u) const override;

@@ -37,7 +37,7 @@ class ShapeScenes {
     SurfaceHit hit(const Ray& ray, const RawHit& raw) const;
 
   private:
-    /// What all instances of a group share. Geometries are numbered as the group's shapes are.
+    /// Shared by all instances of a group. Geometries are numbered as the group's shapes are.
     struct SharedScenes {
         Scene scenes[2];
         std::size_t members[2] = {0, 0};

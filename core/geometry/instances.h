@@ -26,7 +26,7 @@ class Placement {
     const Transform& to_world() const { return to_world_; }
     Vec3d local_point(const Vec3d& p) const { return to_local_.point(p); }
     Vec3d local_vector(const Vec3d& v) const { return to_local_.vector(v); }
-    /// Of unit length, on the side where `normal` was.
+    /// Unit normal on the side where `normal` was.
     Vec3d world_normal(const Vec3d& local) const { return glm::normalize(normals_ * local); }
     /// World area over local area around a point with this local unit normal.
     double area_factor(const Vec3d& local_normal) const {
@@ -76,7 +76,7 @@ class InstancedShape final : public Shape {
 std::vector<std::shared_ptr<Shape>> place_group(std::shared_ptr<const ShapeGroup> group,
                                                 const Transform& to_world);
 
-/// What <shape type="instance"> makes: the loader puts its shapes into the scene.
+/// Result of <shape type="instance">: the loader puts its shapes into the scene.
 class Instance final : public Object {
   public:
     std::vector<std::shared_ptr<Shape>> shapes;

@@ -1,4 +1,4 @@
-// What is asked of a mesh before it is used: finite positions, valid indices, triangles with an area, and
+// Checks of a mesh before it is used: finite positions, valid indices, triangles with an area, and
 // whether its surface is closed.
 #pragma once
 

@@ -13,7 +13,7 @@ MeshData make_rectangle() {
 }
 
 MeshData make_cube() {
-    // Of each face: its normal, its corner with texture coordinates (0, 0), and the directions of u and v.
+    // Each face: its normal, its corner with texture coordinates (0, 0), and the directions of u and v.
     struct Face {
         Vec3 normal, corner, u, v;
     };

@@ -1,4 +1,4 @@
-// What the quadrics share: the stable quadratic, similarity transforms, conservative bounds.
+// Shared by the quadrics: the stable quadratic, similarity transforms, conservative bounds.
 #pragma once
 
 #include <numbers>

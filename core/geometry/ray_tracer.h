@@ -34,7 +34,7 @@ class RayTracer {
     std::optional<SurfaceHit> closest(const Ray& ray, Group group = Group::surfaces) const;
     /// Is anything among the surfaces within (t_min, t_max)?
     bool occluded(const Ray& ray) const;
-    /// The same for sixteen rays at once.
+    /// First hits of sixteen rays at once.
     void occluded(ShadowPacket& packet) const;
     /// Many packets in one call, in the fastest form this Embree offers.
     void occluded(std::span<ShadowPacket> packets) const;

@@ -1,4 +1,4 @@
-// What all shapes share: light sampling by area, and leaving a surface without meeting it again.
+// Shared by all shapes: light sampling by area, and leaving a surface without meeting it again.
 #include "core/geometry/shape.h"
 
 #include "core/geometry/rounding.h"

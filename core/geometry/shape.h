@@ -20,7 +20,7 @@ class Emitter;
 class Medium;
 class Shape;
 
-/// What a ray found. `position` lies on the shape up to rounding; leave it through offset_origin().
+/// First surface on a ray. `position` lies on the shape up to rounding; leave it through offset_origin().
 struct SurfaceHit {
     float t = 0.0f;                  ///< distance along the ray [m]
     Vec3 position{0, 0, 0};          ///< on the shape [m]
@@ -69,7 +69,7 @@ class Shape : public Object {
     virtual float support(const Vec3& direction) const {
         return 0.5f * glm::dot(glm::abs(direction), bounds().diagonal());
     }
-    /// Of its surface [m^2].
+    /// Area of its surface [m^2].
     virtual float area() const = 0;
     /// Uniform by area.
     virtual ShapeSample sample_area(const Vec2& u) const = 0;
@@ -89,7 +89,7 @@ class Shape : public Object {
 /// The origin for a ray leaving `position` in `direction`, moved off the surface to the direction's side far
 /// enough that the ray cannot hit the surface it starts on.
 Vec3 offset_origin(const Vec3& position, const Vec3& geometric_normal, float error, const Vec3& direction);
-/// The same for a point that a ray found.
+/// The origin for a ray leaving a hit.
 inline Vec3 offset_origin(const SurfaceHit& hit, const Vec3& direction) {
     return offset_origin(hit.position, hit.geometric_normal, hit.error, direction);
 }

@@ -9,7 +9,7 @@
 namespace mote::core {
 namespace {
 
-/// What a transform does to a sphere's radius. Mitsuba's spheres stay spheres under any transform: where it
+/// Radius of a transformed sphere. Mitsuba's spheres stay spheres under any transform: where it
 /// stretches unevenly, their radius grows as lengths along x do.
 double radius_factor(const Transform& to_world) {
     if (!to_world.valid()) throw InputError("the transform of a sphere is singular or not finite");

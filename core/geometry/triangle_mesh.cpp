@@ -129,7 +129,7 @@ void TriangleMesh::fill_derivatives(std::uint32_t primitive, SurfaceHit& hit) co
     const auto& [a, b, c] = built_->data.triangles[primitive];
     const glm::dvec2 uv0(built_->data.uvs[a]), uv1 = glm::dvec2(built_->data.uvs[b]) - uv0,
                                                uv2 = glm::dvec2(built_->data.uvs[c]) - uv0;
-    // Of p = p0 + b1 e1 + b2 e2 and uv = uv0 + b1 uv1 + b2 uv2.
+    // Derivatives of p = p0 + b1 e1 + b2 e2 and uv = uv0 + b1 uv1 + b2 uv2.
     const double determinant = uv1.x * uv2.y - uv1.y * uv2.x;
     const Vec3 dp_du((uv2.y * corners.e1 - uv1.y * corners.e2) / determinant);
     const Vec3 dp_dv((uv1.x * corners.e2 - uv2.x * corners.e1) / determinant);

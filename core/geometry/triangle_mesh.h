@@ -16,7 +16,7 @@ struct MeshAttribute {
     std::vector<Rgb> values;  ///< one a vertex or triangle; three times the same where there is one number
 };
 
-/// What a mesh is made of.
+/// Arrays of a mesh.
 struct MeshData {
     std::vector<Vec3> positions;  ///< of the vertices [m]
     std::vector<Vec3> normals;    ///< per vertex, or empty: geometric normals are used
@@ -39,7 +39,7 @@ class TriangleMesh final : public Shape, private SurfaceAttributes {
     /// Shapes that hold its triangles, this one among them.
     long holders() const { return built_.use_count(); }
 
-    /// What it was made of.
+    /// The arrays that it was made of.
     const MeshData& data() const { return built_->data; }
     /// Fills everything of a hit but t, from the barycentric coordinates (u, v) that Embree reports.
     void fill_hit(std::uint32_t primitive, float u, float v, SurfaceHit& hit) const;
@@ -68,7 +68,7 @@ class TriangleMesh final : public Shape, private SurfaceAttributes {
     const MeshAttribute* find_attribute(std::string_view name) const;
     Rgb attribute_at(const MeshAttribute& attribute, std::uint32_t primitive, const Vec2& b) const;
 
-    /// What triangles and vertices alone determine; it does not change.
+    /// Properties of triangles and vertices alone; it does not change.
     struct Built {
         MeshData data;
         Bounds3 bounds;
@@ -87,7 +87,7 @@ void transform_mesh(MeshData& data, const Transform& to_world);
 
 /// [-1,1]^2 facing +z, and [-1,1]^3 facing outwards, as Mitsuba 3 has them.
 MeshData make_rectangle();
-/// The same for the cube.
+/// The cube [-1, 1]^3.
 MeshData make_cube();
 
 /// Reads OBJ, PLY and what else assimp reads. Throws InputError naming the file. `flip_v` follows Mitsuba:

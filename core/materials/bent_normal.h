@@ -1,4 +1,4 @@
-// What normal maps and bump maps share: a nested BSDF in a frame whose normal is bent.
+// Shared by normal maps and bump maps: a nested BSDF in a frame whose normal is bent.
 //
 // Mitsuba 3.9 is followed: the bent normal is turned over, within the surface, where the viewer would see its
 // back (Schuessler et al. 2017), light that is below one normal and above the other is lost, and a shadowing
@@ -24,7 +24,7 @@ class BentNormal : public Bsdf {
                           TransportMode mode) const override;
     std::optional<BsdfSample> sample(const BsdfPoint& p, const Vec3& wo, float u_lobe, const Vec2& u,
                                      TransportMode mode) const override;
-    /// What passes straight on does not see the normal.
+    /// Light that passes straight on does not see the normal.
     StraightPassage straight_passage(const BsdfPoint& p, const Vec3& wo) const override {
         return straight_passage_of(*nested_, p, wo);
     }

@@ -42,7 +42,7 @@ class BitmapTexture final : public Texture, public PicturedTexture {
         return (1.0f - fy) * ((1.0f - fx) * texel(i0, j0) + fx * texel(i1, j0)) +
                fy * ((1.0f - fx) * texel(i0, j1) + fx * texel(i1, j1));
     }
-    /// Of the bilinear patch; nearest texels are flat.
+    /// Gradient of the bilinear patch; nearest texels are flat.
     Vec2 scalar_gradient(const TextureCoordinates& uv) const override {
         if (parameters_.filter == TextureFilter::nearest) return {0.0f, 0.0f};
         const glm::dvec2 p = to_uv_(uv);

@@ -95,7 +95,7 @@ class Blend final : public Bsdf {
                            TransportMode mode) {
         return is_black(part.eval(p, wo, wi, mode)) ? 0.0f : part.pdf_solid_angle(p, wo, wi, mode);
     }
-    /// Of the first and of the second. Textures may leave [0, 1], as in Mitsuba.
+    /// Weights of the first and the second. Textures may leave [0, 1], as in Mitsuba.
     std::array<float, 2> shares(const BsdfPoint& p) const {
         const float second = std::clamp(weight_.eval(p.uv), 0.0f, 1.0f);
         return {1.0f - second, second};

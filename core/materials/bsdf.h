@@ -97,7 +97,7 @@ class Bsdf : public Object {
     virtual std::optional<BsdfSample> sample(const BsdfPoint& p, const Vec3& wo, float u_lobe, const Vec2& u,
                                              TransportMode mode) const = 0;
 
-    /// Of a pane seen from wo's side; the same from both sides. What eval() and pdf_solid_angle() say holds
+    /// Passage through a pane from wo's side, equal from both. What eval() and pdf_solid_angle() say holds
     /// for the whole pane; a path that it stopped by chance has both divided by StraightPassage::stops.
     virtual StraightPassage straight_passage(const BsdfPoint&, const Vec3& /*wo*/) const { return {}; }
 

@@ -89,7 +89,7 @@ std::shared_ptr<Bsdf> make_rough_plastic(const PlasticParameters& parameters, co
 std::shared_ptr<Bsdf> make_phong(const PhongParameters& parameters);
 /// As in Mitsuba, an index of 1 is raised to 1.001 where light is transmitted.
 std::shared_ptr<Bsdf> make_principled(const PrincipledParameters& parameters);
-/// The same for sheets without an inside.
+/// The principled model of a sheet without an inside.
 std::shared_ptr<Bsdf> make_principled_thin(const PrincipledThinParameters& parameters);
 std::shared_ptr<Bsdf> make_null();
 /// (1 - weight) of the first and weight of the second.
@@ -97,7 +97,7 @@ std::shared_ptr<Bsdf> make_blend(BsdfPtr first, BsdfPtr second, TexturePtr weigh
 /// 1 - opacity of the light passes straight on, the rest meets `nested`.
 std::shared_ptr<Bsdf> make_mask(BsdfPtr nested, TexturePtr opacity);
 
-/// Of normal and bump maps.
+/// Settings of normal and bump maps.
 struct BentNormalSettings {
     bool flip_invalid_normals = true;    ///< a normal that the viewer sees from behind is turned over
     bool use_shadowing_function = true;  ///< light from near the horizon is faded

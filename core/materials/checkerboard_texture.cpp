@@ -19,7 +19,7 @@ class CheckerboardTexture final : public Texture {
     float scalar(const TextureCoordinates& uv) const override {
         return (even(uv) ? color1_ : color0_)->scalar(uv);
     }
-    /// Of a whole number of squares.
+    /// Mean over a whole number of squares.
     Rgb mean() const override { return 0.5f * (color0_->mean() + color1_->mean()); }
     Rgb mean_over(const SurfaceAttributes& a) const override {
         return 0.5f * (color0_->mean_over(a) + color1_->mean_over(a));

@@ -43,7 +43,7 @@ class Dielectric final : public Bsdf {
         if (is_black(s.weight) || s.wi.z == 0.0f) return std::nullopt;
         return s;
     }
-    /// Of power: without the factor on radiance.
+    /// Albedo of power: without the factor on radiance.
     Rgb albedo(const BsdfPoint& p, const Vec3& wo) const override {
         const float eta = wo.z > 0.0f ? eta_ : 1.0f / eta_;
         const float f = fresnel_dielectric(std::fmin(std::fabs(wo.z), 1.0f), eta).reflectance;

@@ -1,4 +1,4 @@
-// What a lobe is at most, over all directions of light in a cone: Bsdf::eval_bound().
+// Upper bound of a lobe over all directions of light in a cone: Bsdf::eval_bound().
 //
 // Directions are local (z is the shading normal). Bounds hold with what rounding adds to them: `slack`.
 #pragma once

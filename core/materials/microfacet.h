@@ -40,7 +40,7 @@ class Microfacet {
         return exponent < 80.0f ? scale * std::exp(-exponent) / sqr(cos2) : 0.0f;  // e^-80: zero in float
     }
 
-    /// The same facets, rougher where `weight` times the peak of D would be above `limit` [1/sr]. With
+    /// These facets, rougher where `weight` times the peak of D would be above `limit` [1/sr]. With
     /// D(0) = 1 / (pi alpha_u alpha_v), both alphas are at least sqrt(weight / (pi limit)) (Tokuyoshi & Ogaki
     /// 2012, Eqs. 9 and 12 with this D), and at most 1 for it: facets that point anywhere.
     Microfacet widened(float weight, float limit) const {

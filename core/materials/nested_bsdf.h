@@ -1,4 +1,4 @@
-// What BSDFs that hold others share.
+// Shared by BSDFs that hold others.
 #pragma once
 
 #include <vector>
@@ -14,7 +14,7 @@ struct NestedBsdfs {
     std::vector<BsdfPtr> exactly(std::size_t count, const Properties& properties) const;
 };
 
-/// What passes a BSDF straight on: all through `null`, a part through panes, nothing through others.
+/// Light that passes a BSDF straight on: all through `null`, a part through panes, nothing through others.
 inline StraightPassage straight_passage_of(const Bsdf& bsdf, const BsdfPoint& p, const Vec3& wo) {
     return bsdf.traits().passes_straight() ? bsdf.straight_passage(p, wo) : StraightPassage{};
 }

@@ -25,7 +25,8 @@ class BumpMap final : public BentNormal {
           scale_(scale) {}
 
   private:
-    /// Of the surface moved along its normal by the height, whose own derivatives are left out (Blinn 1978).
+    /// Normal of the surface moved along its normal by the height, whose own derivatives are left out (Blinn
+    /// 1978).
     Vec3 normal(const BsdfPoint& p) const override {
         const Vec2 slope = scale_ * heights_->scalar_gradient(p.uv);
         const Vec3 m = glm::cross(Vec3(p.dp_du.x, p.dp_du.y, slope.x), Vec3(p.dp_dv.x, p.dp_dv.y, slope.y));

@@ -114,7 +114,8 @@ class Principled final : public Bsdf {
         return s;
     }
 
-    /// Of power, with smooth facets; the retro-reflection of rough bases at grazing angles is left out.
+    /// Albedo of power, with smooth facets; the retro-reflection of rough bases at grazing angles is left
+    /// out.
     Rgb albedo(const BsdfPoint& p, const Vec3& wo) const override {
         const Weights w = weights(p);
         const float cosine = std::fmin(std::fabs(wo.z), 1.0f);
@@ -177,9 +178,9 @@ class Principled final : public Bsdf {
         if (s.transmitted) s.wi = wi, s.eta = eta;
     }
 
-    /// Of the facets, seen from above at cos_d: `dielectric` is their exact Fresnel reflectance, blended with
-    /// Schlick's for metal and for tinted reflection. As in Mitsuba, facets of index 1 reflect nothing, metal
-    /// or not.
+    /// Reflectance of the facets, seen from above at cos_d: `dielectric` is their exact Fresnel reflectance,
+    /// blended with Schlick's for metal and for tinted reflection. As in Mitsuba, facets of index 1 reflect
+    /// nothing, metal or not.
     Rgb reflectance(const BsdfPoint& p, const Weights& w, const Rgb& base, float dielectric,
                     float cos_d) const {
         if (!(dielectric > 0.0f)) return Rgb(0.0f);

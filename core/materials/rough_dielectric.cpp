@@ -73,7 +73,7 @@ class RoughDielectric final : public Bsdf {
         return s;
     }
 
-    /// Of power, for the smooth surface.
+    /// Albedo of power, for the smooth surface.
     Rgb albedo(const BsdfPoint& p, const Vec3& wo) const override {
         const float eta = wo.z > 0.0f ? eta_ : 1.0f / eta_;
         const float f = fresnel_dielectric(std::fmin(std::fabs(wo.z), 1.0f), eta).reflectance;

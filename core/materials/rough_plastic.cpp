@@ -22,7 +22,7 @@ class RoughPlastic final : public Bsdf {
           inv_eta2_(1.0f / sqr(eta_)),
           microfacet_(microfacet.kind(), microfacet.alpha_u()),
           transmittance_(microfacet_, eta_, p.conserve_energy ? LostLight::transmitted : LostLight::absorbed),
-          // What does not leave is kept, and by reciprocity T(mu) / eta^2 is what leaves.
+          // Light that does not leave is kept, and by reciprocity T(mu) / eta^2 is what leaves.
           internal_(p.conserve_energy ? 1.0f - inv_eta2_ * transmittance_.mean()
                                       : rough_internal_reflectance(microfacet_, eta_)),
           nonlinear_(p.nonlinear),

@@ -8,7 +8,7 @@
 
 namespace mote::core {
 
-/// What becomes of the light that meets a second facet, which single scattering does not follow.
+/// Fate of the light that meets a second facet, which single scattering does not follow.
 enum class LostLight : std::uint8_t {
     absorbed,     ///< it is gone (Mitsuba)
     transmitted,  ///< it passes the boundary
@@ -17,7 +17,7 @@ enum class LostLight : std::uint8_t {
 /// Share of the power arriving at angle acos(mu) that leaves by a single reflection at a rough boundary of
 /// relative index eta (far side over near side): the integral of F(wo.m) G1(wi) over the visible normals.
 double rough_reflectance(const Microfacet& microfacet, float eta, float mu);
-/// The same for a single refraction: the integral of (1 - F(wo.m)) G1(wt).
+/// Transmittance of a single refraction: the integral of (1 - F(wo.m)) G1(wt).
 double rough_transmittance(const Microfacet& microfacet, float eta, float mu);
 
 /// rough_transmittance(), or 1 - rough_reflectance(), against mu, interpolated linearly.

@@ -9,7 +9,7 @@ namespace mote::core {
 
 class Roughness {
   public:
-    /// The same everywhere; meant to be implicit.
+    /// One roughness everywhere; meant to be implicit.
     Roughness(const Microfacet& everywhere)
         : everywhere_(everywhere),
           alpha_u_(everywhere.alpha_u()),

@@ -33,7 +33,7 @@ class Texture : public Object {
 /// A texture that others share.
 using TexturePtr = std::shared_ptr<const Texture>;
 
-/// The same value everywhere.
+/// A texture of one value.
 std::shared_ptr<Texture> make_constant_texture(const Rgb& value);
 
 }  // namespace mote::core

@@ -9,7 +9,7 @@ struct Frame {
     Vec3 s{1, 0, 0}, t{0, 1, 0}, n{0, 0, 1};  ///< local x, y, z as the world sees them
 
     Frame() = default;
-    /// Of three axes, orthonormal.
+    /// Frame of three orthonormal axes.
     Frame(const Vec3& s_, const Vec3& t_, const Vec3& n_) : s(s_), t(t_), n(n_) {}
     /// Any frame around the unit vector n, without branches or singularities (Duff et al. 2017).
     explicit Frame(const Vec3& normal) : n(normal) {

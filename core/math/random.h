@@ -17,7 +17,7 @@ inline std::uint64_t mix_bits(std::uint64_t v) {
 inline std::uint64_t hash_combine(std::uint64_t h, std::uint64_t v) {
     return mix_bits(h + 0x9e3779b97f4a7c15ull + mix_bits(v + 0x632be59bd9b4e019ull));
 }
-/// Of any number of keys, in order.
+/// Hash of any number of keys, in order.
 template <typename... Keys>
 std::uint64_t hash_keys(std::uint64_t first, Keys... rest) {
     std::uint64_t h = mix_bits(first + 0x9e3779b97f4a7c15ull);

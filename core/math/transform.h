@@ -11,7 +11,7 @@ struct Transform {
     glm::dmat4 matrix{1.0};  ///< column vectors: p' = matrix * p
 
     Transform() = default;
-    /// Of a matrix for column vectors.
+    /// Transform by a matrix for column vectors.
     explicit Transform(const glm::dmat4& m) : matrix(m) {}
 
     /// Moved, turned and scaled.
@@ -23,7 +23,7 @@ struct Transform {
     }
     /// Undefined where the determinant is 0.
     Transform inverse() const { return Transform(glm::inverse(matrix)); }
-    /// Of the linear part: factor on volumes, negative where it mirrors.
+    /// Determinant of the linear part: factor on volumes, negative where it mirrors.
     double determinant() const { return glm::determinant(glm::dmat3(matrix)); }
     /// True when every entry is finite and the linear part can be inverted.
     bool valid() const {

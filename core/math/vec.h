@@ -15,7 +15,7 @@ namespace mote::core {
 using Vec2 = glm::vec2;
 /// A point or direction of space.
 using Vec3 = glm::vec3;
-/// The same in double precision.
+/// A point or direction in double precision.
 using Vec3d = glm::dvec3;
 /// A pixel.
 using Vec2i = glm::ivec2;
@@ -41,7 +41,7 @@ inline float luminance(const Rgb& c) { return 0.2126f * c.x + 0.7152f * c.y + 0.
 /// No light in any channel.
 inline bool is_black(const Rgb& c) { return c.x == 0.0f && c.y == 0.0f && c.z == 0.0f; }
 inline bool is_finite(float x) { return std::isfinite(x); }  ///< neither NaN nor infinite
-/// The same for all three.
+/// All three are finite.
 inline bool is_finite(const Vec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }

@@ -9,7 +9,7 @@
 namespace mote::core {
 namespace {
 
-/// What a value is, in the words of the scene language.
+/// Kind of a value, in the words of the scene language.
 std::string kind_name(const PropertyValue& value) {
     static const char* const names[] = {"boolean", "integer", "float",    "string",
                                         "rgb",     "vector",  "transform"};

@@ -63,7 +63,7 @@ void register_sensors(Registry& registry);  // core/cameras/register_sensors.cpp
 
 /// "bsdf", "texture", ... and back; nothing for an unknown word.
 const std::string& category_name(Category category);
-/// Of a word.
+/// The category of a word; nothing for an unknown one.
 std::optional<Category> find_category(std::string_view name);
 
 }  // namespace mote::core

@@ -1,4 +1,4 @@
-// What is left to do for each type of settings; the work is in parameter_list.cpp.
+// The part that is compiled for each type of settings; the work is in parameter_list.cpp.
 #pragma once
 
 #include "core/parameters/parameter_list.h"

@@ -22,11 +22,11 @@ class ForeignSurface final : public Shape {
   public:
     /// `surface_bsdf` is not null.
     explicit ForeignSurface(std::shared_ptr<Bsdf> surface_bsdf) { bsdf = std::move(surface_bsdf); }
-    /// What a ray met here at the distance t [m]; `geometric_normal` is unit, outwards. `error`: how far
+    /// Hit of a ray at the distance t [m]; `geometric_normal` is unit, outwards. `error`: how far
     /// along it the point may lie off the surface [m]; rays that leave start so much farther out.
     SurfaceHit hit(const Ray& ray, float t, const Vec3& geometric_normal, float error = 0.0f) const;
 
-    /// Of no extent, as all that follows: a foreign surface is never drawn from.
+    /// No extent, as all that follows: a foreign surface is never drawn from.
     Bounds3 bounds() const override { return {}; }
     float area() const override { return 0.0f; }                              ///< zero
     ShapeSample sample_area(const Vec2& /*u*/) const override { return {}; }  ///< of no use
@@ -40,7 +40,7 @@ struct SceneCallbacks {
     std::function<std::optional<SurfaceHit>(const Ray&)> first_hit = {};
     /// Is there no surface? Empty: as first_hit says.
     std::function<bool(const Ray&)> visible = {};
-    /// The same for sixteen segments at a time: sets t_max to -infinity where a surface is in the way. Lanes
+    /// Sixteen segments at a time: sets t_max to -infinity where a surface is in the way. Lanes
     /// with t_max < t_min ask for nothing. Empty: visible() for each lane.
     std::function<void(std::span<ShadowPacket>)> find_occluded = {};
     /// The transmittance between two points per channel, or an estimate of it without bias; surfaces are not

@@ -15,7 +15,7 @@ class Medium;
 class Shape;
 struct SurfaceHit;
 
-/// What a light is; `environment` surrounds the scene.
+/// Kind of a light; `environment` surrounds the scene.
 enum class EmitterKind : std::uint8_t { point, spot, directional, area, environment, medium };
 
 struct EmitterTraits {
@@ -67,7 +67,7 @@ struct EmissionDensity {
 /// A light.
 class Emitter : public Object {
   public:
-    /// What it is.
+    /// Kind and properties.
     virtual EmitterTraits traits() const = 0;
 
     /// Called once when the scene is complete: bounding sphere of everything. Lights at infinity need it.

@@ -1,4 +1,4 @@
-// What a light hierarchy knows of a light, or of a group of lights: where it is, whereto it shines, how
+// Bounds of a light or a cluster of lights for a light hierarchy: position, directions of emission, how
 // strongly (Estevez and Kulla 2018).
 #pragma once
 

@@ -32,7 +32,7 @@ using LightImportances = LightGroups::Each<float>;
 /// Estimates of the light from each group at a receiver, up to a common factor: intensity, both cosines,
 /// 1/d^2. They are 0 only where nothing can arrive, and scenes of any scale give the same ratios.
 LightImportances light_importances(const LightGroups& groups, const LightReceiver& receiver);
-/// The same along a segment: in the place of 1/d^2 its integral, (theta_b - theta_a) / D.
+/// Estimates along a segment: in the place of 1/d^2 its integral, (theta_b - theta_a) / D.
 LightImportances light_importances(const LightGroups& groups, const LightSegment& segment);
 
 }  // namespace mote::core

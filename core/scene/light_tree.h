@@ -31,7 +31,7 @@ class LightTree {
     /// Precondition: !empty(). `where` is a LightReceiver or a LightSegment; u in [0, 1).
     template <typename Where>
     Choice sample(const Where& where, double u) const;
-    /// Of sample() choosing this light.
+    /// Probability of sample() choosing this light.
     template <typename Where>
     double probability(const Where& where, std::uint32_t light) const;
 

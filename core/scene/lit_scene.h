@@ -1,4 +1,4 @@
-// What algorithms ask that need the lights besides what lies along rays: a light to connect to, a light to
+// Queries of algorithms that need the lights besides rays: a light to connect to, a light to
 // start a particle from.
 #pragma once
 
@@ -23,7 +23,7 @@ class LitScene : public RayQueries {
 
     /// Light for a receiver. A null emitter: there is none to choose.
     virtual LightChoice choose_light(const LightReceiver& receiver, float u) const = 0;
-    /// Of choose_light(). Over all lights they add up to 1.
+    /// Probability that choose_light() returns this light; over all lights they add up to 1.
     virtual float light_probability(const LightReceiver& receiver, const Emitter* emitter) const = 0;
     /// Light for a particle. `remapped` is u, ready to be used again.
     virtual LightChoice choose_emitter_by_power(float u, float* remapped = nullptr) const = 0;

@@ -8,7 +8,7 @@
 
 namespace mote::core {
 
-/// What a ray meets where it crosses a pane.
+/// Event where a ray crosses a pane.
 inline StraightPassage passage_through(const SurfaceHit& pane, const Vec3& direction) {
     return pane.shape->bsdf->straight_passage(bsdf_point(pane), pane.shading.to_local(-direction));
 }

@@ -17,7 +17,7 @@
 
 namespace mote::core {
 
-/// What was spent on tracking; added up per thread and reported in the statistics.
+/// Costs of tracking; added up per thread and reported in the statistics.
 struct TrackingCounters {
     std::uint64_t lookups = 0;     ///< density lookups
     std::uint64_t collisions = 0;  ///< tentative collisions, real and null
@@ -47,7 +47,7 @@ struct MediumCoefficients {
     Rgb emission{0.0f};  ///< sigma_a * L_e [W/(m^3 sr)]
 };
 
-/// What a medium asks of those who render it.
+/// Properties of a medium that choose the code that renders it.
 struct MediumTraits {
     bool homogeneous = false;     ///< the same everywhere
     bool emissive = false;        ///< glows
@@ -64,10 +64,10 @@ struct MediumTraits {
 class Emitter;
 class ScatteringPoints;
 
-/// What fills space and takes, scatters or emits light.
+/// A volume that absorbs, scatters or emits light.
 class Medium : public Object {
   public:
-    /// Of the whole medium.
+    /// Properties of the whole medium.
     virtual MediumTraits traits() const = 0;
     virtual const PhaseFunction& phase() const = 0;
     /// At a point of the world.
@@ -113,7 +113,7 @@ class Medium : public Object {
     /// marching_step(); each counts with the extinction in its middle. An infinite segment of a medium
     /// without bounds counts as if the extinction of its start went on.
     virtual Vec3d optical_depth_along(const Ray& ray, float voxels, TrackingCounters& counters) const;
-    /// The same from t_min to the end of each of depths.size() equal parts of a finite segment.
+    /// Optical depths from t_min to the end of each of depths.size() equal parts of a finite segment.
     virtual void optical_depths_along(const Ray& ray, float voxels, std::span<Vec3d> depths,
                                       TrackingCounters& counters) const;
     /// Steps of `voxels` voxels [m]; of a medium that varies but names no voxel size, `default_steps` to a

@@ -1,5 +1,6 @@
-// What algorithms ask of a scene: the first surface on a ray, whether a segment is free, and which media lie
-// along it and what they let through. Scene is one implementation; another renderer's scene can be another.
+// Queries of algorithms to a scene: the first surface on a ray, whether a segment is free, and which media
+// lie along it and what they let through. Scene is one implementation; another renderer's scene can be
+// another.
 //
 // Surfaces and boundaries are apart: a boundary separates media or is a pane, and light passes it straight.
 // Calls are by ray or by batches of packets, so that the indirection does not count. All are safe from many
@@ -29,7 +30,7 @@ class RayQueries {
     virtual std::optional<SurfaceHit> first_hit(const Ray& ray) const = 0;
     /// Is there no surface within (t_min, t_max)?
     virtual bool visible(const Ray& segment) const = 0;
-    /// The same for many packets of sixteen segments: t_max becomes -infinity where a surface is in the way.
+    /// Many packets of sixteen segments: t_max becomes -infinity where a surface is in the way.
     virtual void find_occluded(std::span<ShadowPacket> packets) const = 0;
 
     /// Can anything between two points that see each other take light away? If not, transmittance() is 1
@@ -39,8 +40,8 @@ class RayQueries {
     /// without bias; surfaces are not looked at. `state` holds the media at `from`.
     virtual Rgb transmittance(const Vec3& from, const Vec3& to, const MediumState& state, Rng& rng,
                               TrackingCounters& counters) const = 0;
-    /// The same as a connection to a light, for multiple importance sampling (see Medium::connect). Returns
-    /// the medium at ray.t_max, or null where that is vacuum or nothing came through.
+    /// Transmittance as a connection to a light, for multiple importance sampling (see Medium::connect).
+    /// Returns the medium at ray.t_max, or null where that is vacuum or nothing came through.
     virtual const Medium* connect(const Ray& ray, const MediumState& state, PathWeights& weights, Rng& rng,
                                   TrackingCounters& counters) const = 0;
 
@@ -59,7 +60,7 @@ class RayQueries {
     }
     /// A function that is called with `visit`; false stops it.
     using BoundaryVisitor = bool (*)(const void* visit, const SurfaceHit& hit);
-    /// What for_each_boundary() stands on; worth overriding where it need not take memory.
+    /// Base of for_each_boundary(); worth overriding where it need not take memory.
     virtual void visit_boundaries(const Ray& ray, BoundaryVisitor visitor, const void* visit) const {
         std::vector<SurfaceHit> hits;
         boundaries_along(ray, hits);

@@ -1,4 +1,4 @@
-// What a scene requires of an integrator: found once after loading, shown to the user, used to choose what
+// Requirements of a scene on an integrator: found once after loading, shown to the user, used to choose what
 // runs.
 #pragma once
 

@@ -31,8 +31,8 @@ struct ScatteringVertex {
     const Bsdf* bsdf = nullptr;            ///< surface
     const PhaseFunction* phase = nullptr;  ///< medium
     SurfaceHit hit;                        ///< surface only
-    /// Of a pane that stopped the path here by chance (StraightPassage::stops); 1 on all other surfaces. What
-    /// passes the pane is no part of what the vertex scatters, and the rest counts by this chance.
+    /// For a pane that stopped the path here by chance (StraightPassage::stops); 1 on all other surfaces.
+    /// What passes the pane is no part of what the vertex scatters, and the rest counts by this chance.
     float stop_chance = 1.0f;
 
     bool on_surface() const { return bsdf != nullptr; }             ///< or in a medium

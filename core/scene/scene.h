@@ -23,7 +23,7 @@ class LightTree;
 class ProbeRays;
 struct Element;
 
-/// What the film of a scene file asks for.
+/// Settings of the film of a scene file.
 struct FilmSettings {
     int width = 768, height = 576;    ///< [pixels]
     bool half = false;                ///< write float16
@@ -97,7 +97,7 @@ class Scene final : public LitScene {
     MediumState medium_state_at(const Vec3& p, const Medium* declared) const;
     /// Where an eye ray begins, at ray.t_min: what lies nearer is not seen.
     MediumState eye_medium_state(const Ray& ray) const;
-    /// The same for the middle of the picture.
+    /// The media around the eye for the middle of the image.
     MediumState camera_medium_state() const { return camera_state_; }
     MediumState emitter_medium_state(const Emitter& emitter, const EmissionSample& sample) const override;
 
@@ -134,7 +134,7 @@ class Scene final : public LitScene {
     std::unique_ptr<RayTracer> rays_;
     Bounds3 bounds_;
     const Emitter* environment_ = nullptr;
-    /// Of each light without the hierarchy, and the hierarchy as the last entry; of particles.
+    /// Probabilities of each light without the hierarchy, and the hierarchy as the last entry; of particles.
     Distribution1D direct_lights_, particle_lights_;
     std::unique_ptr<const LightTree> light_tree_;
     static constexpr std::uint32_t no_tree = 0xffffffffu;

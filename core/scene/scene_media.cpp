@@ -47,7 +47,7 @@ bool leaves(const SurfaceHit& hit, const Vec3& direction) {
     return glm::dot(hit.geometric_normal, direction) > 0.0f;
 }
 
-/// What one ray says about one shape.
+/// Evidence of one ray about one shape.
 struct Crossings {
     int count = 0;
     bool first_leaves = false, last_leaves = false;

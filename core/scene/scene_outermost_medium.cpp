@@ -11,7 +11,7 @@
 namespace mote::core {
 namespace {
 
-/// Who names the outermost medium, and where in the scene file.
+/// Element that names the outermost medium, and where in the scene file.
 struct Naming {
     const Medium* medium;
     std::string who;

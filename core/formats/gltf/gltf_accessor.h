@@ -16,10 +16,11 @@ class GltfAccessor {
 
     std::size_t size() const { return count_; }
     int components() const { return components_; }
-    /// Of element i < size(), component c < components(). Integers that are `normalized` lie in [0, 1] or
+    /// Value of element i < size(), component c < components(). Integers that are `normalized` lie in [0, 1]
+    /// or
     /// [-1, 1].
     float value(std::size_t i, int c) const;
-    /// Of an accessor of whole numbers.
+    /// Element i of an accessor of whole numbers.
     std::uint32_t whole(std::size_t i) const;
     const GltfValue& place() const { return value_; }
 

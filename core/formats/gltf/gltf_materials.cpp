@@ -80,7 +80,7 @@ const GltfMaterial& GltfMaterials::get(std::optional<std::size_t> number) {
     return *material;
 }
 
-/// What cannot be said here is reported once, when the material is used first.
+/// Anything without a counterpart here is reported once, when the material is used first.
 void GltfMaterials::check(const GltfValue& material) {
     const GltfValue extensions = material["extensions"];
     for (const Unknown& u : unknown_extensions()) {
@@ -127,7 +127,7 @@ GltfMaterial GltfMaterials::read(const GltfValue& material) {
     return m;
 }
 
-/// Of an emissive texture the factor; W/(m^2 sr).
+/// Factor of an emissive texture; W/(m^2 sr).
 Rgb GltfMaterials::emission(const GltfValue& material) {
     const double strength = extension(material, "emissive_strength")["emissiveStrength"].number(1.0);
     const Rgb factor = colour(material["emissiveFactor"], Rgb(0.0f));
@@ -257,7 +257,7 @@ void GltfMaterials::add_light_and_medium(pugi::xml_node shape, std::optional<std
     const Rgb left = glm::clamp(colour(volume["attenuationColor"], Rgb(1.0f)), 1e-6f, 1.0f);
     if (transmission_factor(material) == 0.0 || !encloses_volume(material)) return;
     if (!(distance > 0.0) || left == Rgb(1.0f)) return;
-    // What is left of white light after that distance (KHR_materials_volume).
+    // Remaining white light after that distance (KHR_materials_volume).
     const Rgb sigma_t = -glm::log(left) / float(distance);
     pugi::xml_node medium = add_object(shape, "medium", "homogeneous", "interior");
     add_rgb(medium, "sigma_t", sigma_t / max_component(sigma_t));  // Mitsuba takes colours up to 1

@@ -11,7 +11,7 @@
 
 namespace mote::core {
 
-/// What of a material concerns the shapes that have it.
+/// Properties of a material that concern the shapes that have it.
 struct GltfMaterial {
     std::size_t uv_set = 0;
     bool emissive = false, double_sided = false, normal_map = false;

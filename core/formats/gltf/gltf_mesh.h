@@ -20,7 +20,7 @@ struct MeshByHandedness {
 };
 MeshByHandedness split_by_handedness(const MeshData& mesh);
 
-/// The same surface seen from behind, by so much behind it [m].
+/// The surface seen from behind, at a distance behind it [m].
 MeshData back_side(const MeshData& mesh, float distance);
 
 }  // namespace mote::core

@@ -1,4 +1,4 @@
-// What a glTF file holds that a scene of ours does not.
+// Content of a glTF file that a scene of ours does not.
 #pragma once
 
 #include <algorithm>

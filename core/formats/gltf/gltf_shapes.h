@@ -21,7 +21,7 @@ class GltfShapes {
     /// Writes all meshes of these nodes. A mesh of several nodes is a shapegroup with instances, unless it
     /// emits light.
     void add(pugi::xml_node scene, const std::vector<GltfNode>& nodes);
-    /// Of all that was added.
+    /// Bounds of all shapes added.
     const Bounds3& bounds() const { return bounds_; }
     bool emits() const { return emits_; }
     bool has_media() const { return has_media_; }

@@ -95,7 +95,7 @@ MeshFile convert(const aiScene& scene, bool flip_v) {
     return all;
 }
 
-/// What goes through the pipe: sizes, then the arrays. An error is a message instead.
+/// Content of the pipe: sizes, then the arrays. An error is a message instead.
 struct Header {
     std::uint64_t message, positions, normals, uvs, triangles, other_dropped;
 };

@@ -12,7 +12,7 @@
 
 namespace mote::core {
 
-/// What a reader hands over: polygons are triangulated already, nothing is checked yet.
+/// Result of a reader: polygons are triangulated already, nothing is checked yet.
 struct MeshFile {
     MeshData data;                  ///< no normals when the file has none
     std::size_t other_dropped = 0;  ///< lines, points and faces with less than three corners

@@ -87,7 +87,7 @@ ImageChannels decode(const std::string& path, const ExrSummary& summary) {
     return image;
 }
 
-/// What the library throws, as an InputError that names the file once.
+/// Converts exceptions of the library to an InputError that names the file once.
 template <typename Read>
 auto with_clear_errors(const std::string& path, const Read& read) {
     try {

@@ -14,7 +14,7 @@ class QuietStderr {
     ~QuietStderr();
     QuietStderr(const QuietStderr&) = delete;
     QuietStderr& operator=(const QuietStderr&) = delete;
-    /// What was printed so far: its last line, at most 200 characters.
+    /// Text printed so far: its last line, at most 200 characters.
     std::string last_line() const;
 
   private:

@@ -59,7 +59,7 @@ void known_words(const Element& parent, std::vector<std::string>& words) {
 Element& find_one(Element& parent, const std::string& word, const SourceLocation& where) {
     const std::vector<Element*> found = matches(parent, word);
     if (found.size() == 1) return *found.front();
-    // Of a scene's integrators the first renders; the others are found by their types.
+    // The first integrator of a scene renders; the others are found by their types.
     if (found.size() > 1 && parent.tag == "scene" && word == "integrator") return *found.front();
     if (found.size() > 1)
         throw InputError("'" + printable(word) + "' fits " + std::to_string(found.size()) +

@@ -21,7 +21,7 @@ std::vector<std::string> known_tags() {
     throw InputError("unknown element <" + printable(e.tag) + ">" + suggestion(e.tag, known_tags()), e.where);
 }
 
-/// Whether a value written with `tag` can be given to a parameter of type `type`.
+/// True if a value written with `tag` can be given to a parameter of type `type`.
 bool accepts_value(const std::string& type, const std::string& tag) {
     const bool number = tag == "float" || tag == "integer";
     const bool colour = tag == "rgb" || tag == "spectrum";
@@ -79,14 +79,14 @@ struct Checker {
             });
         }
     }
-    /// What reading found. Returns whether it found nothing.
+    /// Takes over what reading found. Returns true if it found nothing.
     bool take_up(const Element& e) {
         if (e.fault && !faults.has(e)) faults.add(&e, *e.fault);
         return !e.fault;
     }
 };
 
-/// What is neither an object nor known directly in <scene>.
+/// Elements that are no objects, directly in <scene>.
 void check_at_top(const Element& e) {
     if (e.tag == "alias") {
         e.check_attributes({"id", "as"});

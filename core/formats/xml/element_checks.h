@@ -28,7 +28,7 @@ void check_child(const Element& child, const Manual& manual);
 using IdTable = std::map<std::string, const Element*>;
 /// An id that is given twice is a fault; the first holds.
 IdTable collect_ids(const Element& scene, Faults& faults);
-/// The same; throws InputError instead.
+/// The table; throws InputError for an id that is given twice.
 IdTable collect_ids(const Element& scene);
 /// The element that a nested object stands for: itself, or what a <ref> names. Throws InputError for an
 /// unknown id, with the nearest one.
@@ -40,7 +40,7 @@ void check_references(const Element& scene, const IdTable& ids, const Registry& 
 /// Objects that every type of a category takes besides those of its manual page (a shape: bsdf, emitter,
 /// medium).
 const std::vector<Category>& common_children(Category category);
-/// Whether a type with this manual page has a place for `child`, a value or a nested object.
+/// True if a type with this manual page has a place for `child`, a value or a nested object.
 bool has_place_for(const Manual& manual, const Element& child);
 /// The name under which a nested object of category `child` reaches the factory: its own, or, when it has
 /// none or another, that of the only parameter of its category.

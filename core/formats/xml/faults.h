@@ -1,4 +1,4 @@
-// What is wrong with a scene: collected while the loader goes on, so that one run tells all of it.
+// Errors of a scene: collected while the loader goes on, so that one run tells all of it.
 //
 // A fault belongs to an element of the scene, or to none (the command line). Whoever finds one goes on with
 // the next element; an object with a fault below it is not made, and neither are those that need it, without

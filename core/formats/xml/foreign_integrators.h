@@ -17,10 +17,10 @@ void replace_foreign_integrators(SceneDocument& document, const Registry& regist
 /// Whatever is wrong with the file's own integrator is a warning. Throws InputError for an unknown type.
 void override_integrator(SceneDocument& document, const std::string& type, const Registry& registry);
 
-/// The same with the type that stands in where the file has no integrator, or one that is not known.
+/// Sets the type where the file has no integrator, or one that is not known.
 void complete_integrator(SceneDocument& document, const std::string& type, const Registry& registry);
 
-/// What becomes of an integrator of Mitsuba, for the table of documentation.
+/// Replacement of an integrator of Mitsuba, for the table of documentation.
 struct ForeignIntegrator {
     const char *from, *to, *note;
     int max_depth = 0;  ///< above 0: set

@@ -122,7 +122,7 @@ void drop_foreign_parameters(Element& e, const Manual& manual, std::vector<std::
 }
 
 void drop_foreign_elements(Element& scene, std::vector<std::string>& warnings) {
-    // Of Rainbow: final picture or preview; and what its author switched off.
+    // Rainbow: final picture or preview; and what its author switched off.
     for (const auto& foreign : {std::pair("mode", "a mode of another renderer has no effect"),
                                 std::pair("hide", "a hidden element is left out")})
         std::erase_if(scene.children, [&](const Element& e) {

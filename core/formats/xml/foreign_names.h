@@ -1,4 +1,4 @@
-// What files written for Mitsuba may hold although it means nothing here.
+// Names that files written for Mitsuba may hold although it means nothing here.
 #pragma once
 
 #include <string>

@@ -15,7 +15,8 @@ namespace mote::core {
 /// value that is none.
 GltfOptions take_gltf_options(std::vector<std::pair<std::string, std::string>>& defines);
 
-/// What cannot be said in our language as errors, all of them; or with leniency as lines for the report.
+/// Anything without a counterpart in our language as errors, all of them; or with leniency as lines for the
+/// report.
 std::vector<std::string> gltf_approximations(const GltfScene& scene, const std::string& path, bool lenient);
 
 /// load_scene() for a .gltf or .glb file. Lines in messages are those of the scene that `mote convert`

@@ -50,7 +50,7 @@ class Remedy {
         if (mend_attributes(e, error) || mend_value(e, *category, error)) return true;
         return replace(e, *category, error);
     }
-    /// What is wrong with the element's own attributes, but for its type.
+    /// Mends the element's own attributes, but for its type. Returns true where something changed.
     bool mend_attributes(Element& e, const InputError& error) {
         const std::size_t before = e.attributes.size();
         const bool was_faulty = bool(e.fault);

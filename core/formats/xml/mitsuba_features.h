@@ -17,7 +17,7 @@ struct MitsubaFeature {
 
 /// By category, then by name. Whatever is in the registry is supported.
 std::vector<MitsubaFeature> mitsuba_features(const Registry& registry);
-/// The same as a table.
+/// The list as a table of a manual page.
 std::string mitsuba_features_markdown(const Registry& registry);
 
 }  // namespace mote::core

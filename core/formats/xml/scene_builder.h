@@ -11,7 +11,7 @@ namespace mote::core {
 /// nothing is.
 Scene::Parts build_scene(const SceneDocument& document, const Registry& registry, const std::string& file,
                          Faults& faults);
-/// The same; throws SceneErrors.
+/// Builds the scene; throws SceneErrors.
 Scene::Parts build_scene(const SceneDocument& document, const Registry& registry, const std::string& file);
 
 }  // namespace mote::core

@@ -19,13 +19,13 @@
 
 namespace mote::core {
 
-/// What loading did besides.
+/// Files, warnings and approximations of loading.
 struct LoadReport {
     std::vector<std::string> approximations;  ///< what leniency left out or replaced, and why
     std::vector<std::string> features;        ///< layers of the first hit that the file asks for
 };
 
-/// What the caller changes in a scene, and how strictly it is read.
+/// Changes of a scene by the caller, and how strictly it is read.
 struct LoadOptions {
     /// -D name=value: `name` is a $parameter of the file, or a path such as "integrator.paths" or
     /// "film.width". One that nothing used is an error.
@@ -36,9 +36,9 @@ struct LoadOptions {
     /// Stands in where the file has no integrator, or one of a type that is not known (a warning); empty: the
     /// scene has none then, or the type is an error.
     std::string default_integrator = {};
-    /// What is wrong with the file is left out or approximated, as LoadReport::approximations says.
+    /// Lenient: what is wrong with the file is left out or approximated, as LoadReport::approximations says.
     bool lenient = false;
-    /// Of a sequence: the number in file names such as smoke.####.vdb.
+    /// Number of the frame of a sequence, in file names such as smoke.####.vdb.
     std::optional<int> frame = {};
     LoadReport* report = nullptr;  ///< filled where it is not null
 };
@@ -50,7 +50,8 @@ std::unique_ptr<Scene> load_scene(const std::string& path, const Registry& regis
 /// checked against the manual pages. build_scene() makes the scene of them.
 SceneDocument load_scene_elements(const std::string& path, const Registry& registry,
                                   const LoadOptions& options = {});
-/// The same from text; relative file names are looked up in `folder`. `name` stands for the file in messages.
+/// Loads a scene from text; relative file names are looked up in `folder`. `name` stands for the file in
+/// messages.
 std::unique_ptr<Scene> load_scene_from_string(const std::string& xml, const std::string& folder,
                                               const Registry& registry, const LoadOptions& options = {},
                                               const std::string& name = "<string>");

@@ -1,4 +1,4 @@
-// What loaders of different files have in common: from a document to a scene.
+// Shared by loaders of different files: from a document to a scene.
 #pragma once
 
 #include <functional>
