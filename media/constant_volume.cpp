@@ -73,29 +73,26 @@ void register_constant_volume(core::Registry& registry) {
         [](const Settings& s) { return std::make_shared<ConstantVolume>(s.value, s.to_world); });
 }
 
-}  // namespace mote::media
-
-namespace mote::core {
 namespace {
 
-class VolumeKind final : public ValueKind {
-    std::string type(const Row&) const override { return "volume"; }
-    void read(const Properties& p, const Row& row, void* member) const override {
-        auto& volume = *static_cast<media::VolumePtr*>(member);
-        volume = p.child<media::Volume>(row.parameter.name);
-        if (!volume) volume = std::make_shared<media::ConstantVolume>(read_rgb(p, row));
+class VolumeKind final : public core::ValueKind {
+    std::string type(const core::Row&) const override { return "volume"; }
+    void read(const core::Properties& p, const core::Row& row, void* member) const override {
+        auto& volume = *static_cast<VolumePtr*>(member);
+        volume = p.child<Volume>(row.parameter.name);
+        if (!volume) volume = std::make_shared<ConstantVolume>(core::read_rgb(p, row));
     }
-    std::string text(const Row&, const void* member) const override {
-        const auto& volume = *static_cast<const media::VolumePtr*>(member);
-        return volume ? rgb_text(volume->upper_bound()) : "none";
+    std::string text(const core::Row&, const void* member) const override {
+        const auto& volume = *static_cast<const VolumePtr*>(member);
+        return volume ? core::rgb_text(volume->upper_bound()) : "none";
     }
 };
 
 }  // namespace
 
-const ValueKind& KindOf<media::VolumePtr>::kind() {
+const core::ValueKind& kind_of(core::Type<VolumePtr>) {
     static const VolumeKind kind;
     return kind;
 }
 
-}  // namespace mote::core
+}  // namespace mote::media

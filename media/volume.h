@@ -35,10 +35,7 @@ using VolumePtr = std::shared_ptr<const Volume>;
 /// A volume of one value.
 VolumePtr make_constant_volume(float value);
 
-}  // namespace mote::media
-
 /// Volumes as declared parameters: nested ones, or a constant from an rgb or a float.
-template <>
-struct mote::core::KindOf<mote::media::VolumePtr> {
-    static const ValueKind& kind();
-};
+const core::ValueKind& kind_of(core::Type<VolumePtr>);
+
+}  // namespace mote::media

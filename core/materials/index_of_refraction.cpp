@@ -84,7 +84,7 @@ std::optional<ComplexIndex> conductor_index(std::string_view name) {
     return ComplexIndex{rgb(found->eta), rgb(found->k)};
 }
 
-const ValueKind& KindOf<IndexOfRefraction>::kind() {
+const ValueKind& kind_of(Type<IndexOfRefraction>) {
     static const IndexKind kind;
     return kind;
 }

@@ -36,10 +36,7 @@ class IndexOfRefraction {
     std::string name_;
 };
 
-template <>
-struct KindOf<IndexOfRefraction> {
-    static const ValueKind& kind();
-};
+const ValueKind& kind_of(Type<IndexOfRefraction>);
 
 /// `material`, or `eta` and `k`.
 struct ConductorIndexSettings {

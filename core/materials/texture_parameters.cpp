@@ -58,7 +58,7 @@ std::shared_ptr<Texture> make_constant_texture(const Rgb& value) {
     return std::make_shared<ConstantTexture>(value);
 }
 
-const ValueKind& KindOf<TexturePtr>::kind() {
+const ValueKind& kind_of(Type<TexturePtr>) {
     static const TextureKind kind;
     return kind;
 }

@@ -6,9 +6,6 @@
 
 namespace mote::core {
 
-template <>
-struct KindOf<TexturePtr> {
-    static const ValueKind& kind();
-};
+const ValueKind& kind_of(Type<TexturePtr>);
 
 }  // namespace mote::core

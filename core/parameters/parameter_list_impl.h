@@ -55,19 +55,19 @@ void Rows<S>::remove(std::initializer_list<const char*> names) {
 
 template <typename S, typename T>
 Rows<S> row(std::string name, T S::*member, std::string sentence) {
-    return Rows<S>(make_row(std::move(name), std::move(sentence), KindOf<T>::kind(), offset_of(member)));
+    return Rows<S>(make_row(std::move(name), std::move(sentence), kind_of(Type<T>()), offset_of(member)));
 }
 
 template <typename S, typename T>
 Rows<S> row(std::string name, T S::*member, Range range, std::string sentence) {
-    Row made = make_row(std::move(name), std::move(sentence), KindOf<T>::kind(), offset_of(member));
+    Row made = make_row(std::move(name), std::move(sentence), kind_of(Type<T>()), offset_of(member));
     made.parameter.range = std::move(range);
     return Rows<S>(std::move(made));
 }
 
 template <typename S, typename T>
 Rows<S> row(std::string name, T S::*member, std::type_identity_t<Choices<T>> choices, std::string sentence) {
-    Row made = make_row(std::move(name), std::move(sentence), KindOf<T>::kind(), offset_of(member));
+    Row made = make_row(std::move(name), std::move(sentence), kind_of(Type<T>()), offset_of(member));
     for (const auto& [word, value] : choices.all) {
         made.parameter.choices.emplace_back(word);
         if constexpr (std::is_enum_v<T> || std::is_integral_v<T>) made.choices.push_back(std::int64_t(value));
@@ -77,7 +77,7 @@ Rows<S> row(std::string name, T S::*member, std::type_identity_t<Choices<T>> cho
 
 template <typename S>
 Rows<S> point_row(std::string name, Vec3d S::*member, std::string unit, std::string sentence) {
-    Row made = make_row(std::move(name), std::move(sentence), KindOf<Vec3d>::kind(), offset_of(member));
+    Row made = make_row(std::move(name), std::move(sentence), kind_of(Type<Vec3d>()), offset_of(member));
     made.parameter.type = "point", made.parameter.range = any(std::move(unit));
     return Rows<S>(std::move(made));
 }

@@ -195,18 +195,18 @@ const ValueKind& only() {
 
 }  // namespace
 
-const ValueKind& KindOf<bool>::kind() { return only<BoolKind>(); }
-const ValueKind& KindOf<int>::kind() { return only<IntegerKind<int>>(); }
-const ValueKind& KindOf<std::uint32_t>::kind() { return only<IntegerKind<std::uint32_t>>(); }
-const ValueKind& KindOf<std::int64_t>::kind() { return only<IntegerKind<std::int64_t>>(); }
-const ValueKind& KindOf<std::size_t>::kind() { return only<IntegerKind<std::size_t>>(); }
-const ValueKind& KindOf<float>::kind() { return only<FloatKind<float>>(); }
-const ValueKind& KindOf<double>::kind() { return only<FloatKind<double>>(); }
-const ValueKind& KindOf<std::string>::kind() { return only<StringKind>(); }
-const ValueKind& KindOf<FileName>::kind() { return only<FileKind>(); }
-const ValueKind& KindOf<Rgb>::kind() { return only<RgbKind>(); }
-const ValueKind& KindOf<Vec3d>::kind() { return only<VectorKind>(); }
-const ValueKind& KindOf<Transform>::kind() { return only<TransformKind>(); }
+const ValueKind& kind_of(Type<bool>) { return only<BoolKind>(); }
+const ValueKind& kind_of(Type<int>) { return only<IntegerKind<int>>(); }
+const ValueKind& kind_of(Type<std::uint32_t>) { return only<IntegerKind<std::uint32_t>>(); }
+const ValueKind& kind_of(Type<std::int64_t>) { return only<IntegerKind<std::int64_t>>(); }
+const ValueKind& kind_of(Type<std::size_t>) { return only<IntegerKind<std::size_t>>(); }
+const ValueKind& kind_of(Type<float>) { return only<FloatKind<float>>(); }
+const ValueKind& kind_of(Type<double>) { return only<FloatKind<double>>(); }
+const ValueKind& kind_of(Type<std::string>) { return only<StringKind>(); }
+const ValueKind& kind_of(Type<FileName>) { return only<FileKind>(); }
+const ValueKind& kind_of(Type<Rgb>) { return only<RgbKind>(); }
+const ValueKind& kind_of(Type<Vec3d>) { return only<VectorKind>(); }
+const ValueKind& kind_of(Type<Transform>) { return only<TransformKind>(); }
 
 const ValueKind& choice_kind(std::size_t size) {
     return size == 1 ? only<ChoiceKind<std::uint8_t>>() : only<ChoiceKind<std::int32_t>>();

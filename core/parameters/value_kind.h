@@ -44,8 +44,9 @@ class ValueKind {
     virtual std::string text(const Row& row, const void* member) const = 0;
 };
 
+/// Names a type, to overload functions by it.
 template <typename T>
-struct KindOf;
+struct Type {};
 
 /// A file, looked up in the folders of the scene.
 struct FileName {
@@ -53,63 +54,26 @@ struct FileName {
     std::string path;     ///< where it was found
 };
 
-template <>
-struct KindOf<bool> {
-    static const ValueKind& kind();
-};
-template <>
-struct KindOf<int> {
-    static const ValueKind& kind();
-};
-template <>
-struct KindOf<std::uint32_t> {
-    static const ValueKind& kind();
-};
-template <>
-struct KindOf<std::int64_t> {
-    static const ValueKind& kind();
-};
-template <>
-struct KindOf<std::size_t> {
-    static const ValueKind& kind();
-};
-template <>
-struct KindOf<float> {
-    static const ValueKind& kind();
-};
-template <>
-struct KindOf<double> {
-    static const ValueKind& kind();
-};
-template <>
-struct KindOf<std::string> {
-    static const ValueKind& kind();
-};
-template <>
-struct KindOf<FileName> {
-    static const ValueKind& kind();
-};
-template <>
-struct KindOf<Rgb> {
-    static const ValueKind& kind();
-};
-template <>
-struct KindOf<Vec3d> {
-    static const ValueKind& kind();
-};
-template <>
-struct KindOf<Transform> {
-    static const ValueKind& kind();
-};
+/// The kinds of members. A folder above overloads kind_of() for a type of its own, in that type's namespace.
+const ValueKind& kind_of(Type<bool>);
+const ValueKind& kind_of(Type<int>);
+const ValueKind& kind_of(Type<std::uint32_t>);
+const ValueKind& kind_of(Type<std::int64_t>);
+const ValueKind& kind_of(Type<std::size_t>);
+const ValueKind& kind_of(Type<float>);
+const ValueKind& kind_of(Type<double>);
+const ValueKind& kind_of(Type<std::string>);
+const ValueKind& kind_of(Type<FileName>);
+const ValueKind& kind_of(Type<Rgb>);
+const ValueKind& kind_of(Type<Vec3d>);
+const ValueKind& kind_of(Type<Transform>);
 
 /// Words for the values of an enum (or of another integer type) of this size.
 const ValueKind& choice_kind(std::size_t size);
 
 template <typename T>
 requires std::is_enum_v<T>
-struct KindOf<T> {
-    static const ValueKind& kind() { return choice_kind(sizeof(T)); }
-};
+const ValueKind& kind_of(Type<T>) { return choice_kind(sizeof(T)); }
 
 /// Nothing where the scene file gives nothing.
 template <typename T>
@@ -130,12 +94,10 @@ class OptionalKind final : public ValueKind {
 };
 
 template <typename T>
-struct KindOf<std::optional<T>> {
-    static const ValueKind& kind() {
-        static const OptionalKind<T> kind(KindOf<T>::kind());
-        return kind;
-    }
-};
+const ValueKind& kind_of(Type<std::optional<T>>) {
+    static const OptionalKind<T> kind(kind_of(Type<T>()));
+    return kind;
+}
 
 /// The number, colour or other value of `row` in a scene file, checked against its range. Throws InputError.
 double read_number(const Properties& properties, const Row& row);
