@@ -7,22 +7,22 @@
 namespace mote::core {
 namespace {
 
-/// How often a lobe is sampled, relative to the others.
-const Range rate = between(0, 1e6), weight = between(0, 1);
+/// Values of the rates at which lobes are sampled, relative to each other, and of weights.
+const Range rate_range = between(0, 1e6), weight_range = between(0, 1);
 
 const ParameterList<PrincipledWeights>& weight_rows() {
     using S = PrincipledWeights;
     static const ParameterList<S> list{
-        row("base_color", &S::base_color, weight,
+        row("base_color", &S::base_color, weight_range,
             "Colour of the base and of metal; glass has its square root."),
-        row("roughness", &S::roughness, weight,
+        row("roughness", &S::roughness, weight_range,
             "Roughness of all glossy lobes but the clearcoat: GGX of alpha = roughness^2."),
-        row("anisotropic", &S::anisotropic, weight, "Stretches the reflection along the tangent."),
-        row("spec_trans", &S::spec_trans, weight, "Share of the surface that is glass."),
-        row("spec_tint", &S::spec_tint, weight, "Tints the dielectric's reflection with base_color."),
-        row("sheen", &S::sheen, weight, "Light at grazing angles as of cloth; adds light."),
-        row("sheen_tint", &S::sheen_tint, weight, "Tints the sheen with base_color."),
-        row("flatness", &S::flatness, weight,
+        row("anisotropic", &S::anisotropic, weight_range, "Stretches the reflection along the tangent."),
+        row("spec_trans", &S::spec_trans, weight_range, "Share of the surface that is glass."),
+        row("spec_tint", &S::spec_tint, weight_range, "Tints the dielectric's reflection with base_color."),
+        row("sheen", &S::sheen, weight_range, "Light at grazing angles as of cloth; adds light."),
+        row("sheen_tint", &S::sheen_tint, weight_range, "Tints the sheen with base_color."),
+        row("flatness", &S::flatness, weight_range,
             "From a diffuse base to one that looks like subsurface scattering.")};
     return list;
 }
@@ -49,19 +49,19 @@ const ParameterList<PrincipledSettings>& principled_rows() {
     using Rates = PrincipledParameters::Rates;
     static const ParameterList<S> list{
         weight_rows(),
-        within(&S::rates, row("diffuse_reflectance_sampling_rate", &Rates::diffuse, rate,
+        within(&S::rates, row("diffuse_reflectance_sampling_rate", &Rates::diffuse, rate_range,
                               "How often the diffuse lobe is sampled, relatively.")),
-        row("metallic", &S::metallic, weight, "Share of the surface that is metal."),
+        row("metallic", &S::metallic, weight_range, "Share of the surface that is metal."),
         row("eta", &S::given_eta, between(0.01, 100),
             "Index of refraction inside over outside, instead of specular.")
             .when_absent("specular"),
-        row("specular", &S::specular, weight, "Reflectance of the dielectric head on, over 0.08."),
-        row("clearcoat", &S::clearcoat, weight, "Strength of a second, clear coating."),
-        row("clearcoat_gloss", &S::clearcoat_gloss, weight, "From a satin coating to a glossy one."),
+        row("specular", &S::specular, weight_range, "Reflectance of the dielectric head on, over 0.08."),
+        row("clearcoat", &S::clearcoat, weight_range, "Strength of a second, clear coating."),
+        row("clearcoat_gloss", &S::clearcoat_gloss, weight_range, "From a satin coating to a glossy one."),
         within(&S::rates,
-               row("main_specular_sampling_rate", &Rates::specular, rate,
+               row("main_specular_sampling_rate", &Rates::specular, rate_range,
                    "How often the glossy lobes are sampled, relatively."),
-               row("clearcoat_sampling_rate", &Rates::clearcoat, rate,
+               row("clearcoat_sampling_rate", &Rates::clearcoat, rate_range,
                    "How often the clearcoat is sampled, relatively."))};
     return list;
 }
@@ -73,13 +73,13 @@ const ParameterList<PrincipledThinParameters>& principled_thin_rows() {
         row("diff_trans", &S::diff_trans, between(0, 2),
             "Share of the diffuse light that passes, times two."),
         within(&S::rates,
-               row("diffuse_reflectance_sampling_rate", &S::Rates::diffuse, rate,
+               row("diffuse_reflectance_sampling_rate", &S::Rates::diffuse, rate_range,
                    "How often the diffuse lobe is sampled, relatively."),
-               row("diffuse_transmittance_sampling_rate", &S::Rates::diffuse_through, rate,
+               row("diffuse_transmittance_sampling_rate", &S::Rates::diffuse_through, rate_range,
                    "How often diffuse transmission is sampled, relatively."),
-               row("specular_reflectance_sampling_rate", &S::Rates::specular, rate,
+               row("specular_reflectance_sampling_rate", &S::Rates::specular, rate_range,
                    "How often glossy reflection is sampled, relatively."),
-               row("specular_transmittance_sampling_rate", &S::Rates::specular_through, rate,
+               row("specular_transmittance_sampling_rate", &S::Rates::specular_through, rate_range,
                    "How often glossy transmission is sampled, relatively."))};
     return list;
 }

@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "core/materials/bsdfs.h"
+#include "core/materials/nested_bsdf.h"
 #include "core/materials/register_materials.h"
 #include "core/objects/error.h"
 

@@ -1,6 +1,8 @@
 // The registry's manual pages: complete, true, and written out.
 #include "core/formats/xml/scene_format.h"
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <set>
 #include <sstream>
@@ -104,6 +106,41 @@ TEST_CASE("Every example of a manual page parses", "[scene][registry]") {
         // Files named by an example need not exist; that is found out last.
         if (message.find("was not found") == std::string::npos) CHECK(message == "");
     }
+}
+
+TEST_CASE("Every value outside of what its row declares is refused where it stands", "[scene][registry]") {
+    int refused = 0;
+    for (const Manual* manual : full_registry().manuals()) {
+        const auto& rows = manual->parameters;
+        if (std::any_of(rows.begin(), rows.end(), [](const Parameter& p) { return p.required; })) continue;
+        for (const Parameter& p : rows) {
+            const auto refuse = [&](const PropertyValue& value, const std::string& why) {
+                Properties properties;
+                properties.category = manual->category, properties.type = manual->type;
+                properties.values[p.name] = {value, {"test.xml", 7}};
+                INFO(category_name(manual->category) << " " << manual->type << ": " << p.name);
+                CHECK_THROWS_WITH(full_registry().factory(manual->category, manual->type)(properties),
+                                  ContainsSubstring("test.xml:7: ") && ContainsSubstring(why));
+                ++refused;
+            };
+            const auto refuse_number = [&](double value) {
+                const std::string why = "but " + p.range.demand();
+                if (p.range.contains(value)) return;
+                if (p.type == "integer")
+                    refuse(std::int64_t(value), why);
+                else if (p.type == "float")
+                    refuse(value, why);
+                else
+                    refuse(Rgb(float(value)), why);
+            };
+            if (!p.choices.empty()) refuse(std::string("no such word"), "'" + p.name + "' cannot be");
+            if (std::isfinite(p.range.lower))
+                refuse_number(p.range.lower), refuse_number(p.range.lower - 2.0);
+            if (std::isfinite(p.range.upper))
+                refuse_number(p.range.upper), refuse_number(2.0 * std::fabs(p.range.upper) + 2.0);
+        }
+    }
+    CHECK(refused > 150);
 }
 
 TEST_CASE("The format page holds every type and parameter", "[scene][registry]") {
