@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "core/objects/properties.h"
 #include "lights/shadow_maps/light_shadow_maps.h"
 #include "lights/shadow_maps/shadow_map_gather.h"
 
@@ -15,31 +14,62 @@ namespace {
 /// Building a texel takes as long as tracing so many receivers (docs/media.md).
 constexpr double receivers_per_texel = 5.0;
 
-std::shared_ptr<Object> make_shadow_map(const Properties& p) {
-    VisibilitySettings s;
-    s.shadow_maps = true;
-    s.size = int(p.get_int_in("size", s.size, 4, 8192));
-    s.light_size = int(p.get_int_in("light_size", s.light_size, 0, 8192));
-    s.maps = int(p.get_int_in("maps", s.maps, 1, 1024));
-    s.map.intervals = int(p.get_int_in("intervals", s.map.intervals, 1, 4096));
-    s.map.step = float(p.get_float_in("step", 1.0, 1e-3, 1e3));
-    s.map.max_bytes = std::size_t(1e6 * p.get_float_in("max_megabytes", 64.0, 1e-6, 1e6));
-    s.where = p.has("size") ? p.where_of("size") : p.where;
+/// Settings with what only scene files give.
+struct ShadowMapFile : VisibilitySettings {
+    double max_megabytes = 64.0;
+    ShadowMapFile() { shadow_maps = true; }
+};
+
+const ParameterList<ShadowMapFile>& shadow_map_rows() {
+    using S = ShadowMapFile;
+    using Map = lights::ShadowMapSettings;
+    static const ParameterList<S> list{
+        row("size", &S::size, between(4, 8192), "Texels along an edge of a VPL's map."),
+        row("light_size", &S::light_size, between(0, 8192),
+            "Texels along an edge of the maps of point, spot and directional lights, at vertices in media; "
+            "0: "
+            "traced."),
+        within(&S::map, row("intervals", &Map::intervals, between(1, 4096), "Intervals along a ray."),
+               row("step", &Map::step, between(1e-3, 1e3, "voxels"), "Step of ray marching.")),
+        row("max_megabytes", &S::max_megabytes, between(1e-6, 1e6, "MB"),
+            "Memory of one map; a larger one is refused."),
+        row("maps", &S::maps, between(1, 1024), "Maps kept at once, whatever the number of VPLs.")};
+    return list;
+}
+
+std::shared_ptr<Visibility> make_shadow_map(ShadowMapFile s, const Properties& p) {
+    s.map.max_bytes = std::size_t(1e6 * s.max_megabytes);
+    s.where = p.where_of("size");
     return std::make_shared<Visibility>(s);
 }
 
-std::shared_ptr<Object> make_imperfect(const Properties& p) {
-    VisibilitySettings s;
+const ParameterList<VisibilitySettings>& imperfect_rows() {
+    using S = VisibilitySettings;
+    using Map = lights::ImperfectMapSettings;
+    static const ParameterList<S> list{within(
+        &S::imperfect_map, row("size", &Map::size, between(2, 1024), "Texels along an edge of a VPL's map."),
+        row("points", &Map::points, between(1, 1 << 24), "Points in each map."),
+        row("all_points", &Map::all_points, between(1, 1 << 26),
+            "Points on all surfaces, at least as many as in a map; each map has a range of them."),
+        row("splat", &Map::splat, between(0, 1000), "How often the discs of a map's points cover a surface."),
+        row("pull_push", &Map::pull_push, "Fill holes and close gaps between the points."),
+        row("bias", &Map::bias, at_least(0, "texels"),
+            "Anything nearer by less than the width of so many texels casts no shadow."))};
+    return list;
+}
+
+std::shared_ptr<Visibility> make_imperfect(VisibilitySettings s, const Properties& p) {
     lights::ImperfectMapSettings& map = s.imperfect_map;
-    s.imperfect = true;
-    map.size = int(p.get_int_in("size", map.size, 2, 1024));
-    map.points = int(p.get_int_in("points", map.points, 1, 1 << 24));
-    map.all_points =
-        int(p.get_int_in("all_points", std::max(map.all_points, map.points), map.points, 1 << 26));
-    map.splat = float(p.get_float_in("splat", double(map.splat), 0.0, 1000.0));
-    map.pull_push = p.get_bool("pull_push", true);
-    map.bias = float(p.get_float_in("bias", double(map.bias), 0.0, double(map.size) - 1.0));
-    s.where = p.where;
+    s.imperfect = true, s.where = p.where;
+    if (p.has("all_points") && map.all_points < map.points)
+        throw InputError(fmt::format("'all_points' is {} but must be at least {}, the points of a map",
+                                     map.all_points, map.points),
+                         p.where_of("all_points"));
+    map.all_points = std::max(map.all_points, map.points);
+    if (!(map.bias <= float(map.size) - 1.0f))
+        throw InputError(fmt::format("'bias' is {} but must be at most {}, the texels of a map less one",
+                                     map.bias, map.size - 1),
+                         p.where_of("bias"));
     return std::make_shared<Visibility>(s);
 }
 
@@ -124,40 +154,21 @@ void plan_visibility(Plan& plan, const Scene& scene, const VisibilitySettings& s
 }
 
 void register_visibility(Registry& registry) {
-    registry.add({Category::visibility,
-                  "traced",
-                  "Shadow rays, and tracking through media: exact.",
-                  {},
-                  R"(<visibility type="traced"/>)"},
-                 [](const Properties&) { return std::make_shared<Visibility>(VisibilitySettings{}); });
-    registry.add(
-        {Category::visibility,
-         "imperfect_shadow_map",
-         "Small shadow maps of VPLs, made of points of the surfaces: fast for many receivers, and biased.",
-         {{"size", "integer", "32", "texels along an edge of a VPL's map"},
-          {"points", "integer", "8192", "in each map"},
-          {"all_points", "integer", "131072, at least points",
-           "on all surfaces; each map has a range of them"},
-          {"splat", "float", "4", "how often the discs of a map's points cover a surface"},
-          {"pull_push", "boolean", "true", "fill holes and close gaps between the points"},
-          {"bias", "float", "0.5", "what is nearer by less than so many texels' width casts no shadow"}},
-         R"(<visibility type="imperfect_shadow_map"><integer name="points" value="4096"/></visibility>)"},
+    add_type(registry, Category::visibility, "traced", "Shadow rays, and tracking through media: exact.",
+             R"(<visibility type="traced"/>)",
+             [] { return std::make_shared<Visibility>(VisibilitySettings{}); });
+    add_type(
+        registry, Category::visibility, "imperfect_shadow_map",
+        "Small shadow maps of VPLs, made of points of the surfaces: fast for many receivers, and biased.",
+        imperfect_rows(),
+        R"(<visibility type="imperfect_shadow_map"><integer name="points" value="4096"/></visibility>)",
         make_imperfect);
-    registry.add(
-        {Category::visibility,
-         "shadow_map",
-         "Volumetric shadow maps of VPLs and lights: fast for many receivers, and biased. Only in scenes "
-         "with "
-         "media.",
-         {{"size", "integer", "64", "texels along an edge of a VPL's map"},
-          {"light_size", "integer", "256",
-           "the same for the maps of point, spot and directional lights, at vertices in media; 0: traced"},
-          {"intervals", "integer", "35", "along a ray"},
-          {"step", "float", "1", "of ray marching, in voxels"},
-          {"max_megabytes", "float", "64", "of one map; a larger one is refused"},
-          {"maps", "integer", "4", "kept at once, whatever the number of VPLs"}},
-         R"(<visibility type="shadow_map"><integer name="size" value="32"/></visibility>)"},
-        make_shadow_map);
+    add_type(registry, Category::visibility, "shadow_map",
+             "Volumetric shadow maps of VPLs and lights: fast for many receivers, and biased. Only in scenes "
+             "with media.",
+             shadow_map_rows(),
+             R"(<visibility type="shadow_map"><integer name="size" value="32"/></visibility>)",
+             make_shadow_map);
 }
 
 }  // namespace mote::integrators

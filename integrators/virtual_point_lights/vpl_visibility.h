@@ -1,9 +1,7 @@
-// How `mote_vpl` finds out what stands between a VPL and its receivers: a nested <visibility> of a scene
-// file.
+// Visibility between VPLs and receivers in `mote_vpl`: a nested <visibility> of a scene file.
 #pragma once
 
-#include "core/objects/error.h"
-#include "core/objects/registry.h"
+#include "core/parameters/add_type.h"
 #include "core/render/plan.h"
 #include "core/scene/requirements.h"
 #include "core/scene/scene.h"
@@ -28,14 +26,8 @@ struct VisibilitySettings {
     void check(const core::Scene& scene) const;
 };
 
-class Visibility : public core::Object {
-  public:
-    explicit Visibility(const VisibilitySettings& settings) : settings_(settings) {}
-    const VisibilitySettings& settings() const { return settings_; }
-
-  private:
-    VisibilitySettings settings_;
-};
+/// A nested <visibility> of a scene file.
+using Visibility = core::SettingsObject<VisibilitySettings>;
 
 /// traced, shadow_map, imperfect_shadow_map.
 void register_visibility(core::Registry& registry);

@@ -1,10 +1,9 @@
 // Declared parameters: what is read, refused and shown follows from one row each.
 #include "core/parameters/add_type.h"
 
-#include <catch2/catch.hpp>
+#include "tests/support/catch.h"
 
 using namespace mote::core;
-using Catch::Contains;
 
 namespace {
 
