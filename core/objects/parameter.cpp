@@ -67,6 +67,7 @@ Range any(std::string unit) { return {.unit = std::move(unit)}; }
 std::string short_number(double value) {
     int exponent = 0;
     if (value >= 1 << 17 && std::frexp(value, &exponent) == 0.5) return fmt::format("2^{}", exponent - 1);
+    if (value == std::floor(value) && std::fabs(value) < 1e15) return fmt::format("{:.0f}", value);
     const std::string exact = fmt::format("{}", value);
     return exact.size() > 9 ? fmt::format("{:.6g}", value) : exact;
 }
