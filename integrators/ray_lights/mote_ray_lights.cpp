@@ -107,14 +107,7 @@ class RayLightEstimator final : public Estimator {
 
 class MoteRayLights final : public Integrator {
   public:
-    explicit MoteRayLights(const Properties& p) {
-        settings_.eye = read_eye_path_limits(p);
-        settings_.paths = std::uint32_t(p.get_int_in("paths", 256, 0, std::int64_t(1) << 26));
-        settings_.share = std::size_t(p.get_int_in("share", 12, 0, std::int64_t(1) << 26));
-        settings_.candidates = std::size_t(p.get_int_in("candidates", 128, 0, std::int64_t(1) << 26));
-        settings_.scattering_points = int(p.get_int_in("scattering_points", 8, 1, 64));
-        if (p.has("bound")) settings_.bound = float(p.get_float_in("bound", 1.0, 0.0, 1e30));
-    }
+    explicit MoteRayLights(const RayLightSettings& settings) : settings_(settings) {}
 
     std::string type() const override { return "mote_ray_lights"; }
     std::vector<Layer> layers(const Scene& scene) const override {
@@ -170,27 +163,27 @@ Plan MoteRayLights::plan(const Scene& scene, const Requirements& r) const {
 }  // namespace
 
 void register_mote_ray_lights(Registry& registry) {
-    auto parameters = eye_path_parameters();
-    parameters.push_back({"paths", "integer", "256", "light paths traced in every pass"});
-    parameters.push_back({"share", "integer", "12",
-                          "connections of a leg of an eye path, to ray lights and VPLs, drawn by what they "
-                          "would send along it and to "
-                          "its surface; 0: to all of them"});
-    parameters.push_back({"candidates", "integer", "128",
-                          "ray lights, and as many VPLs, that these are drawn from, themselves drawn by "
-                          "power; 0: all of them"});
-    parameters.push_back(
-        {"bound", "float", "automatic",
-         "bound b [1/m^2] on the geometry term from surface to surface, what is above it being found "
-         "by eye paths that go on; automatic: light paths that a receiver looks at, at least 16, over R^2"});
-    parameters.push_back({"scattering_points", "integer", "8",
-                          "points in media where each eye ray looks for the light of lights, up to 64"});
-    registry.add({Category::integrator, "mote_ray_lights",
-                  "Virtual ray lights in media and virtual point lights on surfaces (Novak et al. 2012): "
-                  "unbiased.",
-                  parameters,
-                  R"(<integrator type="mote_ray_lights"><integer name="paths" value="128"/></integrator>)"},
-                 [](const Properties& p) { return std::make_shared<MoteRayLights>(p); });
+    using S = RayLightSettings;
+    add_type<S>(
+        registry, Category::integrator, "mote_ray_lights",
+        "Virtual ray lights in media and virtual point lights on surfaces (Novak et al. 2012): unbiased.",
+        {within(&S::eye, eye_path_rows()),
+         row("paths", &S::paths, between(0, 1 << 26), "Light paths traced in every pass."),
+         row("share", &S::share, between(0, 1 << 26),
+             "Connections of a segment of an eye path, to ray lights and VPLs, sampled by their estimated "
+             "contribution along it and to its surface; 0: to all of them."),
+         row("candidates", &S::candidates, between(0, 1 << 26),
+             "Ray lights, and as many VPLs, that the connections are sampled from, themselves sampled by "
+             "power; "
+             "0: all of them."),
+         row("bound", &S::bound, between(0, 1e30, "1/m^2"),
+             "Bound b on the geometry term from surface to surface; eye paths that continue find what is "
+             "above "
+             "it. automatic: light paths that a receiver is connected to, at least 16, over R^2."),
+         row("scattering_points", &S::scattering_points, between(1, 64),
+             "Points in media where each eye ray gathers the light of lights.")},
+        R"(<integrator type="mote_ray_lights"><integer name="paths" value="128"/></integrator>)",
+        [](const S& s) { return std::make_shared<MoteRayLights>(s); });
 }
 
 }  // namespace mote::integrators

@@ -2,8 +2,7 @@
 
 #include <chrono>
 
-#include "core/objects/properties.h"
-#include "core/objects/registry.h"
+#include "core/parameters/add_type.h"
 #include "core/render/cpu_clock.h"
 #include "screenspace/g_buffer/g_buffer.h"
 
@@ -13,23 +12,44 @@ using namespace core;
 
 namespace {
 
-std::shared_ptr<Object> make(const Properties& p) {
-    const std::string receivers = p.get_string("receivers", "surfaces");
-    if (receivers != "surfaces")
-        throw InputError("screen-space compensation knows surfaces alone, not '" + printable(receivers) +
-                             "'; for media nest <compensation name=\"media\" type=\"approximate\"/>",
-                         p.where_of("receivers"));
+enum class ScreenSpaceReceivers : std::uint8_t { surfaces };
+
+/// The parameters of a scene file.
+struct ScreenSpaceFile {
     ScreenSpaceSettings settings;
-    settings.ssbc.steps = int(p.get_int_in("steps", 2, 1, 100));
-    settings.ssbc.hierarchical = p.get_bool("hierarchical", true);
-    settings.ssbc.half_resolution = p.get_bool("half_resolution", false);
-    settings.ssbc.blur = float(p.get_float_in("blur", 0.0, 0.0, 100.0));
-    settings.layers = int(p.get_int_in("layers", 1, 1, 16));
-    settings.vpl_share = int(p.get_int_in("hidden_share", settings.vpl_share, 1, 1 << 20));
+    ScreenSpaceReceivers receivers = ScreenSpaceReceivers::surfaces;
     compensation::CompensationSettings media;
-    if (const auto nested = p.child<compensation::Compensation>("media")) media = nested->settings();
-    media.surfaces = false;
-    return std::make_shared<ScreenSpaceCompensation>(settings, media);
+};
+
+const ParameterList<ScreenSpaceFile>& screen_space_rows() {
+    using S = ScreenSpaceFile;
+    using Ssbc = screenspace::SsbcSettings;
+    static const ParameterList<S> list{
+        within(
+            &S::settings,
+            within(
+                &ScreenSpaceSettings::ssbc,
+                row("steps", &Ssbc::steps, between(1, 100), "How often the residual operator is applied."),
+                row("hierarchical", &Ssbc::hierarchical,
+                    "false: sum over all pixels, quadratic in their number."),
+                row("half_resolution", &Ssbc::half_resolution, "Gather at one pixel of four, then upsample."),
+                row("blur", &Ssbc::blur, between(0, 100, "pixels"),
+                    "Standard deviation of an edge-preserving blur of the result.")),
+            row("layers", &ScreenSpaceSettings::layers, between(1, 16),
+                "Surfaces along every ray that send light; from 2 on also hidden ones, gathered in every "
+                "pass."),
+            row("hidden_share", &ScreenSpaceSettings::vpl_share, between(1, 1 << 20),
+                "Hidden points share out the VPLs of a pass: each meets one of so many.")),
+        row("receivers", &S::receivers, {{"surfaces", ScreenSpaceReceivers::surfaces}},
+            "Nothing else: media are not in the G-buffer; for them nest a compensation named media."),
+        nested("media", &S::media, Category::compensation, "none",
+               "Compensation of light first scattered in media.")};
+    return list;
+}
+
+std::shared_ptr<Object> make(ScreenSpaceFile file) {
+    file.media.surfaces = false;
+    return std::make_shared<ScreenSpaceCompensation>(file.settings, file.media);
 }
 
 }  // namespace
@@ -87,22 +107,10 @@ void plan_screen_space(Plan& plan, const Requirements& r, const ScreenSpaceSetti
 }
 
 void register_screen_space_compensation(Registry& registry) {
-    registry.add(
-        {Category::compensation,
-         "screen_space",
-         "Screen-space bias compensation on surfaces, at the end of a render (Engelhardt 2013, Ch. 11).",
-         {{"steps", "integer", "2", "how often the residual operator is applied"},
-          {"hierarchical", "boolean", "true", "false: sum over all pixels, quadratic in their number"},
-          {"half_resolution", "boolean", "false", "gather at one pixel of four, then upsample"},
-          {"blur", "float", "0", "standard deviation of an edge-preserving blur of the result [pixels]"},
-          {"layers", "integer", "1",
-           "surfaces along every ray that send light; from 2 on also hidden ones, gathered in every pass"},
-          {"hidden_share", "integer", "4",
-           "hidden points share out the VPLs of a pass: each meets one of so many"},
-          {"receivers", "string", "surfaces", "nothing else: media are not in the picture's G-buffer"},
-          {"media", "compensation", "none", "compensation of light first scattered in media"}},
-         R"(<compensation type="screen_space"><integer name="steps" value="3"/></compensation>)"},
-        make);
+    add_type(registry, Category::compensation, "screen_space",
+             "Screen-space bias compensation on surfaces, at the end of a render (Engelhardt 2013, Ch. 11).",
+             screen_space_rows(),
+             R"(<compensation type="screen_space"><integer name="steps" value="3"/></compensation>)", make);
 }
 
 }  // namespace mote::integrators
