@@ -2,8 +2,8 @@
 // everything that is registered.
 //
 // The settings are walked through by the manual pages: every integrator with its defaults, then with one
-// parameter changed at a time, and with every pair of nested objects (compensation and visibility). Whatever
-// is registered later takes part; a word that its manual does not list has to be entered in `words`.
+// parameter changed at a time, and with every pair of nested objects (compensation and visibility). Types
+// that are registered later take part: words come from the declared rows.
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
@@ -26,30 +26,16 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-/// Values of string parameters, by type and name: manual pages give them in prose alone.
+/// Values of string parameters whose rows declare no choices, by type and name.
 const std::map<std::string, Words> words = {
-    {"mote_photon_map.single_scattering", {"sampled", "photons"}},
     {"mote_ray_bundles.transfer", {"interleaved", "one_bounce"}},
     {"mote_ray_bundles.direct", {"bundles", "lights"}},
     {"mote_ray_bundles.view", {"atlas", "final_gathering"}},
-    {"mote_vsl.visibility", {"sample", "light"}},
-    {"mote_bdpt.heuristic", {"power", "balance", "none"}},
     {"mote_vpl_ray_bundles.techniques", {"combined", "vpls", "bundles"}},
     {"mote_vpl_ray_bundles.links", {"rays", "grid", "imperfect"}},
     {"mote_layers.far_light", {"paths", "lights"}},
     {"mote_layers.shares", {"3", "2, 1", "1, 2, 1"}},
     {"mote_micro_rendering.light", {"direct", "vpls", "radiosity", "photons"}},
-    {"mote_single_scattering.sampling", {"full", "sub_sampled"}},
-    {"mote_single_scattering.lights", {"all", "positional", "other"}},
-    {"mote_epipolar.lights", {"all", "positional", "other"}},
-    {"mote_single_scattering.in_scattering", {"exact", "steps", "uniform_steps"}},
-    {"mote_epipolar.in_scattering", {"exact", "steps", "uniform_steps"}},
-    {"exact.strategy", {"1-to-n", "n-to-1", "1-to-1", "1-to-1-homogeneous"}},
-    {"exact.receivers", {"all", "surfaces", "media"}},
-    {"approximate.strategy", {"1-to-n", "n-to-1", "1-to-1", "1-to-1-homogeneous"}},
-    {"approximate.receivers", {"all", "surfaces", "media"}},
-    {"approximate.transmittance", {"mean", "exact"}},
-    {"screen_space.receivers", {"surfaces"}},
     {"matrix.row_visibility", {"rays", "shadow_map", "imperfect_shadow_map"}},
     {"resampling.candidates_by", {"groups", "cut", "light_tree", "power"}},
     {"resampling.reuse", {"none", "unbiased", "biased"}},
@@ -188,8 +174,9 @@ std::vector<std::string> values_of(const Manual& manual, const Parameter& p, int
         result.push_back(element(p, p.default_value == "true" ? "false" : "true"));
     } else if (p.type == "string") {
         const auto it = words.find(manual.type + "." + p.name);
-        if (it == words.end()) FAIL("no words are known for " << manual.type << "." << p.name);
-        for (const std::string& word : it->second)
+        if (p.choices.empty() && it == words.end())
+            FAIL("no words are known for " << manual.type << "." << p.name);
+        for (const std::string& word : p.choices.empty() ? it->second : p.choices)
             if (word != p.default_value) result.push_back(element(p, word));
     } else if (const auto category = find_category(p.type)) {
         result = nested(p, *category, nesting);
@@ -408,9 +395,9 @@ TEST_CASE("every integrator gives the same bits on one thread, and on many after
     CHECK(count("'upsampling' of mote_micro_rendering is for scenes without media") == 1);
     // Selections of mote_vpl with compensation and with two kinds of maps
     CHECK(count("a selection of VPLs does not go together with") == 3);
-    CHECK(count("scattering_points must lie between 1 and") == 1);  // 0 is one point in mote_vpl
-    CHECK(count("candidates must lie between 1 and") == 1);         // 0 is a number of surface points, too
-    CHECK(count("works on the mean of its whole picture") == 1);    // mote_layers, in mote_layers
+    CHECK(count("'scattering_points' is 0 but must lie between 1") == 1);  // 0 is one point in mote_vpl
+    CHECK(count("candidates must lie between 1 and") == 1);       // 0 is a number of surface points, too
+    CHECK(count("works on the mean of its whole picture") == 1);  // mote_layers, in mote_layers
     CHECK(count("bounces along directions of the same pass are paths of bundles alone") == 1);
 }
 
