@@ -42,8 +42,7 @@ ParameterList<ScatteringSettings> scattering_parameters() {
             "but those); a nested integrator of mote_layers may do either"),
         row("max_depth", &S::rays, between(1, 1 << 20),
             "longest eye path through mirrors and glass, in rays: light behind more of them is missing"),
-        within(&S::eye, within(&EyeSettings::limits, row("hide_emitters", &EyePathLimits::hide_emitters,
-                                                         hide_emitters_parameter().description)))};
+        within(&S::eye, within(&EyeSettings::limits, eye_path_rows().without({"max_depth", "rr_depth"})))};
 }
 
 ScatteringSettings scattering_settings(const EyePathLimits& limits, ScatteringLights lights) {
