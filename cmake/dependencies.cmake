@@ -1,4 +1,4 @@
-# Everything mote is built on, from Debian 12's packages (see ./quickstart for their names).
+# Everything mote is built on, from the packages of Debian 12 or 13 (see ./quickstart for their names).
 
 if(NOT PROJECT_IS_TOP_LEVEL)
   set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)  # whoever adds mote to his project links what mote links

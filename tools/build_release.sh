@@ -1,6 +1,6 @@
 #!/bin/bash
-# Installs missing packages, configures the preset `release` and builds the targets given (none: everything).
-# The binaries are in build/release/bin.
+# Installs missing packages, configures the preset `release` (or MOTE_PRESET: `ci`, with warnings as errors) and builds the
+# targets given (none: everything). The binaries are in build/release/bin.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -13,7 +13,7 @@ if [[ -r /proc/cpuinfo ]] && ! grep -qw avx2 /proc/cpuinfo; then
 fi
 log=build/release/configure.log
 mkdir -p build/release
-if ! cmake --preset release "${options[@]}" >"$log" 2>&1; then
+if ! cmake --preset "${MOTE_PRESET:-release}" "${options[@]}" >"$log" 2>&1; then
   cat "$log" >&2
   echo "error: CMake could not configure the build (see above)" >&2
   exit 1

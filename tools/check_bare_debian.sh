@@ -7,7 +7,8 @@
 # packages of the last check are taken away first), installs the .deb files of BUILD (build/release, built) by
 # `apt-get install` with what they declare, nothing that is merely recommended, renders a scene, installs g++ and cmake,
 # and builds and runs each example from an empty folder. --wheel: also builds the wheel here, installs it there by pip and
-# renders from Python. Needs root, debootstrap and Debian's packages (300 MB), PyPI for --wheel; not part of ./test.
+# renders from Python. Needs root, debootstrap and Debian's packages (300 MB), PyPI for --wheel; not part of ./test. Its sibling check_bare_commands.sh runs
+# ./quickstart and ./test on a bare Debian 12 and 13.
 set -euo pipefail
 source=$(cd "$(dirname "$0")/.." && pwd)
 build=$source/build/release root=$source/build/bare_debian wheel=0

@@ -40,7 +40,7 @@ fi
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
   {
     echo "error: this system has no dpkg and apt-get, so packages cannot be installed for you."
-    echo "mote needs what these Debian 12 packages hold:"
+    echo "mote needs what these packages of Debian 12 or 13 hold:"
     printf '  %s\n' "${packages[@]}"
     echo "Where they are installed by other means, run again with MOTE_SKIP_PACKAGES=1."
   } >&2
@@ -70,7 +70,7 @@ install=(env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-r
 if ! "${as_root[@]}" apt-get update -q || ! "${as_root[@]}" "${install[@]}" </dev/null; then
   {
     echo "error: apt-get could not install: ${missing[*]}"
-    echo "The names are those of Debian 12 (bookworm), section main; other systems may name them differently."
+    echo "The names are those of Debian 12 (bookworm) and 13 (trixie), section main; other systems may name them differently."
     echo "Where they are installed by other means, run again with MOTE_SKIP_PACKAGES=1."
   } >&2
   exit 1
