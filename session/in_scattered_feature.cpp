@@ -10,6 +10,8 @@ using namespace core;
 
 namespace {
 
+constexpr TransportSet marched_cell = TransportSet::positional_scattering();
+
 std::shared_ptr<const Integrator> marching(const Registry& registry) {
     Properties p;
     p.category = Category::integrator, p.type = "mote_single_scattering";
@@ -22,7 +24,7 @@ std::shared_ptr<const Integrator> marching(const Registry& registry) {
 
 std::vector<Rgb> in_scattered(const ImageChannels& image) {
     std::vector<Rgb> light = image.rgb(in_scattered_layer);
-    return light.empty() ? image.rgb(integrators::positional_scattering) : light;
+    return light.empty() ? image.rgb(transport_name(marched_cell)) : light;
 }
 
 void add_in_scattered(ImageChannels& image, const Scene& scene, const Registry& registry) {
@@ -32,14 +34,13 @@ void add_in_scattered(ImageChannels& image, const Scene& scene, const Registry& 
     const auto integrator = marching(registry);
     const std::vector<Layer> layers = integrator->layers(scene);
     RenderOptions options{0, image.width, image.height};
-    options.cells = {integrators::positional_scattering};
+    options.cells = marched_cell;
     const auto filter = make_pixel_filter("box", 0.5f, 0.5f);
     const std::atomic<bool> cancelled{false};
     PassImage pass(image.width, image.height, layers.size());
     integrator->prepare(scene, options)->pass({0, *filter, cancelled}, pass);
     for (std::size_t i = 0; i < layers.size(); ++i)
-        if (layers[i].name == integrators::positional_scattering)
-            image.add_rgb(in_scattered_layer, pass.layer(i));
+        if (layers[i].transport == marched_cell) image.add_rgb(in_scattered_layer, pass.layer(i));
 }
 
 }  // namespace mote::session

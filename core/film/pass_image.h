@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "core/film/transport.h"
 #include "core/math/vec.h"
 
 namespace mote::core {
@@ -19,10 +20,8 @@ struct Layer {
     bool squares = false;     ///< the film keeps the sum of squares, and with it the variance
     std::string where = "";   ///< name of a layer of zeros and ones: the mean is that of the passes where it
                               ///< is one (a position where nothing was hit is no position); "": of all
-    std::string cell = "";    ///< the part of the transport that it is a share of; "": the one of its name
-    std::size_t part = 0;     ///< of the picture: layers of one part have their passes together
-
-    const std::string& transport() const { return cell.empty() ? name : cell; }
+    TransportSet transport = {};  ///< cell that it holds or adds to; empty: none
+    std::size_t part = 0;         ///< of the picture: layers of one part have their passes together
 };
 
 /// The picture of one pass: one value per pixel and layer, row by row from the top. Zero at the start.

@@ -10,8 +10,6 @@
 namespace mote::core {
 namespace {
 
-constexpr const char* separators = " ,\t\n\r";
-
 std::string_view trimmed(std::string_view text) {
     const auto first = text.find_first_not_of(" \t\n\r");
     if (first == std::string_view::npos) return {};
@@ -39,14 +37,19 @@ double parse_number(const std::string& text, const SourceLocation& where) {
     return read_float(trimmed(text), where);
 }
 
+std::vector<std::string> split_words(std::string_view text) {
+    constexpr const char* separators = " ,\t\n\r";
+    std::vector<std::string> words;
+    for (std::size_t end = 0, begin; (begin = text.find_first_not_of(separators, end)) != text.npos;) {
+        end = std::min(text.find_first_of(separators, begin), text.size());
+        words.emplace_back(text.substr(begin, end - begin));
+    }
+    return words;
+}
+
 std::vector<double> parse_numbers(const std::string& text, const SourceLocation& where) {
     std::vector<double> numbers;
-    const std::string_view view = text;
-    for (std::size_t i = view.find_first_not_of(separators); i != std::string_view::npos;) {
-        const std::size_t end = std::min(view.find_first_of(separators, i), view.size());
-        numbers.push_back(read_float(view.substr(i, end - i), where));
-        i = view.find_first_not_of(separators, end);
-    }
+    for (const std::string& word : split_words(text)) numbers.push_back(read_float(word, where));
     return numbers;
 }
 

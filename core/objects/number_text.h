@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/math/vec.h"
@@ -11,6 +12,8 @@ namespace mote::core {
 
 /// One number that a float can hold. Throws InputError for anything else, NaN and infinity included.
 double parse_number(const std::string& text, const SourceLocation& where);
+/// Words between spaces, line ends and commas.
+std::vector<std::string> split_words(std::string_view text);
 /// Numbers split by spaces or commas.
 std::vector<double> parse_numbers(const std::string& text, const SourceLocation& where);
 /// Exactly three numbers.

@@ -9,7 +9,6 @@
 // number of threads.
 #pragma once
 
-#include <algorithm>
 #include <atomic>
 #include <functional>
 #include <memory>
@@ -37,14 +36,9 @@ struct RenderOptions {
     int width = 0, height = 0;                 ///< of the film [pixels]
     SamplerKind sampler = SamplerKind::sobol;  ///< of eye and light paths
     CancelToken cancelled = {};                ///< prepare() may throw Cancelled when it asks for it
-    /// The cells of the transport (Layer::transport) that are wanted; empty: all. The layers of the others
-    /// may hold anything, and nothing should be spent on them.
-    std::vector<std::string> cells = {};
-
-    /// Is this cell of the transport asked for?
-    bool wants(const std::string& cell) const {
-        return cells.empty() || std::find(cells.begin(), cells.end(), cell) != cells.end();
-    }
+    /// Wanted cells (Layer::transport). The layers of the others may hold anything, and nothing should be
+    /// spent on them.
+    TransportSet cells = TransportSet::all();
 };
 
 /// Where within pixel (x, y) a sample falls so that its plain mean is the filtered picture (filter importance

@@ -29,7 +29,7 @@ PartialFilm read_from(std::span<const std::byte> bytes) {
         layer.name = reader.text(), layer.description = reader.text();
         layer.auxiliary = reader.number<std::uint8_t>() != 0,
         layer.squares = reader.number<std::uint8_t>() != 0;
-        layer.where = reader.text(), layer.cell = reader.text();
+        layer.where = reader.text(), layer.transport = read_transport(reader.text());
         layer.part = reader.number<std::uint32_t>();
         if (layer.part >= count) throw InputError("damaged (a layer of no part)");
     }
@@ -59,7 +59,7 @@ void write_partial_film(const std::string& path, const PartialFilm& partial) {
     for (const Layer& layer : film.layers()) {
         head.text(layer.name), head.text(layer.description);
         head.number(std::uint8_t(layer.auxiliary)), head.number(std::uint8_t(layer.squares));
-        head.text(layer.where), head.text(layer.cell);
+        head.text(layer.where), head.text(transport_name(layer.transport));
         head.number(std::uint32_t(layer.part));
     }
     write_headed_file(path, partial_file, head, film.serialize());

@@ -2,10 +2,10 @@
 // runs.
 #pragma once
 
-#include <algorithm>
 #include <string>
 #include <vector>
 
+#include "core/film/transport.h"
 #include "core/math/bounds.h"
 
 namespace mote::core {
@@ -26,11 +26,8 @@ struct Requirements {
     std::vector<std::string> media_estimators,
         media_estimator_reasons;  ///< of the transmittance, one a medium
 
-    std::vector<std::string> cells;  ///< of the transport, that an integrator is asked for; empty: all
+    TransportSet cells = TransportSet::all();  ///< wanted from an integrator
 
-    bool wants(const std::string& cell) const {
-        return cells.empty() || std::find(cells.begin(), cells.end(), cell) != cells.end();
-    }
     bool any_glossy() const { return bsdfs_glossy > 0; }
     bool any_delta() const { return bsdfs_delta > 0; }
     bool any_media() const { return media > 0; }

@@ -20,7 +20,7 @@ class BidirectionalEstimator final : public Estimator {
     BidirectionalEstimator(const Scene& scene, const RenderOptions& options,
                            const BidirectionalSettings& settings)
         : scene_(scene), options_(options), settings_(settings), ends_(scene) {
-        settings_.limits.wanted = wanted_transport(options);
+        settings_.limits.wanted = options.cells;
     }
 
     bool pass(const PassContext& context, PassImage& image) override {

@@ -16,7 +16,7 @@ class MoteBdpt final : public Integrator {
 
     std::string type() const override { return "mote_bdpt"; }
     std::vector<Layer> layers(const Scene& scene) const override {
-        auto layers = transport_layers(scene.has_media(), false);
+        auto layers = transport_layers(scene.has_media());
         append_strategy_layers(layers, settings_.strategies);
         return layers;
     }

@@ -17,7 +17,7 @@
 namespace mote::integrators {
 
 /// The part of a path between two vertices, for what is gathered along it.
-struct EyeLeg {
+struct EyeSegment {
     const core::Ray& ray;
     const core::WalkEvent& event;     ///< at its end
     const core::MediumState& start;   ///< media at ray.t_min
@@ -43,23 +43,24 @@ class EyePath {
     }
 
     /// Goes on to the next vertex, and adds light found on the way and at its end to `sum`. Returns false
-    /// where the path ends. `on_leg(EyeLeg)` sees every leg before its vertex is made.
-    template <typename OnLeg>
-    bool advance(core::WalkContext& context, TransportSum& sum, const OnLeg& on_leg) {
+    /// where the path ends. `on_segment(EyeSegment)` sees every segment before its vertex is made.
+    template <typename OnSegment>
+    bool advance(core::WalkContext& context, TransportSum& sum, const OnSegment& on_segment) {
         return advance_by([this](core::Rgb& emitted, core::WalkContext& c) { return go_on(emitted, c); },
-                          context, sum, on_leg);
+                          context, sum, on_segment);
     }
     bool advance(core::WalkContext& context, TransportSum& sum) {
-        return advance(context, sum, [](const EyeLeg&) {});
+        return advance(context, sum, [](const EyeSegment&) {});
     }
     /// The same with a walk of the method's own: walker(emitted, context) -> WalkEvent moves state() and
     /// weights() to the end of ray().
-    template <typename Walker, typename OnLeg>
-    bool advance_by(Walker&& walker, core::WalkContext& context, TransportSum& sum, const OnLeg& on_leg);
+    template <typename Walker, typename OnSegment>
+    bool advance_by(Walker&& walker, core::WalkContext& context, TransportSum& sum,
+                    const OnSegment& on_segment);
 
-    /// The same, but until the path has scattered it goes on to surfaces: media on the leg scatter at
-    /// `points`, and let the rest through. Those of the leg are chosen from `points` afterwards, whether or
-    /// not there is a vertex; what scatters there is up to the method (light_at()).
+    /// The same, but until the path has scattered it goes on to surfaces: media on the segment scatter at
+    /// `points`, and let the rest through. Those of the segment are chosen from `points` afterwards, whether
+    /// or not there is a vertex; what scatters there is up to the method (light_at()).
     bool advance_to_surface(core::WalkContext& context, TransportSum& sum, core::ScatteringPoints& points) {
         points.start(core::Rng(context.rng.next_u32()));
         return advance_by(
@@ -68,7 +69,7 @@ class EyePath {
                            ? core::walk_to_surface(scene_, ray_, state_, weights_, emitted, points, c)
                            : go_on(emitted, c);
             },
-            context, sum, [](const EyeLeg&) {});
+            context, sum, [](const EyeSegment&) {});
     }
 
     // At a vertex:
@@ -79,7 +80,7 @@ class EyePath {
         return lights::sample_light<Media>(lights_, vertex_, weights_, state_, choices_.x, sampler_.next_2d(),
                                            context, how);
     }
-    /// The vertex at a scattering point of the last leg.
+    /// The vertex at a scattering point of the last segment.
     core::ScatteringVertex vertex_at(const core::Vec3& position, const core::MediumState& state) const {
         core::ScatteringVertex vertex;
         vertex.position = position, vertex.wo = -ray_.direction, vertex.phase = &state.current()->phase();
@@ -89,7 +90,7 @@ class EyePath {
     core::Rgb light_at(const core::ScatteringVertex& point, const core::Rgb& weight,
                        const core::MediumState& state, core::WalkContext& context,
                        const lights::LightSampling& how = {});
-    /// May a path of one more edge than the last leg's be found?
+    /// May a path of one more edge than the last segment's be found?
     bool may_go_on() const { return depth_ != limits_.max_depth; }
     /// Whether a path that would leave the vertex by a mirror or through glass ends.
     void end_at_delta(bool ends) { ends_at_delta_ = ends; }
@@ -101,14 +102,14 @@ class EyePath {
     core::Sampler& sampler() { return sampler_; }
     /// The weight of light that reaches the path's end.
     core::Rgb throughput() const { return lights::throughput_of<Media>(weights_); }
-    /// The length of hidden lights' part of the first leg, which ray() no longer holds [m].
+    /// The length of hidden lights' part of the first segment, which ray() no longer holds [m].
     float passed() const { return passed_; }
     int depth() const { return depth_; }              ///< edges so far
     int scatterings() const { return scatterings_; }  ///< without those at mirrors and glass before the first
-    float first_cosine() const { return first_cosine_; }  ///< C* of the first, towards the next vertex
-    float leg_length() const { return leg_length_; }      ///< of the last edge [m]
-    /// Layer of light joined to the vertex; of light scattered once more, in a medium, along a leg; of light
-    /// found at the end of a leg.
+    float first_cosine() const { return first_cosine_; }      ///< C* of the first, towards the next vertex
+    float segment_length() const { return segment_length_; }  ///< of the last edge [m]
+    /// Layer of light joined to the vertex; of light scattered once more, in a medium, along a segment; of
+    /// light found at the end of a segment.
     Transport layer_of_connection() const {
         return transport_layer(scatterings_ + 1, scatterings_ == 0 ? vertex_.on_surface() : surface_first_);
     }
@@ -116,7 +117,7 @@ class EyePath {
         return transport_layer(scatterings_ + 1, scatterings_ > 0 && surface_first_);
     }
     Transport layer_of_emission() const { return transport_layer(scatterings_, surface_first_); }
-    /// Is light that is joined to the vertex wanted; light scattered along the leg?
+    /// Is light that is joined to the vertex wanted; light scattered along the segment?
     bool wants_connection() const { return limits_.wanted[layer_of_connection()]; }
     bool wants_along() const { return limits_.wanted[layer_along()]; }
 
@@ -126,7 +127,7 @@ class EyePath {
     }
     bool scatter(core::WalkContext& context);
     bool wants_more() const;
-    /// Lights that the camera does not see: the first leg goes on behind them.
+    /// Lights that the camera does not see: the first segment goes on behind them.
     bool hides_lights() const { return limits_.hide_emitters && depth_ == 1; }
     void pass_light(const core::WalkEvent& event);
 
@@ -143,13 +144,13 @@ class EyePath {
     bool connected_ = false;  ///< could next-event estimation at `previous_` have found what comes?
     bool surface_first_ = true, ends_at_delta_ = false;
     int depth_ = 0, scatterings_ = 0;
-    float eta_ = 1.0f, first_cosine_ = 1.0f, leg_length_ = 0.0f, passed_ = 0.0f;
+    float eta_ = 1.0f, first_cosine_ = 1.0f, segment_length_ = 0.0f, passed_ = 0.0f;
 };
 
 template <bool Media>
-template <typename Walker, typename OnLeg>
+template <typename Walker, typename OnSegment>
 bool EyePath<Media>::advance_by(Walker&& walker, core::WalkContext& context, TransportSum& sum,
-                                const OnLeg& on_leg) {
+                                const OnSegment& on_segment) {
     if (depth_ > 0 && !scatter(context)) return false;
     ++depth_;
     core::Rgb& found = sum[layer_of_emission()];
@@ -160,7 +161,7 @@ bool EyePath<Media>::advance_by(Walker&& walker, core::WalkContext& context, Tra
         core::Rgb emitted(0.0f);
         event = walker(emitted, context);
         if constexpr (Media) found += emitted;
-        on_leg(EyeLeg{ray_, event, start, before});
+        on_segment(EyeSegment{ray_, event, start, before});
     };
     go();
     while (hides_lights() && event.kind == core::WalkEvent::Kind::surface && event.hit.shape->emitter)
@@ -172,7 +173,7 @@ bool EyePath<Media>::advance_by(Walker&& walker, core::WalkContext& context, Tra
     if (event.kind == core::WalkEvent::Kind::escaped || depth_ == limits_.max_depth ||
         scatterings_ == limits_.max_scatterings || core::is_black(weights_.throughput))
         return false;
-    vertex_ = make_vertex(event, ray_), leg_length_ = event.distance;
+    vertex_ = make_vertex(event, ray_), segment_length_ = event.distance;
     choices_ = sampler_.next_2d();
     return true;
 }

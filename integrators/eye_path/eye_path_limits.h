@@ -10,7 +10,7 @@ struct EyePathLimits {
     int rr_depth = 5;            ///< Russian roulette from this depth on
     int max_scatterings = -1;    ///< but at mirrors and glass; -1 no limit
     bool hide_emitters = false;  ///< eye rays pass area lights and do not see the environment
-    WantedTransport wanted{};    ///< paths end where nothing of it can come any more
+    TransportSet wanted = TransportSet::all();  ///< paths end where no more of it can be found
 };
 
 }  // namespace mote::integrators

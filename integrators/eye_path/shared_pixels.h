@@ -11,7 +11,7 @@
 
 namespace mote::integrators {
 
-/// What the first leg of a pixel's eye path meets. Their modulations hold the weight of its receivers.
+/// What the first segment of a pixel's eye path meets. Their modulations hold the weight of its receivers.
 struct SeenPixel {
     screenspace::UpsamplingPoint surface, volume;
 
@@ -22,10 +22,10 @@ struct SeenPixel {
     }
 };
 
-/// The place and footprint of the vertex at the end of the first leg, without modulations. `film` is the
+/// The place and footprint of the vertex at the end of the first segment, without modulations. `film` is the
 /// place of the ray in the picture [pixels].
 template <bool Media>
-SeenPixel see_first_leg(const core::Scene& scene, const EyePath<Media>& path, const core::Vec2& film) {
+SeenPixel see_first_segment(const core::Scene& scene, const EyePath<Media>& path, const core::Vec2& film) {
     const core::ScatteringVertex& v = path.vertex();
     SeenPixel seen;
     if (!v.on_surface()) {
@@ -37,7 +37,7 @@ SeenPixel see_first_leg(const core::Scene& scene, const EyePath<Media>& path, co
     p.position = v.position;
     p.normal = front ? v.hit.geometric_normal : -v.hit.geometric_normal;
     p.shading_normal = front ? v.hit.shading.n : -v.hit.shading.n;
-    p.distance = path.leg_length(), p.transmittance = core::average(path.throughput());
+    p.distance = path.segment_length(), p.transmittance = core::average(path.throughput());
     const auto at = [&](float x, float y) {
         return scene.camera().sample_ray(film + core::Vec2(x, y), core::Vec2(0.5f)).at(p.distance);
     };

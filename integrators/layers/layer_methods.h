@@ -1,7 +1,5 @@
-// Which method fills which cells of the transport.
-//
-// The cells are those of transport_layers.h: emission, direct, indirect, and in media single_scattering and
-// multiple_scattering. Every cell is filled by one method at most, which estimates all of it.
+// Which method fills which cells of the transport (core/film/transport.h): one at most, which estimates all
+// of a cell.
 #pragma once
 
 #include <memory>
@@ -15,18 +13,27 @@
 
 namespace mote::integrators {
 
+/// A part of the picture.
 struct LayerMethod {
     std::shared_ptr<const core::Integrator> integrator;
-    std::vector<std::string> cells;  ///< that it fills; empty: all that it can
+    core::TransportSet cells;  ///< that it fills; empty: all that it can
     std::string reason = "asked for";
     core::SourceLocation where = {};
+    std::vector<core::Layer> layers = {};  ///< of the method, all of them; from fill_layers()
+    std::vector<std::size_t> kept = {};    ///< indices of those that hold its cells
 };
 
-/// The names of the cells of a scene, in the order of Transport.
-std::vector<std::string> transport_cells(bool media);
+/// Methods of a scene and the film that they fill: method i is part i of the picture.
+struct LayerChoice {
+    std::vector<LayerMethod> methods;
+    std::vector<core::Layer> layers;  ///< of the film: the kept ones of each method, in their order
 
-/// What fills light that has scattered at least twice, or once after a surface: paths, unbiased, or virtual
-/// point lights, which leave less noise and miss what their bound takes.
+    /// Cells of the scene that no method fills.
+    core::TransportSet unfilled(bool media) const;
+};
+
+/// Method of light that scatters at least twice: paths, unbiased, or virtual point lights, which leave less
+/// noise and miss what their bound takes.
 enum class FarLight : std::uint8_t { paths, lights };
 
 /// For each cell the method that does it best in this scene, with reasons.
@@ -34,15 +41,8 @@ std::vector<LayerMethod> choose_layer_methods(const core::Scene& scene,
                                               const core::Requirements& requirements,
                                               const EyePathLimits& limits, FarLight far_light);
 
-/// The same methods, each with the cells that it fills in this scene. Throws InputError, with its place, for
-/// a cell that no scene has or that the method cannot fill, and where two methods fill one cell.
-std::vector<LayerMethod> with_cells(const core::Scene& scene, std::vector<LayerMethod> methods);
-
-/// The cells of the scene that none of them fills.
-std::vector<std::string> unfilled_cells(bool media, const std::vector<LayerMethod>& methods);
-
-/// The layers of a method that belong to its cells: their index among all layers of the method. Layers that
-/// are no part of the beauty are left out.
-std::vector<std::size_t> kept_layers(const core::Scene& scene, const LayerMethod& method);
+/// Finds the cells and layers that each method fills in this scene. Throws InputError, with its place, for a
+/// cell that the method cannot fill, and where two methods fill one cell.
+LayerChoice fill_layers(const core::Scene& scene, std::vector<LayerMethod> methods);
 
 }  // namespace mote::integrators

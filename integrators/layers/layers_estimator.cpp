@@ -1,5 +1,7 @@
 #include "integrators/layers/layers_estimator.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <optional>
 
@@ -25,39 +27,34 @@ std::uint64_t seed_of_part(std::uint64_t seed, std::size_t part) {
 constexpr double left_by_filter = 1.0 / 50.0;
 
 std::string shares_wanted(std::size_t parts) {
-    return "mote_layers gives its " + std::to_string(parts) +
-           " methods passes by the noise that it has seen, so nobody knows beforehand which method has which "
-           "pass: "
-           "integrator.shares with " +
-           std::to_string(parts) +
-           " numbers, passes of each in a round, makes it known ('parts' of --stats of a short render say "
-           "how many "
-           "each wants)";
+    return fmt::format(
+        "mote_layers gives its {0} methods passes by the noise that it has seen, so nobody knows beforehand "
+        "which method has which pass: integrator.shares with {0} numbers, passes of each in a round, makes "
+        "it "
+        "known ('parts' of --stats of a short render say how many each wants)",
+        parts);
 }
 
 class LayersEstimator final : public Estimator {
   public:
-    LayersEstimator(const Scene& scene, const RenderOptions& options, const std::vector<LayerMethod>& methods,
-                    const FilterPlan& filter, const std::vector<std::uint32_t>& shares)
-        : filtered_(filter.layers) {
+    LayersEstimator(const Scene& scene, const RenderOptions& options, const LayerChoice& choice,
+                    const LayerFilterParameters& filter, std::vector<LayerFilter::Choice> filtered,
+                    const std::vector<std::uint32_t>& shares)
+        : filtered_(std::move(filtered)) {
         for (std::size_t part = 0; part < shares.size(); ++part)
             round_.insert(round_.end(), shares[part], part);
 
-        if (!filtered_.empty()) filter_.emplace(scene, options, filter.parameters);
-        std::size_t layer = 0;
-        for (std::size_t i = 0; i < methods.size(); ++i) {
+        if (!filtered_.empty()) filter_.emplace(scene, options, filter);
+        for (std::size_t i = 0; i < choice.methods.size(); ++i) {
+            const LayerMethod& method = choice.methods[i];
             RenderOptions own = options;
-            own.seed = seed_of_part(options.seed, i), own.cells = methods[i].cells;
-            const Integrator& integrator = *methods[i].integrator;
-            parts_.push_back({integrator.prepare(scene, own), kept_layers(scene, methods[i]),
-                              PassImage(options.width, options.height, integrator.layers(scene).size())});
-            std::size_t filtered = 0;
-            const std::size_t end = layer + parts_.back().kept.size();
-            for (; layer < end; ++layer)
-                filtered +=
-                    std::size_t(std::any_of(filtered_.begin(), filtered_.end(),
-                                            [&](const auto& choice) { return choice.layer == layer; }));
-            left_.push_back(filtered == parts_.back().kept.size() ? left_by_filter : 1.0);
+            own.seed = seed_of_part(options.seed, i), own.cells = method.cells;
+            parts_.push_back({method.integrator->prepare(scene, own), method.kept,
+                              PassImage(options.width, options.height, method.layers.size())});
+            const auto layers = std::count_if(filtered_.begin(), filtered_.end(), [&](const auto& f) {
+                return choice.layers[f.layer].part == i;
+            });
+            left_.push_back(std::size_t(layers) == method.kept.size() ? left_by_filter : 1.0);
         }
     }
 
@@ -110,10 +107,11 @@ class LayersEstimator final : public Estimator {
 }  // namespace
 
 std::unique_ptr<Estimator> make_layers_estimator(const Scene& scene, const RenderOptions& options,
-                                                 const std::vector<LayerMethod>& methods,
-                                                 const FilterPlan& filter,
+                                                 const LayerChoice& choice,
+                                                 const LayerFilterParameters& filter,
+                                                 std::vector<LayerFilter::Choice> filtered,
                                                  const std::vector<std::uint32_t>& shares) {
-    return std::make_unique<LayersEstimator>(scene, options, methods, filter, shares);
+    return std::make_unique<LayersEstimator>(scene, options, choice, filter, std::move(filtered), shares);
 }
 
 }  // namespace mote::integrators

@@ -7,10 +7,10 @@
 
 #include <charconv>
 
+#include "core/objects/number_text.h"
 #include "integrators/eye_path/eye_path_parameters.h"
 #include "integrators/layers/layers_estimator.h"
 #include "integrators/register_parts.h"
-#include "integrators/single_scattering/single_scattering_estimator.h"
 
 namespace mote::integrators {
 
@@ -18,33 +18,14 @@ using namespace core;
 
 namespace {
 
-/// "direct, indirect" -> {"direct", "indirect"}
-std::vector<std::string> split_names(const std::string& text) {
-    std::vector<std::string> names;
-    std::string name;
-    for (const char c : text + ",") {
-        if (c != ',' && c != ' ')
-            name += c;
-        else if (!name.empty())
-            names.push_back(std::exchange(name, ""));
-    }
-    return names;
-}
-
-std::string joined(const std::vector<std::string>& names) {
-    std::string text;
-    for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-    return text;
-}
-
 /// Light that has come a long way is smooth but where surfaces and media are not, which the filter knows; so
 /// is light of large lights scattered in media, and shafts of others show as soon as noise is below them.
 std::optional<screenspace::LayerKind> filtered_kind(const Layer& layer) {
     if (layer.auxiliary) return std::nullopt;
-    const std::string& cell = layer.transport();
-    if (cell == transport_name(Transport::indirect)) return screenspace::LayerKind::surface;
-    if (cell == transport_name(Transport::multiple_scattering) || cell == other_scattering ||
-        cell == transport_name(Transport::single_scattering))
+    if (layer.transport == Transport::indirect) return screenspace::LayerKind::surface;
+    if (layer.transport == Transport::multiple_scattering ||
+        layer.transport == Transport::single_scattering ||
+        layer.transport == TransportSet::other_scattering())
         return screenspace::LayerKind::volume;
     return std::nullopt;
 }
@@ -67,7 +48,7 @@ class MoteLayers final : public Integrator {
                                  child.where);
             const bool named = child.name != "integrator";  // the name of the parameter is as good as none
             asked_for_.push_back(
-                {integrator, split_names(named ? child.name : ""), "asked for", child.where});
+                {integrator, read_transport(named ? child.name : "", child.where), "asked for", child.where});
         }
         if (asked_for_.empty()) return;
         for (const std::string name : {"max_depth", "rr_depth", "hide_emitters", "far_light"})
@@ -77,26 +58,25 @@ class MoteLayers final : public Integrator {
 
     std::string type() const override { return "mote_layers"; }
     bool works_on_mean() const override { return true; }
-    std::vector<Layer> layers(const Scene& scene) const override { return layers_of(scene, methods(scene)); }
+    std::vector<Layer> layers(const Scene& scene) const override { return choose(scene).layers; }
     Plan plan(const Scene& scene, const Requirements& requirements) const override;
     std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
-        const std::vector<LayerMethod> chosen = methods(scene);
-        FilterPlan filter{filter_, {}};
-        const std::vector<Layer> all = layers_of(scene, chosen);
-        for (std::size_t i = 0; filters_ && i < all.size(); ++i)
-            if (const auto kind = filtered_kind(all[i])) filter.layers.push_back({i, *kind});
-        if (!shares_.empty() && shares_.size() != chosen.size())
+        const LayerChoice choice = choose(scene);
+        std::vector<LayerFilter::Choice> filtered;
+        for (std::size_t i = 0; i < choice.layers.size(); ++i)
+            if (choice.layers[i].squares) filtered.push_back({i, *filtered_kind(choice.layers[i])});
+        if (!shares_.empty() && shares_.size() != choice.methods.size())
             throw InputError(
                 fmt::format("mote_layers: shares has {} numbers, and there are {} methods (see 'mote plan')",
-                            shares_.size(), chosen.size()));
-        return make_layers_estimator(scene, options, chosen, filter, shares_);
+                            shares_.size(), choice.methods.size()));
+        return make_layers_estimator(scene, options, choice, filter_, std::move(filtered), shares_);
     }
 
   private:
     void read_shares(const Properties& properties) {
         const std::string text = properties.get_string("shares", "");
         constexpr std::uint32_t most = 1000;
-        for (const std::string& word : split_names(text)) {
+        for (const std::string& word : split_words(text)) {
             std::uint32_t share = 0;
             const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), share);
             if (error != std::errc() || end != word.data() + word.size() || share < 1 || share > most)
@@ -105,23 +85,14 @@ class MoteLayers final : public Integrator {
             shares_.push_back(share);
         }
     }
-    /// The kept layers of every method, each a part.
-    std::vector<Layer> layers_of(const Scene& scene, const std::vector<LayerMethod>& chosen) const {
-        std::vector<Layer> layers;
-        for (std::size_t part = 0; part < chosen.size(); ++part) {
-            const std::vector<Layer> own = chosen[part].integrator->layers(scene);
-            for (const std::size_t i : kept_layers(scene, chosen[part])) {
-                layers.push_back(own[i]);
-                layers.back().part = part;
-                if (filters_ && filtered_kind(layers.back())) layers.back().squares = true;
-            }
-        }
-        return layers;
-    }
-    std::vector<LayerMethod> methods(const Scene& scene) const {
-        return with_cells(scene, asked_for_.empty() ? choose_layer_methods(scene, find_requirements(scene),
-                                                                           limits_, far_light_)
-                                                    : asked_for_);
+    /// Methods and layers for this scene; those that are filtered keep their squares.
+    LayerChoice choose(const Scene& scene) const {
+        LayerChoice choice = fill_layers(
+            scene, asked_for_.empty()
+                       ? choose_layer_methods(scene, find_requirements(scene), limits_, far_light_)
+                       : asked_for_);
+        for (Layer& layer : choice.layers) layer.squares = filters_ && filtered_kind(layer);
+        return choice;
     }
     EyePathLimits limits_;
     LayerFilterParameters filter_;
@@ -141,22 +112,22 @@ void add_entries(std::vector<PlanEntry>& all, const std::vector<PlanEntry>& more
 Plan MoteLayers::plan(const Scene& scene, const Requirements& requirements) const {
     Plan plan;
     plan.integrator = type();
-    const std::vector<LayerMethod> chosen = methods(scene);
-    for (const LayerMethod& method : chosen)
-        plan.run(joined(method.cells), method.integrator->type(), method.reason);
-    plan.run("passes", fmt::format("shared out among {} methods", chosen.size()),
+    const LayerChoice choice = choose(scene);
+    for (const LayerMethod& method : choice.methods)
+        plan.run(transport_name(method.cells), method.integrator->type(), method.reason);
+    plan.run("passes", fmt::format("shared out among {} methods", choice.methods.size()),
              shares_.empty() ? "to the one whose next pass takes the most error for its rays and lookups"
                              : "shares says how many each has in a round");
-    std::vector<std::string> filtered;
-    for (const Layer& layer : layers_of(scene, chosen))
-        if (filters_ && filtered_kind(layer)) filtered.push_back(layer.name);
+    std::string filtered;
+    for (const Layer& layer : choice.layers)
+        if (layer.squares) filtered += (filtered.empty() ? "" : ", ") + layer.name;
     if (!filtered.empty())
-        plan.run("filter", joined(filtered) + " in image space",
+        plan.run("filter", filtered + " in image space",
                  "biased by what it smoothes, less with every pass; filter=false leaves the noise. The noise "
                  "that is stated, and --noise, are what the filter leaves, without that bias");
-    for (const std::string& cell : unfilled_cells(requirements.any_media(), chosen))
+    for (const std::string& cell : transport_names(choice.unfilled(requirements.any_media())))
         plan.miss(cell, "no method fills it", "none of the nested integrators has it in its name");
-    for (const LayerMethod& method : chosen) {
+    for (const LayerMethod& method : choice.methods) {
         Requirements wanted = requirements;
         wanted.cells = method.cells;
         const Plan own = method.integrator->plan(scene, wanted);

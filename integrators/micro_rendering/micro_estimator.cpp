@@ -21,7 +21,7 @@ class MicroEstimator final : public Estimator {
           options_(options),
           settings_(settings),
           surfaces_(gathering::surface_triangles(scene.shapes())) {
-        settings_.eye.wanted = wanted_transport(options);
+        settings_.eye.wanted = options.cells;
         settings_.points.bound = bound();
         if (Media) state_at_ = [&scene](const Vec3& p) { return scene.medium_state_at(p, nullptr); };
     }
@@ -82,7 +82,7 @@ class MicroEstimator final : public Estimator {
     /// One point without light, where nobody asks for indirect light.
     gathering::LitPointSettings point_settings() const {
         gathering::LitPointSettings points = settings_.points;
-        const WantedTransport& wanted = settings_.eye.wanted;
+        const TransportSet wanted = settings_.eye.wanted;
         const bool any = wanted[Transport::indirect] || (Media && wanted[Transport::multiple_scattering]);
         if (any && settings_.most_bounces() != 0) return points;
         points.points = points.volume.points = 1, points.light = gathering::StoredLight::direct;

@@ -49,7 +49,7 @@ bool MicroEyeTile<Media>::advance(Lane& lane) {
     EyePath<Media>& path = *lane.path;
     const bool at_vertex = path.advance(walk_, lane.sum);
     if constexpr (!Media) {
-        if (at_vertex && path.depth() == 1) lane.seen = see_first_leg(scene_, path, lane.film);
+        if (at_vertex && path.depth() == 1) lane.seen = see_first_segment(scene_, path, lane.film);
         if (at_vertex && path.depth() == 1 && !path.vertex().connectable()) lane.seen.share_nothing();
     }
     if (at_vertex && path.vertex().connectable()) {

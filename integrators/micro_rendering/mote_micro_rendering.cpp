@@ -23,9 +23,7 @@ class MoteMicroRendering final : public Integrator {
     explicit MoteMicroRendering(const Properties& p) : settings_(read_micro_settings(p)) {}
 
     std::string type() const override { return "mote_micro_rendering"; }
-    std::vector<Layer> layers(const Scene& s) const override {
-        return transport_layers(s.has_media(), false);
-    }
+    std::vector<Layer> layers(const Scene& s) const override { return transport_layers(s.has_media()); }
     Plan plan(const Scene& scene, const Requirements& requirements) const override;
     std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
         settings_.check(scene.has_media());

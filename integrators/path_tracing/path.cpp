@@ -16,7 +16,7 @@ class Path final : public Integrator {
     explicit Path(const EyePathLimits& limits) : settings_{limits} {}
 
     std::string type() const override { return "path"; }
-    std::vector<Layer> layers(const Scene&) const override { return transport_layers(false, false); }
+    std::vector<Layer> layers(const Scene&) const override { return transport_layers(false); }
 
     Plan plan(const Scene& scene, const Requirements& requirements) const override {
         Plan plan;

@@ -16,7 +16,7 @@ class PathEstimator final : public Estimator {
   public:
     PathEstimator(const Scene& scene, const RenderOptions& options, const PathSettings& settings)
         : scene_(scene), options_(options), settings_(settings) {
-        settings_.limits.wanted = wanted_transport(options);
+        settings_.limits.wanted = options.cells;
     }
 
     bool pass(const PassContext& context, PassImage& image) override {

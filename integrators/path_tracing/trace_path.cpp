@@ -13,12 +13,12 @@ TransportSum trace_path(const Scene& scene, const PathSettings& settings, const 
     EyePath<Media> path(scene, settings.limits, eye, context);
     const bool bounded = std::isfinite(settings.bound);
     const bool lit_along = Media && settings.equiangular && !settings.equiangular->empty();
-    const auto light_along = [&](const EyeLeg& leg) {
+    const auto light_along = [&](const EyeSegment& segment) {
         if (!lit_along || !path.wants_along() || path.depth() == settings.limits.max_depth) return;
         sum[path.layer_along()] +=
-            lights::throughput_of<Media>(leg.before) *
-            settings.equiangular->scattered_along(scene, leg.ray, leg.event.surface_distance, leg.start,
-                                                  path.sampler().next_2d(), context);
+            lights::throughput_of<Media>(segment.before) *
+            settings.equiangular->scattered_along(scene, segment.ray, segment.event.surface_distance,
+                                                  segment.start, path.sampler().next_2d(), context);
     };
     while (path.advance(context, sum, light_along)) {
         const ScatteringVertex& vertex = path.vertex();
@@ -28,7 +28,7 @@ TransportSum trace_path(const Scene& scene, const PathSettings& settings, const 
             // min(G*, b)/G* of the edge between the first connectable vertex and this one, where no VPL
             // stands on a delta surface: what goes on from there is not part of the bounded transport.
             path.scale(compensation::bounded_share(path.first_cosine() * vertex.geometric_cosine(vertex.wo),
-                                                   path.leg_length(), settings.bound));
+                                                   path.segment_length(), settings.bound));
         if (vertex.connectable() && path.wants_connection())
             sum[path.layer_of_connection()] += path.sample_light(context, {lit_along});
     }

@@ -30,7 +30,7 @@ class Volpath final : public Integrator {
 
     std::string type() const override { return "volpath"; }
     std::vector<Layer> layers(const Scene& scene) const override {
-        return transport_layers(scene.has_media(), bounded());
+        return transport_layers(scene.has_media(), bounded() ? "_bounded" : "");
     }
     Plan plan(const Scene&, const Requirements& requirements) const override;
     std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {

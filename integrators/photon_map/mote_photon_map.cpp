@@ -42,7 +42,7 @@ class PhotonMapEstimator final : public Estimator {
   public:
     PhotonMapEstimator(const Scene& scene, const RenderOptions& options, const PhotonMapSettings& settings)
         : scene_(scene), options_(options), settings_(settings) {
-        settings_.eye.wanted = wanted_transport(options);
+        settings_.eye.wanted = options.cells;
     }
 
     bool pass(const PassContext& context, PassImage& image) override {
@@ -114,7 +114,7 @@ class MotePhotonMap final : public Integrator {
 
     std::string type() const override { return "mote_photon_map"; }
     std::vector<Layer> layers(const Scene& scene) const override {
-        return transport_layers(scene.has_media(), false);
+        return transport_layers(scene.has_media());
     }
     Plan plan(const Scene& scene, const Requirements& requirements) const override;
     std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {

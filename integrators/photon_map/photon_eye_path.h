@@ -38,8 +38,8 @@ class PhotonEyePath {
     TransportSum trace(const EyeRay& eye) {
         TransportSum sum;
         EyePath<Media> path(scene_, limits_, eye, context_);
-        const auto add_beam = [&](const EyeLeg& leg) {
-            if (Media && wants_beams() && path.scatterings() == 0) this->add_beam(sum, leg, path.depth());
+        const auto add_beam = [&](const EyeSegment& segment) {
+            if (Media && wants_beams() && path.scatterings() == 0) this->add_beam(sum, segment, path.depth());
         };
         while (path.advance(context_, sum, add_beam)) {
             const bool surface = path.vertex().on_surface();
@@ -62,9 +62,9 @@ class PhotonEyePath {
                (maps_.single_scattering && limits_.wanted[Transport::single_scattering]);
     }
 
-    void add_beam(TransportSum& sum, const EyeLeg& leg, int depth) {
-        const core::Rgb throughput = lights::throughput_of<Media>(leg.before);
-        const auto light = maps_.volume.radiance(leg.ray, leg.event.surface_distance, leg.start,
+    void add_beam(TransportSum& sum, const EyeSegment& segment, int depth) {
+        const core::Rgb throughput = lights::throughput_of<Media>(segment.before);
+        const auto light = maps_.volume.radiance(segment.ray, segment.event.surface_distance, segment.start,
                                                  photon_depth(depth), context_, scratch_.hits);
         sum[Transport::single_scattering] += throughput * light.single;
         sum[Transport::multiple_scattering] += throughput * light.multiple;

@@ -39,7 +39,7 @@ class RayBundleEstimator final : public Estimator {
           locator_(surfaces_),
           tracer_(surfaces_),
           others_(scene, lights_of_bundles(scene)) {
-        settings_.eye.wanted = wanted_transport(options);
+        settings_.eye.wanted = options.cells;
         eye_.limits = settings_.eye;
         eye_.final_gathering = settings.final_gathering;
         eye_.sample_direct = !settings.exchange.lights;
@@ -134,7 +134,7 @@ class MoteRayBundles final : public Integrator {
     explicit MoteRayBundles(const Properties& p) : settings_(read_ray_bundle_settings(p)) {}
 
     std::string type() const override { return "mote_ray_bundles"; }
-    std::vector<Layer> layers(const Scene&) const override { return transport_layers(false, false); }
+    std::vector<Layer> layers(const Scene&) const override { return transport_layers(false); }
     Plan plan(const Scene& scene, const Requirements& requirements) const override;
     std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
         return std::make_unique<RayBundleEstimator>(scene, options, settings_);

@@ -26,7 +26,7 @@ class RayLightEstimator final : public Estimator {
           settings_(settings),
           bound_(settings.bound_for(scene.rays().bounds())),
           media_(scene.media()) {
-        settings_.eye.wanted = wanted_transport(options);
+        settings_.eye.wanted = options.cells;
         settings_.eye.max_scatterings = std::isfinite(bound_) ? -1 : 1;
     }
 
@@ -111,7 +111,7 @@ class MoteRayLights final : public Integrator {
 
     std::string type() const override { return "mote_ray_lights"; }
     std::vector<Layer> layers(const Scene& scene) const override {
-        return transport_layers(scene.has_media(), false);
+        return transport_layers(scene.has_media());
     }
     Plan plan(const Scene& scene, const Requirements& requirements) const override;
     std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {

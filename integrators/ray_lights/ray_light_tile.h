@@ -78,10 +78,10 @@ class RayLightTile {
         core::Rng rng;  ///< of the path, while other lanes advance
         TransportSum sum;
         std::optional<core::ScatteringPoints> points;
-        std::vector<lights::EyeLine> lines;  ///< of the last leg
+        std::vector<lights::EyeLine> lines;  ///< of the last segment
         core::Vec3 normal{0.0f};             ///< shading normal of the last point that gathered
         bool on_surface = true;              ///< or was that in a medium?
-        float extinction = 0.0f;             ///< mean along the last leg in media [1/m]
+        float extinction = 0.0f;             ///< mean along the last segment in media [1/m]
         float step = 0.0f;                   ///< light that a connection carries
         bool alive = false;
     };
@@ -109,7 +109,7 @@ class RayLightTile {
         return true;
     }
 
-    /// The first leg, or one behind a mirror: media on it are lines. Returns whether there is a vertex.
+    /// The first segment, or one behind a mirror: media on it are lines. Returns whether there is a vertex.
     bool to_surface(Lane& lane) {
         EyePath<Media>& path = *lane.path;
         bool at_vertex;
@@ -119,8 +119,8 @@ class RayLightTile {
                 return core::walk_to_surface(scene_, path.ray(), path.state(), path.weights(), emitted,
                                              *lane.points, c);
             };
-            at_vertex =
-                path.advance_by(walker, walk_, lane.sum, [&](const EyeLeg& leg) { add_lines(lane, leg); });
+            at_vertex = path.advance_by(walker, walk_, lane.sum,
+                                        [&](const EyeSegment& segment) { add_lines(lane, segment); });
             if (wants_points() && path.may_go_on()) add_single_scattering(lane);
         } else {
             at_vertex = path.advance(walk_, lane.sum);
@@ -128,21 +128,21 @@ class RayLightTile {
         return at_vertex;
     }
 
-    void add_lines(Lane& lane, const EyeLeg& leg) {
+    void add_lines(Lane& lane, const EyeSegment& segment) {
         const std::int32_t depth = light_depth(lane.path->depth());
         if (!settings_.eye.wanted[Transport::multiple_scattering] || depth == 0) return;
-        const core::Rgb throughput = lights::throughput_of<Media>(leg.before);
+        const core::Rgb throughput = lights::throughput_of<Media>(segment.before);
         core::Rng rng(walk_.rng.next_u32());
         float depth_of_media = 0.0f;
         lights::for_each_medium_line(
-            {leg.ray, leg.event.surface_distance, leg.start, walk_.boundary_hits}, pass_.media, rng,
-            walk_.tracking,
+            {segment.ray, segment.event.surface_distance, segment.start, walk_.boundary_hits}, pass_.media,
+            rng, walk_.tracking,
             [&](const lights::MediumLine& line, const core::MediumState& state,
                 const core::Rgb& transmittance) {
                 lane.lines.push_back({line, throughput * transmittance, state, depth});
                 depth_of_media += core::average(line.sigma_t) * line.length;
             });
-        lane.extinction = depth_of_media / leg.event.surface_distance;
+        lane.extinction = depth_of_media / segment.event.surface_distance;
     }
 
     void add_single_scattering(Lane& lane) {
@@ -161,7 +161,7 @@ class RayLightTile {
         const core::ScatteringVertex& vertex = path.vertex();
         if (!vertex.connectable()) return false;
         const float cosine = lane.on_surface ? std::fabs(glm::dot(lane.normal, path.ray().direction)) : 1.0f;
-        const float g = cosine * vertex.geometric_cosine(vertex.wo) / core::sqr(path.leg_length());
+        const float g = cosine * vertex.geometric_cosine(vertex.wo) / core::sqr(path.segment_length());
         if (!(g > pass_.bound)) return false;
         path.scale(std::isfinite(g) ? 1.0f - pass_.bound / g : 1.0f);
         return true;
@@ -228,8 +228,8 @@ class RayLightTile {
         return sum;
     }
 
-    /// How much light a connection carries: never less than on the legs before, so that what matters less has
-    /// fewer.
+    /// How much light a connection carries: never less than on the segments before, so that what matters less
+    /// has fewer.
     lights::LaneFloats steps_of(const lights::LaneFloats& expected) {
         lights::LaneFloats steps;
         if (settings_.share == 0) return steps;

@@ -19,13 +19,10 @@ class SingleScatteringEstimator final : public Estimator {
     SingleScatteringEstimator(const Scene& scene, const RenderOptions& options,
                               const ScatteringSettings& settings)
         : scene_(scene), options_(options), settings_(settings), positional_(positional_lights(scene)) {
-        settings_.eye.limits.max_depth = 1 + settings.rays;
-        settings_.eye.limits.wanted = wanted_transport(options);
-        for (const auto& [lights, cell] : {std::pair(ScatteringLights::positional, positional_scattering),
-                                           std::pair(ScatteringLights::other, other_scattering)})
-            if (settings_.lights == lights)
-                settings_.eye.limits.wanted.of[std::size_t(Transport::single_scattering)] =
-                    options.wants(cell);
+        settings_.eye.limits.max_depth = 1 + settings_.rays;
+        settings_.eye.limits.wanted = options.cells;
+        if (options.cells.contains(scattering_cell(settings_.lights)))
+            settings_.eye.limits.wanted = options.cells | Transport::single_scattering;
         if (positional_.size() <= max_connected_lights) {
             others_.emplace(scene, positional_);
             settings_.eye.connected = positional_, settings_.eye.others = &*others_;

@@ -54,9 +54,17 @@ ScatteringSettings scattering_settings(const EyePathLimits& limits, ScatteringLi
 /// In the order of single_scattering_layers(); the last two only in media.
 enum class ScatteringLayer : std::uint8_t { emission, direct, single_scattering, marched_rays };
 
-/// The cells of the transport that the light of some lights alone is: both make up single_scattering.
-inline const std::string positional_scattering = "single_scattering_positional";
-inline const std::string other_scattering = "single_scattering_other";
+/// Cell of the light of these lights, scattered once in media.
+constexpr TransportSet scattering_cell(ScatteringLights lights) {
+    switch (lights) {
+        case ScatteringLights::positional:
+            return TransportSet::positional_scattering();
+        case ScatteringLights::other:
+            return TransportSet::other_scattering();
+        default:
+            return Transport::single_scattering;
+    }
+}
 
 /// emission, direct, and where there are media single_scattering, and the marched rays when asked for.
 std::vector<core::Layer> single_scattering_layers(bool media, const ScatteringSettings& settings);

@@ -25,12 +25,12 @@ void add_other_lights(const Scene& scene, const EyeSettings& settings, const Ray
         scattered += lights::light_towards<true>(others, vertex, *s, weights, state, context);
 }
 
-/// The legs of an eye path that goes from surface to surface: media in between are marched, not sampled.
+/// The segments of an eye path that goes from surface to surface: media in between are marched, not sampled.
 template <bool Media>
-class MarchedLegs {
+class MarchedSegments {
   public:
-    MarchedLegs(const Scene& scene, const EyeSettings& settings, std::span<const InScattering> positional,
-                EyePath<Media>& path, MarchScratch& scratch, EyeLight& found)
+    MarchedSegments(const Scene& scene, const EyeSettings& settings, std::span<const InScattering> positional,
+                    EyePath<Media>& path, MarchScratch& scratch, EyeLight& found)
         : scene_(scene),
           settings_(settings),
           positional_(positional),
@@ -107,9 +107,9 @@ EyeLight trace_eye(const Scene& scene, const EyeSettings& settings, std::span<co
                    const EyeRay& eye, MarchScratch& scratch) {
     EyeLight found;
     EyePath<Media> path(scene, settings.limits, eye, scratch.walk, settings.others);
-    MarchedLegs<Media> legs(scene, settings, positional, path, scratch, found);
-    const auto nothing = [](const EyeLeg&) {};
-    while (path.advance_by(legs, scratch.walk, found.sum, nothing))
+    MarchedSegments<Media> segments(scene, settings, positional, path, scratch, found);
+    const auto nothing = [](const EyeSegment&) {};
+    while (path.advance_by(segments, scratch.walk, found.sum, nothing))
         if (path.vertex().connectable() && path.wants_connection())
             found.sum[Transport::direct] += direct_light(scene, settings, path, scratch.walk);
     return found;

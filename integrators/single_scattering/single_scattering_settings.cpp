@@ -53,15 +53,9 @@ ScatteringSettings scattering_settings(const EyePathLimits& limits, ScatteringLi
 }
 
 std::vector<Layer> single_scattering_layers(bool media, const ScatteringSettings& settings) {
-    std::vector<Layer> layers = {{"emission", "light sources seen directly or through mirrors and glass"},
-                                 {"direct", "light scattered once, on a surface"}};
-    if (media) {
-        layers.push_back({transport_name(Transport::single_scattering), "light scattered once, in a medium"});
-        if (settings.lights == ScatteringLights::positional)
-            layers.back().name = layers.back().cell = positional_scattering;
-        if (settings.lights == ScatteringLights::other)
-            layers.back().name = layers.back().cell = other_scattering;
-    }
+    std::vector<Layer> layers = {transport_layer_of(Transport::emission),
+                                 transport_layer_of(Transport::direct)};
+    if (media) layers.push_back(transport_layer_of(scattering_cell(settings.lights)));
     if (media && settings.show_samples) layers.push_back({"MarchedRays", "rays marched in the pixel", true});
     return layers;
 }
@@ -86,7 +80,7 @@ void plan_single_scattering(Plan& plan, const Scene& scene, const Requirements& 
         "surfaces", "one eye path per pixel and pass",
         "direct light at full rate: of each light with a position where they are few, and of one that is "
         "drawn, by two techniques");
-    if (r.wants("indirect") || r.wants("multiple_scattering"))
+    if (r.cells[Transport::indirect] || r.cells[Transport::multiple_scattering])
         plan.miss("light scattered more than once", "indirect light and multiple scattering",
                   "this integrator stops after one scattering; volpath renders the rest");
     plan_choice_of_lights(plan, scene);

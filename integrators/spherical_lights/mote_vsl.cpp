@@ -49,7 +49,7 @@ class VslEstimator final : public Estimator {
   public:
     VslEstimator(const Scene& scene, const RenderOptions& options, const VslSettings& settings)
         : scene_(scene), options_(options), settings_(settings) {
-        settings_.eye.wanted = wanted_transport(options);
+        settings_.eye.wanted = options.cells;
     }
 
     bool pass(const PassContext& context, PassImage& image) override {
@@ -120,9 +120,7 @@ class MoteVsl final : public Integrator {
     }
 
     std::string type() const override { return "mote_vsl"; }
-    std::vector<Layer> layers(const Scene&) const override {
-        return suffixed_transport_layers(false, "_spherical");
-    }
+    std::vector<Layer> layers(const Scene&) const override { return transport_layers(false, "_spherical"); }
     Plan plan(const Scene& scene, const Requirements& requirements) const override;
     std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
         if (scene.has_media())

@@ -64,12 +64,11 @@ class MoteVpl final : public Integrator {
     std::string type() const override { return "mote_vpl"; }
     bool works_on_mean() const override { return settings_.screen_space.has_value() || settings_.filters; }
     std::vector<Layer> layers(const Scene& scene) const override {
-        auto layers = transport_layers(scene.has_media(), settings_.bounded);
+        auto layers = transport_layers(scene.has_media(), settings_.bounded ? "_bounded" : "");
         if (settings_.compensates()) add_compensation_layers(scene, layers);
         for (Layer& layer : layers)
-            layer.squares =
-                settings_.filters && (layer.transport() == transport_name(Transport::indirect) ||
-                                      layer.transport() == transport_name(Transport::multiple_scattering));
+            layer.squares = settings_.filters && (layer.transport == Transport::indirect ||
+                                                  layer.transport == Transport::multiple_scattering);
         return layers;
     }
     Plan plan(const Scene& scene, const Requirements& requirements) const override;
@@ -81,11 +80,11 @@ class MoteVpl final : public Integrator {
     void add_compensation_layers(const Scene& scene, std::vector<Layer>& layers) const {
         layers.push_back(
             {"compensation_surface", "what the bound took from light first scattered by a surface"});
-        layers.back().cell = transport_name(Transport::indirect);
+        layers.back().transport = Transport::indirect;
         if (scene.has_media()) {
             layers.push_back(
                 {"compensation_volume", "what the bound took from light first scattered in a medium"});
-            layers.back().cell = transport_name(Transport::multiple_scattering);
+            layers.back().transport = Transport::multiple_scattering;
         }
         if (settings_.screen_space)
             for (Layer& layer : settings_.screen_space->film_layers()) layers.push_back(std::move(layer));

@@ -28,7 +28,7 @@ class VplEstimator final : public Estimator {
           bound_(settings.bound_for(scene.rays().bounds())),
           tile_size_(lane_tile(spacing())),
           selection_(scene, settings.selection, options, bound_) {
-        settings_.eye.wanted = wanted_transport(options);
+        settings_.eye.wanted = options.cells;
         if (settings_.compensation.enabled && std::isfinite(bound_))
             transport_.emplace(scene, bound_, settings_.compensation);
         if (settings_.screen_space && settings_.screen_space->layers > 1 && std::isfinite(bound_))

@@ -105,7 +105,7 @@ class EyeTile {
         core::Rng rng;  ///< of the path, while other lanes advance
         VplPixel sum;
         std::optional<core::ScatteringPoints> scattering;
-        std::span<const core::ScatteringPoint> points;  ///< of the last leg
+        std::span<const core::ScatteringPoint> points;  ///< of the last segment
         core::ScatteringVertex vertex;                  ///< at one of them
         SeenPixel seen;
         core::Vec2 film{0.0f};
@@ -211,12 +211,12 @@ class EyeTile {
         if constexpr (Media)
             if (settings_.scattering_points > 0) {
                 const bool at_vertex = path.advance_to_surface(walk_, lane.sum.transport, *lane.scattering);
-                if (at_vertex && path.depth() == 1) lane.seen = see_first_leg(scene_, path, lane.film);
+                if (at_vertex && path.depth() == 1) lane.seen = see_first_segment(scene_, path, lane.film);
                 if (path.may_go_on()) lane.points = lane.scattering->choose(rare_light);
                 return at_vertex && (path.scatterings() > 0 || survives(path));
             }
         const bool at_vertex = path.advance(walk_, lane.sum.transport);
-        if (at_vertex && path.depth() == 1) lane.seen = see_first_leg(scene_, path, lane.film);
+        if (at_vertex && path.depth() == 1) lane.seen = see_first_segment(scene_, path, lane.film);
         return at_vertex;
     }
     /// Does a path whose media let little through go on behind them? By chance, which its weight makes up

@@ -79,7 +79,7 @@ class MoteVplRayBundles final : public Integrator {
     std::string type() const override { return "mote_vpl_ray_bundles"; }
     bool works_on_mean() const override { return settings_.filters; }
     std::vector<Layer> layers(const Scene&) const override {
-        auto layers = suffixed_transport_layers(false, suffix());
+        auto layers = transport_layers(false, suffix());
         layers[std::size_t(Transport::indirect)].squares = settings_.filters;
         return layers;
     }

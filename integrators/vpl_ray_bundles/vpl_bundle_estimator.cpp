@@ -15,7 +15,7 @@ class VplBundleEstimator final : public Estimator {
   public:
     VplBundleEstimator(const Scene& scene, const RenderOptions& options, const VplBundleSettings& settings)
         : scene_(scene), options_(options), settings_(settings) {
-        settings_.eye.wanted = wanted_transport(options);
+        settings_.eye.wanted = options.cells;
         settings_.sky = settings_.sky && settings_.has_bundles() && scene.environment();
         const bool wants_direct =
             settings_.eye.wanted[Transport::direct] || settings_.eye.wanted[Transport::emission];

@@ -20,7 +20,7 @@ void VplBundleTile::stop(int lane) {
 void VplBundleTile::add_direct(int lane, const EyeRay& eye) {
     const double begin = thread_cpu_seconds();
     EyePathLimits limits = settings_.eye;
-    limits.wanted.of[std::size_t(Transport::indirect)] = false;
+    limits.wanted = limits.wanted - Transport::indirect;
     walk_.rng = eye.rng;
     EyePath<false> path(scene_, limits, eye, walk_, pass_.eye_lights());
     TransportSum& sum = lanes_[std::size_t(lane)].found;
@@ -57,11 +57,12 @@ void VplBundleTile::run(const lights::VplRange& share,
 
 /// Follows an eye path to its next vertex, and adds the direct light there. Returns whether there is one.
 bool VplBundleTile::advance(EyePath<false>& path, TransportSum& sum) {
-    const auto sky_behind = [&](const EyeLeg& leg) {
+    const auto sky_behind = [&](const EyeSegment& segment) {
         // The sky is no light of the eye path then, but is seen.
-        if (pass_.bundles.sky && leg.event.kind == WalkEvent::Kind::escaped && path.scatterings() == 0 &&
+        if (pass_.bundles.sky && segment.event.kind == WalkEvent::Kind::escaped && path.scatterings() == 0 &&
             !(settings_.eye.hide_emitters && path.depth() == 1))
-            sum[Transport::emission] += path.throughput() * pass_.bundles.sky->environment(leg.ray.direction);
+            sum[Transport::emission] +=
+                path.throughput() * pass_.bundles.sky->environment(segment.ray.direction);
     };
     if (!path.advance(walk_, sum, sky_behind)) return false;
     if (path.vertex().connectable() && path.wants_connection())

@@ -160,7 +160,7 @@ TEST_CASE("a method that is asked for one cell gives it its own mean and traces 
         for (const Layer& layer : integrator->layers(scene)) {
             INFO(type << ": " << layer.name);
             RenderSpec spec{8, 200, 2};
-            spec.cells = {layer.transport()};
+            spec.cells = layer.transport;
             const auto alone = render_statistics(scene, *integrator, spec);
             check_same_mean(alone, layer.name, all, layer.name);
         }
@@ -169,7 +169,7 @@ TEST_CASE("a method that is asked for one cell gives it its own mean and traces 
 
 TEST_CASE("what a method is not asked for costs nothing", "[mote_layers]") {
     const auto scene = foggy_box();
-    const auto work = [&](const std::string& xml, const std::vector<std::string>& wanted) {
+    const auto work = [&](const std::string& xml, TransportSet wanted) {
         RenderOptions options{1, 8, 8, SamplerKind::independent};
         options.cells = wanted;
         const auto integrator = integrator_from(xml);
@@ -184,16 +184,18 @@ TEST_CASE("what a method is not asked for costs nothing", "[mote_layers]") {
     };
     const std::string path = "<integrator type='volpath'/>", vpl = "<integrator type='mote_vpl'/>";
     // Emission needs one ray through the fog and no connection at all.
-    CHECK(work(path, {"emission"})["occlusion"] == 0);
-    CHECK(work(path, {"emission"})["closest"] == 16 * 64);
+    CHECK(work(path, Transport::emission)["occlusion"] == 0);
+    CHECK(work(path, Transport::emission)["closest"] == 16 * 64);
     // One connection a path at most, to the first vertex.
-    CHECK(work(path, {"direct", "single_scattering"})["occlusion"] <= 16 * 64);
-    CHECK(work(path, {"direct", "single_scattering"})["occlusion"] > 0);
+    const TransportSet once = TransportSet(Transport::direct) | Transport::single_scattering;
+    CHECK(work(path, once)["occlusion"] <= 16 * 64);
+    CHECK(work(path, once)["occlusion"] > 0);
     // And none there, if that is what is not wanted.
-    const auto all = work(path, {}), more = work(path, {"indirect", "multiple_scattering"});
+    const auto all = work(path, TransportSet::all()),
+               more = work(path, TransportSet(Transport::indirect) | Transport::multiple_scattering);
     CHECK(all.at("occlusion") - more.at("occlusion") > 16 * 64 / 2);
     // Virtual lights are not looked at for light of the primary ones.
-    CHECK(work(vpl, {"direct"})["occlusion"] <= 16 * 64);
+    CHECK(work(vpl, Transport::direct)["occlusion"] <= 16 * 64);
 }
 
 TEST_CASE("two methods for one cell are an error, and a cell without any is missing", "[mote_layers]") {
@@ -206,7 +208,7 @@ TEST_CASE("two methods for one cell are an error, and a cell without any is miss
     CHECK_THROWS_WITH(prepare(child("mote_epipolar", "single_scattering_positional",
                                     "<string name='lights' value='positional'/>") +
                               child("volpath", "single_scattering")),
-                      ContainsSubstring("two methods fill 'single_scattering'"));
+                      ContainsSubstring("two methods fill 'single_scattering_positional'"));
     CHECK_THROWS_WITH(prepare(child("volpath", "dierct")), ContainsSubstring("direct"));
     CHECK_THROWS_WITH(prepare(child("path", "single_scattering")), ContainsSubstring("cannot fill"));
     CHECK_THROWS_WITH(prepare("<integrator type='mote_layers'/>"),
@@ -219,7 +221,7 @@ TEST_CASE("two methods for one cell are an error, and a cell without any is miss
     std::set<std::string> missing;
     for (const PlanEntry& entry : plan.missing) missing.insert(entry.topic);
     CHECK(missing.contains("direct"));
-    CHECK(missing.contains("single_scattering"));  // half of it
+    CHECK(missing.contains("single_scattering_other"));
     CHECK(missing.contains("multiple_scattering"));
     CHECK_FALSE(missing.contains("indirect"));
     CHECK(layers_of("")->plan(*scene, find_requirements(*scene)).missing.empty());
@@ -227,7 +229,7 @@ TEST_CASE("two methods for one cell are an error, and a cell without any is miss
 
 TEST_CASE("passes go where they take the most error for their work", "[mote_layers]") {
     // Two parts of known variance and work: n_i ~ s_i / sqrt(w_i).
-    const std::vector<Layer> layers{{"a", ""}, {"b", "", false, false, "", "", 1}};
+    const std::vector<Layer> layers{{"a", ""}, {"b", "", false, false, "", {}, 1}};
     Film film(16, 16, layers);
     Rng rng(7);
     const double spread[2] = {0.4, 0.1}, work[2] = {100.0, 400.0}, left[2] = {1.0, 1.0};

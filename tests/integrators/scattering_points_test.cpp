@@ -1,5 +1,5 @@
 // Eye rays of mote_vpl through media: by one collision or the surface, and by scattering points with the
-// surface behind them. Both have the mean of volpath, layer by layer, along legs that meet everything at
+// surface behind them. Both have the mean of volpath, layer by layer, along segments that meet everything at
 // once.
 #include "tests/integrators/test_scenes.h"
 #include "tests/support/catch.h"

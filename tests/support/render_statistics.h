@@ -52,7 +52,7 @@ struct RenderSpec {
     std::uint64_t seed = 1;
     /// Further layers, each the sum of some of the integrator's: name and terms.
     std::vector<std::pair<std::string, std::vector<std::string>>> sums = {};
-    std::vector<std::string> cells = {};  ///< RenderOptions::cells
+    core::TransportSet cells = core::TransportSet::all();  ///< RenderOptions::cells
 };
 
 RenderStatistics render_statistics(const core::Scene& scene, const core::Integrator& integrator,

@@ -53,10 +53,7 @@ double lookup(std::span<const SpectralValue> table, double wavelength) {
 
 std::vector<SpectralValue> parse_table(const std::string& text, const SourceLocation& where) {
     std::vector<SpectralValue> table;
-    std::size_t i = 0;
-    while ((i = text.find_first_not_of(" ,\t\n\r", i)) != std::string::npos) {
-        const std::size_t end = std::min(text.find_first_of(" ,\t\n\r", i), text.size());
-        const std::string entry = text.substr(i, end - i);
+    for (const std::string& entry : split_words(text)) {
         const std::size_t colon = entry.find(':');
         if (colon == std::string::npos)
             throw InputError("'" + printable(entry, 40) + "' is not of the form wavelength:value", where);
@@ -65,7 +62,6 @@ std::vector<SpectralValue> parse_table(const std::string& text, const SourceLoca
         if (!table.empty() && !(v.wavelength > table.back().wavelength))
             throw InputError("the wavelengths of a spectrum must rise", where);
         table.push_back(v);
-        i = end;
     }
     return table;
 }

@@ -92,7 +92,7 @@ Study::Study(const Arguments& a) : arguments_(a), scene_(load(a)) {
     settings_.eye.max_scatterings = 1;
     settings_.paths = a.paths, settings_.bound = a.bound, settings_.scattering_points = a.points;
     settings_.selection.kind = Kind::light_tree;  // lights keep nothing that only other ways need
-    settings_.eye.wanted = wanted_transport(options_);
+    settings_.eye.wanted = options_.cells;
     double begin = now(CLOCK_PROCESS_CPUTIME_ID);
     vpls_ = lights::trace_light_paths(*scene_, settings_.light_paths(), 1, 0, core::SamplerKind::sobol);
     tracing = now(CLOCK_PROCESS_CPUTIME_ID) - begin;

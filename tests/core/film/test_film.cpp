@@ -249,7 +249,7 @@ TEST_CASE("Channels of a film's picture bear the names that other programs know"
 }
 
 TEST_CASE("parts of a film have passes, variances and work of their own", "[film]") {
-    const std::vector<Layer> in_parts{{"a", ""}, {"b", "", false, false, "", "", 1}, {"c", ""}};
+    const std::vector<Layer> in_parts{{"a", ""}, {"b", "", false, false, "", {}, 1}, {"c", ""}};
     const auto pass = [](std::size_t count, float value) {
         PassImage image(2, 2, count);
         for (std::size_t i = 0; i < count; ++i)
@@ -289,7 +289,7 @@ TEST_CASE("parts of a film have passes, variances and work of their own", "[film
     CHECK_THROWS_AS(film.add_pass(pass(2, 0.0f), 1), std::invalid_argument);
     Film one_part(2, 2, {{"a", ""}, {"b", ""}, {"c", ""}});
     CHECK_THROWS_AS(one_part.deserialize(film.serialize()), InputError);
-    CHECK_THROWS_AS(Film(2, 2, {{"a", "", false, false, "", "", 1}}), std::invalid_argument);
+    CHECK_THROWS_AS(Film(2, 2, {{"a", "", false, false, "", {}, 1}}), std::invalid_argument);
 }
 
 TEST_CASE("what a post-process leaves of a layer's variance is in the noise, in place of the layer's own",
