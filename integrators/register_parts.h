@@ -1,4 +1,4 @@
-// What the integrators of this folder hand to the registry, one function a file, and plan entries they share.
+// Registrations of the integrators of this folder, one function a file, and plan entries that they share.
 #pragma once
 
 #include "core/objects/registry.h"
@@ -24,8 +24,8 @@ void register_mote_ray_lights(core::Registry& registry);
 void register_mote_single_scattering(core::Registry& registry);
 void register_mote_epipolar(core::Registry& registry);
 
-// What a scene's requirements choose (layers/layer_methods.h), with the settings of a scene file that names
-// nothing but these limits.
+// Methods that a scene's requirements choose (layers/layer_methods.h), with the settings of a scene file that
+// names nothing but these limits.
 std::shared_ptr<const core::Integrator> make_path(const EyePathLimits& limits);
 std::shared_ptr<const core::Integrator> make_volpath(const EyePathLimits& limits, bool equiangular);
 /// Virtual point lights by the ten thousand, resampled for pixels that do not lie side by side, as an image
@@ -41,13 +41,13 @@ std::shared_ptr<const core::Integrator> make_all_single_scattering(const EyePath
 /// Light that passes delta surfaces last, for integrators that can only hit lights.
 void plan_caustics(core::Plan& plan, const core::Scene& scene, const core::Requirements& requirements);
 
-/// How direct light is shared among several lights (core/scene/light_tree.h); nothing where there is one.
+/// Choice among several lights for direct light (core/scene/light_tree.h); nothing where there is one.
 void plan_choice_of_lights(core::Plan& plan, const core::Scene& scene);
 
-/// How the emission of media is drawn from.
+/// Sampling of the emission of media.
 void plan_medium_lights(core::Plan& plan, const core::Requirements& requirements);
 
-/// What runs for the media of a scene, with reasons.
+/// Methods that run for the media of a scene, with reasons.
 void plan_media(core::Plan& plan, const core::Requirements& requirements);
 
 }  // namespace mote::integrators

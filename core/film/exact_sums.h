@@ -53,7 +53,7 @@ class ExactSums {
     static void for_each_array(Sums& sums, const Body& body) {
         body(sums.place_), body(sums.high_), body(sums.low_);
     }
-    /// What was read may be damaged: are all places such that at() can be asked?
+    /// True where at() is defined everywhere: sums that were read may be damaged.
     bool places_exist() const {
         for (const std::uint8_t place : place_)
             if (place >= unit_of_low.size()) return false;

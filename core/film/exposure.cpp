@@ -15,7 +15,8 @@ float adapted_exposure(std::span<const Rgb> pixels) {
     }
     if (lit.empty()) return 0.0f;
     mean /= double(lit.size());
-    // What is a thousand times darker than the mean is black to the eye, and would pull a logarithm anywhere.
+    // Luminance a thousand times darker than the mean is black to the eye, and would pull a logarithm
+    // anywhere.
     double logarithms = 0.0;
     for (const double y : lit) logarithms += std::log2(std::max(y, 1e-3 * mean)) / double(lit.size());
     const auto bright = lit.begin() + std::ptrdiff_t(0.97 * double(lit.size() - 1));

@@ -1,4 +1,4 @@
-// By how much a picture is brightened to be looked at: by the key value of photographers.
+// Exposure of a picture for the eye, by the key value of photographers.
 #pragma once
 
 #include <span>
@@ -7,7 +7,7 @@
 
 namespace mote::core {
 
-/// Where the log-average of the luminance comes to lie (Reinhard et al. 2002, Eq. 2).
+/// Value at which the log-average of the luminance comes to lie (Reinhard et al. 2002, Eq. 2).
 inline constexpr double key_value = 0.18;
 
 /// Stops that bring the log-average luminance of what is lit to `key_value`, but leave at least 97 of 100 of

@@ -41,15 +41,15 @@ class Film {
     std::uint32_t first_pass(std::size_t part) const { return parts_.at(part).first; }
     /// Index of the pass after the last one.
     std::uint32_t next_pass(std::size_t part) const { return parts_[part].first + pass_count(part); }
-    /// Of all parts together: 0 for a film that holds all passes so far.
+    /// Number of the first pass over all parts: 0 for a film that holds all passes so far.
     std::uint32_t first_pass() const;
     /// Lets a part of a film without passes begin with this pass.
     void begin_at(std::size_t part, std::uint32_t first);
-    /// Has every part so many passes? A picture is complete with one.
+    /// True where every part has so many passes. A picture is complete with one.
     bool has_passes(std::uint32_t passes) const;
     /// The layers of a part, in order: those of the images of its passes.
     std::span<const std::size_t> layers_of(std::size_t part) const { return parts_.at(part).layers; }
-    /// What the passes of a part cost in all (add_pass).
+    /// Work of all passes of a part (add_pass).
     double work(std::size_t part) const { return parts_.at(part).work; }
     /// Pixels of passes that held a NaN or an infinity in some layer. Such a pixel adds zero to every layer;
     /// anything but 0 is a defect.
@@ -73,9 +73,9 @@ class Film {
     std::vector<Rgb> beauty_variance_of_mean() const;
     /// The share of a part in that.
     std::vector<Rgb> part_variance_of_mean(std::size_t part) const;
-    /// Does the film know the variance of a layer?
+    /// True where the film keeps the variance of a layer.
     bool has_squares(std::size_t layer) const { return !layer_squares_.at(layer).empty(); }
-    /// The same for a layer, over the passes of Layer::where; needs has_squares(layer).
+    /// Variance of a layer's mean, over the passes of Layer::where; needs has_squares(layer).
     std::vector<Rgb> layer_variance_of_mean(std::size_t layer) const;
     /// Replaces what mean() returns for a layer, for post-processes (Estimator::finish). The sums, and with
     /// them all variances and the serialised film, stay those of the passes.
@@ -83,7 +83,7 @@ class Film {
     /// variance of the layer's mean, averaged over channels, for noise(); needs has_squares(layer). Without
     /// it the layer counts there with the noise of its passes.
     void set_mean(std::size_t layer, std::span<const Rgb> values, std::span<const float> variance = {});
-    /// What set_mean() has put in place of the passes' mean; empty where it has not.
+    /// Mean that set_mean() has put in place of the passes'; empty where it has not.
     struct Replacement {
         std::vector<Rgb> mean;        ///< by pixel; empty: that of the passes
         std::vector<float> variance;  ///< of that mean, by pixel; empty: not known
@@ -94,7 +94,7 @@ class Film {
     /// The noise of the beauty, Eq. (4) of core/metrics/relative_error.h: the error that the passes so far
     /// are expected to have left, but for the bias of post-processes. Infinity for n < 2.
     double noise() const { return gain_and_noise().noise; }
-    /// What the passes say of the picture's noise.
+    /// Noise of the picture as its passes show it.
     struct GainAndNoise {
         /// Passes are Sobol points: how much smaller the variance of the mean is, over the whole picture,
         /// than beauty_variance_of_mean() says, which takes them for independent. 1 for n < 2.
@@ -124,7 +124,7 @@ class Film {
         std::vector<std::size_t> layers;         ///< in order
         std::vector<std::size_t> beauty_layers;  ///< those that are not auxiliary, in order
         explicit Part(std::size_t pixels) : beauty_squares(3 * pixels) {}
-        /// How many blocks of 2^(k+1) passes are complete.
+        /// Number of complete blocks of 2^(k+1) passes.
         std::uint32_t complete_blocks(std::size_t k) const;
     };
     class NewBlock;
@@ -134,14 +134,15 @@ class Film {
     void check_room(const Part& part, std::uint32_t more) const;
     std::vector<Rgb> mean_of_passes() const;  ///< of the beauty, whatever set_mean() says
     bool has_replaced_variance() const;
-    /// Of the beauty as it is shown: what set_mean() says of a layer in place of its passes' variance.
+    /// Variance of the beauty as it is shown: that of set_mean() in place of the variance of a layer's
+    /// passes.
     std::vector<Rgb> shown_variance_of_mean() const;
     /// sum w v of a part as it is shown, where that of its passes is `of_passes`.
     double shown_sum(const Part& part, double of_passes, std::span<const double> weights) const;
     /// d[k] of core/film/sobol_gain.h.
     std::vector<double> differences(const Part& part, std::span<const double> weights) const;
     std::vector<Rgb> variance_of_mean(std::span<const std::size_t> layers, const ExactSums& squares) const;
-    /// How many passes the mean of a layer is over, for a pixel.
+    /// Number of passes that the mean of a layer is over, for a pixel.
     double passes_of(std::size_t layer, std::size_t pixel) const;
     template <typename AnyFilm, typename Body>
     static void for_each_array(AnyFilm& film, const Body& body);

@@ -4,7 +4,7 @@
 // of these explanations count by how probable they make what was seen (model averaging; Kass and Raftery
 // 1995), so that little data is taken for independent passes.
 //
-// What is assumed beforehand, in octaves of d for each doubling of n: slopes of about 1. Edges of one
+// Prior, in octaves of d for each doubling of n: slopes of about 1. Edges of one
 // dimension have that, smooth integrands 2, noise 0.
 #include "core/film/sobol_gain.h"
 
@@ -20,8 +20,8 @@ namespace {
 constexpr double usual_slope = 1.0;
 constexpr double changes_of_slope[] = {0.25, 0.5, 1.0, 2.0, 4.0};
 
-/// Of a filter with the state (level, slope): means, covariances, and the log of the probability of all that
-/// it saw.
+/// Kalman filter with the state (level, slope): means, covariances, and the log of the probability of all
+/// that it saw.
 struct Trend {
     double level, slope = 0.0, evidence = 0.0;
     double level_variance, covariance = 0.0, slope_variance;

@@ -1,4 +1,4 @@
-// How much better the mean over Sobol points is than that over as many independent ones.
+// Gain of the mean over Sobol points against that over as many independent ones.
 //
 // 2^k points of an aligned block, scrambled anew in every pixel (Owen 1997), have a mean of the variance
 // R[k] / 2^k, where R is constant for independent points and falls for others. The sums over the halves A and

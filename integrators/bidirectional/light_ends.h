@@ -26,7 +26,7 @@ struct LightPoint {
     }
 };
 
-/// Lights drawn by power for light paths. The emission of media is no end here: an eye path adds what it
+/// Lights sampled by power for light paths. The emission of media is no end here: an eye path adds what it
 /// meets of it, which no other technique looks for.
 class LightEnds {
   public:
@@ -35,20 +35,20 @@ class LightEnds {
     core::LightChoice choose(float u, float* remapped) const;
     float probability(const core::Emitter* emitter) const;
 
-    /// Densities with which a light path starts at the point, and with which it then draws a receiver in the
-    /// direction -wi.
+    /// Densities with which a light path starts at the point, and with which it then samples a receiver in
+    /// the direction -wi.
     struct Start {
         double light = 0.0;     ///< per area; of lights at infinity per solid angle
         double receiver = 0.0;  ///< per solid angle; of lights at infinity per area across the direction
-        /// Of a receiver `distance_squared` away: per area.
+        /// Density of a receiver `distance_squared` away, per area.
         double of(double cosine, double distance_squared, bool infinite) const {
             return receiver * cosine / (infinite ? 1.0 : distance_squared);
         }
     };
     Start start(const LightPoint& point) const;
 
-    /// Density with which a receiver draws the point (LitScene::choose_light and Emitter::sample_direct), in
-    /// the measure of Start::light; 0 where it never does.
+    /// Density with which a receiver samples the point (LitScene::choose_light and Emitter::sample_direct),
+    /// in the measure of Start::light; 0 where it never does.
     double drawn(const core::LightReceiver& receiver, const LightPoint& point, double distance_squared) const;
 
   private:

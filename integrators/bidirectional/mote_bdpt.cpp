@@ -35,7 +35,7 @@ Plan MoteBdpt::plan(const Scene& scene, const Requirements& r) const {
     plan.integrator = type();
     plan.run(
         "paths", "one from the eye and one from a light per pixel and pass",
-        "joined in every way: lights that are hit, drawn lights, connections, light traced to the camera");
+        "joined in every way: lights that are hit, sampled lights, connections, light traced to the camera");
     if (settings_.heuristic == Heuristic::none)
         plan.miss("weights", "every technique counts in full",
                   "heuristic is none: layers are sums of several estimates of the same light");
@@ -49,7 +49,7 @@ Plan MoteBdpt::plan(const Scene& scene, const Requirements& r) const {
                        "hide_emitters: eye rays pass lights that would be in its way");
     plan.run("connections", settings_.all_connections ? "all of each eye vertex" : "one of each eye vertex",
              settings_.all_connections ? "all_connections is true"
-                                       : "drawn among those with all vertices of the light path");
+                                       : "sampled among those with all vertices of the light path");
     plan_media(plan, r);
     if (r.lights_media > 0)
         plan.run("emission of media", "met by eye paths alone", "no light path starts in a medium");

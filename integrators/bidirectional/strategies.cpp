@@ -40,7 +40,7 @@ void Strategies<Media>::finish_light_start() {
     first.connection = 0.0;
     if (!first.scattering.connectable() || !(light_.vertices[0].density > 0.0)) return;
     const double drawn = ends_.drawn(first.scattering.light_receiver(), light_start_, first.distance_squared);
-    first.connection = weigh(settings_.heuristic, drawn / light_.vertices[0].density);
+    first.connection = mis_term(settings_.heuristic, drawn / light_.vertices[0].density);
 }
 
 template <bool Media>
@@ -98,13 +98,13 @@ std::optional<std::pair<Contribution, Vec2>> Strategies<Media>::join_to_lens(std
     const double before = reverse_of_previous(light_, s - 1, lens->wi, TransportMode::power);
     // In terms of one light path: this technique has all of them.
     const double own =
-        settings_.heuristic == Heuristic::none ? 1.0 : weigh(settings_.heuristic, light_paths_);
+        settings_.heuristic == Heuristic::none ? 1.0 : mis_term(settings_.heuristic, light_paths_);
     const auto weight_with = [&](double edge) {
         return weight(light_.others(s - 1, by_camera * edge, before) / own, 0.0);
     };
     const float chance = worth_a_ray(weight_with(1.0));
     if (!(chance > 0.0f)) return std::nullopt;
-    // What lies before the near plane hides nothing.
+    // Surfaces before the near plane hide nothing.
     Ray ray{v.ray_origin(lens->wi), lens->wi, 0.0f, lens->distance - lens->t_min};
     const Rgb seen = between(ray, v, y.state, ray.t_max);
     if (is_black(seen)) return std::nullopt;
@@ -142,8 +142,8 @@ Contribution Strategies<Media>::hit_light(std::size_t t) {
         const LightEnds::Start start = ends_.start(point);
         const double by_light =
             start.of(v.geometric_cosine(direction), z.distance_squared, z.infinite) * z.edge;
-        others = weigh(settings_.heuristic, drawn / z.density) +
-                 weigh(settings_.heuristic, start.light / z.density) * eye_.ratio(t - 2, by_light) *
+        others = mis_term(settings_.heuristic, drawn / z.density) +
+                 mis_term(settings_.heuristic, start.light / z.density) * eye_.ratio(t - 2, by_light) *
                      (eye_.technique(t - 2) + z.others);
     }
     const float w = weight(0.0, others);
@@ -176,8 +176,8 @@ Contribution Strategies<Media>::draw_light(std::size_t t, float u_light, const V
     const double before = reverse_of_previous(eye_, t - 1, light->wi, TransportMode::radiance);
     const auto weight_with = [&](double edge) {
         return weight(
-            weigh(settings_.heuristic, to_light * edge / drawn),
-            weigh(settings_.heuristic, start.light / drawn) * eye_.others(t - 1, by_light * edge, before));
+            mis_term(settings_.heuristic, to_light * edge / drawn),
+            mis_term(settings_.heuristic, start.light / drawn) * eye_.others(t - 1, by_light * edge, before));
     };
     const float chance = worth_a_ray(weight_with(1.0));
     if (!(chance > 0.0f)) return {};

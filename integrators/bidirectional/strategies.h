@@ -13,13 +13,12 @@ namespace mote::integrators {
 struct BidirectionalSettings {
     EyePathLimits limits;
     Heuristic heuristic = Heuristic::power;
-    bool all_connections = false;  ///< test all of them, not one drawn for each eye vertex, and whatever
+    bool all_connections = false;  ///< test all of them, not one sampled for each eye vertex, and whatever
                                    ///< their weight
     int strategies = 0;  ///< paths of up to so many edges are also sorted by their strategy; 0: none
 };
 
-/// What one technique found: its light, weighted, in which layer it belongs, and which technique (s, t) it
-/// was.
+/// Light found by one technique (s, t), weighted, and its layer.
 struct Contribution {
     core::Rgb light{0.0f};
     Transport layer{};
@@ -51,10 +50,10 @@ class Strategies {
     template <typename Found>
     void trace_eye_path(const EyeRay& eye, const Found& found);
 
-    // While `splat` and `found` are told of a path:
+    // Valid within `splat` and `found`:
     const Subpath& light_path() const { return light_; }
     const Subpath& eye_path() const { return eye_; }
-    const LightPoint& light_point() const { return light_point_; }  ///< that was drawn, or hit
+    const LightPoint& light_point() const { return light_point_; }  ///< that was sampled, or hit
     const LightPoint& light_start() const { return light_start_; }  ///< of the light path
     const core::Vec3& lens_point() const { return lens_point_; }    ///< that a light path is joined to
 
@@ -71,7 +70,7 @@ class Strategies {
         core::Rgb light{0.0f};            ///< unoccluded and unweighted
         double to_light, to_eye;          ///< densities of the vertices from the other end, without tau
         double before_light, before_eye;  ///< of those before them
-        float expected = 0.0f;            ///< what it weighs in the choice
+        float expected = 0.0f;            ///< its weight in the choice
     };
     bool prepare(std::size_t s, std::size_t t, Connection& connection) const;
     float weight_of(const Connection& c, std::size_t t, double edge) const;
@@ -86,8 +85,7 @@ class Strategies {
     bool allowed(std::size_t s, std::size_t t) const {
         return settings_.limits.max_depth < 0 || int(s + t) - 1 <= settings_.limits.max_depth;
     }
-    /// Of light that reaches eye vertex t - 1 and scattered s times before, `joined` at that vertex once
-    /// more.
+    /// Layer of light that reaches eye vertex t - 1 after s scatterings, at which it scatters once more.
     Transport layer_of(std::size_t s, std::size_t t) const {
         const PathVertex& z = eye_.vertices[t - 1];
         if (s == 0) return transport_layer(z.scatterings, z.surface_first);
@@ -171,7 +169,7 @@ void Strategies<Media>::trace_eye_path(const EyeRay& eye, const Found& found) {
         const std::size_t t = eye_.size();
         if (t == 2)
             eye_.vertices[1].connection =
-                limits.hide_emitters ? 0.0 : weigh(settings_.heuristic, light_paths_);
+                limits.hide_emitters ? 0.0 : mis_term(settings_.heuristic, light_paths_);
         if (wanted(0, t)) found(hit_light(t));
         if (last.infinite) return;
         const core::Vec2 choice = sampler.next_2d(), u = sampler.next_2d();
@@ -181,7 +179,7 @@ void Strategies<Media>::trace_eye_path(const EyeRay& eye, const Found& found) {
     }
 }
 
-/// Joins the last eye vertex to the light path. Of all connections one is tested, drawn by what it would
+/// Joins the last eye vertex to the light path. Of all connections one is tested, sampled by what it would
 /// bring if nothing were in between: shadow rays are then as many as vertices, not pairs of them.
 template <bool Media>
 template <typename Found>

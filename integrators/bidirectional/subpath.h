@@ -1,11 +1,11 @@
-// A subpath of bidirectional path tracing, from the camera or from a light, and what every vertex must know
-// so that a path that is put together from two subpaths is weighed in constant time.
+// A subpath of bidirectional path tracing, from the camera or from a light, and what every vertex holds so
+// that a path of two joined subpaths has its MIS weight in constant time.
 //
 // A path of n vertices x_0 (light) ... x_{n-1} (camera) can be found by techniques (s, t): s vertices from
 // the light, t from the camera, and a connection between them (s = 0: the eye path hits the light; s = 1: a
-// light is drawn for the receiver; t = 1: the light path is joined to the lens). The heuristics (Veach 1997,
-// Sec. 10.2) weigh technique (s, t) by h(p_s) / sum_i h(p_i), h(p) = p^2 or p. Neighbouring densities differ
-// in one vertex,
+// light is sampled for the receiver; t = 1: the light path is joined to the lens). The heuristics (Veach
+// 1997, Sec. 10.2) give technique (s, t) the weight h(p_s) / sum_i h(p_i), h(p) = p^2 or p. Neighbouring
+// densities differ in one vertex,
 //   p_{i-1} / p_i = (density of x_{i-1} from the camera) / (density of x_{i-1} from the light),
 // so the sum over all techniques with fewer vertices from one end is a Horner scheme along that end's
 // subpath. All but the last two of its terms are known when a vertex is made (`others`).
@@ -27,12 +27,12 @@ namespace mote::integrators {
 enum class Heuristic : std::uint8_t {
     power,    ///< h(p) = p^2
     balance,  ///< h(p) = p
-    none      ///< every technique counts in full: for looking at them one by one
+    none      ///< every technique counts in full: to compare them one by one
 };
 
 /// h of a ratio of densities. The largest numbers are cut off long before they overflow: what they stand
 /// beside has no weight left.
-inline double weigh(Heuristic heuristic, double ratio) {
+inline double mis_term(Heuristic heuristic, double ratio) {
     if (heuristic == Heuristic::none) return 0.0;
     const double r = std::min(ratio, 1e50);
     return heuristic == Heuristic::power ? r * r : r;
@@ -43,14 +43,15 @@ struct PathVertex {
     core::ScatteringVertex scattering;
     core::MediumState state;  ///< media on the side of scattering.wo
     core::Rgb weight{0.0f};   ///< light (or importance) that arrives, over its density
-    /// Of the vertex, drawn from the one before it; of a light at infinity per solid angle. 1 at the lens.
+    /// Density of the vertex, sampled from the one before it, per area; of a light at infinity per solid
+    /// angle. 1 at the lens.
     double density = 1.0;
     double edge = 1.0;              ///< tau of the edge to the vertex before it
     double distance_squared = 1.0;  ///< of that edge [m^2]; 1 where there is none: a light at infinity
     /// h of what the density of the technique that connects along this edge has beyond those of the vertices.
     double connection = 1.0;
     double others = 0.0;    ///< sum over the techniques with at least two vertices less from this end
-    bool delta = false;     ///< the path went on by a delta part
+    bool delta = false;     ///< the path continued by a delta part
     bool infinite = false;  ///< a light at infinity: the start of a light path, the end of an eye path
     bool start = false;     ///< on a light, with its normal there, or zero
     core::Vec3 light_normal{0.0f};
@@ -82,17 +83,17 @@ struct Subpath {
         return vertices[k].connection;
     }
     double ratio(std::size_t k, double reverse) const {
-        return weigh(heuristic, vertices[k].density > 0.0 ? reverse / vertices[k].density : 0.0);
+        return mis_term(heuristic, vertices[k].density > 0.0 ? reverse / vertices[k].density : 0.0);
     }
     /// Sum over all techniques with fewer vertices from this end, in terms of the one that connects vertex k.
-    /// `reverse`, `reverse_before`: densities of vertices k and k - 1 drawn from the other end.
+    /// `reverse`, `reverse_before`: densities of vertices k and k - 1 sampled from the other end.
     double others(std::size_t k, double reverse, double reverse_before) const {
         const double r = ratio(k, reverse);
         if (k == 0) return r * without;
         return std::min(1e200, r * (technique(k, true) +
                                     ratio(k - 1, reverse_before) * (technique(k - 1) + vertices[k].others)));
     }
-    /// The part of it that does not depend on how the path goes on, once vertex k is made.
+    /// Terms of it that do not depend on how the path continues, once vertex k is made.
     double others_before(std::size_t k, double reverse_of_second_before) const {
         if (k < 2) return 0.0;
         return std::min(1e200,
@@ -100,7 +101,7 @@ struct Subpath {
     }
 };
 
-/// The density of the vertex before k, drawn from the other end by a path that comes to vertex k from the
+/// Density of the vertex before k, sampled from the other end by a path that comes to vertex k from the
 /// direction `from`. `mode` is that of the subpath itself; `delta`: k is passed by a delta part, whose own
 /// density is left out at both ends.
 double density_of_previous(const Subpath& path, std::size_t k, const core::Vec3& from,

@@ -1,4 +1,4 @@
-// How a subpath grows, vertex by vertex: the same walk from both ends.
+// Walk of a subpath, vertex by vertex: the same from both ends.
 #pragma once
 
 #include "core/math/sampler.h"
@@ -11,15 +11,15 @@ namespace mote::integrators {
 struct SubpathLimits {
     int max_vertices = -1;       ///< after the first; -1: no limit
     int rr_depth = 5;            ///< Russian roulette after this many of them
-    bool passes_lights = false;  ///< the first edge goes on behind area lights, and sees no environment
+    bool passes_lights = false;  ///< the first edge continues behind area lights, and sees no environment
 };
 
 template <bool Media>
 class SubpathWalk {
   public:
-    /// `path` holds its first vertex. `ray` is the first edge, drawn with `density`: per solid angle, or, if
-    /// `parallel`, per area across it. `connection`: PathVertex::connection of the second vertex is found by
-    /// the caller. Keeps references.
+    /// `path` holds its first vertex. `ray` is the first edge, sampled with `density`: per solid angle, or,
+    /// if `parallel`, per area across it. `connection`: PathVertex::connection of the second vertex is found
+    /// by the caller. Keeps references.
     SubpathWalk(const core::RayQueries& scene, core::TransportMode mode, const SubpathLimits& limits,
                 Subpath& path, core::Sampler& sampler, core::WalkContext& context)
         : scene_(scene), mode_(mode), limits_(limits), path_(path), sampler_(sampler), context_(context) {}
@@ -30,8 +30,8 @@ class SubpathWalk {
         first_ = channel_throughput();
     }
 
-    /// Goes on to the next vertex. Returns false where the path ends; an eye path that leaves the scene gets
-    /// a last vertex, which is `infinite`.
+    /// Continues to the next vertex. Returns false where the path ends; an eye path that leaves the scene
+    /// gets a last vertex, which is `infinite`.
     bool advance();
 
     /// Emission of media on the last edge, with the weight of the path, whether or not there is a vertex at

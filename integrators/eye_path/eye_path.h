@@ -1,8 +1,8 @@
 // The eye path: one loop for every method that looks from the camera.
 //
 // A path walks from vertex to vertex (core/scene/ray_walk.h), sorts the light that it finds on the way into
-// layers, and hands each vertex over to its method, which adds what it knows there: light of lights that it
-// draws, of virtual lights, of photons. Methods that gather at the first vertex let a path scatter once
+// layers, and hands each vertex over to its method, which adds the light that it finds there: of sampled
+// lights, of virtual lights, of photons. Methods that gather at the first vertex let a path scatter once
 // (max_scatterings = 1): what its direction then finds is the other technique for direct light.
 #pragma once
 
@@ -11,6 +11,7 @@
 #include "integrators/eye_path/eye_path_limits.h"
 #include "integrators/eye_path/eye_ray.h"
 #include "integrators/eye_path/eye_roulette.h"
+#include "integrators/eye_path/scattered_light.h"
 #include "integrators/eye_path/transport_layers.h"
 #include "lights/direct_light/direct_light.h"
 
@@ -27,8 +28,8 @@ struct EyeSegment {
 template <bool Media>
 class EyePath {
   public:
-    /// `context` holds the path's generator: the channel that drives distances is drawn from it.
-    /// `lights`: those that are drawn, where it is not all of them.
+    /// `context` holds the path's generator, which also chooses the channel that drives distances.
+    /// `lights`: the sampled ones, where these are not all.
     EyePath(const core::Scene& scene, const EyePathLimits& limits, const EyeRay& eye,
             core::WalkContext& context, const core::LitScene* lights = nullptr)
         : scene_(scene),
@@ -42,23 +43,23 @@ class EyePath {
         }
     }
 
-    /// Goes on to the next vertex, and adds light found on the way and at its end to `sum`. Returns false
+    /// Continues to the next vertex, and adds light found on the way and at its end to `sum`. Returns false
     /// where the path ends. `on_segment(EyeSegment)` sees every segment before its vertex is made.
     template <typename OnSegment>
     bool advance(core::WalkContext& context, TransportSum& sum, const OnSegment& on_segment) {
-        return advance_by([this](core::Rgb& emitted, core::WalkContext& c) { return go_on(emitted, c); },
+        return advance_by([this](core::Rgb& emitted, core::WalkContext& c) { return next_event(emitted, c); },
                           context, sum, on_segment);
     }
     bool advance(core::WalkContext& context, TransportSum& sum) {
         return advance(context, sum, [](const EyeSegment&) {});
     }
-    /// The same with a walk of the method's own: walker(emitted, context) -> WalkEvent moves state() and
+    /// advance() with a walk of the method's own: walker(emitted, context) -> WalkEvent moves state() and
     /// weights() to the end of ray().
     template <typename Walker, typename OnSegment>
     bool advance_by(Walker&& walker, core::WalkContext& context, TransportSum& sum,
                     const OnSegment& on_segment);
 
-    /// The same, but until the path has scattered it goes on to surfaces: media on the segment scatter at
+    /// advance() that continues to surfaces until the path has scattered: media on the segment scatter at
     /// `points`, and let the rest through. Those of the segment are chosen from `points` afterwards, whether
     /// or not there is a vertex; what scatters there is up to the method (light_at()).
     bool advance_to_surface(core::WalkContext& context, TransportSum& sum, core::ScatteringPoints& points) {
@@ -67,15 +68,14 @@ class EyePath {
             [&](core::Rgb& emitted, core::WalkContext& c) {
                 return scatterings_ == 0
                            ? core::walk_to_surface(scene_, ray_, state_, weights_, emitted, points, c)
-                           : go_on(emitted, c);
+                           : next_event(emitted, c);
             },
             context, sum, [](const EyeSegment&) {});
     }
 
     // At a vertex:
     const core::ScatteringVertex& vertex() const { return vertex_; }
-    /// Next-event estimation: the light of one light drawn for the vertex
-    /// (lights/direct_light/direct_light.h).
+    /// Next-event estimation: light of one light sampled for the vertex (lights/direct_light/direct_light.h).
     core::Rgb sample_light(core::WalkContext& context, const lights::LightSampling& how = {}) {
         return lights::sample_light<Media>(lights_, vertex_, weights_, state_, choices_.x, sampler_.next_2d(),
                                            context, how);
@@ -90,9 +90,9 @@ class EyePath {
     core::Rgb light_at(const core::ScatteringVertex& point, const core::Rgb& weight,
                        const core::MediumState& state, core::WalkContext& context,
                        const lights::LightSampling& how = {});
-    /// May a path of one more edge than the last segment's be found?
+    /// False where the last segment is the longest path's last edge.
     bool may_go_on() const { return depth_ != limits_.max_depth; }
-    /// Whether a path that would leave the vertex by a mirror or through glass ends.
+    /// Ends the path where it would leave the vertex by a mirror or through glass.
     void end_at_delta(bool ends) { ends_at_delta_ = ends; }
     void scale(float factor) { weights_.throughput *= factor; }
 
@@ -117,17 +117,17 @@ class EyePath {
         return transport_layer(scatterings_ + 1, scatterings_ > 0 && surface_first_);
     }
     Transport layer_of_emission() const { return transport_layer(scatterings_, surface_first_); }
-    /// Is light that is joined to the vertex wanted; light scattered along the segment?
+    /// True where light joined to the vertex, or scattered along the segment, is wanted.
     bool wants_connection() const { return limits_.wanted[layer_of_connection()]; }
     bool wants_along() const { return limits_.wanted[layer_along()]; }
 
   private:
-    core::WalkEvent go_on(core::Rgb& emitted, core::WalkContext& context) {
+    core::WalkEvent next_event(core::Rgb& emitted, core::WalkContext& context) {
         return core::walk<Media>(scene_, ray_, state_, weights_, emitted, context);
     }
     bool scatter(core::WalkContext& context);
     bool wants_more() const;
-    /// Lights that the camera does not see: the first segment goes on behind them.
+    /// Lights that the camera does not see: the first segment continues behind them.
     bool hides_lights() const { return limits_.hide_emitters && depth_ == 1; }
     void pass_light(const core::WalkEvent& event);
 
@@ -141,7 +141,7 @@ class EyePath {
     core::ScatteringVertex vertex_;
     core::Vec2 choices_{0.0f};  ///< of the light, and of the lobe
     core::LightReceiver previous_;
-    bool connected_ = false;  ///< could next-event estimation at `previous_` have found what comes?
+    bool connected_ = false;  ///< next-event estimation at `previous_` could find the next light
     bool surface_first_ = true, ends_at_delta_ = false;
     int depth_ = 0, scatterings_ = 0;
     float eta_ = 1.0f, first_cosine_ = 1.0f, segment_length_ = 0.0f, passed_ = 0.0f;
@@ -184,12 +184,7 @@ core::Rgb EyePath<Media>::light_at(const core::ScatteringVertex& point, const co
                                    const lights::LightSampling& how) {
     core::PathWeights weights;
     weights.throughput = weight, weights.hero = weights_.hero;
-    const core::Vec2 choices = sampler_.next_2d();
-    core::Rgb sum = lights::sample_light<Media>(lights_, point, weights, state, choices.x, sampler_.next_2d(),
-                                                context, how);
-    if (const auto next = point.sample(choices.y, sampler_.next_2d(), core::TransportMode::radiance))
-        sum += lights::light_towards<Media>(lights_, point, *next, weights, state, context);
-    return sum;
+    return scattered_light<Media>(lights_, point, weights, state, sampler_, context, how);
 }
 
 template <bool Media>
@@ -201,7 +196,7 @@ void EyePath<Media>::pass_light(const core::WalkEvent& event) {
     passed_ += event.distance;
 }
 
-/// Can a path that leaves the vertex find light that is wanted? Behind mirrors and glass that come first
+/// True where a path that leaves the vertex can find wanted light. Behind mirrors and glass that come first
 /// there is all of it.
 template <bool Media>
 bool EyePath<Media>::wants_more() const {

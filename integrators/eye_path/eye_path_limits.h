@@ -1,4 +1,4 @@
-// How long an eye path may grow, and what it is for.
+// Limits of an eye path: its length, and the cells of the transport that it is for.
 #pragma once
 
 #include "integrators/eye_path/transport_layers.h"

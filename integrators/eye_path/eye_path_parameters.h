@@ -1,4 +1,4 @@
-// What every method reads from a scene file for its eye paths.
+// Parameters of eye paths that every method reads from a scene file.
 #pragma once
 
 #include "core/parameters/add_type.h"

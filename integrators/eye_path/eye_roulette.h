@@ -6,7 +6,7 @@
 
 namespace mote::integrators {
 
-/// Decides by `u` whether the path goes on, and divides the throughput by the chance so that the mean is
+/// Decides by `u` whether the path continues, and divides the throughput by the chance so that the mean is
 /// kept. `eta` is the product of relative indices of refraction, which cancels the radiance scaling inside
 /// glass.
 template <bool Media>

@@ -1,4 +1,4 @@
-// What the plans of several integrators say of lights, media, lights in them, and caustics.
+// Plan entries on lights, media, lights in them, and caustics that several integrators share.
 #include <fmt/format.h>
 
 #include "core/scene/light_tree.h"
@@ -43,7 +43,7 @@ void plan_medium_lights(Plan& plan, const Requirements& r) {
     if (r.lights_media > 0)
         plan.run(
             "emission of media", fmt::format("{} as lights", r.lights_media),
-            "points of heterogeneous ones are drawn for receivers, weighed against walks that meet them; "
+            "points of heterogeneous ones are drawn for receivers, weighted against walks that meet them; "
             "particles start in all of them");
 }
 

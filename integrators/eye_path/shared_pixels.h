@@ -1,5 +1,5 @@
 // A pass whose light is gathered at a lattice of the pixels alone, and between them found by what neighbours
-// see (screenspace/upsampling): what every pixel sees, and who has to be rendered again.
+// see (screenspace/upsampling): the points that every pixel sees, and the pixels to render again.
 #pragma once
 
 #include <array>
@@ -11,11 +11,12 @@
 
 namespace mote::integrators {
 
-/// What the first segment of a pixel's eye path meets. Their modulations hold the weight of its receivers.
+/// Points that the first segment of a pixel's eye path meets. Their modulations hold the weight of its
+/// receivers.
 struct SeenPixel {
     screenspace::UpsamplingPoint surface, volume;
 
-    /// Light comes from farther along the path: nobody else's.
+    /// For light from farther along the path, which no neighbour shares.
     void share_nothing() {
         surface.shared = volume.shared = false;
         surface.modulation = volume.modulation = core::Rgb(1.0f);

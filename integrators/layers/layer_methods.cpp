@@ -12,10 +12,10 @@ using namespace core;
 
 namespace {
 
-/// More lights than this, marched one after the other, take longer than one that is drawn.
+/// More lights than this, marched one after the other, take longer than one that is sampled.
 constexpr std::size_t most_marched_lights = 16;
 
-/// Light at collisions close to a lamp has no finite variance: the density of collisions knows nothing of
+/// Light at collisions close to a lamp has no finite variance: the density of collisions does not follow
 /// 1/d^2.
 bool lamps_in_media(const Scene& scene) {
     const auto lights = positional_lights(scene);
@@ -31,9 +31,10 @@ std::vector<LayerMethod> choose_layer_methods(const Scene& scene, const Requirem
                                               const EyePathLimits& limits, FarLight far_light) {
     const bool by_lights = far_light == FarLight::lights;
     const std::string reason =
-        by_lights ? "virtual point lights, drawn for pixels that lie apart: less noise than paths, and what "
-                    "the bound takes is missing"
-                  : "paths of pixels err independently of each other, which the filter takes";
+        by_lights
+            ? "virtual point lights, sampled for pixels that lie apart: less noise than paths, and what "
+              "the bound takes is missing"
+            : "paths of pixels err independently of each other, which the filter takes";
     const bool equiangular = r.media_scattering && lamps_in_media(scene);
     const auto far = [&] {
         if (by_lights) return make_drawn_vpls(limits);

@@ -1,5 +1,5 @@
-// Which method fills which cells of the transport (core/film/transport.h): one at most, which estimates all
-// of a cell.
+// Methods that fill the cells of the transport (core/film/transport.h): one a cell at most, which estimates
+// all of it.
 #pragma once
 
 #include <memory>

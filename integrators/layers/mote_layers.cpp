@@ -18,8 +18,9 @@ using namespace core;
 
 namespace {
 
-/// Light that has come a long way is smooth but where surfaces and media are not, which the filter knows; so
-/// is light of large lights scattered in media, and shafts of others show as soon as noise is below them.
+/// Kind of filter for a layer; nothing for one that stays as it is. Indirect light is smooth but where
+/// surfaces and media are not, which features tell; so is light of large lights scattered in media, and
+/// shafts of others show as soon as noise is below them.
 std::optional<screenspace::LayerKind> filtered_kind(const Layer& layer) {
     if (layer.auxiliary) return std::nullopt;
     if (layer.transport == Transport::indirect) return screenspace::LayerKind::surface;
@@ -47,10 +48,10 @@ class MoteLayers final : public Integrator {
                                      "fill a part of another",
                                  child.where);
             const bool named = child.name != "integrator";  // the name of the parameter is as good as none
-            asked_for_.push_back(
+            nested_.push_back(
                 {integrator, read_transport(named ? child.name : "", child.where), "asked for", child.where});
         }
-        if (asked_for_.empty()) return;
+        if (nested_.empty()) return;
         for (const std::string name : {"max_depth", "rr_depth", "hide_emitters", "far_light"})
             if (properties.has(name))
                 properties.warn(name + " has no effect: every nested integrator has its own");
@@ -88,9 +89,9 @@ class MoteLayers final : public Integrator {
     /// Methods and layers for this scene; those that are filtered keep their squares.
     LayerChoice choose(const Scene& scene) const {
         LayerChoice choice = fill_layers(
-            scene, asked_for_.empty()
+            scene, nested_.empty()
                        ? choose_layer_methods(scene, find_requirements(scene), limits_, far_light_)
-                       : asked_for_);
+                       : nested_);
         for (Layer& layer : choice.layers) layer.squares = filters_ && filtered_kind(layer);
         return choice;
     }
@@ -99,7 +100,7 @@ class MoteLayers final : public Integrator {
     bool filters_ = true;
     FarLight far_light_ = FarLight::paths;
     std::vector<std::uint32_t> shares_;  ///< of passes, one a method; empty: as many as each needs
-    std::vector<LayerMethod> asked_for_;
+    std::vector<LayerMethod> nested_;
 };
 
 void add_entries(std::vector<PlanEntry>& all, const std::vector<PlanEntry>& more, const std::string& type) {

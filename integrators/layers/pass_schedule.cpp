@@ -12,7 +12,7 @@ using namespace core;
 namespace {
 
 constexpr int block = 8;  ///< pixels along the edge of what "around them" means here
-/// A part whose few passes found no variance is looked at again now and then.
+/// A part whose few passes found no variance gets another pass now and then.
 constexpr std::uint32_t fewest_share = 64;
 
 /// 1 / |mean|^2 of every block of the picture, row by row; black blocks count as a hundredth of its mean.

@@ -1,4 +1,5 @@
-// Which part of a picture has the next pass, so that the error of the whole falls fastest for the work.
+// Schedule of passes: the part of a picture that has the next one, so that the error of the whole falls
+// fastest for the work.
 //
 // With a variance s_i^2 of one pass of part i and w_i its work, n_i passes leave the error sum s_i^2 / n_i at
 // the cost sum n_i w_i. One more pass of part i takes s_i^2 / (n_i (n_i + 1)) for w_i; whoever always takes

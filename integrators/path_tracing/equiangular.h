@@ -1,6 +1,6 @@
 // Equi-angular sampling: light of point and spot lights scattered along a ray.
 //
-// Distances along the ray are drawn so that directions seen from the light are spread evenly, which cancels
+// Distances along the ray are sampled so that directions seen from the light are spread evenly, which cancels
 // the 1/d^2 of the light (Kulla & Fajardo 2012):
 //   p(t) = D / ((theta_b - theta_a) (D^2 + t^2)),   t = D tan(lerp(theta_a, theta_b, u))
 // with t counted from the point of the ray nearest to the light, D away from it. Collisions in thin media
@@ -17,7 +17,7 @@
 
 namespace mote::integrators {
 
-/// A distance along a ray, drawn equi-angularly around a point.
+/// A distance along a ray, sampled equi-angularly around a point.
 struct EquiangularSample {
     float t;
     float pdf_distance;  ///< [1/m]
@@ -26,8 +26,8 @@ struct EquiangularSample {
 std::optional<EquiangularSample> sample_equiangular(const core::Ray& ray, float t_max,
                                                     const core::Vec3& light, float u);
 
-/// The point and spot lights of a scene. One is drawn for the ray by a hierarchy; a spot's samples lie inside
-/// its cone.
+/// The point and spot lights of a scene. One is sampled for the ray by a hierarchy; a spot's samples lie
+/// inside its cone.
 class EquiangularLights {
   public:
     explicit EquiangularLights(const core::Scene& scene);

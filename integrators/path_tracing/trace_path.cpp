@@ -26,7 +26,7 @@ TransportSum trace_path(const Scene& scene, const PathSettings& settings, const 
         path.end_at_delta(vpl_edge);
         if (vpl_edge)
             // min(G*, b)/G* of the edge between the first connectable vertex and this one, where no VPL
-            // stands on a delta surface: what goes on from there is not part of the bounded transport.
+            // stands on a delta surface: what continues from there is not part of the bounded transport.
             path.scale(compensation::bounded_share(path.first_cosine() * vertex.geometric_cosine(vertex.wo),
                                                    path.segment_length(), settings.bound));
         if (vertex.connectable() && path.wants_connection())

@@ -17,7 +17,7 @@ namespace mote::integrators {
 struct PathSettings {
     EyePathLimits limits{};
     float bound = core::infinity;  ///< b [1/m^2]; infinity: the true transport
-    /// Where there are any, these light media by equi-angular sampling instead of next-event estimation at
+    /// Lights, if any, that light media by equi-angular sampling instead of next-event estimation at
     /// collisions. Not together with a bound.
     std::shared_ptr<const EquiangularLights> equiangular{};
 };

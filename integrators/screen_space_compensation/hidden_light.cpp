@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "core/render/cpu_clock.h"
+#include "integrators/eye_path/scattered_light.h"
 #include "integrators/screen_space_compensation/hidden_vertex.h"
-#include "lights/direct_light/direct_light.h"
 #include "lights/virtual_lights/vpl_gather.h"
 #include "screenspace/g_buffer/g_buffer.h"
 #include "screenspace/ssbc/ssbc_receivers.h"
@@ -18,19 +18,6 @@ namespace {
 
 constexpr int width = lights::ReceiverTile::width;
 constexpr std::uint32_t first_stream = 0x68696464;  ///< of samplers, one a side; eye paths have 0
-
-/// Direct light by both techniques.
-template <bool Media>
-Rgb direct_light(const Scene& scene, const HiddenVertex& at, Sampler& sampler, WalkContext& walk) {
-    PathWeights weights;
-    if constexpr (Media) weights.hero = draw_hero(walk.rng);
-    const Vec2 choices = sampler.next_2d();  // of the light, and of the lobe
-    Rgb light =
-        lights::sample_light<Media>(scene, at.vertex, weights, at.state, choices.x, sampler.next_2d(), walk);
-    const auto next = at.vertex.sample(choices.y, sampler.next_2d(), TransportMode::radiance);
-    if (!next || next->delta) return light;
-    return light + lights::light_towards<Media>(scene, at.vertex, *next, weights, at.state, walk);
-}
 
 }  // namespace
 
@@ -96,7 +83,10 @@ void HiddenLight::gather(const PassContext& context, const lights::VplSet& vpls,
             vertices[i] = *found;
             Sampler sampler(options_.sampler, options_.seed, context.index, p.pixel, first_stream + p.side);
             walk.rng = sampler.make_rng();
-            light[i] = direct_light<Media>(scene_, vertices[i], sampler, walk);
+            PathWeights weights;
+            if constexpr (Media) weights.hero = draw_hero(walk.rng);
+            light[i] =
+                scattered_light<Media>(scene_, vertices[i].vertex, weights, vertices[i].state, sampler, walk);
             tile->set(int(i), vertices[i].vertex, Rgb(1.0f), vertices[i].state, Rng(walk.rng.next_u32()),
                       vpl_depth);
         }
@@ -106,8 +96,8 @@ void HiddenLight::gather(const PassContext& context, const lights::VplSet& vpls,
             image.layer(first_layer + points[i].side)[points[i].pixel] =
                 light[i] + float(share_) * indirect[i];
     }
+    counters_.add(walk.rays, walk.tracking), counters_.add(boundaries.rays, boundaries.tracking);
     const std::lock_guard lock(mutex_);
-    rays_.add(walk.rays), rays_.add(boundaries.rays), tracking_.add(walk.tracking);
     seconds_ += thread_cpu_seconds() - begin;
 }
 
@@ -115,11 +105,7 @@ void HiddenLight::add_statistics(Statistics& statistics) const {
     statistics.values["hidden_points"] = double(points_.size());
     statistics.values["hidden_points_without_effect"] = double(candidates_ - points_.size());
     statistics.values["hidden_thread_seconds"] += seconds_;
-    statistics.rays["closest"] += rays_.closest;
-    statistics.rays["occlusion"] += rays_.occlusion;
-    if (!scene_.has_media()) return;
-    statistics.rays["boundary"] += rays_.boundary;
-    statistics.lookups["density"] += tracking_.lookups;
+    counters_.report(statistics, scene_.has_media());
 }
 
 template bool HiddenLight::pass<true>(const PassContext&, const lights::VplSet&, std::size_t, PassImage&);

@@ -1,6 +1,5 @@
-// The light that surfaces behind others reflect, for screen-space compensation with several layers: a picture
-// has none of it, so every pass gathers it as for what is seen, direct light and bounded virtual point
-// lights.
+// Light that surfaces behind others reflect, for screen-space compensation with several layers: a picture has
+// none of it, so every pass gathers it as for what is seen, direct light and bounded virtual point lights.
 //
 // Points lie along the rays through pixel centres, on each side of each surface
 // (screenspace/ssbc/ssbc_layers.h), and stay the same in all passes; their light is a layer of the film, so
@@ -16,6 +15,7 @@
 
 #include "core/render/integrator.h"
 #include "core/scene/ray_walk.h"
+#include "integrators/eye_path/counters.h"
 #include "integrators/screen_space_compensation/screen_space_compensation.h"
 #include "lights/virtual_lights/virtual_point_light.h"
 
@@ -23,8 +23,8 @@ namespace mote::integrators {
 
 class HiddenLight {
   public:
-    /// Keeps a reference to the scene. `max_depth` is that of whole paths, -1: no limit; `bound` is b
-    /// [1/m^2].
+    /// Keeps references to the scene. `max_depth`: edges of a path as seen from the eye, -1 no limit; `bound`
+    /// is b [1/m^2].
     HiddenLight(const core::Scene& scene, const core::RenderOptions& options,
                 const ScreenSpaceSettings& settings, int max_depth, float bound);
 
@@ -51,10 +51,9 @@ class HiddenLight {
     float bound_;
     std::vector<Point> points_;  ///< pixel after pixel, neighbours together
     std::size_t candidates_ = 0;
+    SharedCounters counters_;
     std::mutex mutex_;
-    core::RayCounters rays_;
-    core::TrackingCounters tracking_;
-    double seconds_ = 0.0;  ///< of processor time, all threads
+    double seconds_ = 0.0;  ///< processor time, all threads
 };
 
 }  // namespace mote::integrators

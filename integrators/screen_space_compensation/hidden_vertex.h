@@ -16,7 +16,7 @@ struct HiddenVertex {
     core::MediumState state;
 };
 
-/// What lies along the ray of one pixel, kept while its sides follow each other.
+/// Surfaces and media along the ray of one pixel, kept while its sides follow each other.
 class PixelRay {
   public:
     PixelRay(const core::Scene& scene, int layers, core::WalkContext& walk)

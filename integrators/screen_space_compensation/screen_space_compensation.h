@@ -17,7 +17,7 @@ struct ScreenSpaceSettings {
     int layers = 1;                  ///< of surfaces along a ray; 1: what the picture shows
     int vpl_share = 4;               ///< at each hidden point: one VPL of so many, in turn
 
-    /// Of the light that hidden sides reflect, auxiliary; see hidden_light.h.
+    /// Auxiliary layers of the light that hidden sides reflect (hidden_light.h).
     std::vector<core::Layer> film_layers() const;
 };
 
@@ -27,7 +27,7 @@ class ScreenSpaceCompensation : public core::Object {
     ScreenSpaceCompensation(const ScreenSpaceSettings& settings, compensation::CompensationSettings media)
         : settings_(settings), media_(media) {}
     const ScreenSpaceSettings& settings() const { return settings_; }
-    /// Of receivers in media alone.
+    /// Compensation of receivers in media alone.
     const compensation::CompensationSettings& media() const { return media_; }
 
   private:
@@ -41,7 +41,7 @@ struct ScreenSpaceCost {
     double cpu_seconds = 0.0;   ///< the same, of all threads
 };
 
-/// Which layers of the film a compensation reads and writes.
+/// Layers of the film that a compensation reads and writes.
 struct ScreenSpaceLayers {
     std::span<const std::size_t> reflected;  ///< light that surfaces send to the eye, direct and indirect
     std::size_t target;                      ///< filled with what the bound took from it

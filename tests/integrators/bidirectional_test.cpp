@@ -88,6 +88,13 @@ TEST_CASE("bidirectional paths have the mean of volpath", "[bdpt][equality]") {
         TemporaryFolder folder;
         check_equal(box(grey, smoke_medium(folder.file("smoke.vol"))), "volpath");
     }
+    SECTION("a ball of rough glass with fog inside") {  // connections pass its boundary
+        const std::string ball =
+            R"(<shape type="sphere"><point name="center" x="0.1" y="0" z="0.3"/><float name="radius" value="0.5"/>
+            <bsdf type="roughdielectric"><float name="alpha" value="0.5"/></bsdf>)" +
+            fog("3, 4, 5", R"(<phase type="hg"><float name="g" value="0.6"/></phase>)") + "</shape>";
+        check_equal(with(box(grey, ""), ball), "volpath", "", 250, 1000);
+    }
     SECTION("smoke with holes in what is around it, and the sky") {
         TemporaryFolder folder;
         check_equal(with(leafy_box(smoke_medium(folder.file("smoke.vol"))), lamps), "volpath");

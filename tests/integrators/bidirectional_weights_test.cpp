@@ -266,6 +266,22 @@ TEST_CASE("the weights of every path add up to 1 in media", "[bdpt][weights]") {
     }
 }
 
+// Connections that pass the boundary at one of their ends: the medium of an edge is the one on its side of a
+// rough surface, which is not the medium on the side that the path came from.
+TEST_CASE("the weights of every path add up to 1 through rough glass with fog inside",
+          "[bdpt][weights][boundaries]") {
+    const std::string ball = R"(<shape type="sphere"><point name="center" x="0.1" y="0" z="0.3"/>
+        <float name="radius" value="0.5"/><bsdf type="roughdielectric"><float name="alpha" value="0.5"/></bsdf>)" +
+                             fog("3, 4, 5", R"(<phase type="hg"><float name="g" value="0.6"/></phase>)") +
+                             "</shape>";
+    const auto scene = scene_from(with_lamps(box(grey, ""), ball + lamps));
+    const Comparison c = compare<true>(*scene, Heuristic::power, Planted::none, 800, 1e-5);
+    report(c);
+    CHECK(c.paths > 600);
+    CHECK(c.with_media > 60);
+    CHECK(c.wrong == 0);
+}
+
 TEST_CASE("what one technique finds is divided among all as they find it themselves", "[bdpt][weights]") {
     // Of paths of two edges: light found by technique k times the weight of technique i is, in the mean, what
     // i keeps of its own, whatever k is. Densities that both the weights and the brute force had wrong show
