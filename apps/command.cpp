@@ -16,11 +16,11 @@
 
 #include "apps/denoise/denoise_command.h"
 #include "apps/interruption.h"
-#include "apps/number_options.h"
+#include "apps/options.h"
 #include "apps/ssbc_command.h"
 #include "apps/subcommands.h"
 #include "apps/tev_viewer.h"
-#include "apps/trade/trade_command.h"
+#include "apps/trade_command.h"
 #include "core/formats/xml/faults.h"
 #include "core/objects/error.h"
 #include "core/objects/memory_error.h"
@@ -53,11 +53,7 @@ void add_lenient(CLI::App& command, bool& lenient) {
 }
 
 void add_defines(CLI::App& command, std::vector<std::string>& defines, const std::string& description) {
-    command.add_option("-D,--define", defines, description)
-        ->type_name("NAME=VALUE")
-        ->expected(1)
-        ->allow_extra_args(false)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    add_repeatable(command, "-D,--define", defines, description)->type_name("NAME=VALUE");
 }
 
 void add_scene_options(CLI::App& command, SceneArguments& arguments) {
@@ -85,22 +81,19 @@ void add_render(CLI::App& app, RenderArguments& a, std::function<int()>& action)
         ->check(number_above_0());
     command.add_option("--seed", a.seed, "Another seed gives another, independent picture")
         ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()));
-    command.add_option("-t,--threads", a.threads, "Number of threads (default: one for every core)")
-        ->check(whole_number(0, 4096));
+    add_threads(command, a.threads);
     command.add_flag("--resume", a.resume, "Continue from the checkpoint of an interrupted render");
     command.add_option("--checkpoint-every", a.checkpoint_every, "Seconds between checkpoints (default: 60)")
         ->check(number_from_0());
     command.add_option("--stats", a.stats, "Write statistics to this JSON file");
-    command
-        .add_option("--exposure", a.exposure, "Brighten the preview by this many stops (default: it adapts)")
-        ->check(number_between(-100.0, 100.0));
+    add_exposure(command, a.exposure);
     command
         .add_option("--pass-range", a.pass_range,
                     "Render passes A to B - 1 alone, into a partial film for 'mote merge' (docs/cluster.md)")
         ->type_name("A:B");
     command.add_flag("--identity", a.identity,
                      "Render nothing: print as JSON what partial films must have in common to be merged");
-    command.add_flag("--half", a.half, "Write float16 instead of float32");
+    add_half(command, a.half);
     command.add_flag("--auxiliary", a.auxiliary,
                      "Also write what is seen: positions, normals, depth, albedo, with variances");
     command
@@ -125,13 +118,10 @@ void add_merge(CLI::App& app, MergeArguments& a, std::function<int()>& action) {
         ->required();
     command.add_option("--scene", a.scene,
                        "The scene file, where it is not where the parts were rendered from");
-    command.add_option("-t,--threads", a.threads, "Number of threads (default: one for every core)")
-        ->check(whole_number(0, 4096));
+    add_threads(command, a.threads);
     command.add_option("--stats", a.stats, "Write statistics to this JSON file");
-    command
-        .add_option("--exposure", a.exposure, "Brighten the preview by this many stops (default: it adapts)")
-        ->check(number_between(-100.0, 100.0));
-    command.add_flag("--half", a.half, "Write float16 instead of float32");
+    add_exposure(command, a.exposure);
+    add_half(command, a.half);
     command.add_flag("--quiet", a.quiet, "No progress, no warnings");
     command.callback([&a, &action] { action = [&a] { return merge_command(a); }; });
 }
@@ -169,7 +159,7 @@ void add_export(CLI::App& app, ExportArguments& a, std::function<int()>& action)
     command.callback([&a, &action] { action = [&a] { return export_command(a); }; });
 }
 
-// What was meant by a command or an option that is not there, else what CLI11 says.
+// Nearest command or option to one that is not there, else the message of CLI11.
 std::string usage_message(const CLI::App& app, int argc, char** argv, const CLI::ParseError& error) {
     if (argc < 2) return error.what();
     const std::string first = argv[1];
@@ -239,11 +229,11 @@ int parse_and_run(int argc, char** argv) {
     convert_app.add_option("--exposure", convert.exposure, "Brighten by this many stops")
         ->check(number_between(-100.0, 100.0));
     convert_app.add_option("--layer", convert.layer, "This layer of an EXR instead of the beauty");
-    convert_app.add_flag("--half", convert.half, "Write float16 instead of float32");
+    add_half(convert_app, convert.half);
     convert_app.callback([&] { action = [&] { return convert_command(convert); }; });
 
     TradeArguments trade;
-    trade.command_line = render.command_line;
+    trade.settings.command_line = render.command_line;
     add_trade(app, trade, action);
 
     MergeArguments merge;

@@ -10,7 +10,6 @@
 
 #include "apps/command.h"
 #include "apps/difference_picture.h"
-#include "apps/output_files.h"
 #include "apps/picture_file.h"
 #include "apps/subcommands.h"
 #include "core/formats/pictures/image_file.h"
@@ -21,6 +20,7 @@
 #include "session/compare.h"
 #include "session/denoise/denoised_layer.h"
 #include "session/number_or_null.h"
+#include "session/output_files.h"
 #include "session/reference_metadata.h"
 
 namespace mote::apps {
@@ -34,8 +34,8 @@ const char* const non_finite_definition =
     "pixels with a NaN or an infinity in a channel; none is left out, values that depend on one are NaN";
 const char* const mean_definition = "per channel R, G, B, and over all of them";
 
-/// What the metadata says against the comparison. The hash covers the settings too, so it can tell something
-/// about the scene only where the integrator is the same.
+/// Objections of the metadata to the comparison. The hash covers the settings too, so it can differ for
+/// something about the scene only where the integrator is the same.
 std::vector<std::string> doubts(const PictureFile& image, const PictureFile& reference) {
     const auto differ = [&](const char* name, auto same) {
         const auto a = image.metadata.find(name), r = reference.metadata.find(name);
@@ -191,7 +191,8 @@ int compare_command(const CompareArguments& arguments) {
         throw UsageError("the map '" + core::printable(arguments.map) + "' does not end in .png");
     const std::string difference_path = difference_file(arguments);
     const double factor = arguments.difference.empty() ? 1.0 : amplification(arguments.difference);
-    check_outputs(std::vector<NamedFile>{{"the map", arguments.map}, {"the difference", difference_path}},
+    check_outputs(std::vector<NamedFile>{{"the map", arguments.map},
+                                         {"the difference", difference_path, !arguments.output.empty()}},
                   std::vector<NamedFile>{{"the picture", arguments.image},
                                          {"the reference", arguments.reference},
                                          {"the second reference", arguments.second}});

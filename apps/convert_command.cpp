@@ -5,12 +5,12 @@
 
 #include "apps/command.h"
 #include "apps/frame_files.h"
-#include "apps/output_files.h"
 #include "apps/picture_file.h"
 #include "apps/subcommands.h"
 #include "core/formats/gltf/gltf_scene.h"
 #include "core/formats/pictures/image_file.h"
 #include "core/objects/error.h"
+#include "session/output_files.h"
 
 namespace mote::apps {
 

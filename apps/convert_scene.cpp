@@ -3,12 +3,11 @@
 #include <filesystem>
 
 #include "apps/command.h"
-#include "apps/output_files.h"
 #include "apps/picture_file.h"
 #include "apps/subcommands.h"
-#include "core/files/atomic_file.h"
 #include "core/formats/gltf/scratch_folder.h"
 #include "core/formats/xml/gltf_loader.h"
+#include "session/output_files.h"
 
 namespace mote::apps {
 
@@ -23,6 +22,7 @@ void move_files(const fs::path& from, const fs::path& to, const std::vector<std:
     for (const auto& file : fs::directory_iterator(from))
         outputs.push_back({"a file of the scene", (to / file.path().filename()).string()});
     check_outputs(outputs, scene_inputs(inputs));
+    check_companions(std::span(outputs).subspan(1), scene);
     std::error_code error;
     fs::create_directories(to, error);
     for (const auto& file : fs::directory_iterator(from))
@@ -56,7 +56,7 @@ int convert_scene(const ConvertArguments& arguments) {
     for (const std::string& note : scene.report.notes)
         std::fputs(("mote: warning: " + arguments.input + ": " + note + "\n").c_str(), stderr);
     move_files(scratch.path(), folder, scene.files, arguments.output);
-    core::write_file_atomically(arguments.output, std::as_bytes(std::span(scene.xml)));
+    write_text(arguments.output, scene.xml);
     std::printf("%s\n%s\n", arguments.output.c_str(), folder.string().c_str());
     return exit_ok;
 }

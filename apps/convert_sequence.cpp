@@ -1,82 +1,57 @@
 // mote convert frames/####.exr film.mp4: the frames of a sequence as a film, by ffmpeg.
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
+#include <cerrno>
 #include <cmath>
 #include <csignal>
+#include <cstdio>
 #include <cstring>
+#include <utility>
 
 #include "apps/command.h"
 #include "apps/frame_files.h"
-#include "apps/output_files.h"
 #include "apps/picture_file.h"
 #include "apps/subcommands.h"
 #include "core/film/exposure.h"
 #include "core/math/srgb.h"
 #include "core/objects/error.h"
-
-extern char** environ;
+#include "session/output_files.h"
+#include "session/render_report.h"
 
 namespace mote::apps {
 
 namespace {
 
-/// A program that reads pictures from its standard input.
+/// ffmpeg, which reads pixels from its standard input.
 class Encoder {
   public:
-    explicit Encoder(std::vector<std::string> command) {
-        int ends[2];
-        if (::pipe2(ends, O_CLOEXEC) != 0)
-            throw core::InputError(std::string("no pipe: ") + std::strerror(errno));
-        std::vector<char*> arguments;
-        for (std::string& word : command) arguments.push_back(word.data());
-        arguments.push_back(nullptr);
-        posix_spawn_file_actions_t actions;
-        ::posix_spawn_file_actions_init(&actions);
-        ::posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
-        const int problem =
-            ::posix_spawnp(&process_, arguments[0], &actions, nullptr, arguments.data(), environ);
-        ::posix_spawn_file_actions_destroy(&actions);
-        ::close(ends[0]);
-        input_ = ends[1];
-        if (problem != 0) {
-            process_ = -1;
-            ::close(input_), input_ = -1;
-            throw core::InputError("films are made by ffmpeg, which cannot be started (" +
-                                   std::string(std::strerror(problem)) + "): install it, or keep the frames");
-        }
+    explicit Encoder(const std::vector<std::string>& options)
+        : pipe_(::popen(("ffmpeg " + quoted(options)).c_str(), "we")) {
+        if (!pipe_) throw core::InputError(std::string("no pipe: ") + std::strerror(errno));
     }
-    ~Encoder() { finish(); }
+    ~Encoder() { end(); }
     Encoder(const Encoder&) = delete;
     Encoder& operator=(const Encoder&) = delete;
 
-    /// Throws InputError where the program no longer listens.
+    /// Throws InputError where the program has ended.
     void write(std::span<const std::uint8_t> bytes) {
-        while (!bytes.empty()) {
-            const ssize_t n = ::write(input_, bytes.data(), bytes.size());
-            if (n < 0 && errno == EINTR) continue;
-            if (n < 0) throw core::InputError("ffmpeg ended before the film was complete");
-            bytes = bytes.subspan(std::size_t(n));
-        }
+        if (std::fwrite(bytes.data(), 1, bytes.size(), pipe_) == bytes.size()) return;
+        finish();
+        throw core::InputError("ffmpeg ended before the film was complete");
     }
-    /// Waits for its end. Returns whether it was a good one.
-    bool finish() {
-        if (input_ >= 0) ::close(input_), input_ = -1;
-        if (process_ < 0) return good_;
-        int status = 0;
-        while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) {
-        }
-        process_ = -1;
-        return good_ = WIFEXITED(status) && WEXITSTATUS(status) == 0;
+    /// Waits for its end. Throws InputError unless it was a good one.
+    void finish() {
+        const int status = end();
+        if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
+            throw core::InputError(
+                "films are made by ffmpeg, which cannot be started: install it, or keep the frames");
+        if (status != 0) throw core::InputError("ffmpeg could not make the film");
     }
 
   private:
-    pid_t process_ = -1;
-    int input_ = -1;
-    bool good_ = false;
+    int end() { return pipe_ ? ::pclose(std::exchange(pipe_, nullptr)) : 0; }
+    std::FILE* pipe_;
 };
 
 }  // namespace
@@ -90,7 +65,7 @@ int convert_sequence(const ConvertArguments& a) {
     std::vector<NamedFile> inputs;
     for (const FrameFile& frame : frames) inputs.push_back({"a frame", frame.path});
     check_outputs(std::vector<NamedFile>{{"the film", a.output}}, inputs);
-    std::signal(SIGPIPE, SIG_IGN);  // an encoder that ends is told by write()
+    std::signal(SIGPIPE, SIG_IGN);  // the end of the encoder is an error of write()
     std::unique_ptr<Encoder> encoder;
     int width = 0, height = 0;
     // The exposure stays: what flickers would be the picture's.
@@ -102,7 +77,7 @@ int convert_sequence(const ConvertArguments& a) {
             if (a.exposure == 0.0f) scale = std::exp2(core::adapted_exposure(picture.pixels));
             // Encoders want even sizes.
             encoder = std::make_unique<Encoder>(std::vector<std::string>{
-                "ffmpeg", "-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s",
+                "-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s",
                 fmt::format("{}x{}", width, height), "-r", fmt::format("{}", a.rate), "-i", "-", "-vf",
                 "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt",
                 extension_of(a.output) == ".gif" ? "rgb8" : "yuv420p", a.output});
@@ -118,7 +93,11 @@ int convert_sequence(const ConvertArguments& a) {
                 bytes.push_back(std::isfinite(scale * p[c]) ? core::encode_srgb(scale * p[c]) : 0);
         encoder->write(bytes);
     }
-    if (!encoder->finish()) throw core::InputError("ffmpeg could not make the film", {a.output, 0});
+    try {
+        encoder->finish();
+    } catch (const core::InputError& error) {
+        throw core::InputError(error.what(), {a.output, 0});
+    }
     return exit_ok;
 }
 

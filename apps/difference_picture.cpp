@@ -5,12 +5,12 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "apps/preview.h"
 #include "apps/subcommands.h"
 #include "core/film/exposure.h"
 #include "core/formats/pictures/image_file.h"
 #include "core/formats/pictures/png_text.h"
 #include "core/objects/error.h"
+#include "session/preview.h"
 
 namespace mote::apps {
 
@@ -55,7 +55,7 @@ std::string write_difference(const std::string& path, const core::Bitmap& image,
         "image, reference, and their difference in luminance times {:g}: red too bright, blue too dark",
         factor);
     core::write_png(path, width, image.height, pixels, 0.0f,
-                    {{"Exposure", exposure_text(stops, false)}, {"Description", meaning}});
+                    {{exposure_key, exposure_text(stops, false)}, {"Description", meaning}});
     return meaning;
 }
 

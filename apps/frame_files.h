@@ -1,4 +1,4 @@
-// Pictures of a sequence: names in which the longest run of two # or more stands for the frame's number,
+// Pictures of a sequence: names in which the longest run of two # or more holds the frame's number,
 // "smoke.####.exr" (core/formats/xml/frame_files.h).
 #pragma once
 

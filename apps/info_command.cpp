@@ -53,15 +53,14 @@ std::string range_text(std::span<const float> values) {
 }
 
 void describe_scene(const std::string& path, bool lenient) {
-    const core::Registry registry = make_registry();
-    core::LoadReport report;
-    const auto scene = load({path, "", {}, lenient}, registry, &report);
-    const core::Requirements r = core::find_requirements(*scene);
-    const core::FilmSettings& film = scene->film();
+    const LoadedScene loaded = load({path, "", {}, lenient});
+    const core::Scene& scene = loaded.scene();
+    const core::Requirements r = core::find_requirements(scene);
+    const core::FilmSettings& film = scene.film();
     line("scene {}", core::printable(path));
     line("  picture     {} x {} pixels, {} filter, {} sampler, {} passes", film.width, film.height,
          film.filter, film.sampler, film.sample_count);
-    line("  integrator  {}", scene->integrator() ? scene->integrator()->type() : "none named");
+    line("  integrator  {}", scene.integrator() ? scene.integrator()->type() : "none named");
     line("  shapes      {}: {} triangles, {} analytic", r.shapes, r.triangles, r.analytic_shapes);
     line("  bounds      {}", box(r.bounds));
     line("  bsdfs       {} diffuse, {} glossy, {} specular, {} null{}", r.bsdfs_diffuse, r.bsdfs_glossy,
@@ -70,10 +69,10 @@ void describe_scene(const std::string& path, bool lenient) {
     line("  media       {}: {} homogeneous, {} heterogeneous", r.media, r.media_homogeneous,
          r.media_heterogeneous);
     for (const std::string& description : r.media_descriptions) line("              {}", description);
-    line("  files       {}", scene->parts().input_files.size());
-    for (const std::string& text : report.approximations) line("  lenient     {}", text);
-    for (const std::string& warning : scene->parts().warnings) line("  warning     {}", warning);
-    for (const std::string& text : placement_notes(*scene)) line("  warning     {}", text);
+    line("  files       {}", scene.parts().input_files.size());
+    for (const std::string& text : loaded.report().approximations) line("  lenient     {}", text);
+    for (const std::string& warning : scene.parts().warnings) line("  warning     {}", warning);
+    for (const std::string& text : placement_notes(scene)) line("  warning     {}", text);
 }
 
 void describe_mesh(const std::string& path, bool flip_v) {

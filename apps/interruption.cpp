@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
 
 #include "apps/command.h"
 
@@ -73,21 +74,22 @@ bool is_ignored(int number) {
     return ::sigaction(number, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
 }
 
-void set_handlers(void (*signal)(int), void (*alarm)(int)) {
-    for (const int number : {SIGINT, SIGTERM}) set_handler(number, signal);
-    if (!is_ignored(SIGHUP)) set_handler(SIGHUP, signal);  // nohup
-    set_handler(SIGALRM, alarm);
-}
+constexpr int caught[] = {SIGINT, SIGTERM, SIGHUP, SIGALRM};
+struct sigaction before[std::size(caught)];  ///< handlers, before construction
 
 }  // namespace
 
 Interruption::Interruption() {
     stop = false, time_over = false, first_signal = 0, idle_phase = nullptr;
-    set_handlers(on_signal, on_alarm);
+    for (std::size_t i = 0; i < std::size(caught); ++i) {
+        ::sigaction(caught[i], nullptr, &before[i]);
+        if (caught[i] == SIGHUP && is_ignored(SIGHUP)) continue;  // nohup
+        set_handler(caught[i], caught[i] == SIGALRM ? on_alarm : on_signal);
+    }
 }
 Interruption::~Interruption() {
     set_alarm(std::nullopt);
-    set_handlers(SIG_DFL, SIG_DFL);
+    for (std::size_t i = 0; i < std::size(caught); ++i) ::sigaction(caught[i], &before[i], nullptr);
 }
 
 void Interruption::end_at_once_while(const char* phase, const char* why) {

@@ -1,4 +1,4 @@
-// Signals that end a render early, and the clock that does: a flag that the render looks at.
+// Signals that end a render early, and the clock that does: a flag that the render checks.
 #pragma once
 
 #include <atomic>

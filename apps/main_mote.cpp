@@ -1,4 +1,7 @@
-// The entry point: looks at the threads that the system grants and at the processor, then hands over.
+// The entry point: checks the threads that the system grants and the processor, then runs the command.
+//
+// Signals end the program with a line of text from its first instruction on; what has something to lose
+// replaces the handlers (interruption.cpp).
 //
 // log4cplus, which Debian's OpenVDB and with it OpenImageIO brings along, starts four threads while it is
 // loaded, and aborts where it gets none. Functions of .preinit_array run before the libraries' constructors.
@@ -6,6 +9,7 @@
 // This file is compiled for any x86-64, the rest of the program perhaps for processors with AVX2. The check
 // runs before the constructors of all other files, for these may use such instructions already.
 #include <pthread.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include "apps/command.h"
@@ -37,7 +41,24 @@ void check_threads() {
     ::_exit(3);
 }
 
-__attribute__((section(".preinit_array"), used)) void (*const before_libraries)() = check_threads;
+extern "C" void end_with_a_line(int number) {
+    static const char message[] = "mote: interrupted\n";
+    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, message, sizeof(message) - 1);
+    ::_exit(128 + number);
+}
+
+void prepare() {
+    const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
+    for (const int number : numbers) {
+        struct sigaction action {};
+        if (::sigaction(number, nullptr, &action) != 0 || action.sa_handler == SIG_IGN) continue;  // nohup
+        action.sa_handler = end_with_a_line;
+        ::sigaction(number, &action, nullptr);
+    }
+    check_threads();
+}
+
+__attribute__((section(".preinit_array"), used)) void (*const before_libraries)() = prepare;
 
 }  // namespace
 

@@ -6,14 +6,13 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "apps/output_files.h"
 #include "apps/partial_render.h"
 #include "apps/picture_file.h"
 #include "apps/subcommands.h"
-#include "core/files/atomic_file.h"
 #include "core/objects/error.h"
 #include "core/objects/memory_error.h"
 #include "session/number_or_null.h"
+#include "session/output_files.h"
 
 namespace mote::apps {
 
@@ -23,15 +22,14 @@ namespace {
 /// picture.
 void write_statistics(const std::string& path, const MergedFilm& m) {
     const nlohmann::json j = {{"mote", MOTE_VERSION},
-                              {"passes", m.film.pass_count()},
+                              {"passes", m.film->pass_count()},
                               {"first_pass", m.first},
-                              {"noise", number_or_null(m.film.noise())},
+                              {"noise", number_or_null(m.film->noise())},
                               {"content", m.content_hash},
                               {"rays", m.statistics.rays},
                               {"lookups", m.statistics.lookups},
                               {"seconds", m.statistics.seconds}};
-    const std::string text = j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
-    core::write_file_atomically(path, std::as_bytes(std::span(text.data(), text.size())));
+    write_text(path, j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace
@@ -67,7 +65,7 @@ int merge_command(const MergeArguments& arguments) {
     render.output = arguments.output, render.stats = arguments.stats, render.quiet = arguments.quiet;
     render.threads = arguments.threads, render.exposure = arguments.exposure;
     render.half = render.half || arguments.half;
-    render.passes = merged.film.pass_count();
+    render.passes = merged.film->pass_count();
     render.command_line = arguments.command_line;
     render.merged = &merged;
     return render_command(render);

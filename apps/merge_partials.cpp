@@ -41,8 +41,8 @@ core::Statistics read_statistics(const json& j) {
     return s;
 }
 
-/// What must be alike in all of them, and how it is called, in the order in which it is looked at: what is
-/// more likely the reason comes first.
+/// Properties that must be alike in all of them, and their names, in the order in which they are compared:
+/// what is more likely the reason comes first.
 const std::pair<const char*, const char*> alike[] = {
     {"mote", "versions of mote"},
     {"commit", "builds of mote"},
@@ -70,15 +70,15 @@ Read read(const std::string& path) {
         j.at("auxiliary").get_to(a.auxiliary), j.at("denoise").get_to(a.denoise), j.at("half").get_to(a.half);
         a.seed = whole<std::uint64_t>(j.at("seed"));
         for (const char* name : {"mote", "commit"}) j.at(name).get_ref<const std::string&>();
-        MergedFilm merged{std::move(partial.film),
+        MergedFilm merged{std::make_shared<core::Film>(std::move(partial.film)),
                           a,
                           j.at("integrator").get<std::string>(),
                           j.at("content").get<std::string>(),
                           read_statistics(j.at("statistics")),
                           whole<std::uint32_t>(j.at("passes").at(0)),
                           whole<std::uint32_t>(j.at("passes").at(1))};
-        if (merged.end < merged.first || merged.film.first_pass() != merged.first ||
-            merged.film.pass_count() != merged.end - merged.first)
+        if (merged.end < merged.first || merged.film->first_pass() != merged.first ||
+            merged.film->pass_count() != merged.end - merged.first)
             throw core::InputError("it holds other passes than it says");
         return {path, std::move(j), std::move(merged)};  // copying would go as deep as it is nested
     } catch (const json::exception&) {
@@ -121,35 +121,7 @@ void check_order(const Read& a, const Read& b) {
     }
 }
 
-bool ends_with(const std::string& text, const std::string& end) {
-    return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
-/// Is a value of the statistics a count, or a time, that grows with every pass?
-bool adds_up(const std::string& name) {
-    static const std::set<std::string> fixed = {
-        "bound", "texels", "texels_per_metre", "charts", "points", "sphere_radius_mean", "shadow_maps"};
-    return !fixed.contains(name) && !ends_with(name, "_bytes") && !ends_with(name, "_peak");
-}
-
 }  // namespace
-
-void add_statistics(core::Statistics& sum, const core::Statistics& more) {
-    for (const auto& [name, count] : more.rays) sum.rays[name] += count;
-    for (const auto& [name, count] : more.lookups) sum.lookups[name] += count;
-    for (const auto& [name, seconds] : more.seconds) sum.seconds[name] += seconds;
-    for (const auto& [name, value] : more.values) {
-        if (name == "noise" || name == "varianceGain") continue;  // of the sum, which its film knows
-        if (adds_up(name))
-            sum.values[name] += value;
-        else  // settings are the same everywhere; of what memory takes, the most
-            sum.values[name] = std::max(sum.values.contains(name) ? sum.values[name] : value, value);
-    }
-    for (const std::string& warning : more.warnings)
-        if (std::ranges::find(sum.warnings, warning) == sum.warnings.end()) sum.warnings.push_back(warning);
-    sum.non_finite_samples += more.non_finite_samples;
-    sum.clamped_samples += more.clamped_samples;
-}
 
 MergedFilm merge_partials(const std::vector<std::string>& paths) {
     // One film after the other is read whole: heads alone would do for the order, but a film that fits into
@@ -168,7 +140,7 @@ MergedFilm merge_partials(const std::vector<std::string>& paths) {
         Read next = read(order[i].second);
         check_order(sum, next);
         try {
-            sum.merged.film.add(next.merged.film);
+            sum.merged.film->add(*next.merged.film);
         } catch (const std::invalid_argument&) {
             throw core::InputError(
                 fmt::format("this file is damaged: its film does not go on where that of '{}' ends",

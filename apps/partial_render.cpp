@@ -1,5 +1,5 @@
-// What partial films say of their render, written (merge_partials.cpp reads it): JSON, so that the cluster's
-// front end can look at it as well.
+// Text of a partial film about its render, written (merge_partials.cpp reads it): JSON, so that the cluster's
+// front end can read it as well.
 #include "apps/partial_render.h"
 
 #include <algorithm>
@@ -47,24 +47,25 @@ json about(const MergedFilm& m) {
 
 }  // namespace
 
-std::string identity_json(const RenderArguments& render, const core::Scene& scene,
-                          const core::Integrator& integrator, const std::string& content_hash) {
+std::string identity_json(const RenderArguments& render, const LoadedScene& scene,
+                          const std::string& content_hash) {
     std::size_t parts = 1;
-    for (const core::Layer& layer : integrator.layers(scene)) parts = std::max(parts, layer.part + 1);
+    for (const core::Layer& layer : scene.integrator().layers(scene.scene()))
+        parts = std::max(parts, layer.part + 1);
     const json j = {{"mote", MOTE_VERSION},
                     {"commit", git_hash()},
                     {"seed", render.seed},
-                    {"integrator", integrator.type()},
+                    {"integrator", scene.integrator().type()},
                     {"content", content_hash},
                     {"parts", parts},
-                    {"sample_count", scene.film().sample_count}};
+                    {"sample_count", scene.scene().film().sample_count}};
     return j.dump() + "\n";
 }
 
 void write_partial(const std::string& path, const MergedFilm& partial) {
     // File names need not be UTF-8.
     core::write_partial_film(
-        path, {about(partial).dump(-1, ' ', false, json::error_handler_t::replace), partial.film});
+        path, {about(partial).dump(-1, ' ', false, json::error_handler_t::replace), *partial.film});
 }
 
 }  // namespace mote::apps

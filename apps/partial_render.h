@@ -1,18 +1,19 @@
-// What a partial film says of the render that it is a share of (`mote render --pass-range`, `mote merge`).
+// Text of a partial film about the render that it is a share of (`mote render --pass-range`, `mote merge`).
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "apps/subcommands.h"
 #include "core/film/film.h"
-#include "core/render/statistics.h"
+#include "session/add_statistics.h"
 
 namespace mote::apps {
 
 /// Passes that were rendered elsewhere, added up, and what they have in common.
 struct MergedFilm {
-    core::Film film;
+    std::shared_ptr<core::Film> film;
     RenderArguments render;            ///< as they were rendered: scene, definitions, layers, seed
     std::string integrator;            ///< its type
     std::string content_hash;          ///< of the scene's files and of what changes the picture
@@ -28,11 +29,9 @@ void write_partial(const std::string& path, const MergedFilm& partial);
 /// there twice.
 MergedFilm merge_partials(const std::vector<std::string>& paths);
 
-/// What partial films of a render must have in common, and how many passes the scene asks for, as JSON.
-std::string identity_json(const RenderArguments& render, const core::Scene& scene,
-                          const core::Integrator& integrator, const std::string& content_hash);
-
-/// Adds the counts of one run to those of another; of values that are no counts the last counts.
-void add_statistics(core::Statistics& sum, const core::Statistics& more);
+/// Properties that partial films of a render must have in common, and the number of passes of the scene, as
+/// JSON.
+std::string identity_json(const RenderArguments& render, const LoadedScene& scene,
+                          const std::string& content_hash);
 
 }  // namespace mote::apps

@@ -25,13 +25,6 @@ void require_input(const std::string& path) {
     }
 }
 
-std::string extension_of(const std::string& path) {
-    std::string extension = std::filesystem::path(path).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
-    return extension;
-}
-
 namespace {
 
 // By its first bytes: names lie.

@@ -7,8 +7,11 @@
 #include <vector>
 
 #include "core/formats/pictures/image_file.h"
+#include "session/output_files.h"
 
 namespace mote::apps {
+
+using session::extension_of;
 
 struct PictureFile {
     core::Bitmap bitmap;
@@ -18,9 +21,6 @@ struct PictureFile {
 
 /// Throws InputError for a folder, a pipe or a device where a file is needed.
 void require_input(const std::string& path);
-
-/// The extension in lower case, ".exr".
-std::string extension_of(const std::string& path);
 
 /// How --half is reported that could not hold so many values.
 std::string clamped_text(std::uint64_t values);

@@ -7,15 +7,10 @@
 namespace mote::apps {
 
 int plan_command(const SceneArguments& arguments) {
-    const core::Registry registry = make_registry();
-    core::LoadReport loaded;
-    const auto scene = load(arguments, registry, &loaded);
-    const core::Integrator& integrator = require_integrator(*scene, registry);
-    const core::Requirements requirements = core::find_requirements(*scene);
-    const std::string text = integrator.plan(*scene, requirements).to_text();
-    std::fputs(text.c_str(), stdout);
+    const LoadedScene scene = load(arguments);
+    std::fputs(scene.plan().to_text().c_str(), stdout);
     std::fflush(stdout);
-    warn_about_scene(*scene, loaded);
+    warn_about(scene);
     return exit_ok;
 }
 

@@ -19,7 +19,7 @@ class ProgressLine {
     /// render that is refused leaves nothing but its error. Prints nothing when `quiet`.
     ProgressLine(std::string header, bool quiet);
     void update(const core::RenderProgress& progress);
-    /// The same with a text of the caller's; `urgent`: shown on a terminal however recent the last one is.
+    /// Shows a text of the caller's; `urgent`: shown on a terminal however recent the last one is.
     void update(const std::string& text, bool urgent);
     /// Ends the live line, so that other output starts on a line of its own.
     void end();

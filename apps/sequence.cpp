@@ -2,19 +2,25 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
 
 #include "apps/command.h"
 #include "apps/frame_files.h"
 #include "apps/subcommands.h"
+#include "core/formats/pictures/image_file.h"
 #include "core/objects/error.h"
+#include "session/reference_metadata.h"
 
 namespace mote::apps {
 
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr double most_frames = 1e6;
 
@@ -88,6 +94,39 @@ std::optional<RunningParameter> running_parameter(const std::vector<std::string>
     return found;
 }
 
+std::optional<FrameBefore> frame_before(SequenceFrame& sequence) {
+    if (!sequence.previous) return std::nullopt;
+    if (!sequence.before)
+        sequence.before = LoadedScene::frame_of(load(*sequence.previous, sequence.registry));
+    return FrameBefore{sequence.before, frame_before_settings(scene_changes(*sequence.previous))};
+}
+
+bool finished_before(const RenderArguments& arguments, const RenderFiles& files) {
+    std::error_code ignored;
+    if (!arguments.sequence || !arguments.resume || fs::exists(files.checkpoint, ignored) ||
+        !fs::exists(files.picture, ignored))
+        return false;
+    try {
+        const auto metadata = core::read_exr_metadata(files.picture);
+        const auto entry = [&](const char* key) {
+            const auto it = metadata.find(key);
+            return it != metadata.end() ? it->second : std::string();
+        };
+        const std::vector<std::string> inputs = lines_of(entry(scene_files_key));
+        if (inputs.empty() || metadata.contains("partOfFirstPass")) return false;
+        std::vector<std::string> settings =
+            render_settings(scene_changes(arguments.scene), entry("integrator"));
+        if (arguments.auxiliary && arguments.sequence->previous)
+            std::ranges::copy(frame_before_settings(scene_changes(*arguments.sequence->previous)),
+                              std::back_inserter(settings));
+        return entry("sceneHash") == core::content_hash(inputs, settings) &&
+               entry("seed") == std::to_string(arguments.seed) &&
+               (!arguments.passes || entry("passes") == std::to_string(*arguments.passes));
+    } catch (const core::InputError&) {
+        return false;  // damaged, or a file is gone: it is made anew
+    }
+}
+
 int render_sequence(const RenderArguments& arguments) {
     const auto parameter = running_parameter(arguments.scene.defines);
     if (!parameter || !names_frames(arguments.output)) return render_command(arguments);
@@ -98,7 +137,7 @@ int render_sequence(const RenderArguments& arguments) {
         throw UsageError("the statistics of a sequence need #### where the frame's number goes");
     const std::string& define = arguments.scene.defines[parameter->define];
     const std::size_t frames = parameter->values.size();
-    SequenceFrame sequence{make_registry()};
+    SequenceFrame sequence{std::make_shared<const core::Registry>(make_registry())};
     for (std::size_t i = 0; i < frames; ++i) {
         const int number = parameter->numbers[i];
         RenderArguments frame = arguments;
@@ -127,8 +166,7 @@ int render_sequence(const RenderArguments& arguments) {
         sequence.before.reset();
         // Also without motion: meshes that the next frame has as well are kept as long as somebody holds
         // them.
-        if (sequence.rendered)
-            sequence.before = std::make_unique<core::PreviousFrame>(std::move(sequence.rendered));
+        if (sequence.rendered) sequence.before = LoadedScene::frame_of(std::move(*sequence.rendered));
         sequence.rendered.reset();
     }
     return exit_ok;

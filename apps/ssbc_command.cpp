@@ -8,13 +8,13 @@
 #include <cstdio>
 
 #include "apps/command.h"
-#include "apps/number_options.h"
-#include "apps/output_files.h"
+#include "apps/options.h"
 #include "apps/picture_file.h"
 #include "core/formats/pictures/image_file.h"
 #include "core/objects/error.h"
 #include "core/scene/scene.h"
 #include "screenspace/g_buffer/g_buffer.h"
+#include "session/output_files.h"
 #include "session/picture_compensation.h"
 #include "session/reference_metadata.h"
 
@@ -65,11 +65,11 @@ SsbcPicture read(ImageChannels& image, const SsbcArguments& a) {
             throw InputError("several layers need --scene: a picture holds no surfaces behind others");
         if (a.scene.scene.empty()) return read_ssbc_picture(image, a.channels);
         SsbcPicture picture = read_light(image, a.channels);
-        const core::Registry registry = make_registry();
-        const auto scene = load(with_film_of(image, a.scene), registry);
-        check_scene(image, *scene, a);
+        const LoadedScene loaded = load(with_film_of(image, a.scene));
+        const core::Scene& scene = loaded.scene();
+        check_scene(image, scene, a);
         const auto buffers =
-            screenspace::make_g_buffers(*scene, scene->camera(), image.width, image.height, a.layers);
+            screenspace::make_g_buffers(scene, scene.camera(), image.width, image.height, a.layers);
         picture.surfaces = ssbc_surfaces(buffers[0]);
         for (auto& side : screenspace::hidden_sides(buffers))
             picture.hidden.push_back(
@@ -143,22 +143,15 @@ void add_ssbc(CLI::App& app, SsbcArguments& a, std::function<int()>& action) {
         ->check(whole_number(1, 100));
     command.add_option("--scene", a.scene.scene,
                        "Take surfaces and camera from this scene, not from channels");
-    command.add_option("-D,--define", a.scene.defines, "Set a $parameter of that scene (repeatable)")
-        ->type_name("NAME=VALUE")
-        ->expected(1)
-        ->allow_extra_args(false)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    add_repeatable(command, "-D,--define", a.scene.defines, "Set a $parameter of that scene (repeatable)")
+        ->type_name("NAME=VALUE");
     command
         .add_option("--layers", a.layers,
                     "Surfaces along each ray: with --scene, for pictures that hold hidden light (default: 1)")
         ->check(whole_number(1, 16));
     command.add_flag("--replace", a.replace, "Take out the compensation that the picture holds");
-    command
-        .add_option("--light", a.channels.light,
-                    "A layer of reflected light (repeatable; default: see docs/ssbc.md)")
-        ->expected(1)
-        ->allow_extra_args(false)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    add_repeatable(command, "--light", a.channels.light,
+                   "A layer of reflected light (repeatable; default: see docs/ssbc.md)");
     command.add_option("--position", a.channels.position, "The layer of positions (default: Center.P or P)");
     command.add_option("--normal", a.channels.normal, "The layer of normals (default: Center.N or N)");
     command.add_option("--albedo", a.channels.reflectance,
@@ -179,7 +172,7 @@ void add_ssbc(CLI::App& app, SsbcArguments& a, std::function<int()>& action) {
         .add_option("--blur", s.blur,
                     "Standard deviation of an edge-preserving blur, in pixels (default: none)")
         ->check(number_between(0.0, 100.0));
-    command.add_flag("--half", a.half, "Write float16 instead of float32");
+    add_half(command, a.half);
     command.callback([&a, &action] { action = [&a] { return ssbc_command(a); }; });
 }
 

@@ -1,4 +1,4 @@
-// What each subcommand needs, as the command line gave it, and the functions that run them.
+// Arguments of each subcommand, as the command line gave them, and the functions that run them.
 #pragma once
 
 #include <cstdint>
@@ -41,13 +41,12 @@ struct InfoArguments {
     bool lenient = false;  ///< of a scene
 };
 
-/// What a frame of a sequence has to do with the others.
+/// State that the frames of a sequence share.
 struct SequenceFrame {
-    core::Registry registry;                      ///< of all frames: it keeps meshes that do not change
-    std::optional<SceneArguments> previous = {};  ///< the frame before; the first has none
-    std::unique_ptr<core::PreviousFrame> before =
-        {};  ///< that frame, if it is there; else it is loaded when asked for
-    std::unique_ptr<core::Scene> rendered = {};  ///< of this frame, when it is finished
+    std::shared_ptr<const core::Registry> registry;  ///< of all frames: it keeps meshes that do not change
+    std::optional<SceneArguments> previous = {};     ///< the frame before; the first has none
+    std::shared_ptr<const core::PreviousFrame> before = {};  ///< that frame; null: not loaded yet
+    std::optional<LoadedScene> rendered = {};                ///< this frame, when it is finished
 };
 
 struct MergedFilm;
@@ -110,25 +109,23 @@ struct ExportArguments {
 
 /// Throws UsageError for a malformed definition.
 SceneChanges scene_changes(const SceneArguments& arguments);
-/// The definitions as names and values. Throws UsageError for a malformed one.
-std::vector<std::pair<std::string, std::string>> split_defines(const std::vector<std::string>& defines);
-/// Loads the scene with everything that the command line changes. Throws InputError, or UsageError for a
-/// malformed definition.
-std::unique_ptr<core::Scene> load(const SceneArguments& arguments, const core::Registry& registry,
-                                  core::LoadReport* report = nullptr);
-/// What --lenient left out or approximated and everything else worth a warning, a line each on stderr.
-void warn_about_scene(const core::Scene& scene, const core::LoadReport& report);
+/// Values of a repeatable option, as names and values. Throws UsageError for a malformed one.
+std::vector<std::pair<std::string, std::string>> split_defines(const std::vector<std::string>& defines,
+                                                               const std::string& option = "-D");
+/// Loads the scene with everything that the command line changes, by `registry` or, where that is null, by
+/// one of its own. Throws InputError, or UsageError for a malformed definition.
+LoadedScene load(const SceneArguments& arguments, std::shared_ptr<const core::Registry> registry = nullptr);
+/// Prints everything that is worth a warning, such as what --lenient left out, a line each on stderr.
+void warn_about(const LoadedScene& scene);
 
 int render_command(const RenderArguments& arguments);
-/// Are motion vectors among what is written of a frame, if there is one before it?
-inline bool wants_motion(const RenderArguments& a) { return a.sequence && a.auxiliary; }
 /// A picture for every value of the -D that runs, where the output holds #### (sequence.h).
 int render_sequence(const RenderArguments& arguments);
 int merge_command(const MergeArguments& arguments);
 int plan_command(const SceneArguments& arguments);
 int info_command(const InfoArguments& arguments);
 int convert_command(const ConvertArguments& arguments);
-/// The part of it that makes a film of a sequence, and the names that ask for one.
+/// The part of it that makes a film of a sequence, and the names of such films.
 int convert_sequence(const ConvertArguments& arguments);
 bool is_film(const std::string& extension);
 /// The part of it that turns a glTF scene into XML.

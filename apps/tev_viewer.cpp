@@ -28,7 +28,7 @@ static_assert(std::endian::native == std::endian::little);
 
 constexpr std::uint8_t update_image = 3, create_image = 4;
 constexpr const char* channels[] = {"R", "G", "B"};
-constexpr int step_milliseconds = 100;       // how often somebody who waits looks whether he should stop
+constexpr int step_milliseconds = 100;       // between checks for the end while waiting
 constexpr int patience_milliseconds = 3000;  // with a viewer that takes nothing
 
 class Message {
@@ -91,7 +91,7 @@ struct TevViewer::Shared {
         if (socket >= 0) ::close(socket);
         socket = -1;
     }
-    /// False where nothing happened for too long, or nobody wants it any more.
+    /// False where nothing happened for too long, or it is not wanted any more.
     bool wait_for(short events) {
         for (int waited = 0; waited < patience_milliseconds && !is_abandoned(); waited += step_milliseconds) {
             pollfd one{socket, events, 0};
@@ -170,7 +170,7 @@ TevViewer::TevViewer(const std::string& address, std::string name, int width, in
         throw core::InputError("--tev " + core::printable(address) + ": expected HOST:PORT");
     shared_->name = std::move(name), shared_->width = width, shared_->height = height;
     try {
-        // Looking up a host's name cannot be interrupted, so nobody joins the thread: it shares what it
+        // Looking up a host's name cannot be interrupted, so the thread is not joined: it shares what it
         // needs.
         std::thread([shared = shared_] { shared->run(); }).detach();
     } catch (const std::system_error&) {  // no thread left: no live pictures

@@ -20,7 +20,7 @@ class TevViewer {
   public:
     static constexpr const char* default_address = "127.0.0.1:14158";
     static constexpr int tile = 128;  ///< edge of what one UpdateImage holds [pixels]
-    /// What the last picture may take when all is done [s]; a viewer that takes longer does not get it.
+    /// Time for the last picture when all is done [s]; a viewer that takes longer does not get it.
     static constexpr double most_seconds_at_end = 1.0;
 
     /// `address`: HOST:PORT, HOST or :PORT. Throws InputError where it is none of these. `name`: of the

@@ -16,7 +16,7 @@ class Registry;
 
 namespace mote::session {
 
-/// What a host gives, by names of its choice.
+/// Arrays of a host, by names of its choice.
 class ArrayStore {
   public:
     /// Positions [m] in the space of the shape. Throws InputError for a name that is taken, sizes that do not

@@ -1,4 +1,4 @@
-// What the camera sees besides light: layers of the render for denoisers, channels at pixel centres for
+// Channels besides light: layers of the render for denoisers, channels at pixel centres for
 // `mote ssbc`.
 #pragma once
 
@@ -13,16 +13,16 @@ namespace mote::session {
 /// core::first_hit_features(), and DiffuseAlbedo: what the BSDF reflects to all sides alike.
 std::vector<core::HitFeature> auxiliary_features(const core::Scene& scene);
 
-/// Those of them with these names (which a scene file asks for by an integrator `aov`), and Coverage; none
+/// Those of them with these names (which a scene file names by an integrator `aov`), and Coverage; none
 /// for none.
 std::vector<core::HitFeature> features_by_name(const core::Scene& scene, std::span<const std::string> asked);
 
-/// What a denoiser asks for: Albedo and Ns, besides `asked`. `regression`: it regresses on P, Depth and
+/// Features of a denoiser: Albedo and Ns, besides `asked`. `regression`: it regresses on P, Depth and
 /// Transmittance as well.
 std::vector<core::HitFeature> features_for_denoising(const core::Scene& scene, std::vector<std::string> asked,
                                                      bool regression);
 
-/// What is written of the first hit besides light: all of it (`auxiliary`), or what a denoiser asks for
+/// Features of the first hit that are written: all (`auxiliary`), or those of a denoiser
 /// ("oidn", "bmfr"; "": none), with those that the scene `asked` for by name.
 std::vector<core::HitFeature> wanted_features(const core::Scene& scene, const std::vector<std::string>& asked,
                                               bool auxiliary, const std::string& denoise);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <stdexcept>
 
 #include "core/files/checksum.h"
 #include "core/formats/xml/scene_making.h"
@@ -36,6 +37,12 @@ std::vector<std::string> render_settings(const SceneChanges& changes, const std:
     return settings;
 }
 
+std::vector<std::string> frame_before_settings(const SceneChanges& changes) {
+    std::vector<std::string> settings = define_texts(changes);
+    settings.insert(settings.begin(), "the frame before");
+    return settings;
+}
+
 template <typename Load>
 void LoadedScene::load(const SceneChanges& changes, const Load& load_now) {
     const auto begin = std::chrono::steady_clock::now();
@@ -49,8 +56,13 @@ void LoadedScene::load(const SceneChanges& changes, const Load& load_now) {
 }
 
 LoadedScene LoadedScene::from_file(const std::string& path, const SceneChanges& changes) {
+    return from_file(path, changes, std::make_shared<const core::Registry>(make_registry()));
+}
+
+LoadedScene LoadedScene::from_file(const std::string& path, const SceneChanges& changes,
+                                   std::shared_ptr<const core::Registry> registry) {
     LoadedScene loaded;
-    loaded.registry_ = std::make_shared<const core::Registry>(make_registry());
+    loaded.registry_ = std::move(registry);
     loaded.load(changes, [&](const core::LoadOptions& options) {
         return core::load_scene(path, *loaded.registry_, options);
     });
@@ -81,15 +93,32 @@ LoadedScene LoadedScene::from_tree(const SceneTree& tree, const SceneChanges& ch
     return loaded;
 }
 
-const core::Integrator& LoadedScene::integrator() const { return require_integrator(*scene_, *registry_); }
+const core::Integrator& LoadedScene::integrator() const {
+    return integrator_ ? *integrator_ : require_integrator(*scene_, *registry_);
+}
+
+LoadedScene LoadedScene::rendered_by(std::shared_ptr<const core::Integrator> integrator,
+                                     const std::vector<std::string>& settings) const {
+    LoadedScene copy = *this;
+    copy.integrator_ = std::move(integrator), copy.integrator_settings_ = settings;
+    return copy;
+}
+
+std::shared_ptr<const core::PreviousFrame> LoadedScene::frame_of(LoadedScene&& scene) {
+    if (scene.scene_.use_count() != 1)
+        throw std::logic_error("a scene that is still used is no frame before");
+    return std::make_shared<const core::PreviousFrame>(std::move(scene.scene_));
+}
 
 core::Plan LoadedScene::plan() const { return integrator().plan(*scene_, core::find_requirements(*scene_)); }
 
 std::vector<std::string> LoadedScene::warnings() const { return scene_warnings(*scene_, report_); }
 
-std::string LoadedScene::scene_hash() const {
+std::string LoadedScene::scene_hash(const std::vector<std::string>& more) const {
     std::vector<std::string> settings = render_settings(changes_, integrator().type());
     if (!source_.empty()) settings.push_back(source_);
+    for (const auto& list : {integrator_settings_, more})
+        settings.insert(settings.end(), list.begin(), list.end());
     return core::content_hash(*scene_, settings);
 }
 

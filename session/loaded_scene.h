@@ -9,12 +9,13 @@
 
 #include "core/formats/xml/scene_loader.h"
 #include "core/render/integrator.h"
+#include "core/render/motion_features.h"
 #include "core/scene/scene.h"
 #include "session/scene_tree.h"
 
 namespace mote::session {
 
-/// What is changed of a scene when it is loaded, as on the command line.
+/// Changes to a scene when it is loaded, as on the command line.
 struct SceneChanges {
     std::string integrator;  ///< this type instead of the scene's; "": its own
     std::vector<std::pair<std::string, std::string>> defines;  ///< -D name=value
@@ -26,18 +27,25 @@ struct SceneChanges {
 core::LoadOptions load_options(const SceneChanges& changes);
 /// "name=value" of each definition.
 std::vector<std::string> define_texts(const SceneChanges& changes);
-/// What determines the bits of a picture besides the contents of the scene's files: for core::content_hash().
+/// Settings that determine the bits of a picture besides the contents of the scene's files: for
+/// core::content_hash().
 std::vector<std::string> render_settings(const SceneChanges& changes, const std::string& integrator);
+
+/// Those of the frame before in a sequence, where a picture holds motion vectors.
+std::vector<std::string> frame_before_settings(const SceneChanges& changes);
 
 /// A scene that may be rendered, by several threads at once. Copies share it.
 class LoadedScene {
   public:
     /// All throw InputError, or SceneErrors with all that is wrong. A path may name XML, glTF or GLB.
     static LoadedScene from_file(const std::string& path, const SceneChanges& changes = {});
-    /// Relative file names are looked up in `folder`; `name` stands for the file in messages.
+    /// By a registry that several scenes share, for it keeps meshes that they have in common.
+    static LoadedScene from_file(const std::string& path, const SceneChanges& changes,
+                                 std::shared_ptr<const core::Registry> registry);
+    /// Relative file names are looked up in `folder`; `name` replaces that of a file in messages.
     static LoadedScene from_text(const std::string& xml, const std::string& folder,
                                  const SceneChanges& changes = {}, const std::string& name = "<string>");
-    /// Of elements that were built in memory.
+    /// From elements that were built in memory.
     static LoadedScene from_tree(const SceneTree& tree, const SceneChanges& changes = {});
 
     const core::Scene& scene() const { return *scene_; }           ///< lives as long as this, or a copy of it
@@ -46,13 +54,19 @@ class LoadedScene {
     const SceneChanges& changes() const { return changes_; }       ///< with which it was loaded
     /// Throws InputError where the scene names none.
     const core::Integrator& integrator() const;
-    /// What will run, with the reason for every choice.
+    /// A copy that another integrator renders; `settings` are what determines its pictures besides its type.
+    LoadedScene rendered_by(std::shared_ptr<const core::Integrator> integrator,
+                            const std::vector<std::string>& settings) const;
+    /// Camera and shapes of a scene that has no other copy, for motion vectors of the next frame.
+    static std::shared_ptr<const core::PreviousFrame> frame_of(LoadedScene&& scene);
+    /// Parts that will run, with the reason for every choice.
     core::Plan plan() const;
-    /// What was left out or approximated, and everything else worth a warning.
+    /// Left-out and approximated elements, and everything else worth a warning.
     std::vector<std::string> warnings() const;
     double load_seconds() const { return load_seconds_; }  ///< wall time
-    /// core::content_hash() of everything that determines the bits of the picture, and of the scene alone.
-    std::string scene_hash() const;
+    /// core::content_hash() of everything that determines the bits of the picture, `more` included, and of
+    /// the scene alone.
+    std::string scene_hash(const std::vector<std::string>& more = {}) const;
     std::string scene_content() const;
 
   private:
@@ -61,10 +75,12 @@ class LoadedScene {
     void load(const SceneChanges& changes, const Load& load_now);
 
     std::shared_ptr<const core::Registry> registry_;
-    std::shared_ptr<const core::Scene> scene_;
+    std::shared_ptr<core::Scene> scene_;
+    std::shared_ptr<const core::Integrator> integrator_;  ///< instead of the scene's
+    std::vector<std::string> integrator_settings_;
     core::LoadReport report_;
     SceneChanges changes_;
-    std::string source_;  ///< what stands for the contents of a file where there is none
+    std::string source_;  ///< hash of what was loaded where there is no file
     double load_seconds_ = 0.0;
 };
 

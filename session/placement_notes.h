@@ -1,4 +1,4 @@
-// Media that are not where their author thinks: told before a render.
+// Media that are probably misplaced: warnings before a render.
 #pragma once
 
 #include <string>

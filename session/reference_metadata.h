@@ -1,4 +1,4 @@
-// What a picture says about itself so that others can be judged by it: of which scene and camera it is.
+// Metadata by which a picture can be a reference: its scene, camera, files and noise.
 #pragma once
 
 #include <string>

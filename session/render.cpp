@@ -1,17 +1,19 @@
 #include "session/render.h"
 
+#include <fmt/format.h>
 #include <tbb/info.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <memory>
+#include <chrono>
+#include <iterator>
 
 #include "core/objects/error.h"
 #include "core/objects/memory_error.h"
+#include "core/render/checkpoint.h"
 #include "core/render/stop_clock.h"
+#include "session/add_statistics.h"
 #include "session/auxiliary_channels.h"
 #include "session/borrowed_arena.h"
-#include "session/denoise/bmfr_sequence.h"
 #include "session/denoise/denoised_layer.h"
 #include "session/render_report.h"
 #include "session/usable_threads.h"
@@ -21,34 +23,49 @@ namespace mote::session {
 
 namespace {
 
-using Denoiser = std::function<void(core::ImageChannels&)>;
-
-/// What is missing is said before the first pass, not after the last.
-Denoiser denoiser_of(const std::string& method, int threads) {
-    if (method.empty()) return {};
-    if (method == "oidn")
-        return [library = std::make_shared<OidnLibrary>(threads)](core::ImageChannels& image) {
-            add_denoised_layer(image, *library);
-        };
-    if (method == "bmfr")
-        return [](core::ImageChannels& image) { BmfrSequence(true).add_denoised_layer(image); };
-    const std::vector<std::string> known = {"oidn", "bmfr"};
-    throw core::InputError("there is no denoiser '" + core::printable(method) + "'" +
-                           core::suggestion(method, known));
+std::vector<core::HitFeature> features_of(const LoadedScene& scene, const RenderSettings& settings) {
+    std::vector<core::HitFeature> features =
+        wanted_features(scene.scene(), scene.report().features, settings.auxiliary, settings.denoise);
+    if (settings.frame_before && settings.auxiliary)
+        std::ranges::move(core::motion_features(scene.scene(), *settings.frame_before->frame),
+                          std::back_inserter(features));
+    return features;
 }
 
-/// One render in its own thread, as WatchedWork sees it.
+std::vector<std::string> layers_without_passes(const core::Film& film) {
+    std::vector<std::string> names;
+    for (const core::Layer& layer : film.layers())
+        if (film.pass_count(layer.part) == 0) names.push_back(layer.name);
+    return names;
+}
+
+core::ImageChannels beauty_of(const core::Film& film) {
+    core::ImageChannels image;
+    image.width = film.width(), image.height = film.height();
+    image.add_rgb("", film.beauty());
+    return image;
+}
+
+/// One render in its own thread.
 class RenderWork {
   public:
-    RenderWork(const LoadedScene& scene, const RenderSettings& settings, WatchedWork& watched)
+    RenderWork(const LoadedScene& scene, const RenderSettings& settings, WatchedWork& watched,
+               bool wants_previews)
         : scene_(scene),
           settings_(settings),
           watched_(watched),
+          wants_previews_(wants_previews),
           threads_(
               usable_threads(settings.threads > 0 ? settings.threads : tbb::info::default_concurrency())),
-          denoiser_(denoiser_of(settings.denoise, threads_)),
+          denoiser_(settings.denoise.empty() ? Denoiser() : make_denoiser(settings.denoise, threads_)),
           plan_(scene.plan()),
-          hash_(scene.scene_hash()) {}
+          hash_(render_hash(scene, settings)) {
+        if (settings.begin_with && settings.begin_with->scene_hash != hash_)
+            throw core::InputError(
+                "the passes that this render begins with are of another one: the scene, a file that it "
+                "names, "
+                "or the version of mote has changed since");
+    }
 
     Rendered run() {
         BorrowedArena arena(threads_);
@@ -58,33 +75,32 @@ class RenderWork {
   private:
     core::RenderRequest request() {
         core::RenderRequest r;
-        r.seed = settings_.seed, r.stop = settings_.stop;
+        r.seed = settings_.seed, r.stop = settings_.stop, r.range = settings_.range;
+        r.enough = settings_.enough, r.seconds_before = settings_.seconds_before;
+        if (settings_.begin_with) r.begin_with = settings_.begin_with->film.get();
         r.checkpoint_path = settings_.checkpoint, r.checkpoint_every_seconds = settings_.checkpoint_every;
-        r.checkpoint_at_end = false, r.resume = settings_.resume;
-        r.content_hash = hash_;
-        r.features =
-            wanted_features(scene_.scene(), scene_.report().features, settings_.auxiliary, settings_.denoise);
+        r.checkpoint_at_end = settings_.keep_checkpoint, r.resume = settings_.resume;
+        r.content_hash = hash_, r.features = features_of(scene_, settings_);
         r.interrupted = &watched_.stop(), r.time_is_over = &watched_.time_is_over();
-        r.keep_part_of_first_pass = true;
+        r.keep_part_of_first_pass = !settings_.range;
         r.building_is_over = [this] { watched_.begin_passes(); };
-        r.passes_are_over = [this] { watched_.forget_time(); };
-        if (settings_.progress) r.progress = [this](const core::RenderProgress& p) { watched_.tell(p); };
-        if (settings_.preview)
-            r.preview = [this](const core::Film& film) {
-                core::ImageChannels image;
-                image.width = film.width(), image.height = film.height();
-                image.add_rgb("", film.beauty());
-                watched_.show(std::move(image));
-            };
+        r.passes_are_over = [this] { watched_.end_passes(); };
+        r.checkpoint_failed = [this](const std::string& why) {
+            watched_.report(why + "; it is tried again");
+        };
+        r.progress = [this](const core::RenderProgress& p) { watched_.report(p); };
+        if (wants_previews_) r.preview = [this](const core::Film& film) { watched_.report(beauty_of(film)); };
         return r;
     }
 
     Rendered render_here() {
         core::RenderResult result = core::render(scene_.scene(), scene_.integrator(), request());
         result.statistics.seconds["load"] = scene_.load_seconds();
+        if (settings_.begin_with) add_statistics(result.statistics, settings_.begin_with->statistics);
         if (result.film.pass_count() == 0 && !watched_.cancelled())
             throw core::InputError(
                 "the time is over before the first pixel was complete: there is no picture");
+        warn_of_time(result);
         const RenderReport report{scene_.scene(),
                                   plan_,
                                   result,
@@ -96,28 +112,38 @@ class RenderWork {
                                   scene_.report().approximations};
         Rendered rendered;
         rendered.image.width = result.film.width(), rendered.image.height = result.film.height();
-        if (result.film.pass_count() > 0)
-            rendered.image = core::with_memory_for("the picture", [&] {
-                return make_picture(
-                    report, scene_.registry(),
-                    {settings_.auxiliary, settings_.auxiliary || settings_.denoise == "bmfr"});
-            });
+        if (result.film.pass_count() > 0 && !settings_.range)
+            rendered.image = core::with_memory_for("the picture", [&] { return picture(report); });
         denoise(rendered.image, result);
         rendered.statistics = statistics_json(report);
-        rendered.warnings = result.statistics.warnings;
-        rendered.passes = result.finished_pixels.empty() ? result.film.pass_count() : 0;
-        if (const auto noise = result.statistics.values.find("noise");
-            noise != result.statistics.values.end())
-            rendered.noise = noise->second;
-        rendered.interrupted = result.interrupted;
-        std::error_code ignored;
-        if (!result.interrupted && !settings_.checkpoint.empty())
-            std::filesystem::remove(settings_.checkpoint, ignored);
+        if (!settings_.checkpoint.empty() && !result.interrupted && !settings_.keep_checkpoint)
+            core::remove_checkpoint(settings_.checkpoint, hash_);
+        take_over(std::move(result), rendered);
         return rendered;
     }
-    /// Of a whole picture; one that cannot be denoised is worth more than none.
+    core::ImageChannels picture(const RenderReport& report) const {
+        return make_picture(report, scene_.registry(),
+                            {settings_.auxiliary, settings_.auxiliary || settings_.denoise == "bmfr"});
+    }
+    /// A pass can be so long, and so hard to cut, that the limit in time does not hold.
+    void warn_of_time(core::RenderResult& result) const {
+        if (!settings_.stop.seconds || settings_.range) return;
+        double seconds = settings_.seconds_before;
+        for (const char* phase : {"build", "render"})
+            if (const auto it = result.statistics.seconds.find(phase); it != result.statistics.seconds.end())
+                seconds += it->second;
+        if (seconds > *settings_.stop.seconds + max_seconds_late_of_passes)
+            result.statistics.warnings.push_back(
+                fmt::format("the limit of {:.3g} s was exceeded: building and {} pass{} took {:.3g} s",
+                            *settings_.stop.seconds, result.film.pass_count(),
+                            result.film.pass_count() == 1 ? "" : "es", seconds));
+    }
+    static constexpr double max_seconds_late_of_passes = core::most_seconds_late + 1.0;
+
+    /// A whole picture only; one that cannot be denoised is worth more than none.
     void denoise(core::ImageChannels& image, core::RenderResult& result) const {
-        if (!denoiser_ || result.interrupted || !result.finished_pixels.empty() || !result.film.has_passes(1))
+        if (!denoiser_ || settings_.range || result.interrupted || !result.finished_pixels.empty() ||
+            !result.film.has_passes(1))
             return;
         try {
             denoiser_(image);
@@ -125,10 +151,25 @@ class RenderWork {
             result.statistics.warnings.push_back(std::string("not denoised: ") + error.what());
         }
     }
+    void take_over(core::RenderResult&& result, Rendered& rendered) const {
+        rendered.passes = result.finished_pixels.empty() ? result.film.pass_count() : 0;
+        if (const auto noise = result.statistics.values.find("noise");
+            noise != result.statistics.values.end())
+            rendered.noise = noise->second;
+        rendered.interrupted = result.interrupted;
+        rendered.missing_layers = layers_without_passes(result.film);
+        rendered.finished_for = result.finished_for;
+        rendered.finished_pixels = std::move(result.finished_pixels);
+        rendered.checkpoint_problem = std::move(result.checkpoint_problem);
+        rendered.warnings = result.statistics.warnings;
+        rendered.counts = std::move(result.statistics);
+        if (settings_.range) rendered.film = std::move(result.film);
+    }
 
     const LoadedScene& scene_;
     const RenderSettings& settings_;
     WatchedWork& watched_;
+    bool wants_previews_;
     int threads_;
     Denoiser denoiser_;
     core::Plan plan_;
@@ -137,10 +178,23 @@ class RenderWork {
 
 }  // namespace
 
-Rendered render(const LoadedScene& scene, const RenderSettings& settings) {
-    WatchedWork watched(settings);
-    RenderWork work(scene, settings, watched);
+Rendered render(const LoadedScene& scene, const RenderSettings& settings, RenderObserver& observer) {
+    std::optional<double> seconds = settings.stop.seconds;
+    if (settings.range) seconds.reset();
+    if (seconds) *seconds -= settings.seconds_before;
+    WatchedWork watched(seconds, observer);
+    RenderWork work(scene, settings, watched, observer.wants_previews());
     return watched.run([&work] { return work.run(); });
+}
+
+Rendered render(const LoadedScene& scene, const RenderSettings& settings) {
+    RenderObserver silent;
+    return render(scene, settings, silent);
+}
+
+std::string render_hash(const LoadedScene& scene, const RenderSettings& settings) {
+    const bool motion = settings.frame_before && settings.auxiliary;
+    return scene.scene_hash(motion ? settings.frame_before->settings : std::vector<std::string>());
 }
 
 }  // namespace mote::session

@@ -1,60 +1,100 @@
-// A render as a function call: threads, a limit in time, the wish to stop, checkpoints, and the finished
-// picture.
+// A render as a function call: threads, a limit in time, cancellation, checkpoints, and the finished picture.
 //
-// The passes run in a thread of their own, and what the caller wants to hear is told in the caller's:
-// callbacks need no locks, and a host whose calls belong to one thread (Python, a user interface) is called
-// in it.
+// The passes run in a thread of their own, and the observer is called in the caller's: its functions need no
+// locks, and a host whose calls belong to one thread (Python, a user interface) is called in it.
 #pragma once
 
 #include <cstdint>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/film/image_channels.h"
+#include "core/render/motion_features.h"
 #include "core/render/render_driver.h"
 #include "session/loaded_scene.h"
 
 namespace mote::session {
 
-/// How long a render takes, what it writes, and whom it tells.
+/// Receives what a render reports, twenty times a second at most. An exception from any function ends the
+/// render, and leaves render().
+class RenderObserver {
+  public:
+    virtual ~RenderObserver() = default;
+    virtual void progress(const core::RenderProgress&) {}  ///< after passes, the last one among them
+    virtual bool cancelled() { return false; }             ///< true: stop, and keep what there is
+    virtual bool wants_previews() const { return false; }
+    /// The picture so far, its beauty alone, from the first pass on. Now and then, so that it takes a
+    /// twentieth of the time at most.
+    virtual void preview(const core::ImageChannels&) {}
+    virtual void warning(const std::string&) {}  ///< at once: a checkpoint that could not be written
+    /// Called in the thread of the passes, before the first one: from now on an end loses something.
+    virtual void building_is_over() {}
+};
+
+/// Passes that were rendered elsewhere, from the first on, added up.
+struct EarlierPasses {
+    std::shared_ptr<const core::Film> film;
+    core::Statistics statistics;
+    std::string scene_hash;  ///< of their render
+};
+
+/// The frame before in a sequence: where its camera and shapes were.
+struct FrameBefore {
+    std::shared_ptr<const core::PreviousFrame> frame;
+    std::vector<std::string> settings;  ///< frame_before_settings() of its scene
+};
+
+/// When a render ends, and what it makes.
 struct RenderSettings {
     std::uint64_t seed = 0;  ///< with scene and passes it determines every bit
-    /// Seconds count from the call on: the scene is loaded already. No rule: the film's sample_count of
-    /// passes.
+    /// Seconds count from `seconds_before` before the call on. No rule: the film's sample_count of passes.
     core::StopRule stop;
+    double seconds_before = 0.0;  ///< [s], such as those of loading
+    /// A further rule, evaluated where the noise rule is, in the thread of the passes; may be empty.
+    std::function<bool(const core::Film&)> enough;
+    std::optional<core::PassRange>
+        range;  ///< these passes alone, whatever `stop` says: leaves Rendered::film
+    std::optional<EarlierPasses> begin_with;
     int threads = 0;                 ///< 0: one for every core
     std::string checkpoint;          ///< file; "": none. Removed when the render is complete
     double checkpoint_every = 60.0;  ///< [s]
+    bool keep_checkpoint = false;    ///< also of a complete render, to continue with more passes
     bool resume = false;             ///< continue from the checkpoint, which must be of this very render
     bool auxiliary = false;          ///< also what is seen: positions, normals, depth, albedo, with variances
-    std::string denoise;             ///< "oidn" or "bmfr": adds the layer `denoised`
-    std::vector<std::string> command_line;  ///< for the metadata
-
-    // Called in the thread of the caller, twenty times a second at most; each may be empty.
-    std::function<void(const core::RenderProgress&)> progress;  ///< after passes, the last one among them
-    std::function<bool()> cancelled;                            ///< true: stop, and keep what there is
-    /// The picture so far, from the first pass on: the beauty alone. Now and then, so that it takes a
-    /// twentieth of the time at most.
-    std::function<void(const core::ImageChannels&)> preview;
+    std::optional<FrameBefore> frame_before;  ///< with `auxiliary`: for motion vectors
+    std::string denoise;                      ///< "oidn" or "bmfr": adds the layer `denoised`
+    std::vector<std::string> command_line;    ///< for the metadata
 };
 
-/// What a render leaves: the picture, and what is said about it.
+/// Result of a render: the picture, its statistics and warnings.
 struct Rendered {
     /// As `mote render` writes it, to the bit. Interrupted in its first pass: A says which pixels are
-    /// finished. Interrupted before the first pixel: without channels.
+    /// finished. Interrupted before the first pixel, or of a range: without channels.
     core::ImageChannels image;
-    std::string statistics;  ///< JSON (docs/guide.md)
+    std::optional<core::Film> film;  ///< the passes of a range
+    std::string statistics;          ///< JSON (docs/guide.md)
+    core::Statistics counts;         ///< numbers in it
     std::vector<std::string> warnings;
     std::uint32_t passes = 0;
-    double noise = 0.0;  ///< Film::noise(); infinity: not known
+    double noise = core::infinity;  ///< Film::noise(); infinity: not known
     bool interrupted = false;
+    std::vector<std::uint8_t> finished_pixels;  ///< of a part of the first pass; else empty
+    std::vector<std::string> missing_layers;    ///< those without a pass
+    std::optional<std::uint32_t> finished_for;  ///< core::RenderResult::finished_for
+    std::string checkpoint_problem;             ///< why the last checkpoint could not be written
 };
 
-/// Renders until a stop rule holds or `cancelled` says so, which takes effect within two seconds. What a
-/// callback throws ends the render, and leaves this function. Throws InputError where the scene has no
-/// integrator, the checkpoint is of another render or `denoise` is unknown, and core::OutOfMemory. Several
-/// may run at once.
+/// Renders until a stop rule holds or the observer cancels, which takes effect within two seconds. Throws
+/// InputError where the scene has no integrator, the checkpoint or the earlier passes are of another render,
+/// something else stands where the checkpoint is to be written, or `denoise` is unknown, and
+/// core::OutOfMemory. Several may run at once.
+Rendered render(const LoadedScene& scene, const RenderSettings& settings, RenderObserver& observer);
 Rendered render(const LoadedScene& scene, const RenderSettings& settings);
+
+/// core::content_hash() of everything that determines the bits of a picture with these settings.
+std::string render_hash(const LoadedScene& scene, const RenderSettings& settings);
 
 }  // namespace mote::session

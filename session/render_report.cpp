@@ -60,8 +60,7 @@ std::size_t peak_memory_bytes() {
     return std::size_t(usage.ru_maxrss) * 1024;
 }
 
-double finished_share(const core::RenderResult& result) {
-    const auto& pixels = result.finished_pixels;
+double finished_share(std::span<const std::uint8_t> pixels) {
     return pixels.empty() ? 1.0 : double(std::count(pixels.begin(), pixels.end(), 1)) / double(pixels.size());
 }
 
@@ -103,15 +102,15 @@ std::map<std::string, std::string> picture_metadata(const RenderReport& r) {
     if (r.result.film.pass_count() >= 2) metadata[variance_gain_key] = fmt::format("{:.6g}", gain);
     if (!r.result.finished_pixels.empty()) {
         metadata["passes"] = "0";
-        metadata["partOfFirstPass"] =
-            fmt::format("{:.6f} of the pixels; those that are missing have A = 0", finished_share(r.result));
+        metadata["partOfFirstPass"] = fmt::format("{:.6f} of the pixels; those that are missing have A = 0",
+                                                  finished_share(r.result.finished_pixels));
     }
     if (r.result.finished_for)
         metadata["postProcessed"] =
             fmt::format("after {} passes, of {}", *r.result.finished_for, r.result.film.pass_count());
     const auto& values = r.result.statistics.values;
     if (const auto bound = values.find("bound"); bound != values.end())
-        metadata["bound"] = fmt::format("{:.9g}", bound->second);  // mote ssbc asks for it
+        metadata["bound"] = fmt::format("{:.9g}", bound->second);  // for mote ssbc
     if (std::isfinite(noise)) metadata["noise"] = fmt::format("{:.6g}", noise);
     for (const core::PlanEntry& e : r.plan.missing)
         metadata["leavesOut"] += (metadata["leavesOut"].empty() ? "" : ", ") + e.topic;
@@ -144,7 +143,7 @@ std::string statistics_json(const RenderReport& r) {
     j["seed"] = r.seed;
     j["threads"] = r.threads;
     j["passes"] = r.result.finished_pixels.empty() ? r.result.film.pass_count() : 0;
-    if (!r.result.finished_pixels.empty()) j["part_of_first_pass"] = finished_share(r.result);
+    if (!r.result.finished_pixels.empty()) j["part_of_first_pass"] = finished_share(r.result.finished_pixels);
     for (std::size_t part = 0; part < r.result.film.parts() && r.result.film.parts() > 1; ++part) {
         const core::Film& film = r.result.film;
         json layers = json::array();

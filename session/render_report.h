@@ -1,7 +1,8 @@
-// What a render says about itself: metadata of the picture, and stats.json.
+// Reports of a render: metadata of the picture, and stats.json.
 #pragma once
 
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,10 +31,10 @@ std::string quoted(const std::vector<std::string>& command_line);
 /// Largest resident size of this process so far.
 std::size_t peak_memory_bytes();
 std::string git_hash();
-/// Of the first pass, where it is a part (RenderResult::finished_pixels); else 1.
-double finished_share(const core::RenderResult& result);
+/// Share of the pixels that are finished (RenderResult::finished_pixels); 1 where all are.
+double finished_share(std::span<const std::uint8_t> finished);
 
-/// What is added to the layers of a film.
+/// Channels that are added to the layers of a film.
 struct PictureExtras {
     bool auxiliary = false;     ///< channels at pixel centres, and numbers of objects and materials
     bool in_scattered = false;  ///< what light of media is regressed on (session/in_scattered_feature.h)

@@ -11,7 +11,10 @@ using core::Element, core::InputError;
 
 namespace {
 
-/// What round-trips to the same number.
+/// Deeper than any scene: every level costs a call of the loader.
+constexpr std::size_t max_depth = 64;
+
+/// Shortest text that reads back as the same number.
 std::string text_of(double number) { return fmt::format("{}", number); }
 
 void add_text(const Element& e, std::string& text) {
@@ -55,6 +58,8 @@ Element SceneTree::made(const std::string& tag) const {
 
 void SceneTree::begin(const std::string& category, const std::string& type, const std::string& name,
                       const std::string& id, const std::string& label) {
+    if (path_.size() >= max_depth)
+        throw InputError("objects are nested more than " + std::to_string(max_depth) + " deep", {name_, 0});
     labels_.push_back(!label.empty() ? label : !name.empty() ? name : !id.empty() ? id : category);
     Element e = made(category);
     if (!core::find_category(category)) {

@@ -15,10 +15,10 @@ namespace mote::session {
 
 class SceneTree {
   public:
-    /// `name` stands for the file in messages, with the names of the objects behind it: "scene.floor.bsdf".
-    /// Relative file names are looked up in `folder`.
+    /// `name` replaces that of a file in messages, with the names of the objects behind it:
+    /// "scene.floor.bsdf". Relative file names are looked up in `folder`.
     explicit SceneTree(std::string name = "scene", std::string folder = "");
-    /// The same, for what is in it already.
+    /// Replaces name and folder, also of the objects that are in it already.
     void place(const std::string& name, const std::string& folder);
 
     /// Opens an object inside the one that is open: <category type="type" name="name" id="id">. Empty: no
@@ -45,10 +45,10 @@ class SceneTree {
 
     /// The elements, for the loader. Throws InputError where an object is still open.
     core::SceneDocument document() const;
-    /// The same, to be shared.
+    /// Shared arrays(), for the registry.
     const std::shared_ptr<ArrayStore>& array_store() const { return arrays_; }
     const std::string& name() const { return name_; }  ///< in messages
-    /// Of the elements and arrays: equal where they are. 16 hexadecimal digits.
+    /// Hash of the elements and arrays: equal where they are. 16 hexadecimal digits.
     std::string checksum() const;
 
   private:

@@ -19,7 +19,7 @@ int usable_threads(int wanted) {
         enough.wait(lock, [&] { return leave; });
     };
     try {
-        while (int(threads.size()) + 1 < wanted) threads.emplace_back(wait);
+        while (int(threads.size()) < wanted) threads.emplace_back(wait);
     } catch (const std::system_error&) {  // no more of them
     }
     {
@@ -28,7 +28,7 @@ int usable_threads(int wanted) {
     }
     enough.notify_all();
     for (std::thread& t : threads) t.join();
-    return int(threads.size()) + 1;
+    return std::max(1, int(threads.size()));
 }
 
 }  // namespace mote::session

@@ -4,7 +4,8 @@
 
 namespace mote::session {
 
-/// At most `wanted`, this one included; at least 1. Starts and ends that many.
+/// Threads that may work at once, at most `wanted`, besides one that watches them; at least 1. Starts and
+/// ends that many.
 int usable_threads(int wanted);
 
 }  // namespace mote::session

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <exception>
+#include <system_error>
 #include <thread>
+#include <utility>
 
 #include "core/render/stop_clock.h"
 #include "session/render.h"
@@ -11,7 +13,9 @@ namespace mote::session {
 
 namespace {
 
-constexpr auto between_looks = std::chrono::milliseconds(50);
+constexpr auto delivery_interval = std::chrono::milliseconds(50);
+/// Time that loading and building may take beyond the limit [s].
+constexpr double max_seconds_late_of_building = 2.0;
 
 std::chrono::steady_clock::duration duration(double seconds) {
     return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
@@ -20,14 +24,15 @@ std::chrono::steady_clock::duration duration(double seconds) {
 
 }  // namespace
 
-WatchedWork::WatchedWork(const RenderSettings& settings) : settings_(settings) {
-    if (settings.stop.seconds) deadline_ = start_ + duration(*settings.stop.seconds + 2.0);  // of building
+WatchedWork::WatchedWork(std::optional<double> seconds, RenderObserver& observer)
+    : seconds_(seconds), observer_(observer) {
+    if (seconds) deadline_ = start_ + duration(*seconds + max_seconds_late_of_building);
 }
 
 Rendered WatchedWork::run(const std::function<Rendered()>& work) {
     std::optional<Rendered> result;
-    std::exception_ptr of_work, of_callback;
-    std::thread thread([&] {
+    std::exception_ptr of_work, of_observer;
+    const auto run_it = [&] {
         try {
             result = work();
         } catch (...) {
@@ -35,71 +40,99 @@ Rendered WatchedWork::run(const std::function<Rendered()>& work) {
         }
         const std::lock_guard lock(mutex_);
         done_ = true;
-        news_.notify_all();
-    });
+        change_.notify_all();
+    };
+    std::thread thread;
+    try {
+        thread = std::thread(run_it);
+    } catch (const std::system_error&) {
+        alone_ = true;
+        run_it();
+    }
     try {
         watch();
     } catch (...) {
-        of_callback = std::current_exception();
+        of_observer = std::current_exception();
         cancel();
     }
-    thread.join();
-    if (of_callback) std::rethrow_exception(of_callback);
+    if (thread.joinable()) thread.join();
+    if (of_observer) std::rethrow_exception(of_observer);
     if (of_work) std::rethrow_exception(of_work);
     return std::move(*result);
 }
 
-/// Until the work is done; the callbacks are called without the lock.
+/// Until the work is done; the observer is called without the lock.
 void WatchedWork::watch() {
-    for (bool done = false; !done;) {
-        std::optional<core::RenderProgress> progress;
-        std::optional<core::ImageChannels> picture;
-        {
-            std::unique_lock lock(mutex_);
-            news_.wait_for(lock, between_looks, [&] { return done_; });
-            look_at_clock();
-            done = done_;
-            progress.swap(progress_), picture.swap(picture_);
-        }
-        if (progress) settings_.progress(*progress);
-        if (picture && !done) settings_.preview(*picture);
-        if (!done && !cancelled_ && settings_.cancelled && settings_.cancelled()) cancel();
+    for (bool ended = false; !ended;) {
+        Reports reports;
+        ended = wait_for_end(reports);
+        deliver(reports, ended);
     }
 }
 
-void WatchedWork::look_at_clock() {
+bool WatchedWork::wait_for_end(Reports& reports) {
+    std::unique_lock lock(mutex_);
+    change_.wait_for(lock, delivery_interval, [&] { return done_; });
+    check_time();
+    std::swap(reports, reports_);
+    return done_;
+}
+
+void WatchedWork::deliver(const Reports& reports, bool ended) {
+    for (const std::string& text : reports.warnings) observer_.warning(text);
+    if (reports.progress) observer_.progress(*reports.progress);
+    if (reports.preview && !ended) observer_.preview(*reports.preview);
+    if (!ended && !cancelled_ && observer_.cancelled()) cancel();
+}
+
+void WatchedWork::deliver_here() {
+    if (!alone_) return;
+    check_time();
+    deliver(std::exchange(reports_, {}), false);
+}
+
+void WatchedWork::check_time() {
     if (!deadline_ || Clock::now() < *deadline_) return;
     deadline_.reset();
     time_is_over_ = true, stop_ = true;
 }
 
 void WatchedWork::cancel() {
-    const std::lock_guard lock(mutex_);  // forget_time() must see both or none
+    const std::lock_guard lock(mutex_);  // end_passes() must see both or none
     cancelled_ = true, stop_ = true;
 }
 
 void WatchedWork::begin_passes() {
-    if (!settings_.stop.seconds) return;
+    observer_.building_is_over();
+    if (!seconds_) return;
     const std::lock_guard lock(mutex_);
     // A pass may end a second late (stop_clock.h); what takes longer is cut off.
-    deadline_ = std::max(Clock::now() + duration(0.5),
-                         start_ + duration(*settings_.stop.seconds + core::most_seconds_late));
+    deadline_ =
+        std::max(Clock::now() + duration(0.5), start_ + duration(*seconds_ + core::most_seconds_late));
 }
 
-void WatchedWork::forget_time() {
+void WatchedWork::end_passes() {
     const std::lock_guard lock(mutex_);
     deadline_.reset();
     if (!cancelled_) stop_ = false;
 }
 
-void WatchedWork::tell(const core::RenderProgress& progress) {
-    const std::lock_guard lock(mutex_);
-    progress_ = progress;
+void WatchedWork::report(const core::RenderProgress& progress) {
+    {
+        const std::lock_guard lock(mutex_);
+        reports_.progress = progress;
+    }
+    deliver_here();
 }
 
-void WatchedWork::show(core::ImageChannels picture) {
+void WatchedWork::report(core::ImageChannels preview) {
     const std::lock_guard lock(mutex_);
-    picture_ = std::move(picture);
+    reports_.preview = std::move(preview);
+}
+
+void WatchedWork::report(const std::string& warning) {
+    const std::lock_guard lock(mutex_);
+    reports_.warnings.push_back(warning);
 }
 
 }  // namespace mote::session

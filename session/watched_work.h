@@ -1,5 +1,5 @@
-// Work in a thread of its own, watched by the one that asked for it: carries news to the caller's callbacks,
-// the wish to stop from them, and ends what takes longer than it may.
+// Work in a thread of its own: carries its reports to the caller's observer, the observer's wish to stop to
+// the work, and ends what takes longer than it may.
 #pragma once
 
 #include <atomic>
@@ -8,20 +8,24 @@
 #include <functional>
 #include <mutex>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "core/film/image_channels.h"
 #include "core/render/render_driver.h"
 
 namespace mote::session {
 
-struct RenderSettings;
+class RenderObserver;
 struct Rendered;
 
 class WatchedWork {
   public:
-    explicit WatchedWork(const RenderSettings& settings);
+    /// `seconds`: limit in time from now on; nothing: none. `observer` must outlive this.
+    WatchedWork(std::optional<double> seconds, RenderObserver& observer);
 
-    /// Runs `work` and returns what it returns, or throws what it, or a callback, throws.
+    /// Runs `work` and returns what it returns, or throws what it, or the observer, throws. Where the system
+    /// grants no thread, `work` runs in the caller's and reports between its passes.
     Rendered run(const std::function<Rendered()>& work);
 
     // For the work:
@@ -29,25 +33,37 @@ class WatchedWork {
     const std::atomic<bool>& time_is_over() const { return time_is_over_; }
     bool cancelled() const { return cancelled_; }  ///< by the caller
     void begin_passes();                           ///< the limit in time is now that of the last pass
-    void forget_time();                            ///< passes are over
-    void tell(const core::RenderProgress& progress);
-    void show(core::ImageChannels picture);
+    void end_passes();                             ///< no limit in time any more
+    void report(const core::RenderProgress& progress);
+    void report(core::ImageChannels preview);
+    void report(const std::string& warning);
 
   private:
     using Clock = std::chrono::steady_clock;
+    /// Reports that wait for the observer.
+    struct Reports {
+        std::vector<std::string> warnings;
+        std::optional<core::RenderProgress> progress;
+        std::optional<core::ImageChannels> preview;
+    };
+
     void watch();
-    void look_at_clock();
+    bool wait_for_end(Reports& reports);
+    void deliver(const Reports& reports, bool ended);
+    void deliver_here();
+    void check_time();
     void cancel();
 
-    const RenderSettings& settings_;
+    const std::optional<double> seconds_;
+    RenderObserver& observer_;
     const Clock::time_point start_ = Clock::now();
     std::atomic<bool> stop_{false}, time_is_over_{false}, cancelled_{false};
+    bool alone_ = false;  ///< no thread was granted
     std::mutex mutex_;
-    std::condition_variable news_;
+    std::condition_variable change_;
     // Guarded by the mutex:
     std::optional<Clock::time_point> deadline_;
-    std::optional<core::RenderProgress> progress_;
-    std::optional<core::ImageChannels> picture_;
+    Reports reports_;
     bool done_ = false;
 };
 

@@ -10,15 +10,14 @@
 
 #include "apps/command.h"
 #include "apps/frame_files.h"
-#include "apps/number_options.h"
-#include "apps/output_files.h"
+#include "apps/options.h"
 #include "apps/picture_file.h"
-#include "apps/preview.h"
 #include "apps/subcommands.h"
 #include "core/formats/pictures/image_file.h"
 #include "core/objects/error.h"
-#include "session/denoise/bmfr_sequence.h"
 #include "session/denoise/denoised_layer.h"
+#include "session/output_files.h"
+#include "session/preview.h"
 
 namespace mote::apps {
 
@@ -38,7 +37,7 @@ std::string output_of(const DenoiseArguments& a) {
     return a.output;
 }
 
-/// What is read and where it goes: one picture, or the frames of a sequence in order.
+/// Input and output: one picture, or the frames of a sequence in order.
 struct Work {
     std::string input, output;
     std::string preview() const { return fs::path(output).replace_extension(".png").string(); }
@@ -51,17 +50,6 @@ std::vector<Work> work_of(const DenoiseArguments& a) {
     for (const FrameFile& frame : find_frames(a.input))
         work.push_back({frame.path, frame_name(output, frame.number)});
     return work;
-}
-
-/// A method as what it does to one picture after the other.
-std::function<void(core::ImageChannels&)> denoiser_of(const DenoiseArguments& a) {
-    if (a.method == "oidn")
-        return [library = std::make_shared<OidnLibrary>(a.threads)](core::ImageChannels& image) {
-            add_denoised_layer(image, *library);
-        };
-    return [sequence = std::make_shared<BmfrSequence>(!names_frames(a.input))](core::ImageChannels& image) {
-        sequence->add_denoised_layer(image);
-    };
 }
 
 void write_denoised(const Work& work, core::ImageChannels& image, const DenoiseArguments& a) {
@@ -79,17 +67,18 @@ int denoise_command(const DenoiseArguments& a) {
     const std::vector<Work> all = work_of(a);
     std::vector<NamedFile> outputs, inputs;
     for (const Work& work : all) {
-        outputs.push_back({"the picture", work.output}), outputs.push_back({"the preview", work.preview()});
+        outputs.push_back({"the picture", work.output, !a.output.empty()});
+        outputs.push_back({"the preview", work.preview(), false});
         inputs.push_back({"the picture to denoise", work.input});
     }
     check_outputs(outputs, inputs);
     for (const Work& work : all) require_input(work.input);
     std::optional<tbb::global_control> threads;
     if (a.threads > 0) threads.emplace(tbb::global_control::max_allowed_parallelism, std::size_t(a.threads));
-    std::function<void(core::ImageChannels&)> denoise;
+    Denoiser denoise;
     for (const Work& work : all) {
         core::ImageChannels image = core::read_exr(work.input);
-        if (!denoise) denoise = denoiser_of(a);
+        if (!denoise) denoise = make_denoiser(a.method, a.threads, names_frames(a.input));
         try {
             denoise(image);
         } catch (const core::InputError& error) {
@@ -116,12 +105,9 @@ void add_denoise(CLI::App& app, DenoiseArguments& a, std::function<int()>& actio
                     "oidn: OpenImageDenoise, where it is installed (default); bmfr: regression on features "
                     "block by block, with the frames before in sequences")
         ->check(CLI::IsMember({"oidn", "bmfr"}));
-    command
-        .add_option("--exposure", a.exposure, "Brighten the preview by this many stops (default: it adapts)")
-        ->check(number_between(-100.0, 100.0));
-    command.add_option("-t,--threads", a.threads, "Number of threads (default: one for every core)")
-        ->check(whole_number(0, 4096));
-    command.add_flag("--half", a.half, "Write float16 instead of float32");
+    add_exposure(command, a.exposure);
+    add_threads(command, a.threads);
+    add_half(command, a.half);
     command.add_flag("--quiet", a.quiet, "Say nothing");
     command.callback([&a, &action] { action = [&a] { return denoise_command(a); }; });
 }

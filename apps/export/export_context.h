@@ -1,4 +1,4 @@
-// What the parts of the export share: the scene both as elements and as objects, and the files found so far.
+// Shared by the parts of the export: the scene both as elements and as objects, and the files found so far.
 #pragma once
 
 #include <string>
@@ -44,7 +44,7 @@ core::Rgb colour_of(const core::Element& value, bool emission);
 /// The product of the element's transform of that name; the identity when it has none.
 core::Transform transform_of(core::Element& object, const std::string& name);
 
-// What becomes of each kind of element; one file each.
+// Export of each kind of element; one file each.
 
 /// Returns the type of the integrator that the exported scene names.
 std::string export_integrator(core::Element& scene, const ExportContext& context);
@@ -55,7 +55,7 @@ void export_shape(core::Element& element, const core::Shape& shape, const core::
 void export_emitter(core::Element& emitter, const ExportContext& context);
 void export_bsdf(core::Element& bsdf, const ExportContext& context);
 void export_medium(core::Element& medium, const ExportContext& context);
-/// Of a medium or a texture; what is exported already stays.
+/// Exports a medium or a texture; one that is exported already stays.
 void export_volume(core::Element& volume, bool is_extinction, const ExportContext& context);
 
 }  // namespace mote::apps

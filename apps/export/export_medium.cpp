@@ -77,7 +77,7 @@ void replace_by_grid(Element& volume, const std::string& name, Element to_world)
     if (!to_world.children.empty()) volume.children.push_back(std::move(to_world));
 }
 
-/// The box of everything, a little enlarged: where a constant is asked for.
+/// The box of everything, a little enlarged: for a constant.
 core::Bounds3 surroundings(const core::Scene& scene) {
     core::Bounds3 box = scene.bounds();
     const core::Vec3 margin = 0.01f * box.diagonal() + 1e-3f;

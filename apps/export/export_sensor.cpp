@@ -35,7 +35,7 @@ void export_sensor(Element& sensor, const ExportContext& context) {
         const Element& object = core::resolve(c, context.ids);
         names_medium = names_medium || object.tag == "medium";
     }
-    // We find it from the shapes; Mitsuba believes that there is none unless told.
+    // Found from the shapes here; Mitsuba has none unless the sensor names it.
     const core::Medium* around = context.scene.camera_medium_state().current();
     if (!around || names_medium) return;
     sensor.children.push_back(make_reference(sensor, "medium", around->id));

@@ -54,7 +54,7 @@ void write_mirrored_sphere(Element& shape, const ExportContext& context) {
     context.note(shape, "a mirrored sphere lost its transform; its texture coordinates are turned");
 }
 
-/// What a shape without BSDF is made of.
+/// Material of a shape without BSDF.
 void write_default_bsdf(Element& element, const core::Shape& shape, const ExportContext& context) {
     for (const Element& c : element.children)
         if (core::resolve(c, context.ids).tag == "bsdf") return;

@@ -82,7 +82,7 @@ void export_colours(Element& object) {
         if (c.tag == "spectrum") c = make_rgb(c, c.get("name"), colour_of(c, object.tag == "emitter"));
 }
 
-/// What lies inside any object, from the leaves up; media and sensors have been seen to.
+/// Elements inside any object, from the leaves up; media and sensors have been seen to.
 void export_parts(Element& object, const ExportContext& context) {
     export_colours(object);
     for (Element& c : object.children)

@@ -4,11 +4,12 @@
 #include <sstream>
 
 #include "apps/export/mitsuba_export.h"
-#include "apps/output_files.h"
-#include "core/files/atomic_file.h"
 #include "core/formats/meshes/ply_writer.h"
+#include "session/output_files.h"
 
 namespace mote::apps {
+
+using namespace session;
 
 using core::Element;
 
@@ -28,10 +29,6 @@ std::string xml_text(const Element& scene) {
     std::ostringstream stream;
     document.save(stream, "    ");
     return stream.str();
-}
-
-void write_text(const fs::path& path, const std::string& text) {
-    core::write_file_atomically(path.string(), std::as_bytes(std::span(text)));
 }
 
 std::string list_of(const std::vector<std::string>& notes) {
@@ -65,6 +62,7 @@ void check_files(const MitsubaExport& result, const fs::path& root) {
     for (const auto& [name, grid] : result.grids) add(name);
     for (const auto& [name, mesh] : result.meshes) add(name);
     check_outputs(outputs, scene_inputs(result.inputs));
+    check_companions(outputs, (root / "dropped.txt").string());
 }
 
 }  // namespace
@@ -79,9 +77,9 @@ void write_export(const MitsubaExport& result, const std::string& folder) {
     };
     for (const auto& [name, source] : result.copies) copy_file(source, place(name));
     for (const auto& [name, grid] : result.grids) media::write_vol_file(place(name).string(), grid);
-    for (const auto& [name, mesh] : result.meshes) write_text(place(name), core::ply_bytes(mesh));
-    write_text(root / "dropped.txt", list_of(result.notes));
-    write_text(root / "scene.xml", xml_text(result.scene));
+    for (const auto& [name, mesh] : result.meshes) write_text(place(name).string(), core::ply_bytes(mesh));
+    write_text((root / "scene.xml").string(), xml_text(result.scene));
+    write_text((root / "dropped.txt").string(), list_of(result.notes));
 }
 
 }  // namespace mote::apps

@@ -1,7 +1,9 @@
 // Files that are either complete or not there: written beside the final name, synced, renamed.
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -61,6 +63,16 @@ class OutputDescriptor {
     int descriptor_ = -1;
 };
 
+/// A name beside `target` that no file has: files of others, and those of killed processes, stay.
+std::string unused_name(const std::string& target) {
+    static std::atomic<unsigned> next{0};
+    for (;;) {
+        std::string name = target + "." + std::to_string(::getpid()) + "-" + std::to_string(next++) + ".part";
+        struct stat status {};
+        if (::lstat(name.c_str(), &status) != 0) return name;
+    }
+}
+
 [[noreturn]] void fail(const std::string& path) {
     throw InputError(std::string("cannot be written: ") + std::strerror(errno), {path, 0});
 }
@@ -93,8 +105,7 @@ void write_file_atomically(const std::string& path, std::span<const std::span<co
     const std::string target = fs::is_symlink(fs::symlink_status(path, ignored))
                                    ? fs::weakly_canonical(path, ignored).string()
                                    : path;
-    const std::string temporary = target + "." + std::to_string(::getpid()) + ".part";
-    ::unlink(temporary.c_str());  // left behind by a killed process of the same number
+    const std::string temporary = unused_name(target);
     OutputDescriptor file(temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, true);
     if (!file.is_open()) {
         file.keep();

@@ -13,6 +13,17 @@ namespace {
 
 constexpr FileKind checkpoint_file{{'m', 'o', 't', 'e', 'c', 'h', 'k', 'p'}, 2, "a checkpoint of mote"};
 
+/// Content hash in the head of the checkpoint at `path`; nothing where that is no checkpoint.
+std::optional<std::string> content_of_checkpoint(const std::string& path) {
+    std::vector<std::byte> beginning;
+    std::optional<ByteReader> reader = read_head(path, checkpoint_file, beginning);
+    if (!reader) return std::nullopt;
+    reader->number<std::uint64_t>();                                            // seed
+    reader->number<std::uint32_t>(), reader->number<std::uint32_t>();           // width, height
+    for (auto n = reader->number<std::uint32_t>(); n > 0; --n) reader->text();  // layers
+    return reader->text();
+}
+
 void read_into(std::span<const std::byte> bytes, const CheckpointKey& key, Film& film) {
     HeadedFile file = read_headed_file(bytes, checkpoint_file);
     ByteReader& reader = file.fields;
@@ -43,7 +54,36 @@ void read_into(std::span<const std::byte> bytes, const CheckpointKey& key, Film&
 
 }  // namespace
 
+void require_own_checkpoint(const std::string& path, const std::string& content_hash) {
+    namespace fs = std::filesystem;
+    std::error_code ignored;
+    const fs::file_status status = fs::status(path, ignored);
+    if (!fs::exists(status)) return;
+    const auto content = fs::is_regular_file(status) ? content_of_checkpoint(path) : std::nullopt;
+    if (!content)
+        throw InputError(
+            "is no checkpoint of mote, and is not replaced by one: move it or choose another name",
+            {path, 0});
+    if (*content != content_hash)
+        throw InputError(
+            "is a checkpoint of another render (the scene, a file that it names, or an option differs), and "
+            "is "
+            "not replaced: move it, remove it, or choose another name",
+            {path, 0});
+}
+
+void remove_checkpoint(const std::string& path, const std::string& content_hash) {
+    try {
+        require_own_checkpoint(path, content_hash);
+    } catch (const InputError&) {
+        return;
+    }
+    std::error_code ignored;
+    std::filesystem::remove(path, ignored);
+}
+
 void write_checkpoint(const std::string& path, const CheckpointKey& key, const Film& film) {
+    require_own_checkpoint(path, key.content_hash);
     ByteWriter head;
     head.number(key.seed);
     head.number(std::uint32_t(film.width()));

@@ -10,14 +10,20 @@
 
 namespace mote::core {
 
-/// What a checkpoint must share with the render that continues it.
+/// Properties that a checkpoint must share with the render that continues it.
 struct CheckpointKey {
     std::string content_hash;
     std::uint64_t seed = 0;
 };
 
-/// Writes the file atomically. Throws InputError with the system's reason; an older checkpoint stays as it
-/// was.
+/// Throws InputError unless a checkpoint of a render with this content hash, whatever its seed, may be
+/// written at `path`: nothing stands there, or a file that begins as such a checkpoint.
+void require_own_checkpoint(const std::string& path, const std::string& content_hash);
+/// Removes the file where require_own_checkpoint() accepts it; everything else stays.
+void remove_checkpoint(const std::string& path, const std::string& content_hash);
+
+/// Writes the file atomically. Throws InputError with the system's reason, and where
+/// require_own_checkpoint() does; what stood there stays as it was.
 void write_checkpoint(const std::string& path, const CheckpointKey& key, const Film& film);
 
 /// Fills `film`. Returns false when there is no such file. Throws InputError when the file is damaged or

@@ -1,5 +1,7 @@
 #include "core/render/headed_file.h"
 
+#include <fstream>
+
 #include "core/files/atomic_file.h"
 #include "core/files/checksum.h"
 
@@ -16,7 +18,7 @@ void write_headed_file(const std::string& path, const FileKind& kind, const Byte
     ByteWriter head;
     head.raw(kind.magic.data(), kind.magic.size());
     head.number(kind.version);
-    // Of all that stands before the checksum.
+    // Size of all that stands before the checksum.
     head.number(std::uint32_t(head.bytes().size() + sizeof(std::uint32_t) + fields.bytes().size() +
                               sizeof(std::uint64_t)));
     head.raw(fields.bytes().data(), fields.bytes().size());
@@ -26,8 +28,12 @@ void write_headed_file(const std::string& path, const FileKind& kind, const Byte
     write_file_atomically(path, pieces);
 }
 
-HeadedFile read_headed_file(std::span<const std::byte> bytes, const FileKind& kind) {
-    const std::size_t before_fields = kind.magic.size() + 2 * sizeof(std::uint32_t);
+namespace {
+
+constexpr std::size_t before_fields = sizeof(FileKind::magic) + 2 * sizeof(std::uint32_t);
+
+/// Size of the head without its checksum, which is right. Throws InputError.
+std::size_t checked_head(std::span<const std::byte> bytes, const FileKind& kind) {
     if (bytes.size() < before_fields) throw InputError("damaged (cut short)");
     if (std::memcmp(bytes.data(), kind.magic.data(), kind.magic.size()) != 0)
         throw InputError(std::string("not ") + kind.name);
@@ -42,10 +48,34 @@ HeadedFile read_headed_file(std::span<const std::byte> bytes, const FileKind& ki
         throw InputError("damaged (cut short)");
     std::memcpy(&sum, bytes.data() + size, sizeof(sum));
     if (sum != checksum(bytes.first(size))) throw InputError("damaged (its checksum is wrong)");
-    const auto film = bytes.subspan(size + sizeof(sum));
-    if (ByteReader(bytes.subspan(size - sizeof(std::uint64_t))).number<std::uint64_t>() != film.size())
+    return size;
+}
+
+ByteReader fields_of(std::span<const std::byte> bytes, std::size_t head) {
+    return ByteReader(bytes.first(head - sizeof(std::uint64_t)).subspan(before_fields));
+}
+
+}  // namespace
+
+HeadedFile read_headed_file(std::span<const std::byte> bytes, const FileKind& kind) {
+    const std::size_t head = checked_head(bytes, kind);
+    const auto film = bytes.subspan(head + sizeof(std::uint64_t));
+    if (ByteReader(bytes.subspan(head - sizeof(std::uint64_t))).number<std::uint64_t>() != film.size())
         throw InputError("damaged (its length is wrong)");
-    return {ByteReader(bytes.first(size - sizeof(std::uint64_t)).subspan(before_fields)), film};
+    return {fields_of(bytes, head), film};
+}
+
+std::optional<ByteReader> read_head(const std::string& path, const FileKind& kind,
+                                    std::vector<std::byte>& beginning) {
+    std::ifstream file(path, std::ios::binary);
+    beginning.resize(max_head_size);
+    file.read(reinterpret_cast<char*>(beginning.data()), std::streamsize(beginning.size()));
+    beginning.resize(std::size_t(file.gcount()));
+    try {
+        return fields_of(beginning, checked_head(beginning, kind));
+    } catch (const InputError&) {
+        return std::nullopt;
+    }
 }
 
 }  // namespace mote::core

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -59,7 +60,7 @@ class ByteReader {
     std::span<const std::byte> bytes_;
 };
 
-/// What tells one kind of file from others.
+/// Distinguishes one kind of file from others.
 struct FileKind {
     std::array<char, 8> magic;
     std::uint32_t version;
@@ -77,5 +78,12 @@ struct HeadedFile {
 };
 /// Throws InputError for bytes that are damaged or of another kind; its text completes "this file is ...".
 HeadedFile read_headed_file(std::span<const std::byte> bytes, const FileKind& kind);
+
+/// Largest head that read_head() reads [bytes].
+inline constexpr std::size_t max_head_size = std::size_t(1) << 20;
+/// Fields of a file's undamaged head; the film behind it is not read. Nothing where the file cannot be opened
+/// or begins as something else. `beginning` owns the bytes of the result.
+std::optional<ByteReader> read_head(const std::string& path, const FileKind& kind,
+                                    std::vector<std::byte>& beginning);
 
 }  // namespace mote::core

@@ -37,7 +37,7 @@ class Motion {
 
 }  // namespace
 
-PreviousFrame::PreviousFrame(std::unique_ptr<Scene> scene)
+PreviousFrame::PreviousFrame(std::shared_ptr<Scene> scene)
     : shapes_(scene->shapes().begin(), scene->shapes().end()) {
     const std::shared_ptr<Camera> camera = scene->parts().camera;
     scene.reset();

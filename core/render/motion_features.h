@@ -10,14 +10,15 @@
 
 namespace mote::core {
 
-/// Of the frame before: its camera, and where its shapes were.
+/// Camera and shapes of the frame before.
 class PreviousFrame {
   public:
-    /// Keeps the scene's camera and shapes, and nothing of their materials, lights and media.
-    explicit PreviousFrame(std::unique_ptr<Scene> scene);
+    /// Keeps the scene's camera and shapes, and nothing of their materials, lights and media: nobody else may
+    /// own it.
+    explicit PreviousFrame(std::shared_ptr<Scene> scene);
 
     const Camera& camera() const { return *camera_; }
-    /// Of every shape of `scene` the same shape in that frame, or null: the one with the same place in the
+    /// For every shape of `scene` the same shape in that frame, or null: the one with the same place in the
     /// scene, or, where shapes came or went, the one with the same id.
     std::vector<const Shape*> counterparts(const Scene& scene) const;
 

@@ -65,6 +65,11 @@ void write_partial_film(const std::string& path, const PartialFilm& partial) {
     write_headed_file(path, partial_file, head, film.serialize());
 }
 
+bool is_partial_film(const std::string& path) {
+    std::vector<std::byte> beginning;
+    return read_head(path, partial_file, beginning).has_value();
+}
+
 PartialFilm read_partial_film(const std::string& path) {
     const std::vector<std::byte> bytes = read_whole_file(path);
     try {

@@ -18,6 +18,9 @@ struct PartialFilm {
 /// Writes the file atomically. Throws InputError with the system's reason.
 void write_partial_film(const std::string& path, const PartialFilm& partial);
 
+/// True for a file that begins as a partial film.
+bool is_partial_film(const std::string& path);
+
 /// Throws InputError, which names the file, when it cannot be read, is damaged or no partial film.
 PartialFilm read_partial_film(const std::string& path);
 

@@ -77,7 +77,7 @@ class GaussianFilter final : public PixelFilter {
         return i;
     }
 
-    /// Of the table, so that it is exactly what invert() draws by.
+    /// Value of the table, so that it is exactly what invert() draws by.
     double density(double x) const {
         const double at = (x + radius_) / cell_;
         if (!(at >= 0.0 && at < double(cells))) return 0.0;

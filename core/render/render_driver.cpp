@@ -54,12 +54,23 @@ class PassLoop {
     }
     void state_noise() {
         const Film::GainAndNoise found = result_.film.gain_and_noise();
-        result_.statistics.values["noise"] = found.noise;
+        result_.statistics.values["noise"] = known(found.noise);
+        if (found.noise < known(found.noise))
+            result_.statistics.warnings.emplace_back(
+                "every pixel of every pass is black: how noisy the picture is, is not known");
         result_.statistics.values["varianceGain"] = found.gain;
     }
 
   private:
-    /// Whoever interrupts wants the picture, but soon: of the last preview what takes too long.
+    /// Passes that have found no light yet agree with each other, and say nothing: infinity.
+    double known(double noise) const {
+        if (noise > 0.0) return noise;
+        const std::vector<Rgb> picture = result_.film.beauty();
+        const bool black =
+            std::all_of(picture.begin(), picture.end(), [](const Rgb& c) { return c == Rgb(0.0f); });
+        return black ? infinity : noise;
+    }
+    /// After an interruption: reuses the last preview's result of every step that would take too long.
     void finish_in_a_hurry() {
         try {
             const Deadline deadline(most_finish_seconds);
@@ -136,7 +147,7 @@ class PassLoop {
         if (stop_.noise ? noise_rule_looks() : for_the_eye || state_.passes == 2) refresh_noise();
         if (request_.progress)
             request_.progress({state_.passes, state_.passes_of_this_run, stop_.passes, state_.seconds,
-                               seconds_left(stop_, state_), state_.noise});
+                               seconds_left(stop_, state_), known(state_.noise)});
         if (seconds_since(checkpoint_time_) >= request_.checkpoint_every_seconds) write_checkpoint_now();
         show_preview();
     }
@@ -146,10 +157,10 @@ class PassLoop {
     }
     /// The film is afterwards as it was: which part is next must not depend on whether somebody looked.
     void show_preview() {
-        // Whoever looks at the progress alone sees the noise of what a preview would show.
+        // The noise in reports of progress is that of the picture that a preview would show.
         const bool for_the_noise = request_.progress && !stop_.noise && runner_.estimator().changes_noise();
         if ((!request_.preview && !for_the_noise) || is_done()) return;
-        // Whoever waits sees what there is, though some part of the picture is still black.
+        // After this time a preview is shown though some part of the picture is still black.
         constexpr double patience = 2.5;
         if (!result_.film.has_passes(1) && seconds_since(start_) < patience) return;
         if (previews_ > 0 && seconds_since(preview_time_) < std::max(1.0, 20.0 * preview_seconds_)) return;
@@ -208,7 +219,7 @@ class PassLoop {
     double preview_seconds_ = 0.0;  ///< that the last one took
     Film::Replacements preview_means_;
     std::uint32_t preview_passes_ = 0;
-    /// Of the picture when it was finished last, and relative to the noise of its passes.
+    /// Noise of the picture when it was finished last, and relative to the noise of its passes.
     double finished_noise_ = infinity, left_of_noise_ = infinity;
     Clock::time_point preview_time_ = Clock::now();
     double noise_seconds_ = 0.0;  ///< that looking at the noise took the last time
@@ -266,6 +277,8 @@ void begin_range(const PassRange& range, const Estimator& estimator, Film& film)
 
 RenderResult render(const Scene& scene, const Integrator& integrator, const RenderRequest& request) {
     const FilmSettings& settings = scene.film();
+    if (!request.checkpoint_path.empty() && !request.resume)
+        require_own_checkpoint(request.checkpoint_path, request.content_hash);
     StopRule stop = request.stop;
     if (!stop.passes && !stop.seconds && !stop.noise && !request.enough)
         stop.passes = std::uint32_t(settings.sample_count);

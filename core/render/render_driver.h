@@ -38,7 +38,7 @@ struct RenderProgress {
     double noise;
 };
 
-/// What is to be rendered, when it stops, who is told.
+/// Seeds, stop rules and limits of a render, and the functions that receive reports.
 struct RenderRequest {
     std::uint64_t seed = 0;  ///< of all random numbers
     StopRule stop;           ///< when it ends
@@ -88,7 +88,8 @@ inline constexpr double most_finish_seconds = 1.0;
 
 /// Renders until a stop rule holds. When interrupted, the running pass is dropped and everything before it
 /// kept. Throws InputError when a range of passes is asked for and the integrator cannot tell which those
-/// are, and when a checkpoint does not belong to this render or is damaged. One that cannot be written is a
+/// are, when a checkpoint does not belong to this render or is damaged, and when something else stands where
+/// it is to be written. One that cannot be written is a
 /// warning and another try later: the one before it stays intact.
 RenderResult render(const Scene& scene, const Integrator& integrator, const RenderRequest& request);
 
@@ -99,7 +100,7 @@ std::unique_ptr<PixelFilter> make_pixel_filter(const std::string& name, float ra
 /// any input of a render changes, but not when its files move. 16 hexadecimal digits. Throws InputError for a
 /// file that cannot be read.
 std::string content_hash(const Scene& scene, const std::vector<std::string>& settings);
-/// The same for the scene's files by their names.
+/// content_hash() of files by their names.
 std::string content_hash(std::span<const std::string> files, const std::vector<std::string>& settings);
 
 }  // namespace mote::core

@@ -130,7 +130,6 @@ mote_status mote_epipolar(const mote_epipolar_options* given, float* light, size
         const FilmRectangle frame{{0.0, 0.0}, {double(o.width), double(o.height)}};
         EpipolarPicture picture(EpipolarLines(buffer.lamp_on_film(), frame, o.lines > 0 ? o.lines : 512, 0.5),
                                 sampling, source, in_order);
-        picture.march(source, in_order);
         Task task(buffer, rays);
         for (std::size_t i = 0; i < pixels; ++i) {
             const Vec2d film{double(i % std::size_t(o.width)) + 0.5, double(i / std::size_t(o.width)) + 0.5};

@@ -1,4 +1,4 @@
-// What the handles of the C interface hold, and how C++ errors become status codes.
+// Contents of the handles of the C interface, and how C++ errors become status codes.
 #pragma once
 
 #include <cstring>

@@ -182,7 +182,7 @@ typedef struct mote_render_options {
     int threads;             /* 0: one for every core */
     int auxiliary;           /* not 0: also positions, normals, depth, albedo */
     const char* denoise;     /* "oidn" or "bmfr": adds the layer "denoised"; null: none */
-    const char* checkpoint;  /* file; null: none */
+    const char* checkpoint;  /* file; null: none. Refused where something else stands there */
     double checkpoint_every; /* [s]; 0: 60 */
     int resume;              /* not 0: continue from the checkpoint */
     /* Called in the thread of mote_render(), twenty times a second at most; each may be null. */

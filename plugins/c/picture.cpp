@@ -1,11 +1,12 @@
 // Pictures of the C interface: rendering, layers, files.
-#include <limits>
 #include <span>
 
 #include "core/formats/pictures/image_file.h"
 #include "plugins/c/handles.h"
+#include "session/borrowed_arena.h"
 #include "session/denoise/bmfr_sequence.h"
 #include "session/denoise/denoised_layer.h"
+#include "session/output_files.h"
 #include "session/picture_compensation.h"
 
 namespace mote::c {
@@ -22,6 +23,28 @@ mote_status change(mote_picture* picture, const Change& change_now) {
     });
 }
 
+/// Calls the functions of the host.
+class HostObserver : public session::RenderObserver {
+  public:
+    explicit HostObserver(const mote_render_options& options) : options_(options) {}
+
+    void progress(const core::RenderProgress& p) override {
+        if (!options_.progress) return;
+        const mote_progress progress = {
+            sizeof(mote_progress), p.passes, p.passes_wanted.value_or(0), p.seconds, p.seconds_left, p.noise};
+        options_.progress(options_.user, &progress);
+    }
+    bool cancelled() override { return options_.cancelled && options_.cancelled(options_.user) != 0; }
+    bool wants_previews() const override { return options_.preview != nullptr; }
+    void preview(const core::ImageChannels& image) override {
+        const std::vector<core::Rgb> beauty = image.rgb("");
+        options_.preview(options_.user, image.width, image.height, &beauty.front().x);
+    }
+
+  private:
+    const mote_render_options& options_;
+};
+
 session::RenderSettings settings_of(const mote_render_options& o) {
     session::RenderSettings s;
     const bool in_range = o.seconds >= 0.0 && o.noise >= 0.0 && o.checkpoint_every >= 0.0 && o.threads >= 0 &&
@@ -37,19 +60,6 @@ session::RenderSettings settings_of(const mote_render_options& o) {
     if (o.checkpoint_every > 0.0) s.checkpoint_every = o.checkpoint_every;
     s.resume = o.resume != 0;
     if (s.resume && s.checkpoint.empty()) throw InvalidArgument("to resume needs a checkpoint");
-    if (o.progress)
-        s.progress = [&o](const core::RenderProgress& p) {
-            const mote_progress progress = {
-                sizeof(mote_progress), p.passes, p.passes_wanted.value_or(0), p.seconds,
-                p.seconds_left,        p.noise};
-            o.progress(o.user, &progress);
-        };
-    if (o.cancelled) s.cancelled = [&o] { return o.cancelled(o.user) != 0; };
-    if (o.preview)
-        s.preview = [&o](const core::ImageChannels& image) {
-            const std::vector<core::Rgb> beauty = image.rgb("");
-            o.preview(o.user, image.width, image.height, &beauty.front().x);
-        };
     return s;
 }
 
@@ -60,18 +70,15 @@ session::RenderSettings settings_of(const mote_render_options& o) {
 using namespace mote;
 using mote::c::required;
 
-mote_picture* mote_picture_new(void) {
-    mote_picture* picture = new (std::nothrow) mote_picture;
-    if (picture) picture->rendered.noise = std::numeric_limits<double>::infinity();
-    return picture;
-}
+mote_picture* mote_picture_new(void) { return new (std::nothrow) mote_picture; }
 void mote_picture_free(mote_picture* picture) { delete picture; }
 
 mote_status mote_render(const mote_scene* scene, const mote_render_options* given, mote_picture* picture) {
     return c::change(picture, [&](session::Rendered& rendered) {
         const mote_render_options options = c::known_options(given);
         if (!required(scene, "the scene").loaded) throw c::InvalidArgument("the scene is not loaded");
-        rendered = session::render(*scene->loaded, c::settings_of(options));
+        c::HostObserver observer(options);
+        rendered = session::render(*scene->loaded, c::settings_of(options), observer);
     });
 }
 
@@ -88,7 +95,7 @@ int mote_picture_height(const mote_picture* picture) { return picture ? picture-
 uint32_t mote_picture_passes(const mote_picture* picture) { return picture ? picture->rendered.passes : 0; }
 int mote_picture_interrupted(const mote_picture* picture) { return picture && picture->rendered.interrupted; }
 double mote_picture_noise(const mote_picture* picture) {
-    return picture ? picture->rendered.noise : std::numeric_limits<double>::infinity();
+    return picture ? picture->rendered.noise : core::infinity;
 }
 const char* mote_picture_statistics(const mote_picture* picture) {
     return picture ? picture->rendered.statistics.c_str() : "";
@@ -157,7 +164,6 @@ mote_status mote_picture_load(mote_picture* picture, const char* path) {
     return c::change(picture, [&](session::Rendered& rendered) {
         session::Rendered read;
         read.image = core::read_exr(&required(path, "the path"));
-        read.noise = std::numeric_limits<double>::infinity();
         rendered = std::move(read);
     });
 }
@@ -165,7 +171,8 @@ mote_status mote_picture_load(mote_picture* picture, const char* path) {
 mote_status mote_picture_save(mote_picture* picture, const char* path, int half) {
     return c::change(picture, [&](session::Rendered& rendered) {
         if (rendered.image.names.empty()) throw c::InvalidArgument("the picture has no layers");
-        core::write_exr(&required(path, "the path"), rendered.image, half != 0);
+        session::require_exr_name(&required(path, "the path"));
+        core::write_exr(path, rendered.image, half != 0);
     });
 }
 
@@ -184,6 +191,7 @@ mote_status mote_picture_compensate(mote_picture* picture, const mote_ssbc_optio
 
 mote_status mote_picture_denoise(mote_picture* picture, const char* method, int threads) {
     return c::change(picture, [&](session::Rendered& rendered) {
-        session::add_denoised(rendered.image, &required(method, "the method"), threads);
+        session::BorrowedArena(threads).execute(
+            [&] { session::make_denoiser(&required(method, "the method"), threads)(rendered.image); });
     });
 }

@@ -14,6 +14,9 @@ void LastError::set(const core::InputError& error) {
 
 namespace {
 
+constexpr std::size_t max_mesh_count = 0xffffffff;  ///< indices have 32 bits
+constexpr double max_grid_values = double(std::size_t(1) << 34);
+
 std::string text_or(const char* text, const char* otherwise) { return text ? text : otherwise; }
 
 session::SceneChanges changes_of(const mote_load_options& options) {
@@ -106,6 +109,8 @@ mote_status mote_scene_add_mesh(mote_scene* scene, const char* name, const mote_
     return c::build(scene, [&](session::SceneTree& tree) {
         const mote_mesh m = c::known_options(&required(mesh, "the mesh"));
         core::MeshData data;
+        if (m.vertex_count > c::max_mesh_count || m.triangle_count > c::max_mesh_count)
+            throw c::InvalidArgument("a mesh has at most 2^32 - 1 vertices and triangles");
         for (std::size_t i = 0; i < m.vertex_count; ++i) {
             const float* p = &required(m.positions, "positions") + 3 * i;
             data.positions.emplace_back(p[0], p[1], p[2]);
@@ -128,6 +133,8 @@ mote_status mote_scene_add_grid(mote_scene* scene, const char* name, const mote_
         if (g.width < 1 || g.height < 1 || g.depth < 1 || (channels != 1 && channels != 3))
             throw c::InvalidArgument(
                 "a grid has at least one voxel along each axis, and one or three channels");
+        if (double(g.width) * double(g.height) * double(g.depth) * channels > c::max_grid_values)
+            throw c::InvalidArgument("a grid has at most 2^34 values");
         const std::size_t count =
             std::size_t(g.width) * std::size_t(g.height) * std::size_t(g.depth) * std::size_t(channels);
         const float* values = &required(g.values, "values");

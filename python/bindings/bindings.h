@@ -1,4 +1,4 @@
-// What the files of the Python module share: arrays, and errors with file and line.
+// Shared by the files of the Python module: arrays, and errors with file and line.
 #pragma once
 
 #include <nanobind/nanobind.h>

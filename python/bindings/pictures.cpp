@@ -1,15 +1,16 @@
 // Pictures: layers, files, previews; and what is measured of them and done to them.
 #include <cmath>
-#include <limits>
 
 #include "core/film/exposure.h"
 #include "core/formats/pictures/image_file.h"
 #include "core/math/srgb.h"
 #include "core/metrics/series_error.h"
 #include "python/bindings/bindings.h"
+#include "session/borrowed_arena.h"
 #include "session/compare.h"
 #include "session/denoise/bmfr_sequence.h"
 #include "session/denoise/denoised_layer.h"
+#include "session/output_files.h"
 #include "session/picture_compensation.h"
 
 namespace mote::python {
@@ -135,7 +136,7 @@ void compensate(Picture& picture, float bound, int steps, bool flat, bool half_r
     session::compensate_picture(picture.rendered.image, settings, {}, replace);
 }
 
-/// What the frames so far have left.
+/// State of the frames so far.
 struct Sequence {
     session::BmfrSequence frames{false};
 };
@@ -144,7 +145,6 @@ Picture read_picture(const std::string& path) {
     const nb::gil_scoped_release others_go_on;
     Picture picture;
     picture.rendered.image = core::read_exr(path);
-    picture.rendered.noise = std::numeric_limits<double>::infinity();
     return picture;
 }
 
@@ -152,17 +152,14 @@ Picture read_picture(const std::string& path) {
 
 void bind_pictures(nb::module_& m) {
     nb::class_<Picture>(m, "Picture", "Layers and what is known of them.")
-        .def("__init__",
-             [](Picture* p) {
-                 new (p) Picture;
-                 p->rendered.noise = std::numeric_limits<double>::infinity();
-             })
+        .def(nb::init<>())
         .def("copy", [](const Picture& p) { return Picture(p); })
         .def_static("read", &read_picture, nb::arg("path"))
         .def(
             "save",
             [](const Picture& p, const std::string& path, bool half) {
                 const nb::gil_scoped_release others_go_on;
+                session::require_exr_name(path);
                 core::write_exr(path, p.rendered.image, half);
             },
             nb::arg("path"), nb::arg("half"))
@@ -190,7 +187,8 @@ void bind_pictures(nb::module_& m) {
             "denoise",
             [](Picture& p, const std::string& method, int threads) {
                 const nb::gil_scoped_release others_go_on;
-                session::add_denoised(p.rendered.image, method, threads);
+                session::BorrowedArena(threads).execute(
+                    [&] { session::make_denoiser(method, threads)(p.rendered.image); });
             },
             nb::arg("method"), nb::arg("threads"));
     nb::class_<Sequence>(m, "Sequence", "Frames that are denoised in their order.")

@@ -1,4 +1,4 @@
-// Rendering, with Python's own threads going on, its signals heard, and its exceptions kept until the picture
+// Rendering: Python's other threads run, its signals are handled, and its exceptions are kept until the picture
 // is safe.
 #include "python/bindings/bindings.h"
 
@@ -16,44 +16,43 @@ nb::dict as_dict(const core::RenderProgress& p) {
     return d;
 }
 
-/// What Python wants to hear, and the first exception that came of it: the render then ends as if it were
+/// Calls Python's functions, and keeps the first exception of one: the render then ends as if it were
 /// cancelled.
-class Listeners {
+class PythonObserver : public session::RenderObserver {
   public:
-    Listeners(nb::object progress, nb::object preview)
+    PythonObserver(nb::object progress, nb::object preview)
         : progress_(std::move(progress)), preview_(std::move(preview)) {}
 
-    void add_to(session::RenderSettings& settings) {
-        if (!progress_.is_none())
-            settings.progress = [this](const core::RenderProgress& p) {
-                call([&] { stop_ = stop_ || is_false(progress_(as_dict(p))); });
-            };
-        if (!preview_.is_none())
-            settings.preview = [this](const core::ImageChannels& image) {
-                call([&] {
-                    Picture picture;
-                    picture.rendered.image = image;
-                    stop_ = stop_ || is_false(preview_(nb::cast(std::move(picture))));
-                });
-            };
-        settings.cancelled = [this] {
-            call([&] {
-                if (PyErr_CheckSignals() != 0) throw nb::python_error();
-            });
-            return stop_;
-        };
+    void progress(const core::RenderProgress& p) override {
+        if (!progress_.is_none()) call([&] { return is_false(progress_(as_dict(p))); });
     }
-    /// Raises what was kept, as the attribute of a tuple's second place: none where nothing was raised.
+    bool wants_previews() const override { return !preview_.is_none(); }
+    void preview(const core::ImageChannels& image) override {
+        call([&] {
+            Picture picture;
+            picture.rendered.image = image;
+            return is_false(preview_(nb::cast(std::move(picture))));
+        });
+    }
+    bool cancelled() override {
+        call([]() -> bool {
+            if (PyErr_CheckSignals() != 0) throw nb::python_error();
+            return false;
+        });
+        return stop_;
+    }
+    /// The exception; None where there was none.
     nb::object raised() const { return error_; }
 
   private:
     static bool is_false(const nb::object& answer) { return answer.is(nb::bool_(false)); }
+    /// f returns true to stop.
     template <typename F>
     void call(const F& f) {
         if (stop_) return;
         const nb::gil_scoped_acquire ours;
         try {
-            f();
+            stop_ = f();
         } catch (nb::python_error& error) {
             error_ = nb::borrow(error.value());
             stop_ = true;
@@ -75,14 +74,13 @@ nb::tuple render(const session::LoadedScene& scene, std::optional<std::uint32_t>
     settings.seed = seed, settings.threads = threads;
     settings.checkpoint = checkpoint, settings.checkpoint_every = checkpoint_every, settings.resume = resume;
     settings.auxiliary = auxiliary, settings.denoise = denoise, settings.command_line = command_line;
-    Listeners listeners(std::move(progress), std::move(preview));
-    listeners.add_to(settings);
+    PythonObserver observer(std::move(progress), std::move(preview));
     Picture picture;
     {
         const nb::gil_scoped_release others_go_on;
-        picture.rendered = session::render(scene, settings);
+        picture.rendered = session::render(scene, settings, observer);
     }
-    return nb::make_tuple(nb::cast(std::move(picture)), listeners.raised());
+    return nb::make_tuple(nb::cast(std::move(picture)), observer.raised());
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Scenes: built element by element, loaded, and asked what they will do; and the manual pages.
+// Scenes: building element by element, loading, plans; and the manual pages.
 #include "python/bindings/bindings.h"
 #include "session/registry.h"
 

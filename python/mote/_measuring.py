@@ -142,6 +142,9 @@ def denoise_sequence(frames: Iterable[Image], features: Optional[Iterable[Mappin
     sequence = _mote.Sequence()
     of_frame = iter(features) if features is not None else None
     for frame in frames:
-        result = _with_features(frame, next(of_frame) if of_frame else None)
+        given = next(of_frame, None) if of_frame else None
+        if of_frame and given is None:
+            raise ValueError("there are fewer features than frames")
+        result = _with_features(frame, given)
         sequence.denoise(result._picture)
         yield result

@@ -10,13 +10,14 @@ from typing import Any, Dict, Iterator, List, Optional, Union
 import numpy as np
 
 from . import _errors, _mote  # noqa: F401  (errors are registered first)
+from ._paths import path_text
 
 
 class Picture(Mapping):
     """Layers by name: picture["beauty"], picture["direct"], ...; list(picture) are their names.
 
     A layer is a float32 array (height, width, channels), or (height, width) where it has one channel, row by row from
-    the top. Light is radiance in W/(m^2 sr), R, G, B; positions P and distances Depth are in metres, normals N and Ns
+    the top. It is read-only: change a copy, and assign it. Light is radiance in W/(m^2 sr), R, G, B; positions P and distances Depth are in metres, normals N and Ns
     unit vectors in world space; "Variance" is that of the mean of the beauty, "Variance.NAME" that of another layer.
     Where a render was interrupted in its first pass, "alpha" is 1 for the pixels that are finished.
 
@@ -40,11 +41,12 @@ class Picture(Mapping):
     @classmethod
     def load(cls, path: Union[str, Path]) -> Picture:
         """Reads an OpenEXR file. Raises mote.Error."""
-        return cls._of(_mote.Picture.read(str(path)))
+        return cls._of(_mote.Picture.read(path_text(path)))
 
     def save(self, path: Union[str, Path], half: bool = False) -> None:
-        """Writes an OpenEXR file, as float32 or (half) float16. Raises mote.Error."""
-        self._picture.save(str(path), half)
+        """Writes an OpenEXR file, as float32 or (half) float16. Raises mote.Error, also for a name that does not end in
+        .exr: png() makes a PNG."""
+        self._picture.save(path_text(path), half)
 
     def copy(self) -> Picture:
         return Picture._of(self._picture.copy())
@@ -58,6 +60,7 @@ class Picture(Mapping):
                 except _errors.Error as error:
                     raise KeyError(str(error)) from None
             self._cache[name] = self._picture.read_layer(name)
+            self._cache[name].setflags(write=False)
         return self._cache[name]
 
     def __setitem__(self, name: str, values: Any) -> None:

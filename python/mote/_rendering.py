@@ -1,11 +1,13 @@
 """Rendering."""
 from __future__ import annotations
 
+import math
 import sys
 from pathlib import Path
 from typing import Any, Callable, Dict, Optional, Union
 
 from . import _mote
+from ._paths import path_text
 from ._picture import Picture
 from ._scene import Scene, load
 
@@ -40,7 +42,7 @@ def render(scene: Union[Scene, str, Path], *, passes: Optional[int] = None, seco
         except KeyboardInterrupt as stopped:
             picture = stopped.picture
 
-    checkpoint: a file that is written every `checkpoint_every` seconds and when the render is interrupted; with
+    checkpoint: a file of its own, refused where something else stands there, that is written every `checkpoint_every` seconds and when the render is interrupted; with
     resume=True the render goes on from there, to the very bits that it would have had. auxiliary: also layers of what
     is seen (Albedo, N, Ns, P, Depth, ...). denoise: "bmfr", or "oidn" where it is installed, adds the layer "denoised".
     Raises mote.Error, and ValueError for arguments out of range.
@@ -50,6 +52,8 @@ def render(scene: Union[Scene, str, Path], *, passes: Optional[int] = None, seco
     for value, name in ((passes, "passes"), (seconds, "seconds"), (noise, "noise")):
         if value is not None and not value > 0:
             raise ValueError(f"{name} must be above 0, not {value}")
+    if not 0 <= checkpoint_every < math.inf:
+        raise ValueError(f"checkpoint_every must be 0 or above, not {checkpoint_every}")
     if resume and checkpoint is None:
         raise ValueError("resume needs a checkpoint")
     if not 0 <= threads <= 4096:
@@ -59,7 +63,7 @@ def render(scene: Union[Scene, str, Path], *, passes: Optional[int] = None, seco
     words = ["mote.render", scene.path or "{...}"]
     words += [f"{name}={value}" for name, value in
               (("passes", passes), ("seconds", seconds), ("noise", noise), ("seed", seed)) if value is not None]
-    inner, raised = _mote.render(scene._scene, passes, seconds, noise, seed, threads, str(checkpoint or ""),
+    inner, raised = _mote.render(scene._scene, passes, seconds, noise, seed, threads, path_text(checkpoint or ""),
                                  checkpoint_every, resume, auxiliary, denoise, words, told, preview)
     picture = Picture._of(inner)
     if progress is True:

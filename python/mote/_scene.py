@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any, Dict, List, Mapping, Optional, Union
 
 from . import _errors, _mote  # noqa: F401  (errors are registered first)
+from ._paths import path_text
 from ._scene_dict import texts_of, tree_of
 
 
@@ -38,7 +39,7 @@ class Scene:
 
     def __init__(self, scene: Mapping[str, Any], *, integrator: str = "", define: Optional[Mapping[str, Any]] = None,
                  lenient: bool = False, folder: Union[str, Path] = "") -> None:
-        tree = tree_of(scene, str(folder) or os.getcwd())
+        tree = tree_of(scene, path_text(folder) or os.getcwd())
         self._scene = _mote.LoadedScene.from_tree(tree, integrator, texts_of(define or {}), lenient)
         self.path = ""
 
@@ -97,12 +98,12 @@ def load(path: Union[str, Path], *, integrator: str = "", define: Optional[Mappi
     scene's. lenient: leave out or approximate what is wrong. Raises mote.Error with .file and .line.
     """
     defines: Dict[str, Any] = {**parameters, **(define or {})}
-    return Scene._of(_mote.LoadedScene.from_file(str(path), integrator, texts_of(defines), lenient), str(path))
+    return Scene._of(_mote.LoadedScene.from_file(path_text(path), integrator, texts_of(defines), lenient), str(path))
 
 
 def load_string(xml: str, *, folder: Union[str, Path] = "", name: str = "<string>", integrator: str = "",
                 define: Optional[Mapping[str, Any]] = None, lenient: bool = False, **parameters: Any) -> Scene:
     """The same of a scene file's text; relative file names are looked up in `folder`."""
     defines: Dict[str, Any] = {**parameters, **(define or {})}
-    inner = _mote.LoadedScene.from_text(xml, str(folder) or os.getcwd(), name, integrator, texts_of(defines), lenient)
+    inner = _mote.LoadedScene.from_text(xml, path_text(folder) or os.getcwd(), name, integrator, texts_of(defines), lenient)
     return Scene._of(inner, name)

@@ -45,6 +45,16 @@ def _fail(place: str, text: str) -> Error:
     return error
 
 
+def _indices(values: Any, place: str) -> np.ndarray:
+    """Whole numbers that 32 bits hold."""
+    array = np.asarray(values)
+    if array.dtype.kind not in "iu":
+        raise _fail(place, f"triangles are whole numbers, not {array.dtype}")
+    if array.size and (array.min() < 0 or array.max() > np.iinfo(np.uint32).max):
+        raise _fail(place, f"triangles name vertices from 0 on, not {array.min()} to {array.max()}")
+    return np.ascontiguousarray(array, dtype=np.uint32)
+
+
 class _Writer:
     def __init__(self, tree: _mote.Tree) -> None:
         self.tree = tree
@@ -88,7 +98,7 @@ class _Writer:
             def floats(key: str) -> Any:
                 value = entries.pop(key, None)
                 return None if value is None else np.ascontiguousarray(value, dtype=np.float32)
-            triangles = np.ascontiguousarray(entries.pop("triangles"), dtype=np.uint32)
+            triangles = _indices(entries.pop("triangles"), place)
             self.tree.add_mesh(name, floats("positions"), triangles, floats("normals"), floats("uvs"))
             kind = "arraymesh"
         elif "data" in entries and kind in ("arraygrid", "gridvolume"):

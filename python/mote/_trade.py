@@ -5,6 +5,7 @@ import json
 import os
 import shutil
 import subprocess
+import tempfile
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, Optional, Union
 
@@ -37,18 +38,18 @@ def trade(scene: Union[str, Path], methods: Optional[List[Mapping[str, Any]]] = 
     """
     output = Path(output)
     command = [_command(), "trade", str(scene), "-o", str(output), "--threads", str(threads)]
-    if methods is not None:
-        output.mkdir(parents=True, exist_ok=True)
-        file = output / "methods.json"
-        file.write_text(json.dumps({"methods": list(methods)}), encoding="utf-8")
-        command += ["--methods", str(file)]
     options = {"--reference": reference, "--resolve": resolve, "--time": seconds, "--passes": passes, "--seeds": seeds}
     for name, value in options.items():
         command += [name, str(value)] if value is not None else []
     for name, text in texts_of({**parameters, **(define or {})}):
         command += ["-D", f"{name}={text}"]
     command += ["--fresh"] * fresh + ["--quiet"] * quiet
-    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE if quiet else None, text=True, check=False)
+    with tempfile.TemporaryDirectory(prefix="mote_") as folder:
+        if methods is not None:
+            file = Path(folder) / "methods.json"
+            file.write_text(json.dumps({"methods": list(methods)}), encoding="utf-8")
+            command += ["--methods", str(file)]
+        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE if quiet else None, text=True, check=False)
     if done.returncode != 0:
         raise Error((done.stderr or f"mote trade ended with {done.returncode}").strip().removeprefix("mote: "))
     return json.loads((output / "summary.json").read_text(encoding="utf-8"))

@@ -16,6 +16,7 @@ from pathlib import Path
 USUAL_BLOCK = 16  # passes of a task
 NOISE_RULE_FROM = 8  # fewer passes say too little about their spread (core/render/stop_clock.h)
 PILOT_PASSES = 16
+FILM_MAGIC = b"motepart"  # of partial films (core/render/partial_film.cpp)
 
 
 class ClusterError(Exception):
@@ -86,20 +87,21 @@ def blocks(first, end, size):
 
 
 class Film:
-    """The passes so far, in a file beside the picture."""
+    """The passes so far, in a file beside the picture; blocks wait in a folder of their own beside it."""
 
     def __init__(self, command, path):
         self.command, self.path = command, path
+        self.scratch = tempfile.TemporaryDirectory(prefix=path.name + ".", dir=path.parent)
+        self.folder = Path(self.scratch.name)
         self.passes, self.noise, self.content = 0, None, None
 
     def add(self, parts):
         """Adds the films that follow; without any reads what is there."""
-        stats, sum_ = self.path.with_suffix(".json"), self.path.with_suffix(".sum.film")
+        stats, sum_ = self.folder / "sum.json", self.folder / "sum.film"
         all_parts = ([str(self.path)] if self.path.exists() else []) + [str(p) for p in parts]
         run_mote(self.command, ["merge", *all_parts, "-o", str(sum_), "--stats", str(stats), "--quiet"])
         os.replace(sum_, self.path)
         said = json.loads(stats.read_text())
-        stats.unlink()
         if said["first_pass"] != 0:
             raise ClusterError(f"'{self.path}' does not begin with pass 0")
         self.passes, self.noise, self.content = said["passes"], said["noise"], said["content"]
@@ -152,7 +154,7 @@ class Cluster:
                 say(f"worker {address} is refused: {reason}")
             self.refused[address] = reason
             return False
-        path = self.film.path.with_name(f"{self.film.path.name}.{first}.film")
+        path = self.film.folder / f"{first}.film"
         path.write_bytes(film)
         self.done[first] = end, path
         return True
@@ -240,6 +242,8 @@ def render(scene, output, scheduler, *, passes=None, noise=None, block=USUAL_BLO
             film.add([])
             if film.content != ours["content"]:
                 raise ClusterError(f"cannot resume: '{film.path}' is of another render")
+        elif film.path.open("rb").read(len(FILM_MAGIC)) != FILM_MAGIC:
+            raise ClusterError(f"'{film.path}' is no partial film of mote, and is not replaced")
         else:
             film.path.unlink()
     job = {"id": f"{ours['content']}-{os.getpid()}-{os.urandom(4).hex()}", "mote": worker_mote, "render": arguments,

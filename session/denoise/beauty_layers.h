@@ -10,7 +10,7 @@ namespace mote::session {
 
 /// Names of the colours that make up the beauty, without features, variances and the like.
 std::vector<std::string> layers_of_beauty(const core::ImageChannels& image);
-/// Whether they add up to it, apart from the rounding of every layer to float16. Not without any.
+/// True if they add up to it, apart from the rounding of every layer to float16. Not without any.
 bool layers_add_up(const core::ImageChannels& image, const std::vector<std::string>& layers,
                    std::span<const core::Rgb> beauty);
 /// The planes layer.X, .Y, .Z as one vector a pixel; empty where one is missing.

@@ -43,7 +43,7 @@ BmfrFeatures::BmfrFeatures(const ImageChannels& image)
             position_[p] = Vec3(infinity);
     for (int c = 0; c < 3 && !normal_.empty(); ++c) surface_planes_.push_back(component(normal_, c));
     for (int c = 0; c < 3 && !position_.empty(); ++c) surface_planes_.push_back(component(position_, c));
-    // What mirrors show, in their blocks: it does not vary, and takes no part, in others.
+    // Reflections in mirrors, in their blocks: it does not vary, and takes no part, in others.
     for (const std::vector<Vec3>& vectors :
          {vector_layer(image, "Mirrored.Ns"), vector_layer(image, "Mirrored.P"), image.rgb("Mirrored.Albedo"),
           image.rgb("Mirrored.Emission")})

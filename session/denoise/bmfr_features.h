@@ -1,4 +1,4 @@
-// What a picture's layers know of its pixels, as features of regressions and of reprojection.
+// Layers of a picture as features of regressions and of reprojection.
 #pragma once
 
 #include <memory>

@@ -76,7 +76,7 @@ void BmfrSequence::add_denoised_layer(ImageChannels& image) {
     const auto place = image.metadata.find("worldToCamera");
     const std::string camera_place = place != image.metadata.end() ? place->second : "";
     if (!motion.empty()) {
-        // What is infinitely far away stands still where the camera does.
+        // Infinitely far points stand still where the camera does.
         if (!camera_place.empty() && camera_place == camera_place_)
             for (Vec2& m : motion)
                 if (!std::isfinite(m.x)) m = Vec2(0.0f);

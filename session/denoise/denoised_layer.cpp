@@ -1,10 +1,7 @@
 #include "session/denoise/denoised_layer.h"
 
-#include <tbb/info.h>
-#include "core/objects/error.h"
 
 #include "core/objects/error.h"
-#include "session/borrowed_arena.h"
 #include "session/denoise/beauty_layers.h"
 #include "session/denoise/bmfr_sequence.h"
 
@@ -44,17 +41,18 @@ void add_denoised_layer(ImageChannels& image, const OidnLibrary& library) {
         (albedo.empty() || normal.empty() ? "" : " and Ns") + "; all other layers are as they were measured";
 }
 
-void add_denoised(ImageChannels& image, const std::string& method, int threads) {
+Denoiser make_denoiser(const std::string& method, int threads, bool sequence) {
+    if (method == "oidn")
+        return [library = std::make_shared<OidnLibrary>(threads)](ImageChannels& image) {
+            add_denoised_layer(image, *library);
+        };
+    if (method == "bmfr")
+        return [frames = std::make_shared<BmfrSequence>(!sequence)](ImageChannels& image) {
+            frames->add_denoised_layer(image);
+        };
     const std::vector<std::string> known = {"oidn", "bmfr"};
-    if (method != "oidn" && method != "bmfr")
-        throw core::InputError("there is no denoiser '" + core::printable(method) + "'" +
-                               core::suggestion(method, known));
-    BorrowedArena(threads).execute([&] {
-        if (method == "oidn")
-            add_denoised_layer(image, OidnLibrary(threads));
-        else
-            BmfrSequence(true).add_denoised_layer(image);
-    });
+    throw core::InputError("there is no denoiser '" + core::printable(method) + "'" +
+                           core::suggestion(method, known));
 }
 
 ImageChannels denoised_picture(const ImageChannels& image) {

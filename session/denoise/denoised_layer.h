@@ -1,6 +1,7 @@
 // The layer `denoised` of a picture: for the eye. Everything else in the picture stays as it was measured.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 
@@ -19,14 +20,17 @@ inline const std::string denoised_layer = "denoised";
 /// the library fails.
 void add_denoised_layer(core::ImageChannels& image, const OidnLibrary& library);
 
-/// The same by a method's name, "oidn" or "bmfr" (bmfr_sequence.h). `threads` 0: as many as there are cores.
-/// Throws InputError likewise, and for another name.
-void add_denoised(core::ImageChannels& image, const std::string& method, int threads);
+/// Adds the layer to one picture after the other.
+using Denoiser = std::function<void(core::ImageChannels&)>;
+/// The method "oidn" or "bmfr" (bmfr_sequence.h). `threads` 0: as many as there are cores. `sequence`: the
+/// pictures are frames of one, in their order. Throws InputError for another name, and where the library is
+/// not installed.
+Denoiser make_denoiser(const std::string& method, int threads, bool sequence = false);
 
 /// The denoised layer with its metadata, as a picture of its own.
 core::ImageChannels denoised_picture(const core::ImageChannels& image);
 
-/// What to say where a picture is measured that holds such a layer; "" where it does not. `layer`: that is
+/// Warning where a picture is measured that holds such a layer; "" where it does not. `layer`: that is
 /// measured, "" for the beauty.
 std::string denoised_doubt(const std::map<std::string, std::string>& metadata, const std::string& path,
                            const std::string& layer);

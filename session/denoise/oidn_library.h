@@ -23,7 +23,7 @@ class OidnLibrary {
 
     const std::string& version() const { return version_; }  ///< "2.5.1"
 
-    /// What is known of the pixels; no feature: empty.
+    /// Features of the pixels; empty: none.
     struct Picture {
         int width = 0, height = 0;
         std::span<const core::Rgb> colour;          ///< radiance

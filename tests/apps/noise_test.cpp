@@ -101,7 +101,7 @@ TEST_CASE("The noise predicts the true error within 20 % on eight scenes", "[noi
     const TemporaryFolder folder;
     for (const Case& c : cases()) {
         write_file(folder.file("scene.xml"), c.xml);
-        const auto scene = apps::load({folder.file("scene.xml"), "", {}}, registry());
+        const auto scene = core::load_scene(folder.file("scene.xml"), registry(), session::load_options({}));
         const core::Film long_one = render(*scene, reference_passes, 99);
         const auto reference = long_one.beauty();
         const auto weights = core::relative_weights(reference);
@@ -128,7 +128,8 @@ TEST_CASE("The noise predicts the true error within 20 % on eight scenes", "[noi
 TEST_CASE("A Cornell box, whose lamp is in the picture, stops where its error is what was asked for",
           "[noise][statistics]") {
     const std::string path_of_scene = std::string(MOTE_SOURCE_DIR) + "/scenes/cornell_box.xml";
-    const auto scene = apps::load({path_of_scene, "path", {"resx=48", "resy=48"}}, registry());
+    const auto scene = core::load_scene(path_of_scene, registry(),
+                                        session::load_options({"path", {{"resx", "48"}, {"resy", "48"}}}));
     core::RenderRequest request;
     request.seed = 1, request.stop.noise = 0.15;  // 0.05 takes nine times as long, and the same measure
     const core::Film film = core::render(*scene, *scene->integrator(), request).film;

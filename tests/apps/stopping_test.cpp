@@ -2,6 +2,7 @@
 //
 // What is timed are minutes of work that have to stop; the bounds are generous, for machines are busy.
 #include <sys/resource.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -54,6 +55,17 @@ std::function<void()> limited(int what, rlim_t limit) {
         const rlimit both{limit, limit};
         ::setrlimit(__rlimit_resource_t(what), &both);
     };
+}
+
+/// crowd.xml: a million spheres take several seconds to load, and no pixel.
+void write_crowd(const Folder& folder) {
+    std::string many = "<scene version=\"3.0.0\">", includes;
+    for (int i = 0; i < 1000; ++i)
+        many += "<shape type=\"sphere\"/>", includes += "<include filename=\"many.xml\"/>";
+    write_file(folder.file("many.xml"), many + "</scene>");
+    write_file(folder.file("crowd.xml"), R"(<scene version="3.0.0"><sensor type="perspective"/>
+        <emitter type="constant"/>)" + includes +
+                                             "</scene>");
 }
 
 }  // namespace
@@ -123,6 +135,36 @@ TEST_CASE("A terminal that hangs up saves the picture and the checkpoint", "[com
     CHECK(folder.has("a.exr.checkpoint"));
 }
 
+TEST_CASE("A pipe that nobody reads can be interrupted", "[command][stopping]") {
+    for (const char* passes : {"1", "1000000"}) {  // while it is opened, and while passes are rendered
+        RunResult r;
+        for (int wait = 500; r.exit_code == -1 && wait < 20000; wait *= 2) {  // as above
+            const Folder folder;
+            REQUIRE(::mkfifo(folder.file("a.exr").c_str(), 0600) == 0);
+            MoteProcess process(folder, folder.render({"--integrator", "path", "--passes", passes}));
+            std::this_thread::sleep_for(std::chrono::milliseconds(wait));
+            process.send(SIGINT);
+            CHECK(seconds_of([&] { r = process.wait(); }) < generous_seconds);
+        }
+        CHECK(r.exit_code == 128 + SIGINT);
+        CHECK(r.err.find("interrupted") != std::string::npos);
+    }
+}
+
+TEST_CASE("A signal ends a command that has nothing to lose with a line", "[command][stopping]") {
+    RunResult r;
+    for (int wait = 250; r.exit_code == -1 && wait < 20000; wait *= 2) {  // as above
+        const Folder folder;
+        write_crowd(folder);
+        MoteProcess process(folder, {"plan", "crowd.xml"});
+        std::this_thread::sleep_for(std::chrono::milliseconds(wait));
+        process.send(SIGTERM);
+        r = process.wait();
+    }
+    CHECK(r.exit_code == 128 + SIGTERM);
+    CHECK(r.err == "mote: interrupted\n");
+}
+
 TEST_CASE("A limit on the size of files is an error, and leaves none", "[command][stopping]") {
     const Folder folder;
     const RunResult r = run_mote(folder, folder.render({"--integrator", "path", "--passes", "1", "--quiet"}),
@@ -185,14 +227,7 @@ TEST_CASE("Too little memory names what it was for", "[command][stopping]") {
 
 TEST_CASE("A trade and its reference end at once while the scene is loaded", "[command][stopping][trade]") {
     const Folder folder;
-    // A million spheres take several seconds, and no pixel.
-    std::string many = "<scene version=\"3.0.0\">", includes;
-    for (int i = 0; i < 1000; ++i)
-        many += "<shape type=\"sphere\"/>", includes += "<include filename=\"many.xml\"/>";
-    write_file(folder.file("many.xml"), many + "</scene>");
-    write_file(folder.file("crowd.xml"), R"(<scene version="3.0.0"><sensor type="perspective"/>
-        <emitter type="constant"/>)" + includes +
-                                             "</scene>");
+    write_crowd(folder);
     for (const auto& arguments : {std::vector<std::string>{"trade", "crowd.xml", "--make-reference", "r.exr"},
                                   std::vector<std::string>{"trade", "crowd.xml"}}) {
         RunResult r;

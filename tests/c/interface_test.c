@@ -325,6 +325,52 @@ static void test_arrays(void) {
     mote_scene_free(scene);
 }
 
+/* Numbers and depths that no scene has. */
+static void test_extremes(void) {
+    const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    const uint32_t triangle[3] = {0, 1, 2};
+    mote_mesh mesh = {0};
+    mote_grid grid = {0};
+    mote_scene* scene = mote_scene_new();
+    int i, refused = 0;
+    const double begin = seconds();
+    for (i = 0; i < 20000; ++i)
+        refused += mote_scene_begin(scene, "shape", "sphere", NULL, NULL) == MOTE_INPUT_ERROR;
+    CHECK(refused > 19000);
+    CHECK(seconds() - begin < 5.0);
+    CHECK(strstr(mote_scene_error(scene), "nested") != NULL);
+    mesh.struct_size = sizeof mesh, mesh.positions = corners, mesh.triangles = triangle;
+    mesh.vertex_count = SIZE_MAX, mesh.triangle_count = 1;
+    CHECK(mote_scene_add_mesh(scene, "large", &mesh) == MOTE_INVALID_ARGUMENT);
+    mesh.vertex_count = 3, mesh.triangle_count = SIZE_MAX / 3;
+    CHECK(mote_scene_add_mesh(scene, "large", &mesh) == MOTE_INVALID_ARGUMENT);
+    grid.struct_size = sizeof grid, grid.values = corners;
+    grid.width = grid.height = grid.depth = 2000000000;
+    CHECK(mote_scene_add_grid(scene, "large", &grid) == MOTE_INVALID_ARGUMENT);
+    mote_scene_free(scene);
+}
+
+/* A checkpoint replaces and removes nothing but its own. */
+static void test_files_of_others(const char* folder) {
+    char path[1000], text[16] = "";
+    mote_render_options options = {0};
+    mote_scene* scene = mote_scene_new();
+    mote_picture* picture = mote_picture_new();
+    FILE* file;
+    snprintf(path, sizeof path, "%s/precious", folder);
+    file = fopen(path, "w");
+    fputs("a diary", file), fclose(file);
+    options.struct_size = sizeof options, options.passes = 1, options.checkpoint = path;
+    CHECK(mote_scene_load_text(scene, small_scene, NULL) == MOTE_OK);
+    CHECK(mote_render(scene, &options, picture) == MOTE_INPUT_ERROR);
+    CHECK(strstr(mote_picture_error_file(picture), "precious") != NULL);
+    file = fopen(path, "r");
+    CHECK(file && fgets(text, sizeof text, file) && strcmp(text, "a diary") == 0);
+    if (file) fclose(file);
+    remove(path);
+    mote_picture_free(picture), mote_scene_free(scene);
+}
+
 static void test_algorithms(void) {
     mote_scene* scene = loaded(small_scene, NULL);
     mote_picture *picture = mote_picture_new(), *plain = mote_picture_new();
@@ -531,6 +577,8 @@ int main(int argc, char** argv) {
     test_threads();
     test_bits(argv[1], argv[2]);
     test_arrays();
+    test_extremes();
+    test_files_of_others(argv[2]);
     test_algorithms();
     test_sequence();
     test_epipolar();

@@ -19,6 +19,7 @@ FLOORS = [
     ["compensation", "screenspace", "gathering"],
     ["integrators"],
     ["session"],
+    ["trade"],
     ["apps", "python", "plugins"],
     ["experiments"],
 ]

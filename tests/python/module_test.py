@@ -226,6 +226,48 @@ class ModuleTest(unittest.TestCase):
             mote.render(self.scene, passes=1 << 29, progress=fails)
         self.assertGreater(raised.exception.picture.passes, 0)
 
+    def test_files_of_others(self):
+        """A checkpoint replaces and removes nothing but its own."""
+        precious = Path(self.folder.name) / "precious"
+        precious.write_text("a diary")
+        with self.assertRaisesRegex(mote.Error, "precious"):
+            mote.render(self.scene, passes=1, checkpoint=precious)
+        self.assertEqual(precious.read_text(), "a diary")
+        empty = Path(self.folder.name) / "empty"
+        empty.mkdir()
+        with self.assertRaisesRegex(mote.Error, "empty"):
+            mote.render(self.scene, passes=1, checkpoint=empty)
+        self.assertTrue(empty.is_dir())
+        with self.assertRaisesRegex(mote.Error, "/dev/null"):
+            mote.render(self.scene, passes=1, checkpoint="/dev/null")
+
+    def test_arguments(self):
+        picture = mote.Picture({"beauty": np.ones((2, 3, 3))})
+        with self.assertRaises(ValueError):
+            picture["beauty"][0, 0] = 2
+        picture["beauty"] = picture["beauty"] * 2
+        self.assertTrue((picture["beauty"] == 2).all())
+        with self.assertRaises(TypeError):
+            picture.save(None)
+        with self.assertRaises(ValueError):
+            picture.save(str(Path(self.folder.name) / "a\0b.exr"))
+        with self.assertRaises(ValueError):
+            mote.load("scene\0.xml")
+        with self.assertRaisesRegex(mote.Error, "p.png"):
+            picture.save(Path(self.folder.name) / "p.png")
+        self.assertFalse((Path(self.folder.name) / "p.png").exists())
+        for every in (float("nan"), -1.0, float("inf")):
+            with self.assertRaises(ValueError):
+                mote.render(self.scene, passes=1, checkpoint_every=every)
+        with self.assertRaisesRegex(ValueError, "fewer features"):
+            list(mote.denoise_sequence([np.ones((4, 4, 3))], []))
+        scene = dictionary()
+        corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]])
+        for triangles in ([[0, 1, 1 << 32]], [[0, 1, -1]], [[0, 1, 2.9]]):
+            scene["mesh"] = {"type": "arraymesh", "positions": corners, "triangles": np.array(triangles)}
+            with self.assertRaisesRegex(mote.Error, "triangles"):
+                mote.Scene(scene)
+
     def test_interrupt_and_resume(self):
         checkpoint = Path(self.folder.name) / "render.checkpoint"
         begin = []

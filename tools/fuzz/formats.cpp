@@ -7,9 +7,9 @@
 #include <stdexcept>
 
 #include "apps/partial_render.h"
-#include "apps/trade/methods_file.h"
-#include "apps/trade/record.h"
-#include "apps/trade/reference.h"
+#include "trade/methods_file.h"
+#include "trade/record.h"
+#include "trade/reference.h"
 #include "core/files/whole_file.h"
 #include "core/formats/meshes/mesh_file.h"
 #include "core/formats/pictures/image_file.h"
@@ -120,7 +120,7 @@ void read_partial_film(const std::string& path) {
     std::vector<std::string> paths = {path};
     if (std::filesystem::exists(next)) paths.push_back(next);
     const apps::MergedFilm merged = apps::merge_partials(paths);
-    merged.film.beauty(), merged.film.beauty_variance_of_mean(), merged.film.noise();
+    merged.film->beauty(), merged.film->beauty_variance_of_mean(), merged.film->noise();
 }
 
 void read_vdb(const std::string& path) {
@@ -188,7 +188,7 @@ std::vector<Format> formats() {
                            "mote",
                            [registry, scene](const std::string& path) {
                                std::vector<std::string> warnings;
-                               apps::trade::read_methods_file(path, *registry, *scene, warnings);
+                               trade::read_methods_file(path, *registry, *scene, warnings);
                            },
                            methods_seeds,
                            {}}));
@@ -196,14 +196,14 @@ std::vector<Format> formats() {
         textual({"trade records",
                  ".csv",
                  "mote",
-                 [](const std::string& path) { apps::trade::records_from_csv(text_of(path), path); },
+                 [](const std::string& path) { trade::records_from_csv(text_of(path), path); },
                  record_seeds,
                  {}}));
     Format metadata{"EXR metadata",
                     ".exr",
                     "mote",
                     [scene](const std::string& path) {
-                        apps::trade::load_reference(path, *scene, "0123456789abcdef", {});
+                        trade::load_reference(path, *scene, "0123456789abcdef", {});
                     },
                     pictures,
                     {}};

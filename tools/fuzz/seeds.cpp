@@ -12,7 +12,7 @@
 #include <iterator>
 #include <span>
 
-#include "apps/trade/record.h"
+#include "trade/record.h"
 #include "core/formats/pictures/image_file.h"
 #include "media/vol_file.h"
 #include "tools/fuzz/scratch_file.h"
@@ -167,13 +167,13 @@ std::vector<Bytes> methods_seeds() {
 }
 
 std::vector<Bytes> record_seeds() {
-    std::vector<apps::trade::Record> records(2);
+    std::vector<trade::Record> records(2);
     records[0].method = "a, \"b\"", records[0].integrator = "path", records[0].settings = "x=1 y=2",
     records[0].passes = 4;
     records[1].method = "c", records[1].integrator = "volpath", records[1].passes = 2,
     records[1].error = 0.25, records[1].final = true;
-    for (apps::trade::Record& r : records) r.wall = 1.5;
-    return {bytes_of(apps::trade::to_csv(records))};
+    for (trade::Record& r : records) r.wall = 1.5;
+    return {bytes_of(trade::to_csv(records))};
 }
 
 void forge_png(Bytes& bytes) {

@@ -1,4 +1,6 @@
 // Checkpoints of renders that differ in one thing: each is refused for its own reason.
+#include <filesystem>
+
 #include "core/film/film.h"
 #include "core/render/checkpoint.h"
 #include "tests/support/catch.h"
@@ -12,6 +14,7 @@ TEST_CASE("a checkpoint of another width, height, layer or number of them is ref
     const TemporaryFolder folder;
     const CheckpointKey key{"0123", 7};
     const auto refusal = [&](const Film& written, const CheckpointKey& own) {
+        std::filesystem::remove(folder.file("c"));  // those of another render are not replaced
         write_checkpoint(folder.file("c"), own, written);
         Film film(5, 4, {{"a", ""}, {"b", ""}});
         try {
