@@ -37,8 +37,7 @@ struct Frame {
 
 // Trigonometry of a unit direction in the local frame.
 inline float cos_theta(const Vec3& w) { return w.z; }
-inline float abs_cos_theta(const Vec3& w) { return std::fabs(w.z); }  ///< |cos| to the frame's n
-inline float cos2_theta(const Vec3& w) { return w.z * w.z; }          ///< cos^2
+inline float cos2_theta(const Vec3& w) { return w.z * w.z; }                          ///< cos^2
 inline float sin2_theta(const Vec3& w) { return std::fmax(0.0f, 1.0f - w.z * w.z); }  ///< sin^2
 inline float sin_theta(const Vec3& w) { return std::sqrt(sin2_theta(w)); }            ///< sin, never negative
 inline float tan2_theta(const Vec3& w) { return sin2_theta(w) / cos2_theta(w); }      ///< tan^2

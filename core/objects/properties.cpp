@@ -99,39 +99,6 @@ std::string Properties::require_string(const std::string& name) const {
     return *s;
 }
 
-Rgb Properties::get_rgb(const std::string& name, const Rgb& default_value) const {
-    const Value* v = find(*this, name);
-    if (!v) return default_value;
-    Rgb result;
-    if (const auto* c = std::get_if<Rgb>(&v->value))
-        result = *c;
-    else if (std::holds_alternative<double>(v->value) || std::holds_alternative<std::int64_t>(v->value))
-        result = Rgb(float(number(name, *v)));
-    else
-        wrong_kind(name, *v, "an rgb or a float");
-    if (!is_finite(result)) throw InputError("'" + name + "' is not finite", v->where);
-    return result;
-}
-
-Vec3d Properties::get_vec3(const std::string& name, const Vec3d& default_value) const {
-    const Value* v = find(*this, name);
-    if (!v) return default_value;
-    const auto* p = std::get_if<Vec3d>(&v->value);
-    if (!p) wrong_kind(name, *v, "a point or a vector");
-    if (!std::isfinite(p->x) || !std::isfinite(p->y) || !std::isfinite(p->z))
-        throw InputError("'" + name + "' is not finite", v->where);
-    return *p;
-}
-
-Transform Properties::get_transform(const std::string& name) const {
-    const Value* v = find(*this, name);
-    if (!v) return Transform();
-    const auto* t = std::get_if<Transform>(&v->value);
-    if (!t) wrong_kind(name, *v, "a transform");
-    if (!t->valid()) throw InputError("'" + name + "' is singular or not finite", v->where);
-    return *t;
-}
-
 std::string Properties::get_choice(const std::string& name, const std::string& default_value,
                                    const std::vector<std::string>& choices) const {
     const std::string word = get_string(name, default_value);
@@ -157,17 +124,6 @@ std::int64_t Properties::get_int_in(const std::string& name, std::int64_t defaul
         throw InputError(
             name + " must lie between " + std::to_string(lower) + " and " + std::to_string(upper),
             where_of(name));
-    return value;
-}
-
-Rgb Properties::get_rgb_in(const std::string& name, const Rgb& default_value, float lower,
-                           float upper) const {
-    const Rgb value = get_rgb(name, default_value);
-    for (int c = 0; c < 3; ++c)
-        if (!(value[c] >= lower && value[c] <= upper))
-            throw InputError("a channel of '" + name + "' is " + number_text(double(value[c])) + " but " +
-                                 range_text(double(lower), double(upper)),
-                             where_of(name));
     return value;
 }
 

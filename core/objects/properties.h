@@ -55,10 +55,6 @@ class Properties {
     double require_float(const std::string& name) const;
     std::string get_string(const std::string& name, const std::string& default_value) const;
     std::string require_string(const std::string& name) const;
-    /// Accepts an rgb or a float (grey).
-    Rgb get_rgb(const std::string& name, const Rgb& default_value) const;
-    Vec3d get_vec3(const std::string& name, const Vec3d& default_value) const;
-    Transform get_transform(const std::string& name = "to_world") const;
     /// One of a fixed set of words; an unknown word is an error with the nearest one.
     std::string get_choice(const std::string& name, const std::string& default_value,
                            const std::vector<std::string>& choices) const;
@@ -67,8 +63,6 @@ class Properties {
     /// Like get_int, and throws InputError when the value lies outside [lower, upper].
     std::int64_t get_int_in(const std::string& name, std::int64_t default_value, std::int64_t lower,
                             std::int64_t upper) const;
-    /// Like get_rgb, and throws InputError when a channel lies outside [lower, upper].
-    Rgb get_rgb_in(const std::string& name, const Rgb& default_value, float lower, float upper) const;
 
     /// The file's full path: relative names are looked up in search_paths. Throws InputError when it is not
     /// there.
