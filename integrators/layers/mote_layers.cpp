@@ -31,25 +31,29 @@ std::optional<screenspace::LayerKind> filtered_kind(const Layer& layer) {
     return std::nullopt;
 }
 
+/// The parameters of a scene file.
+struct LayersSettings {
+    EyePathLimits limits;
+    LayerFilterParameters filter;
+    bool filters = true;
+    FarLight far_light = FarLight::paths;
+    std::string shares;
+    std::vector<Nested<const Integrator>> integrators;
+};
+
 class MoteLayers final : public Integrator {
   public:
-    explicit MoteLayers(const Properties& properties)
-        : limits_(read_eye_path_limits(properties)), filter_(read_layer_filter(properties)) {
-        filters_ = properties.get_bool("filter", true);
-        if (properties.get_choice("far_light", "paths", {"paths", "lights"}) == "lights")
-            far_light_ = FarLight::lights;
-        read_shares(properties);
-        for (const Properties::Child& child : properties.children) {
-            const auto integrator = std::dynamic_pointer_cast<const Integrator>(child.object);
-            if (!integrator) continue;
+    MoteLayers(const LayersSettings& s, const Properties& properties)
+        : limits_(s.limits), filter_(s.filter), filters_(s.filters), far_light_(s.far_light) {
+        read_shares(s.shares);
+        for (const auto& [name, integrator, where] : s.integrators) {
             if (integrator->works_on_mean())
                 throw InputError(integrator->type() +
                                      " works on the mean of its whole picture here, and cannot "
                                      "fill a part of another",
-                                 child.where);
-            const bool named = child.name != "integrator";  // the name of the parameter is as good as none
-            nested_.push_back(
-                {integrator, read_transport(named ? child.name : "", child.where), "asked for", child.where});
+                                 where);
+            const bool named = name != "integrator";  // the name of the parameter is as good as none
+            nested_.push_back({integrator, read_transport(named ? name : "", where), "asked for", where});
         }
         if (nested_.empty()) return;
         for (const std::string name : {"max_depth", "rr_depth", "hide_emitters", "far_light"})
@@ -74,8 +78,7 @@ class MoteLayers final : public Integrator {
     }
 
   private:
-    void read_shares(const Properties& properties) {
-        const std::string text = properties.get_string("shares", "");
+    void read_shares(const std::string& text) {
         constexpr std::uint32_t most = 1000;
         for (const std::string& word : split_words(text)) {
             std::uint32_t share = 0;
@@ -97,8 +100,8 @@ class MoteLayers final : public Integrator {
     }
     EyePathLimits limits_;
     LayerFilterParameters filter_;
-    bool filters_ = true;
-    FarLight far_light_ = FarLight::paths;
+    bool filters_;
+    FarLight far_light_;
     std::vector<std::uint32_t> shares_;  ///< of passes, one a method; empty: as many as each needs
     std::vector<LayerMethod> nested_;
 };
@@ -141,35 +144,33 @@ Plan MoteLayers::plan(const Scene& scene, const Requirements& requirements) cons
 }  // namespace
 
 void register_mote_layers(Registry& registry) {
-    auto parameters = eye_path_parameters();
-    parameters.push_back(
-        {"filter", "boolean", "true",
-         "smooth indirect light and multiple scattering in image space, as far as noise explains "
-         "their detail"});
-    for (Parameter& p : layer_filter_parameters()) parameters.push_back(std::move(p));
-    parameters.push_back(
-        {"far_light", "string", "paths",
-         "indirect light and multiple scattering where the scene chooses: 'paths', unbiased, or 'lights', "
-         "virtual point lights, resampled, with less noise and without what their bound "
-         "takes"});
-    parameters.push_back(
-        {"shares", "string", "as many as reduce the error fastest",
-         "passes of each method in a round, such as '3, 1' (docs/cluster.md): passes are known "
-         "beforehand, which several machines need"});
-    parameters.push_back(
-        {"integrator", "integrator", "chosen by the scene",
-         "any number: each fills the cells that its name lists, of emission, direct, indirect, "
-         "single_scattering and multiple_scattering; without a name all that it can"});
-    registry.add(
-        {Category::integrator, "mote_layers",
-         "Each layer of the picture by the method that does it best, with as many passes as it needs: the "
-         "default where a scene names no integrator.",
-         parameters,
-         R"(<integrator type="mote_layers">
+    using S = LayersSettings;
+    add_type<S>(
+        registry, Category::integrator, "mote_layers",
+        "Each layer of the picture by the method that does it best, with as many passes as it needs: the "
+        "default where a scene names no integrator.",
+        {within(&S::limits, eye_path_rows()),
+         row("filter", &S::filters,
+             "Smooth indirect light and multiple scattering in image space, as far as noise explains their "
+             "detail."),
+         within(&S::filter, layer_filter_rows()),
+         row("far_light", &S::far_light, {{"paths", FarLight::paths}, {"lights", FarLight::lights}},
+             "Indirect light and multiple scattering where the scene chooses: by paths, unbiased, or by "
+             "virtual "
+             "point lights, resampled, with less noise and without what their bound takes."),
+         row("shares", &S::shares,
+             "Passes of each method in a round, such as '3, 1' (docs/cluster.md): passes are known "
+             "beforehand, "
+             "which several machines need.")
+             .when_absent("as many as reduce the error fastest"),
+         nested("integrator", &S::integrators, Category::integrator, "chosen by the scene",
+                "Any number: each fills the cells that its name lists, of emission, direct, indirect, "
+                "single_scattering and multiple_scattering; without a name all that it can.")},
+        R"(<integrator type="mote_layers">
     <integrator type="mote_epipolar" name="emission, direct, single_scattering"/>
     <integrator type="volpath" name="indirect, multiple_scattering"/>
-</integrator>)"},
-        [](const Properties& p) { return std::make_shared<MoteLayers>(p); });
+</integrator>)",
+        [](const S& s, const Properties& p) { return std::make_shared<MoteLayers>(s, p); });
 }
 
 }  // namespace mote::integrators

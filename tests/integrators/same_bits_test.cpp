@@ -33,7 +33,6 @@ const std::map<std::string, Words> words = {
     {"mote_ray_bundles.view", {"atlas", "final_gathering"}},
     {"mote_vpl_ray_bundles.techniques", {"combined", "vpls", "bundles"}},
     {"mote_vpl_ray_bundles.links", {"rays", "grid", "imperfect"}},
-    {"mote_layers.far_light", {"paths", "lights"}},
     {"mote_layers.shares", {"3", "2, 1", "1, 2, 1"}},
     {"mote_micro_rendering.light", {"direct", "vpls", "radiosity", "photons"}},
     {"matrix.row_visibility", {"rays", "shadow_map", "imperfect_shadow_map"}},
