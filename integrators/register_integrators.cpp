@@ -3,8 +3,8 @@
 #include "compensation/compensation_settings.h"
 #include "integrators/register_parts.h"
 #include "integrators/screen_space_compensation/screen_space_compensation.h"
-#include "integrators/virtual_point_lights/vpl_selection.h"
 #include "integrators/virtual_point_lights/vpl_visibility.h"
+#include "lights/selection/register_selection.h"
 
 namespace mote::integrators {
 
@@ -12,7 +12,7 @@ void register_integrators(core::Registry& registry) {
     compensation::register_compensation(registry);
     register_screen_space_compensation(registry);
     register_visibility(registry);
-    register_selection(registry);
+    lights::register_selection(registry);
     register_mote_layers(registry);
     register_path(registry);
     register_volpath(registry);

@@ -1,12 +1,12 @@
 // A light drawn by the tree over a million virtual point lights, for a tile of sixteen receivers and for one:
 // seconds of a light, and how often they are those of seven loads that depend on each other, three lines
-// each, from as much memory as the tree has: a tree of eight parts a group is at least seven deep.
+// each, from as much memory as the tree has: a tree of eight parts a cluster is at least seven deep.
 #include <benchmark/benchmark.h>
 
 #include "core/materials/bsdfs.h"
 #include "experiments/benchmarks/turns.h"
-#include "lights/selection/light_sampler.h"
-#include "lights/selection/vertex_bounds.h"
+#include "lights/selection/hierarchy/vertex_bounds.h"
+#include "lights/selection/stochastic/light_sampler.h"
 
 namespace mote::benchmarks {
 namespace {
@@ -43,7 +43,7 @@ class Walls {
             single_.emplace_back(tile);
         }
     }
-    const lights::LightTree& tree() const { return *tree_; }
+    const lights::WideLightTree& tree() const { return *tree_; }
     /// All receivers of a tile, or the first.
     const lights::ReceiverBounds& receivers(std::size_t i, bool one) const {
         return one ? single_[i % single_.size()] : tiles_[i % tiles_.size()];
@@ -52,7 +52,7 @@ class Walls {
   private:
     std::shared_ptr<Bsdf> bsdf_ = make_diffuse();
     lights::VplSet vpls_;
-    std::optional<lights::LightTree> tree_;
+    std::optional<lights::WideLightTree> tree_;
     std::vector<lights::ReceiverBounds> tiles_, single_;
 };
 
@@ -93,7 +93,7 @@ void light_sample(benchmark::State& state, bool cut, bool one) {
     std::uint32_t at = 0;
     const auto ours = [&] {
         for (int k = 0; k < repeats; ++k) {
-            const lights::ReceiverGroups receivers(walls.receivers(tile++, one), walls.tree());
+            const lights::ReceiverClusters receivers(walls.receivers(tile++, one), walls.tree());
             benchmark::DoNotOptimize(cut ? sampler.by_cut(walls.tree(), receivers, infinity, n, rng)
                                          : sampler.by_tree(walls.tree(), receivers, infinity, n, rng));
         }

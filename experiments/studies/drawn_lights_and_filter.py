@@ -7,7 +7,7 @@ A million VPLs shared out among the passes, atrium in haze and smoke room. Eye p
 same for all, so errors are those of selecting alone: the relative RMSE (measure.py), each against a picture of
 `--reference` drawn lights a tile and pass that went through the same filter, or through none; its own noise is not subtracted.
 `--keep` keeps references for the next time.
-METHOD: stochastic:LIGHTS, tree:LIGHTS, ris:CANDIDATES:SAMPLES:BY, lightcuts:ERROR:MOST:ANGLE, multidimensional:ERROR:MOST:ANGLE,
+METHOD: stochastic:LIGHTS, tree:LIGHTS, ris:CANDIDATES:SAMPLES, lightcuts:ERROR:MOST:ANGLE, multidimensional:ERROR:MOST:ANGLE,
 each with @N behind it for an interleaving of N (the pixels that share drawn lights lie so far from each other), ! for no filter,
 and more <selection> parameters as +name=value. Seconds are of the processor: of the whole command, and, of a picture of
 512 x 512, those that are more than a single drawn light takes (without eye paths, light paths and filter). --quick: small, two minutes.
@@ -30,13 +30,13 @@ from exr import read_exr
 # Light paths of a million VPLs, bound [1/m^2], generated files.
 SCENES = {"smoke_room": (410000, 20, {"smoke": "smoke.vdb"}), "atrium": (1000000, 2, {"meshes": ""})}
 LAYERS = ["indirect_bounded", "multiple_scattering_bounded"]
-METHODS = [f"stochastic:{n}{how}@4" for n in (16, 48) for how in ("+learning=false", "")] + [
-    f"ris:{m}:{n}:cut@4" for m, n in ((64, 8), (128, 8), (128, 16), (256, 16), (256, 32))] + [
-    "ris:128:16:cut+learning=false@4", "ris:128:16:cut", "ris:128:16:cut@4!", "ris:256:32:groups@4", "multidimensional:0.08:1000:0.2"]
+METHODS = [f"stochastic:{n}@4" for n in (16, 48)] + [
+    f"ris:{m}:{n}@4" for m, n in ((64, 8), (128, 8), (128, 16), (256, 16), (256, 32))] + [
+    "ris:128:16", "ris:128:16@4!", "multidimensional:0.08:1000:0.2"]
 TYPES = {"stochastic": ("stochastic_lightcuts", "samples"), "tree": ("light_tree", "samples"),
-         "ris": ("resampling", "candidates", "samples", "candidates_by"), "lightcuts": ("lightcuts", "error", "max_cut", "shared_angle"),
+         "ris": ("resampling", "candidates", "samples"), "lightcuts": ("lightcuts", "error", "max_cut", "shared_angle"),
          "multidimensional": ("multidimensional_lightcuts", "error", "max_cut", "shared_angle")}
-KINDS = {"samples": "integer", "candidates": "integer", "candidates_by": "string", "max_cut": "integer", "learning": "boolean"}
+KINDS = {"samples": "integer", "candidates": "integer", "max_cut": "integer"}
 
 
 def selection(method):

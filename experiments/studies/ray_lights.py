@@ -34,8 +34,8 @@ def vpls(steps=0, **settings):
 
 # By method: its settings, by name. Eye paths are those that share the VPLs of a pass.
 METHODS = {
-    "ray lights": {"12 of 128": of("mote_ray_lights"), "8 of 64": of("mote_ray_lights", share=8, candidates=64),
-                   "20 of 256": of("mote_ray_lights", share=20, candidates=256)},
+    "ray lights": {"12 of 128": of("mote_ray_lights"), "8 of 64": of("mote_ray_lights", connections=8, candidates=64),
+                   "20 of 256": of("mote_ray_lights", connections=20, candidates=256)},
     "VPLs, ABC": {"1 step, 64": vpls(1, paths=64), "2 steps, 64": vpls(2, paths=64), "3 steps, 64": vpls(3, paths=64),
                   "2 steps, 16": vpls(2, paths=16), "2 steps, 64, 8 eye paths": vpls(2, paths=64, eye_samples=8),
                   "2 steps, 32, 1-to-n": vpls(2, paths=32) | {"integrator.compensation.strategy": "1-to-n"}},

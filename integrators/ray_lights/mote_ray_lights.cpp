@@ -129,8 +129,8 @@ void MoteRayLights::plan_lines(Plan& plan) const {
              fmt::format("segments of light paths in media, {} bytes each", sizeof(lights::RayLight)),
              "light scatters all along them; VPLs stand on surfaces alone");
     plan.run("eye rays",
-             settings_.share > 0
-                 ? fmt::format("{} connections each, drawn by what lights would send", settings_.share)
+             settings_.connections > 0
+                 ? fmt::format("{} connections each, sampled by importance", settings_.connections)
                  : "all ray lights and VPLs each",
              "a point on the ray light by the asinh of its distance, then one on the eye ray equi-angularly");
     plan.run("single scattering", fmt::format("{} scattering points a ray", settings_.scattering_points),
@@ -169,11 +169,12 @@ void register_mote_ray_lights(Registry& registry) {
         "Virtual ray lights in media and virtual point lights on surfaces (Novak et al. 2012): unbiased.",
         {within(&S::eye, eye_path_rows()),
          row("paths", &S::paths, between(0, 1 << 26), "Light paths traced in every pass."),
-         row("share", &S::share, between(0, 1 << 26),
-             "Connections of a segment of an eye path, to ray lights and VPLs, sampled by their estimated "
-             "contribution along it and to its surface; 0: to all of them."),
+         row("connections", &S::connections, between(0, 1 << 26),
+             "Connections of a segment of an eye path to ray lights and VPLs, sampled by importance: more "
+             "take time "
+             "in proportion, and lower the noise that is not of light paths; 0: to all."),
          row("candidates", &S::candidates, between(0, 1 << 26),
-             "Ray lights, and as many VPLs, that the connections are sampled from, themselves sampled by "
+             "Ray lights, and as many VPLs, whose importance a tile of 4 x 4 pixels evaluates, sampled by "
              "power; "
              "0: all of them."),
          row("bound", &S::bound, between(0, 1e30, "1/m^2"),
@@ -181,7 +182,9 @@ void register_mote_ray_lights(Registry& registry) {
              "above "
              "it. automatic: light paths that a receiver is connected to, at least 16, over R^2."),
          row("scattering_points", &S::scattering_points, between(1, 64),
-             "Points in media where each eye ray gathers the light of lights.")},
+             "Points in media where each eye ray samples lights: less noise of single scattering for more "
+             "shadow "
+             "rays.")},
         R"(<integrator type="mote_ray_lights"><integer name="paths" value="128"/></integrator>)",
         [](const S& s) { return std::make_shared<MoteRayLights>(s); });
 }

@@ -14,7 +14,7 @@ struct RayLightSettings {
     static constexpr double lights_a_path = 2.0;  ///< about
     EyePathLimits eye;                            ///< max_depth counts the whole path from light to eye
     std::uint32_t paths = 256;
-    std::size_t share = 12;        ///< connections of a segment of an eye path; 0: to all lights
+    std::size_t connections = 12;  ///< connections of a segment of an eye path; 0: to all lights
     std::size_t candidates = 128;  ///< ray lights, and VPLs, that they are drawn from; 0: all
     std::optional<float> bound;    ///< b of VPLs from surface to surface [1/m^2]; nothing: automatic
     int scattering_points = 8;     ///< where an eye ray in media looks for the light of lights
@@ -23,12 +23,13 @@ struct RayLightSettings {
     /// than 16: where the radius is that of the scene, all light would be found by eye paths.
     float bound_for(const core::Bounds3& bounds) const {
         if (bound) return *bound;
-        const double seen =
-            looked_at() == 0 ? double(paths) : std::min(double(paths), double(looked_at()) / lights_a_path);
+        const double seen = candidate_count() == 0
+                                ? double(paths)
+                                : std::min(double(paths), double(candidate_count()) / lights_a_path);
         const float radius = bounds.radius();
         return radius > 0.0f ? float(std::max(seen, 16.0)) / core::sqr(radius) : core::infinity;
     }
-    std::size_t looked_at() const { return share == 0 ? 0 : candidates; }
+    std::size_t candidate_count() const { return connections == 0 ? 0 : candidates; }
     lights::LightPathSettings light_paths() const {
         lights::LightPathSettings s;
         s.paths = paths, s.rr_depth = eye.rr_depth;

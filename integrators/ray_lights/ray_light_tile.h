@@ -39,7 +39,7 @@ class RayLightTile {
           pass_(pass),
           walk_(walk),
           context_{scene, scratch, walk.rays, walk.tracking, walk.cancelled},
-          gather_(context_, pass.set, settings.looked_at()) {}
+          gather_(context_, pass.set, settings.candidate_count()) {}
 
     void start(int lane, const EyeRay& eye) {
         Lane& l = lanes_[std::size_t(lane)];
@@ -179,9 +179,9 @@ class RayLightTile {
             eyes_.push_back(eyes);
         }
         if (eyes_.empty() && !receivers_.any_active) return;
-        if (!draw_candidates()) return;
+        if (!sample_candidates()) return;
         const lights::PointReceivers points(receivers_, around(), pass_.bound);
-        lights::LaneFloats expected = offer_all(points);
+        lights::LaneFloats expected = evaluate_all(points);
         const lights::LaneFloats steps = steps_of(expected);
         if (receivers_.any_active)
             add(gather_.to_points(at_points_, steps, pass_.bound, receivers_), Transport::indirect);
@@ -194,7 +194,7 @@ class RayLightTile {
     }
 
     /// By the first lane that gathers. Returns whether any does.
-    bool draw_candidates() {
+    bool sample_candidates() {
         const auto gathers = [&](std::size_t i) {
             return !lanes_[i].lines.empty() || receivers_.max_vpl_depth[i] != 0;
         };
@@ -204,7 +204,7 @@ class RayLightTile {
             if (gathers(i)) first = i, ++count;
         if (count == 0) return false;
         core::Rng rng(lanes_[first].rng.next_u32());
-        gather_.draw_candidates(rng, count);
+        gather_.sample_candidates(rng, count);
         return true;
     }
 
@@ -215,14 +215,14 @@ class RayLightTile {
     }
 
     /// What all candidates would send to points and lines: sums by lane.
-    lights::LaneFloats offer_all(const lights::PointReceivers& points) {
+    lights::LaneFloats evaluate_all(const lights::PointReceivers& points) {
         at_points_.clear();
-        if (receivers_.any_active) gather_.offer(points, at_points_);
+        if (receivers_.any_active) gather_.evaluate(points, at_points_);
         lights::LaneFloats sum = at_points_.total();
         while (along_eyes_.size() < eyes_.size()) along_eyes_.emplace_back();
         for (std::size_t n = 0; n < eyes_.size(); ++n) {
             along_eyes_[n].clear();
-            gather_.offer(eyes_[n], along_eyes_[n]);
+            gather_.evaluate(eyes_[n], along_eyes_[n]);
             for (std::size_t i = 0; i < lane_count; ++i) sum.of[i] += along_eyes_[n].total().of[i];
         }
         return sum;
@@ -232,9 +232,10 @@ class RayLightTile {
     /// has fewer.
     lights::LaneFloats steps_of(const lights::LaneFloats& expected) {
         lights::LaneFloats steps;
-        if (settings_.share == 0) return steps;
+        if (settings_.connections == 0) return steps;
         for (std::size_t i = 0; i < lane_count; ++i)
-            steps.of[i] = lanes_[i].step = std::max(lanes_[i].step, expected.of[i] / float(settings_.share));
+            steps.of[i] = lanes_[i].step =
+                std::max(lanes_[i].step, expected.of[i] / float(settings_.connections));
         return steps;
     }
 
@@ -253,9 +254,9 @@ class RayLightTile {
     lights::LineGather gather_;
     std::array<Lane, lane_count> lanes_;
     lights::ReceiverTile receivers_;
-    std::vector<lights::EyeLines> eyes_;  ///< of this step, with what is on offer to them
-    std::vector<lights::LineOffer> along_eyes_;
-    lights::LineOffer at_points_;
+    std::vector<lights::EyeLines> eyes_;  ///< of this step, with what is on candidates to them
+    std::vector<lights::LineCandidates> along_eyes_;
+    lights::LineCandidates at_points_;
     lights::ReceiverTile attenuation_;  ///< what lines need of a tile: states and generators
 };
 

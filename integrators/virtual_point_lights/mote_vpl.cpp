@@ -17,6 +17,7 @@
 #include "integrators/virtual_point_lights/plan_selection.h"
 #include "integrators/virtual_point_lights/vpl_estimator.h"
 #include "lights/reflective_shadow_maps/reflective_shadow_maps.h"
+#include "lights/selection/resampling/resampling_selection.h"
 
 namespace mote::integrators {
 
@@ -49,14 +50,11 @@ class MoteVpl final : public Integrator {
         settings_.interleaving = int(properties.get_int_in("interleaving", 1, 1, 8));
         settings_.upsampling = int(properties.get_int_in("upsampling", 1, 1, 8));
         settings_.clamping.enabled = properties.get_bool("roughness_clamping", false);
-        settings_.clamping.neighbours =
-            std::uint32_t(properties.get_int_in("clamping_neighbours", 16, 1, 1000));
         settings_.filters = properties.get_bool("filter", false);
-        settings_.filter = read_layer_filter(properties);
         if (const auto nested = properties.child_of<Visibility>(Category::visibility))
             settings_.visibility = nested->settings();
-        if (const auto nested = properties.child_of<Selection>(Category::selection))
-            settings_.selection = nested->settings();
+        if (const auto nested = properties.child_of<lights::Selection>(Category::selection))
+            settings_.selection = nested;
         check_selection();
         if (settings_.upsampling > 1) check_upsampling(properties);
     }
@@ -123,9 +121,9 @@ void MoteVpl::check_upsampling(const Properties& properties) const {
 }
 
 void MoteVpl::check_selection() const {
-    const SelectionSettings& s = settings_.selection;
-    if (!s.selects()) return;
-    const char* against = settings_.interleaving > 1 && s.cuts()         ? "interleaving"
+    const lights::Selection& s = *settings_.selection;
+    if (s.takes_all()) return;
+    const char* against = settings_.interleaving > 1 && !s.interleaves() ? "interleaving"
                           : settings_.compensates()                      ? "compensation"
                           : settings_.clamping.enabled                   ? "roughness_clamping"
                           : settings_.visibility.shadow_maps             ? "shadow maps"
@@ -142,9 +140,14 @@ void MoteVpl::plan_choice_of_vpls(Plan& plan, const Scene& scene, const Requirem
     const int points = scene.has_media() && settings_.scattering_points > 0
                            ? 1 + std::min(settings_.scattering_points, 2)
                            : 1;
-    plan_selection(plan, settings_.selection,
-                   {3.0 * double(settings_.paths), pixels * settings_.eye_samples / lattice, points,
-                    settings_.filters, depth_of_media(scene), r.media_heterogeneous == 0});
+    const GatherSize size{3.0 * double(settings_.paths),
+                          pixels * settings_.eye_samples / lattice,
+                          points,
+                          settings_.filters,
+                          depth_of_media(scene),
+                          r.media_heterogeneous == 0};
+    settings_.selection->plan(plan, {size.vpls, size.receivers * size.points});
+    plan_selection_advice(plan, size);
 }
 
 void MoteVpl::plan_light_paths(Plan& plan, const Scene& scene) const {
@@ -176,9 +179,9 @@ void MoteVpl::plan_bound(Plan& plan, const Bounds3& surfaces) const {
 
 void MoteVpl::plan_image_space(Plan& plan) const {
     const int n = settings_.interleaving;
-    if (n > 1 && settings_.selection.by_hierarchy())
+    if (n > 1 && !settings_.selection->takes_all())
         plan.run("interleaving",
-                 "the 4 x 4 pixels that share drawn lights lie " + std::to_string(n) + " apart",
+                 "the 4 x 4 pixels that share selected VPLs lie " + std::to_string(n) + " apart",
                  "unbiased: noise differs from pixel to pixel");
     else if (n > 1)
         plan.run("interleaving",
@@ -249,57 +252,59 @@ std::shared_ptr<const Integrator> make_drawn_vpls(const EyePathLimits& limits) {
     VplSettings s;
     s.eye = limits, s.eye.max_scatterings = 1;
     s.paths = 20000, s.scattering_points = 1, s.interleaving = 4;
-    s.selection.kind = SelectionSettings::Kind::resampling, s.selection.samples = 16;
-    s.selection.resampling.candidates = 256;
-    s.selection.resampling.proposal = ResamplingSettings::Proposal::cut;
+    s.selection = std::make_shared<lights::ResamplingSelection>(256, 16);
     return std::make_shared<MoteVpl>(s);
 }
 
 void register_mote_vpl(Registry& registry) {
     auto parameters = eye_path_parameters();
-    parameters.push_back({"paths", "integer", "256", "light paths traced in every pass"});
+    parameters.push_back(
+        {"paths", "integer", "256",
+         "light paths traced in every pass, some three VPLs each: time without a selection is in "
+         "proportion, and the automatic bound removes less energy"});
     parameters.push_back(
         {"reflective_shadow_maps", "integer", "0",
-         "texels along an edge of the map of each point, spot and directional light, up to "
-         "2048: each begins a light path, and `paths` are those of other lights; 0: all lights "
-         "draw their paths"});
-    parameters.push_back({"bound", "float", "automatic",
-                          "bound b [1/m^2] on the geometry term; automatic: light paths / R^2 with the "
-                          "radius R of all shapes"});
-    parameters.push_back({"bounded", "boolean", "true", "false: no bound on the geometry term"});
-    parameters.push_back({"compensation", "compensation", "none", "what the bound takes, brought back"});
+         "texels along an edge of the map of each point, spot and directional light, up to 2048: each "
+         "begins a light path, spread more evenly than sampled ones, and `paths` are those of other "
+         "lights; 0: all lights sample their paths"});
     parameters.push_back(
-        {"visibility", "visibility", "traced",
-         "what stands between VPLs and receivers: traced, shadow_map, imperfect_shadow_map"});
+        {"bound", "float", "automatic",
+         "bound b [1/m^2] on the geometry term; lower: less noise, and more energy is removed; "
+         "automatic: light paths / R^2 with the radius R of all shapes"});
+    parameters.push_back({"bounded", "boolean", "true",
+                          "false: no bound on the geometry term, unbiased with infinite variance near VPLs"});
+    parameters.push_back(
+        {"compensation", "compensation", "none", "method that restores the energy that the bound removes"});
+    parameters.push_back({"visibility", "visibility", "traced",
+                          "visibility between VPLs and receivers: traced, shadow_map, imperfect_shadow_map"});
     parameters.push_back({"selection", "selection", "all",
-                          "the VPLs that receivers look at: all, lightcuts, multidimensional_lightcuts, "
-                          "stochastic_lightcuts, light_tree, matrix, resampling"});
-    parameters.push_back({"scattering_points", "integer", "8",
-                          "points in media where the light of each eye ray is gathered, besides the surface "
-                          "behind them, up to 64; 0: "
-                          "one collision or the surface, by chance"});
-    parameters.push_back({"roughness_clamping", "boolean", "false",
-                          "widen glossy lobes to the density of the light that is known: biased"});
+                          "VPLs that light each receiver: all, lightcuts, multidimensional_lightcuts, "
+                          "stochastic_lightcuts, light_tree, resampling, matrix"});
     parameters.push_back(
-        {"clamping_neighbours", "integer", "16", "m': a lobe reaches over so many lights of a pass"});
+        {"scattering_points", "integer", "8",
+         "points in media where the light of each eye ray is gathered, besides the surface behind them, up "
+         "to 64: less noise of single scattering for more shadow rays; 0: one collision or the surface, by "
+         "chance"});
+    parameters.push_back(
+        {"roughness_clamping", "boolean", "false",
+         "widen glossy lobes to the density of the VPLs: biased, removes spikes of glossy surfaces"});
     parameters.push_back(
         {"interleaving", "integer", "1",
-         "n, up to 8: a pixel of n x n gathers every n^2-th VPL, which counts n^2 times; where "
-         "lights are drawn, the pixels that share them lie n apart"});
+         "n, up to 8: a pixel of n x n gathers every n^2-th VPL, which counts n^2 times, in 1 / n^2 of the "
+         "time; with a selection the pixels that share VPLs lie n apart"});
     parameters.push_back(
         {"upsampling", "integer", "1",
-         "n, up to 8: VPLs are gathered at one pixel of n x n, light between them comes from "
-         "neighbours that see the same, and pixels without any gather their own; not together "
-         "with interleaving, eye_samples or shadow maps"});
+         "n, up to 8: VPLs are gathered at one pixel of n x n, others interpolate pixels of like surfaces "
+         "or gather their own: biased between them; not together with interleaving, eye_samples or shadow "
+         "maps"});
     parameters.push_back(
         {"filter", "boolean", "false",
-         "smooth the light of VPLs in image space, as far as noise that differs from pixel to pixel "
+         "denoise the light of VPLs in image space, as far as noise that differs from pixel to pixel "
          "explains its detail: for interleaving"});
-    for (Parameter& p : layer_filter_parameters()) parameters.push_back(std::move(p));
     parameters.push_back(
         {"eye_samples", "integer", "4 for 1-to-1 compensation, else 1",
-         "eye paths a pixel and pass; VPLs are shared out among them, except with compensation "
-         "that joins every receiver to all"});
+         "eye paths a pixel and pass; VPLs are shared out among them, except with compensation that joins "
+         "every receiver to all"});
     registry.add({Category::integrator, "mote_vpl",
                   "Virtual point lights on surfaces and in media, with a bounded geometry term.", parameters,
                   R"(<integrator type="mote_vpl"><integer name="paths" value="512"/></integrator>)"},

@@ -1,9 +1,9 @@
-// What a plan says about the selection of virtual point lights: what runs, what would be better, and why.
+// Advice of a plan on the selection of virtual point lights: what suits the scene, by the measured tables.
 #pragma once
 
 #include "core/render/plan.h"
 #include "core/scene/requirements.h"
-#include "integrators/virtual_point_lights/vpl_selection.h"
+#include "core/scene/scene.h"
 
 namespace mote::integrators {
 
@@ -22,6 +22,6 @@ double depth_of_media(const core::Scene& scene);
 
 /// The choice by docs/many_lights.md: brute force costs lights times receivers; the others differ in what
 /// they know before they trace a ray, and that is worth most where most lights are hidden.
-void plan_selection(core::Plan& plan, const SelectionSettings& settings, const GatherSize& size);
+void plan_selection_advice(core::Plan& plan, const GatherSize& size);
 
 }  // namespace mote::integrators

@@ -8,7 +8,7 @@
 #include "integrators/eye_path/counters.h"
 #include "integrators/eye_path/eye_ray.h"
 #include "integrators/screen_space_compensation/hidden_light.h"
-#include "integrators/virtual_point_lights/pass_selection.h"
+#include "integrators/virtual_point_lights/path_receivers.h"
 #include "integrators/virtual_point_lights/vpl_eye_tile.h"
 #include "integrators/virtual_point_lights/vpl_shadow_maps.h"
 #include "lights/reflective_shadow_maps/reflective_shadow_maps.h"
@@ -26,8 +26,7 @@ class VplEstimator final : public Estimator {
           options_(options),
           settings_(settings),
           bound_(settings.bound_for(scene.rays().bounds())),
-          tile_size_(lane_tile(spacing())),
-          selection_(scene, settings.selection, options, bound_) {
+          tile_size_(lane_tile(spacing())) {
         settings_.eye.wanted = options.cells;
         if (settings_.compensation.enabled && std::isfinite(bound_))
             transport_.emplace(scene, bound_, settings_.compensation);
@@ -65,7 +64,7 @@ class VplEstimator final : public Estimator {
         vpls_ += vpls.lights.size(), paths_ += vpls.paths;
         bytes_ = std::max(bytes_, vpls.memory_bytes());
         if (settings_.visibility.imperfect) make_imperfect_maps(vpls, context);
-        selection_.prepare(vpls, context, passes_of_matrix(), counters_);
+        prepare_selection(vpls, context);
         const int columns = (options_.width + tile_size_ - 1) / tile_size_;
         const int rows = (options_.height + tile_size_ - 1) / tile_size_;
         std::vector<lights::ReceiverStore> stores(maps_ ? std::size_t(columns) * std::size_t(rows) : 0);
@@ -100,18 +99,8 @@ class VplEstimator final : public Estimator {
             statistics.values["imperfect_shadow_map_bytes"] = double(imperfect_.memory_bytes());
             statistics.lookups["imperfect_shadow_maps"] += imperfect_lookups_;
         }
-        selection_.add_statistics(statistics);
-        if (cuts_.cuts > 0) {
-            statistics.values["lightcuts"] = double(cuts_.cuts);
-            statistics.values["lightcut_pairs"] = double(cuts_.pairs);
-            statistics.values["lightcut_pairs_evaluated"] = double(cuts_.evaluated);
-            statistics.values["lightcuts_at_limit"] = double(cuts_.at_limit);
-        }
-        if (settings_.selection.resamples()) {
-            statistics.values["resampling_candidates"] = double(resampled_.candidates);
-            statistics.values["resampling_chosen"] = double(resampled_.chosen);
-            statistics.values["resampling_reused"] = double(resampled_.reused);
-        }
+        for (const auto& [name, value] : selection_statistics_.values) statistics.values[name] += value;
+        for (const auto& [name, value] : selection_statistics_.seconds) statistics.seconds[name] += value;
         if (filter_) {
             statistics.seconds["filter_features"] = filter_->feature_seconds();
             statistics.seconds["filter"] = filter_->filter_seconds();
@@ -150,16 +139,23 @@ class VplEstimator final : public Estimator {
         imperfect_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     }
 
-    PassSelection::Passes passes_of_matrix() {
-        return {[this](const PassContext& context) { return trace_lights(context); },
-                [this](const PassContext& context, const lights::VplSet& vpls,
-                       std::span<const glm::ivec2> pixels) {
-                    std::vector<lights::MatrixReceiver> receivers;
-                    with_tile(context, vpls, nullptr, [&](EyeTile<Media>& tile) {
-                        receivers = find_receivers(scene_, options_, context, pixels, tile);
-                    });
-                    return receivers;
-                }};
+    void prepare_selection(const lights::VplSet& vpls, const PassContext& context) {
+        RayCounters rays;
+        TrackingCounters tracking;
+        const std::uint64_t key = hash_keys(options_.seed, context.index, selection_stream);
+        lights::SelectionPass pass{
+            scene_, vpls, bound_, key, rays, tracking, selection_statistics_, context.cancelled, {}};
+        selector_ = lights::all_vpls()->prepare(pass);  // while receivers are sampled
+        pass.sample_receivers = [&](std::size_t paths) {
+            const auto pixels = spread_pixels(options_.width, options_.height, paths, key);
+            std::vector<lights::PathReceiver> receivers;
+            with_tile(context, vpls, nullptr, [&](EyeTile<Media>& tile) {
+                receivers = sample_path_receivers(scene_, options_, context, pixels, tile);
+            });
+            return receivers;
+        };
+        selector_ = settings_.selection->prepare(pass);
+        counters_.add(rays, tracking);
     }
 
     struct Box {
@@ -176,17 +172,15 @@ class VplEstimator final : public Estimator {
         walk.cancelled = context.cancelled;
         const auto scratch = std::make_unique<lights::GatherScratch>();
         const auto tile = std::make_unique<EyeTile<Media>>(
-            scene_, settings_, bound_, vpls, transport_ ? &*transport_ : nullptr, *scratch, walk,
+            scene_, settings_, vpls, *selector_, transport_ ? &*transport_ : nullptr, *scratch, walk,
             EyeShadowMaps{.lights = maps_ ? maps_->of_lights() : nullptr,
                           .receivers = store,
-                          .imperfect = settings_.visibility.imperfect ? &imperfect_ : nullptr},
-            selection_.by());
+                          .imperfect = settings_.visibility.imperfect ? &imperfect_ : nullptr});
         render(*tile);
         counters_.add(walk.rays, walk.tracking);
         const std::lock_guard lock(cost_mutex_);
         imperfect_lookups_ += tile->imperfect_lookups();
-        cuts_.add(tile->cut_counters());
-        resampled_.add(tile->resampling_counters());
+        tile->selector().add_statistics(selection_statistics_);
         cost_.vertices += tile->compensation_cost().vertices;
         cost_.seconds += tile->compensation_cost().seconds;
     }
@@ -256,7 +250,7 @@ class VplEstimator final : public Estimator {
     std::size_t share_of(const PassContext& context, int column, int row) const {
         const auto n = std::size_t(settings_.interleaving);
         const auto start = std::size_t(hash_keys(options_.seed, 0x696e7465726cull) % (n * n));
-        if (settings_.selection.selects()) return 0;
+        if (!settings_.selection->takes_all()) return 0;
         return (std::size_t(column) % n + n * (std::size_t(row) % n) + start + context.index) % (n * n);
     }
 
@@ -265,8 +259,8 @@ class VplEstimator final : public Estimator {
                       SharedPixels* shared) const {
         const glm::ivec2 first = lanes[0];  // the others lie to the right and below
         const int n = settings_.interleaving;
-        // Drawn lights are no shares: any of them may be drawn, and neighbours draw their own.
-        const std::size_t shares = settings_.selection.selects() ? 1 : std::size_t(n) * std::size_t(n);
+        // Selected VPLs are not shared out: any of them may be selected, and neighbours select their own.
+        const std::size_t shares = settings_.selection->takes_all() ? std::size_t(n) * std::size_t(n) : 1;
         const std::size_t share = first.x < 0 ? 0 : share_of(context, first.x, first.y);
         std::array<VplPixel, lane_count> sums;
         const auto samples = std::uint32_t(settings_.eye_samples);
@@ -282,7 +276,7 @@ class VplEstimator final : public Estimator {
                 tile.run({sample + samples * share, samples * shares}, float(samples * shares));
             else
                 tile.run({share, shares}, float(shares));
-            if (sample + 1 == samples) tile.gather_collected();
+            if (sample + 1 == samples) tile.gather_recorded();
             for (std::size_t lane = 0; lane < lanes.size(); ++lane)
                 sums[lane].add(tile.sum(int(lane)), 1.0f / float(samples));
         }
@@ -318,9 +312,8 @@ class VplEstimator final : public Estimator {
     VplSettings settings_;
     float bound_;
     int tile_size_;
-    PassSelection selection_;
-    lights::LightcutCounters cuts_;
-    lights::ResamplingCounters resampled_;
+    std::unique_ptr<lights::VplSelector> selector_;  ///< of this pass
+    Statistics selection_statistics_;
     std::optional<lights::ReflectiveShadowMaps> reflective_;  ///< nothing: lights draw their paths
     lights::SurfacePoints points_;
     lights::ImperfectShadowMaps imperfect_;  ///< of this pass, from these points

@@ -14,11 +14,9 @@
 #include "integrators/eye_path/eye_path.h"
 #include "integrators/eye_path/shared_pixels.h"
 #include "integrators/virtual_point_lights/tile_compensation.h"
-#include "integrators/virtual_point_lights/tile_selection.h"
 #include "integrators/virtual_point_lights/vpl_pixel.h"
 #include "integrators/virtual_point_lights/vpl_settings.h"
-#include "lights/virtual_lights/particle_tracer.h"
-#include "lights/virtual_lights/vpl_gather.h"
+#include "lights/selection/selection.h"
 
 namespace mote::integrators {
 
@@ -29,22 +27,20 @@ class EyeTile {
     static constexpr int side = 4;
     static_assert(side * side == lights::ReceiverTile::width);
 
-    EyeTile(const core::Scene& scene, const VplSettings& settings, float bound, const lights::VplSet& vpls,
-            const compensation::ResidualTransport* transport, lights::GatherScratch& scratch,
-            core::WalkContext& walk, const EyeShadowMaps& maps = {}, const SelectedBy& selected_by = {})
+    EyeTile(const core::Scene& scene, const VplSettings& settings, const lights::VplSet& vpls,
+            const lights::VplSelector& selector, const compensation::ResidualTransport* transport,
+            lights::GatherScratch& scratch, core::WalkContext& walk, const EyeShadowMaps& maps = {})
         : scene_(scene),
           settings_(settings),
-          bound_(bound),
-          vpls_(vpls),
           scratch_(scratch),
           walk_(walk),
           maps_(maps),
-          selection_(settings.selection, selected_by, vpls, bound),
+          selector_(selector.for_task()),
           compensation_(scene, settings.compensation, transport, vpls, scratch, walk) {}
 
     void start(int lane, const EyeRay& eye) {
         Lane& l = lanes_[std::size_t(lane)];
-        l.sum = {}, l.receiver = ReceiverKind::surface, l.alive = true;
+        l.sum = {}, l.receiver = lights::ReceiverKind::surface, l.alive = true;
         l.seen = {}, l.film = eye.film;
         walk_.rng = eye.rng;
         l.path.emplace(scene_, settings_.eye, eye, walk_);
@@ -58,14 +54,13 @@ class EyeTile {
     const VplPixel& sum(int lane) const { return lanes_[std::size_t(lane)].sum; }
     /// What the lane's eye path met first, after run().
     const SeenPixel& seen(int lane) const { return lanes_[std::size_t(lane)].seen; }
-    /// From now on receivers are added to these, and nothing arrives at them.
-    void collect_receivers(std::vector<lights::MatrixReceiver>& all) { collected_ = &all; }
-    /// Do lanes to come gather VPLs and compensate? Else receivers are seen, and nothing arrives at them.
+    /// From now on receivers are appended to these, and gather no VPLs.
+    void record_receivers(std::vector<lights::PathReceiver>& all) { recorded_ = &all; }
+    /// If false, the following lanes only record what they see; they gather no VPLs.
     void gathers(bool yes) { gathers_ = yes; }
     CompensationCost compensation_cost() const { return compensation_.cost(); }
     std::uint64_t imperfect_lookups() const { return imperfect_lookups_; }
-    lights::LightcutCounters cut_counters() const { return selection_.counters(); }
-    lights::ResamplingCounters resampling_counters() const { return selection_.resampling_counters(); }
+    const lights::TileSelector& selector() const { return *selector_; }
 
     /// Of the lanes to come: where they lie in the picture, `spacing` pixels apart, and how much receivers
     /// that are stored count.
@@ -89,11 +84,11 @@ class EyeTile {
         }
     }
 
-    /// Gathers at all points since the last call, where they wait for each other: of several eye paths, whose
-    /// light is a sum.
-    void gather_collected() {
-        if (!selection_.collects()) return;
-        const auto light = selection_.gather_points(context(), walk_.rng.next_u32());
+    /// Gathers at all points since the last call, where the selector gathers the points of a pixel at once:
+    /// those of several eye paths, too, whose light is a sum.
+    void gather_recorded() {
+        if (!selector_->records()) return;
+        const lights::LightByKind light = selector_->gather_recorded(context(), walk_.rng);
         for (std::size_t i = 0; i < lanes_.size(); ++i)
             for (const bool surface : {true, false})
                 lanes_[i].sum.transport[transport_layer(2, surface)] += light[surface ? 0 : 1][i];
@@ -109,7 +104,7 @@ class EyeTile {
         core::ScatteringVertex vertex;                  ///< at one of them
         SeenPixel seen;
         core::Vec2 film{0.0f};
-        ReceiverKind receiver = ReceiverKind::surface;
+        lights::ReceiverKind receiver = lights::ReceiverKind::surface;
         bool alive = false;
     };
 
@@ -119,14 +114,14 @@ class EyeTile {
         if (maps_.receivers)
             maps_.receivers->add(receivers_, maps_.column, maps_.row, maps_.spacing, range,
                                  vpl_scale * maps_.scale);
-        else if (selection_.active())
-            light = gather_selected();
+        else if (selector_->records())
+            selector_->record(receivers_);
         else
-            light = gather_lights(range);
+            light = gather_selected(range);
         const auto compensated = compensation_.run(range, vpl_scale);
         for (int i = 0; i < lights::ReceiverTile::width; ++i) {
             Lane& lane = lanes_[std::size_t(i)];
-            const bool surface = lane.receiver == ReceiverKind::surface;
+            const bool surface = lane.receiver == lights::ReceiverKind::surface;
             lane.sum.transport[transport_layer(2, surface)] += vpl_scale * light[std::size_t(i)];
             lane.sum.compensation[std::size_t(lane.receiver)] += compensated[std::size_t(i)];
         }
@@ -136,40 +131,26 @@ class EyeTile {
         return {scene_, scratch_, walk_.rays, walk_.tracking, walk_.cancelled};
     }
 
-    /// By the hierarchy or the matrix; nothing yet where points wait for each other.
-    lights::TileLight gather_selected() {
-        if (!receivers_.any_active) return {};
-        if (selection_.collects()) {
-            selection_.collect(
-                receivers_, [&](int i) { return lanes_[std::size_t(i)].receiver == ReceiverKind::surface; });
-            return {};
-        }
-        const std::uint64_t key = walk_.rng.next_u32();
-        if (selection_.cuts()) return selection_.cut(context(), receivers_, key);
-        const lights::DrawnVpls drawn = selection_.drawn(receivers_, key);
-        return selection_.learns() ? selection_.gather(context(), vpls_, drawn, receivers_)
-                                   : gather_lights(drawn);
-    }
-
-    template <typename Lights>
-    lights::TileLight gather_lights(const Lights& choice) {
+    lights::TileLight gather_selected(const lights::VplRange& range) {
         const lights::GatherContext own = context();
-        const lights::BoundedGeometry weight{bound_};
-        if (!maps_.imperfect) return lights::gather(own, vpls_, choice, weight, receivers_);
+        if (!maps_.imperfect) {
+            lights::TracedVisibility visibility(own, receivers_);
+            return selector_->gather(own, receivers_, range, visibility, walk_.rng);
+        }
         lights::ImperfectVisibility visibility(own, receivers_, *maps_.imperfect);
-        const auto light = lights::gather_with(own, vpls_, choice, weight, receivers_, visibility);
+        const lights::TileLight light = selector_->gather(own, receivers_, range, visibility, walk_.rng);
         imperfect_lookups_ += visibility.lookups();
         return light;
     }
 
-    /// The same at the scattering points, the n-th of every lane at once. VPLs are shared out among a few of
+    /// gather() at the scattering points, the n-th of every lane at once. VPLs are shared out among a few of
     /// them.
     void gather_at_points(const lights::VplRange& range, float vpl_scale) {
         if (std::all_of(lanes_.begin(), lanes_.end(), [](const Lane& lane) { return lane.points.empty(); }))
             return;
         const auto count = std::size_t(settings_.scattering_points);
-        const std::size_t most = selection_.collects() ? count : most_receivers;
-        const std::size_t receivers = std::min(count, most), spacing = count / receivers;
+        const std::size_t receivers = selector_->records() ? count : std::min(count, max_receivers);
+        const std::size_t spacing = count / receivers;
         for (std::size_t n = 0; n < count; ++n) {
             const bool receives = n % spacing == 0 && n / spacing < receivers;
             receivers_.clear();
@@ -177,10 +158,10 @@ class EyeTile {
                 if (Lane& lane = lanes_[std::size_t(i)]; !lane.points.empty())
                     at_point(lane, i, lane.points[n], receives ? float(count) / float(receivers) : 0.0f);
             if (receives)
-                gather(selection_.active() ? range
-                                           : lights::VplRange{range.first + n / spacing * range.stride,
-                                                              range.stride * receivers, range.end},
-                       selection_.active() ? vpl_scale : vpl_scale * float(receivers));
+                gather(selector_->takes_ranges() ? lights::VplRange{range.first + n / spacing * range.stride,
+                                                                    range.stride * receivers, range.end}
+                                                 : range,
+                       selector_->takes_ranges() ? vpl_scale * float(receivers) : vpl_scale);
         }
     }
 
@@ -258,11 +239,11 @@ class EyeTile {
         const int max_depth = settings_.eye.max_depth;
         const std::int32_t vpl_depth =
             max_depth < 0 ? std::numeric_limits<std::int32_t>::max() : max_depth - path.depth() - 1;
-        if (collected_) {
-            collected_->push_back({vertex, throughput, state, vpl_depth});
+        if (recorded_) {
+            recorded_->push_back({vertex, throughput, state, vpl_depth});
             return;
         }
-        lane.receiver = vertex.on_surface() ? ReceiverKind::surface : ReceiverKind::medium;
+        lane.receiver = vertex.on_surface() ? lights::ReceiverKind::surface : lights::ReceiverKind::medium;
         receivers_.set(index, vertex, throughput, state, core::Rng(walk_.rng.next_u32()), vpl_depth);
         compensation_.add(index, vertex, throughput, state, vpl_depth);
     }
@@ -272,22 +253,20 @@ class EyeTile {
     static constexpr float rare_light = 0.3f;
     /// So many of a ray's scattering points are receivers of VPLs: more take memory and compensation, and
     /// gain little, because they meet no more VPLs (docs/media.md).
-    static constexpr std::size_t most_receivers = 2;
+    static constexpr std::size_t max_receivers = 2;
 
     const core::Scene& scene_;
     const VplSettings& settings_;
-    float bound_;
-    const lights::VplSet& vpls_;
     lights::GatherScratch& scratch_;
     core::WalkContext& walk_;
     EyeShadowMaps maps_;
     std::uint64_t imperfect_lookups_ = 0;
-    TileSelection selection_;
+    std::unique_ptr<lights::TileSelector> selector_;
     TileCompensation<Media> compensation_;
     std::array<Lane, lights::ReceiverTile::width> lanes_;
     lights::ReceiverTile receivers_;
     bool gathers_ = true;
-    std::vector<lights::MatrixReceiver>* collected_ = nullptr;
+    std::vector<lights::PathReceiver>* recorded_ = nullptr;
 };
 
 }  // namespace mote::integrators

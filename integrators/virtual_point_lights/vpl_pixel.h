@@ -7,13 +7,10 @@
 
 namespace mote::integrators {
 
-/// Where a receiver lies: the layers of compensation are named after it.
-enum class ReceiverKind : std::uint8_t { surface, medium };
-
 /// One estimate of a pixel.
 struct VplPixel {
     TransportSum transport;
-    std::array<core::Rgb, 2> compensation{};  ///< by ReceiverKind
+    std::array<core::Rgb, 2> compensation{};  ///< by lights::ReceiverKind
 
     void add(const VplPixel& other, float weight) {
         for (std::size_t i = 0; i < transport.light.size(); ++i)

@@ -8,8 +8,8 @@
 #include "integrators/eye_path/eye_path_limits.h"
 #include "integrators/layer_filter/layer_filter.h"
 #include "integrators/screen_space_compensation/screen_space_compensation.h"
-#include "integrators/virtual_point_lights/vpl_selection.h"
 #include "integrators/virtual_point_lights/vpl_visibility.h"
+#include "lights/selection/selection.h"
 #include "lights/virtual_lights/light_path.h"
 
 namespace mote::integrators {
@@ -23,7 +23,7 @@ struct VplSettings {
     std::optional<ScreenSpaceSettings> screen_space;  ///< after the last pass, on surfaces
     int eye_samples = 1;                              ///< eye paths a pixel and pass
     VisibilitySettings visibility;
-    SelectionSettings selection;
+    std::shared_ptr<const lights::Selection> selection = lights::all_vpls();
     compensation::RoughnessClamping clamping;
     /// Points in media where the light along an eye ray is gathered, besides the surface behind them; 0: one
     /// collision or the surface, by chance.
@@ -42,7 +42,7 @@ struct VplSettings {
     bool compensates() const { return compensation.enabled || screen_space.has_value(); }
     /// VPLs are shared out among the eye paths of a pixel, instead of all of them meeting every one.
     bool vpls_shared_out() const {
-        if (selection.selects()) return false;
+        if (!selection->takes_all()) return false;
         return !compensation.enabled || compensation.strategy == compensation::Strategy::one_to_one;
     }
 
@@ -57,7 +57,7 @@ struct VplSettings {
     lights::LightPathSettings light_paths() const {
         lights::LightPathSettings s;
         s.paths = paths, s.rr_depth = eye.rr_depth;
-        s.keep_states = !selection.selects();  // rays begin at receivers
+        s.keep_states = selection->takes_all();  // else rays begin at receivers
         s.max_vertices = eye.max_depth < 0 ? -1 : std::max(0, eye.max_depth - 2);
         return s;
     }

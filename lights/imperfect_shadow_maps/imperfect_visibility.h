@@ -9,14 +9,14 @@ namespace mote::lights {
 
 /// A visibility policy of gather_pairs(), for the VPLs that `maps` were built of. Draws from the tile's
 /// generators where the scene attenuates light.
-class ImperfectVisibility {
+class ImperfectVisibility final : public BatchVisibility {
   public:
     /// Keeps references to all three.
     ImperfectVisibility(const GatherContext& context, ReceiverTile& tile, const ImperfectShadowMaps& maps)
         : context_(context), tile_(tile), maps_(maps) {}
 
     /// As gather_pairs() calls it.
-    void operator()(std::span<core::ShadowPacket> packets, std::span<LaneLight> light) {
+    void operator()(std::span<core::ShadowPacket> packets, std::span<LaneLight> light) override {
         context_.cancelled.check();
         alignas(64) float visible[ReceiverLanes::width];
         for (std::size_t p = 0; p < packets.size(); ++p) {

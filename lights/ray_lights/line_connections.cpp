@@ -18,7 +18,7 @@ constexpr float defensive = 0.15f;
 double square(double x) { return x * x; }  // core::sqr() is for single precision
 float inverse_square(double distance_squared) { return float(1.0 / distance_squared); }
 
-using CellWeights = std::array<float, most_cells>;
+using CellWeights = std::array<float, max_cells>;
 
 /// Multiplies the weights of a line by guess(middle of the cell), and the mean of all guesses besides.
 template <typename Guess>

@@ -21,10 +21,7 @@ Vec2 spread(const Vec2& start, std::size_t n) {
 }
 
 void set_lane(ShadowPacket& packet, LaneLight& light, int i, const LineConnection& c, float weight) {
-    const Vec3 way = c.to - c.from;
-    packet.origin_x[i] = c.from.x, packet.origin_y[i] = c.from.y, packet.origin_z[i] = c.from.z;
-    packet.direction_x[i] = way.x, packet.direction_y[i] = way.y, packet.direction_z[i] = way.z;
-    packet.t_min[i] = 0.0f, packet.t_max[i] = shadow_t_max;
+    set_shadow_ray(packet, i, c.from, c.to);
     light.r[i] = weight * c.value.x, light.g[i] = weight * c.value.y, light.b[i] = weight * c.value.z;
 }
 
@@ -40,37 +37,41 @@ std::optional<LineConnection> connect_point(const ReceiverTile& tile, int lane, 
 
 }  // namespace
 
-void LineGather::draw_candidates(Rng& rng, int receivers) {
+void LineGather::sample_candidates(Rng& rng, int receivers) {
     constexpr std::size_t least = 8;
     const std::size_t count =
         std::min(candidates_, std::max(least, candidates_ * std::size_t(receivers) / std::size_t(width)));
-    LightShare(set_.ray_power, count).choose_all(rng.next_float(), offered_rays_);
-    LightShare(set_.surface_power, count).choose_all(rng.next_float(), offered_surface_);
+    PowerSampling(set_.ray_power, count).choose_all(rng.next_float(), candidate_rays_);
+    PowerSampling(set_.surface_power, count).choose_all(rng.next_float(), candidate_vpls_);
 }
 
 template <typename Receivers>
-void LineGather::offer_to(const Receivers& receivers, LineOffer& offer) const {
+void LineGather::evaluate_at(const Receivers& receivers, LineCandidates& candidates) const {
     LaneFloats expected;
-    for (const WeightedVpl& light : offered_rays_) {
-        expected_light(set_.rays[light.index], receivers, expected);
-        offer.add(std::uint32_t(light.index), true, light.weight, expected);
+    for (const WeightedVpl& light : candidate_rays_) {
+        importance(set_.rays[light.index], receivers, expected);
+        candidates.add(std::uint32_t(light.index), true, light.weight, expected);
     }
-    for (const WeightedVpl& light : offered_surface_) {
-        expected_light(set_.surface.lights[light.index], receivers, expected);
-        offer.add(std::uint32_t(light.index), false, light.weight, expected);
+    for (const WeightedVpl& light : candidate_vpls_) {
+        importance(set_.surface.lights[light.index], receivers, expected);
+        candidates.add(std::uint32_t(light.index), false, light.weight, expected);
     }
 }
 
-void LineGather::offer(const EyeLines& eyes, LineOffer& offer) const { offer_to(EyeReceivers(eyes), offer); }
+void LineGather::evaluate(const EyeLines& eyes, LineCandidates& candidates) const {
+    evaluate_at(EyeReceivers(eyes), candidates);
+}
 
-void LineGather::offer(const PointReceivers& points, LineOffer& offer) const { offer_to(points, offer); }
+void LineGather::evaluate(const PointReceivers& points, LineCandidates& candidates) const {
+    evaluate_at(points, candidates);
+}
 
 template <typename Active>
-void LineGather::pick(const LineOffer& offer, const LaneFloats& steps, ReceiverTile& tile,
-                      const Active& active) {
+void LineGather::choose(const LineCandidates& candidates, const LaneFloats& steps, ReceiverTile& tile,
+                        const Active& active) {
     LaneFloats starts;
     for (int i = 0; i < width; ++i) starts.of[i] = active(i) ? tile.rng[i].next_float() : 1.0f;
-    offer.pick(steps, starts, picks_);
+    candidates.choose(steps, starts, choices_);
 }
 
 /// connect_lane(lane, pick, u) -> optional<LineConnection>.
@@ -78,9 +79,9 @@ template <typename Connect>
 TileLight LineGather::gather(ReceiverTile& tile, const Connect& connect_lane) {
     std::array<Vec2, width> starts;
     std::size_t most = 0;
-    for (std::size_t i = 0; i < picks_.size(); ++i) {
-        most = std::max(most, picks_[i].size());
-        if (!picks_[i].empty()) starts[i] = tile.rng[i].next_vec2();
+    for (std::size_t i = 0; i < choices_.size(); ++i) {
+        most = std::max(most, choices_[i].size());
+        if (!choices_[i].empty()) starts[i] = tile.rng[i].next_vec2();
     }
     TracedVisibility visibility(context_, tile);
     TileSum sum;
@@ -96,11 +97,11 @@ TileLight LineGather::gather(ReceiverTile& tile, const Connect& connect_lane) {
         ShadowPacket& packet = context_.scratch.packets[batched];
         LaneLight& light = context_.scratch.light[batched];
         bool any = false;
-        for (std::size_t i = 0; i < picks_.size(); ++i) {
+        for (std::size_t i = 0; i < choices_.size(); ++i) {
             packet.t_max[i] = -1.0f;
             light.r[i] = light.g[i] = light.b[i] = 0.0f;
-            if (n >= picks_[i].size()) continue;
-            const LinePick& pick = picks_[i][n];
+            if (n >= choices_[i].size()) continue;
+            const LineChoice& pick = choices_[i][n];
             ++counters_.pairs;
             if (const Found found = connect_lane(int(i), pick, spread(starts[i], n))) {
                 set_lane(packet, light, int(i), *found, pick.weight);
@@ -113,14 +114,14 @@ TileLight LineGather::gather(ReceiverTile& tile, const Connect& connect_lane) {
     return sum.value();
 }
 
-TileLight LineGather::to_eyes(const EyeLines& eyes, const LineOffer& offer, const LaneFloats& steps,
+TileLight LineGather::to_eyes(const EyeLines& eyes, const LineCandidates& candidates, const LaneFloats& steps,
                               ReceiverTile& tile) {
     for (int i = 0; i < width; ++i) {
         tile.directional[i] = nullptr;
         if (const EyeLine* eye = eyes.of[std::size_t(i)]) tile.state[i] = eye->state;
     }
-    pick(offer, steps, tile, [&](int i) { return eyes.of[std::size_t(i)] != nullptr; });
-    return gather(tile, [&](int i, const LinePick& pick, const Vec2& u) -> Found {
+    choose(candidates, steps, tile, [&](int i) { return eyes.of[std::size_t(i)] != nullptr; });
+    return gather(tile, [&](int i, const LineChoice& pick, const Vec2& u) -> Found {
         const EyeLine& eye = *eyes.of[std::size_t(i)];
         const LineContext context{tile.rng[i], context_.tracking};
         if (pick.ray) return connect(eye, set_.rays[pick.light], u, context);
@@ -128,10 +129,10 @@ TileLight LineGather::to_eyes(const EyeLines& eyes, const LineOffer& offer, cons
     });
 }
 
-TileLight LineGather::to_points(const LineOffer& offer, const LaneFloats& steps, float bound,
+TileLight LineGather::to_points(const LineCandidates& candidates, const LaneFloats& steps, float bound,
                                 ReceiverTile& tile) {
-    pick(offer, steps, tile, [&](int i) { return tile.max_vpl_depth[i] > 0; });
-    return gather(tile, [&](int i, const LinePick& pick, const Vec2& u) -> Found {
+    choose(candidates, steps, tile, [&](int i) { return tile.max_vpl_depth[i] > 0; });
+    return gather(tile, [&](int i, const LineChoice& pick, const Vec2& u) -> Found {
         if (!pick.ray) return connect_point(tile, i, set_.surface, set_.surface.lights[pick.light], bound);
         return connect(tile, i, set_.rays[pick.light], u.x, bound, {tile.rng[i], context_.tracking});
     });

@@ -2,11 +2,11 @@
 // lights for sixteen points.
 //
 // Shadow rays go in packets of sixteen, a batch at a time, as those of VPLs do (virtual_lights/vpl_gather.h).
-// Which lights a lane connects to is drawn from what they would send to it (line_offer.h). Points on the
+// Which lights a lane connects to is drawn from what they would send to it (line_candidates.h). Points on the
 // lines follow a sequence that fills the square evenly as the lights go by, from a start of the lane's own.
 #pragma once
 
-#include "lights/ray_lights/line_offer.h"
+#include "lights/ray_lights/line_candidates.h"
 #include "lights/virtual_lights/vpl_gather.h"
 
 namespace mote::lights {
@@ -27,25 +27,27 @@ class LineGather {
         : context_(context), set_(set), candidates_(candidates) {}
 
     /// Draws the lights that are looked at from here on, by `receivers` lanes; fewer lanes look at fewer.
-    void draw_candidates(core::Rng& rng, int receivers);
+    void sample_candidates(core::Rng& rng, int receivers);
     /// What these would send, about.
-    void offer(const EyeLines& eyes, LineOffer& offer) const;
-    void offer(const PointReceivers& points, LineOffer& offer) const;
+    void evaluate(const EyeLines& eyes, LineCandidates& candidates) const;
+    void evaluate(const PointReceivers& points, LineCandidates& candidates) const;
 
     /// By lane: along eye rays, connected by steps of so much light. `tile` is written to: its states and
     /// generators are those of the lanes; generators it has must be the lanes' own.
-    TileLight to_eyes(const EyeLines& eyes, const LineOffer& offer, const LaneFloats& steps,
+    TileLight to_eyes(const EyeLines& eyes, const LineCandidates& candidates, const LaneFloats& steps,
                       ReceiverTile& tile);
     /// The same of points, with min(G*, bound) [1/m^2].
-    TileLight to_points(const LineOffer& offer, const LaneFloats& steps, float bound, ReceiverTile& tile);
+    TileLight to_points(const LineCandidates& candidates, const LaneFloats& steps, float bound,
+                        ReceiverTile& tile);
     const LineCounters& counters() const { return counters_; }
 
   private:
     using Found = std::optional<LineConnection>;
     template <typename Receivers>
-    void offer_to(const Receivers& receivers, LineOffer& offer) const;
+    void evaluate_at(const Receivers& receivers, LineCandidates& candidates) const;
     template <typename Active>
-    void pick(const LineOffer& offer, const LaneFloats& steps, ReceiverTile& tile, const Active& active);
+    void choose(const LineCandidates& candidates, const LaneFloats& steps, ReceiverTile& tile,
+                const Active& active);
     template <typename Connect>
     TileLight gather(ReceiverTile& tile, const Connect& connect_lane);
 
@@ -53,8 +55,8 @@ class LineGather {
     const RayLightSet& set_;
     std::size_t candidates_;
     LineCounters counters_;
-    std::vector<WeightedVpl> offered_rays_, offered_surface_;
-    LinePicks picks_;
+    std::vector<WeightedVpl> candidate_rays_, candidate_vpls_;
+    LineChoices choices_;
 };
 
 }  // namespace mote::lights

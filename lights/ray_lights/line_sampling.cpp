@@ -60,8 +60,8 @@ std::optional<LineSample> sample_line(const Density& density, double begin, doub
                                       std::span<const float> weights, float u) {
     if (!(begin < end)) return std::nullopt;
     const std::size_t cells = weights.size();
-    std::array<double, most_cells + 1> edges, integrals;
-    std::array<double, most_cells> masses;
+    std::array<double, max_cells + 1> edges, integrals;
+    std::array<double, max_cells> masses;
     double sum = 0.0;
     for (std::size_t i = 0; i <= cells; ++i) {
         edges[i] = std::clamp(length * double(i) / double(cells), begin, end);

@@ -60,10 +60,10 @@ struct LineSample {
 };
 
 /// At most so many cells on a line.
-inline constexpr std::size_t most_cells = 16;
+inline constexpr std::size_t max_cells = 16;
 
 /// Draws from the part [begin, end] of a line of `length`, in proportion to the density times the weight of
-/// the cell; weights are those of equal parts of the whole line, at most most_cells, not negative. Nothing
+/// the cell; weights are those of equal parts of the whole line, at most max_cells, not negative. Nothing
 /// where there is nothing to draw from.
 template <typename Density>
 std::optional<LineSample> sample_line(const Density& density, double begin, double end, double length,

@@ -15,7 +15,7 @@ constexpr std::uint32_t fog_cells =
     6;  ///< of lines in homogeneous media that are deeper, or scatter unevenly
 constexpr float voxels_per_cell = 2.0f;  ///< at least
 constexpr int looks = 2;                 ///< at the density of a cell
-constexpr float certain_share = 0.1f;    ///< of the mean of all cells that each has, whatever was seen in it
+constexpr float defensive_share = 0.1f;  ///< of the mean of all cells that each has, whatever was seen in it
 
 Rgb exp_minus(const Rgb& depth) { return {std::exp(-depth.x), std::exp(-depth.y), std::exp(-depth.z)}; }
 
@@ -63,7 +63,7 @@ Rgb look_at(MediumLine& line, double t0, double t1, Rng& rng, TrackingCounters& 
 std::optional<MediumLine> varying_line(MediumLine line, float voxel, Rng& rng, TrackingCounters& counters) {
     if (!std::isfinite(line.length)) return std::nullopt;
     const float wanted = line.length / (voxels_per_cell * voxel);
-    line.cells = std::uint32_t(std::clamp(std::ceil(wanted), 1.0f, float(most_cells)));
+    line.cells = std::uint32_t(std::clamp(std::ceil(wanted), 1.0f, float(max_cells)));
     line.transmittance[0] = Rgb(1.0f);
     float sum = 0.0f, rest = 0.0f;
     for (std::uint32_t i = 0; i < line.cells; ++i) {
@@ -84,7 +84,7 @@ std::optional<MediumLine> varying_line(MediumLine line, float voxel, Rng& rng, T
         sum += line.weights[i], rest += there;
     }
     // Between what was looked at there may be more.
-    const float floor = sum > 0.0f ? certain_share * sum / rest : 1.0f;
+    const float floor = sum > 0.0f ? defensive_share * sum / rest : 1.0f;
     for (std::uint32_t i = 0; i < line.cells; ++i)
         line.weights[i] += floor * std::fabs(average(line.transmittance[i]));
     return line;

@@ -52,9 +52,9 @@ struct MediumLine {
     core::Rgb sigma_t{0.0f},
         sigma_s{0.0f};  ///< of a homogeneous medium [1/m]; of others the mean of what was seen
     bool homogeneous = false, isotropic = true;
-    std::uint32_t cells = 1;                              ///< at most most_cells
-    std::array<float, most_cells> weights{};              ///< of cells
-    std::array<core::Rgb, most_cells + 1> transmittance;  ///< to the ends of cells; not of homogeneous media
+    std::uint32_t cells = 1;                             ///< at most max_cells
+    std::array<float, max_cells> weights{};              ///< of cells
+    std::array<core::Rgb, max_cells + 1> transmittance;  ///< to the ends of cells; not of homogeneous media
 
     std::span<const float> cell_weights() const { return std::span(weights).first(cells); }
     core::Vec3d at(double t) const { return core::Vec3d(origin) + t * core::Vec3d(direction); }  ///< [m]

@@ -72,7 +72,7 @@ void append(RayLightSet& to, RayLightSet&& from) {
 /// that is P sqrt(L), which is how its light spreads: P / d within L of it, P L / d^2 farther away, so that
 /// the mean of the square over receivers on surfaces around it is P^2 L, but for logarithms. Drawn by P L,
 /// short lines would count so much where they are drawn that they were points again.
-double drawn_power(const RayLight& light) {
+double sampling_power(const RayLight& light) {
     double sum = 0.0;
     for (const float weight : light.line.cell_weights()) sum += double(weight);
     return double(average(light.power)) * sum * std::sqrt(double(light.line.length)) /
@@ -100,17 +100,17 @@ RayLightSet trace_ray_lights(const LitScene& scene, const ScatteringMedia& media
     for (RayLightSet& part : parts) append(set, std::move(part));
     set.surface.paths = settings.paths;
     double sum = 0.0;
-    for (const RayLight& light : set.rays) set.ray_power.push_back(sum += drawn_power(light));
+    for (const RayLight& light : set.rays) set.ray_power.push_back(sum += sampling_power(light));
     sum = 0.0;
     for (const VirtualPointLight& vpl : set.surface.lights)
         set.surface_power.push_back(sum += reflected_power(vpl));
     return set;
 }
 
-WeightedVpl LightShare::choose(std::size_t n, float start) const { return choose_behind(n, start, 0); }
+WeightedVpl PowerSampling::choose(std::size_t n, float start) const { return choose_behind(n, start, 0); }
 
 /// No light before `first` is looked at.
-WeightedVpl LightShare::choose_behind(std::size_t n, float start, std::size_t first) const {
+WeightedVpl PowerSampling::choose_behind(std::size_t n, float start, std::size_t first) const {
     if (all_) return {n, 1.0f};
     const double total = power_.back(), place = (double(n) + double(start)) / double(count_) * total;
     std::size_t index = first;
@@ -124,7 +124,7 @@ WeightedVpl LightShare::choose_behind(std::size_t n, float start, std::size_t fi
     return {index, own > 0.0 ? float(total / (own * double(count_))) : 0.0f};
 }
 
-void LightShare::choose_all(float start, std::vector<WeightedVpl>& lights) const {
+void PowerSampling::choose_all(float start, std::vector<WeightedVpl>& lights) const {
     lights.clear();
     for (std::size_t n = 0; n < count(); ++n)
         lights.push_back(choose_behind(n, start, n == 0 ? 0 : lights.back().index));

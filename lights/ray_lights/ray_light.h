@@ -45,10 +45,10 @@ RayLightSet trace_ray_lights(const core::LitScene& scene, const ScatteringMedia&
 
 /// Which lights a receiver looks at: all, or so many of them, drawn by their power in equal steps through the
 /// sum from one random start.
-class LightShare {
+class PowerSampling {
   public:
     /// `power`: sums up to each light, which must outlive this; `most`: so many; 0: all.
-    LightShare(std::span<const double> power, std::size_t most)
+    PowerSampling(std::span<const double> power, std::size_t most)
         : power_(power), all_(most == 0 || most >= power.size()), count_(all_ ? power.size() : most) {}
     std::size_t count() const { return !power_.empty() && power_.back() > 0.0 ? count_ : 0; }
     /// The n-th of count(), by a random start in [0, 1) that all of a receiver share. Its weight is one over

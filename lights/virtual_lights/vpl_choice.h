@@ -36,14 +36,14 @@ struct VplRange {
     }
 };
 
-/// What a selector has drawn for a tile: n lights with weights 1 / (n p). A light may come more than once.
-struct DrawnVpls {
-    std::span<const WeightedVpl> drawn;  ///< in the order of the draws
+/// Samples of a selector for a tile: n VPLs with weights 1 / (n p). A VPL may come more than once.
+struct SampledVpls {
+    std::span<const WeightedVpl> samples;
 
     /// Calls visit(WeightedVpl), as the top of this file says.
     template <typename Visit>
     void for_each(std::size_t, const Visit& visit) const {
-        for (const WeightedVpl& light : drawn) visit(light);
+        for (const WeightedVpl& light : samples) visit(light);
     }
 };
 

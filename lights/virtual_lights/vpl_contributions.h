@@ -28,6 +28,14 @@ inline constexpr float shadow_t_max = core::shadow_fraction;
 /// A receiver exactly on a VPL: keeps 1/d^2 finite. Far below any distance that single precision resolves.
 inline constexpr float min_distance_squared = 1e-30f;
 
+/// The shadow ray of a lane from a receiver towards a VPL.
+inline void set_shadow_ray(core::ShadowPacket& packet, int i, const core::Vec3& from, const core::Vec3& to) {
+    packet.origin_x[i] = from.x, packet.origin_y[i] = from.y, packet.origin_z[i] = from.z;
+    packet.direction_x[i] = to.x - from.x, packet.direction_y[i] = to.y - from.y;
+    packet.direction_z[i] = to.z - from.z;
+    packet.t_min[i] = 0.0f, packet.t_max[i] = shadow_t_max;
+}
+
 /// Receivers of constant f* and a plain VPL. Returns whether any lane receives light.
 template <typename Weight>
 bool plain_contributions(const ReceiverLanes& x, const VirtualPointLight& y, float light_weight,
@@ -97,10 +105,7 @@ bool general_contributions(const ReceiverLanes& x, const VplSet& vpls, const Vir
         const core::Rgb value = c.value * weigh(weight, g, c.distance_squared, c.cos_x, c.cos_y, i);
         if (!(core::max_component(value) > 0.0f)) continue;
         out.r[i] = value.x, out.g[i] = value.y, out.b[i] = value.z;
-        packet.origin_x[i] = c.origin.x, packet.origin_y[i] = c.origin.y, packet.origin_z[i] = c.origin.z;
-        packet.direction_x[i] = c.target.x - c.origin.x, packet.direction_y[i] = c.target.y - c.origin.y;
-        packet.direction_z[i] = c.target.z - c.origin.z;
-        packet.t_min[i] = 0.0f, packet.t_max[i] = shadow_t_max;
+        set_shadow_ray(packet, i, c.origin, c.target);
         any = true;
     }
     return any;

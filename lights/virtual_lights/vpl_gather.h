@@ -60,14 +60,21 @@ struct GatherContext {
     core::CancelToken cancelled = {};  ///< thrown at, a batch at a time
 };
 
+/// V* of a batch of pairs.
+class BatchVisibility {
+  public:
+    virtual ~BatchVisibility() = default;
+    /// Multiplies light by V*, as gather_pairs() calls it.
+    virtual void operator()(std::span<core::ShadowPacket> packets, std::span<LaneLight> light) = 0;
+};
+
 /// V* by shadow rays, all of a batch in one call, times an estimate of the transmittance where the scene
-/// attenuates light. Draws from the tile's generators.
-class TracedVisibility {
+/// attenuates light, by the tile's generators.
+class TracedVisibility final : public BatchVisibility {
   public:
     /// Keeps references to both.
     TracedVisibility(const GatherContext& context, ReceiverTile& tile) : context_(context), tile_(tile) {}
-    /// As gather_pairs() calls it.
-    void operator()(std::span<core::ShadowPacket> packets, std::span<LaneLight> light);
+    void operator()(std::span<core::ShadowPacket> packets, std::span<LaneLight> light) override;
 
   private:
     const GatherContext& context_;
@@ -107,11 +114,12 @@ struct alignas(64) TileSum {
     }
 };
 
-/// The light of `lights` at the receivers of a tile, per lane, with a visibility of the caller's. What
-/// arrives of each light that sends anything is told, as a LaneLight, to `hear`, in the order of `lights`.
-template <typename Lights, typename Weight, typename Visibility, typename Hear>
+/// Light of `lights` at the receivers of a tile, by lane, with a visibility of the caller's. Calls
+/// record(LaneLight) with the light of each VPL that sends any, in the order of `lights`.
+template <typename Lights, typename Weight, typename Visibility, typename Record>
 TileLight gather_with(const GatherContext& context, const VplSet& vpls, const Lights& lights,
-                      const Weight& weight, ReceiverTile& tile, Visibility& visibility, const Hear& hear) {
+                      const Weight& weight, ReceiverTile& tile, Visibility& visibility,
+                      const Record& record) {
     TileSum sum;
     if (!tile.any_active) return sum.value();
     const auto pairs = [&](const auto& visit) {
@@ -119,19 +127,19 @@ TileLight gather_with(const GatherContext& context, const VplSet& vpls, const Li
     };
     gather_pairs(vpls, pairs, weight, visibility, context.scratch, [&](const LaneLight& light) {
         sum.add(light);
-        hear(light);
+        record(light);
     });
     return sum.value();
 }
 
-/// The same, told to nobody.
+/// gather_with() that records nothing.
 template <typename Lights, typename Weight, typename Visibility>
 TileLight gather_with(const GatherContext& context, const VplSet& vpls, const Lights& lights,
                       const Weight& weight, ReceiverTile& tile, Visibility& visibility) {
     return gather_with(context, vpls, lights, weight, tile, visibility, [](const LaneLight&) {});
 }
 
-/// The same with traced visibility.
+/// gather_with() by shadow rays.
 template <typename Lights, typename Weight>
 TileLight gather(const GatherContext& context, const VplSet& vpls, const Lights& lights, const Weight& weight,
                  ReceiverTile& tile) {

@@ -43,13 +43,13 @@ IDEAS = {
     "Russian roulette of eye paths": (r"\bsurvives<\w+>\(", {"integrators/eye_path/eye_path.h": 1}),
     "the light of virtual lights at receivers": (r"(?<!bool )\bcontributions_of\(", {
         "lights/virtual_lights/vpl_gather.h": 1,
-        "lights/selection/resampling_target.cpp": 1,     # candidates, most of which are never connected
-        "lights/selection/lobe_contributions.cpp": 1,    # pairs of groups, each remembered by itself
+        "lights/selection/resampling/resampling_target.cpp": 1,     # candidates, most of which are never connected
+        "lights/virtual_lights/lobe_contributions.cpp": 1,    # pairs of groups, each remembered by itself
     }),
     "a gather over pairs": (r"(?<!void )\bgather_pairs\(", {
         "lights/virtual_lights/vpl_gather.h": 1,         # a tile and all its lights, by rays
         "lights/shadow_maps/shadow_map_gather.h": 1,     # a light and all its receivers, by its map
-        "lights/selection/matrix_rows.cpp": 1,           # rows of a matrix: all lights, each remembered by itself
+        "lights/selection/matrix/matrix_rows.cpp": 1,           # rows of a matrix: all lights, each remembered by itself
     }),
 }
 

@@ -43,7 +43,7 @@ void check(const std::string& xml, const std::string& settings, const std::strin
 const std::string paths = R"(<integer name="paths" value="8"/>)";
 // Lights are drawn by power, then by what they would send.
 const std::string shared = R"(<integer name="paths" value="40"/><integer name="candidates" value="12"/>
-                              <integer name="share" value="6"/>)";
+                              <integer name="connections" value="6"/>)";
 const std::string forward = R"(<phase type="hg"><float name="g" value="0.6"/></phase>)";
 const Effort quick{200, 2000, 0.15}, long_run{3000, 30000, 0.1};
 
@@ -64,7 +64,7 @@ TEST_CASE("ray lights equal paths in fog", "[ray_lights][equality]") {
 }
 TEST_CASE("ray lights equal paths where all lights are connected to", "[ray_lights][equality]") {
     check(box(grey, fog("0.8, 1.0, 1.3", "")),
-          R"(<integer name="paths" value="4"/><integer name="share" value="0"/>)", "", quick);
+          R"(<integer name="paths" value="4"/><integer name="connections" value="0"/>)", "", quick);
 }
 TEST_CASE("ray lights equal paths in smoke, a share of them", "[ray_lights][equality]") {
     const mote::tests::TemporaryFolder folder;

@@ -35,9 +35,6 @@ const std::map<std::string, Words> words = {
     {"mote_vpl_ray_bundles.links", {"rays", "grid", "imperfect"}},
     {"mote_layers.shares", {"3", "2, 1", "1, 2, 1"}},
     {"mote_micro_rendering.light", {"direct", "vpls", "radiosity", "photons"}},
-    {"matrix.row_visibility", {"rays", "shadow_map", "imperfect_shadow_map"}},
-    {"resampling.candidates_by", {"groups", "cut", "light_tree", "power"}},
-    {"resampling.reuse", {"none", "unbiased", "biased"}},
 };
 
 /// Numbers by name. The first is used throughout and keeps pictures quick, but for light paths, which are
@@ -95,9 +92,7 @@ const std::map<std::string, Words> numbers = {
     {"rows", {"16"}},
     {"columns", {"8"}},
     {"slices", {"", "1"}},
-    {"map_size", {"8"}},
-    {"shared_passes", {"", "2"}},
-    {"share", {"", "7"}},
+    {"connections", {"", "7"}},
 };
 
 /// Numbers that are tried on the first level alone: what they change is below whoever nests the type.

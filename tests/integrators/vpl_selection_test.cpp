@@ -28,18 +28,17 @@ std::string cut(const std::string& type, double threshold, int max_cut = 1 << 20
                        type, threshold, max_cut);
 }
 
-std::string resampled(const std::string& by, const std::string& reuse, int candidates = 24, int samples = 3) {
+std::string resampled(int candidates = 24, int samples = 3) {
     return fmt::format(R"(<selection type="resampling"><integer name="candidates" value="{}"/>
-        <integer name="samples" value="{}"/><string name="candidates_by" value="{}"/>
-        <string name="reuse" value="{}"/></selection>)",
-                       candidates, samples, by, reuse);
+        <integer name="samples" value="{}"/></selection>)",
+                       candidates, samples);
 }
 
-std::string matrix(int rows, int columns, int slices, const std::string& visibility = "rays") {
+std::string matrix(int rows, int columns, int slices) {
     return fmt::format(R"(<selection type="matrix"><integer name="rows" value="{}"/>
         <integer name="columns" value="{}"/><integer name="slices" value="{}"/>
-        <string name="row_visibility" value="{}"/></selection>)",
-                       rows, columns, slices, visibility);
+        <string name="row_visibility" value="rays"/></selection>)",
+                       rows, columns, slices);
 }
 
 std::vector<core::Rgb> picture(const core::Scene& scene, const std::string& integrator,
@@ -70,9 +69,6 @@ void check_same_and_other(const std::vector<core::Rgb>& all, const std::vector<c
 
 TEST_CASE("selected VPLs have the mean of volpath", "[vpl][selection][equality]") {
     const std::string two = R"(<integer name="eye_samples" value="2"/>)";
-    const std::string shared =
-        R"(<selection type="matrix"><integer name="rows" value="16"/><integer name="columns" value="9"/>
-        <integer name="shared_passes" value="5"/></selection>)";
     const std::string apart = R"(<integer name="interleaving" value="2"/>)";
     struct Case {
         std::string medium;
@@ -81,16 +77,15 @@ TEST_CASE("selected VPLs have the mean of volpath", "[vpl][selection][equality]"
     };
     const std::string haze =
         fog("0.8, 1.0, 1.3", R"(<phase type="hg"><float name="g" value="0.5"/></phase>)");
-    for (const Case& c : {Case{"",
-                               {drawn("light_tree", 8), drawn("stochastic_lightcuts", 8), matrix(32, 9, 2),
-                                shared, resampled("power", "unbiased")},
-                               1.15},
-                          Case{haze,
-                               {drawn("light_tree", 6) + apart, drawn("stochastic_lightcuts", 6) + two,
-                                cut("multidimensional_lightcuts", 0.0) + two, matrix(32, 9, 2) + apart,
-                                resampled("power", "none"), resampled("cut", "none") + apart,
-                                resampled("groups", "unbiased") + two},
-                               1.25}}) {
+    for (const Case& c :
+         {Case{"",
+               {drawn("light_tree", 8), drawn("stochastic_lightcuts", 8), matrix(32, 9, 2), resampled()},
+               1.15},
+          Case{haze,
+               {drawn("light_tree", 6) + apart, drawn("stochastic_lightcuts", 6) + two,
+                cut("multidimensional_lightcuts", 0.0) + two, matrix(32, 9, 2) + apart, resampled() + apart,
+                resampled() + two},
+               1.25}}) {
         const auto scene = scene_from(box(c.medium.empty() ? mixed : grey, c.medium), 8);
         const auto reference = render_statistics(
             *scene,
@@ -132,8 +127,7 @@ TEST_CASE("Few rays for many VPLs", "[vpl][selection]") {
     const double all = rays("");
     CHECK(rays(drawn("light_tree", 64)) < 0.03 * all);
     CHECK(rays(drawn("stochastic_lightcuts", 64)) < 0.03 * all);
-    CHECK(rays(resampled("power", "none", 256, 8)) < 0.002 * all);
-    CHECK(rays(resampled("power", "unbiased", 256, 8)) < 0.004 * all);
+    CHECK(rays(resampled(256, 8)) < 0.002 * all);
     CHECK(rays(cut("lightcuts", 0.02, 1000)) < 0.2 * all);
     // Sixteen rows of all lights, and 64 columns, of a picture of 256 pixels.
     CHECK(rays(matrix(16, 64, 1)) < (0.03 + 16.0 / 256.0) * all);
@@ -144,8 +138,8 @@ TEST_CASE("Without lights there is nothing to select", "[vpl][selection][extreme
     for (const int paths : {0, 1})
         for (const std::string& selection :
              {drawn("light_tree", 4), drawn("stochastic_lightcuts", 4), cut("lightcuts", 0.02),
-              cut("multidimensional_lightcuts", 0.02), resampled("power", "unbiased"),
-              resampled("cut", "biased"), matrix(32, 2, 2), matrix(1, 1, 1, "imperfect_shadow_map")})
+              cut("multidimensional_lightcuts", 0.02), resampled(), matrix(32, 2, 2),
+              std::string(R"(<selection type="matrix"/>)")})
             for (const core::Rgb& pixel : picture(*scene, vpl(selection, "", paths)))
                 CHECK((std::isfinite(pixel.x) && pixel.x >= 0.0f));
 }
@@ -161,33 +155,6 @@ TEST_CASE("A matrix with more columns than lights is the picture of all VPLs", "
     }
 }
 
-TEST_CASE("Passes that share the rows of a matrix have the bits that they have alone", "[vpl][selection]") {
-    const auto scene = scene_from(box(grey, fog("0.8, 1.0, 1.3", "")), 8);
-    const auto filter = core::make_pixel_filter("box", 0.5f, 0.5f);
-    const std::atomic<bool> never{false};
-    const auto pass_of = [&](int shared, std::vector<std::uint32_t> passes) {
-        const auto method = integrator_from(vpl(fmt::format(
-            R"(<selection type="matrix"><integer name="rows" value="16"/><integer name="columns" value="12"/>
-               <integer name="slices" value="1"/><integer name="shared_passes" value="{}"/></selection>)",
-            shared)));
-        const auto estimator =
-            method->prepare(*scene, core::RenderOptions{3, 8, 8, core::SamplerKind::sobol});
-        core::PassImage image(8, 8, method->layers(*scene).size());
-        for (const std::uint32_t pass : passes) {
-            image = core::PassImage(8, 8, method->layers(*scene).size());
-            REQUIRE(estimator->pass({pass, *filter, never}, image));
-        }
-        std::vector<core::Rgb> all;
-        for (std::size_t layer = 0; layer < method->layers(*scene).size(); ++layer)
-            all.insert(all.end(), image.layer(layer).begin(), image.layer(layer).end());
-        return all;
-    };
-    const auto fifth = pass_of(3, {0, 1, 2, 3, 4});  // the second of its three
-    CHECK((fifth == pass_of(3, {4})));
-    CHECK_FALSE((fifth == pass_of(1, {4})));
-    CHECK((pass_of(3, {3}) == pass_of(1, {3})));
-}
-
 TEST_CASE("What does not go together with a selection is refused by name", "[vpl][selection]") {
     const std::string selection = drawn("light_tree", 4);
     const std::vector<std::pair<std::string, std::string>> cases{
@@ -199,21 +166,10 @@ TEST_CASE("What does not go together with a selection is refused by name", "[vpl
     CHECK_THROWS_WITH(
         integrator_from(vpl(cut("lightcuts", 0.02), R"(<visibility type="imperfect_shadow_map"/>)")),
         ContainsSubstring("imperfect shadow maps"));
-    CHECK_THROWS_WITH(
-        integrator_from(vpl(resampled("cut", "none"), R"(<visibility type="imperfect_shadow_map"/>)")),
-        ContainsSubstring("imperfect shadow maps"));
+    CHECK_THROWS_WITH(integrator_from(vpl(resampled(), R"(<visibility type="imperfect_shadow_map"/>)")),
+                      ContainsSubstring("imperfect shadow maps"));
     CHECK_THROWS_WITH(
         integrator_from(vpl(cut("lightcuts", 0.02), R"(<integer name="interleaving" value="2"/>)")),
         ContainsSubstring("interleaving"));
     CHECK_NOTHROW(integrator_from(vpl(selection, R"(<visibility type="imperfect_shadow_map"/>)")));
-    const auto scene = scene_from(box(grey, ""), 8);
-    for (const std::string type : {"light_tree", "matrix"}) {
-        const std::string tight =
-            "<selection type=\"" + type + R"("><float name="max_megabytes" value="0.01"/></selection>)";
-        const auto method = integrator_from(vpl(tight, "", 4000));
-        core::Film film(8, 8, method->layers(*scene));
-        core::PassRunner runner(*scene, *method, 3, film);
-        const std::atomic<bool> cancelled = false;
-        CHECK_THROWS_AS(runner.run_pass(cancelled), core::InputError);
-    }
 }

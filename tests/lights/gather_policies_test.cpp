@@ -170,7 +170,7 @@ TEST_CASE("shares of the lights add up, and drawn lights count by their weights"
 
         const std::vector<WeightedVpl> drawn{{5, 2.0f}, {0, 0.5f}, {5, 1.5f}, {17, 3.0f}};
         REQUIRE(room.vpls.lights.size() > 17);
-        check_equal(room.gather(lights::DrawnVpls{drawn}, weight),
+        check_equal(room.gather(lights::SampledVpls{drawn}, weight),
                     room.plain_sum(drawn, [](double g, double) { return std::min(g, double(bound)); }));
     }
 }
@@ -197,7 +197,7 @@ Estimate drawn_light(Room& room, float share, int draws) {
             light = {chosen.index, share / (float(count) * chosen.probability)};
         }
         double light = 0.0;
-        for (const Rgb& c : room.gather(lights::DrawnVpls{drawn}, lights::BoundedGeometry{bound}))
+        for (const Rgb& c : room.gather(lights::SampledVpls{drawn}, lights::BoundedGeometry{bound}))
             light += double(average(c));
         sum += light, squares += light * light;
     }

@@ -2,8 +2,8 @@
 // their factors matters.
 #include <functional>
 
-#include "lights/selection/cluster_bounds.h"
-#include "lights/selection/gather_points.h"
+#include "lights/selection/hierarchy/cluster_bounds.h"
+#include "lights/selection/lightcuts/gather_points.h"
 #include "tests/lights/random_lights.h"
 #include "tests/support/catch.h"
 
@@ -14,7 +14,7 @@ using lights::LightCluster, lights::LightNode;
 
 namespace {
 
-/// How often more arrives than the bound says, of how many pairs of a group and a receiver that any light
+/// How often more arrives than the bound says, of how many pairs of a node and a receiver that any light
 /// arrives at, and how often the bound is less than twice what arrives (of glossy
 /// lights, whose lobe is known by its peak alone, a hundred times).
 struct Tally {
@@ -33,8 +33,8 @@ void compare(bool glossy, const lights::VplSet& set, const lights::LightHierarch
     }
     LightNode node = tree.node(c);
     if (change) change(node);
-    const lights::LaneValues most = lights::most_light(node, bounds, bound);
-    const lights::LaneValues expected = lights::expected_light(node, bounds, bound);
+    const lights::LaneValues most = lights::upper_bound(node, bounds, bound);
+    const lights::LaneValues expected = lights::importance(node, bounds, bound);
     for (std::size_t i = 0; i < 16; ++i) {
         if (!(sum[i] > 1e-30)) continue;
         ++tally.pairs;
@@ -84,7 +84,7 @@ TEST_CASE("Every part of a bound is needed", "[light_selection][bounds]") {
     CHECK(broken(Lights::plain, [](LightNode& n) { n.energy *= 0.95f; }) > 0);
     CHECK(broken(Lights::plain, [](LightNode& n) { n.upper -= 0.3f * (n.upper - n.lower); }) > 0);
     CHECK(broken(Lights::plain, [](LightNode& n) { n.cos_angle = std::cos(0.7f * n.cone().angle); }) > 0);
-    CHECK(broken(Lights::plain, [](LightNode& n) { ++n.least_depth; }) > 0);
+    CHECK(broken(Lights::plain, [](LightNode& n) { ++n.min_depth; }) > 0);
     CHECK(broken(Lights::glossy, [](LightNode& n) { n.peak *= 0.01f; }) > 0);
     CHECK(broken(Lights::glossy, [](LightNode& n) { n.set_grazing(1e-4f * n.peak); }) > 0);
     CHECK(broken(Lights::lobes, [](LightNode& n) { n.cos_angle = std::cos(0.5f * n.cone().angle); }) > 0);
@@ -137,15 +137,15 @@ TEST_CASE("Groups of receivers are bounded as their points are", "[light_selecti
         const float bound = rng.next_u32() % 2 ? infinity : random_size(rng, -1, 2);
         for (std::size_t n = 1 + rng.next_u32() % 4; n > 0; --n) {
             receivers.push_back(std::make_unique<RandomReceivers>(rng, materials, set.lights[0].position));
-            points.add(receivers.back()->tile, lights::GatherKind::medium);
+            points.add(receivers.back()->tile, lights::ReceiverKind::medium);
             for (std::size_t j = 0; j < set.lights.size(); ++j) {
                 const auto one = sent(set, j, receivers.back()->tile, bound);
                 for (std::size_t i = 0; i < 16; ++i) sum[i] += one[i];
             }
         }
         points.build(rng);
-        const auto& group = points.group(points.root(lights::GatherKind::medium));
-        const auto most = lights::most_light(tree.node(tree.root()), group.bounds, bound);
+        const auto& node = points.node(points.root(lights::ReceiverKind::medium));
+        const auto most = lights::upper_bound(tree.node(tree.root()), node.bounds, bound);
         for (std::size_t i = 0; i < 16; ++i) {
             if (!(sum[i] > 1e-30)) continue;
             ++pairs, broken += !(double(most.value[i]) >= sum[i]);

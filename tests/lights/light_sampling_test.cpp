@@ -1,7 +1,7 @@
 // Lights drawn by a hierarchy: probabilities add up to 1 whatever the scale and the depth, means are those of
 // all lights, and sets that are no sets are dealt with.
 #include "core/objects/error.h"
-#include "lights/selection/light_sampler.h"
+#include "lights/selection/stochastic/light_sampler.h"
 #include "tests/lights/random_lights.h"
 #include "tests/support/catch.h"
 #include "tests/support/mean_of.h"
@@ -9,7 +9,7 @@
 using namespace mote;
 using namespace mote::core;
 using namespace mote::tests;
-using lights::LightHierarchy, lights::LightTree, lights::ReceiverBounds, lights::ReceiverGroups;
+using lights::LightHierarchy, lights::WideLightTree, lights::ReceiverBounds, lights::ReceiverClusters;
 using lights::VplLeaves, lights::WeightedVpl;
 
 namespace {
@@ -38,9 +38,9 @@ struct Floor {
 };
 
 /// Of all lights: their sum.
-double check_probabilities(const LightTree& tree, const Floor& floor, float bound) {
+double check_probabilities(const WideLightTree& tree, const Floor& floor, float bound) {
     double sum = 0.0;
-    const ReceiverGroups receivers(ReceiverBounds(floor.tile), tree);
+    const ReceiverClusters receivers(ReceiverBounds(floor.tile), tree);
     for (const double p : lights::probabilities(tree, receivers, bound, tree.size())) {
         if (!(p >= 0.0 && p <= 1.0)) FAIL_CHECK(p << " is no probability");
         sum += p;
@@ -66,9 +66,9 @@ TEST_CASE("Probabilities of all lights add up to 1, in any scale", "[light_selec
         Floor floor(Vec3(0.1f, 0.0f, -0.7f), 0.05f);
         const auto probabilities_of = [&](const lights::VplSet& vpls, const Floor& x) {
             const VplLeaves leaves(vpls);
-            const LightTree tree(leaves);
+            const WideLightTree tree(leaves);
             REQUIRE(tree.size() == 400);
-            const ReceiverGroups receivers(ReceiverBounds(x.tile), tree);
+            const ReceiverClusters receivers(ReceiverBounds(x.tile), tree);
             return lights::probabilities(tree, receivers, infinity, 400);
         };
         const auto p = probabilities_of(set, floor);
@@ -95,8 +95,8 @@ TEST_CASE("Lights at distances 2^-i, and a million in one place", "[light_select
     Rng rng(1);
     for (const lights::VplSet* set : {&powers, &many}) {
         const VplLeaves leaves(*set);
-        const LightTree tree(leaves);
-        const ReceiverGroups receivers(ReceiverBounds(floor.tile), tree);
+        const WideLightTree tree(leaves);
+        const ReceiverClusters receivers(ReceiverBounds(floor.tile), tree);
         CHECK(tree.size() == set->lights.size());
         CHECK(check_probabilities(tree, floor, infinity) == Approx(1.0).epsilon(1e-9));
         double all = 0.0;
@@ -112,11 +112,11 @@ TEST_CASE("Lights at distances 2^-i, and a million in one place", "[light_select
             CHECK(light_of(*set, drawn, floor.tile) == Approx(all).epsilon(0.02));
         }
     }
-    // A chain of groups deeper than 32, where nothing but depth tells lights apart: 2^-i from the receiver.
+    // A chain of clusters deeper than 32, where nothing but depth tells lights apart: 2^-i from the receiver.
     lights::VplSet deep;
     for (int i = 0; i < 120; ++i) deep.lights.push_back(light_at({0.0f, 0.0f, std::ldexp(1.0f, -i)}));
     const VplLeaves leaves(deep);
-    const LightTree tree(leaves);
+    const WideLightTree tree(leaves);
     const Floor below(Vec3(0.0f, 0.0f, -1.0f), 1e-6f);
     CHECK(check_probabilities(tree, below, infinity) == Approx(1.0).epsilon(1e-9));
     const Floor on_them(Vec3(0.0f), 0.0f);
@@ -132,9 +132,9 @@ TEST_CASE("Lights drawn by the tree and by a cut have the mean of all",
     for (const Lights kind : {Lights::plain, Lights::glossy, Lights::isotropic, Lights::lobes, Lights::all}) {
         const auto set = random_lights(rng, materials, kind, 500, 1.0f, 0.5f);
         const VplLeaves leaves(set);
-        const LightTree tree(leaves);
+        const WideLightTree tree(leaves);
         const Floor floor(Vec3(0.5f, -1.0f, -1.5f), 0.1f);
-        const ReceiverGroups receivers(ReceiverBounds(floor.tile), tree);
+        const ReceiverClusters receivers(ReceiverBounds(floor.tile), tree);
         double all = 0.0;
         for (std::size_t j = 0; j < set.lights.size(); ++j)
             for (const double v : sent(set, j, floor.tile, infinity)) all += v;
@@ -167,9 +167,9 @@ TEST_CASE("Learned shares have the mean of all, whatever was learned",
     Rng rng(14), draws(15);
     const auto set = random_lights(rng, materials, Lights::plain, 800, 1.0f, 0.5f);
     const VplLeaves leaves(set);
-    const LightTree tree(leaves);
+    const WideLightTree tree(leaves);
     const Floor floor(Vec3(0.5f, -1.0f, -1.5f), 0.1f);
-    const ReceiverGroups receivers(ReceiverBounds(floor.tile), tree);
+    const ReceiverClusters receivers(ReceiverBounds(floor.tile), tree);
     // Half of the lights are hidden: what arrives, and what these would send.
     std::vector<double> light(set.lights.size(), 0.0), other(set.lights.size(), 0.0);
     double all = 0.0;
@@ -181,16 +181,16 @@ TEST_CASE("Learned shares have the mean of all, whatever was learned",
         else
             light[j] = sum, all += sum;
     }
-    for (const std::string way : {"tree", "cut", "groups"}) {
+    for (const std::string way : {"tree", "cut", "clusters"}) {
         std::array<double, 3> errors{};
         for (const int taught : {0, 1, 2}) {  // nothing, what is so, that all others are hidden
             lights::LightSampler sampler;
-            lights::LearnedShares learned;
-            sampler.use(&learned);
+            lights::LearnedImportance learned;
+            sampler.learn_into(&learned);
             const auto drawn = [&] {
                 return way == "tree"  ? sampler.by_tree(tree, receivers, infinity, 32, draws)
                        : way == "cut" ? sampler.by_cut(tree, receivers, infinity, 32, draws)
-                                      : sampler.from_groups(tree, receivers, infinity, 16, 2, draws);
+                                      : sampler.from_clusters(tree, receivers, infinity, 16, 2, draws);
             };
             for (int k = 0; taught > 0 && k < 150; ++k) {
                 const auto lights = drawn();
@@ -223,9 +223,9 @@ TEST_CASE("More lights, less noise", "[light_selection][sampling][statistics]") 
     lights::LightSampler sampler;
     const auto set = random_lights(rng, materials, Lights::plain, 5000, 2.0f, 3.0f);
     const VplLeaves leaves(set);
-    const LightTree tree(leaves);
+    const WideLightTree tree(leaves);
     const Floor floor(Vec3(0.5f, -1.0f, -1.5f), 0.1f);
-    const ReceiverGroups receivers(ReceiverBounds(floor.tile), tree);
+    const ReceiverClusters receivers(ReceiverBounds(floor.tile), tree);
     for (const bool cut : {false, true}) {
         const auto error = [&](std::uint32_t n) {
             return mean_of(1000,
@@ -253,7 +253,7 @@ TEST_CASE("Every node holds what is below it, and one array holds all", "[light_
     const auto visit = [&](const auto& self, const lights::LightCluster& c) -> void {
         const lights::LightNode node = tree.node(c);
         for (const double share : {0.0, 0.3, 0.999999}) {
-            const std::uint32_t place = tree.place_at(c, share);
+            const std::uint32_t place = tree.index_at(c, share);
             wrong += place < c.first || place >= c.first + c.count;
         }
         Rgb energy(0.0f);
@@ -262,7 +262,7 @@ TEST_CASE("Every node holds what is below it, and one array holds all", "[light_
             energy += leaf.energy;
             wrong += !glm::all(glm::lessThanEqual(node.lower, leaf.lower)) ||
                      !glm::all(glm::greaterThanEqual(node.upper, leaf.upper)) || leaf.peak > node.peak ||
-                     leaf.least_depth < node.least_depth;
+                     leaf.min_depth < node.min_depth;
         }
         for (int k = 0; k < 3; ++k) wrong += std::fabs(energy[k] - node.energy[k]) > 1e-3f * energy[k];
         if (c.single()) {
@@ -282,18 +282,18 @@ TEST_CASE("Every part of a node that is drawn from holds what is below it", "[li
     for (const Lights kind : {Lights::plain, Lights::lobes, Lights::all}) {
         const auto set = random_lights(rng, materials, kind, 3000, 2.0f, 0.3f);
         const VplLeaves leaves(set);
-        const LightTree tree(leaves);
-        CHECK(tree.memory_bytes() <= LightTree::bytes_a_light * set.lights.size());
+        const WideLightTree tree(leaves);
+        CHECK(tree.memory_bytes() <= WideLightTree::bytes_a_light * set.lights.size());
         std::vector<int> seen(set.lights.size());
         std::size_t outside = 0, wide = 0;
-        const auto holds = [&](const lights::LightParts& parts, int i, const lights::LightNode& leaf) {
+        const auto holds = [&](const lights::LightChildren& parts, int i, const lights::LightNode& leaf) {
             const Vec3 lower(parts.lower_x[i], parts.lower_y[i], parts.lower_z[i]);
             const Vec3 upper(parts.upper_x[i], parts.upper_y[i], parts.upper_z[i]);
             const Vec3 axis(parts.axis_x[i], parts.axis_y[i], parts.axis_z[i]);
             const float rounding = 1e-6f * glm::length(upper - lower) + 1e-6f;
             bool held = glm::all(glm::lessThanEqual(lower, leaf.lower + rounding)) &&
                         glm::all(glm::greaterThanEqual(upper, leaf.upper - rounding)) &&
-                        parts.least_depth[i] <= float(leaf.least_depth);
+                        parts.min_depth[i] <= float(leaf.min_depth);
             const bool surface =
                 leaf.kind == lights::LightKind::surface || leaf.kind == lights::LightKind::glossy;
             held &= surface || parts.has_cosine[i] == 0.0f;
@@ -306,8 +306,8 @@ TEST_CASE("Every part of a node that is drawn from holds what is below it", "[li
             return held;
         };
         const auto visit = [&](const auto& self,
-                               const lights::LightTreeNode& node) -> std::vector<std::uint32_t> {
-            const lights::LightParts parts(node);
+                               const lights::WideLightNode& node) -> std::vector<std::uint32_t> {
+            const lights::LightChildren parts(node);
             std::vector<std::uint32_t> all;
             double share = 0.0;
             for (int i = 0; i < node.count; ++i) {
@@ -331,7 +331,8 @@ TEST_CASE("Every part of a node that is drawn from holds what is below it", "[li
     }
 }
 
-TEST_CASE("Shares of a group's energy are places in proportion to energy", "[light_selection]") {
+TEST_CASE("ChildProbabilities of a cluster's energy are places in proportion to energy",
+          "[light_selection]") {
     const Materials& materials = all_materials();
     Rng rng(11);
     const auto set = random_lights(rng, materials, Lights::plain, 300, 2.0f, 3.0f);
@@ -343,7 +344,7 @@ TEST_CASE("Shares of a group's energy are places in proportion to energy", "[lig
         std::vector<double> count(c.count);
         double all = 0.0, worst = 0.0;
         for (int k = 0; k < shares; ++k)
-            count[tree.place_at(c, (double(k) + 0.5) / double(shares)) - c.first] += 1.0;
+            count[tree.index_at(c, (double(k) + 0.5) / double(shares)) - c.first] += 1.0;
         for (std::uint32_t i = 0; i < c.count; ++i) all += double(tree.weight_at(c.first + i));
         CHECK(std::fabs(all / double(tree.weight(c)) - 1.0) < 1e-5);
         for (std::uint32_t i = 0; i < c.count; ++i)
@@ -355,21 +356,21 @@ TEST_CASE("Shares of a group's energy are places in proportion to energy", "[lig
 
 TEST_CASE("No lights, one light, dark ones, and more than memory holds", "[light_selection][extremes]") {
     const Floor floor(Vec3(0.0f), 0.1f);
-    const auto receivers = [&](const LightTree& tree) {
-        return ReceiverGroups(ReceiverBounds(floor.tile), tree);
+    const auto receivers = [&](const WideLightTree& tree) {
+        return ReceiverClusters(ReceiverBounds(floor.tile), tree);
     };
     lights::LightSampler sampler;
     Rng rng(1);
     lights::VplSet set;
     const VplLeaves leaves(set);
     CHECK(LightHierarchy(leaves).empty());
-    const LightTree none(leaves);
+    const WideLightTree none(leaves);
     CHECK(none.empty());
     CHECK(sampler.by_tree(none, receivers(none), 1.0f, 4, rng).empty());
     CHECK(sampler.by_cut(none, receivers(none), 1.0f, 4, rng).empty());
 
     set.lights.push_back(light_at({0.0f, 0.0f, 1.0f}));
-    const LightTree one(leaves);
+    const WideLightTree one(leaves);
     REQUIRE(one.size() == 1);
     const auto drawn = sampler.by_tree(one, receivers(one), 1.0f, 4, rng);
     REQUIRE(drawn.size() == 1);
@@ -381,18 +382,18 @@ TEST_CASE("No lights, one light, dark ones, and more than memory holds", "[light
     CHECK(LightHierarchy(leaves).empty());
     set.lights[70].intensity = Rgb(1e-30f);
     CHECK(LightHierarchy(leaves).size() == 1);
-    CHECK(LightTree(leaves).size() == 1);
+    CHECK(WideLightTree(leaves).size() == 1);
     set.lights[70].intensity = Rgb(infinity);
     CHECK_THROWS_AS(LightHierarchy(leaves), InputError);
-    CHECK_THROWS_AS(LightTree(leaves), InputError);
+    CHECK_THROWS_AS(WideLightTree(leaves), InputError);
     set.lights[70].intensity = Rgb(-1.0f);
     CHECK_THROWS_AS(LightHierarchy(leaves), InputError);
-    CHECK_THROWS_AS(LightTree(leaves), InputError);
+    CHECK_THROWS_AS(WideLightTree(leaves), InputError);
 
     // A receiver on a light: finite weights.
     set.lights[70] = light_at(floor.tile.position(3));
     set.lights[71] = light_at({0.0f, 0.0f, 1.0f});
-    const LightTree two(leaves);
+    const WideLightTree two(leaves);
     for (const WeightedVpl& light : sampler.by_tree(two, receivers(two), infinity, 64, rng))
         CHECK(std::isfinite(light.weight));
 
@@ -402,5 +403,5 @@ TEST_CASE("No lights, one light, dark ones, and more than memory holds", "[light
         lights::LightNode leaf(std::uint32_t) const override { return {}; }
     };
     CHECK_THROWS_AS(LightHierarchy(Many(), std::size_t(1) << 30), InputError);
-    CHECK_THROWS_AS(LightTree(Many(), std::size_t(900) << 20), InputError);
+    CHECK_THROWS_AS(WideLightTree(Many(), std::size_t(900) << 20), InputError);
 }

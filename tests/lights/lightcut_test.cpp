@@ -1,8 +1,8 @@
 // Lightcuts: all lights to rounding where the threshold is 0, within the threshold of them else, over one
 // point a pixel and over many.
-#include "lights/selection/lightcut.h"
+#include "lights/selection/lightcuts/lightcut.h"
 #include "core/scene/scene.h"
-#include "lights/selection/vertex_bounds.h"
+#include "lights/selection/hierarchy/vertex_bounds.h"
 #include "lights/virtual_lights/particle_tracer.h"
 #include "media/phase_functions.h"
 #include "tests/lights/closed_box.h"
@@ -11,7 +11,7 @@
 
 using namespace mote;
 using namespace mote::core;
-using lights::GatherKind, lights::GatherPoints, lights::LightcutSettings, lights::TileLight;
+using lights::ReceiverKind, lights::GatherPoints, lights::LightcutSettings, lights::TileLight;
 
 namespace {
 
@@ -57,8 +57,8 @@ struct Room {
     lights::GatherContext context() { return {*scene, *scratch, rays, tracking}; }
 
     /// All lights at all points, by kind of point.
-    lights::Lightcut::Light all(float bound) {
-        lights::Lightcut::Light sum{};
+    lights::LightByKind all(float bound) {
+        lights::LightByKind sum{};
         for (int n = 0; n <= points; ++n) {
             const TileLight light = lights::gather(context(), vpls, lights::VplRange{},
                                                    lights::BoundedGeometry{bound}, tiles[std::size_t(n)]);
@@ -66,13 +66,13 @@ struct Room {
         }
         return sum;
     }
-    lights::Lightcut::Light cut(float bound, const LightcutSettings& settings, std::uint64_t seed = 1) {
+    lights::LightByKind cut(float bound, const LightcutSettings& settings, std::uint64_t seed = 1) {
         const lights::VplLeaves leaves(vpls);
         const lights::LightHierarchy tree(leaves);
         lights::Lightcut cut(vpls, tree, bound, settings);
         GatherPoints gather;
         for (int n = 0; n <= points; ++n)
-            gather.add(tiles[std::size_t(n)], n == points ? GatherKind::surface : GatherKind::medium);
+            gather.add(tiles[std::size_t(n)], n == points ? ReceiverKind::surface : ReceiverKind::medium);
         Rng rng(seed);
         gather.build(rng);
         const auto light = cut.gather(context(), gather, rng);
@@ -110,7 +110,7 @@ TEST_CASE("A lightcut with a threshold of 0 is the light of all", "[light_select
 TEST_CASE("A lightcut's error is what its threshold lets it be", "[light_selection][lightcuts]") {
     Room room(tests::diffuse, 3000);
     const auto all = room.all(20.0f);
-    // Root of the mean square over pixels and over who stands for groups. A threshold holds for one group.
+    // Root of the mean square over pixels and over who stands for groups. A threshold holds for one node.
     const auto relative_error = [&](float threshold) {
         double squares = 0.0;
         for (std::uint64_t seed = 1; seed < 4; ++seed) {
@@ -141,7 +141,7 @@ TEST_CASE("A lightcut's error is what its threshold lets it be", "[light_selecti
     for (const auto& tile : room.tiles) {
         GatherPoints points;
         Rng rng(1);
-        points.add(tile, GatherKind::medium);
+        points.add(tile, ReceiverKind::medium);
         points.build(rng);
         alone.gather(room.context(), points, rng);
     }
@@ -174,13 +174,13 @@ TEST_CASE("A lightcut of single groups has the mean of all lights", "[light_sele
     // Two groups: of all lights at walls, and of all at points in the air. Whose shadow ray is shared by a
     // tile is drawn so that the tile's light is right.
     for (const float angle : {0.0f, 10.0f}) {
-        lights::Lightcut cut(room.vpls, tree, 20.0f, {0.02f, 2, 0.0f, {angle, angle}});
+        lights::Lightcut cut(room.vpls, tree, 20.0f, {0.02f, 2, 0.0f, angle});
         constexpr int draws = 4000;
         double sum[2] = {}, squares[2] = {};
         for (std::uint64_t seed = 0; seed < draws; ++seed) {
             GatherPoints points;
-            points.add(room.tiles[Room::points], GatherKind::surface);
-            points.add(room.tiles[0], GatherKind::medium), points.add(room.tiles[5], GatherKind::medium);
+            points.add(room.tiles[Room::points], ReceiverKind::surface);
+            points.add(room.tiles[0], ReceiverKind::medium), points.add(room.tiles[5], ReceiverKind::medium);
             Rng rng(seed + 1);
             points.build(rng);
             const auto light = cut.gather(room.context(), points, rng);
@@ -221,12 +221,12 @@ TEST_CASE("A shadow ray that receivers share is right in the mean", "[light_sele
         const lights::VplLeaves leaves(room.vpls);
         const lights::LightHierarchy tree(leaves);
         if (tree.empty()) continue;
-        lights::Lightcut cut(room.vpls, tree, 20.0f, {0.02f, 1000, 0.0f, {10.0f, 10.0f}});
+        lights::Lightcut cut(room.vpls, tree, 20.0f, {0.02f, 1000, 0.0f, 10.0f});
         constexpr int draws = 200;
         double sum = 0.0, squares = 0.0;
         for (std::uint64_t seed = 0; seed < draws; ++seed) {
             GatherPoints points;
-            points.add(tile, GatherKind::medium);
+            points.add(tile, ReceiverKind::medium);
             Rng rng(seed + 1);
             points.build(rng);
             double all = 0.0;
@@ -256,12 +256,13 @@ TEST_CASE("A lightcut that has seen tiles before plans, and is right still", "[l
         GatherPoints points;
         for (int n = 0; n <= Room::points; ++n)
             points.add(room.tiles[std::size_t(n)],
-                       n == Room::points ? GatherKind::surface : GatherKind::medium);
+                       n == Room::points ? ReceiverKind::surface : ReceiverKind::medium);
         Rng rng(seed);
         points.build(rng);
         return cut.gather(room.context(), points, rng);
     };
-    // With few groups, which those that were seen share out better; estimates that nobody uses are fewer.
+    // With few groups, which those that were seen share out better; estimates that no_representative uses are
+    // fewer.
     lights::Lightcut cut(room.vpls, tree, 20.0f, {0.001f, 400});
     gather(cut, 1);
     const double first = double(cut.counters().evaluated);
@@ -285,7 +286,7 @@ TEST_CASE("A lightcut that has seen tiles before plans, and is right still", "[l
     CHECK(predicted > 0.4 * std::sqrt(squares));
     CHECK(predicted < 4.0 * std::sqrt(squares));
     // Nothing of what was seen, and no shared ray, is in the light of all.
-    lights::Lightcut exact(room.vpls, tree, 20.0f, {0.0f, 1u << 30, 0.5f, {10.0f, 10.0f}});
+    lights::Lightcut exact(room.vpls, tree, 20.0f, {0.0f, 1u << 30, 0.5f, 10.0f});
     for (std::uint64_t seed = 1; seed < 3; ++seed) {
         const auto light = gather(exact, seed);
         for (std::size_t i = 0; i < 16; ++i) CHECK(light[0][i].y == Approx(all[0][i].y).epsilon(2e-5));

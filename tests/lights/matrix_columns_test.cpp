@@ -1,14 +1,14 @@
 // Columns of a matrix: costs of clusters by their definition, matrices whose answer is known, and the
 // probabilities that columns are drawn with.
-#include "lights/selection/column_draws.h"
-#include "lights/selection/column_split.h"
+#include "lights/selection/matrix/column_sampler.h"
+#include "lights/selection/matrix/column_split.h"
 #include "tests/lights/random_lights.h"
 #include "tests/support/catch.h"
 
 using namespace mote;
 using namespace mote::core;
 using namespace mote::tests;
-using lights::ColumnClusters, lights::ColumnDraws, lights::Columns, lights::WeightedVpl;
+using lights::ColumnClusters, lights::ColumnSampler, lights::Columns, lights::WeightedVpl;
 
 namespace {
 
@@ -65,9 +65,9 @@ std::vector<double> sum_of_columns(const RandomColumns& m) {
 }
 
 /// What one column of each cluster says about the sum of all, drawn once.
-std::vector<double> estimate(const RandomColumns& m, const ColumnDraws& draws, Rng& rng) {
+std::vector<double> estimate(const RandomColumns& m, const ColumnSampler& draws, Rng& rng) {
     std::vector<WeightedVpl> drawn;
-    draws.draw(rng, drawn);
+    draws.sample(rng, drawn);
     std::vector<double> sum(m.rows);
     for (const WeightedVpl& light : drawn)
         for (std::size_t i = 0; i < m.rows; ++i)
@@ -107,7 +107,7 @@ TEST_CASE("A matrix of rank one is exact with one column", "[light_selection][ma
     Rng rng(2);
     for (const int directions : {1, 2}) {
         const RandomColumns m(rng, 24, 500, 0.0f, directions);
-        const ColumnDraws draws(lights::cluster_columns(m.columns(), m.members, 1, rng), m.norms);
+        const ColumnSampler draws(lights::cluster_columns(m.columns(), m.members, 1, rng), m.norms);
         REQUIRE(draws.size() == 1);
         const auto all = sum_of_columns(m);
         for (int k = 0; k < 20; ++k) {
@@ -168,13 +168,13 @@ TEST_CASE("Columns are drawn with the probabilities that they are scaled by",
           "[light_selection][matrix][statistics]") {
     Rng rng(5);
     const RandomColumns m(rng, 8, 12, 0.5f);
-    const ColumnDraws draws(lights::cluster_columns(m.columns(), m.members, 2, rng), m.norms);
+    const ColumnSampler draws(lights::cluster_columns(m.columns(), m.members, 2, rng), m.norms);
     std::vector<double> count(12);
     constexpr int tries = 20000;
     std::vector<WeightedVpl> drawn;
     for (int k = 0; k < tries; ++k) {
         drawn.clear();
-        draws.draw(rng, drawn);
+        draws.sample(rng, drawn);
         for (const WeightedVpl& light : drawn) count[light.index] += 1.0;
         if (k == 0) CHECK(drawn.size() == draws.size());
     }

@@ -1,13 +1,11 @@
-// Matrix row-column sampling: the mean of all lights whatever the clusters are, rows by maps and by rays, and
-// clusters that serve other lights. Columns by themselves are in matrix_columns_test.cpp.
-#include "lights/selection/matrix_selection.h"
+// Matrix row-column sampling: the mean of all lights whatever the clusters are, rows by maps and by rays.
+// Columns by themselves are in matrix_columns_test.cpp.
+#include "lights/selection/matrix/matrix_clusters.h"
 
 #include <tbb/global_control.h>
 
-#include "core/objects/error.h"
 #include "core/scene/scene.h"
-#include "lights/selection/light_clusters.h"
-#include "lights/selection/shared_columns.h"
+#include "lights/selection/matrix/light_clusters.h"
 #include "lights/virtual_lights/particle_tracer.h"
 #include "tests/lights/random_lights.h"
 #include "tests/support/catch.h"
@@ -20,8 +18,8 @@
 using namespace mote;
 using namespace mote::core;
 using namespace mote::tests;
-using lights::ColumnClusters, lights::ColumnDraws, lights::LightClass;
-using lights::MatrixReceiver, lights::MatrixSelection, lights::MatrixSettings, lights::WeightedVpl;
+using lights::ColumnClusters, lights::ColumnSampler, lights::LightClass;
+using lights::PathReceiver, lights::MatrixClusters, lights::MatrixSettings, lights::WeightedVpl;
 using Rows = lights::RowVisibilitySettings::Kind;
 
 namespace {
@@ -34,10 +32,9 @@ struct Room {
     std::unique_ptr<Scene> scene;
     lights::VplSet vpls;
     media::HenyeyGreensteinPhase forward{0.6f};
-    std::vector<MatrixReceiver> receivers;
+    std::vector<PathReceiver> receivers;
     RayCounters rays;
     TrackingCounters tracking;
-    lights::SurfacePoints points;
 
     explicit Room(const std::string& bsdf, std::uint32_t paths = 300, const std::string& medium = "")
         : scene(tests::scene_from(tests::closed_box(bsdf, wall + medium))),
@@ -52,7 +49,7 @@ struct Room {
             Rgb emitted;
             const WalkEvent event = walk<false>(*scene, ray, state, weights, emitted, context);
             if (event.kind == WalkEvent::Kind::escaped) continue;
-            MatrixReceiver r{make_vertex(event, ray), Rgb(0.5f, 0.6f, 0.7f), state, 1000};
+            PathReceiver r{make_vertex(event, ray), Rgb(0.5f, 0.6f, 0.7f), state, 1000};
             if (receivers.size() % 4 == 3) {
                 r.vertex = {};
                 r.vertex.position = ray.at(0.5f * event.hit.t), r.vertex.wo = -ray.direction;
@@ -60,19 +57,17 @@ struct Room {
             }
             receivers.push_back(r);
         }
-        points = lights::sample_surface_points(*scene, 4096, 1);
     }
     lights::RowContext context(Rows visibility = Rows::rays, float bound = 4.0f) {
         lights::RowVisibilitySettings settings;
         settings.kind = visibility, settings.map_size = 24;
-        settings.imperfect.size = 24, settings.imperfect.points = 2048;
-        return {*scene, vpls, bound, settings, &points, rays, tracking};
+        return {*scene, vpls, bound, settings, rays, tracking};
     }
     lights::ReceiverTile tile(std::size_t first) const {
         lights::ReceiverTile tile;
         tile.clear();
         for (std::size_t i = 0; i < 16; ++i) {
-            const MatrixReceiver& r = receivers[(first + 23 * i) % receivers.size()];
+            const PathReceiver& r = receivers[(first + 23 * i) % receivers.size()];
             tile.set(int(i), r.vertex, r.throughput, r.state, Rng(i), r.max_vpl_depth);
         }
         return tile;
@@ -94,11 +89,9 @@ struct Room {
     std::unique_ptr<lights::GatherScratch> scratch = std::make_unique<lights::GatherScratch>();
 };
 
-MatrixSettings settings_of(std::uint32_t rows, std::uint32_t columns, std::uint32_t slices,
-                           std::size_t max_bytes = std::size_t(1) << 30) {
+MatrixSettings settings_of(std::uint32_t rows, std::uint32_t columns, std::uint32_t slices) {
     MatrixSettings settings;
     settings.rows = rows, settings.columns = columns, settings.slices = slices;
-    settings.max_bytes = max_bytes;
     return settings;
 }
 
@@ -108,17 +101,19 @@ TEST_CASE("Light by a matrix has the mean of all lights, on both sides of a wall
           "[light_selection][matrix][statistics]") {
     constexpr double critical = 3.3;  // two-sided, 0.1 %
     Rng rng(6);
-    for (const Rows visibility : {Rows::rays, Rows::shadow_maps, Rows::imperfect}) {
+    for (const Rows visibility : {Rows::rays, Rows::shadow_maps}) {
         Room room(visibility == Rows::rays ? plastic : diffuse);
         REQUIRE(room.vpls.lights.size() > 500);
         // Few receivers make rows, others are lit.
         const auto few = std::span(room.receivers).first(20);
-        const MatrixSelection matrix(room.context(visibility), few, settings_of(16, 24, 1), 5);
+        const MatrixClusters matrix(room.context(visibility), few, settings_of(16, 24, 1), 5);
         std::vector<WeightedVpl> drawn;
         const lights::ReceiverTile tile = room.tile(100);
         const double all = room.light(tile, lights::VplRange{});
         REQUIRE(all > 0.0);
-        const auto draw = [&] { return room.light(tile, lights::DrawnVpls{matrix.draw(tile, rng, drawn)}); };
+        const auto draw = [&] {
+            return room.light(tile, lights::SampledVpls{matrix.sample(tile, rng, drawn)});
+        };
         const Mean found = mean_of(5000, draw);
         INFO("visibility " << int(visibility) << ": " << found.mean << " +- " << found.error << " of "
                            << all);
@@ -135,8 +130,8 @@ TEST_CASE("Wrong probabilities and a missing defensive part are found",
     Rng rng(7);
     Room room(diffuse);
     // Rows behind the wall, and a tile before it.
-    std::vector<MatrixReceiver> few, many;
-    for (const MatrixReceiver& r : room.receivers) (r.vertex.position.x > 0.5f ? few : many).push_back(r);
+    std::vector<PathReceiver> few, many;
+    for (const PathReceiver& r : room.receivers) (r.vertex.position.x > 0.5f ? few : many).push_back(r);
     few.resize(16), room.receivers = many;
     const auto context = room.context();
     const auto matrix = lights::reduced_matrix(context, few, 1);
@@ -144,15 +139,15 @@ TEST_CASE("Wrong probabilities and a missing defensive part are found",
     const lights::ReceiverTile tile = room.tile(100);
     const double sum = room.light(tile, lights::VplRange{});
     const auto test = [&](const ColumnClusters& some, bool wrong_weight) {
-        const ColumnDraws draws(some, matrix.weights);
+        const ColumnSampler draws(some, matrix.weights);
         std::vector<WeightedVpl> drawn;
         const Mean found = mean_of(3000, [&] {
             drawn.clear();
-            draws.draw(rng, drawn);
+            draws.sample(rng, drawn);
             if (wrong_weight)  // as if drawn evenly
                 for (std::size_t k = 0; k < drawn.size(); ++k)
                     drawn[k].weight = float(some.cluster(k).size());
-            return room.light(tile, lights::DrawnVpls{drawn});
+            return room.light(tile, lights::SampledVpls{drawn});
         });
         UNSCOPED_INFO(found.mean << " +- " << found.error << " of " << sum);
         return std::fabs(found.mean - sum) < critical * found.error;
@@ -180,7 +175,7 @@ TEST_CASE("One thread has the clusters of many, to the bit", "[light_selection][
     Room room(glossy, 1500);  // several tasks of lights
     const auto clusters_of = [&](int threads, std::uint64_t key) {
         const tbb::global_control control(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
-        const MatrixSelection matrix(room.context(), room.receivers, settings_of(48, 64, 3), key);
+        const MatrixClusters matrix(room.context(), room.receivers, settings_of(48, 64, 3), key);
         std::vector<double> all;
         for (std::size_t s = 0; s < matrix.slices(); ++s)
             for (std::size_t i = 0; i < matrix.slice(s).clusters().members.size(); ++i) {
@@ -197,73 +192,20 @@ TEST_CASE("One thread has the clusters of many, to the bit", "[light_selection][
 
 TEST_CASE("More columns than lights are all lights, each once", "[light_selection][matrix]") {
     Room room(diffuse, 30);
-    const MatrixSelection matrix(room.context(), room.receivers, settings_of(16, 4000, 2), 1);
+    const MatrixClusters matrix(room.context(), room.receivers, settings_of(16, 4000, 2), 1);
     std::vector<WeightedVpl> drawn;
     Rng rng(1);
     const auto tile = room.tile(7);
-    matrix.draw(tile, rng, drawn);
+    matrix.sample(tile, rng, drawn);
     REQUIRE(drawn.size() == room.vpls.lights.size());
     for (std::size_t j = 0; j < drawn.size(); ++j) CHECK((drawn[j].index == j && drawn[j].weight == 1.0f));
-    CHECK(room.light(tile, lights::DrawnVpls{drawn}) == room.light(tile, lights::VplRange{}));
-}
-
-TEST_CASE("Clusters of one frame serve the lights of another, without bias",
-          "[light_selection][matrix][statistics]") {
-    constexpr double critical = 3.3;
-    Rng rng(9);
-    Room room(diffuse, 300), other(diffuse, 200), one(diffuse, 1);
-    other.vpls = lights::trace_light_paths(*room.scene, {.paths = 250}, 8, 3, SamplerKind::sobol);
-    other.vpls.lights[5].intensity = Rgb(0.0f);
-    const lights::ReceiverTile tile = other.tile(100);
-    const double all = other.light(tile, lights::VplRange{});
-    const auto settings = settings_of(32, 24, 2);
-    std::array<double, 2> error{};
-    // From a frame like it, and from one that had hardly any light.
-    for (Room* before : {&room, &one}) {
-        const lights::SharedColumns shared(
-            before->vpls, MatrixSelection(before->context(), before->receivers, settings, 1));
-        const MatrixSelection matrix = shared.for_lights(other.vpls);
-        for (std::size_t s = 0; s < matrix.slices(); ++s)
-            CHECK(matrix.slice(s).clusters().members.size() == other.vpls.lights.size() - 1);
-        std::vector<WeightedVpl> drawn;
-        const Mean found = mean_of(
-            3000, [&] { return other.light(tile, lights::DrawnVpls{matrix.draw(tile, rng, drawn)}); });
-        INFO(found.mean << " +- " << found.error << " of " << all);
-        CHECK(std::fabs(found.mean - all) < critical * found.error);
-        CHECK(critical * found.error < 0.1 * all);
-        error[before == &one] = found.error;
-        // Weights of the lights before are others.
-        if (before == &room)
-            CHECK_FALSE((matrix.slice(0).clusters().members == shared.found().slice(0).clusters().members));
-    }
-    CHECK(error[0] < error[1]);
-    // Its own lights join their own clusters; none at all is dealt with.
-    const lights::SharedColumns shared(room.vpls,
-                                       MatrixSelection(room.context(), room.receivers, settings, 1));
-    const MatrixSelection own = shared.for_lights(room.vpls);
-    // A cluster whose only light stands in the place of another one's is empty, and those behind it move up.
-    const auto cluster_of = [](const MatrixSelection& matrix, std::size_t lights) {
-        std::vector<std::size_t> of(lights);
-        for (std::size_t k = 0; k < matrix.slice(0).size(); ++k)
-            for (const std::uint32_t j : matrix.slice(0).clusters().cluster(k)) of[j] = k;
-        return of;
-    };
-    const auto before = cluster_of(shared.found(), room.vpls.lights.size()),
-               after = cluster_of(own, room.vpls.lights.size());
-    std::size_t parted = 0, together = 0;
-    for (std::size_t j = 0; j < before.size(); ++j)
-        for (std::size_t i = 0; i < j; ++i)
-            if (before[i] == before[j]) ++together, parted += after[i] != after[j];
-    INFO(parted << " of " << together << " pairs are parted");
-    CHECK(parted < together / 20);  // a few stand in one place
-    CHECK(shared.for_lights({}).slice(0).size() == 0);
-    CHECK(lights::SharedColumns().for_lights(room.vpls).slices() == 0);
+    CHECK(room.light(tile, lights::SampledVpls{drawn}) == room.light(tile, lights::VplRange{}));
 }
 
 TEST_CASE("Maps of receivers see what rays see", "[light_selection][matrix]") {
     Room room(diffuse, 200);
     const auto few = std::span(room.receivers).first(32);
-    const auto matrix_of = [&](Rows visibility, std::span<const MatrixReceiver> receivers) {
+    const auto matrix_of = [&](Rows visibility, std::span<const PathReceiver> receivers) {
         const auto context = room.context(visibility);
         return lights::reduced_matrix(context, receivers, 1);
     };
@@ -279,9 +221,9 @@ TEST_CASE("Maps of receivers see what rays see", "[light_selection][matrix]") {
         REQUIRE(sum > 0.0);
         return difference / sum;
     };
-    std::vector<MatrixReceiver> turned(few.begin(), few.end());
+    std::vector<PathReceiver> turned(few.begin(), few.end());
     std::rotate(turned.begin(), turned.begin() + 1, turned.end());
-    for (const Rows visibility : {Rows::shadow_maps, Rows::imperfect}) {
+    for (const Rows visibility : {Rows::shadow_maps}) {
         const double maps = differ(matrix_of(visibility, few));
         INFO("visibility " << int(visibility) << ": " << maps);
         CHECK(maps < 0.2);
@@ -291,37 +233,36 @@ TEST_CASE("Maps of receivers see what rays see", "[light_selection][matrix]") {
 
 TEST_CASE("Places are parted evenly, and found again", "[light_selection][matrix]") {
     Rng rng(8);
-    std::vector<lights::Place> places;
+    std::vector<lights::SlicePoint> points;
     for (int i = 0; i < 500; ++i) {
         const Vec3 p(rng.next_float(), 2.0f * rng.next_float(), rng.next_float());
-        places.push_back({p, i % 3 ? random_direction(rng) : Vec3(0.0f)});
+        points.push_back({p, i % 3 ? random_direction(rng) : Vec3(0.0f)});
     }
-    const lights::PlaceTree tree(places, 13);
+    const lights::SliceTree tree(points, 13);
     REQUIRE(tree.groups() == 13);
     std::size_t wrong = 0, count = 0;
     for (std::size_t g = 0; g < 13; ++g) {
         CHECK((tree.group(g).size() > 500 / 13 / 2 && tree.group(g).size() < 2 * 500 / 13));
-        for (const std::uint32_t i : tree.group(g)) wrong += tree.find(places[i]) != g, ++count;
+        for (const std::uint32_t i : tree.group(g)) wrong += tree.find(points[i]) != g, ++count;
     }
     CHECK(count == 500);
     CHECK(wrong == 0);
-    CHECK(lights::PlaceTree(std::span(places).first(3), 13).groups() == 3);
-    CHECK(lights::PlaceTree({}, 13).groups() == 0);
-    const std::vector<lights::Place> same(20);
-    CHECK(lights::PlaceTree(same, 4).groups() == 1);
+    CHECK(lights::SliceTree(std::span(points).first(3), 13).groups() == 3);
+    CHECK(lights::SliceTree({}, 13).groups() == 0);
+    const std::vector<lights::SlicePoint> same(20);
+    CHECK(lights::SliceTree(same, 4).groups() == 1);
 }
 
-TEST_CASE("No lights, one, dark ones, no receivers, and more than memory holds",
-          "[light_selection][matrix][extremes]") {
+TEST_CASE("No lights, one, dark ones, no receivers", "[light_selection][matrix][extremes]") {
     Room room(diffuse, 100);
     std::vector<WeightedVpl> drawn;
     Rng rng(1);
     const auto tile = room.tile(0);
     const MatrixSettings settings = settings_of(16, 8, 2);
     const auto vpls = room.vpls;
-    const auto draw = [&](std::span<const MatrixReceiver> receivers, float bound = 4.0f) {
-        const MatrixSelection matrix(room.context(Rows::rays, bound), receivers, settings, 1);
-        return matrix.draw(tile, rng, drawn);
+    const auto draw = [&](std::span<const PathReceiver> receivers, float bound = 4.0f) {
+        const MatrixClusters matrix(room.context(Rows::rays, bound), receivers, settings, 1);
+        return matrix.sample(tile, rng, drawn);
     };
     room.vpls.lights.clear();
     CHECK(draw(room.receivers).empty());
@@ -334,14 +275,14 @@ TEST_CASE("No lights, one, dark ones, no receivers, and more than memory holds",
     room.vpls.lights[70].intensity = Rgb(1e-30f);
     REQUIRE(draw(room.receivers).size() == 1);
     CHECK((drawn[0].index == 70 && drawn[0].weight == 1.0f));
-    // A hundred in one place, and receivers on a light without a bound.
+    // A hundred in one at, and receivers on a light without a bound.
     room.vpls.lights.assign(100, vpls.lights[0]);
     for (const WeightedVpl& light : draw(room.receivers)) CHECK(light.weight >= 1.0f);
     double sum = 0.0;
     for (const WeightedVpl& light : drawn) sum += double(light.weight);
     CHECK(sum == Approx(100.0));
     auto on_it = room.receivers;
-    for (MatrixReceiver& r : on_it) r.vertex.position = r.vertex.hit.position = vpls.lights[0].position;
+    for (PathReceiver& r : on_it) r.vertex.position = r.vertex.hit.position = vpls.lights[0].position;
     for (const WeightedVpl& light : draw(on_it, infinity)) CHECK(std::isfinite(light.weight));
     // Powers that single precision has no squares of.
     room.vpls = vpls;
@@ -353,6 +294,4 @@ TEST_CASE("No lights, one, dark ones, no receivers, and more than memory holds",
     }
     room.vpls = vpls;
     CHECK(draw({}).size() >= 1);  // drawn by energy
-    CHECK_THROWS_AS(MatrixSelection(room.context(), room.receivers, settings_of(16, 8, 2, 1000), 1),
-                    InputError);
 }

@@ -7,9 +7,9 @@
 
 #include "core/materials/bsdfs.h"
 #include "core/math/random.h"
-#include "lights/selection/light_hierarchy.h"
-#include "lights/selection/receiver_bounds.h"
-#include "lights/selection/vertex_bounds.h"
+#include "lights/selection/hierarchy/light_hierarchy.h"
+#include "lights/selection/hierarchy/receiver_bounds.h"
+#include "lights/selection/hierarchy/vertex_bounds.h"
 #include "lights/virtual_lights/vpl_gather.h"
 #include "media/phase_functions.h"
 

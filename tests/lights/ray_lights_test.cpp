@@ -7,7 +7,7 @@
 
 #include "core/math/random.h"
 #include "core/scene/scene.h"
-#include "lights/ray_lights/line_offer.h"
+#include "lights/ray_lights/line_candidates.h"
 #include "tests/support/catch.h"
 #include "tests/support/render_statistics.h"
 
@@ -168,7 +168,7 @@ TEST_CASE("parallel, crossing, empty and coincident lines are finite", "[ray_lig
 
 TEST_CASE("a share of the ray lights counts for all", "[ray_lights]") {
     const std::array<double, 5> power{1.0, 1.0, 6.0, 6.25, 26.25};  // sums: the second has none
-    const LightShare all(power, 0), three(power, 3);
+    const PowerSampling all(power, 0), three(power, 3);
     CHECK(all.count() == 5);
     CHECK(all.choose(2, 0.3f).index == 2);
     CHECK(all.choose(2, 0.3f).weight == 1.0f);
@@ -182,35 +182,35 @@ TEST_CASE("a share of the ray lights counts for all", "[ray_lights]") {
         }
     for (const std::size_t i : {0, 2, 3, 4}) CHECK(counted[i] == Approx(1.0).epsilon(1e-3));
     CHECK(counted[1] == 0.0);
-    CHECK(LightShare({}, 3).count() == 0);
-    CHECK(LightShare({}, 0).count() == 0);
+    CHECK(PowerSampling({}, 3).count() == 0);
+    CHECK(PowerSampling({}, 0).count() == 0);
 }
 
 TEST_CASE("connections by steps count every light once", "[ray_lights]") {
     // What is expected in a lane, twice as much in the next; the third sends nothing, the fifth counts 3
     // times.
     const std::array<float, 5> expected{0.5f, 4.0f, 0.0f, 0.01f, 1.0f}, weight{1.0f, 1.0f, 1.0f, 1.0f, 3.0f};
-    LineOffer offer;
+    LineCandidates candidates;
     for (std::uint32_t k = 0; k < 5; ++k) {
         LaneFloats lanes;
         lanes.of[2] = expected[k], lanes.of[3] = 2.0f * expected[k];
-        offer.add(k, k % 2 == 0, weight[k], lanes);
+        candidates.add(k, k % 2 == 0, weight[k], lanes);
     }
-    CHECK(offer.total().of[0] == 0.0f);
-    CHECK(offer.total().of[2] == Approx(7.51f));
-    LinePicks picks;
-    const auto pick = [&](int lane, float step, float start) -> const std::vector<LinePick>& {
+    CHECK(candidates.total().of[0] == 0.0f);
+    CHECK(candidates.total().of[2] == Approx(7.51f));
+    LineChoices choices;
+    const auto pick = [&](int lane, float step, float start) -> const std::vector<LineChoice>& {
         LaneFloats steps, starts;
         for (int i = 0; i < ReceiverLanes::width; ++i) starts.of[i] = i == lane ? start : 1.0f;
         steps.of[lane] = step;
-        offer.pick(steps, starts, picks);
-        return picks[std::size_t(lane)];
+        candidates.choose(steps, starts, choices);
+        return choices[std::size_t(lane)];
     };
     const auto counts = [&](float step) {
         std::array<double, 5> counted{};
         const int n = 100000;
         for (int i = 0; i < n; ++i) {
-            for (const LinePick& p : pick(2, step, float((i + 0.5) / n)))
+            for (const LineChoice& p : pick(2, step, float((i + 0.5) / n)))
                 counted[p.light] += double(p.weight) / n;
         }
         return counted;
@@ -222,10 +222,10 @@ TEST_CASE("connections by steps count every light once", "[ray_lights]") {
         CHECK(counted[2] == 0.0);
     }
     const auto& some = pick(2, 1.0f, 0.5f);  // a VPL that is met four times is one connection
-    CHECK(std::count_if(some.begin(), some.end(), [](const LinePick& p) { return p.light == 1; }) == 1);
-    CHECK(picks[3].empty());
+    CHECK(std::count_if(some.begin(), some.end(), [](const LineChoice& p) { return p.light == 1; }) == 1);
+    CHECK(choices[3].empty());
     CHECK(pick(0, 1.0f, 0.5f).empty());
-    offer.clear();
+    candidates.clear();
     CHECK(pick(2, 1.0f, 0.5f).empty());
 }
 
@@ -270,9 +270,9 @@ TEST_CASE("expected light is about what arrives, and nowhere 0 where any does", 
         const EyeReceivers along(eyes);
         const PointReceivers points(lanes, {}, 50.0f);
         LaneFloats expected[3];
-        expected_light(light, along, expected[0]);
-        expected_light(vpl, along, expected[1]);
-        expected_light(light, points, expected[2]);
+        importance(light, along, expected[0]);
+        importance(vpl, along, expected[1]);
+        importance(light, points, expected[2]);
         std::array<double, 3> mean{};
         for (int i = 0; i < n; ++i)
             for (int j = 0; j < n; ++j) {

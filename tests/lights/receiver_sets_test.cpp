@@ -1,7 +1,7 @@
 // Receivers that share shadow rays, and the quick loop over lobes.
-#include "lights/selection/receiver_sets.h"
+#include "lights/selection/lightcuts/receiver_sets.h"
 
-#include "lights/selection/lobe_contributions.h"
+#include "lights/virtual_lights/lobe_contributions.h"
 #include "media/phase_functions.h"
 #include "tests/support/catch.h"
 
@@ -84,7 +84,7 @@ TEST_CASE("The loop over lobes sends what f* says", "[light_selection]") {
         ShadowPacket packet, packet_again;
         lights::LaneLight quick, slow;
         const lights::BoundedGeometry bound{j % 2 ? 0.2f : infinity};
-        CHECK(lights::cut_contributions(set, {j, 1.5f}, tile, lobes, bound, packet, quick));
+        CHECK(lights::lobe_contributions(set, {j, 1.5f}, tile, lobes, bound, packet, quick));
         CHECK(lights::contributions_of(set, {j, 1.5f}, tile, bound, packet_again, slow));
         for (int i = 0; i < 16; ++i) {
             CHECK(quick.r[i] == Approx(slow.r[i]).epsilon(1e-4));

@@ -1,17 +1,15 @@
 // What resampling stands on: choices in proportion to weights and the mean over candidates, by enumeration of
-// all of them in every order; chances of candidates drawn by power.
+// all of them in every order.
 #include <algorithm>
 
-#include "lights/selection/power_candidates.h"
-#include "lights/selection/resampling_target.h"
-#include "lights/selection/systematic_choice.h"
+#include "lights/selection/resampling/resampling_target.h"
+#include "lights/selection/resampling/systematic_choice.h"
 #include "tests/lights/random_lights.h"
 #include "tests/support/catch.h"
 
 using namespace mote;
 using namespace mote::core;
 using namespace mote::tests;
-using lights::WeightedVpl;
 
 namespace {
 
@@ -71,7 +69,7 @@ TEST_CASE("Resampling over three lights, by enumeration", "[light_selection][res
     const auto set = random_lights(rng, all_materials(), Lights::plain, 3, 2.0f, 3.0f);
     RandomReceivers receivers(rng, all_materials(), set.lights[0].position, false);
     lights::ReceiverTile tile = receivers.tile;
-    const lights::ResamplingTarget target(set, tile, 4.0f, false, true);
+    const lights::ResamplingTarget target(set, tile, 4.0f, false);
     const auto scratch = std::make_unique<lights::GatherScratch>();
     const std::array<double, 3> p{0.5, 0.3, 0.2};
     int lanes_with_dark_lights = 0;
@@ -94,7 +92,7 @@ TEST_CASE("Resampling over three lights, by enumeration", "[light_selection][res
                     lights::ResamplingTarget::Lanes values{};
                     Weights& own = weights.emplace_back();
                     own = {};
-                    if (target.of_light({j, float(1.0 / (candidates * p[j]))}, *scratch, values))
+                    if (target.of_light({j, float(1.0 / (candidates * p[j]))}, 0.0f, *scratch, values))
                         own[0] = values[lane];
                 }
                 for_each_choice(weights, 1, [&](const Choice& choice, double share) {
@@ -111,33 +109,4 @@ TEST_CASE("Resampling over three lights, by enumeration", "[light_selection][res
         }
     }
     CHECK(lanes_with_dark_lights > 2);
-}
-
-TEST_CASE("Candidates by power have the chances that are stated", "[light_selection][resampling]") {
-    Rng rng(2);
-    for (const std::size_t count : {std::size_t(1), std::size_t(7), std::size_t(3000)}) {
-        auto set = random_lights(rng, all_materials(), Lights::all, count, 2.0f, 3.0f);
-        const lights::VplLeaves leaves(set);
-        const lights::LightHierarchy hierarchy(leaves);
-        const lights::PowerCandidates power(hierarchy);
-        double sum = 0.0;
-        for (std::uint32_t i = 0; i < hierarchy.size(); ++i) sum += power.probability(i);
-        CHECK(sum == Approx(1.0).epsilon(1e-12));
-        // Sums of weights of a light and its chance: n draws of chance p. Sums of all lights are their
-        // number.
-        std::vector<double> drawn_sum(set.lights.size(), 0.0);
-        const int draws = 4000;
-        const std::uint32_t n = 5;
-        std::vector<WeightedVpl> drawn;
-        for (int k = 0; k < draws; ++k) {
-            drawn.clear(), power.draw(n, rng, drawn);
-            for (const WeightedVpl& light : drawn) drawn_sum[light.index] += double(light.weight);
-        }
-        for (std::uint32_t i = 0; i < hierarchy.size(); ++i) {
-            const double p = power.probability(i), mean = drawn_sum[hierarchy.light_at(i)] / draws;
-            if (p * n * draws < 50.0) continue;  // too few for a normal distribution
-            // Strata make it less: at most the variance of n independent draws.
-            CHECK(std::fabs(mean - 1.0) < 5.0 * std::sqrt((1.0 - p) / (p * n * draws)) + 1e-5);
-        }
-    }
 }

@@ -1,14 +1,11 @@
-// Resampled virtual point lights have the mean of all of them, on surfaces and in media, with and without
-// what the tile before has chosen; 1/M weights do not.
-#include "lights/selection/resampling.h"
+// Resampled virtual point lights have the mean of all of them, on surfaces and in media.
+#include "lights/selection/resampling/resampling.h"
 
 #include <fmt/format.h>
 
 #include "core/scene/scene.h"
-#include "lights/selection/group_candidates.h"
-#include "lights/selection/light_sampler.h"
-#include "lights/selection/power_candidates.h"
-#include "lights/selection/vertex_bounds.h"
+#include "lights/selection/hierarchy/vertex_bounds.h"
+#include "lights/selection/stochastic/light_sampler.h"
 #include "lights/virtual_lights/particle_tracer.h"
 #include "media/phase_functions.h"
 #include "tests/lights/closed_box.h"
@@ -18,7 +15,7 @@
 using namespace mote;
 using namespace mote::core;
 using namespace mote::tests;
-using lights::KeptReceivers, lights::Resampling, lights::SpatialReuse, lights::TileLight, lights::WeightedVpl;
+using lights::RecordedReceivers, lights::Resampling, lights::TileLight, lights::WeightedVpl;
 
 namespace {
 
@@ -27,8 +24,7 @@ struct Room {
     std::unique_ptr<Scene> scene;
     lights::VplSet vpls;
     lights::VplLeaves leaves{vpls};
-    lights::LightHierarchy hierarchy;
-    lights::LightTree tree{leaves};
+    lights::WideLightTree tree{leaves};
     std::unique_ptr<lights::GatherScratch> scratch = std::make_unique<lights::GatherScratch>();
     RayCounters rays;
     TrackingCounters tracking;
@@ -37,8 +33,7 @@ struct Room {
 
     Room(const std::string& bsdf, const std::string& inside, std::uint32_t paths)
         : scene(scene_from(closed_box(bsdf, inside))),
-          vpls(lights::trace_light_paths(*scene, {.paths = paths}, 7, 0, SamplerKind::sobol)),
-          hierarchy(leaves) {}
+          vpls(lights::trace_light_paths(*scene, {.paths = paths}, 7, 0, SamplerKind::sobol)) {}
     lights::GatherContext context() { return {*scene, *scratch, rays, tracking}; }
 
     static Ray ray(int i) {
@@ -49,7 +44,7 @@ struct Room {
     static Ray ray_at_wall(int i, float y) {
         return {{0.7f, y + 0.1f * float(i % 4) - 0.15f, 0.2f * float(i / 4) - 0.2f}, {1, 0, 0}};
     }
-    void on_walls(KeptReceivers& kept, float y, float throughput) {
+    void on_walls(RecordedReceivers& kept, float y, float throughput) {
         lights::ReceiverTile tile;
         std::array<ScatteringVertex, 16> vertices;
         for (int i = 0; i < 16; ++i) {
@@ -61,10 +56,10 @@ struct Room {
             tile.set(i, v, Rgb(throughput), scene->eye_medium_state(own), Rng(std::uint64_t(i)),
                      i == 6 && y == 0.0f ? 1 : 1000);
         }
-        kept.keep(tile);
+        kept.copy(tile);
     }
     /// At a distance along each ray.
-    void in_air(KeptReceivers& kept, float distance) {
+    void in_air(RecordedReceivers& kept, float distance) {
         lights::ReceiverTile tile;
         std::array<ScatteringVertex, 16> vertices;
         for (int i = 0; i < 16; ++i) {
@@ -75,11 +70,11 @@ struct Room {
             tile.set(i, v, Rgb(0.2f + distance), scene->eye_medium_state(own), Rng(std::uint64_t(i)),
                      i == 3 ? 2 : 1000);
         }
-        kept.keep(tile);
+        kept.copy(tile);
     }
-    TileLight all(std::span<KeptReceivers* const> points, float bound) {
+    TileLight all(std::span<RecordedReceivers* const> points, float bound) {
         TileLight sum{};
-        for (KeptReceivers* p : points) {
+        for (RecordedReceivers* p : points) {
             const auto one =
                 lights::gather(context(), vpls, lights::VplRange{}, lights::BoundedGeometry{bound}, p->tile);
             for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += one[i];
@@ -135,37 +130,25 @@ std::string report(const Comparison& c) {
 TEST_CASE("Resampled lights have the mean of all", "[light_selection][resampling]") {
     for (const std::string& material : {diffuse, glossy}) {
         Room room(material, Room::obstacle, 60);
-        KeptReceivers tile;
+        RecordedReceivers tile;
         room.on_walls(tile, 0.0f, 0.7f);
-        KeptReceivers* const points[] = {&tile};
+        RecordedReceivers* const points[] = {&tile};
         for (const float bound : {3.0f, 100.0f}) {
             const TileLight right = room.all(points, bound);
-            const lights::PowerCandidates power(room.hierarchy);
             lights::LightSampler sampler;
-            lights::GroupCandidates groups;
-            for (const std::string by : {"power", "tree", "cut", "parts", "groups"}) {
-                Resampling resampling(room.vpls, bound, 3, SpatialReuse::none);
-                std::vector<WeightedVpl> drawn;
+            for (const std::string by : {"tree", "cut", "clusters"}) {
+                Resampling resampling(room.vpls, bound, 3);
                 const auto c = compare(right, 800, [&](std::uint64_t k) {
                     Rng rng(hash_keys(k, 3));
-                    drawn.clear();
-                    if (by == "power") {
-                        power.draw(12, rng, drawn);
-                    } else if (by == "groups") {
-                        groups.draw(room.hierarchy, power, lights::ReceiverBounds(tile.tile), bound, 24, rng,
-                                    drawn);
-                    } else {
-                        const lights::ReceiverGroups receivers(lights::ReceiverBounds(tile.tile), room.tree);
-                        const auto lights = by == "cut" ? sampler.by_cut(room.tree, receivers, bound, 12, rng)
-                                            : by == "parts"
-                                                ? sampler.from_groups(room.tree, receivers, bound, 6, 3, rng)
-                                                : sampler.by_tree(room.tree, receivers, bound, 12, rng);
-                        drawn.assign(lights.begin(), lights.end());
-                    }
-                    std::vector<float> seen;  // any factors do
-                    for (std::size_t i = 0; by == "parts" && i < drawn.size(); ++i)
-                        seen.push_back(0.5f * float(1 + i % 3));
-                    return resampling.gather(room.context(), points, drawn, rng, seen);
+                    const lights::ReceiverClusters receivers(lights::ReceiverBounds(tile.tile), room.tree);
+                    const auto candidates =
+                        by == "cut"        ? sampler.by_cut(room.tree, receivers, bound, 12, rng)
+                        : by == "clusters" ? sampler.from_clusters(room.tree, receivers, bound, 6, 3, rng)
+                                           : sampler.by_tree(room.tree, receivers, bound, 12, rng);
+                    std::vector<float> visibilities;  // any factors do
+                    for (std::size_t i = 0; by == "clusters" && i < candidates.size(); ++i)
+                        visibilities.push_back(0.5f * float(1 + i % 3));
+                    return resampling.gather(room.context(), points, candidates, rng, visibilities);
                 });
                 INFO(by << ", bound " << bound << ": " << report(c));
                 CHECK(c.unbiased());
@@ -177,18 +160,20 @@ TEST_CASE("Resampled lights have the mean of all", "[light_selection][resampling
 
 TEST_CASE("Pairs of a light and a distance have the mean of all", "[light_selection][resampling][media]") {
     Room room(diffuse, fog, 60);
-    std::array<KeptReceivers, 4> tiles;
-    std::vector<KeptReceivers*> points;
+    std::array<RecordedReceivers, 4> tiles;
+    std::vector<RecordedReceivers*> points;
     for (std::size_t n = 0; n < tiles.size(); ++n)
         room.in_air(tiles[n], 0.1f + 0.2f * float(n)), points.push_back(&tiles[n]);
     const TileLight right = room.all(points, 5.0f);
-    const lights::PowerCandidates power(room.hierarchy);
-    Resampling resampling(room.vpls, 5.0f, 3, SpatialReuse::none);
-    std::vector<WeightedVpl> drawn;
+    lights::LightSampler sampler;
+    Resampling resampling(room.vpls, 5.0f, 3);
+    std::vector<lights::ReceiverBounds> bounds;
+    for (const RecordedReceivers* p : points) bounds.emplace_back(p->tile);
+    const lights::ReceiverClusters receivers(bounds, room.tree);
     const auto draw = [&](std::uint64_t k) {
         Rng rng(hash_keys(k, 5));
-        drawn.clear(), power.draw(16, rng, drawn);
-        return resampling.gather(room.context(), points, drawn, rng);
+        const auto candidates = sampler.by_tree(room.tree, receivers, 5.0f, 16, rng);
+        return resampling.gather(room.context(), points, candidates, rng);
     };
     const auto c = compare(right, 1500, draw);
     INFO(report(c));
@@ -204,75 +189,24 @@ TEST_CASE("Pairs of a light and a distance have the mean of all", "[light_select
     CHECK_FALSE(dark.unbiased());
 }
 
-TEST_CASE("What the tile before has chosen moves no mean, but with weights 1/M",
-          "[light_selection][resampling][reuse]") {
-    for (const std::string& material : {diffuse, glossy}) {
-        Room room(material, Room::obstacle, 60);
-        // Beside the obstacle, then behind it, then what is compared: all see different lights.
-        std::array<KeptReceivers, 3> tiles;
-        room.on_walls(tiles[0], 0.5f, 0.2f), room.on_walls(tiles[1], -0.4f, 1.0f);
-        room.on_walls(tiles[2], 0.0f, 0.7f);
-        KeptReceivers* const last[] = {&tiles[2]};
-        const TileLight right = room.all(last, 10.0f);
-        const lights::PowerCandidates power(room.hierarchy);
-        for (const SpatialReuse reuse : {SpatialReuse::unbiased, SpatialReuse::biased}) {
-            std::uint64_t reused = 0;
-            const auto c = compare(right, 2500, [&](std::uint64_t k) {
-                Resampling resampling(room.vpls, 10.0f, 2, reuse);
-                Rng rng(hash_keys(k, 9));
-                std::vector<WeightedVpl> drawn;
-                TileLight light;
-                for (KeptReceivers& tile : tiles) {
-                    drawn.clear(), power.draw(8, rng, drawn);
-                    light = resampling.gather_reusing(room.context(), tile, drawn, rng);
-                }
-                reused += resampling.counters().reused;
-                return light;
-            });
-            INFO(report(c));
-            CHECK(reused > 2500 * 4);
-            if (reuse == SpatialReuse::unbiased) {
-                CHECK(c.unbiased());
-                CHECK(std::fabs(c.bias) < Comparison::limit * c.its_error);
-            } else {  // too dark, never too bright
-                CHECK(c.least_z < -Comparison::limit);
-                CHECK(c.largest_z < Comparison::limit);
-                CHECK(c.bias < -Comparison::limit * c.its_error);
-            }
-        }
-    }
-}
-
 TEST_CASE("No lights, one light, and a receiver on a light", "[light_selection][resampling][extremes]") {
-    for (const SpatialReuse reuse : {SpatialReuse::none, SpatialReuse::unbiased, SpatialReuse::biased}) {
-        Room room(diffuse, "", 3);
-        KeptReceivers tile;
-        room.on_walls(tile, 0.0f, 0.7f);
-        KeptReceivers* const points[] = {&tile};
-        Rng rng(1);
-        Resampling resampling(room.vpls, infinity, 4, reuse);
-        for (const Rgb& l : resampling.gather_reusing(room.context(), tile, {}, rng)) CHECK(l == Rgb(0.0f));
-        // One light is exact.
-        const std::vector<WeightedVpl> one{{0, 1.0f}};
-        room.vpls.lights.resize(1);
-        const TileLight right = room.all(points, infinity);
-        for (int k = 0; k < 3; ++k) {
-            const auto light =
-                Resampling(room.vpls, infinity, 4, reuse).gather_reusing(room.context(), tile, one, rng);
-            for (std::size_t i = 0; i < 16; ++i) CHECK(light[i].x == Approx(right[i].x).epsilon(1e-5));
-        }
-        // At a place of its own, without a bound.
-        room.vpls.lights[0].position = tile.tile.position(5);
-        for (int k = 0; k < 2; ++k)
-            for (const Rgb& l : resampling.gather_reusing(room.context(), tile, one, rng))
-                CHECK((std::isfinite(l.x) && l.x >= 0.0f));
-    }
-    lights::VplSet dark;
-    dark.lights.resize(5);
-    const lights::VplLeaves leaves(dark);
-    const lights::LightHierarchy hierarchy(leaves);
-    std::vector<WeightedVpl> drawn;
+    Room room(diffuse, "", 3);
+    RecordedReceivers tile;
+    room.on_walls(tile, 0.0f, 0.7f);
+    RecordedReceivers* const points[] = {&tile};
     Rng rng(1);
-    lights::PowerCandidates(hierarchy).draw(4, rng, drawn);
-    CHECK(drawn.empty());
+    Resampling resampling(room.vpls, infinity, 4);
+    for (const Rgb& l : resampling.gather(room.context(), points, {}, rng)) CHECK(l == Rgb(0.0f));
+    // One light is exact.
+    const std::vector<WeightedVpl> one{{0, 1.0f}};
+    room.vpls.lights.resize(1);
+    const TileLight right = room.all(points, infinity);
+    for (int k = 0; k < 3; ++k) {
+        const TileLight light = resampling.gather(room.context(), points, one, rng);
+        for (std::size_t i = 0; i < 16; ++i) CHECK(light[i].x == Approx(right[i].x).epsilon(1e-5));
+    }
+    // At the position of a receiver, without a bound.
+    room.vpls.lights[0].position = tile.tile.position(5);
+    for (const Rgb& l : resampling.gather(room.context(), points, one, rng))
+        CHECK((std::isfinite(l.x) && l.x >= 0.0f));
 }

@@ -15,8 +15,8 @@
 #include <iostream>
 
 #include "core/objects/error.h"
-#include "lights/selection/light_sampler.h"
-#include "lights/selection/vertex_bounds.h"
+#include "lights/selection/hierarchy/vertex_bounds.h"
+#include "lights/selection/stochastic/light_sampler.h"
 #include "media/phase_functions.h"
 
 namespace {
@@ -74,7 +74,7 @@ struct Draws {
     bool finite = true;
 };
 
-Draws draw(const lights::LightTree& tree, const lights::VplSet& set, bool cut) {
+Draws draw(const lights::WideLightTree& tree, const lights::VplSet& set, bool cut) {
     constexpr int tiles = 300;
     constexpr std::uint32_t drawn = 64;
     const media::IsotropicPhase phase;
@@ -86,9 +86,9 @@ Draws draw(const lights::LightTree& tree, const lights::VplSet& set, bool cut) {
     for (int t = 0; t < tiles; ++t) {
         const lights::ReceiverBounds receivers = tile_of(phase, rng);
         const double begin = processor_seconds();
-        const lights::ReceiverGroups groups(receivers, tree);
-        const auto found = cut ? sampler.by_cut(tree, groups, infinity, drawn, rng)
-                               : sampler.by_tree(tree, groups, infinity, drawn, rng);
+        const lights::ReceiverClusters clusters(receivers, tree);
+        const auto found = cut ? sampler.by_cut(tree, clusters, infinity, drawn, rng)
+                               : sampler.by_tree(tree, clusters, infinity, drawn, rng);
         seconds += processor_seconds() - begin;
         double x = 0.0;
         for (const lights::WeightedVpl& light : found) {
@@ -110,7 +110,7 @@ bool measure(std::size_t count, double budget) {
     const double begin = processor_seconds();
     try {
         const lights::VplLeaves leaves(set);
-        const lights::LightTree tree(leaves, std::size_t(budget));
+        const lights::WideLightTree tree(leaves, std::size_t(budget));
         const double seconds = processor_seconds() - begin, own = sizeof(lights::VirtualPointLight);
         const double peak = own + (memory("VmHWM:") - before) / double(count);
         const Draws by_tree = draw(tree, set, false), by_cut = draw(tree, set, true);

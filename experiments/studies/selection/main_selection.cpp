@@ -46,13 +46,13 @@ void measure(const Study& study, const std::vector<Pixels>& references, const st
              const Arguments& a) {
     TileCost cost, nothing;
     const double begin = now(CLOCK_PROCESS_CPUTIME_ID);
-    const auto matrix = study.prepare(settings_of(method));
+    const Study::Method prepared = study.prepare(method);
     const double preparing = now(CLOCK_PROCESS_CPUTIME_ID) - begin;
     std::vector<Pixels> lights;
-    for (std::size_t t = 0; t < study.tiles(); ++t)
-        lights.push_back(study.render(t, settings_of(method), cost, matrix.get()));
-    // What eye paths and direct light take, which all methods have.
-    for (std::size_t t = 0; t < study.tiles(); ++t) study.render(t, settings_of("tree:1"), nothing);
+    for (std::size_t t = 0; t < study.tiles(); ++t) lights.push_back(study.render(t, prepared, cost));
+    // Eye paths and direct light, which all methods have.
+    const Study::Method least = study.prepare("tree:1");
+    for (std::size_t t = 0; t < study.tiles(); ++t) study.render(t, least, nothing);
     if (!a.pixels.empty()) {
         std::ofstream file(a.pixels, std::ios::app);
         for (std::size_t t = 0; t < references.size(); ++t)
@@ -63,16 +63,18 @@ void measure(const Study& study, const std::vector<Pixels>& references, const st
     }
     const Errors e = references.empty() ? Errors{} : errors_of(references, lights);
     const double pixels = double(a.width) * double(a.height), seen = 16.0 * double(cost.tiles);
-    const double cuts = double(std::max<std::uint64_t>(cost.cuts.cuts, 1));
+    auto& counted = cost.selection.values;
+    const double cuts = std::max(counted["lightcuts"], 1.0);
     const double own = cost.seconds / seen - nothing.seconds / (16.0 * double(nothing.tiles));
     std::cout << fmt::format(
                      "{},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.2f},{:.2f},{:.0f},{:.0f},"
                      "{:.0f},{:.2f},{:.2f}\n",
                      method, study.lights(), 100.0 * e.relative, 100.0 * e.standard_error,
-                     100.0 * std::sqrt(cost.cuts.predicted_squares / cuts), 100.0 * e.bias, 100.0 * e.median,
-                     100.0 * e.worst, cost.seconds / seen * pixels, own * pixels, cost.rays / seen,
-                     double(cost.cuts.pairs) / cuts, double(cost.cuts.evaluated) / cuts,
-                     double(cost.cuts.at_limit) / cuts, preparing)
+                     100.0 * std::sqrt(counted["lightcut_predicted_squares"] / cuts), 100.0 * e.bias,
+                     100.0 * e.median, 100.0 * e.worst, cost.seconds / seen * pixels, own * pixels,
+                     cost.rays / seen, counted["lightcut_pairs"] / cuts,
+                     counted["lightcut_pairs_evaluated"] / cuts, counted["lightcuts_at_limit"] / cuts,
+                     preparing)
               << std::flush;
 }
 
@@ -84,7 +86,7 @@ int main(int argc, char** argv) try {
     app.add_option("scene", a.scene, "scene file, with media")->required();
     app.add_option("methods", a.methods,
                    "all lightcuts:T:N multidimensional:T:N stochastic:N tree:N "
-                   "ris:CANDIDATES:SAMPLES:REUSE:BY matrix:ROWS:COLUMNS:SLICES:VISIBILITY");
+                   "ris:CANDIDATES:SAMPLES matrix:ROWS:COLUMNS:SLICES:VISIBILITY");
     app.add_option("--paths", a.paths, "light paths");
     app.add_option("--tiles", a.tiles, "of 4 x 4 pixels");
     app.add_option("--points", a.points, "along each eye ray in media");
@@ -97,12 +99,7 @@ int main(int argc, char** argv) try {
     CLI11_PARSE(app, argc, argv);
     const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, a.threads);
     const Study study(a);
-    std::cerr << fmt::format(
-        "{} lights, {:.1f} bytes a light with the hierarchy, {:.1f} with the tree; traced in {:.2f} s, "
-        "hierarchy in "
-        "{:.2f} s, tree in {:.2f} s of the processor\n",
-        study.lights(), study.bytes_a_light(false), study.bytes_a_light(true), study.tracing, study.building,
-        study.planting);
+    std::cerr << fmt::format("{} VPLs, traced in {:.2f} s of the processor\n", study.lights(), study.tracing);
     const double begin = now(CLOCK_PROCESS_CPUTIME_ID);
     const std::vector<Pixels> references = a.costs_only ? std::vector<Pixels>{} : references_of(study, a);
     std::cerr << fmt::format("reference in {:.1f} s\n", now(CLOCK_PROCESS_CPUTIME_ID) - begin);

@@ -63,10 +63,11 @@ std::vector<Pixels> references_of(const Study& study, const Arguments& a) {
         if (stored.empty()) file << title(study, a) << "\n";
     }
     std::mutex mutex;
+    const Study::Method all = study.prepare("all");
     tbb::parallel_for(std::size_t(0), missing.size(), [&](std::size_t m) {
         const std::size_t t = missing[m];
         TileCost cost;
-        references[t] = study.render(t, settings_of("all"), cost);
+        references[t] = study.render(t, all, cost);
         const std::lock_guard lock(mutex);
         if (file.is_open()) file << line_of(study.tile(t), references[t]) << std::flush;
     });

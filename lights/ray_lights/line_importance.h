@@ -1,0 +1,60 @@
+// What a light would send to sixteen receivers, about: what connections are drawn by (line_candidates.h).
+//
+// Lines are cut into three segments. Over a piece of length l, whose ends lie A and B away from a point,
+// 1/w^2 is
+//   l / (|A| |B|) * angle / sin(angle)
+// where the angle is the one between A and B; sqrt(2 / (1 + cos)) stands for angle / sin(angle), and is at
+// most 1.6 times too small. The rest of the integrand is what it is in the middle of the piece. Visibility is
+// left out, and transmittance falls like a polynomial, not exponentially. It is 0 only where no light can
+// arrive at all.
+#pragma once
+
+#include "lights/ray_lights/line_connections.h"
+
+namespace mote::lights {
+
+/// Sixteen eye rays' parts; null: an idle lane.
+struct EyeLines {
+    std::array<const EyeLine*, ReceiverLanes::width> of{};
+};
+
+/// A number for each lane.
+struct alignas(64) LaneFloats {
+    float of[ReceiverLanes::width] = {};
+};
+
+/// LineSegments that lines are cut into here.
+inline constexpr int line_segments = 3;
+
+/// Sixteen eye rays.
+struct EyeReceivers {
+    LaneFloats x[line_segments + 1], y[line_segments + 1], z[line_segments + 1];  ///< ends of segments [m]
+    LaneFloats
+        weight[line_segments];  ///< throughput times what scatters in the middle, times the piece's length
+    LaneFloats direction_x, direction_y, direction_z;
+    LaneFloats near_squared;           ///< what 1/w^2 is cut off at [m^2]
+    LaneFloats extinction, asymmetry;  ///< between the ray and lights [1/m]; g of the phase function
+    std::int32_t max_depth[ReceiverLanes::width] = {};  ///< of lights; 0: idle
+    bool directional = false;                           ///< does a phase function depend on direction?
+
+    explicit EyeReceivers(const EyeLines& eyes);
+};
+
+/// Sixteen points.
+struct PointReceivers {
+    const ReceiverLanes& lanes;
+    LaneFloats extinction;          ///< around them [1/m]
+    float bound;                    ///< of the geometry term [1/m^2]
+    LaneFloats weight, all_around;  ///< mean of the channels; 1 where light may come from everywhere, else 0
+
+    PointReceivers(const ReceiverLanes& points, const LaneFloats& extinction, float bound);
+};
+
+/// A ray light.
+void importance(const RayLight& light, const EyeReceivers& eyes, LaneFloats& out);
+void importance(const RayLight& light, const PointReceivers& points, LaneFloats& out);
+/// A VPL on a surface.
+void importance(const VirtualPointLight& vpl, const EyeReceivers& eyes, LaneFloats& out);
+void importance(const VirtualPointLight& vpl, const PointReceivers& points, LaneFloats& out);
+
+}  // namespace mote::lights

@@ -1,0 +1,25 @@
+#include "lights/selection/register_selection.h"
+
+#include "core/objects/registry.h"
+#include "lights/selection/lightcuts/lightcuts_selection.h"
+#include "lights/selection/matrix/matrix_selection.h"
+#include "lights/selection/resampling/resampling_selection.h"
+#include "lights/selection/selection.h"
+#include "lights/selection/stochastic/stochastic_selection.h"
+
+namespace mote::lights {
+
+void register_selection(core::Registry& registry) {
+    registry.add({core::Category::selection,
+                  "all",
+                  "All virtual point lights at every receiver: brute force.",
+                  {},
+                  R"(<selection type="all"/>)"},
+                 [](const core::Properties&) { return all_vpls(); });
+    register_lightcuts(registry);
+    register_stochastic_selection(registry);
+    register_resampling_selection(registry);
+    register_matrix_selection(registry);
+}
+
+}  // namespace mote::lights

@@ -1,0 +1,183 @@
+#include "lights/selection/resampling/resampling_selection.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <deque>
+
+#include "core/math/morton.h"
+#include "core/parameters/add_type.h"
+#include "lights/selection/hierarchy/build_statistics.h"
+#include "lights/selection/hierarchy/vertex_bounds.h"
+#include "lights/selection/resampling/recorded_receivers.h"
+#include "lights/selection/resampling/resampling.h"
+#include "lights/selection/stochastic/light_sampler.h"
+
+namespace mote::lights {
+
+using namespace core;
+
+namespace {
+
+/// Candidates from each cluster of the cut. Each is evaluated, which costs less than a cluster and tells
+/// less.
+constexpr std::uint32_t candidates_a_cluster = 2;
+
+class TileResampling final : public TileSelector {
+  public:
+    TileResampling(const VplSet& vpls, const WideLightTree& tree, float bound, std::uint32_t candidates,
+                   std::uint32_t samples)
+        : vpls_(vpls), tree_(tree), bound_(bound), count_(candidates), resampling_(vpls, bound, samples) {}
+
+    bool records() const override { return true; }
+    TileLight gather(const GatherContext&, ReceiverTile&, const VplRange&, BatchVisibility&, Rng&) override {
+        return {};
+    }
+    void record(const ReceiverTile& receivers) override {
+        for (const ReceiverKind kind : {ReceiverKind::surface, ReceiverKind::medium}) {
+            const ReceiverTile tile = lanes_of(receivers, kind);
+            if (!tile.any_active) continue;
+            Points& points = points_[std::size_t(kind)];
+            if (points.used == points.tiles.size()) points.tiles.emplace_back();
+            points.tiles[points.used++].copy(tile);
+        }
+    }
+    LightByKind gather_recorded(const GatherContext& context, Rng& rng) override {
+        Rng choices = choices_of(rng);
+        LightByKind light{};
+        all_.clear(), bounds_.clear();
+        for (Points& points : points_)
+            for (std::size_t p = 0; p < points.used; ++p) {
+                all_.push_back(&points.tiles[p]);
+                bounds_.emplace_back(points.tiles[p].tile);
+            }
+        if (!all_.empty()) {
+            sample_candidates(choices);
+            visibilities_.clear();
+            for (const std::uint32_t c : order_) visibilities_.push_back(sampler_.visibility(c));
+            resampling_.gather(context, all_, candidates_, choices, visibilities_);
+            for (std::size_t p = 0; p < all_.size(); ++p) {
+                const TileLight one = resampling_.light_of(p);
+                TileLight& sum = light[p < points_[0].used ? 0 : 1];
+                for (std::size_t i = 0; i < one.size(); ++i) sum[i] += one[i];
+            }
+            for (std::size_t c = 0; c < candidates_.size(); ++c) {
+                const Resampling::Found& found = resampling_.found()[c];
+                sampler_.learn(order_[c], found.light, found.rays, found.ray_squares);
+            }
+        }
+        points_[0].used = points_[1].used = 0;
+        return light;
+    }
+    void add_statistics(Statistics& statistics) const override {
+        statistics.values["resampling_candidates"] += double(resampling_.counters().candidates);
+        statistics.values["resampling_chosen"] += double(resampling_.counters().chosen);
+    }
+
+  private:
+    struct Points {
+        std::deque<RecordedReceivers> tiles;  ///< memory that is used again
+        std::size_t used = 0;
+    };
+
+    /// One set of candidates for all points of all lanes, along a space-filling curve: systematic resampling
+    /// then spreads its choices evenly over the VPLs.
+    void sample_candidates(Rng& rng) {
+        sampler_.learn_into(&learned_);
+        const auto sampled =
+            sampler_.from_clusters(tree_, ReceiverClusters(bounds_, tree_), bound_,
+                                   std::max(count_ / candidates_a_cluster, 1u), candidates_a_cluster, rng);
+        Bounds3 bounds;
+        for (const WeightedVpl& c : sampled) bounds.extend(vpls_.lights[c.index].position);
+        codes_.clear();
+        for (std::size_t c = 0; c < sampled.size(); ++c)
+            codes_.emplace_back(morton_code(vpls_.lights[sampled[c].index].position, bounds),
+                                std::uint32_t(c));
+        std::sort(codes_.begin(), codes_.end(), [&](const auto& a, const auto& b) {
+            if (a.first != b.first) return a.first < b.first;
+            return sampled[a.second].index < sampled[b.second].index;
+        });
+        order_.clear(), candidates_.clear();
+        for (const auto& [code, c] : codes_) order_.push_back(c), candidates_.push_back(sampled[c]);
+    }
+
+    const VplSet& vpls_;
+    const WideLightTree& tree_;
+    float bound_;
+    std::uint32_t count_;
+    std::array<Points, 2> points_;  ///< by ReceiverKind
+    LightSampler sampler_;
+    LearnedImportance learned_;
+    std::vector<WeightedVpl> candidates_;
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> codes_;
+    std::vector<std::uint32_t> order_;  ///< of the candidates: indices among what was sampled
+    std::vector<float> visibilities_;   ///< by candidate
+    std::vector<RecordedReceivers*> all_;
+    std::vector<ReceiverBounds> bounds_;
+    Resampling resampling_;
+};
+
+class ResamplingSelector final : public VplSelector {
+  public:
+    ResamplingSelector(const SelectionPass& pass, std::uint32_t candidates, std::uint32_t samples)
+        : vpls_(pass.vpls), bound_(pass.bound), candidates_(candidates), samples_(samples) {
+        const BuildStatistics timer(pass.statistics, "light_hierarchy");
+        tree_ = WideLightTree(VplLeaves(vpls_));
+        timer.built(tree_.memory_bytes());
+    }
+    std::unique_ptr<TileSelector> for_task() const override {
+        return std::make_unique<TileResampling>(vpls_, tree_, bound_, candidates_, samples_);
+    }
+
+  private:
+    const VplSet& vpls_;
+    float bound_;
+    std::uint32_t candidates_, samples_;
+    WideLightTree tree_;
+};
+
+struct ResamplingSettings {
+    std::uint32_t candidates = 256, samples = 32;
+};
+
+const ParameterList<ResamplingSettings> parameters{
+    row("candidates", &ResamplingSettings::candidates, between(1, 1 << 20),
+        "VPLs that a tile of 4 x 4 pixels evaluates without shadow rays, on surfaces and along eye rays "
+        "through media: "
+        "more lower the variance of the choice, four to sixteen a sample pay."),
+    row("samples", &ResamplingSettings::samples, between(1, 1 << 16),
+        "VPLs of them that each pixel chooses: shadow rays, and most of the time."),
+};
+
+}  // namespace
+
+std::unique_ptr<VplSelector> ResamplingSelection::prepare(const SelectionPass& pass) const {
+    check_memory(pass.vpls.lights.size());
+    return std::make_unique<ResamplingSelector>(pass, candidates_, samples_);
+}
+
+std::size_t ResamplingSelection::memory_bytes(std::size_t vpls) const {
+    return vpls * (WideLightTree::bytes_a_light + WideLightTree::building_bytes_a_light);
+}
+
+void ResamplingSelection::plan(Plan& plan, const SelectionSize& size) const {
+    plan.run("selection", fmt::format("resampling, {} of {} candidates from a cut", samples_, candidates_),
+             "unbiased; tiles of 4 x 4 share their candidates, each pixel chooses its own");
+    plan_memory(plan, "memory of the light tree", size);
+}
+
+void register_resampling_selection(Registry& registry) {
+    add_type(registry, Category::selection, "resampling",
+             "Resampled importance sampling (Talbot et al. 2005): a few VPLs for each pixel, chosen among "
+             "many candidates "
+             "from a cut by their unoccluded light: unbiased.",
+             parameters, R"(<selection type="resampling"/>)",
+             [](const ResamplingSettings& settings, const Properties& properties) {
+                 const auto selection =
+                     std::make_shared<ResamplingSelection>(settings.candidates, settings.samples);
+                 selection->where = properties.where;
+                 return selection;
+             });
+}
+
+}  // namespace mote::lights

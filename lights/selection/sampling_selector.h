@@ -1,0 +1,28 @@
+// Selectors that sample a few VPLs for all receivers of a tile; the one gather (vpl_gather.h) sums their
+// light.
+#pragma once
+
+#include "lights/selection/selection.h"
+
+namespace mote::lights {
+
+class SamplingSelector : public TileSelector {
+  public:
+    SamplingSelector(const VplSet& vpls, float bound) : vpls_(vpls), bound_{bound} {}
+    TileLight gather(const GatherContext& context, ReceiverTile& receivers, const VplRange& range,
+                     BatchVisibility& visibility, core::Rng& rng) final;
+
+  protected:
+    /// VPLs with weights 1 / (n p), until the next call.
+    virtual std::span<const WeightedVpl> sample(const ReceiverLanes& receivers, core::Rng& rng) = 0;
+    /// If true, record_light() wants the light of every sample.
+    virtual bool learns() const { return false; }
+    /// Light of the i-th sample at all receivers, average of the channels, in order; 0 where none arrives.
+    virtual void record_light(std::size_t, double) {}
+
+  private:
+    const VplSet& vpls_;
+    BoundedGeometry bound_;
+};
+
+}  // namespace mote::lights

@@ -1,0 +1,89 @@
+#include "lights/selection/selection.h"
+
+#include <fmt/format.h>
+
+namespace mote::lights {
+
+using namespace core;
+
+namespace {
+
+class AllTileSelector final : public TileSelector {
+  public:
+    AllTileSelector(const VplSet& vpls, float bound) : vpls_(vpls), bound_{bound} {}
+    bool takes_ranges() const override { return true; }
+    TileLight gather(const GatherContext& context, ReceiverTile& receivers, const VplRange& range,
+                     BatchVisibility& visibility, Rng&) override {
+        return gather_with(context, vpls_, range, bound_, receivers, visibility);
+    }
+
+  private:
+    const VplSet& vpls_;
+    BoundedGeometry bound_;
+};
+
+class AllSelector final : public VplSelector {
+  public:
+    AllSelector(const VplSet& vpls, float bound) : vpls_(vpls), bound_(bound) {}
+    std::unique_ptr<TileSelector> for_task() const override {
+        return std::make_unique<AllTileSelector>(vpls_, bound_);
+    }
+
+  private:
+    const VplSet& vpls_;
+    float bound_;
+};
+
+class AllVpls final : public Selection {
+  public:
+    std::unique_ptr<VplSelector> prepare(const SelectionPass& pass) const override {
+        return std::make_unique<AllSelector>(pass.vpls, pass.bound);
+    }
+    bool takes_all() const override { return true; }
+    std::size_t memory_bytes(std::size_t) const override { return 0; }
+    void plan(Plan& plan, const SelectionSize&) const override {
+        plan.run("selection", "all VPLs at every receiver", "exact, time grows with the number of VPLs");
+    }
+};
+
+}  // namespace
+
+ReceiverKind TileSelector::kind_of(const ReceiverLanes& receivers) {
+    int lane = 0;
+    while (lane + 1 < ReceiverLanes::width && receivers.max_vpl_depth[lane] == 0) ++lane;
+    return receivers.in_medium[lane] != 0.0f ? ReceiverKind::medium : ReceiverKind::surface;
+}
+
+ReceiverTile TileSelector::lanes_of(const ReceiverTile& receivers, ReceiverKind kind) {
+    ReceiverTile tile = receivers;
+    tile.any_active = tile.any_directional = false;
+    for (int i = 0; i < ReceiverTile::width; ++i)
+        if (tile.max_vpl_depth[i] != 0 && (tile.in_medium[i] != 0.0f) == (kind == ReceiverKind::medium))
+            tile.any_active = true, tile.any_directional |= tile.directional[i] != nullptr;
+        else
+            tile.max_vpl_depth[i] = 0, tile.directional[i] = nullptr;
+    return tile;
+}
+
+void Selection::check_memory(std::size_t vpls) const {
+    if (const std::size_t bytes = memory_bytes(vpls); bytes > max_bytes)
+        throw InputError(
+            fmt::format("selecting from {} virtual point lights takes {:.0f} MB while it is built, more "
+                        "than the {:.0f} MB that a selection may take",
+                        vpls, double(bytes) * 1e-6, double(max_bytes) * 1e-6),
+            where);
+}
+
+void Selection::plan_memory(Plan& plan, const std::string& topic, const SelectionSize& size) const {
+    const std::size_t bytes = memory_bytes(std::size_t(size.vpls));
+    plan.run(topic, fmt::format("{:.1f} MB", double(bytes) * 1e-6),
+             fmt::format("at most {:.0f} bytes a VPL while it is built, besides the VPL's own{}",
+                         double(memory_bytes(1000)) * 1e-3,
+                         bytes > max_bytes
+                             ? fmt::format("; more than {:.4g} MB, refused", double(max_bytes) * 1e-6)
+                             : ""));
+}
+
+std::shared_ptr<Selection> all_vpls() { return std::make_shared<AllVpls>(); }
+
+}  // namespace mote::lights

@@ -1,0 +1,127 @@
+// Selection of virtual point lights: which of a pass's VPLs light the receivers of a tile, and how often each
+// counts.
+//
+// A scene file names a Selection by a nested <selection>. Every pass prepares it for its VPLs (VplSelector),
+// every task has a TileSelector of its own, which gathers at one tile of sixteen receivers after the other
+// and may learn from those before. Calls are virtual per tile and batch, never per pair. A method is a folder
+// that its registration alone names (register_selection.cpp).
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/objects/error.h"
+#include "core/objects/object.h"
+#include "core/render/plan.h"
+#include "core/render/statistics.h"
+#include "lights/virtual_lights/vpl_gather.h"
+
+namespace mote::lights {
+
+/// Where a receiver lies.
+enum class ReceiverKind : std::uint8_t { surface, medium };
+
+/// Light by ReceiverKind and lane.
+using LightByKind = std::array<TileLight, 2>;
+
+/// A vertex of an eye path that receives light.
+struct PathReceiver {
+    core::ScatteringVertex vertex;
+    core::Rgb throughput{1.0f};  ///< of the eye path up to the vertex
+    core::MediumState state;
+    std::int32_t max_vpl_depth = 0;
+};
+
+/// A pass, as selectors see it.
+struct SelectionPass {
+    const core::RayQueries& scene;
+    const VplSet& vpls;       ///< outlives the selector
+    float bound;              ///< b of the geometry term [1/m^2], infinity for none
+    std::uint64_t key;        ///< determines the random numbers of preparing
+    core::RayCounters& rays;  ///< counted up
+    core::TrackingCounters& tracking;
+    core::Statistics& statistics;  ///< of all passes
+    core::CancelToken cancelled;
+    /// Receivers on about so many eye paths, spread over the image, of random numbers that the pass does not
+    /// use.
+    std::function<std::vector<PathReceiver>(std::size_t paths)> sample_receivers;
+};
+
+/// Gathers for one task.
+class TileSelector {
+  public:
+    virtual ~TileSelector() = default;
+
+    /// If true, all points of a pixel are gathered at once: record() takes them, gather_recorded() gathers.
+    virtual bool records() const { return false; }
+    /// If true, gather() takes the VPLs of a range, so that points and pixels can share out the VPLs.
+    virtual bool takes_ranges() const { return false; }
+
+    /// Light of the VPLs at the receivers, by lane. `range`: the VPLs meant, where takes_ranges(). `rng`
+    /// chooses.
+    virtual TileLight gather(const GatherContext& context, ReceiverTile& receivers, const VplRange& range,
+                             BatchVisibility& visibility, core::Rng& rng) = 0;
+    /// Copies receivers, with the vertices that they refer to.
+    virtual void record(const ReceiverTile&) {}
+    /// Light at all receivers since the last call.
+    virtual LightByKind gather_recorded(const GatherContext&, core::Rng&) { return {}; }
+    /// Adds what was counted since the selector was made.
+    virtual void add_statistics(core::Statistics&) const {}
+
+  protected:
+    /// Kind of the first receiver that is not idle.
+    static ReceiverKind kind_of(const ReceiverLanes& receivers);
+    /// The lanes of one kind, others idle.
+    static ReceiverTile lanes_of(const ReceiverTile& receivers, ReceiverKind kind);
+    /// The generator of one tile's choices: one number of `rng`, in a stream apart from eye paths.
+    static core::Rng choices_of(core::Rng& rng) {
+        return core::Rng(core::hash_keys(rng.next_u32(), 0x73656c656374ull));
+    }
+};
+
+/// A selection prepared for the VPLs of one pass.
+class VplSelector {
+  public:
+    virtual ~VplSelector() = default;
+    /// For one task; safe from many threads. The selector outlives it.
+    virtual std::unique_ptr<TileSelector> for_task() const = 0;
+};
+
+/// Sizes that a plan states costs by.
+struct SelectionSize {
+    double vpls = 0.0;   ///< of a pass, about
+    double pairs = 0.0;  ///< points of a pass that gather, about
+};
+
+/// A nested <selection> of a scene file.
+class Selection : public core::Object {
+  public:
+    /// Throws core::InputError where memory_bytes() exceeds max_bytes, core::Cancelled.
+    virtual std::unique_ptr<VplSelector> prepare(const SelectionPass& pass) const = 0;
+    /// If true, every receiver takes all VPLs, which points and pixels may share out.
+    virtual bool takes_all() const { return false; }
+    /// If true, shadow rays are traced whatever visibility the scene names.
+    virtual bool traces() const { return false; }
+    /// If false, neighbouring pixels are needed in one tile.
+    virtual bool interleaves() const { return true; }
+    /// Largest size in memory while the selector is built, besides the VPLs, and of what stays.
+    virtual std::size_t memory_bytes(std::size_t vpls) const = 0;
+    virtual void plan(core::Plan& plan, const SelectionSize& size) const = 0;
+
+    /// Limit of memory_bytes(): ten million VPLs fit several times, and a machine of 8 GB stays usable.
+    static constexpr std::size_t max_bytes = std::size_t(4) << 30;
+    core::SourceLocation where;
+
+  protected:
+    /// Throws core::InputError where so many VPLs need more than max_bytes.
+    void check_memory(std::size_t vpls) const;
+    /// States what memory_bytes() says.
+    void plan_memory(core::Plan& plan, const std::string& topic, const SelectionSize& size) const;
+};
+
+/// All VPLs at every receiver.
+std::shared_ptr<Selection> all_vpls();
+
+}  // namespace mote::lights
