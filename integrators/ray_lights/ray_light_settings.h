@@ -1,4 +1,4 @@
-// What a scene file sets for `mote_ray_lights`.
+// Settings of `mote_ray_lights`.
 #pragma once
 
 #include <algorithm>

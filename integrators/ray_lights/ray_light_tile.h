@@ -214,7 +214,7 @@ class RayLightTile {
         return extinction;
     }
 
-    /// What all candidates would send to points and lines: sums by lane.
+    /// Importance of all candidates for points and lines: sums by lane.
     lights::LaneFloats evaluate_all(const lights::PointReceivers& points) {
         at_points_.clear();
         if (receivers_.any_active) gather_.evaluate(points, at_points_);
@@ -254,7 +254,7 @@ class RayLightTile {
     lights::LineGather gather_;
     std::array<Lane, lane_count> lanes_;
     lights::ReceiverTile receivers_;
-    std::vector<lights::EyeLines> eyes_;  ///< of this step, with what is on candidates to them
+    std::vector<lights::EyeLines> eyes_;  ///< of this step
     std::vector<lights::LineCandidates> along_eyes_;
     lights::LineCandidates at_points_;
     lights::ReceiverTile attenuation_;  ///< what lines need of a tile: states and generators

@@ -1,4 +1,4 @@
-// What bias compensation will do in a scene, and what it leaves out there, for the plan of mote_vpl.
+// Entries of mote_vpl's plan about bias compensation: what runs in a scene, and what is missing.
 #pragma once
 
 #include "compensation/compensation_settings.h"
@@ -12,7 +12,7 @@ namespace mote::integrators {
 void plan_compensation(core::Plan& plan, const core::Scene& scene, const core::Requirements& requirements,
                        const compensation::CompensationSettings& settings, float bound);
 
-/// What bounded VPLs, with this compensation or without, are expected to leave out in the media, and how many
+/// Expected relative energy loss of bounded VPLs in the media, with this compensation, and how many
 /// light paths and which bound would leave out less (compensation/expected_loss.h).
 void plan_expected_loss(core::Plan& plan, const core::Scene& scene,
                         const compensation::CompensationSettings& settings, float bound);

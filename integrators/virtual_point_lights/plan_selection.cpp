@@ -57,7 +57,7 @@ void plan_ray_lights(Plan& plan, const GatherSize& size) {
                     size.homogeneous ? "a tenth" : "a third"));
 }
 
-/// Of lines through the box along an axis.
+/// Mean optical depth of lines through the box along an axis.
 double depth_along(const Medium& medium, const Bounds3& box, int axis) {
     constexpr int side = 4;
     TrackingCounters counters;

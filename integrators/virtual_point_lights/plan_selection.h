@@ -7,7 +7,7 @@
 
 namespace mote::integrators {
 
-/// What a pass is about to gather.
+/// Sizes of the gather of a pass.
 struct GatherSize {
     double vpls = 0.0;        ///< about
     double receivers = 0.0;   ///< of a picture, about

@@ -9,7 +9,7 @@
 
 namespace mote::integrators {
 
-/// What compensation cost; added up per tile.
+/// Cost of compensation, summed per tile.
 struct CompensationCost {
     std::uint64_t vertices = 0;
     double seconds = 0.0;  ///< of processor time, all threads

@@ -52,7 +52,7 @@ class EyeTile {
         l.sum = {}, l.alive = false;
     }
     const VplPixel& sum(int lane) const { return lanes_[std::size_t(lane)].sum; }
-    /// What the lane's eye path met first, after run().
+    /// First hit of the lane's eye path, after run().
     const SeenPixel& seen(int lane) const { return lanes_[std::size_t(lane)].seen; }
     /// From now on receivers are appended to these, and gather no VPLs.
     void record_receivers(std::vector<lights::PathReceiver>& all) { recorded_ = &all; }
@@ -62,7 +62,7 @@ class EyeTile {
     std::uint64_t imperfect_lookups() const { return imperfect_lookups_; }
     const lights::TileSelector& selector() const { return *selector_; }
 
-    /// Of the lanes to come: where they lie in the picture, `spacing` pixels apart, and how much receivers
+    /// Position of the following lanes in the image, `spacing` pixels apart, and the weight of receivers
     /// that are stored count.
     void place(int column, int row, int spacing, float scale) {
         maps_.column = column, maps_.row = row, maps_.spacing = spacing, maps_.scale = scale;

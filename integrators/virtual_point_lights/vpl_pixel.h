@@ -1,4 +1,4 @@
-// What the eye paths of `mote_vpl` leave behind: light, and receivers for shadow maps.
+// Results of the eye paths of `mote_vpl`: light, and receivers for shadow maps.
 #pragma once
 
 #include "integrators/eye_path/transport_layers.h"

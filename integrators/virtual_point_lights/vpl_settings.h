@@ -1,4 +1,4 @@
-// What a scene file sets for `mote_vpl`.
+// Settings of `mote_vpl`.
 #pragma once
 
 #include <algorithm>

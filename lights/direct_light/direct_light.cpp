@@ -9,7 +9,8 @@ using namespace core;
 
 namespace {
 
-/// What media and panes along the ray leave of the light, by marching. Returns whether anything is left.
+/// Multiplies by the transmittance of media and panes along the ray, by marching. Returns false where it is
+/// 0.
 bool march_to_light(const LitScene& scene, const Ray& ray, const MediumState& state, float voxels,
                     PathWeights& connection, WalkContext& context) {
     const auto medium = [&](float t0, float t1, const MediumState& here) {

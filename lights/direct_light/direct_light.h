@@ -44,7 +44,7 @@ core::Rgb sample_light(const core::LitScene& scene, const core::ScatteringVertex
                        const core::PathWeights& weights, const core::MediumState& state, float u_light,
                        const core::Vec2& u, core::WalkContext& context, const LightSampling& how = {});
 
-/// The same for a light that was chosen already, divided by its probability.
+/// sample_light() for a given choice of the light, divided by its probability.
 template <bool Media>
 core::Rgb connect_light(const core::LitScene& scene, const core::ScatteringVertex& vertex,
                         const core::PathWeights& weights, const core::MediumState& state,

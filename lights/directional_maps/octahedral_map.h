@@ -13,7 +13,7 @@
 
 namespace mote::lights {
 
-/// What a bilinear lookup reads: the weights add up to one.
+/// Texels and weights of a bilinear lookup: the weights add up to one.
 struct BilinearFootprint {
     std::array<int, 4> texel;
     std::array<float, 4> weight;

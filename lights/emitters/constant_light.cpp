@@ -39,7 +39,7 @@ class ConstantLight final : public Emitter {
                                  const Vec3& direction) const override {
         return {scene_.pdf_area(origin, direction), inv_four_pi};
     }
-    /// What falls on the scene's bounding sphere.
+    /// Power on the scene's bounding sphere.
     Rgb power() const override { return 4.0f * pi * scene_.disk_area() * radiance_; }
 
   private:

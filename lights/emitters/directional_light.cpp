@@ -40,7 +40,7 @@ class DirectionalLight final : public Emitter {
                                  const Vec3& /*direction*/) const override {
         return {scene_.pdf_area(origin, direction_), 1.0f};
     }
-    /// What falls on the scene's bounding sphere.
+    /// Power on the scene's bounding sphere.
     Rgb power() const override { return irradiance_ * scene_.disk_area(); }
 
   private:

@@ -51,10 +51,10 @@ std::shared_ptr<core::Emitter> make_directional_light(const core::Vec3d& directi
 /// The front side of a shape (where its geometric normal points to) emits `radiance` [W/(m^2 sr)] in all
 /// directions. One light belongs to one shape: call set_shape() before use.
 std::shared_ptr<core::Emitter> make_area_light(const core::Rgb& radiance);
-/// The same with radiance by the shape's texture coordinates.
+/// An area light with radiance by the shape's texture coordinates.
 std::shared_ptr<core::Emitter> make_area_light(core::TexturePtr radiance);
 
-/// The same radiance [W/(m^2 sr)] from every direction.
+/// Equal radiance [W/(m^2 sr)] from every direction.
 std::shared_ptr<core::Emitter> make_constant_light(const core::Rgb& radiance);
 
 /// Radiance from a latitude-longitude picture (see environment_picture.h); to_world may rotate and

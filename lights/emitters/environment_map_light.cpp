@@ -49,7 +49,7 @@ class EnvironmentMap final : public Emitter {
                                  const Vec3& direction) const override {
         return {scene_.pdf_area(origin, direction), pdf_direct(origin, -direction, nullptr)};
     }
-    /// What falls on the scene's bounding sphere; exact.
+    /// Power on the scene's bounding sphere; exact.
     Rgb power() const override { return scale_ * scene_.disk_area() * map_.integral(); }
 
   private:

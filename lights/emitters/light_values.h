@@ -1,4 +1,4 @@
-// What all lights ask of their parameters: brightness that is finite and not negative, directions that exist,
+// Checks of the parameters of lights: brightness that is finite and not negative, directions that exist,
 // transforms that keep angles.
 #pragma once
 

@@ -21,7 +21,7 @@ inline std::optional<core::DirectSample> connect_to_point(const core::Vec3& p, c
     return sample;
 }
 
-/// The same with the light's radiant intensity [W/sr], asked for the direction away from it. Nothing where it
+/// The connection with the light's radiant intensity [W/sr] in the direction away from it. Nothing where it
 /// is black.
 template <typename Intensity>
 std::optional<core::DirectSample> connect_to_point(const core::Vec3& p, const core::Vec3& light,

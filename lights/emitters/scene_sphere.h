@@ -18,7 +18,7 @@ struct SceneSphere {
 
     /// Density of the origin over the disk [1/m^2].
     float pdf_area() const { return 1.0f / disk_area(); }
-    /// The same for the ray through p: zero where it passes the disk by. The rim is a little wider than the
+    /// Density of the ray through p: zero where it misses the disk. The rim is a little wider than the
     /// disk, by what rounding moves its points.
     float pdf_area(const core::Vec3& p, const core::Vec3& direction) const {
         const core::Vec3d d(direction), from_center = core::Vec3d(p) - core::Vec3d(center);

@@ -22,7 +22,7 @@ ShadowMapView view_of(const VplSet& vpls, const VirtualPointLight& vpl, int size
                                      : ShadowMapView::of_point(vpl.position, size);
 }
 
-/// What all maps of one kind share: directions of texels in the map's own frame, each scaled to |w|_1 = 1.
+/// Directions of texels that all maps of one kind share in the map's own frame, each scaled to |w|_1 = 1.
 std::vector<Vec3> texel_directions(ShadowMapView::Kind kind, int size) {
     std::vector<Vec3> directions;
     for (int texel = 0; texel < size * size; ++texel) {
@@ -58,7 +58,7 @@ class Splats {
     }
 
   private:
-    /// Of the point's plane along a texel's ray, in the measure |d|_1; negative behind the light.
+    /// Distance of the point's plane along a texel's ray, in the measure |d|_1; negative behind the light.
     float depth_of_plane(const Vec3& d, const Vec3& normal, int texel) const {
         return glm::dot(normal, d) / glm::dot(normal, directions_[std::size_t(texel)]);
     }

@@ -33,7 +33,7 @@ struct ImperfectMapSettings {
     bool pull_push = true;    ///< fill holes and close gaps
     float bias = 0.5f;        ///< what is nearer by less than so many texels' width casts no shadow
 
-    /// Of one map, with a border that goes on where its edges are met again.
+    /// Texels of one map, with a border that continues it over its edges.
     std::size_t bytes() const { return std::size_t(size + 2) * std::size_t(size + 2) * sizeof(float); }
 };
 
@@ -50,7 +50,7 @@ class ImperfectShadowMaps {
 
     /// 1 for each receiver that the light reaches, else 0.
     void look_up(std::size_t light, const ReceiverLanes& receivers, float* visible) const;
-    /// The same for one point.
+    /// Lookup of one point.
     bool visible(std::size_t light, const core::Vec3& position) const;
 
   private:

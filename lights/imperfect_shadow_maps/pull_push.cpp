@@ -1,4 +1,4 @@
-// What makes a map of points whole. Pull-push: means of what is known go up to coarser levels, and come down
+// Fills holes in a map of points. Pull-push: means of known texels go up to coarser levels, and come down
 // to where nothing is. Then gaps, through which a texel sees something behind.
 #include "lights/imperfect_shadow_maps/imperfect_shadow_maps.h"
 

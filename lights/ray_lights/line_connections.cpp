@@ -74,7 +74,8 @@ std::span<const float> weights_towards(const MediumLine& line, const Vec3d& poin
 struct Part {
     double begin, end;
 };
-/// What lies above the plane through a point; nothing for a line in the plane or parallel to it and below.
+/// Range of the line above the plane through a point; nothing for a line in the plane or parallel to it and
+/// below.
 std::optional<Part> part_above(const MediumLine& line, const Vec3d& point, const Vec3& n) {
     Part part{0.0, double(line.length)};
     const Vec3d normal(n);

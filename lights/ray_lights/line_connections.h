@@ -1,4 +1,4 @@
-// What a light would send to a receiver if nothing stood between them, where one of the two or both are
+// Unoccluded light of a light at a receiver, where one of the two or both are
 // lines: an eye ray through a medium, a ray light.
 //
 // Points on the lines are drawn (line_sampling.h), the values are divided by their densities: estimates of
@@ -27,7 +27,7 @@ struct LineConnection {
     core::Vec3 from, to;  ///< from the receiver to the light
 };
 
-/// What connections draw from and count in.
+/// Generator and counters of connections.
 struct LineContext {
     core::Rng& rng;
     core::TrackingCounters& counters;

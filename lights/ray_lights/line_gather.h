@@ -2,7 +2,7 @@
 // lights for sixteen points.
 //
 // Shadow rays go in packets of sixteen, a batch at a time, as those of VPLs do (virtual_lights/vpl_gather.h).
-// Which lights a lane connects to is drawn from what they would send to it (line_candidates.h). Points on the
+// Lights that a lane connects to are sampled by importance (line_candidates.h). Points on the
 // lines follow a sequence that fills the square evenly as the lights go by, from a start of the lane's own.
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace mote::lights {
 
-/// What is counted.
+/// Counters of a gather.
 struct LineCounters {
     std::uint64_t pairs = 0;      ///< of a receiver and a light
     std::uint64_t connected = 0;  ///< shadow rays among them
@@ -22,13 +22,13 @@ struct LineCounters {
 /// Gathers for one task; keeps references.
 class LineGather {
   public:
-    /// `candidates`: so many ray lights, and so many VPLs, does a tile look at, 0: all.
+    /// `candidates`: so many ray lights, and so many VPLs, does a tile evaluate, 0: all.
     LineGather(const GatherContext& context, const RayLightSet& set, std::size_t candidates)
         : context_(context), set_(set), candidates_(candidates) {}
 
-    /// Draws the lights that are looked at from here on, by `receivers` lanes; fewer lanes look at fewer.
+    /// Samples the candidates of the following calls, for `receivers` active lanes; fewer lanes have fewer.
     void sample_candidates(core::Rng& rng, int receivers);
-    /// What these would send, about.
+    /// Appends the importance of the candidates for eye rays, or points.
     void evaluate(const EyeLines& eyes, LineCandidates& candidates) const;
     void evaluate(const PointReceivers& points, LineCandidates& candidates) const;
 
@@ -36,7 +36,7 @@ class LineGather {
     /// generators are those of the lanes; generators it has must be the lanes' own.
     TileLight to_eyes(const EyeLines& eyes, const LineCandidates& candidates, const LaneFloats& steps,
                       ReceiverTile& tile);
-    /// The same of points, with min(G*, bound) [1/m^2].
+    /// Light at points, with min(G*, bound) [1/m^2].
     TileLight to_points(const LineCandidates& candidates, const LaneFloats& steps, float bound,
                         ReceiverTile& tile);
     const LineCounters& counters() const { return counters_; }

@@ -17,13 +17,13 @@ constexpr int segments = line_segments;
 constexpr float min_cosine = 0.1f, min_phase = 0.15f;
 /// What is not in the middle of a piece of the eye ray, by the mean of all.
 constexpr float min_weight = 0.1f;
-/// What 1/w^2 is cut off at where a line passes a light: this times the square of a piece of the ray light,
+/// Softening of 1/w^2 where a line passes a light: this times the square of a segment of the ray light,
 /// and of the line itself.
 constexpr float near_on_light = 0.06f, near_on_line = 1e-4f;
 
 /// Grows like exp(x), about.
 inline float grows(float x) { return 1.0f + x * (1.0f + x * (0.5f + x * (1.0f / 6.0f))); }
-/// Of 1/w^2 over a piece, its length taken out, and of what is lost on the way: from the product of the
+/// Root of the mean of 1/w^2 over a segment, and of the transmittance on the way: from the product of the
 /// distances of its ends, that of the vectors there, and an optical depth. `more` is divided by as well.
 inline float falls(float distances, float vectors, float depth, float more) {
     const float f = grows(depth);

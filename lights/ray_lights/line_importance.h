@@ -1,4 +1,4 @@
-// What a light would send to sixteen receivers, about: what connections are drawn by (line_candidates.h).
+// Importance of a light for sixteen receivers, by which connections are sampled (line_candidates.h).
 //
 // Lines are cut into three segments. Over a piece of length l, whose ends lie A and B away from a point,
 // 1/w^2 is

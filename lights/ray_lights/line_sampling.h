@@ -28,8 +28,8 @@ struct LinePair {
     double sine = 0.0;  ///< of the angle of the lines, 0 where they are parallel
 };
 
-/// Of two lines with unit directions. Of parallel lines all points are nearest: that of the second is its
-/// origin.
+/// Relative position of two lines with unit directions. Of parallel lines all points are nearest: that of the
+/// second is its origin.
 LinePair line_pair(const core::Vec3d& first_origin, const core::Vec3d& first_direction,
                    const core::Vec3d& second_origin, const core::Vec3d& second_direction);
 
@@ -62,7 +62,7 @@ struct LineSample {
 /// At most so many cells on a line.
 inline constexpr std::size_t max_cells = 16;
 
-/// Draws from the part [begin, end] of a line of `length`, in proportion to the density times the weight of
+/// Samples the range [begin, end] of a line of `length`, in proportion to the density times the weight of
 /// the cell; weights are those of equal parts of the whole line, at most max_cells, not negative. Nothing
 /// where there is nothing to draw from.
 template <typename Density>

@@ -19,7 +19,7 @@ constexpr float defensive_share = 0.1f;  ///< of the mean of all cells that each
 
 Rgb exp_minus(const Rgb& depth) { return {std::exp(-depth.x), std::exp(-depth.y), std::exp(-depth.z)}; }
 
-/// Of a transmittance that falls from one value to another over an optical depth.
+/// Mean of a transmittance that falls from one value to another over an optical depth.
 Rgb mean_between(const Rgb& before, const Rgb& after, const Rgb& depth) {
     Rgb mean;
     for (int i = 0; i < 3; ++i)

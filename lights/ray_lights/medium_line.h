@@ -20,7 +20,7 @@
 
 namespace mote::lights {
 
-/// What lines ask of a medium, found once.
+/// Properties of a medium that lines need, found once.
 struct MediumKind {
     const core::Medium* medium;
     bool homogeneous, isotropic;

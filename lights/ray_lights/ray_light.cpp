@@ -22,7 +22,7 @@ void leave_lights(const LitScene& scene, const ScatteringMedia& media, const Lig
                                const MediumState&) {
         if (vertex.on_surface()) append_vpl(set.surface, vertex, alpha, std::uint32_t(depth), path);
     };
-    // What leads on from the segment draws from a generator of its own.
+    // Lines have a generator of their own, apart from the path's.
     Rng rng(context.rng.next_u32());
     const auto leave_rays = [&](const Ray& ray, const MediumState& state, const PathWeights& weights,
                                 const WalkEvent& event, int depth) {
@@ -68,8 +68,8 @@ void append(RayLightSet& to, RayLightSet&& from) {
     to.rays.insert(to.rays.end(), from.rays.begin(), from.rays.end());
 }
 
-/// What scatters on the line, by its weights, over the root of its length. For a line of length L and power P
-/// that is P sqrt(L), which is how its light spreads: P / d within L of it, P L / d^2 farther away, so that
+/// Light scattered on the line, by its weights, over the root of its length. For a line of length L and power
+/// P that is P sqrt(L), which is how its light spreads: P / d within L of it, P L / d^2 farther away, so that
 /// the mean of the square over receivers on surfaces around it is P^2 L, but for logarithms. Drawn by P L,
 /// short lines would count so much where they are drawn that they were points again.
 double sampling_power(const RayLight& light) {
@@ -79,7 +79,7 @@ double sampling_power(const RayLight& light) {
            double(light.line.cells);
 }
 
-/// What a VPL sends out, about: its intensity holds the BSDF where that is a constant.
+/// Power of a VPL, about: its intensity holds the BSDF where that is a constant.
 double reflected_power(const VirtualPointLight& vpl) {
     const double constant = vpl.detail == VirtualPointLight::no_detail ? 1.0 : double(inv_pi);
     return constant * double(average(vpl.intensity));
@@ -109,7 +109,7 @@ RayLightSet trace_ray_lights(const LitScene& scene, const ScatteringMedia& media
 
 WeightedVpl PowerSampling::choose(std::size_t n, float start) const { return choose_behind(n, start, 0); }
 
-/// No light before `first` is looked at.
+/// Searches from `first` on.
 WeightedVpl PowerSampling::choose_behind(std::size_t n, float start, std::size_t first) const {
     if (all_) return {n, 1.0f};
     const double total = power_.back(), place = (double(n) + double(start)) / double(count_) * total;

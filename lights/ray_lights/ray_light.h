@@ -29,7 +29,7 @@ struct RayLightSet {
     /// Sums of what lights send out, about, up to each of them; the last is the total.
     std::vector<double> ray_power, surface_power;
 
-    /// Of all lists.
+    /// Bytes of all lists.
     std::size_t memory_bytes() const {
         return rays.size() * sizeof(RayLight) + (ray_power.size() + surface_power.size()) * sizeof(double) +
                surface.memory_bytes();
@@ -43,8 +43,8 @@ RayLightSet trace_ray_lights(const core::LitScene& scene, const ScatteringMedia&
                              const LightPathSettings& settings, std::uint64_t seed, std::uint32_t pass,
                              core::SamplerKind sampler, core::CancelToken cancelled = {});
 
-/// Which lights a receiver looks at: all, or so many of them, drawn by their power in equal steps through the
-/// sum from one random start.
+/// Samples of lights by their power, in equal steps through the prefix sum from one random start; or all
+/// lights.
 class PowerSampling {
   public:
     /// `power`: sums up to each light, which must outlive this; `most`: so many; 0: all.
@@ -52,9 +52,9 @@ class PowerSampling {
         : power_(power), all_(most == 0 || most >= power.size()), count_(all_ ? power.size() : most) {}
     std::size_t count() const { return !power_.empty() && power_.back() > 0.0 ? count_ : 0; }
     /// The n-th of count(), by a random start in [0, 1) that all of a receiver share. Its weight is one over
-    /// how often it is expected among those that are drawn.
+    /// its expected number of samples.
     WeightedVpl choose(std::size_t n, float start) const;
-    /// All of them, for whoever gathers many receivers at once (virtual_lights/vpl_choice.h).
+    /// All samples, for gathering many receivers at once (virtual_lights/vpl_choice.h).
     void choose_all(float start, std::vector<WeightedVpl>& lights) const;
 
   private:

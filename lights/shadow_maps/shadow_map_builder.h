@@ -25,7 +25,7 @@ class ShadowMapBuilder {
         const core::Medium* medium;
         float begin, end;
     };
-    /// What a pane across the ray takes: spread over one interval, as everything between two values is.
+    /// Optical depth of a pane across the ray: spread over one interval, as everything between two values is.
     struct Pane {
         float distance;
         core::Vec3d depth;

@@ -10,7 +10,7 @@
 
 namespace mote::lights {
 
-/// Of N points.
+/// Cells of N points.
 template <int N>
 struct alignas(64) ShadowMapCells {
     float x[N], y[N], z[N];  ///< in the frame of the view, from its origin [m]

@@ -25,11 +25,11 @@ struct ShadowMapView {
         1.0f;       ///< perspective: tangent of half the angle; parallel: half the square's edge [m]
     int size = 64;  ///< texels along an edge
 
-    /// Of light to all sides; `size` texels along an edge.
+    /// View in all directions; `size` texels along an edge.
     static ShadowMapView of_point(const core::Vec3& position, int size);
     /// `normal` on the lit side.
     static ShadowMapView of_surface(const core::Vec3& position, const core::Vec3& normal, int size);
-    /// Of a cone around `axis` (unit), [radians] from it.
+    /// View of a cone around `axis` (unit), [radians] from it.
     static ShadowMapView of_spot(const core::Vec3& position, const core::Vec3& axis, float cutoff_radians,
                                  int size);
     /// Light that travels along `direction` over everything within `radius` of `center`.
@@ -42,7 +42,7 @@ struct ShadowMapView {
     core::Ray ray(int texel) const;
     /// The ray through any place of the map, in [0, 1]^2.
     core::Ray ray_at(const core::Vec2& place) const;
-    /// What a piece of the map stands for, per its share of the map: solid angle [sr], of a parallel one area
+    /// Measure of a piece of the map, per its fraction of the map: solid angle [sr], of a parallel one area
     /// [m^2].
     float measure(const core::Vec2& place) const;
     /// The texel that column i of row j, both in [-1, size], continues the map with: round the edges of the

@@ -22,7 +22,7 @@
 
 namespace mote::lights {
 
-/// What a map holds.
+/// Settings of a map.
 struct ShadowMapSettings {
     int intervals = 35;                            ///< between entry and exit (35 fill 96 bytes)
     float step = 1.0f;                             ///< of ray marching, in voxels of the medium
@@ -37,7 +37,7 @@ struct ShadowMapSettings {
     std::size_t values() const { return std::size_t(intervals) + 1; }
 };
 
-/// Whether maps of this scene need three channels.
+/// True where maps of this scene need three channels.
 bool needs_chromatic_maps(const core::RayQueries& scene);
 
 /// Sixteen points, and the transmittance per channel from the light to each.
@@ -60,14 +60,14 @@ class VolumetricShadowMap {
     /// not reach. Points within about a texel behind a surface count as on it. Many packets in one call hide
     /// the time that memory takes.
     void look_up(std::span<ShadowLookup> packets) const;
-    /// The same for one point.
+    /// Lookup of one point.
     core::Rgb transmittance(const core::Vec3& p) const;
 
     const ShadowMapView& view() const { return view_; }                               ///< of the last build
     std::size_t memory_bytes() const { return records_.capacity() * sizeof(Block); }  ///< of the texels
     const core::RayCounters& rays() const { return rays_; }                           ///< of the last build
 
-    /// What a texel's piece of memory begins with. After it follow the values of all channels one after the
+    /// Beginning of a texel's memory. After it follow the values of all channels one after the
     /// other.
     struct Header {
         float enter, inverse_step;  ///< values are at enter + k / inverse_step

@@ -1,4 +1,4 @@
-// What becomes of the geometry term between a receiver x and a virtual point light y.
+// Weights of the geometry term between a receiver x and a virtual point light y.
 //
 // A policy is called with G*(x,y) = C*(x->y) C*(y->x) / |x-y|^2 [1/m^2], the squared distance [m^2] and the
 // two C*, and returns G* times its weight. It is called in the sixteen-lane loop and must be straight
@@ -11,7 +11,7 @@
 
 namespace mote::lights {
 
-/// What a policy makes of one lane.
+/// Weighted geometry term of one lane.
 template <typename Weight>
 float weigh(const Weight& weight, float g, float d2, float cos_x, float cos_y, [[maybe_unused]] int lane) {
     if constexpr (requires { weight(g, d2, cos_x, cos_y, lane); })
@@ -35,7 +35,7 @@ struct BoundedGeometry {
 /// max(0, G* - b) = B* G*: what BoundedGeometry leaves out (Eq. 10.10 with the bound that it does not print).
 struct ResidualGeometry {
     float bound;  ///< b [1/m^2]
-    /// What is above b.
+    /// Part of G* above b.
     float operator()(float g, float, float, float) const { return core::max_of(0.0f, g - bound); }
 };
 

@@ -24,18 +24,19 @@ struct LightPathSettings {
     bool keep_states = true;   ///< of trace_light_paths(), in media: VplSet::states
 };
 
-/// Share of the path's first power that is left; never below 1/20, so that one dark bounce does not end it.
+/// Fraction of the path's first power that is left; never below 1/20, so that one dark bounce does not end
+/// it.
 inline float remaining_power(const core::Rgb& alpha, const core::Rgb& alpha_start) {
     const float start = core::max_component(alpha_start);
     return start > 0.0f ? std::max(core::max_component(alpha) / start, 0.05f) : 0.0f;
 }
 
-/// For whoever does not ask how a path began.
+/// Ignores how a path begins.
 struct AnyStart {
     void operator()(const core::LightChoice&, const core::EmissionSample&) const {}
 };
 
-/// For whoever does not ask what lies between the vertices.
+/// Ignores the segments between vertices.
 struct AnySegment {
     void operator()(const core::Ray&, const core::MediumState&, const core::PathWeights&,
                     const core::WalkEvent&, int) const {}
@@ -89,7 +90,7 @@ void follow_particle(const core::LitScene& scene, const LightPathSettings& setti
     }
 }
 
-/// The same for a path of a light that is drawn by its power. `on_start(choice, emission)` is called first,
+/// Follows a path of a light that is sampled by its power. `on_start(choice, emission)` is called first,
 /// for a path that there is.
 template <bool Media, typename Visit, typename Start = AnyStart, typename OnSegment = AnySegment>
 void follow_light_path(const core::LitScene& scene, const LightPathSettings& settings, core::Sampler& sampler,

@@ -1,4 +1,4 @@
-// What one virtual point light sends to sixteen receivers where f* of both ends is constant or
+// Unoccluded light of one virtual point light at sixteen receivers where f* of both ends is constant or
 // Henyey-Greenstein's function: the loop of vpl_contributions.h with two lobes, without a branch.
 #pragma once
 

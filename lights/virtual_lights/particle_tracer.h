@@ -16,16 +16,16 @@ struct LightPathStart {
     core::Rgb power;                ///< over the number of paths [W]
 };
 
-/// Begins paths otherwise than by drawing a light by its power.
+/// Begins paths otherwise than by sampling a light by its power.
 class LightPathStarts {
   public:
     virtual ~LightPathStarts() = default;
-    /// Of a path, by its number; nothing where it carries no light.
+    /// Start of a path, by its index; nothing where it carries no light.
     virtual std::optional<LightPathStart> start(std::uint32_t path, core::Sampler& sampler) const = 0;
 };
 
 /// Traces one set of light paths in parallel. (seed, pass, path index) determines every path; the order of
-/// the VPLs does not depend on threads. `starts`: who begins the paths. Throws core::Cancelled.
+/// the VPLs does not depend on threads. `starts` begins the paths. Throws core::Cancelled.
 VplSet trace_light_paths(const core::LitScene& scene, const LightPathSettings& settings, std::uint64_t seed,
                          std::uint32_t pass, core::SamplerKind sampler, core::CancelToken cancelled = {},
                          const LightPathStarts* starts = nullptr);

@@ -33,7 +33,7 @@ struct VirtualPointLight {
 };
 static_assert(sizeof(VirtualPointLight) <= 64, "a diffuse or isotropic VPL fits one cache line");
 
-/// What a directional VPL keeps: its vertex, whose `wo` points back to where the light came from.
+/// Data of a directional VPL: its vertex, whose `wo` points back to where the light came from.
 struct VplDetail {
     core::ScatteringVertex vertex;  ///< where it stands
 
@@ -67,7 +67,7 @@ struct VplSet {
     core::RayCounters rays;           ///< that the paths took
     core::TrackingCounters tracking;  ///< the same in media
 
-    /// Of all lists.
+    /// Bytes of all lists.
     std::size_t memory_bytes() const {
         return lights.size() * sizeof(VirtualPointLight) + details.size() * sizeof(VplDetail) +
                states.size() * sizeof(core::MediumState) + starts.size() * sizeof(LightStart) +

@@ -1,8 +1,8 @@
-// Which virtual point lights of a set a receiver looks at, and how often each one counts.
+// Choice of the virtual point lights of a set that light a receiver, with their weights.
 //
-// A policy has for_each(lights, visit), which calls visit(WeightedVpl) for every light that is looked at, of
-// a set of so many. Weights are 1 where all are taken, and 1/p where they are drawn: the sum is unbiased as
-// long as every light that can send light has a chance.
+// A policy has for_each(lights, visit), which calls visit(WeightedVpl) for every chosen light of
+// a set of so many. Weights are 1 where all are taken, and 1/p where they are sampled: the sum is unbiased as
+// long as every light that can send light has a positive probability.
 #pragma once
 
 #include <algorithm>
@@ -12,10 +12,10 @@
 
 namespace mote::lights {
 
-/// A light that is looked at.
+/// A chosen light.
 struct WeightedVpl {
     std::size_t index;    ///< of the light
-    float weight = 1.0f;  ///< how often it counts
+    float weight = 1.0f;  ///< 1/p
 };
 
 /// Every `stride`-th from `first` on, before `end`, each once: all of them, a share of them, or one.
@@ -25,7 +25,7 @@ struct VplRange {
     /// A single light.
     static VplRange one(std::size_t index) { return {index, 1, index + 1}; }
 
-    /// Is this light among them?
+    /// True for a light of the range.
     bool contains(std::size_t index) const {
         return index >= first && index < end && (index - first) % stride == 0;
     }

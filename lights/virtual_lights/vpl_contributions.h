@@ -1,4 +1,4 @@
-// What one virtual point light would send to sixteen receivers if nothing stood between them.
+// Unoccluded light of one virtual point light at sixteen receivers.
 //
 // Engelhardt 2013, Eqs. 10.4 (media) and 10.5 (surfaces), one term of the sum without its visibility:
 //   f*(x) w(G*(x,y_j)) I_j

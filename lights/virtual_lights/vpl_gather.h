@@ -51,7 +51,7 @@ void gather_pairs(const VplSet& vpls, const Pairs& pairs, const Weight& weight, 
     resolve();
 }
 
-/// What gathering by rays works with and counts in.
+/// Scene, scratch memory and counters of gathering by rays.
 struct GatherContext {
     const core::RayQueries& scene;     ///< what lies between
     GatherScratch& scratch;            ///< of this task
@@ -81,7 +81,7 @@ class TracedVisibility final : public BatchVisibility {
     ReceiverTile& tile_;
 };
 
-/// How many segments of the packets are to be looked at.
+/// Number of active segments of the packets.
 std::uint64_t count_rays(std::span<const core::ShadowPacket> packets);
 
 /// Takes the light of occluded lanes away, whose t_max is below 0, and of all others what is lost between
@@ -89,7 +89,8 @@ std::uint64_t count_rays(std::span<const core::ShadowPacket> packets);
 void attenuate_free(const GatherContext& context, ReceiverTile& tile,
                     std::span<const core::ShadowPacket> packets, std::span<LaneLight> light);
 
-/// Of the segment of a lane that is not occluded: an estimate without bias, by the lane's generator.
+/// Transmittance of the segment of a lane that is not occluded: an unbiased estimate, by the lane's
+/// generator.
 core::Rgb lane_transmittance(const GatherContext& context, ReceiverTile& tile, int lane,
                              const core::ShadowPacket& packet);
 
@@ -147,7 +148,7 @@ TileLight gather(const GatherContext& context, const VplSet& vpls, const Lights&
     return gather_with(context, vpls, lights, weight, tile, visibility);
 }
 
-// What all renderers use; other policies are compiled where they are named.
+// Used by all renderers; other policies are compiled where they are named.
 extern template TileLight gather(const GatherContext&, const VplSet&, const VplRange&, const BoundedGeometry&,
                                  ReceiverTile&);
 

@@ -24,11 +24,11 @@ struct alignas(64) ReceiverLanes {
     std::int32_t max_vpl_depth[width] = {};  ///< VPLs deeper than this are left out; 0 for an idle lane
 
     const core::ScatteringVertex* directional[width] = {};  ///< set where f* depends on direction
-    bool any_directional = false;                           ///< is one of them set?
-    bool any_active = false;                                ///< is a lane not idle?
+    bool any_directional = false;                           ///< true where one of them is set
+    bool any_active = false;                                ///< true where a lane is not idle
 
     core::Vec3 position(int i) const { return {x[i], y[i], z[i]}; }  ///< of a lane [m]
-    /// Of a lane, unit or zero.
+    /// Geometric normal of a lane, unit or zero.
     core::Vec3 geometric_normal(int i) const { return {geometric_x[i], geometric_y[i], geometric_z[i]}; }
 };
 

@@ -12,7 +12,7 @@ using namespace core;
 namespace {
 
 constexpr int width = ReceiverLanes::width;
-/// What rounding may add to the product.
+/// Rounding error of the product, at most.
 constexpr float slack = 1.0f + 1e-4f;
 
 /// Bsdf::eval_bound() of glossy lanes, with the cone of the directions in which the group is seen.
@@ -59,7 +59,7 @@ void light_of(const LightNode& node, const ReceiverBounds& x, float bound, LaneV
     const float er = node.energy.x, eg = node.energy.y, eb = node.energy.z;
     const bool y_on_surface = node.kind == LightKind::surface || node.kind == LightKind::glossy;
     const float y_has_cosine = y_on_surface ? 1.0f : 0.0f;
-    // Of glossy lights the profile holds the cosine, and is 0 behind the surface.
+    // The profile of glossy VPLs holds the cosine, and is 0 behind the surface.
     const float peak_times_cosine = node.peak_times_cosine();
     const float y_is_glossy = node.kind == LightKind::glossy ? 1.0f : 0.0f;
     const float least_d2 = max_of(0.25f * node.diagonal2(), min_distance_squared);

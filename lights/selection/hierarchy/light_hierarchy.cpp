@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint32_t parallel_from = 4096;  // lights
 
-/// Of a group of n lights, which has n - 1 groups of two or more in it: by their numbers in a walk.
+/// Split of a cluster of n VPLs, which has n - 1 clusters of two or more in it: by their depth-first index.
 struct Split {
     std::uint32_t left_count, left_nodes;
 };

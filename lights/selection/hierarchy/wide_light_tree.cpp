@@ -57,7 +57,7 @@ void set_part(WideLightNode& node, int i, const LightNode& part, float group_wei
     node.g_high[i] = std::uint8_t(std::max(int(to_byte(std::ceil(float(part.g_high) / 257.0f))), 1));
 }
 
-/// Of the groups of a node: lights [first, first + count).
+/// VPLs [first, first + count) of a child.
 struct LightRange {
     std::uint32_t first, count;
 };

@@ -129,7 +129,7 @@ double norm_of(std::span<const float> column) {
     return std::sqrt(sum);
 }
 
-/// What rows are multiplied by, so that each has about as much light as the others: one over that of some
+/// Factors of rows, so that each has about as much light as the others: one over that of some
 /// lights. A receiver beside a light would decide alone what is alike.
 std::vector<float> row_scales(Rows& rows, std::size_t lights, std::size_t count) {
     const std::size_t stride = std::max<std::size_t>(1, lights / sampled_lights);

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t map_lanes = ReceiverLanes::width;
 
-/// What a receiver sees: the side of its surface that it is seen from, or everything.
+/// View of a receiver: the side of its surface that it is seen from, or all directions.
 ShadowMapView view_of(const ReceiverLanes& rows, int lane, int size) {
     const ScatteringVertex* vertex = rows.directional[lane];
     const bool both = vertex && vertex->on_surface() && vertex->bsdf->traits().transmissive;

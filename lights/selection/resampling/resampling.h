@@ -38,7 +38,7 @@ class Resampling {
     TileLight gather(const GatherContext& context, std::span<RecordedReceivers* const> points,
                      std::span<const WeightedVpl> candidates, core::Rng& rng,
                      std::span<const float> visibilities = {});
-    /// Of the last gather(), by candidate.
+    /// Findings of the last gather(), by candidate.
     std::span<const Found> found() const { return found_; }
     /// Light of the last gather() at one of its points.
     TileLight light_of(std::size_t point) const;
