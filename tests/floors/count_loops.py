@@ -43,7 +43,6 @@ IDEAS = {
     "Russian roulette of eye paths": (r"\bsurvives<\w+>\(", {"integrators/eye_path/eye_path.h": 1}),
     "the light of virtual lights at receivers": (r"(?<!bool )\bcontributions_of\(", {
         "lights/virtual_lights/vpl_gather.h": 1,
-        "lights/selection/resampling/resampling_target.cpp": 1,     # candidates, most of which are never connected
         "lights/virtual_lights/lobe_contributions.cpp": 1,    # pairs of groups, each remembered by itself
     }),
     "a gather over pairs": (r"(?<!void )\bgather_pairs\(", {
