@@ -1,8 +1,8 @@
 // Ray lights and lines in media that scatter forward: every phase function's angle is the one between the way
 // of the light and the way on, which isotropic media do not tell from its opposite.
 #include "core/scene/scene.h"
-#include "lights/ray_lights/expected_light.h"
 #include "lights/ray_lights/line_connections.h"
+#include "lights/ray_lights/line_importance.h"
 #include "media/homogeneous_medium.h"
 #include "media/phase_functions.h"
 #include "tests/support/catch.h"
@@ -103,7 +103,7 @@ TEST_CASE("what is expected of ray lights knows where media scatter to", "[ray_l
         EyeLines eyes;
         eyes.of[2] = &eye;
         LaneFloats found;
-        expected_light(light, EyeReceivers(eyes), found);
+        importance(light, EyeReceivers(eyes), found);
         return double(found.of[2]);
     };
     const double least = expected({-1, 0.1f, 0}, {1, 0.1f, 0});

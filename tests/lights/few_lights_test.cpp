@@ -1,7 +1,6 @@
 // Fewer lights than draws, one light, and none: the other end of what selections are made for.
 #include "lights/ray_lights/ray_light.h"
-#include "lights/selection/light_sampler.h"
-#include "lights/selection/power_candidates.h"
+#include "lights/selection/stochastic/light_sampler.h"
 #include "tests/lights/random_lights.h"
 #include "tests/support/catch.h"
 #include "tests/support/mean_of.h"
@@ -39,12 +38,9 @@ TEST_CASE("with fewer lights than draws every light counts once in the mean",
             set.lights[k].depth = 1, set.lights[k].intensity = Rgb(float(1 + k));
         const RandomReceivers random(rng, materials, set.lights[0].position, false);
         const VplLeaves leaves(set);
-        const lights::LightTree tree(leaves);
-        const lights::LightHierarchy hierarchy(leaves);
-        const lights::ReceiverGroups receivers(lights::ReceiverBounds(random.tile), tree);
-        const lights::PowerCandidates powers(hierarchy);
+        const lights::WideLightTree tree(leaves);
+        const lights::ReceiverClusters receivers(lights::ReceiverBounds(random.tile), tree);
         lights::LightSampler sampler;
-        std::vector<WeightedVpl> drawn;
         const auto check = [&](const char* way, const auto& draw) {
             for (const Mean& m : mean_weights(count, draw)) {
                 INFO(way << ", " << count << " lights: " << m.mean << " +- " << m.error);
@@ -53,11 +49,7 @@ TEST_CASE("with fewer lights than draws every light counts once in the mean",
         };
         check("tree", [&] { return sampler.by_tree(tree, receivers, infinity, 16, draws); });
         check("cut", [&] { return sampler.by_cut(tree, receivers, infinity, 16, draws); });
-        check("groups", [&] { return sampler.from_groups(tree, receivers, infinity, 8, 2, draws); });
-        check("power", [&] {
-            drawn.clear(), powers.draw(16, draws, drawn);
-            return std::span<const WeightedVpl>(drawn);
-        });
+        check("clusters", [&] { return sampler.from_clusters(tree, receivers, infinity, 8, 2, draws); });
     }
 }
 
@@ -66,7 +58,7 @@ TEST_CASE("a share of as many ray lights as there are is all of them", "[ray_lig
         const std::vector<double> power = count == 1 ? std::vector{2.0} : std::vector{0.5, 0.75, 9.0};
         for (const std::size_t most : {count, count + 1, 16 * count}) {
             std::vector<WeightedVpl> chosen;
-            lights::LightShare(power, most).choose_all(0.7f, chosen);
+            lights::PowerSampling(power, most).choose_all(0.7f, chosen);
             REQUIRE(chosen.size() == count);
             for (std::size_t k = 0; k < count; ++k) {
                 CHECK(chosen[k].index == k);
