@@ -1,5 +1,5 @@
-// What bias compensation does, and which of its simplifications are on. Every one is a switch of its own, so
-// that each can be measured alone (Engelhardt 2013, Sec. 10.2).
+// Settings of bias compensation: every simplification is a switch of its own, so that each can be measured
+// alone (Engelhardt 2013, Sec. 10.2).
 #pragma once
 
 #include <string>
@@ -8,11 +8,11 @@
 
 namespace mote::compensation {
 
-/// Which vertices a receiver makes, and which VPLs they are joined to (Sec. 10.2.3).
+/// Vertices that a receiver makes, and the VPLs that they are joined to (Sec. 10.2.3).
 enum class Strategy : std::uint8_t {
     one_to_n,   ///< one vertex, joined to all N VPLs (Raab et al. 2008)
     n_to_one,   ///< N vertices, each joined to one VPL
-    one_to_one  ///< the same, and every VPL has a receiver of its own along the eye ray
+    one_to_one  ///< as n_to_one, and every VPL has a receiver of its own along the eye ray
 };
 
 /// Where the vertex lies along its ray.
@@ -33,12 +33,12 @@ struct CompensationSettings {
     Strategy strategy = Strategy::one_to_n;                        ///< how VPLs meet vertices
     Placement placement = Placement::free_path;                    ///< of vertices in media
     LocalTransmittance transmittance = LocalTransmittance::exact;  ///< between a receiver and its vertex
-    /// Rays from receivers in media look for surfaces and for boundaries between media. From surfaces they
-    /// always do, since they would find nothing to reflect light else.
+    /// Rays from receivers in media find surfaces and boundaries between media. Rays from receivers on
+    /// surfaces always do: else they would find nothing that reflects light.
     bool local_visibility = true;
     int depth = -1;  ///< steps of the recursion; -1: no limit
 
-    /// Is its mean that of the whole light?
+    /// If true, the mean of the estimate is the whole light.
     bool exact() const {
         return enabled && surfaces && media && depth < 0 && local_visibility &&
                transmittance == LocalTransmittance::exact;

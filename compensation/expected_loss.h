@@ -21,7 +21,7 @@ inline double residual_fraction(double sigma_t, double sigma_s, double bound) {
     if (!(bound > 0.0)) return albedo;
     const double d = sigma_t / std::sqrt(bound);  // optical depth of the radius
     if (d > 0.5) return albedo * (-std::expm1(-d) - (2.0 - std::exp(-d) * (d * d + 2.0 * d + 2.0)) / (d * d));
-    // The same as a power series: nothing cancels as d -> 0, where beta -> 2/3 sigma_s r.
+    // Power series: nothing cancels as d -> 0, where beta -> 2/3 sigma_s r.
     double sum = 0.0, power = d;  // (-1)^n d^(n+1) / n!
     for (int n = 0; n < 12; ++n) {
         sum += power * 2.0 / ((n + 1.0) * (n + 3.0));

@@ -40,7 +40,8 @@ Stop first_stop(const RayQueries& scene, const Ray& ray, WalkContext& context) {
     return stop;
 }
 
-/// What a path brings along that passed the panes on its way by chance, with the media between them.
+/// Weight of a path that passed the panes on its way by chance, times the transmittance of the media between
+/// them.
 Rgb transmittance_past_panes(const RayQueries& scene, const Ray& ray, const MediumState& state, bool media,
                              WalkContext& context) {
     Rgb product(1.0f);
@@ -138,7 +139,7 @@ bool ResidualTransport::by_free_path() const {
            settings_.transmittance == LocalTransmittance::exact;
 }
 
-/// Of all media within the bounding radius; nothing where there is none.
+/// Mean extinction of all media within the bounding radius [1/m]; nothing where there is none.
 void ResidualTransport::find_mean_extinction(ResidualPath& path) const {
     const Vec3 p = path.vertex.position;
     path.mean_extinction.reset();

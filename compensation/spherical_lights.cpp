@@ -93,7 +93,7 @@ class Gatherer {
     static Vec3 target(const SphericalLight& light, const Vec3& w) {
         return light.detail ? light.detail->vertex.ray_origin(-w) : light.vpl.position;
     }
-    /// What surfaces and panes leave of light along a segment; there are no media.
+    /// Visibility of a segment times the transmittance of its panes; there are no media.
     Rgb free(const Vec3& origin, const Vec3& direction, float distance) const {
         ++rays_.occlusion;
         const Ray segment{origin, direction, 0.0f, distance * shadow_fraction};

@@ -36,7 +36,7 @@ struct SphericalLight {
           detail(vpl.detail == lights::VirtualPointLight::no_detail ? nullptr : &set.details[vpl.detail]),
           radius(r) {}
 
-    /// Of the sphere, on the surface [m].
+    /// Centre of the sphere, on the surface [m].
     core::Vec3 centre() const { return detail ? detail->vertex.position : vpl.position; }
     /// alpha_j f(y_j, w_j, -w) |cos_y| for a receiver that sees the light in direction w.
     core::Rgb intensity_cos(const core::Vec3& w) const;
@@ -61,12 +61,12 @@ struct SampleCounts {
 core::Rgb unoccluded_light(const core::ScatteringVertex& receiver, const SphericalLight& light, int samples,
                            core::Rng& rng);
 
-/// What a shadow ray asks for.
+/// Segments that shadow rays test.
 enum class SphereVisibility : std::uint8_t {
-    /// One ray per sampled direction: is the way free until it enters the sphere, or reaches the tangent
-    /// plane of y_j? Behind either lies the light's own surface. Without the plane the surface in front of
-    /// the sphere would hide part of its own light, a share that does not vanish with r. From inside there
-    /// is no such way, and the centre is tested.
+    /// One ray per sampled direction, until it enters the sphere or reaches the tangent plane of y_j: behind
+    /// either lies the light's own surface. Without the plane the surface in front of the sphere would hide
+    /// part of its own light, a share that does not vanish with r. From inside there is no such segment, and
+    /// the centre is tested.
     per_sample,
     /// One ray to the centre for all directions, as in the paper: shadow edges as hard as a VPL's.
     per_light

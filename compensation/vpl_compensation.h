@@ -30,7 +30,7 @@ struct VplCompensationScratch {
     std::uint64_t vertices = 0;                                    ///< that steps have made
 };
 
-/// What is asked for: the light of the VPLs of `range`, over `steps` steps at most (-1: no limit).
+/// Arguments of compensation: the light of the VPLs of `range`, over `steps` steps at most (-1: no limit).
 struct VplCompensation {
     const ResidualTransport& transport;  ///< takes the steps
     Strategy strategy;                   ///< how VPLs meet vertices

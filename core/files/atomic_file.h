@@ -9,7 +9,8 @@ namespace mote::core {
 
 /// Writes bytes beside the final name, syncs and renames. Throws InputError with the system's reason.
 void write_file_atomically(const std::string& path, std::span<const std::byte> bytes);
-/// The same for bytes in several pieces.
+/// Writes the pieces one after the other beside the final name, syncs and renames. Throws InputError with the
+/// system's reason.
 void write_file_atomically(const std::string& path, std::span<const std::span<const std::byte>> pieces);
 
 }  // namespace mote::core

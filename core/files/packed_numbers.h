@@ -1,4 +1,4 @@
-// Arrays of numbers as fewer bytes: bytes that say nothing in all of 256 neighbours are left out.
+// Arrays of numbers as fewer bytes: bytes that are redundant in all of 256 neighbours are left out.
 //
 // Low bytes are zero where sums are those of a few floats, or rows of a picture are black; high bytes of
 // small whole numbers repeat the sign. A checkpoint that is written when somebody pressed Ctrl-C has about
@@ -28,10 +28,11 @@ Packing packing_of(std::span<const T> numbers);
 template <typename T>
 void pack(std::span<const T> numbers, const Packing& packing, std::byte* to);
 
-/// So many bytes at least are `count` numbers of any size, and at most 2048 times as many when they are
-/// unpacked.
+/// Lower bound of the packed size of `count` numbers of any size [B]; unpacked they have at most 2048 times
+/// as many bytes.
 constexpr std::uint64_t least_packed_size(std::uint64_t count) { return (count + 255) / 256; }
-/// What the first bytes say of `count` numbers of `number_size` bytes; nothing where that cannot be.
+/// Packing of `count` numbers of `number_size` bytes, from the heads that `from` begins with; nothing where
+/// the heads are invalid or `from` is too short.
 std::optional<Packing> read_packing(std::span<const std::byte> from, std::size_t count,
                                     std::size_t number_size);
 /// `from`: as many bytes as the packing has.

@@ -6,7 +6,7 @@
 
 namespace mote::core {
 
-/// Of hits and samples: texture coordinates, with the position that they belong to.
+/// Texture coordinates of a hit or a sample, with its position.
 template <typename Point>
 TextureCoordinates texture_place(const Point& point) {
     TextureCoordinates place = point.uv;

@@ -22,13 +22,14 @@ struct ImageMetrics {
     double average_image = 0.0, average_reference = 0.0;   ///< over pixels and channels
     double mse = 0.0, rmse = 0.0, mae = 0.0, mape = 0.0, smape = 0.0;
     double rel_mse = 0.0, rel_mse_trimmed = 0.0, mrse = 0.0;
-    /// Of relative_error.h; standard errors and noise are NaN where the variance that they need is not known.
+    /// Measures of relative_error.h; standard errors and noise are NaN where the variance that they need is
+    /// unknown.
     double error = 0.0, error_standard_error = 0.0, bias = 0.0, bias_standard_error = 0.0, noise = 0.0;
     /// Signed and relative; its error takes pixels for independent, which those of one render need not be.
     double mean_difference = 0.0, mean_difference_standard_error = 0.0;
     double ssim = 0.0;
 
-    /// Of all pixels, in [0, 1].
+    /// Fraction of the pixels that are not finite in either picture, in [0, 1].
     double non_finite_share() const { return pixels == 0 ? 0.0 : double(non_finite_either) / double(pixels); }
 };
 
@@ -42,7 +43,7 @@ struct KnownVariances {
 ImageMetrics compare_images(std::span<const Rgb> image, std::span<const Rgb> reference, int width, int height,
                             const KnownVariances& variances = {});
 
-/// What rel_mse is the mean of: the mean over channels of d^2 / (r^2 + 0.01) at one pixel.
+/// Mean over channels of d^2 / (r^2 + 0.01) at one pixel; rel_mse is its mean over the pixels.
 double relative_squared_error(const Rgb& image, const Rgb& reference);
 
 /// Mean structural similarity of two grey pictures with values in [0, 1] (Wang et al. 2004): Gaussian windows

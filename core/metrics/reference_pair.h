@@ -7,11 +7,11 @@
 // in expectation, whatever their variances are; none has to be known. So a pair of 4 % judges errors of far
 // below 1 %, also where passes are not independent or outliers hide from estimates of variance.
 //
-// The weights must not know of a pixel's noise either: |r|^2 is the mean of its neighbours', 5 x 5 pixels
-// without the pixel itself. Only one that is brighter for certain, by three standard deviations, a lamp or a
-// glint, speaks for itself.
+// The weights must not depend on a pixel's noise either: |r|^2 is the mean of its neighbours', 5 x 5 pixels
+// without the pixel itself. Only a pixel that is brighter for certain, by three standard deviations, such as
+// a lamp or a glint, is weighted by its own value.
 //
-// What is left is the scatter of the product. Noises of different pixels of path-traced references are
+// The remaining error is the scatter of the product. Noises of different pixels of path-traced references are
 // independent, so its variance is the sum of its squares where noise dominates, and less where the error
 // differs from place to place.
 #pragma once
@@ -28,8 +28,7 @@ struct ReferencePair {
     std::span<const Rgb> first_variance, second_variance;  ///< of the means; empty where not known
 };
 
-/// What both together are: their mean, and the variance of it, taken from their difference where it is not
-/// known.
+/// Mean of both references, and the variance of that mean, taken from their difference where it is not known.
 struct PairMean {
     std::vector<Rgb> picture, variance;
 };

@@ -25,23 +25,23 @@ inline double mean_of_channels(const Rgb& c) { return (double(c.x) + double(c.y)
 struct RelativeWeights {
     std::vector<double> weight;  ///< of every pixel [1 / radiance^2]; 0 everywhere when the picture is black
     double norm = 0.0;           ///< sum w |r|^2
-    double noise_norm = 0.0;     ///< the same of r without most of its noise
+    double noise_norm = 0.0;     ///< sum w |r|^2 of r without most of its noise
 };
 
-/// Of a picture that is taken for exact. All values must be finite.
+/// Weights of a reference that is taken for exact. All values must be finite.
 RelativeWeights relative_weights(std::span<const Rgb> reference);
-/// Of a noisy picture whose variance is known, row by row. Where |r|^2 were taken from a pixel itself, pixels
-/// that happen to be too bright would have weights too small, and just those know of their variance. So it is
-/// that of its neighbours: those of 5 x 5 pixels that differ from it by three standard deviations or less;
-/// and no less than the pixel is for certain, by two of its own, such as one that a lamp covers in part.
-/// Throws std::invalid_argument when a size does not fit.
+/// Weights of a noisy reference whose variance is known, row by row. |r|^2 of a pixel is that of its
+/// neighbours: those of 5 x 5 pixels that differ from it by three standard deviations or less; and no less
+/// than the pixel is for certain, by two of its own, such as one that a lamp covers in part. From the pixel
+/// itself, those that happen to be too bright would have weights too small. Throws std::invalid_argument when
+/// a size does not fit.
 RelativeWeights relative_weights(std::span<const Rgb> picture, std::span<const Rgb> variance_of_mean,
                                  int width, int height);
 
 /// Eq. (1) of |r|^2 pixel by pixel, however it was found. 0 everywhere when all of it is black.
 std::vector<double> weights_of_squares(const std::vector<double>& squares);
 
-/// How far a picture is from its reference. NaN where the reference is black.
+/// Error, bias and noise of a picture against its reference. NaN where the reference is black.
 struct RelativeError {
     double error = 0.0;                 ///< Eq. (2), without the reference's own noise where that is known
     double error_standard_error = 0.0;  ///< from the noise of the reference: sqrt(error^2 + s) - error

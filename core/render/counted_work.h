@@ -1,9 +1,8 @@
-// What passes cost, counted: the same on every machine, with any number of threads.
+// Cost of passes in counted work: the same on every machine, with any number of threads.
 //
 // Rays and lookups with fixed weights, in units of one closest hit. The weights are rounded from what the
-// loops of this project take where they run at their best (docs/design.md, "Parts"); whoever shares out
-// effort by them loses little where they are off by a factor of two, since the best share goes with their
-// root.
+// loops of this project take where they run at their best (docs/design.md, "Parts"). Effort allocated by them
+// is little worse where they are off by a factor of two, since the best allocation goes with their root.
 #pragma once
 
 #include "core/render/statistics.h"

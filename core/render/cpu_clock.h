@@ -11,9 +11,9 @@ inline double read_clock(clockid_t clock) {
     return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
 }
 
-/// Of the calling thread [s].
+/// Processor time of the calling thread [s].
 inline double thread_cpu_seconds() { return read_clock(CLOCK_THREAD_CPUTIME_ID); }
-/// Of all threads of the process [s].
+/// Processor time of all threads of the process [s].
 inline double process_cpu_seconds() { return read_clock(CLOCK_PROCESS_CPUTIME_ID); }
 
 }  // namespace mote::core

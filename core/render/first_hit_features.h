@@ -1,6 +1,6 @@
-// What the eye rays of a render meet first, as layers of its film: positions, normals, depth, albedo, and how
-// much of it comes through the media before it. A mask is met by chance, as eye paths meet it; thin glass is
-// looked through.
+// Features of the first hits of a render's eye rays, as layers of its film: positions, normals, depth,
+// albedo, and the transmittance of the media before them. Masks stop rays by chance, as they stop eye paths;
+// rays pass through thin glass.
 //
 // The rays are those of the picture itself: every pass draws its place on the film and on the lens from the
 // same keys as the eye paths do, so features are filtered as the picture is, blurred as the lens blurs it,
@@ -21,7 +21,7 @@
 
 namespace mote::core {
 
-/// What narrow lobes of a first hit show (mirrored_features.h).
+/// Features of the scene that narrow lobes of a first hit show (mirrored_features.h).
 struct MirroredHit {
     Vec3 position{0.0f}, normal{0.0f};
     Rgb albedo{0.0f}, emission{0.0f};
@@ -33,7 +33,7 @@ struct FirstHit {
     const SurfaceHit& hit;
     float stop_chance;  ///< of a mask that stopped the ray there; 1 for all other surfaces
     Rng& rng;           ///< for estimates
-    mutable std::optional<MirroredHit> mirrored{};  ///< made by the first feature that asks for it
+    mutable std::optional<MirroredHit> mirrored{};  ///< computed when a feature first needs it
 
     Vec3 to_viewer() const { return -ray.direction; }
     /// A normal of the hit, turned to the viewer.
@@ -44,7 +44,8 @@ struct FirstHit {
 
 struct HitFeature {
     Layer layer;
-    /// Of a ray that hits a surface; the layer is zero for all others. Called from many threads at once.
+    /// Value for a ray that hits a surface; the layer is zero for all others. Called from many threads at
+    /// once.
     std::function<Rgb(const FirstHit&)> value;
 };
 
@@ -54,10 +55,10 @@ struct FirstStop {
     float chance = 1.0f;  ///< of a mask that stopped it, see FirstHit
 };
 FirstStop first_stop(const Scene& scene, const Ray& ray, Rng& rng);
-/// Of the whole BSDF there, seen along the ray.
+/// Albedo of the whole BSDF at the hit, seen along the ray.
 Rgb first_hit_albedo(const FirstHit& first);
 
-/// The layer that says where there is anything: its mean is the share of rays that hit a surface.
+/// Layer whose mean is the fraction of rays that hit a surface.
 inline const std::string coverage_layer = "Coverage";
 
 /// Coverage; means over all rays of N, Ns (geometric and shading normal, turned to the viewer, in the world)

@@ -93,7 +93,7 @@ class Integrator : public Object {
     virtual bool works_on_mean() const { return false; }
     /// The layers it fills, in order; those that are not auxiliary add up to the beauty.
     virtual std::vector<Layer> layers(const Scene& scene) const = 0;
-    /// What will run for this scene, and why.
+    /// Techniques that will run for this scene, with reasons.
     virtual Plan plan(const Scene& scene, const Requirements& requirements) const = 0;
     virtual std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const = 0;
 };

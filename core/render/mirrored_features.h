@@ -1,10 +1,10 @@
-// What near mirrors and glass show of the scene behind them, as features of the first hit: a reflected lamp
-// has no edge in the positions and normals of the mirror itself, and denoisers would smear it.
+// Features at the first hit of the scene behind near mirrors and glass: a reflected lamp has no edge in the
+// positions and normals of the mirror itself, and denoisers would smear it.
 //
 // Lobes narrower than `narrow_lobe` are followed, up to `mirror_bounces` times, to the first surface that
-// scatters widely. A feature is the mean over `mirror_samples` directions of the first lobe, stratified: what
-// blurs the picture in a rough mirror blurs the feature as much, and it has little noise after one pass
-// already. It costs as many rays in these pixels, and none in others.
+// scatters widely. A feature is the mean over `mirror_samples` directions of the first lobe, stratified: a
+// rough mirror blurs the feature as much as the picture, and it has little noise after one pass already. It
+// costs as many rays in these pixels, and none in others.
 #pragma once
 
 #include <vector>

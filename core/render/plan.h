@@ -1,4 +1,5 @@
-// What an integrator will run on a scene, with the reason for every choice, and what it leaves out.
+// Techniques that an integrator will run on a scene, with the reason for every choice, and what it leaves
+// out.
 #pragma once
 
 #include <string>
@@ -22,8 +23,8 @@ struct Plan {
     void run(std::string topic, std::string choice, std::string reason);
     void leave_out(std::string topic, std::string choice, std::string reason);
     void miss(std::string topic, std::string choice, std::string reason, std::string cure = "");
-    /// What to tell whoever renders: a warning for each thing that this integrator cannot compute, and one
-    /// line with the switches of a topic for what it leaves out by choice.
+    /// Messages for the user: a warning for each thing that this integrator cannot compute, and one line with
+    /// the switches of a topic for what it leaves out by choice.
     std::vector<std::string> warnings() const;
     /// A table for people.
     std::string to_text() const;

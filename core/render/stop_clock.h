@@ -9,7 +9,8 @@
 
 namespace mote::core {
 
-/// What the rules look at: passes in all, passes and seconds of this run, and the noise (infinity: unknown).
+/// State that stop rules are tested on: passes in all, passes and seconds of this run, and the noise
+/// (infinity: unknown).
 struct RenderState {
     std::uint32_t passes = 0, passes_of_this_run = 0;
     double seconds = 0.0, noise = 0.0;
@@ -19,14 +20,16 @@ struct RenderState {
 
 inline constexpr std::uint32_t noise_rule_from = 8;  ///< fewer passes say too little about their spread
 
-inline constexpr double most_seconds_late = 1.0;  ///< what a pass may take beyond the wanted time
-/// The noise rule looks at every pass, later at every 16th of a power of two: looking takes time, and what it
-/// sees falls slowly. Which passes must depend on nothing else, or an interruption would change the picture.
+inline constexpr double most_seconds_late = 1.0;  ///< upper bound of the time after the wanted end [s]
+/// If true, the noise rule is tested after this pass: after every pass at first, later after every 16th of a
+/// power of two, since estimates take time and noise falls slowly. It depends on nothing but the number of
+/// passes, or an interruption would change the picture.
 inline bool noise_is_due(std::uint32_t passes) {
     return passes % std::max(1u, std::bit_floor(passes) / 16) == 0;
 }
 
-/// The same where looking at it takes a filter of the whole picture: at every fourth of a power of two.
+/// If true, noise that takes a filter of the whole picture is estimated after this pass: at every fourth of a
+/// power of two.
 inline bool filtered_noise_is_due(std::uint32_t passes) {
     return passes % std::max(1u, std::bit_floor(passes) / 4) == 0;
 }
