@@ -16,7 +16,7 @@ constexpr float sigma = 0.05f;                   // extinction and scattering of
 const Vec3 lamp{0.5f, 0.3f, 3.0f};               // in camera space: x right, y down, z forward [m]
 std::vector<float> depth_buffer(width* height);  // z of what is seen [m]
 
-/// What the method asks of a picture: rays, where they end, and the light along a few of them.
+/// Input of the method: view rays, their end points, and the in-scattered radiance along a few of them.
 struct Pixels final : InScatteringTask {
     Ray ray(const Vec2d& film) override {
         return {Vec3(0.0f), glm::normalize(Vec3(film.x - width / 2, film.y - height / 2, width))};

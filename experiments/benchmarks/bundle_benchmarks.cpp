@@ -55,7 +55,8 @@ const Room& room() {
     return room;
 }
 
-/// The same packets through Embree's own triangles; a filter counts the hits and lets the rays go on.
+/// Traces the same packets through Embree's own triangles; a filter counts the hits and lets the rays
+/// continue.
 class BareRays {
   public:
     explicit BareRays(const SurfaceTriangles& triangles)

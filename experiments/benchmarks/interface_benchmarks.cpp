@@ -1,5 +1,5 @@
-// What it costs that algorithms ask an interface: the same rays by RayTracer's own functions and through
-// RayQueries, and gathering over the callbacks of somebody else's scene against gathering over a Scene.
+// Cost of queries through an interface: the same rays by RayTracer's own functions and through RayQueries,
+// and gathering over the callbacks of another renderer's scene against gathering over a Scene.
 #include "core/math/warp.h"
 #include "core/scene/callback_scene.h"
 #include "experiments/benchmarks/half_million.h"

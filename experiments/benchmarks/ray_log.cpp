@@ -1,6 +1,6 @@
 #include "experiments/benchmarks/ray_log.h"
 
-// What the linker's --wrap makes of the names: __real_ is Embree's own function.
+// Names made by the linker's --wrap: __real_ is Embree's own function.
 #if RTC_VERSION_MAJOR >= 4
 using Intersect = RTCIntersectArguments;
 using Occluded = RTCOccludedArguments;

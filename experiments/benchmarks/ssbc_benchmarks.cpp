@@ -37,7 +37,7 @@ class Picture {
         return seconds_of(
             [&] { benchmark::DoNotOptimize(screenspace::compensate(surfaces_, light_, settings)); });
     }
-    /// What the whole picture would take with 1024 VPLs.
+    /// Estimated time of gathering 1024 VPLs over the whole image [s].
     double gather() {
         double seconds = 0.0;
         for (int j = 0; j < rows; ++j)

@@ -154,7 +154,7 @@ TEST_CASE("A sequence uses the frames before, as the camera moves", "[command][b
     const double alone = folder.error("alone.exr", "denoised:");
     CAPTURE(last, alone);
     CHECK(last < 0.9 * alone);
-    // The same frames again make the same bits.
+    // Denoising the same frames again gives the same bits.
     folder.denoise("f.####.exr", "e.####.exr");
     CHECK((mote::core::read_exr(folder.file("e.0005.exr")).rgb("denoised") ==
            mote::core::read_exr(folder.file("d.0005.exr")).rgb("denoised")));

@@ -123,7 +123,8 @@ TEST_CASE("mote denoise works on pictures with and without features, and once", 
     CHECK(again.err.find("b.exr: it is denoised already") != std::string::npos);
     CHECK(folder.run({"denoise", "b.exr", "-o", "b.exr"}).exit_code == 1);
     CHECK(folder.run({"denoise", "b.exr", "-o", "c.png"}).exit_code == 2);
-    // Of float16 layers, which add up but for their rounding, and of layers that do not.
+    // Layers in float16 are denoised one by one, as their sum is the beauty up to rounding; layers whose sum
+    // is not are not.
     REQUIRE(folder.render("half.exr", {"--half"}).exit_code == 0);
     REQUIRE(folder.run({"denoise", "half.exr"}).exit_code == 0);
     check_denoised(folder.read("half_denoised.exr"), 3.0f);

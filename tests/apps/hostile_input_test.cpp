@@ -1,5 +1,4 @@
-// What a careless or hostile command line asks for: inputs as outputs, numbers that are none, files that are
-// pipes, JSON without end.
+// Careless and hostile command lines: inputs as outputs, malformed numbers, pipes as files, JSON without end.
 #include <sys/stat.h>
 
 #include <filesystem>

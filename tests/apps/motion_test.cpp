@@ -179,8 +179,8 @@ TEST_CASE("what moves keeps its history and leaves no trail", "[sequence][motion
                     light += double(glm::dot(truth[p], truth[p]));
         return std::sqrt(sum / light);
     };
-    /// Of the wall where the ball was k frames ago for the last time: what is too much, in terms of the
-    /// ball's light.
+    /// Mean error of the pixels that the ball covered k frames ago for the last time, relative to the ball's
+    /// radiance.
     const auto trail = [&](const std::string& name, int k) {
         const auto image = folder.picture(name + "_d.0007.exr").rgb("denoised");
         double sum = 0.0, count = 0.0, light = 0.0, pixels = 0.0;
@@ -195,7 +195,7 @@ TEST_CASE("what moves keeps its history and leaves no trail", "[sequence][motion
     };
     // Eight frames have an eighth of the variance of one.
     CHECK(error_on_ball("f") < 0.55 * error_on_ball("still"));
-    // Of the frame just before, pixels are left that show the ball's edge.
+    // Pixels that the ball covered one frame ago: some still show its edge.
     CHECK(trail("f", 1) < 0.2);
     for (int k = 2; k <= 7; ++k) {
         CAPTURE(k);

@@ -44,9 +44,9 @@ double mean(const core::ImageChannels& picture, const std::string& layer) {
     return sum / double(picture.width * picture.height);
 }
 
-/// What volpath and mote_vpl rendered: light is in every layer, but in those whose names begin so; and both
-/// see the same sources and direct light, which they sample alike. With media along the way the two differ by
-/// noise: 4.5 standard errors over pixels, which are independent in these layers.
+/// Checks the renders of volpath and mote_vpl: every layer has light unless its name begins with an entry of
+/// `black`, and both agree in emission and direct light, which they sample alike. With media along the way
+/// the two differ by noise: 4.5 standard errors over pixels, which are independent in these layers.
 void check_light(const TemporaryFolder& folder, const std::vector<std::string>& black) {
     std::vector<core::ImageChannels> pictures;
     std::vector<std::vector<core::Rgb>> near;

@@ -90,7 +90,7 @@ TEST_CASE("ssbc takes surfaces from the scene that a picture shows", "[command][
     INFO(run.out << run.err);
     REQUIRE(run.exit_code == 0);
     CHECK(total(read_exr(folder.file("out.exr")).rgb("compensation_surface")) > 0.0);
-    // The same from channels, which the render can write too.
+    // Equal compensation from channels, which the render can write too.
     const std::vector<Rgb> from_scene = read_exr(folder.file("out.exr")).rgb("compensation_surface");
     const RunResult render =
         run_mote(folder, {"render", "scene.xml", "-o", "aux.exr", "--passes", "2", "--quiet", "--auxiliary"});

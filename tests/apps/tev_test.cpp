@@ -51,7 +51,7 @@ class Listener {
     std::string address_;
 };
 
-/// What tev would show: the last value of every pixel.
+/// Image that tev would show: the last value of every pixel.
 struct Shown {
     std::string name;
     int width = 0, height = 0, creations = 0, updates = 0, largest = 0;

@@ -127,7 +127,7 @@ TEST_CASE("roughness clamping takes spikes and goes away with more lights", "[ro
                    many_clamped = render(1000, clamped);
     CAPTURE(few.mean, few_clamped.mean, many_clamped.mean, few.variance_of_mean,
             few_clamped.variance_of_mean);
-    // The same light paths: the spread of the picture's mean over passes is a fraction.
+    // Variance over passes of the image's mean, of equal light paths, falls to a fraction.
     CHECK(few_clamped.variance_of_mean < 0.2 * few.variance_of_mean);
     CHECK(few_clamped.mean > 0.3 * many_clamped.mean);
 }

@@ -1,4 +1,4 @@
-// What bundles do at the extremes: right, finite or refused.
+// Ray bundles at the extremes: right, finite or refused.
 #include <numeric>
 
 #include "core/math/random.h"
@@ -255,7 +255,7 @@ TEST_CASE("bundles keep their budget, and say which one would fit", "[ray_bundle
 }
 
 TEST_CASE("ten million links take less than 300 MB", "[ray_bundles]") {
-    // Of closed bodies, two hits each: a tenth of them is looked at.
+    // Closed boxes with two hits a ray each; a tenth of the links is traced.
     TriangleBuilder rooms;
     for (int i = 0; i < 10; ++i) rooms.box({0, 0, 2.0f * float(i)}, {4, 4, 2.0f * float(i) + 1.0f}, true);
     const SurfaceTriangles triangles = rooms.list();

@@ -1,5 +1,5 @@
-// What virtual point lights and bundles add up to: the light of paths that are traced another way, with less
-// variance than either alone; and errors planted into densities are found.
+// Light of virtual point lights and bundles together: that of paths traced another way, with less variance
+// than either alone; planted errors of densities are found.
 #include "core/math/warp.h"
 #include "gathering/eye_bundles/eye_bundles.h"
 #include "lights/virtual_lights/particle_tracer.h"
@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint32_t light_paths = 16, directions = 4;
 
-/// What may be wrong on purpose.
+/// Planted errors.
 struct Planted {
     float line_pdf = 1.0f;  ///< factor on p_r
     bool cosine = true, distance = true;
@@ -52,7 +52,7 @@ class Points {
         }
     }
 
-    /// Of one pass: the mean of all points, in one number.
+    /// Mean over all points of one pass, as one number.
     double pass(std::uint32_t index, int max_vpl_depth, Techniques techniques, const Planted& planted = {},
                 float continued = 0.0f) {
         const lights::LightPathSettings settings{
@@ -102,7 +102,7 @@ class Points {
         return mean(light);
     }
 
-    /// The same light by paths: a direction from each BSDF, one light connected at every vertex after it.
+    /// Reference by path tracing: a direction from each BSDF, one light connected at every vertex after it.
     double paths(std::uint32_t index, int max_vpl_depth) {
         lights::TileLight light{};
         WalkContext walk;

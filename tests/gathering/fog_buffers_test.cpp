@@ -44,7 +44,7 @@ struct Fog {
           micro(surfaces, {.side = side, .map = map}),
           buffers(micro, hierarchy, extinction, cut) {}
 
-    /// Of each receiver, by the weights of the map.
+    /// Sum over each receiver's texels, weighted as the map requires.
     std::vector<Rgb> gather(std::span<const MicroReceiver> receivers, const VolumeLight& light,
                             const Rgb& environment, const Rgb& of_surfaces = Rgb(0.0f)) const {
         const NodeRadiance none(surfaces, std::vector<Rgb>(surfaces.points(), of_surfaces),
@@ -243,7 +243,7 @@ TEST_CASE("a point scatters light as its phase function has it", "[fog]") {
             power += double(both.intensity(0, w).x) * 4.0 * M_PI / n;
             flow += double(both.intensity(0, w).x) * double(z) * 4.0 * M_PI / n;
         }
-        // Of several directions the power and the flow are right: (2 - 1) g of 3.
+        // Power and flow of two opposite directions: 3 and (2 - 1) g.
         CHECK(std::fabs(power / (0.5 * 0.8 * 3.0) - 1.0) < 1e-4);
         CHECK(std::fabs(flow / (0.5 * 0.8) - double(g)) < 1e-3);
     }

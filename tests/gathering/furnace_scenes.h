@@ -57,8 +57,10 @@ struct Trials {
     double error() const { return std::sqrt(std::max(0.0, squares / count - mean() * mean()) / (count - 1)); }
     /// How far from `expected`, in standard errors.
     double z(double expected) const { return std::fabs(mean() - expected) / error(); }
-    /// What |z| exceeds with a chance of 7e-6 (a hundred comparisons share it): Student's quantile, from the
-    /// normal one by Fisher's expansion in one over the degrees of freedom.
+    /// Value that
+    /// z
+    ///  exceeds with a probability of 7e-6 (a hundred comparisons share it): Student's quantile, from the
+    ///    normal one by Fisher's expansion in one over the degrees of freedom.
     double critical() const {
         const double z1 = 4.5, z3 = z1 * z1 * z1, z5 = z3 * z1 * z1, z7 = z5 * z1 * z1, n = count - 1;
         return z1 + (z3 + z1) / (4 * n) + (5 * z5 + 16 * z3 + 3 * z1) / (96 * n * n) +

@@ -59,7 +59,7 @@ TEST_CASE("points lie on surfaces by their area", "[imperfect]") {
     for (std::size_t i = 0; i < room.size(); ++i) {
         const auto& c = room.corners[i];
         const double area = 0.5 * double(glm::length(glm::cross(c[1] - c[0], c[2] - c[0])));
-        // Of each set at most one patch more or less at either end of a triangle.
+        // Each set has at most one patch more or less at either end of a triangle.
         CHECK(std::fabs(share[i] - area) <= 2.0 * surface.area() / 4096.0);
     }
     // Any part of a set is that part of the whole.
@@ -123,7 +123,7 @@ TEST_CASE("imperfect bundles approach exact ones with more points", "[imperfect]
                          many = error_with(room, 32768, 1.6f);
     INFO(few.missing() << " " << some.missing() << " " << many.missing() << " missing, " << few.wrong() << " "
                        << some.wrong() << " " << many.wrong() << " wrong");
-    // What is wrong lies within a disc of an edge, or in a hole: the radius falls by the root of eight.
+    // Errors lie within a disc of an edge, or in a hole: the radius falls by the root of eight.
     CHECK(many.missing() < 0.6 * some.missing());
     CHECK(some.missing() < 0.6 * few.missing());
     CHECK(many.wrong() < 0.6 * some.wrong());

@@ -18,8 +18,8 @@ struct Agreement {
     int asked = 0, known = 0, same = 0;
 };
 
-/// Of points that an eye sees, along lines and against them: how often the grid knows what comes, and how
-/// often it is what a ray finds, within two spacings.
+/// Agreement of the grid with traced rays at points that an eye sees, along lines and against them: how often
+/// the grid holds a link, and how often it ends where a ray does, within two spacings.
 Agreement agreement(const KeptLinkSettings& settings, bool opposite = false) {
     const auto scene = scene_from(corner_room(matt, ball_lamp));
     const KeptLinks links(scene->shapes(), settings);

@@ -16,7 +16,7 @@ struct Link {
     std::uint32_t near, far;  ///< shapes
 };
 
-/// Of a ray along +z near the middle, beside the diagonals of the shapes.
+/// Links of a ray along +z near the middle, beside the diagonals of the shapes.
 std::vector<Link> links_along_z(const Scene& scene) {
     const SurfaceTriangles triangles = surface_triangles(scene.shapes());
     const BundleTracer tracer(triangles);
@@ -58,7 +58,7 @@ TEST_CASE("links lose what fog, glass full of fog and panes take", "[ray_bundles
         CHECK(double(links[0].transmittance[c]) == Approx(std::exp(-2.0 * sigma[c])).epsilon(1e-5));
     CHECK(links[1].length == Approx(1.0));
     CHECK(double(links[1].transmittance.x) == Approx(std::exp(-0.7)).epsilon(1e-5));
-    // Of glass 1.5046 at right angles: 1 - 2 r / (1 + r), r = ((n - 1) / (n + 1))^2.
+    // Transmittance of glass of IOR 1.5046 at normal incidence: 1 - 2 r / (1 + r), r = ((n - 1) / (n + 1))^2.
     CHECK((links[2].transmittance.x > 0.90f && links[2].transmittance.x < 0.93f));
 }
 

@@ -42,7 +42,7 @@ TEST_CASE("a walk that enters all nodes meets each once, one that enters none en
         for (NodePlace p = h.root(); h.exists(p); p = p.level > 0 ? p.first_child() : p.skip()) {
             ++met[h.node_index(p)];
             if (p.level == 0) CHECK(p.index == next_leaf++);
-            // What is skipped is what is below.
+            // skip() leaves out the nodes below and no others.
             const NodePlace after = p.skip();
             if (h.exists(after)) CHECK(after.index << after.level == (p.index + 1) << p.level);
         }

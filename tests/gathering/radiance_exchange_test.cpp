@@ -40,8 +40,8 @@ Rgb4Vector received(const SurfaceAtlas& atlas, const RayBundle& bundle, const Rg
 
 }  // namespace
 
-// What x sends to y is what y would send to x: with T the exchange along one direction, as power a link,
-// <x, T y> = <T x, y> for any radiances x and y; and all power that is sent is received.
+// Symmetry of the exchange: with T the exchange along one direction, as power a link, <x, T y> = <T x, y> for
+// any radiances x and y; and all power that is sent is received.
 TEST_CASE("the exchange is symmetric, direction by direction", "[exchange]") {
     const ExchangeStage stage(room, {.texels_per_metre = 6.0f});
     const Rgb4Vector x = random_light(stage.atlas.size(), 1), y = random_light(stage.atlas.size(), 2);
@@ -143,7 +143,7 @@ TEST_CASE("closed furnace, interleaved: each reflection once", "[exchange][furna
         for (int b = 0; b < 40; ++b)
             for (int k = 1; k <= b; ++k) expected += double(pi) * std::pow(rho, k) / 40.0;
         CHECK(indirect.is(expected));
-        // What the text of Hermes adds up to: E (e^rho - 1) / rho, less its direct part.
+        // Sum by the text of Hermes: E (e^rho - 1) / rho, less its direct part.
         const double printed = double(pi) * ((std::exp(rho) - 1.0) / rho - 1.0);
         CHECK_FALSE(indirect.is(printed));
         // A batch that is missing from the mean.
@@ -230,7 +230,7 @@ TEST_CASE("no sky comes between an open floor and a body that stands on it", "[e
         const double arrives = double(light.direct[t].x + light.indirect[t].x) * double(texel.area);
         const Vec3& p = texel.position;
         const bool below = std::fabs(p.z) < 1e-4f && std::max(std::fabs(p.x), std::fabs(p.y)) < 0.4f;
-        // Of the floor the upper side alone: the lower one is in the open.
+        // Upper side of the floor alone: the lower one is in the open.
         const bool in_gap = below && (texel.normal.z > 0.0f || texel.side == SurfaceSide::front);
         (in_gap ? hidden : open) += arrives;
     }
@@ -238,7 +238,7 @@ TEST_CASE("no sky comes between an open floor and a body that stands on it", "[e
     CHECK(hidden < 1e-6 * open);
 }
 
-/// What the texels of a diffuse ball of radius 1 at the origin receive from a light [W].
+/// Power that the texels of a diffuse ball of radius 1 at the origin receive from a light [W].
 double power_on_ball(const std::string& light) {
     const ExchangeStage stage(
         R"(<scene version="3.0.0"><shape type="sphere"><bsdf type="diffuse"/></shape>)" + light +

@@ -1,4 +1,4 @@
-// What a bundle finds: every crossing once, in order, with rays and with a scan alike.
+// Hits of a bundle: every crossing once, in order, with rays and with a scan alike.
 #include <tbb/global_control.h>
 
 #include "core/math/random.h"
@@ -98,7 +98,7 @@ TEST_CASE("rays exactly through edges and corners count one crossing", "[ray_bun
                 if (x > 0 && y > 0 && x + 1 < grid.columns && y + 1 < grid.rows) CHECK(count == 1);
                 inside += count;
             }
-        // Of the border, two sides count: the square is as large as its area says.
+        // Two sides of the border count: the square is as large as its area says.
         CHECK(inside == std::size_t(grid.columns - 1) * (grid.rows - 1));
     }
 }

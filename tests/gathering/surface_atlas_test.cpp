@@ -24,7 +24,7 @@ std::vector<std::shared_ptr<Shape>> shapes_of(const std::string& bsdf, const std
 const std::string diffuse = R"(<bsdf type="diffuse"/>)";
 const std::string twosided = R"(<bsdf type="twosided"><bsdf type="diffuse"/></bsdf>)";
 
-/// What making the atlas throws, or "".
+/// Message of the InputError that making the atlas throws, or "".
 std::string refusal(const SurfaceTriangles& surfaces, std::span<const std::shared_ptr<Shape>> shapes,
                     const AtlasSettings& settings) {
     try {

@@ -283,9 +283,9 @@ TEST_CASE("the weights of every path add up to 1 through rough glass with fog in
 }
 
 TEST_CASE("what one technique finds is divided among all as they find it themselves", "[bdpt][weights]") {
-    // Of paths of two edges: light found by technique k times the weight of technique i is, in the mean, what
-    // i keeps of its own, whatever k is. Densities that both the weights and the brute force had wrong show
-    // here.
+    // For paths of two edges, light found by technique k times the weight of technique i is, in the mean, the
+    // contribution that i keeps, whatever k is. Densities that both the weights and the brute force had wrong
+    // show here.
     const std::string xml = R"(<scene version="3.0.0"><shape type="cube"><transform name="to_world">
         <scale value="0.9"/></transform><bsdf type="null"/><medium type="homogeneous" name="interior">
         <rgb name="sigma_t" value="2"/><rgb name="albedo" value="1"/></medium></shape>

@@ -26,8 +26,8 @@ std::string floor_behind_lamp(const std::string& more = "", const std::string& c
            camera + "</sensor></scene>";
 }
 
-/// What the floor shows, (rho / pi) I cos / d^2, in a fog of extinction `sigma_t` through which the eye looks
-/// 0.09 m far: the mean over the picture, 2 cm wide, by Simpson's rule.
+/// Radiance of the floor, (rho / pi) I cos / d^2, seen through 0.09 m of a fog of extinction `sigma_t`: mean
+/// over the image, 2 cm wide, by Simpson's rule.
 double light_of_floor(double sigma_t = 0.0) {
     const double weights[3] = {1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0};
     double sum = 0.0;
@@ -68,8 +68,7 @@ std::string integrator(const std::string& type, bool hide) {
     return text + "</integrator>";
 }
 
-/// Whether a path crosses fog and panes is left to chance: with 16 pixels a pass, these passes leave a
-/// standard error below 1 %.
+/// Passes of 16 pixels for a standard error below 1 %: paths cross fog and panes at random.
 constexpr std::uint32_t passes = 1024;
 
 RenderStatistics render(const Scene& scene, const std::string& type, bool hide,

@@ -108,7 +108,7 @@ TEST_CASE("the filter takes the noise of interleaving away, and leaves the mean"
                    smooth = picture(*scene, vpl(four + filter), layer, 8);
         INFO(layer << ": " << squared_error(plain, exact) << " to " << squared_error(smooth, exact));
         CHECK(squared_error(smooth, exact) < 0.35 * squared_error(plain, exact));
-        // What smoothing takes from the mean, mostly outliers, is a small part of the error that is left.
+        // Bias of smoothing, mostly missing outliers, is a small part of the remaining error.
         CHECK(core::sqr(mean_of(smooth) - mean_of(plain)) < 0.1 * squared_error(smooth, exact));
     }
 }

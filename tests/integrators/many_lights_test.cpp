@@ -34,7 +34,7 @@ std::vector<std::string> lights() {
     return all;
 }
 
-/// What is left of a light that is switched off: its shape, which reflects nothing.
+/// Scene text of a light that is switched off: its shape, which reflects nothing.
 std::string switched_off(std::string light) {
     const auto begin = light.find("<emitter");
     light.erase(begin, light.rfind("</emitter>") + 10 - begin);

@@ -106,7 +106,7 @@ TEST_CASE("white surfaces and panes vanish in a furnace", "[pane]") {
         const auto picture = render(*scene, R"(<integrator type=")" + type + R"("/>)", 600, 7);
         check_mean_is(picture, "beauty", 1.0, {1.02, 0.98});
     }
-    // The same in a fog that loses nothing.
+    // Mean radiance is 1 in a fog without absorption too.
     std::string foggy = xml;
     foggy.insert(foggy.find("<sensor"),
                  R"(<shape type="sphere"><float name="radius" value="3"/><bsdf type="null"/>

@@ -19,7 +19,7 @@ const std::string sheet = R"(<shape type="rectangle"><transform name="to_world">
     <rgb name="base_color" value="0.5, 0.8, 0.6"/><float name="spec_trans" value="0.6"/>
     <float name="roughness" value="0.8"/><float name="diff_trans" value="1"/></bsdf></shape>)";
 
-/// Of the box and of what stands in it.
+/// Scene of the box with `things` in it.
 std::string room(const std::string& things) {
     std::string xml = box("<bsdf type=\"twosided\">" + coated + "</bsdf>", "");
     xml.insert(xml.find("<sensor"), things);

@@ -294,7 +294,7 @@ TEST_CASE("layers bring back what hidden walls send", "[compensation][ssbc][laye
             };
             with_one += at(one), with_two += at(two), all += at(whole);
         }
-    // Of what the hidden walls send, as much may be wrong as there are mixed pixels.
+    // Fraction of mixed pixels: as much of the light of hidden walls may be wrong.
     const double missing = 1.0 - with_one / all, tolerance = missing * border / hidden;
     INFO("without the second layer " << missing << " is missing, with it " << 1.0 - with_two / all
                                      << ", tolerance " << tolerance);
@@ -302,7 +302,7 @@ TEST_CASE("layers bring back what hidden walls send", "[compensation][ssbc][laye
     CHECK(missing > 0.1);
     CHECK(std::abs(with_two / all - 1.0) < tolerance);
     CHECK(tolerance < 0.2 * missing);
-    // What is seen is rendered as before, and what is hidden is no part of the picture.
+    // Seen surfaces are rendered as before, and hidden ones are no part of the image.
     CHECK(one.layers.at("indirect_bounded") == two.layers.at("indirect_bounded"));
     CHECK(two.mean("hidden_light_2") > 0.0);
     CHECK(two.mean("hidden_light_1_back") == 0.0);  // walls and board reflect on one side

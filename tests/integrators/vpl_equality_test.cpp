@@ -153,7 +153,7 @@ TEST_CASE("unbounded VPLs equal paths where VPLs cannot come near", "[vpl][equal
         <sensor type="orthographic"><transform name="to_world"><scale value="0.9"/>
             <lookat origin="0, 0, 0.4" target="0, 0, 0" up="0, 1, 0"/></transform></sensor></scene>)";
     check_layers(xml, "", R"(<boolean name="bounded" value="false"/>)", {"direct", "indirect", "beauty"});
-    // The same through an absorbing medium: transmittance along eye rays, connections and light paths.
+    // Equality in an absorbing medium: transmittance along eye rays, connections and light paths.
     std::string foggy = xml;
     foggy.insert(foggy.find("<emitter"),
                  R"(<shape type="cube"><transform name="to_world"><scale x="3" y="3" z="3"/></transform>

@@ -78,7 +78,7 @@ TEST_CASE("A picture by imperfect shadow maps is that of shadow rays but for a s
     const auto scene = scene_from(box(grey, ""), 24);
     const auto traced = picture(*scene, vpl(""), 4);
     const auto mapped = picture(*scene, vpl(imperfect), 4);
-    // The same VPLs, so what differs is visibility alone.
+    // Visibility alone differs: the VPLs are the same.
     const Difference usual = difference(mapped, traced);
     INFO("mean " << usual.mean << ", absolute " << usual.absolute);
     CHECK(std::fabs(usual.mean) < 0.03);

@@ -1,5 +1,5 @@
-// What plans of `mote_vpl` say about the selection of virtual point lights: which is best, why, and what it
-// takes; and that a pass refuses what takes more memory than it may.
+// Plans of `mote_vpl` for the selection of virtual point lights: the recommended one, its reason and its
+// cost; and refusal of passes that exceed their memory.
 #include "core/objects/error.h"
 #include "core/render/pass_runner.h"
 #include "core/scene/requirements.h"
@@ -81,7 +81,7 @@ TEST_CASE("Plans choose a selection by lights, receivers and media, and say why"
     const auto smoky = scene_from(box(grey, smoke_medium(folder.file("smoke.vol"))), 64);
     CHECK_THAT(said(plan_of(*smoky, vpl(2000)), "integrator for this medium"),
                ContainsSubstring("mote_ray_lights") && ContainsSubstring("in smoke"));
-    // What only absorbs is not lit.
+    // A medium that only absorbs does not count.
     const auto dark = scene_from(box(grey, R"(<medium type="homogeneous" name="interior">
         <float name="sigma_t" value="3"/><float name="albedo" value="0"/></medium>)"),
                                  64);
@@ -142,6 +142,7 @@ TEST_CASE("Selections keep less memory than they state", "[vpl][selection][extre
         core::Statistics statistics;
         runner.estimator().add_statistics(statistics);
         const double bytes = double(c.bytes_a_light) * statistics.values.at("vpls");
+        // Kept bytes: at most those of the plan, but more than 15 % of them.
         CHECK(statistics.values.at(c.kept) <= bytes);
         CHECK(statistics.values.at(c.kept) > 0.15 * bytes);
         CHECK_THAT(said(plan_of(*scene, vpl(500, selection)), c.type == "matrix" ? "memory of the matrix"

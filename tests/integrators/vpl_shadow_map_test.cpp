@@ -38,7 +38,7 @@ double bias_of(const RenderStatistics& maps, const RenderStatistics& traced, con
     return mean_of(maps, layer) / mean_of(traced, layer) - 1.0;
 }
 
-/// The same lights and eye paths as traced: most of the noise is common to both.
+/// Renders with one set of lights and eye paths for every visibility: most of the noise is common to all.
 RenderStatistics render(const core::Scene& scene, const std::string& visibility) {
     return render_statistics(scene, *vpl(visibility, 4), {4, 25, 5});
 }

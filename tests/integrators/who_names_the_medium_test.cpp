@@ -111,7 +111,7 @@ std::string vpl(const std::string& nested, int paths = 16) {
                        paths, nested);
 }
 
-/// The same expectation in every layer, and the power to see an error of `power`.
+/// Checks that all layers have equal expectations, with the power to see an error of `power`.
 void check_same(const RenderStatistics& a, const RenderStatistics& b,
                 const std::vector<std::pair<std::string, std::string>>& layers, double power) {
     CHECK(a.non_finite == 0);
@@ -186,7 +186,7 @@ TEST_CASE("bidirectional paths equal volpath, whoever names the fog", "[bdpt][eq
 }
 
 TEST_CASE("VPLs with maps equal those by rays, whoever names the fog", "[vpl][shadow_map][naming]") {
-    // The same lights and eye paths; what maps interpolate wrongly is below 2 % here (docs/media.md).
+    // Lights and eye paths are the same; the interpolation error of maps is below 2 % here (docs/media.md).
     const std::string maps = R"(<visibility type="shadow_map"><integer name="size" value="32"/>
         <integer name="light_size" value="32"/></visibility>)";
     for_every_telling(Lamp::point, [&](const core::Scene& scene) {

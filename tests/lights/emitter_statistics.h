@@ -91,7 +91,7 @@ inline MeanRgb flux_by_direct_sampling(const Emitter& light, const Patch& patch,
     return mean;
 }
 
-/// The same flux, by counting the particles that fall on the patch.
+/// Flux through the patch [W] by counting the particles that fall on it.
 inline MeanRgb flux_by_particles(const Emitter& light, const Patch& patch, int samples,
                                  std::uint64_t seed = 3) {
     MeanRgb mean;

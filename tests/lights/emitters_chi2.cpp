@@ -99,7 +99,7 @@ Vec3 direction_of(const LightExample& example, const EmissionSample& s) {
     return example.shape ? Frame(s.normal).to_local(s.direction) : s.direction;
 }
 
-/// What the direction of a particle should be distributed by; nothing for parallel light.
+/// Density of the particles' directions [1/sr]; empty for parallel light.
 std::optional<DirectionDensity> particle_density(const LightExample& example) {
     const Emitter* light = example.light.get();
     if (light->traits().delta_direction) return std::nullopt;

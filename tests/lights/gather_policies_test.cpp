@@ -48,8 +48,8 @@ struct Room {
         return lights::gather({*scene, *scratch, rays, tracking}, vpls, lights, weight, tile);
     }
 
-    /// What the Eqs. 10.4 and 10.5 of Engelhardt 2013 say, one light and one receiver after the other, in
-    /// double precision; `weight` is given G* and the distance.
+    /// Eqs. 10.4 and 10.5 of Engelhardt 2013, one light and one receiver after the other, in double
+    /// precision; the arguments of `weight` are G* and the distance.
     std::array<Vec3d, 16> plain_sum(const std::vector<WeightedVpl>& lights,
                                     const std::function<double(double, double)>& weight) const {
         std::array<Vec3d, 16> sum{};

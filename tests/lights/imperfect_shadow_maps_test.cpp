@@ -56,7 +56,7 @@ struct Wrong {
     double lit = 0.0;              ///< of wrong answers, how many say that there is light
 };
 
-/// Of all pairs of lights and receivers that face each other.
+/// Wrong answers over all pairs of lights and receivers that face each other.
 Wrong wrong_answers(const Scene& scene, const ImperfectMapSettings& settings) {
     const VplSet vpls = trace_light_paths(scene, {.paths = 60, .max_vertices = 2}, 3, 0, SamplerKind::sobol);
     ImperfectShadowMaps maps;
@@ -83,7 +83,7 @@ Wrong wrong_answers(const Scene& scene, const ImperfectMapSettings& settings) {
     return wrong;
 }
 
-/// Of receivers on the walls of the room, the share that a light within a closed box reaches.
+/// Fraction of receivers on the walls of the room that a light within a closed box reaches.
 double leak(const ImperfectMapSettings& settings) {
     const auto scene = room(cube(R"(<scale x="0.5" y="0.6" z="0.4"/><rotate y="1" angle="20"/>)"));
     VplSet vpls;

@@ -1,5 +1,5 @@
-// What is known of groups of lights: bounds are bounds, for every kind of light and of receiver, and each of
-// their factors matters.
+// Bounds of light clusters: they hold for every kind of light and of receiver, and each of their factors
+// matters.
 #include <functional>
 
 #include "lights/selection/hierarchy/cluster_bounds.h"

@@ -37,7 +37,7 @@ struct Floor {
     }
 };
 
-/// Of all lights: their sum.
+/// Sum of the probabilities of all lights, each of which is checked to be in [0, 1].
 double check_probabilities(const WideLightTree& tree, const Floor& floor, float bound) {
     double sum = 0.0;
     const ReceiverClusters receivers(ReceiverBounds(floor.tile), tree);

@@ -64,7 +64,7 @@ std::vector<double> sum_of_columns(const RandomColumns& m) {
     return sum;
 }
 
-/// What one column of each cluster says about the sum of all, drawn once.
+/// Estimate of the sum of all columns by one random column of each cluster.
 std::vector<double> estimate(const RandomColumns& m, const ColumnSampler& draws, Rng& rng) {
     std::vector<WeightedVpl> drawn;
     draws.sample(rng, drawn);

@@ -72,7 +72,7 @@ struct Room {
         }
         return tile;
     }
-    /// Of all lanes and channels.
+    /// Sum of the gathered light over all lanes and channels.
     template <typename Choice>
     double light(lights::ReceiverTile tile, const Choice& choice) {
         const lights::GatherContext gather{*scene, *scratch, rays, tracking};

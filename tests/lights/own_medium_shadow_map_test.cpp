@@ -104,7 +104,7 @@ double rms_error(float voxel_size, bool planted) {
 }  // namespace
 
 TEST_CASE("a shadow map of any medium that varies is its quadrature", "[shadow_map][marching]") {
-    // What lies between the ends of intervals is interpolated: a wave's amplitude over its wave number.
+    // Interpolation error between the ends of intervals: a wave's amplitude over its wave number.
     constexpr double limit = 0.03;
     CHECK(rms_error(infinity, false) < limit);
     CHECK(rms_error(0.02f, false) < limit);

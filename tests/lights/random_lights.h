@@ -126,7 +126,7 @@ struct RandomReceivers {
     }
 };
 
-/// What one light sends to the receivers if nothing stands between, averages of the channels.
+/// Unoccluded contribution of one light to the receivers, mean of the channels.
 inline std::array<double, 16> sent(const lights::VplSet& set, std::size_t light,
                                    const lights::ReceiverLanes& receivers, float bound) {
     static thread_local core::ShadowPacket packet;

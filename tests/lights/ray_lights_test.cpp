@@ -113,8 +113,8 @@ TEST_CASE("a perpendicular ray light seen by an infinite eye ray is 2 pi asinh(a
             const MediumLine light = clear_line({float(-a), float(h), 0}, {1, 0, 0}, float(2.0 * a));
             const double exact = 2.0 * std::numbers::pi * std::asinh(a / h);
             INFO("a " << a << " h " << h);
-            // What is sampled is proportional to the integrand: every sample is the integral, but for the eye
-            // ray's ends, a/far of it, and single precision.
+            // Density proportional to the integrand: every sample is the integral, but for the eye ray's
+            // ends, a/far of it, and single precision.
             CHECK(line_integral(eye, light, 1) == Approx(exact).epsilon(3e-5));
             CHECK(line_integral(eye, light, 20) == Approx(exact).epsilon(3e-5));
             CHECK_FALSE(line_integral(eye, light, 20) ==
@@ -187,8 +187,7 @@ TEST_CASE("a share of the ray lights counts for all", "[ray_lights]") {
 }
 
 TEST_CASE("connections by steps count every light once", "[ray_lights]") {
-    // What is expected in a lane, twice as much in the next; the third sends nothing, the fifth counts 3
-    // times.
+    // Importances of a lane, twice as large in the next; the third sends nothing, the fifth counts 3 times.
     const std::array<float, 5> expected{0.5f, 4.0f, 0.0f, 0.01f, 1.0f}, weight{1.0f, 1.0f, 1.0f, 1.0f, 3.0f};
     LineCandidates candidates;
     for (std::uint32_t k = 0; k < 5; ++k) {
@@ -229,8 +228,7 @@ TEST_CASE("connections by steps count every light once", "[ray_lights]") {
     CHECK(pick(2, 1.0f, 0.5f).empty());
 }
 
-// What connections are drawn by is above 0 wherever light arrives, or it would be lost; and it is about the
-// mean.
+// Importance of connections: above 0 wherever light arrives, or it would be lost, and about the mean.
 TEST_CASE("expected light is about what arrives, and nowhere 0 where any does", "[ray_lights]") {
     Rng rng(11);
     TrackingCounters counters;

@@ -1,5 +1,5 @@
-// What resampling stands on: choices in proportion to weights and the mean over candidates, by enumeration of
-// all of them in every order.
+// Resampling: choices in proportion to weights and the mean over candidates, by enumeration of all of them in
+// every order.
 #include <algorithm>
 
 #include "lights/selection/resampling/resampling_target.h"

@@ -56,8 +56,8 @@ std::pair<double, double> ball_part(const Vec3d& o, const Vec3d& d) {
     return {std::max(half - root, 0.0), std::max(half + root, 0.0)};
 }
 
-/// What a map holds without rounding: the length inside the ball along the ray of each of the four texels
-/// around `p`, up to the distance of `p`, and of these the bilinear mean.
+/// Value of a map without rounding: bilinear mean of the lengths inside the ball along the rays of the four
+/// texels around `p`, up to the distance of `p`.
 double interpolated_length(const ShadowMapView& view, const Vec3& p) {
     lights::ShadowMapCells<1> cell;
     lights::find_cells<1>(view, &p.x, &p.y, &p.z, cell);

@@ -10,7 +10,7 @@ namespace {
 
 const Ray ray{Vec3(0.05f, 0.1f, 0.15f), glm::normalize(Vec3(0.8f, 0.7f, 0.6f)), 0.0f, 1.05f};
 
-/// Whether every walk passes, with pdfs untouched; and whether all walks say the same.
+/// Properties of repeated walks: all pass, none changes its pdfs, all have one value.
 struct Walks {
     bool pass = true, pdfs_untouched = true, one_value = true;
 };
@@ -69,7 +69,7 @@ TEST_CASE("a grid that only absorbs is passed with an estimate of its transmitta
                                                     tests::medium_parts(Rgb(0.0f, 0.1f, 0.0f), 1.5f)))
                         .pass);
     }
-    // What glows is met by tracking: light sampling of the glow is weighed against it.
+    // A glowing medium is tracked: light sampling of the glow is weighted against tracking.
     auto glowing = tests::medium_parts(Rgb(0.0f), 1.5f);
     glowing.emission.radiance = std::make_shared<media::ConstantVolume>(Rgb(1.0f));
     CHECK_FALSE(walks_through(*tests::medium_of(tests::random_grid({12, 9, 14}, 1, 4), glowing)).pass);

@@ -154,7 +154,7 @@ TEST_CASE("samples outside the domain and where nothing can be are found", "[med
     CHECK(with_stray(0.7).passed);
     for (const double stray : {0.2, 1.0001, -1e-6, double(core::infinity), std::nan("")})
         CHECK_FALSE(with_stray(stray).passed);
-    // What is no distribution function is refused: more than one, falling, NaN.
+    // A function that is no distribution function is refused: more than one, falling, NaN.
     for (const double end : {1.1, -0.1, std::nan("")})
         CHECK_FALSE(chi2_distance_test([](core::Rng& rng) { return double(rng.next_float()); },
                                        [=](double t) { return end * t; }, o)

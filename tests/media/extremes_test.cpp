@@ -371,7 +371,7 @@ TEST_CASE("albedo 0 absorbs, albedo 1 does not", "[media][extremes]") {
             PathWeights w;
             w.light = Rgb(1.0f);  // as after a scattering of density 1
             Rgb emitted(0.0f);
-            // What only absorbs is passed, and nothing is left of the light.
+            // A medium that only absorbs has no collisions, and no throughput remains.
             const bool collided = m->sample_collision(oblique, w, emitted, rng, counters).has_value();
             REQUIRE(collided == (albedo > 0.0f));
             REQUIRE(w.throughput == Rgb(albedo));

@@ -109,7 +109,7 @@ TEST_CASE("memory of the mean extinction stays within its bound", "[media][mean_
         const MeanExtinction means(*medium, box, bytes);
         INFO(bytes << " bytes allowed, " << means.memory_bytes() << " used");
         CHECK(means.memory_bytes() <= std::max<std::size_t>(bytes, 64));
-        // What a large region holds does not depend on the memory.
+        // Means of large regions do not depend on the memory.
         CHECK(means.mean(Vec3(16.0f), 100.0f).x ==
               Approx(MeanExtinction(*medium, box).mean(Vec3(16.0f), 100.0f).x).epsilon(0.05));
     }

@@ -169,8 +169,8 @@ TEST_CASE("light sampling and walks into a glowing medium weigh each other by th
         REQUIRE(s);
         const Vec3 y = from + s->distance * s->wi;
         const Rgb sigma_t = glow.medium->coefficients(y).sigma_t;
-        // Of light sampling over that of directions of density 1/sr, as direct_light.cpp and a walk ask for
-        // it.
+        // Density of light sampling over that of directions of density 1/sr, as direct_light.cpp and a walk
+        // need it.
         const float by_light = chance * s->pdf_solid_angle / s->line_density;
         const float by_walk = glow.light->light_over_walk(from, y, sigma_t);
         // The point is rebuilt from its direction: some ulps of the distance, and of the extinction that

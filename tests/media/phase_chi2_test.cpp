@@ -64,7 +64,8 @@ DirectionSampler sampler_of(const PhasePtr& phase, const Vec3& wo) {
 DirectionDensity density_of(const PhasePtr& phase, const Vec3& wo, double factor = 1.0) {
     return [=](const Vec3& wi) { return factor * double(phase->pdf_solid_angle(wo, wi)); };
 }
-/// Of the samples too, as a path knows it that comes from wi and goes on to wo.
+/// Density of the samples by reverse_pdf_solid_angle() [1/sr], for a path that comes from wi and continues to
+/// wo.
 DirectionDensity reverse_density(const PhasePtr& phase, const Vec3& wo) {
     return [=](const Vec3& wi) {
         core::ScatteringVertex vertex;

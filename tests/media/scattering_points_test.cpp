@@ -45,7 +45,7 @@ AlongRay estimates(const core::Medium& medium, const Ray& ray, int points, int c
     return e;
 }
 
-/// The same by quadrature of the coefficients.
+/// Expectations by quadrature of the coefficients.
 struct Exact {
     Vec3d scattered{0.0}, distance{0.0}, through{0.0}, emitted{0.0};
 };

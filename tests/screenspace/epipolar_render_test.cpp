@@ -104,7 +104,7 @@ TEST_CASE("Epipolar pictures converge to full rate", "[epipolar]") {
         // order in the distance of lines where edges fall evenly, and of order one half at least.
         CHECK(middle < coarse / std::sqrt(3.0));
         CHECK(fine < middle / std::sqrt(3.0));
-        // What is left falls to either side, pixel by pixel.
+        // Remaining errors fall to either side, pixel by pixel.
         const auto bias = [&](double factor) {  // in standard errors
             double sum = 0.0, squares = 0.0;
             for (std::size_t i = 0; i < finest.pixels.size(); ++i) {

@@ -26,7 +26,7 @@ std::unique_ptr<Scene> fog_box(const std::string& light, bool wall = false) {
 const std::string point = R"(<emitter type="point"><point name="position" x="0.5" y="0.3" z="0"/>
     <rgb name="intensity" value="3"/></emitter>)";
 
-/// The same integral by a midpoint rule of a million steps, from the formula.
+/// Integral by a midpoint rule of a million steps, from the formula.
 Vec3d integral(const Ray& ray, double t0, double t1, bool shadowed) {
     const Vec3d sigma_t(0.2, 0.4, 0.8), sigma_s = sigma_t * Vec3d(0.9, 0.6, 0.3), light(0.5, 0.3, 0.0);
     const double g = 0.4;

@@ -46,7 +46,7 @@ FilterFeatures without_normals(FilterFeatures f) {
     return f;
 }
 
-/// The same view many times, one below the other, each on a plane of its own.
+/// Stack of `times` copies of the view, one below the other, each on a plane of its own.
 FilterView repeated(const FilterView& view, int times) {
     const FilterFeatures& f = view.features;
     FilterView tall{FilterFeatures(f.width, f.height * times, f.samples_per_pixel), {}};

@@ -9,7 +9,7 @@
 
 namespace mote::tests {
 
-/// What a ray through the pinhole meets. `light`: E there, for layers of surfaces; J, for those of media.
+/// Features and light of a ray through the pinhole. `light`: E for layers of surfaces; J for those of media.
 struct Seen {
     screenspace::FeatureSample sample;
     core::Rgb light{0.0f};

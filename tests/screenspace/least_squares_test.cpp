@@ -131,8 +131,8 @@ TEST_CASE("Columns that depend on others, or are zero, leave the solution finite
 }
 
 TEST_CASE("A column that depends on others gets the coefficient zero", "[denoising][least_squares]") {
-    // What rounding left of it points anywhere; noise in the colours would be fitted to it with coefficients
-    // of millions.
+    // Rounding residuals of such a column point anywhere; noise in the colours would be fitted to them with
+    // coefficients of millions.
     Rng rng(5);
     const TallMatrix m = filled(64, 4, 1, [&](int r, int c) {
         const float x = std::sin(0.37f * float(r)), y = std::cos(0.11f * float(r));

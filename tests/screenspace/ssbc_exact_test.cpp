@@ -40,7 +40,7 @@ SsbcSettings settings(double bound, int height) {
     return s;
 }
 
-/// What one step after the other adds, as pictures: each is a step on the one before.
+/// Compensation of each step, as images: each compensates the one before.
 std::vector<std::vector<Rgb>> terms(const TestPicture& picture, double bound, int steps) {
     std::vector<std::vector<Rgb>> result;
     std::vector<Rgb> light = picture.light;
@@ -176,7 +176,7 @@ TermError term_error(int n, double scale) {
     return {rms[2], index_of(rms), d.bias / scale};
 }
 
-/// Of the finest picture.
+/// RMS of the exact light in the finest image.
 double rms_of(const WedgeLight& exact) { return wedges()[2].difference(0, exact).rms_of_exact; }
 
 }  // namespace

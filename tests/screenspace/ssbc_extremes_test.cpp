@@ -1,5 +1,5 @@
-// What goes through, what is left out, what is refused: borders, sky, lamps, mirrors and glass, tiny and
-// black pictures, light that is not finite, scales, and energy.
+// Extreme inputs of screen-space compensation: borders, sky, lamps, mirrors and glass, tiny and black images,
+// light that is not finite, scales, and energy.
 #include "core/scene/scene.h"
 #include "screenspace/g_buffer/g_buffer.h"
 #include "screenspace/ssbc/ssbc.h"

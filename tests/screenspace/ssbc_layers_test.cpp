@@ -46,7 +46,7 @@ Wall board() {
     return {wedge_camera.eye + f + 3.0 * u, 3.0 * r, 3.0 * u, Rgb(0.0f)};
 }
 
-/// What is seen, and what lies behind the board where it is seen.
+/// Seen surfaces, and those that the board hides.
 struct TwoLayers {
     TestPicture seen = picture_of({wedge_walls[0], wedge_walls[1], board()}, wedge_camera);
     TestPicture all = picture_of(wedge_walls, wedge_camera);

@@ -112,7 +112,7 @@ TEST_CASE("A camera that moves over a still wall keeps its history", "[denoising
     const auto length = pan.accumulation.length();
     for (int x = 0; x < width; ++x)
         CHECK(length[std::size_t(10 * width + x)] == float(std::min(16, (width - 1 - x) / 2 + 1)));
-    // What the wall's paint is stays what it is, between pixels too: linear along it.
+    // Paint of the wall, linear along it, is kept, between pixels too.
     Accumulated painted({all, all});
     for (int frame = 0; frame < 6; ++frame) {
         const Frame now(0.3f * float(frame), 0.3f * float(frame - 1));
@@ -198,7 +198,7 @@ TEST_CASE("What is not finite adds nothing, and the sky has a history", "[denois
         REQUIRE(result[p] == Rgb(3.0f));
         REQUIRE(accumulated.accumulation.length()[p] == (p % 7 ? 3.0f : 1.0f));
     }
-    // What is sky now and was a wall before has none.
+    // No history for sky that was a wall before.
     Frame wall;
     const auto history = reproject(wall.features(), sky.features());
     CHECK_FALSE(history[0].any());

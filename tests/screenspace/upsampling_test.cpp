@@ -17,7 +17,7 @@ namespace {
 
 constexpr int width = 37, height = 29;
 
-/// What every pixel sees, through its middle, and its light.
+/// Points that the pixels see through their middles, and their light.
 struct View {
     std::vector<UpsamplingPoint> points;
     std::vector<Rgb> truth;

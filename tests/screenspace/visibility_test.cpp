@@ -76,7 +76,8 @@ struct Errors {
     std::size_t conflicts = 0;
 };
 
-/// Of summed areas in 512 x 512 pixels, over the items that bounds are given for, in several random pictures.
+/// Errors of summed areas in 512 x 512 pixels, over the items that bounds are given for, in several random
+/// images.
 Errors errors_of_ellipses(int count, const RegionSettings& settings) {
     Errors errors;
     constexpr int pictures = 8;

@@ -31,7 +31,7 @@ bool denoised_before(const Image& feature) {
     return true;
 }
 
-/// What the output is of the input: times a factor, plus a number. "" or an error.
+/// Rule of the stand-in: output = factor * input + more. Returns "" or an error.
 std::string rule(const Filter& f, std::string& input, float& factor, float& more) {
     if (!f.committed || !f.device->committed || !f.has("output")) return "not committed";
     if (!f.has("color")) {

@@ -10,7 +10,7 @@ struct Mean {
     double mean, error;  ///< error: standard deviation of the mean
 };
 
-/// Of so many calls of draw().
+/// Mean of `draws` calls of draw(), with its standard error.
 template <typename Draw>
 Mean mean_of(int draws, const Draw& draw) {
     double sum = 0.0, squares = 0.0;

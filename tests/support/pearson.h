@@ -1,5 +1,5 @@
-// What all chi-square tests share: counted cells, Pearson's statistic with rare cells pooled, and the level
-// of one test among several. chi2.h counts directions, chi2_distance.h distances.
+// Chi-square tests: counted cells, Pearson's statistic with rare cells pooled, and the level of one test
+// among several. chi2.h counts directions, chi2_distance.h distances.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// What MOTE_PCH precompiles for the tests: headers of others only. A test file includes what it uses all the
-// same.
+// Headers that MOTE_PCH precompiles for the tests: those of other projects only. A test file includes what it
+// uses all the same.
 #pragma once
 
 #include <fmt/format.h>

@@ -64,7 +64,7 @@ struct ZTest {
     std::string report;          ///< written out on failure
 };
 
-/// What a comparison that fails leaves behind. One with a planted error is expected to fail: it never writes.
+/// Files that a failed comparison writes. One with a planted error is expected to fail: it never writes.
 enum class OnFailure {
     write,  ///< everything, into a folder named in the report (see failure_files.h): a.exr, b.exr with the
             ///< means and z.exr with the signed z-scores, blocks as pixels; and blocks.csv, report.txt

@@ -50,7 +50,7 @@ struct Forged {
             .write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
         return path;
     }
-    /// What reading says, and whether it names the file.
+    /// Message of the InputError that reading ends with; it must name the file.
     std::string refusal() {
         forge_checkpoint(bytes);
         const std::string path = write("bad.film");

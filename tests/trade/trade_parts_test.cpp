@@ -144,7 +144,7 @@ TEST_CASE("A biased method never gets there, and says so with its bias", "[trade
     // The bias is known better than the errors: a coarse reference is enough for it.
     CHECK(time_to_reach(curve, 0.01, {0.05, 0.0}).kind == Kind::never);
     CHECK(time_to_reach(curve, 0.01, {0.05, 0.03}).kind == Kind::below_reference);
-    // The same bias within the error of the reference's own mean is none.
+    // Bias within the error of the reference's own mean is none.
     CHECK(bias_is_significant(curve, 0.0));
     CHECK_FALSE(bias_is_significant(curve, 0.03));
     flat.back().bias_se = unknown;

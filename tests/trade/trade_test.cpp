@@ -165,7 +165,7 @@ TEST_CASE("A reference says how exact it is, and is not made twice", "[trade][co
     RunResult r = folder.make_reference({"--passes", "4"});
     INFO(r.err);
     REQUIRE(r.exit_code == 0);
-    // What it can judge follows from the variance in the file.
+    // Smallest error that the reference can judge, from the variance in the file.
     const auto smallest = [&] {
         const auto image = mote::core::read_exr(folder.file("ref.exr"));
         const auto variance = mote::session::variance_of_beauty(image);

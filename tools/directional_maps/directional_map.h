@@ -41,7 +41,8 @@ struct MapPoint {
     core::Vec2 uv;  ///< in [0, 1]^2, rows along y
 };
 
-/// What a filtered lookup reads. The weights add up to one; some may be negative, at the corners of a cube.
+/// Texels and weights of a filtered lookup. The weights add up to one; some may be negative, at the corners
+/// of a cube.
 struct FilterTaps {
     int count = 0;
     std::array<int, 20> texel{};
@@ -75,12 +76,11 @@ class DirectionalMap {
     int texel(const core::Vec3& d) const;
     core::Vec3 direction(int texel) const;
 
-    /// Of the part of the texel that belongs to the picture of all directions: 0 in the corners around a
-    /// disc.
+    /// Solid angle of the used part of the texel [sr]: 0 in the corners around a disc.
     virtual double solid_angle(int texel) const = 0;
     /// How much of the texel belongs to the picture, in [0, 1].
     virtual double used_share(int texel) const;
-    /// The same of the whole map: pi / 4 where discs lie in squares.
+    /// Used fraction of the whole map: pi / 4 where discs lie in squares.
     virtual double used_share() const { return 1.0; }
     /// Density of texels around this one, relative to as many texels spread evenly: above 1 is oversampling.
     /// Only what belongs to the picture counts as texels. 0 where a texel is not used.

@@ -1,5 +1,5 @@
-// What mirrors show to a viewer who looks along -z from far away: a sphere (Engelhardt 2013, Sec. 5.1.2), and
-// two paraboloids back to back (Heidrich & Seidel 1998; Sec. 5.1.4). The pictures are discs in squares.
+// Mirrors seen by a viewer who looks along -z from far away: a sphere (Engelhardt 2013, Sec. 5.1.2), and two
+// paraboloids back to back (Heidrich & Seidel 1998; Sec. 5.1.4). The images are discs in squares.
 
 #include "tools/directional_maps/directional_map_kinds.h"
 #include "tools/directional_maps/texel_solid_angle.h"

@@ -43,7 +43,7 @@ std::optional<core::SurfaceHit> hit_along(const core::Scene& scene, const Vec3& 
     return scene.rays().closest(ray);
 }
 
-/// Of this one thread's own time: others on the machine matter less.
+/// Processor time of `work` [s]: other processes on the machine matter less.
 double seconds(const std::function<void()>& work) {
     const std::clock_t start = std::clock();
     work();

@@ -44,8 +44,8 @@ class SquareOctahedral : public DirectionalMap {
     float up_;
 };
 
-/// Of a texel of a hemisphere's square: turned back by 45 degrees, its corners lie on the unfolded
-/// octahedron.
+/// Solid angle of a texel of a hemisphere's square [sr]: turned back by 45 degrees, its corners lie on the
+/// unfolded octahedron.
 double hemisphere_texel(int size, int i, int j) {
     const auto corner = [&](int di, int dj) {
         const glm::dvec2 q = 2.0 / double(size) * glm::dvec2(i + di, j + dj) - 1.0;

@@ -13,15 +13,15 @@ struct Rectangle {
     glm::dvec2 low, high;
 };
 
-/// Of the convex spherical polygon between the directions `corners`, which need not have unit length and must
-/// lie within one hemisphere (Oosterom & Strackee 1983).
+/// Solid angle [sr] of the convex spherical polygon between the directions `corners`, which need not have
+/// unit length and must lie within one hemisphere (Oosterom & Strackee 1983).
 double spherical_polygon(std::span<const core::Vec3d> corners);
 
-/// Of a convex polygon on the unfolded octahedron [-1, 1]^2 (core/math/octahedral.h), whose height is 1 / up:
-/// the creases of the octahedron cut it into pieces, which are spherical polygons.
+/// Solid angle [sr] of a convex polygon on the unfolded octahedron [-1, 1]^2 (core/math/octahedral.h), whose
+/// height is 1 / up: the creases of the octahedron cut it into pieces, which are spherical polygons.
 double octahedral_polygon(std::span<const glm::dvec2> corners, double up);
 
-/// Of a rectangle on the face [-1, 1]^2 of the cube.
+/// Solid angle [sr] of a rectangle on the face [-1, 1]^2 of the cube.
 double cube_rectangle(const Rectangle& r);
 
 /// Integrals over the part of a rectangle that lies within the unit disc.

@@ -84,7 +84,7 @@ void append_word(std::string& bytes, std::size_t value) {
     append(bytes, &bits, 4);
 }
 
-/// Of a .glb.
+/// Appends a chunk of a .glb, filled up to a multiple of four bytes.
 void append_chunk(std::string& file, std::uint32_t type, std::string bytes, char filler) {
     while (bytes.size() % 4 != 0) bytes.push_back(filler);
     append_word(file, bytes.size()), append_word(file, type);

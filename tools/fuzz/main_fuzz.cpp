@@ -84,7 +84,7 @@ void limit_memory([[maybe_unused]] std::uint64_t megabytes) {
 #endif
 }
 
-// Of this process and of those that it started and that have ended.
+// Processor time of this process and of its children that have ended [s].
 double processor_seconds() {
     double sum = 0.0;
     for (const auto who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {

@@ -12,7 +12,7 @@ namespace {
 
 using namespace mote::fuzz;
 
-// What all calls share; libFuzzer's interface leaves it no other place.
+// State shared by all calls; libFuzzer's interface leaves it no other place.
 struct State {
     std::vector<Format> all = formats();
     const Format* format = nullptr;

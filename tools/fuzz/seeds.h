@@ -38,7 +38,7 @@ std::vector<Bytes> serialized_seeds();
 /// Control points, as `bsplinecurve` and `linearcurve` read them.
 std::vector<Bytes> curve_seeds();
 
-/// What the checkpoints among the seeds belong to.
+/// Film that the checkpoints among the seeds belong to.
 core::Film small_film();
 inline const char* const checkpoint_hash = "0123456789abcdef";
 /// A neighbour that partial films are merged with: the passes after them.

@@ -130,7 +130,7 @@ void add_car(Parts& parts, const Vec3& at, bool along_x, Rng& rng) {
     body.box(at + size(-1.25f, 1.29f, -0.75f), at + size(0.95f, 1.4f, 0.75f));
 }
 
-/// What lies and stands along the streets on two sides of a block.
+/// Adds pavements, and what lies and stands along the streets on two sides of a block.
 void add_streets(Parts& parts, const Trees& trees, const Vec3& middle, Rng& rng) {
     const float edge = 0.5f * pitch, walk = 0.5f * (pitch - street);
     parts["pavement"].box(middle - Vec3(walk, 0.5f, walk), middle + Vec3(walk, curb, walk));

@@ -15,7 +15,7 @@ struct Facade {
 /// 10 triangles a window, 4 a floor and column of wall.
 void add_facade(Soup& wall, Soup& glass, const Facade& facade);
 
-/// What a building's four walls have in common.
+/// Style shared by a building's four walls.
 struct Style {
     std::string wall;  ///< the part that the walls go to
     float storey = 3.2f, cell = 3.0f, window_width = 0.5f, window_height = 0.55f, recess = 0.18f;

@@ -1,4 +1,4 @@
-// What arcades are built of: columns, walls with an arch, groin vaults, balusters, paving.
+// Elements of arcades: columns, walls with an arch, groin vaults, balusters, paving.
 #pragma once
 
 #include "tools/geometry/soup.h"

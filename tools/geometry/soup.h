@@ -38,7 +38,7 @@ class Soup {
     void sheet(int nu, int nv, const std::function<Vec3(float u, float v)>& point);
     /// A profile of (radius, height) from bottom to top, turned about the upright axis through `foot`.
     void lathe(const Vec3& foot, const std::vector<Vec2>& profile, int segments);
-    /// The same, with a radius that may depend on the angle; `t` in [0, 1] runs along the profile.
+    /// Turns a profile whose radius may depend on the angle; `t` in [0, 1] runs along the profile.
     void lathe(const Vec3& foot, int rings, int segments,
                const std::function<Vec2(float t, float angle)>& profile);
     /// A profile of (outwards, height) along the four sides of an upright rectangle; outwards is away from

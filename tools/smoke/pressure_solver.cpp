@@ -15,7 +15,7 @@ bool can_halve(const GridSize& s) {
     return s.x % 2 == 0 && s.y % 2 == 0 && s.z % 2 == 0 && std::min({s.x, s.y, s.z}) >= 8;
 }
 
-/// What the neighbours of a cell add to its equation: their sum, and how many faces carry a flux.
+/// Contribution of the neighbours to a cell's equation: their sum, and the number of faces that carry a flux.
 struct Neighbours {
     float sum = 0.0f, faces = 0.0f;
 };

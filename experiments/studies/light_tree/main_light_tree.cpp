@@ -1,10 +1,10 @@
-// What drawing lights by a tree costs, from a thousand to 2^24 of them: CSV, a line a number of lights. Half
-// of them stand on the inner walls of a box, half in the air within, where the receivers are: every light
-// reaches all of them.
-//   bytes_a_light: of the lights and the tree; peak_bytes_a_light: what the process grew by while it was
-//   built us_by_tree, us_by_cut: microseconds of the processor a light, 64 drawn for a tile z: of the mean
-//   sum of weights times energy against the energy of all lights; beyond 4 the program fails, as it does for
-//   a weight that is not finite
+// Cost of sampling lights by a tree, for a thousand to 2^24 of them: CSV, one line for each number of lights.
+// Half of them stand on the inner walls of a box, half in the air within, where the receivers are: every
+// light reaches all of them.
+//   bytes_a_light: of the lights and the tree; peak_bytes_a_light: growth of the process while it was built
+//   us_by_tree, us_by_cut: processor time a light [us], 64 sampled for a tile
+//   z: of the mean sum of weights times energy against the energy of all lights; beyond 4 the program fails,
+//     as it does for a weight that is not finite
 // A tree that does not fit into its budget is refused, and a line says so. --quick: up to 10^5.
 #include <fmt/format.h>
 #include <tbb/global_control.h>
@@ -68,7 +68,7 @@ lights::ReceiverBounds tile_of(const PhaseFunction& phase, Rng& rng) {
     return lights::ReceiverBounds(tile);
 }
 
-/// Of one way of drawing.
+/// Result of one sampling method: processor time a light [us], z-score of the energy, finite weights.
 struct Draws {
     double microseconds = 0.0, z = 0.0;
     bool finite = true;

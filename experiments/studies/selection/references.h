@@ -1,12 +1,13 @@
-// What the tiles of a study are held against: the light of all lights. Of a million that takes seconds a
-// tile, so sums are kept in a file, which grows by what is not in it yet.
+// Reference of a study's tiles: the sum over all lights. With a million lights it takes seconds a tile, so
+// sums are kept in a file, to which missing ones are appended.
 #pragma once
 
 #include "experiments/studies/selection/study.h"
 
 namespace mote::studies {
 
-/// Of the first tiles of the study. Throws std::runtime_error where the file is of other lights or points.
+/// References of the first tiles of the study. Throws std::runtime_error if the file is of other lights or
+/// points.
 std::vector<Pixels> references_of(const Study& study, const Arguments& a);
 
 }  // namespace mote::studies

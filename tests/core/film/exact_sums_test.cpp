@@ -18,7 +18,7 @@ double sum_of(const std::vector<double>& terms) {
     return sum.at(0);
 }
 
-/// Of either sign, with exponents up to `range` apart, and some zeros.
+/// Random terms of either sign, or their squares, with exponents up to `range` apart; a tenth of them are 0.
 std::vector<double> random_terms(std::size_t count, float range, std::uint64_t seed, bool squares) {
     Rng rng(seed);
     std::vector<double> terms(count);

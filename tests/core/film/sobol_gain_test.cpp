@@ -1,4 +1,4 @@
-// What Sobol points gain, from how the halves of blocks differ: where the answer is known.
+// Gain of Sobol points, estimated from the differences between halves of blocks: cases with a known answer.
 #include "core/film/sobol_gain.h"
 
 #include <cmath>

@@ -283,7 +283,7 @@ TEST_CASE("parts of a film have passes, variances and work of their own", "[film
     CHECK((other.serialize() == film.serialize()));
     CHECK(other.pass_count(1) == 5);
     CHECK(other.work(0) == 120.0);
-    // What goes on after it has the same bits.
+    // Passes added after deserialization give the same bits.
     for (Film* f : {&film, &other}) f->add_pass(pass(1, 7.0f), 1), f->add_pass(pass(2, 5.0f), 0);
     CHECK((other.serialize() == film.serialize()));
     CHECK_THROWS_AS(film.add_pass(pass(2, 0.0f), 1), std::invalid_argument);

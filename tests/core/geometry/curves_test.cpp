@@ -30,7 +30,7 @@ const CurveBasis both[] = {CurveBasis::linear, CurveBasis::b_spline};
 TEST_CASE("a straight curve is a cylinder", "[geometry][curves]") {
     for (const CurveBasis basis : both)
         for (const float scale : {1e-4f, 1e-2f, 1.0f, 1e4f}) {
-            // Of straight pieces shorter than that Embree confuses one with its neighbour.
+            // Linear pieces shorter than that are left out: Embree confuses one with its neighbour.
             if (basis == CurveBasis::linear && scale < 1e-2f) continue;
             INFO(int(basis) << ", scale " << scale);
             const std::shared_ptr<Shape> shapes[] = {straight(basis, 0.25f, scale)};
@@ -49,7 +49,7 @@ TEST_CASE("a straight curve is a cylinder", "[geometry][curves]") {
                 CHECK(double(hit->uv.y) == Approx(along).margin(1e-3));
                 CHECK_FALSE(tracer.occluded(ray(scale * Vec3(x, 3, 0.26f), {0, -1, 0})));
             }
-            // Of the linear one's four pieces and the B-spline's two.
+            // Length of the linear curve's four pieces or of the B-spline's two.
             const double length = basis == CurveBasis::linear ? 4.0 : 2.0;
             CHECK(double(shapes[0]->area()) ==
                   Approx(2.0 * double(pi) * 0.25 * length * double(scale) * double(scale)).epsilon(1e-5));

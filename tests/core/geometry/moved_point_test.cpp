@@ -31,7 +31,8 @@ std::shared_ptr<Shape> curves_at(const Vec3& offset) {
     return std::make_shared<Curves>(data);
 }
 
-/// Of points of `now`, the largest distance between where they went and where `by` carries them.
+/// Largest distance, over sampled points of `now`, between the position that moved_point() finds in `then`
+/// and the one to which `by` carries the point.
 float largest_error(const Shape& now, const Shape& then, const Transform& by) {
     float most = 0.0f;
     for (int i = 0; i < 64; ++i) {

@@ -89,8 +89,8 @@ TEST_CASE("all hits are complete and sorted", "[geometry][ray_tracer]") {
         tracer.all_hits(r, RayTracer::Group::surfaces, hits);
         total += hits.size();
         wrong += !std::is_sorted(hits.begin(), hits.end(), [](auto& a, auto& b) { return a.t < b.t; });
-        // The same hits one after the other, each search starting a little behind the one before (from the
-        // very distance, rounding could find the same triangle for ever).
+        // Hits by repeated closest(), each search starting slightly behind the last hit: from its very
+        // distance, rounding could find the same triangle for ever.
         Ray rest = r;
         std::size_t found = 0;
         while (const auto hit = tracer.closest(rest)) {

@@ -64,7 +64,7 @@ TEST_CASE("rays leaving a triangle never hit it again", "[geometry][offset]") {
 }
 
 TEST_CASE("hits found by rays leave no trace of themselves", "[geometry][offset]") {
-    // The same from hits that Embree reports, on a closed mesh, seen from both sides.
+    // Origins at hits that Embree reports, on a closed mesh, from both sides.
     const auto ball = mesh(sphere_mesh({3, -2, 7}, 2.0f, 64, 32));
     const std::shared_ptr<Shape> shapes[] = {ball};
     const RayTracer tracer(shapes);

@@ -13,7 +13,7 @@ namespace {
 const core::BsdfPoint point{};
 const double cosines[] = {1.0, 0.9, 0.5, 0.2, 0.03, 5e-3, 1e-3};
 
-/// Of three channels.
+/// Mean and its standard error, by channel.
 struct Mean {
     core::Vec3d value{0.0}, sigma{0.0};
 };
@@ -35,7 +35,7 @@ Mean furnace(const core::Bsdf& bsdf, const Vec3& wo, int n, TransportMode mode =
     return mean_of(sum, squares, n);
 }
 
-/// Of materials without colour.
+/// Mean of a material without colour.
 double white(const Mean& m) { return m.value.x; }
 
 }  // namespace
@@ -147,8 +147,8 @@ TEST_CASE("albedo() is near the light that sample returns", "[materials][furnace
 }
 
 TEST_CASE("rough white plastic is grey as in Mitsuba, unless it conserves energy", "[materials][furnace]") {
-    // What the installed Mitsuba 3.9.1 returns, by quadrature of its eval() over 400 x 400 cosine-weighted
-    // directions, seen from cosine 0.9 (docs/witness.md).
+    // Albedos of the installed Mitsuba 3.9.1: quadrature of its eval() over 400 x 400 cosine-weighted
+    // directions, at cosine 0.9 (docs/witness.md).
     const struct {
         core::Microfacet facets;
         double mitsuba;

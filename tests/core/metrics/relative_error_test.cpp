@@ -102,7 +102,7 @@ TEST_CASE("The error knows no scale, and a lamp counts by its pixels", "[relativ
     CHECK(error_of(noisy(one), one).error == Approx(error).epsilon(0.01));  // 4 of 324 lit pixels are exact
     const Picture faint = scene_picture(1e-6f, 400.0f);
     CHECK(error_of(noisy(faint), faint).error == Approx(error).epsilon(1e-3));
-    // What the measure is not: relative to the mean, the lamp hides the noise of everything else.
+    // Counterexample: in an error relative to the mean, the lamp hides the noise of everything else.
     double squares = 0.0, mean = 0.0;
     const Picture image = noisy(one);
     for (std::size_t i = 0; i < one.size(); ++i)

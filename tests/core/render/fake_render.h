@@ -85,9 +85,9 @@ inline std::unique_ptr<core::Scene> fake_scene(int width = 37, int height = 21,
     return std::make_unique<core::Scene>(std::move(parts));
 }
 
-/// What a test may do before each pass: count, interrupt, throw.
+/// Callback before each pass, with which a test counts, interrupts or throws.
 using BeforePass = std::function<void(std::uint32_t index)>;
-/// And at each pixel, before it is finished.
+/// Callback at each pixel, before it is finished.
 using AtPixel = std::function<void(int x, int y)>;
 
 /// Noise in two layers of the beauty and one auxiliary layer, from Sampler and the pixel filter.

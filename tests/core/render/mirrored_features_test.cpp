@@ -1,4 +1,4 @@
-// What near mirrors and glass show, as features: against what stands there in closed form.
+// Features seen in near mirrors and through glass, against their closed forms.
 #include "core/render/mirrored_features.h"
 
 #include <fmt/format.h>

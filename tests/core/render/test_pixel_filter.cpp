@@ -21,8 +21,8 @@ struct Moments {
     double mean = 0.0, variance = 0.0, fourth = 0.0, within = 0.0;
 };
 
-// Of the density proportional to f over [-radius, radius], by the midpoint rule; `within`: the share of
-// [-radius/4, radius/4].
+// Moments of the density proportional to f over [-radius, radius], by the midpoint rule; `within`:
+// probability of [-radius/4, radius/4].
 Moments analytic(const std::function<double(double)>& f, double radius) {
     double total = 0.0;
     Moments m;

@@ -333,7 +333,7 @@ TEST_CASE("A checkpoint that cannot be written is a warning and another try", "[
     CHECK(result.film.pass_count() == 2);
     REQUIRE(result.statistics.warnings.size() == 1);
     CHECK(result.statistics.warnings[0].find(path) != std::string::npos);
-    // What is no checkpoint is refused before the first pass.
+    // A file that is no checkpoint is refused before the first pass.
     CHECK_THROWS_AS(render(*scene, CountingIntegrator(), request_for(2, "/dev/full")), InputError);
     CHECK_THROWS_AS(render(*scene, CountingIntegrator(), request_for(2, folder.file("plain"))), InputError);
     // There is room again after the second pass.
@@ -419,7 +419,7 @@ TEST_CASE("A plan as text holds every entry with its reason", "[plan]") {
 
 namespace {
 
-/// What a test may do in finish(), which may throw.
+/// Callback in finish(), which may throw.
 using InFinish = std::function<void(const Film&, CancelToken)>;
 
 /// One that finishes its picture with sevens, and notes what the film says when the next pass is chosen.

@@ -80,8 +80,8 @@ TEST_CASE("A light tree draws with the probabilities that it states", "[lights][
 }
 
 TEST_CASE("Lights that shine on a receiver can be drawn there", "[lights][light_tree]") {
-    // What a light really sends is held against its chance: its importance, and those of the groups it is in,
-    // must not be 0 where a point of the light shines.
+    // Probability of a light that illuminates the receiver: its importance, and those of the clusters that
+    // hold it, must not be 0 where one of its points emits towards the receiver.
     Rng rng(7);
     const auto lights = mixed_lights(400, rng);
     const LightTree tree(lights);

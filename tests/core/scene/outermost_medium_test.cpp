@@ -75,7 +75,7 @@ TEST_CASE("Two outermost media are an error that shows both lines", "[scene][med
         CHECK(contains(message, "one outermost medium"));
         CHECK(contains(message, "medium 'a'"));
         CHECK(contains(message, "medium 'b'"));
-        // Whose name comes first in the text depends on who is asked first; both lines are there.
+        // Order of the names depends on the order of queries; both lines are in the text.
         CHECK(contains(message, ":4"));
         CHECK(contains(message, ":5"));
     }

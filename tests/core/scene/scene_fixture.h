@@ -104,7 +104,7 @@ T value_of(const core::Properties& properties, const std::string& name, T otherw
 /// The message of the InputError that loading ends with; "" when it loads. The file is called "test.xml".
 std::string load_error(const std::string& xml, const core::LoadOptions& options = {});
 
-/// The same for a file.
+/// Message of the InputError that loading the file ends with; "" when it loads.
 std::string file_error(const std::string& path);
 inline bool contains(const std::string& text, const std::string& part) {
     INFO(text << " should contain " << part);

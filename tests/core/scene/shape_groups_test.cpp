@@ -138,7 +138,7 @@ TEST_CASE("shapes that use mesh attributes must have them", "[scene][attributes]
     };
     const auto scene = load_body(mesh + bsdf("vertex_color"));
     CHECK(glm::length(albedo(*scene, {0.25f, 0.5f, 1}) - Rgb(0.25f, 0.25f, 0.5f)) < 1e-5f);
-    // The same through an instance.
+    // Vertex colours through an instance.
     const auto placed = load_body(group(mesh + bsdf("vertex_color")) + instance("g", "<translate x='5'/>"));
     CHECK(glm::length(albedo(*placed, {5.25f, 0.5f, 1}) - Rgb(0.25f, 0.25f, 0.5f)) < 1e-5f);
     CHECK_THROWS_WITH(load_body(mesh + bsdf("vertex_colour")),

@@ -109,7 +109,7 @@ GltfBuilder room() {
     return b;
 }
 
-/// The same, written by hand.
+/// Scene of the same room in XML, written by hand.
 std::string room_xml() {
     const double s = std::sin(0.5), c = std::cos(0.5);
     const std::string dull_bsdf =

@@ -89,7 +89,7 @@ TEST_CASE("With --integrator whatever is wrong with the file's own is a warning"
     CHECK(warned(*bad, "test.xml:4: 'flg' is ignored"));
     const auto two = with_integrator("<integrator type='other'/><integrator type='other'/>" + rest);
     CHECK(warned(*two, "more than one integrator"));
-    // Of another type, it is what the scene sets for that method.
+    // Beside an integrator of the requested type, settings of the other type are not used.
     const std::string settings =
         "<integrator type='other'><integer name='max_depth' value='3'/></integrator>"
         "<integrator type='fake'><integer name='max_depth' value='6'/></integrator>";

@@ -80,7 +80,7 @@ TEST_CASE("The table of Mitsuba's plugins agrees with the registry", "[scene][fo
         CHECK((ours || f.remark != ""));
         ++states[f.state];
         if (f.state != "approximated" || f.category != Category::integrator) continue;
-        // What the table promises is what loading does.
+        // Loading does as the table says.
         const bool wraps = !f.remark.starts_with('`');  // else it is called one of ours
         const std::string nested = wraps ? "<integrator type='path'/>" : "";
         const auto scene = load_scene_from_string(
