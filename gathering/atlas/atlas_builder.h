@@ -12,9 +12,9 @@ class AtlasBuilder {
     void build();
 
   private:
-    /// Of a chart at a density. Cells are stretched to fill the rectangle, from 0.7 to 1.41 of their size
-    /// along an edge (a chart that is smaller has smaller ones), so areas lie within a factor of two of the
-    /// one that was asked for.
+    /// Cells of a chart at a density. They are stretched to fill the rectangle, from 0.7 to 1.41 of their
+    /// size along an edge (a chart that is smaller has smaller ones), so areas lie within a factor of two of
+    /// the requested one.
     struct Grid {
         std::uint32_t columns, rows;
         std::size_t cells() const { return std::size_t(columns) * rows; }

@@ -10,7 +10,7 @@ using namespace core;
 
 namespace {
 
-/// What lies in a cell, in sums over its pieces of triangles.
+/// Contents of a cell, in sums over its pieces of triangles.
 struct Cell {
     double area = 0.0;                  ///< of the surface [m^2]
     double cells = 0.0;                 ///< of the chart, in cells

@@ -13,7 +13,7 @@
 
 namespace mote::gathering {
 
-/// Of a triangle: where its normal points, or the other.
+/// Side of a triangle: the front, where its normal points, or the back.
 enum class SurfaceSide : std::uint8_t { front, back };
 
 struct AtlasSettings {

@@ -63,7 +63,7 @@ inline constexpr float certain = 1e30f;
 float connection_over_emission(const core::LitScene& scene, const core::LightReceiver& y,
                                const core::Vec3& normal, const lights::LightStart& start);
 
-/// With which density the light path goes on from the VPL z to y, per area at y [1/m^2]: that of its BSDF,
+/// Density with which the light path continues from the VPL z to y, per area at y [1/m^2]: that of its BSDF,
 /// |cos| / pi for a plain one. `g` is G*, with `cos_y` of the shading normal at y; `direction` is z -> y.
 inline float next_vertex_pdf(const lights::VplDetail* z, const core::Vec3& direction, float g, float cos_y,
                              float distance_squared) {
@@ -71,10 +71,11 @@ inline float next_vertex_pdf(const lights::VplDetail* z, const core::Vec3& direc
     return z->vertex.pdf_solid_angle(direction, core::TransportMode::power) * cos_y / distance_squared;
 }
 
-/// e(y -> z), the density of a bundle's path that goes on, per area at z [1/m^2], from G* with the shading
+/// Density e(y -> z) of a bundle's path that continues, per area at z [1/m^2], from G* with the shading
 /// cosine at y and the geometric one at z.
 inline float continued_pdf(float g) { return g * core::inv_pi; }
-/// Does a bundle's path go on from here? Where light comes through, the side to go on to would be that of x.
+/// If true, a bundle's path may continue at y. On a transmissive surface the side to continue on would be
+/// that of x.
 inline bool may_continue(const core::ScatteringVertex& y) { return !y.bsdf->traits().transmissive; }
 
 /// b_k of Eq. (2) at a point y that a bundle's path found. On a glossy surface a part of it has the density
@@ -105,8 +106,8 @@ inline float connection_weight(const TechniqueSamples& samples, float fewer, flo
 std::vector<float> rivals_of(const core::LitScene& scene, const lights::VplSet& vpls,
                              const TechniqueSamples& samples);
 
-/// What a glossy receiver's own ray, drawn by its BSDF, adds to the density of a line [1/sr], where there are
-/// M lines: p_f / M. Bundles cannot follow a narrow lobe, and virtual point lights neither.
+/// Density that a glossy receiver's own ray, sampled by its BSDF, adds to that of a line [1/sr], where there
+/// are M lines: p_f / M. Neither bundles nor virtual point lights can follow a narrow lobe.
 inline float own_ray_pdf(const core::ScatteringVertex& x, const core::Vec3& w, float directions) {
     return x.pdf_solid_angle(w, core::TransportMode::radiance) / directions;
 }
@@ -127,7 +128,7 @@ struct AgainstBundles {
     }
 };
 
-/// The same where glossy receivers have rays of their own.
+/// AgainstBundles where glossy receivers have rays of their own.
 struct AgainstBundlesAndOwnRays {
     std::span<const float> rivals;
     float directions;  ///< M

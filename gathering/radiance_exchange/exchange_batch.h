@@ -1,5 +1,5 @@
-// Some directions at once: each by one task into sums of its own, which are then added up in the order of
-// the directions. So the bits do not depend on the number of threads, and no two threads write to one texel.
+// A batch of directions: each is one task with sums of its own, which are then added up in the order of the
+// directions. So the bits do not depend on the number of threads, and no two threads write to one texel.
 #pragma once
 
 #include "core/scene/emitter.h"
@@ -16,7 +16,7 @@ struct TexelIrradiance {
     std::vector<core::Rgb> reflected;  ///< of light that was reflected before
 };
 
-/// What the exchange works on: all of it must outlive whoever has it.
+/// Scene of an exchange; all of it must outlive the objects that refer to it.
 struct ExchangeScene {
     const SurfaceAtlas& atlas;
     const TexelMaterials& materials;
@@ -29,7 +29,8 @@ class ExchangeBatch {
     /// `lights`: bundles carry the light of emitting texels and of the environment.
     ExchangeBatch(const ExchangeScene& scene, float spacing, std::uint32_t directions, bool lights);
 
-    /// What texels send: `more` as in SentRadiance. Glossy radiance is by direction and glossy texel.
+    /// Radiance that texels send: `more` as in SentRadiance. Glossy radiance is by direction and glossy
+    /// texel.
     struct Sent {
         Rgb4Vector reflected, glossy;
     };
@@ -47,14 +48,14 @@ class ExchangeBatch {
     /// direction that it comes from: the bundle's or the opposite one.
     core::Rgb irradiance(std::uint32_t i, std::uint32_t texel) const;
     core::Vec3 direction_above(std::uint32_t i, std::uint32_t texel) const;
-    /// Of all rays so far.
+    /// Hits of all rays so far.
     std::uint64_t hits() const { return hits_; }
     std::size_t memory_bytes() const;
 
   private:
     /// Per direction and texel: 2 pi s^2 / A, times the shading cosine over the geometric one.
     float weight(std::uint32_t i, const AtlasTexel& texel) const;
-    /// From how often the batch's rays met texels.
+    /// Computes scale_ from how often the batch's rays met texels.
     void find_scale(double met);
 
     ExchangeScene scene_;

@@ -1,6 +1,6 @@
 // The exchange of radiance along the links of one bundle (Hermes 2010, Sec. 4.2 and 5).
 //
-// A ray stands for the area s^2 perpendicular to its direction, s being the grid's spacing. Over the random
+// A ray represents the area s^2 perpendicular to its direction, s being the grid's spacing. Over the random
 // offset of the grid the rays that meet a texel of area A are s^2-dense in its projection, so for a fixed
 // direction w
 //   E[ s^2 / A sum_rays L(w) ] = mean over the texel of L(w) cos,
@@ -27,9 +27,10 @@ struct alignas(16) Rgb4 {
 inline Rgb4 rgb4(const core::Rgb& c, float more = 0.0f) { return {c.x, c.y, c.z, more}; }
 using Rgb4Vector = std::vector<Rgb4, tbb::cache_aligned_allocator<Rgb4>>;
 
-/// What texels send along one direction and against it [W/(m^2 sr)].
+/// Radiance that texels send along one direction and against it [W/(m^2 sr)].
 struct SentRadiance {
-    /// Of Lambertian texels. `more` of a texel: 0; 1 + its place in `glossy`, whose radiance holds instead.
+    /// Radiance of Lambertian texels. `more` of a texel: 0, or 1 + its index in `glossy`, whose radiance
+    /// holds instead.
     const Rgb4* reflected;
     const Rgb4* glossy;
     /// Emitted light, or null where it is not for bundles; `more` is 1 where there is any.
@@ -44,7 +45,7 @@ struct ReceivedRadiance {
     Rgb4* emitted;    ///< that had not; may be null where nothing is emitted
 };
 
-/// Adds what every link brings, in the order of the rays. Returns how often rays met a texel.
+/// Adds the radiance of every link, in the order of the rays. Returns how often rays met a texel.
 std::uint64_t exchange_radiance(const SurfaceAtlas& atlas, const RayBundle& bundle, const SentRadiance& sent,
                                 const ReceivedRadiance& received);
 

@@ -48,7 +48,7 @@ struct ArrivingLight {
     std::vector<core::Rgb> indirect;  ///< that was reflected before
 };
 
-/// What an exchange did: added to by each.
+/// Counters that every exchange adds to.
 struct ExchangeStatistics {
     std::uint64_t directions = 0;  ///< that carried light
     std::uint64_t hits = 0;        ///< of their rays with surfaces

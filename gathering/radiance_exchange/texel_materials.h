@@ -1,4 +1,4 @@
-// What the texels of an atlas reflect and emit.
+// Reflectance and emission of the texels of an atlas.
 #pragma once
 
 #include "gathering/atlas/surface_atlas.h"

@@ -18,7 +18,7 @@ struct Reaching {
     std::uint32_t triangle, begin, end;
 };
 
-/// Of triangles [begin, end), in order.
+/// Bands that triangles [begin, end) reach, in order of the triangles.
 std::vector<Reaching> bands_of(const TriangleCull& cull, const BundleGrid& grid, std::uint32_t rows_per_band,
                                std::size_t begin, std::size_t end) {
     std::vector<Reaching> found;

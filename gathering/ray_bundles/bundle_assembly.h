@@ -20,7 +20,7 @@ struct BundleLimits {
 /// threads.
 using TraceRows = std::function<void(std::uint32_t begin, std::uint32_t end, HitBand& band)>;
 
-/// What threads keep between bundles.
+/// Buffers that threads reuse from bundle to bundle.
 using BandScratch = tbb::enumerable_thread_specific<HitBand>;
 
 /// Traces bands of `rows_per_band` rows in parallel; the same bits for any number of threads. At no time do

@@ -18,7 +18,7 @@ struct Extent {
     double length() const { return upper - lower; }
 };
 
-/// Of the box along an axis [m].
+/// Extent of the box along an axis [m].
 Extent extent_along(const Bounds3& box, const Vec3& axis) {
     const Vec3d a(axis), center = 0.5 * Vec3d(box.lower) + 0.5 * Vec3d(box.upper);
     const double middle = glm::dot(a, center);

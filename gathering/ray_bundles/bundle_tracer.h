@@ -25,7 +25,7 @@ enum class BundleForm : std::uint8_t {
     scan        ///< rays where sorting the triangles takes more than the budget
 };
 
-/// Of one bundle.
+/// Settings of one bundle.
 struct BundleSettings {
     BundleForm form = BundleForm::automatic;           ///< how hits are found
     std::size_t memory_budget = std::size_t(1) << 30;  ///< of the bundle's hits [B]
@@ -44,11 +44,11 @@ class BundleTracer {
 
     const SurfaceTriangles& triangles() const { return triangles_; }  ///< those that it was made of
     /// All hits of every ray from its origin on, in order. Parallel within, safe from many threads, the same
-    /// bits for any number of them. Throws InputError where the hits exceed the budget, Cancelled when asked
-    /// to stop.
+    /// bits for any number of them. Throws InputError where the hits exceed the budget, Cancelled when it is
+    /// cancelled.
     RayBundle trace(const BundleGrid& grid, const BundleSettings& settings = {}) const;
 
-    /// What `automatic` takes, rays or scan: by how many triangles there are for each hit.
+    /// Form that `automatic` selects, rays or scan, by the number of triangles for each hit.
     BundleForm plan(const BundleGrid& grid) const;
 
   private:

@@ -5,10 +5,7 @@
 
 namespace mote::gathering {
 
-/// Of hits by distance, those within the tolerance [m] of each other take turns between front and back.
-///
-/// Which hit is first of all is not known where the first ones coincide: a leaf, or a body on an open floor
-/// that is met from below. Then the other end of the ray tells, if it is better there.
+/// Reorders hits by distance: those within the tolerance [m] of each other alternate between front and back.
 void order_coincident(std::span<HitKey> hits, float tolerance);
 
 }  // namespace mote::gathering

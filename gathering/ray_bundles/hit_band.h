@@ -7,7 +7,7 @@
 
 namespace mote::gathering {
 
-/// What one band of rays found, ordered by ray and distance.
+/// Hits of one band of rays, ordered by ray and distance.
 struct OrderedBand {
     std::vector<std::uint32_t> counts;  ///< of each ray
     std::vector<BundleHit> hits;
@@ -22,7 +22,7 @@ class HitBand {
     void clear() { end_ = found_.data(); }
     /// `ray` counts from the band's first. Throws InputError beyond 2^31 hits.
     void add(std::uint32_t ray, const BundleHit& hit) { *room(1) = {ray, hit}, ++end_; }
-    /// Where up to `count` hits more may be written, of which those count that added() is told of.
+    /// Room for `count` more hits; those that added() counts are kept.
     FoundHit* room(std::ptrdiff_t count) {
         if (room_end_ - end_ < count) grow(std::size_t(count));
         return end_;

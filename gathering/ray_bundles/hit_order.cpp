@@ -20,7 +20,7 @@ void order_equal(std::span<HitKey> hits, const FoundHit* found) {
             std::swap(hits[j], hits[j - 1]);
 }
 
-/// What neighbours in order of distance ask for. Without branches, which would mostly be mispredicted.
+/// Properties of neighbours in order of distance. Without branches, which would mostly be mispredicted.
 struct Neighbours {
     std::uint32_t equal = 0;       ///< 1: two are equally far
     std::uint32_t coincident = 0;  ///< 1: a front and a back are within the tolerance
@@ -33,7 +33,7 @@ struct Neighbours {
     }
 };
 
-/// How many are left, in front.
+/// Merges hits; returns the number of those that are left, in front.
 std::uint32_t merge(std::span<HitKey> hits, float merged) {
     std::uint32_t kept = 1, side = hits[0].side();
     float limit = hits[0].distance() + merged;

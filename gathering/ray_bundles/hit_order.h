@@ -9,17 +9,17 @@
 
 namespace mote::gathering {
 
-/// How the hits of a ray are put in order beyond their distances [m].
+/// Tolerances of the order of a ray's hits, beyond their distances [m].
 struct HitOrder {
-    /// Hits this near to each other take turns between front and back, as RayBundle says.
+    /// Distance within which hits alternate between front and back, as RayBundle says.
     float coincident = 0.0f;
-    /// Of hits from the same side this near to each other, without one from the other side between them, the
-    /// first stands for all; 0: none does.
+    /// Distance within which hits from the same side, without one from the other side between them, are
+    /// merged into the first; 0: none are.
     float merged = 0.0f;
 };
 
-/// What order depends on, in one number: the distance (not negative, so that its bits are in its order), the
-/// side, and the hit's number among those of its band, below 2^31.
+/// Sort key in one number: the distance (not negative, so that its bits are in its order), the side, and the
+/// hit's number among those of its band, below 2^31.
 struct HitKey {
     std::int64_t bits;
 
@@ -41,9 +41,9 @@ struct FoundHit {
 };
 static_assert(sizeof(FoundHit) == 16);
 
-/// Puts the hits of a ray in order and merges them; what is left goes to `ordered`, which has room for all of
-/// them and one more. Of two that are equally far the triangles of `found`, by number, say who is first.
-/// Returns how many are left. From `keys` on `readable` may be read, though only keys.size() are this ray's.
+/// Puts the hits of a ray in order and merges them; those that are left go to `ordered`, which has room for
+/// all of them and one more. Equal distances are ordered by the triangles of `found`, by number. Returns how
+/// many are left. From `keys` on `readable` may be read, though only keys.size() are this ray's.
 std::uint32_t order_hits(std::span<const HitKey> keys, std::size_t readable, const HitOrder& order,
                          const FoundHit* found, HitKey* ordered);
 

@@ -1,4 +1,4 @@
-// Which rays of a bundle pass through a triangle, and where.
+// Intersections of a triangle with the rays of a bundle.
 //
 // An edge that two triangles share has the same two corners in both, and whether a ray passes on its left or
 // right is found in both by the same operations on the same numbers: a ray between the two hits one of them,
@@ -38,8 +38,9 @@ class ProjectedEdge {
         for (std::size_t i = 0; i < n; ++i) result |= values[i] >= 0.0 ? std::uint64_t(1) << i : 0;
         return std::uint32_t(result);
     }
-    /// Of a value: is the ray on the left of the edge, as it runs in the triangle? Edges run downwards or, if
-    /// level, to the right: a little to the right, or above, of a point on the line is its left.
+    /// If true, the ray with this value is on the left of the edge, as it runs in the triangle. Edges run
+    /// downwards or, if level, to the right: a little to the right, or above, of a point on the line is its
+    /// left.
     bool left(double value) const { return (value >= 0.0) != flipped_; }
     double directed(double value) const { return flipped_ ? -value : value; }
 
@@ -64,22 +65,22 @@ class ProjectedTriangle {
     const std::array<core::Vec3d, 3>& corners() const { return corners_; }
     const ProjectedEdge& edge(std::size_t i) const { return edges_[i]; }  ///< opposite of corner i
 
-    /// Of ray (x, y), or nothing, also where it passes the triangle before the ray's origin. `triangle` is
-    /// its index.
+    /// Hit of ray (x, y), or nothing, also where it passes the triangle before the ray's origin. `triangle`
+    /// is its index.
     std::optional<BundleHit> hit(double x, double y, std::uint32_t triangle) const {
         const double v0 = edges_[0].value(x, y), v1 = edges_[1].value(x, y), v2 = edges_[2].value(x, y);
         const bool left = edges_[0].left(v0);
         if (edges_[1].left(v1) != left || edges_[2].left(v2) != left) return std::nullopt;
         return make_hit(x, y, v0, v1, v2, triangle);
     }
-    /// Of a ray that passes all edges on the same side, from their values. Corners that run counter-clockwise
-    /// on the grid turn their back to it.
+    /// Hit of a ray that passes all edges on the same side, from their values. Corners that run
+    /// counter-clockwise on the grid turn their back to it.
     std::optional<BundleHit> make_hit(double x, double y, double v0, double v1, double v2,
                                       std::uint32_t triangle) const {
         if (edges_[0].left(v0)) triangle |= BundleHit::behind_bit;
         v0 = edges_[0].directed(v0), v1 = edges_[1].directed(v1), v2 = edges_[2].directed(v2);
         const double sum = v0 + v1 + v2;
-        // Of a sliver that rounding has made a line, no sign is certain.
+        // The signs of a sliver that rounding has made a line are uncertain.
         if (sum == 0.0 || !in_box(x, y)) return std::nullopt;
         const double scale = 1.0 / sum, u = v1 * scale, v = v2 * scale;
         const double z =

@@ -32,16 +32,16 @@ static_assert(sizeof(BundleHit) == 12);
 struct RayBundle {
     BundleGrid grid;                   ///< its rays
     std::vector<std::uint32_t> first;  ///< by ray, and one more: hits of ray i are [first[i], first[i + 1])
-    /// Of each ray by distance. Where surfaces coincide to rounding, fronts and backs take turns, as they
+    /// Hits of each ray by distance. Where surfaces coincide to rounding, fronts and backs alternate, as they
     /// would if nothing were rounded: a body that stands on a floor hides it, and a leaf of two coincident
     /// sides is seen from both.
     std::vector<BundleHit> hits;
 
-    /// Of one ray, by distance.
+    /// Hits of one ray, by distance.
     std::span<const BundleHit> hits_of(std::size_t ray) const {
         return {hits.data() + first[ray], first[ray + 1] - first[ray]};
     }
-    /// Of the hits.
+    /// Memory of the hits [B].
     std::size_t memory_bytes() const {
         return first.capacity() * sizeof(std::uint32_t) + hits.capacity() * sizeof(BundleHit);
     }
@@ -61,7 +61,7 @@ void for_each_link(const RayBundle& bundle, const UsesBack& uses_back, const Vis
         }
     }
 }
-/// The same where no back sends or receives.
+/// for_each_link() where no back sends or receives.
 template <typename Visit>
 void for_each_link(const RayBundle& bundle, const Visit& visit) {
     for_each_link(

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int lanes = SplatBlock::lanes;
 
-/// What the grid is to single precision, which counts from the middle of the surfaces.
+/// Grid in single precision, with its origin in the middle of the surfaces.
 struct GridAxes {
     Vec3 right, up, along, shift;  ///< shift: the middle on the grid
     float spacing, reach;          ///< reach: radius of a disc [rays]

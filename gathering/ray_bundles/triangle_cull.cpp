@@ -44,7 +44,7 @@ void TriangleCull::find(const BundleGrid& grid, std::size_t begin, std::size_t c
     const Vec3d dx = projection.vector(Vec3d(1, 0, 0)), dy = projection.vector(Vec3d(0, 1, 0)),
                 dz = projection.vector(Vec3d(0, 0, 1));
     const auto coordinate = [&](int axis, std::uint32_t steps) {
-        // Of each product and sum one rounding, and those of the factors and of the center's difference.
+        // One rounding of each product and sum, and those of the factors and of the center's difference.
         const double largest =
             double(reach_) * (std::fabs(dx[axis]) + std::fabs(dy[axis]) + std::fabs(dz[axis])) +
             std::fabs(middle[axis]);

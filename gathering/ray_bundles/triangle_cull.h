@@ -1,7 +1,7 @@
 // Triangles that fall between all rays of a grid, found quickly: most of them, where many fall on each ray.
 //
-// In single precision, eight triangles at a time, and with room for its rounding: a triangle that is told to
-// fall between the rays does so for certain.
+// In single precision, eight triangles at a time, and conservative for its rounding: a triangle that is
+// culled falls between the rays for certain.
 #pragma once
 
 #include "gathering/ray_bundles/bundle_grid.h"
@@ -11,7 +11,7 @@ namespace mote::gathering {
 
 class TriangleCull {
   public:
-    static constexpr std::size_t block = 256;  ///< triangles that are looked at in one call
+    static constexpr std::size_t block = 256;  ///< triangles that one call tests
 
     /// Keeps the corners by coordinate, 36 bytes a triangle.
     TriangleCull(const SurfaceTriangles& triangles, const core::Bounds3& bounds);
@@ -20,7 +20,7 @@ class TriangleCull {
     struct Rows {
         std::int32_t first[block], last[block];
     };
-    /// Of `count` triangles from `begin` on, at most a block.
+    /// Rows of `count` triangles from `begin` on, at most a block.
     void find(const BundleGrid& grid, std::size_t begin, std::size_t count, Rows& rows) const;
     std::size_t size() const { return coordinates_[0].size(); }
     std::size_t memory_bytes() const { return 9 * coordinates_[0].capacity() * sizeof(float); }

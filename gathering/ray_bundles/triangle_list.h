@@ -8,7 +8,7 @@ namespace mote::gathering {
 /// Adds the triangles of a shape to a list.
 class TriangleList {
   public:
-    /// Of a triangle.
+    /// Corner of a triangle.
     struct Corner {
         core::Vec3 position{0.0f};  ///< [m]
         core::Vec3 normal{0.0f};    ///< of any length; zero: that of the triangle

@@ -24,9 +24,9 @@ std::vector<core::Rgb> point_radiosity(const PointHierarchy& hierarchy, const Mi
                                        const SurfelSides& sides, std::vector<core::Rgb> arriving,
                                        const PointRadiositySettings& settings = {});
 
-/// Who gathers for whom.
+/// Places that gather, and the places that take their light from them.
 struct GatheringPlaces {
-    std::vector<std::uint32_t> gather;  ///< places that do, along the hierarchy
+    std::vector<std::uint32_t> gather;  ///< places that gather, along the hierarchy
     std::vector<std::uint32_t> by;      ///< by place: the entry of `gather` that it takes its light from
 };
 GatheringPlaces gathering_places(const PointHierarchy& hierarchy, const SurfelSides& sides,

@@ -13,9 +13,10 @@ namespace {
 
 constexpr int lane_count = ReceiverLanes::width;
 constexpr int segments = line_segments;
-/// Cosines and phase functions count at least so much: they are those of the middle of a piece.
+/// Lower bounds of cosines and phase functions, which are evaluated in the middle of a segment alone.
 constexpr float min_cosine = 0.1f, min_phase = 0.15f;
-/// What is not in the middle of a piece of the eye ray, by the mean of all.
+/// Lower bound of the weight of a segment of the eye ray, relative to the mean of all: its middle may miss
+/// what scatters.
 constexpr float min_weight = 0.1f;
 /// Softening of 1/w^2 where a line passes a light: this times the square of a segment of the ray light,
 /// and of the line itself.

@@ -74,8 +74,8 @@ std::optional<MediumLine> varying_line(MediumLine line, float voxel, Rng& rng, T
         if (!is_black(before))
             after = before * line.medium->transmittance({line.origin, line.direction, t0, t1}, rng, counters);
         line.transmittance[i + 1] = after;
-        // Whoever stands in a cell counts with the transmittance to its beginning: where that is black, so is
-        // he.
+        // A point in a cell counts with the transmittance to the cell's beginning: where that is black, the
+        // weight is 0.
         const float there = std::fabs(average(before));  // estimates may be negative
         line.weights[i] = there > 0.0f
                               ? std::fabs(average(0.5f * (before + after) *
@@ -83,7 +83,7 @@ std::optional<MediumLine> varying_line(MediumLine line, float voxel, Rng& rng, T
                               : 0.0f;
         sum += line.weights[i], rest += there;
     }
-    // Between what was looked at there may be more.
+    // Between the samples there may be more scattering.
     const float floor = sum > 0.0f ? defensive_share * sum / rest : 1.0f;
     for (std::uint32_t i = 0; i < line.cells; ++i)
         line.weights[i] += floor * std::fabs(average(line.transmittance[i]));
