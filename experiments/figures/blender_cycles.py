@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The same scenes of Blender in Cycles and in mote, through the add-on, side by side: means and time to equal error.
+"""Scenes of Blender rendered by Cycles and, through the add-on, by mote, side by side: means and time to equal error.
 
 Three scenes that both can hold, and one with what users do (glass, a picture as a texture, smoke of a .vdb file). A full run takes
 about 5 minutes, --quick half a minute. It needs the program `blender`.

@@ -1,5 +1,5 @@
-"""The same scenes of Blender in Cycles and in mote: what experiments/studies/blender_agreement_scenes.py renders, and means,
-standard errors, and processor time to equal error of it."""
+"""Scenes of experiments/studies/blender_agreement_scenes.py rendered by Cycles and by mote: means, standard errors, and
+processor time to equal error."""
 import json
 import os
 import shutil
@@ -52,8 +52,8 @@ def log_of(folder, scene):
 
 
 def agreement(log):
-    """Of one scene: both means, their relative difference and its standard error, seconds a picture, and the ratio of the
-    times to equal error (variance of a pixel between seeds times seconds), Cycles' over mote's."""
+    """Agreement on one scene: both means, their relative difference and its standard error, seconds an image, and the
+    ratio of the times to equal error (variance of a pixel between seeds times seconds), Cycles' over mote's."""
     means = {name: log[name]["pictures"].mean(axis=(1, 2, 3)) for name in ("Cycles", "mote")}
     mean = {name: m.mean() for name, m in means.items()}
     error = sum(m.var(ddof=1) / len(m) for m in means.values())**0.5 / mean["Cycles"]

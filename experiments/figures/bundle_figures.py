@@ -35,6 +35,6 @@ class View:
         return series_error([p[""] for p in pictures], [r[""] for r in self.references], region)["error"]
 
     def bias(self, pictures):
-        """Of the picture's mean, relative, with its standard error over seeds."""
+        """Relative bias of the image's mean, with its standard error over seeds."""
         means = np.array([luminance(p[""]).mean() for p in pictures]) / luminance(self.truth).mean() - 1
         return means.mean(), means.std(ddof=1) / len(means) ** 0.5

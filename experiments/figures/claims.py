@@ -1,4 +1,4 @@
-"""What a figure script asserts: claims, each printed with what was measured.
+"""Claims of a figure script, each printed with its measured value.
 
 A claim that does not hold as the paper states it stays in the list, word for word, with `differs` set to the reason,
 and is printed as one that does not hold. The script fails when a claim without a reason does not hold, and just as much

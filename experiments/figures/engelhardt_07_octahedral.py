@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What octahedral maps cost, and what they are good for: Engelhardt 2013, Table 7.1 and Fig. 7.6.
+"""Cost and use of octahedral maps: Engelhardt 2013, Table 7.1 and Fig. 7.6.
 
 The program mote_surroundings casts depth maps in the layouts of the table, and blurs a mirrored environment by a
 summed-area table over the whole sphere. The paper's numbers are frame rates of rasterization; rays need none of the

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What a gather costs by the number of points, and by how near receivers of one walk are to each other: Engelhardt 2013, Fig. 8.12.
+"""Cost of a gather by the number of points and by the distance of the receivers of one walk: Engelhardt 2013, Fig. 8.12.
 
 The bunny's room, one bounce. Times are processor seconds of the gather alone: a run with one point is taken off. Lanes of
 one walk are neighbouring pixels, or with upsampling pixels that are as far apart as its lattice, which stands for the
@@ -38,7 +38,7 @@ def figure(mote, quick, output):
     of_gather, of_light = exponent(list(each.values())), exponent([light for _, light, _ in cost.values()])
     claims.check("the cost of a gather is sub-linear in the number of points: an exponent of 0.4 at most", f"{of_gather:.2f} from 2^{powers[0]} to 2^{powers[-1]}", of_gather <= 0.4)
     claims.check("making and lighting the points is linear at most (the thesis: sub-linear)", f"an exponent of {of_light:.2f}", of_light < 1.1)
-    # The same receivers, four lanes apart in both directions: a lattice of all of a pass's pixels over n^2 passes.
+    # Receivers of before, with lanes `far_apart` pixels apart in both directions: a lattice of a pass's pixels over n^2 passes.
     far_apart = 8
     seconds, _, receivers = gather(2 ** powers[-1], upsampling=far_apart)
     apart = 1e6 * (seconds - empty) / receivers

@@ -52,7 +52,7 @@ def measure(mote, name, scene, settings, size, paths):
     source = mote.folder / f"{tag}_vpls_1.exr"
     wide = 11 / RADIUS[name] ** 2
     samples = [ssbc(mote, source, "--bound", wide, "--steps", 1, "--levels", level)[0] for level in LEVELS]
-    # The same without the work of a step: what reading, writing and the buffers take.
+    # Time of two steps alone: the difference takes off reading, writing and the buffers.
     seconds = {}
     for kind, bound in (("wide", wide), ("automatic", 1024 / RADIUS[name] ** 2)):
         one, three = (ssbc(mote, source, "--bound", bound, "--steps", n)[1] for n in (1, 3))

@@ -54,6 +54,6 @@ class IndirectView:
         return float(np.quantile(np.maximum(squares, 0), share)) ** 0.5
 
     def ratio(self, picture, region=None):
-        """Of the mean light to the truth's."""
+        """Ratio of the mean luminance to that of the reference."""
         p, r = luminance(self.light(picture)), luminance(self.truth)
         return float(p.mean() / r.mean() if region is None else p[region].mean() / r[region].mean())

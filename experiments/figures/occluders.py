@@ -29,7 +29,7 @@ def sphere(rows, columns):
 
 
 def sculpture(path, rows=200):
-    """Of radius 1 around the origin; some 330 thousand triangles. Returns how many."""
+    """Writes a sculpture of radius 1 around the origin; returns its number of triangles, some 330 thousand."""
     points, grid = sphere(rows, 2 * rows)
     vertices, triangles = [], []
     for i, (radius, waves) in enumerate([(1.0, 9.0), (0.8, 11.0), (0.6, 12.0), (0.4, 14.0)]):

@@ -16,7 +16,7 @@ SIGNATURE = b"\x89PNG\r\n\x1a\n"
 
 
 def commit():
-    """Of the sources, with '+' where files were changed since; as the program states its own."""
+    """Commit of the sources, with '+' if files were changed since, in the form of the program's own."""
     said = subprocess.run(["git", "describe", "--always", "--dirty=+", "--abbrev=12", "--exclude=*"], cwd=ROOT,
                           capture_output=True, text=True, check=False)
     return said.stdout.strip() or "unknown"
@@ -28,7 +28,7 @@ def word(value):
 
 
 class Origin:
-    """What is known of a run; `add` what it rendered."""
+    """Facts about a run and its renders, which add() records."""
 
     def __init__(self, script, quick):
         self.facts = {"Script": str(Path(script).resolve().relative_to(ROOT)), "Run": "quick" if quick else "full",
@@ -66,7 +66,7 @@ def table_of(path):
 
 
 def csv_text(path):
-    """What the head of a CSV file says."""
+    """Entries of the head of a CSV file, by name."""
     with open(path, newline="", encoding="utf-8") as file:
         lines = [line[2:].rstrip("\r\n") for line in file if line.startswith("# ")]
     return dict(line.split(": ", 1) for line in lines)
@@ -82,7 +82,7 @@ def chunks(data):
 
 
 def png_text(path):
-    """What the text chunks of a PNG file say."""
+    """Entries of the text chunks of a PNG file, by name."""
     text = {}
     for kind, data in chunks(Path(path).read_bytes()):
         if kind == b"tEXt":

@@ -1,4 +1,4 @@
-"""What the command line of a figure sets of its scenes: `--bound 5`, `--film.width 80`, without editing the script.
+"""Settings of a figure's scenes by its command line: `--bound 5`, `--film.width 80`, without editing the script.
 
 A name with a dot is a path, as with `mote render -D`. Others are $parameters of the scene file where it has one of that
 name, else parameters of the integrator, for the renders whose integrator takes them: `--bound 5` reaches mote_vpl and not
@@ -26,7 +26,7 @@ class OwnSettings:
         return bool(self.values)
 
     def suffix(self):
-        """Of file names: pictures with settings of their own are other pictures."""
+        """Suffix of file names: images with settings of their own are other images."""
         return "".join(f"_{name}={value}" for name, value in self.values.items()).replace("/", "-")
 
     def added_to(self, scene, settings):
@@ -49,7 +49,7 @@ class OwnSettings:
         return f"integrator.{name}" if name in self.parameters(integrator) else None
 
     def parameters(self, integrator):
-        """Of an integrator, as its manual page has them."""
+        """Names of an integrator's parameters, from its manual page."""
         if self.pages is None:
             formats = subprocess.run([self.program, "formats"], check=True, capture_output=True, text=True).stdout
             self.pages = dict(re.findall(r"^### `(mote_\w+|path|volpath)`$(.*?)(?=^##)", formats, re.M | re.S))

@@ -83,9 +83,8 @@ def along(image, where, axis):
 
 
 def enlarged(image, n, height, width):
-    """What is left of a coarse and noisy picture after means over blocks of n x n pixels, linearly between the middles of
-    these. It fills the width; of its height as much as fits, about the middle, since a camera's field of view spans the
-    width."""
+    """Means of a coarse and noisy image over blocks of n x n pixels, interpolated linearly between their middles. Fills the
+    width, and of the height as much as fits, about the middle, since a camera's field of view spans the width."""
     h, w = image.shape[:2]
     means = blocks(np.pad(image, [(0, -h % n), (0, -w % n), (0, 0)], mode="edge"), n)
     rows = ((np.arange(height) + 0.5 - height / 2) * w / width + h / 2) / n - 0.5

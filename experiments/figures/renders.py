@@ -1,4 +1,4 @@
-"""What the scripts that render share: pictures of the `mote` command, their statistics, and the options.
+"""Renders of the figure scripts: images of the `mote` command, their statistics, and the common options.
 
 Every render is a file in OUTPUT/NAME/, with its statistics beside it; --redraw takes those of the last run as they are.
 Errors come from independent seeds: `mean_and_error` is their mean and its standard error. Variants that are rendered with
@@ -23,7 +23,7 @@ from exr import read_exr
 from origin import ROOT, Origin
 from own_settings import OwnSettings
 
-# What stands for the layer multiple_scattering of volpath: light that scatters in a medium last, and elsewhere before.
+# Layers whose sum is volpath's multiple_scattering: light that scatters in a medium last, and elsewhere before.
 BOUNDED, RECOVERED = "multiple_scattering_bounded", "compensation_volume"
 
 
@@ -151,7 +151,7 @@ def around(plane, radius=2):
 
 
 def mean_and_error(values):
-    """Of independent values along the first axis: their mean, and its standard error."""
+    """Mean of independent values along the first axis, and its standard error."""
     values = np.asarray(values, dtype=float)
     return values.mean(axis=0), values.std(axis=0, ddof=1) / len(values) ** 0.5
 

@@ -25,7 +25,7 @@ from panels import TITLE, Canvas, mark, show
 from renders import luminance, main, write_csv
 
 SCENES = Path(__file__).resolve().parent / "scenes"
-# What the paper says is kept, and where it is: columns and rows as shares of the picture.
+# Effects that the paper says are kept, and where they are: columns and rows as fractions of the image.
 KEPT = {"two_spheres": {"contact shadows": ((0.15, 0.9), (0.78, 0.95)), "reflections": ((0.23, 0.48), (0.6, 0.85))},
         "mirror_wall": {"reflections": ((0.22, 0.78), (0.22, 0.6))},
         "water_caustic": {"caustics": ((0.0, 0.2), (0.2, 0.8))}}

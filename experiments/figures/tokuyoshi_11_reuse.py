@@ -39,7 +39,7 @@ def figure(mote, quick, output):
             rows.append([n, "again" if repeats else "once", float(means.mean()), error, float(np.mean([p.cpu for p in pictures]))])
             print(f"{n} directions, {'again' if repeats else 'each once'}: {means.mean():+.2%} +- {error:.2%}")
     text = lambda repeats: ", ".join(f"{n}: {found[repeats, n][0]:+.1%} +- {found[repeats, n][1]:.1%}" for n in COUNTS)
-    # Of a seed all sets are the same lines, cut into passes of n: pairs tell what choosing again does.
+    # Sets of one seed are the same lines, cut into passes of n: differences of pairs are the effect of choosing again.
     pairs = {n: found[True, n][3] - found[False, n][3] for n in COUNTS}
     bias = {n: (d.mean(), d.std(ddof=1) / 2) for n, d in pairs.items()}
     claims.check("directions chosen again bias the light of four bounces by about one over their number",

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The same scene of Blender in Cycles and in mote: means with standard errors, and processor time to equal error.
+"""A scene of Blender rendered by Cycles and by mote: means with standard errors, and processor time to equal error.
 
     python3 experiments/studies/blender_agreement.py MOTE [SAMPLES [SEEDS [BPY_PYTHON]]]
 

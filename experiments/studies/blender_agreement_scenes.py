@@ -98,8 +98,8 @@ def fog():
 
 
 def table(smoke):
-    """What users do: a floor with a picture, a ball of glass, smoke out of a file, under a lamp. No sky: our lamps hide what is behind them,
-    those of Cycles do not."""
+    """Scene as users make them: a floor with a picture, a ball of glass, smoke out of a file, under a lamp. No sky: our
+    lamps hide what is behind them, those of Cycles do not."""
     wall = material("wall", "ShaderNodeBsdfDiffuse", Color=(0.6, 0.55, 0.5, 1))
     plane(wall, Matrix.Translation((0, 2, 1)) @ Matrix.Rotation(math.pi / 2, 4, "X") @ Matrix.Diagonal((3, 3, 1, 1)))
     checked = material("checked", "ShaderNodeBsdfDiffuse")

@@ -22,7 +22,7 @@ from mote import cluster  # noqa: E402
 
 
 def processor_seconds():
-    """Of this process and of those that it waited for; on a worker: of that."""
+    """Processor time [s] of this process and of the children it waited for; on a worker, that of the worker."""
     return sum(os.times()[:4])
 
 

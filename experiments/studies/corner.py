@@ -46,7 +46,7 @@ class Grid:
 
 
 def points(n):
-    """Of the grid's lines, moved off the ends by what single precision would not see."""
+    """Positions of the grid's lines [m], moved off the ends by less than single precision resolves."""
     t = np.arange(n + 1) / n
     return np.clip(SIDE * t ** 3 / (t ** 3 + (1 - t) ** 3), 1e-7, SIDE - 1e-7)
 

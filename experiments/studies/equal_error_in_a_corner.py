@@ -25,7 +25,7 @@ FEW = "exact compensation joins its vertices to all virtual point lights, of whi
 
 
 def quadrature(mote, quick, settings):
-    """What exact compensation converges to; kept beside the renders."""
+    """Limit of exact compensation by quadrature; kept beside the renders."""
     name = f"quadrature_{settings['resx']}_{settings['bound']}.npy"
     if not (mote.folder / name).is_file():
         n, count = (12, 512) if quick else (24, 1024)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What screen-space compensation misses because surfaces are hidden, and what several layers of them buy and cost.
+"""Light that screen-space compensation misses because surfaces are hidden; gain and cost of several layers of surfaces.
 
 Layers of surfaces are the future work of Engelhardt 2013, Sec. 11.5. Three scenes: the Cornell box with a bound that
 reaches a quarter of it, the atrium without haze, and rows of thin boards. In each, the light that exact compensation adds
@@ -61,7 +61,7 @@ class Variants:
         return self.render(name, compensation("screen_space", steps=STEPS, layers=layers, **settings), self.passes, (1, 2))
 
     def larger(self, layers, wide):
-        """What is added with four times as many pixels: twice as wide, cut back, or twice as fine, put together."""
+        """Compensation with four times as many pixels: twice as wide, cut back, or twice as fine, put together."""
         settings = compensation("screen_space", steps=STEPS, layers=layers)
         if wide:
             settings["sensor.fov"] = math.degrees(2 * math.atan(2 * math.tan(math.radians(self.fov / 2))))

@@ -53,7 +53,7 @@ class Study:
         return self.truth[scene, seed]
 
     def cpu(self, scene, name, settings):
-        """Of one pass, without loading and building. Renders of one name and seed are one file: seeds tell them apart."""
+        """Processor time of one pass [s], without loading and building. Renders differ by seed, as one name and seed are one file."""
         times = [[self.render(scene, f"{name}_{passes}", settings, passes, seed).cpu for seed in range(100, 101 if self.quick else 103)]
                  for passes in (1, 1 + PASSES)]
         return (min(times[1]) - min(times[0])) / PASSES

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What each simplification of approximate compensation costs: signed bias with standard error, one switch at a time.
+"""Bias of each simplification of approximate compensation: signed, with standard error, one switch at a time.
 
 Every variant differs from exact compensation in one thing (Engelhardt 2013, Sec. 10.2): the recursion ends after 0 to 3
 steps, local visibility is left out, the transmittance inside the bounding region is that of the mean extinction; and then

@@ -115,7 +115,7 @@ def run(mote, quick, output):
     for method in ("bounded", "1 step", "2 steps"):
         loss, error = -column(rows, method, 6), column(rows, method, 7)
         off = np.abs(loss - predicted(rows, method))
-        # What the estimate may be wrong by: light is not the same all around near walls and below the lamp.
+        # Tolerance of the estimate: near walls and below the lamp the light is not isotropic.
         claims.check(f"{method}: the loss is as expected to 8 points", f"off by {off.max():.1%} at most, {off.mean():.1%} on average",
                      bool((off < 0.08 + 4 * error).all()))
     return claims.exit_code()

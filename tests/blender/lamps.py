@@ -94,7 +94,7 @@ def instances(folder):
 
 
 def grid(folder):
-    """What gets through a .vdb file with a ramp of the density 0.25 + x [1/m] and 1.5 m deep, turned and twice as large, with
+    """Transmittance of a .vdb file with a ramp of the density 0.25 + x [1/m] and 1.5 m deep, turned and twice as large, with
     densities of the object's space, which its scale leaves as opaque, and of the world's."""
     for space, density, size in (("OBJECT", 0.8, 2.0), ("WORLD", 0.4, 2.0)):
         scene = stage((1, 1))

@@ -1,4 +1,4 @@
-"""What the tests inside of Blender share: making objects and materials by name, rendering, reading the picture."""
+"""Objects and materials by name, rendering, and reading the image, for the tests inside of Blender."""
 import bpy
 import numpy as np
 from mathutils import Matrix

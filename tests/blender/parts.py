@@ -121,7 +121,7 @@ def depth_of_field(folder):
         found = (weights * across**2).sum() - (weights * across).sum()**2
         pixel = across[1] - across[0]
         expected = (aperture * (far - focus) / far)**2 / 4 + (side * focus / far)**2 / 3 + pixel**2 / 12
-        # Of n points on a disc the mean of x^2 has the variance (R^4 / 8 - R^4 / 16) / n; n samples met the light.
+        # Variance of the mean of x^2 over n points on a disc: (R^4 / 8 - R^4 / 16) / n; n samples met the light.
         error = expected / math.sqrt(64 * ours.sum() / 10)
         check(abs(found - expected) < 4 * error,
               f"depth of field by {what}: variance {found:.5f} = {expected:.5f} m^2 +- {error:.5f}")

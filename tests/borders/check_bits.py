@@ -100,7 +100,7 @@ def ways():
 
 
 def picture_of(folder):
-    """What the way under test has left, which is then gone: an EXR file, or planes by their names in such a file."""
+    """Image that the interface under test wrote, then removed: an EXR file, or planes by their names in such a file."""
     exr, planes = folder / "picture.exr", folder / "picture.exr.npz"
     if planes.exists():
         with np.load(planes) as file:

@@ -34,7 +34,7 @@ SOURCES = {".h", ".hpp", ".cpp", ".c", ".cc", ".inl"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]')
 # Folders of people and machines. A path starts where no letter, digit, dot, slash or the like goes before it.
 MACHINE_PATH = re.compile(r"(?<![\w./~$})-])/(?:work|root|home|Users|mnt|scratch)/[\w.]")
-# What every Debian system has is no property of one machine.
+# System paths; those that every Debian system has are no property of one machine.
 SYSTEM_PATH = re.compile(r"(?<![\w./~$})-])/usr/(?:local|share)/[\w.-]+")
 ALLOWED_SYSTEM = {"/usr/share/glmark2", "/usr/share/common-licenses", "/usr/local/lib"}
 

@@ -77,7 +77,7 @@ CASES = [
 
 
 def count(files):
-    """What differs from 0 in a folder of these files."""
+    """Counts that differ from 0 in a folder of these files."""
     with tempfile.TemporaryDirectory() as folder:
         for name, content in files:
             path = Path(folder) / name

@@ -31,9 +31,9 @@ IDEAS = {
         "integrators/single_scattering/single_scattering_eye.cpp": 1,
         "integrators/screen_space_compensation/hidden_light.cpp": 1,
         "integrators/bidirectional/strategies.h": 1,
-        # Of a light path, and of a connection to infinity: estimates that are multiplied must be independent.
+        # A light path, and a connection to infinity: estimates that are multiplied must be independent.
         "integrators/bidirectional/strategies.cpp": 2,
-        # Of the connections of a point that stores its light.
+        # Connections of a point that stores its light.
         "gathering/stored_light/arriving_light.cpp": 1, "gathering/stored_light/arriving_fluence.cpp": 1,
     }),
     "scattering from a vertex of an eye path": (r"\bapply_scattering<\w+>\(", {

@@ -64,7 +64,7 @@ def shown(number, value, percent):
 
 
 class Table:
-    """Of a CSV file: rows below their headers, and claims."""
+    """Rows of a CSV file below their headers, and its claims."""
 
     def __init__(self, path):
         self.rows, self.claims, header = [], [], None
@@ -173,7 +173,7 @@ def rows_without_check(section, lines):
 
 
 def is_commit(root, commit):
-    """Of this repository; where there is none, or only its end, nobody can tell."""
+    """True if the commit is one of this repository, or if the history is missing or shallow."""
     git = lambda *words: subprocess.run(["git", *words], cwd=root, capture_output=True, text=True, check=False)
     if git("rev-parse", "--is-shallow-repository").stdout.strip() != "false":
         return True
@@ -181,7 +181,7 @@ def is_commit(root, commit):
 
 
 def width(picture):
-    """Of a PNG file, in pixels: the first number of its first chunk, which is IHDR."""
+    """Width of a PNG file [pixels]: the first number of its first chunk, which is IHDR."""
     return struct.unpack(">I", picture.read_bytes()[16:20])[0]
 
 

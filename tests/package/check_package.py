@@ -57,7 +57,7 @@ def install():
 
 
 def check_headers(include):
-    """What installed headers include of mote is installed, and no name of mote is without its `mote/`."""
+    """Fails unless every header of mote that an installed one includes is installed under `mote/`; returns the number of headers."""
     headers = sorted(include.rglob("*.h"))
     for header in headers:
         for line in re.findall(r'#include "([^"]+)"', header.read_text()):

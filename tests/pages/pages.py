@@ -39,7 +39,7 @@ def shown(text):
 
 
 def prose(text):
-    """What is shown, without blocks of code."""
+    """Shown text without blocks of code."""
     return FENCE.sub(blank, shown(text))
 
 

@@ -95,7 +95,7 @@ def found(check, edits):
 
 
 def gif_offences(palette_of):
-    """What is found of four frames, the last one bright, with the palette of one of them."""
+    """Offences found in four frames, the last one bright, with the palette of one of them."""
     with tempfile.TemporaryDirectory() as folder:
         gallery = Path(folder) / "docs" / "gallery"
         gallery.mkdir(parents=True)

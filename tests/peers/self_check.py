@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What experiments/peers computes itself is right; its errors are mote's, which tests/core/metrics tests.
+"""Tests of the computations of experiments/peers; its errors are mote's, which tests/core/metrics tests.
 
 Closed forms of transforms, meshes, boxes and times; white plastic in a furnace against the quadratures of Mitsuba's own
 values in docs/witness.md; broken pixels of references. Exit code 1 and a line for

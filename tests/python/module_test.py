@@ -40,7 +40,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def dictionary():
-    """The same scene as SCENE."""
+    """Dictionary of the scene SCENE."""
     return {
         "type": "scene",
         "integrator": {"type": "mote_vpl", "paths": 64},
@@ -104,7 +104,7 @@ class ModuleTest(unittest.TestCase):
         self.assertFalse(same_bits(mote.render(scene, passes=3, seed=8, auxiliary=True, denoise="bmfr"), theirs))
 
     def test_bits_of_tiny_numbers(self):
-        """Of a scene with lights so far off that numbers become denormal: threads must treat them alike."""
+        """Bits of a scene with lights so far off that numbers become denormal: threads must treat them alike."""
         path = ROOT / "experiments" / "figures" / "scenes" / "sun_mirror_wall.xml"
         define = {"resx": 64, "resy": 64}
         for integrator in ("volpath", "mote_bdpt"):
@@ -356,7 +356,7 @@ class ModuleTest(unittest.TestCase):
 
     def test_denoised_sequences(self):
         frames = [mote.render(self.scene, passes=2, seed=seed, auxiliary=True) for seed in (1, 2, 3)]
-        # The same frames by the command.
+        # Reference: the frames denoised by the command.
         folder = Path(self.folder.name) / "frames"
         folder.mkdir()
         for i, frame in enumerate(frames):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What the command line of a figure sets of its scenes (experiments/figures/own_settings.py). Usage: own_settings_test.py MOTE"""
+"""Tests of a figure's settings by its command line (experiments/figures/own_settings.py). Usage: own_settings_test.py MOTE"""
 import sys
 import tempfile
 import unittest

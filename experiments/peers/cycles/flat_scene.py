@@ -80,7 +80,7 @@ def scale(step):
 
 
 def vector_of(step, default):
-    """Of x, y and z, or of `value`: three numbers, or one for all."""
+    """Vector from the attributes x, y and z, or from `value`: three numbers, or one for all."""
     if step.get("value"):
         value = numbers(step.get("value"))
         return value * 3 if len(value) == 1 else value

@@ -129,7 +129,7 @@ def glass(nodes, bsdf):
 
 
 def ratio(bsdf, default):
-    """Of the indices of refraction, inside over outside."""
+    """Ratio of the indices of refraction, inside over outside."""
     index = lambda value: INDEX[value] if isinstance(value, str) else float(value)
     return index(bsdf.get("int_ior", default)) / index(bsdf.get("ext_ior", INDEX["air"]))
 

@@ -105,7 +105,7 @@ def read_ply(path):
 
 
 def fields_of(words):
-    """Of one property; a list is a count and three corners."""
+    """Fields of one property; a list is a count and three corners."""
     if words[0] == "list":
         return [("count", "<" + PLY_TYPES[words[1]]), ("corners", "<" + PLY_TYPES[words[2]], 3)]
     return [(words[1], "<" + PLY_TYPES[words[0]])]

@@ -1,6 +1,6 @@
-"""What Mitsuba's roughplastic lets through and reflects: transmittance T and reflectance R of a rough dielectric boundary.
+"""Transmittance T and reflectance R of a rough dielectric boundary, as in Mitsuba's roughplastic.
 
-Facets are weighted as they are seen, and what meets another facet afterwards is lost, as there.
+Facets are weighted by their visible area, and light that meets another facet afterwards is lost, as there.
 """
 import numpy as np
 

@@ -22,7 +22,7 @@ def mean_and_error(shown):
 
 
 def pattern(ours, theirs):
-    """What the mean pictures differ by in every pixel, relative to ours: (value, standard error)."""
+    """Systematic difference of the mean images over all pixels, relative to ours: (value, standard error)."""
     halves = lambda shown: (np.mean(shown[::2], axis=0), np.mean(shown[1::2], axis=0))
     found = series_error(halves(theirs), halves(ours))
     return found["systematic"], found["systematic_standard_error"]

@@ -31,7 +31,7 @@ def seconds_text(value, how):
 
 
 def row(m):
-    """Of the table: name, times to the targets (wall, and processor seconds in brackets), the last picture, bias."""
+    """Row of the table: name, times to the targets (wall, and processor seconds in brackets), the last image, bias."""
     runs = noise_alone(m["runs"], m["systematic"]) if m["peer"] else m["runs"]
     stays = (0.0, 0.0) if m["peer"] or m["unbiased"] else m["systematic"]
     cells = [m["name"]]

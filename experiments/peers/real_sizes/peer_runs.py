@@ -50,7 +50,7 @@ def run_cycles(mote, settings, exported, folder, budget, seed):
 
 
 def pictures(folder, log):
-    """Of a log of any program, in its order: arrays [height, width, 3]."""
+    """Images of any program's log, in its order: arrays [height, width, 3]."""
     for run_ in log["runs"]:
         path = folder / run_["file"]
         yield np.load(path) if path.suffix == ".npy" else read_exr(path)[""]

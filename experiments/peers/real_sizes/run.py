@@ -109,7 +109,7 @@ def scene_page(name, scene, settings, options):
     filters = {filter_of(file) for file in files}
     if b.shape != a.shape or len(filters) > 1:
         raise RuntimeError(f"{files[0]} and {files[1]} differ in size or pixel filter")
-    # Whoever made the references chose size and filter of all pictures.
+    # Size and filter of all images are those of the references.
     settings = {**settings, "height": a.shape[0], "width": a.shape[1], "filter": filters.pop()}
     settings["cycles"] = {**settings["cycles"], "filter": settings["filter"]}
     mote.sizes = [f"resx={settings['width']}", f"resy={settings['height']}", f"film.rfilter={settings['filter']}"]
