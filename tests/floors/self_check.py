@@ -4,6 +4,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+import check_comments
 import check_references
 import count_loops
 from check_floors import check
@@ -51,6 +52,32 @@ CITATIONS = [
     ("// Raab et al. 2009", True),
     ("// the standard observer of CIE 1931", False),
 ]
+
+# (file, content, must be refused)
+COMMENTS = [
+    ("lights/a.h", "/// Of all lights [W].\nfloat power();\n", True),
+    ("core/film/a.cpp", "int x;  // Whether it is there\n", True),
+    ("apps/a.cpp", "    // The same again\n", True),
+    ("lights/a.h", "/// Power of all lights [W]. What is infinite counts as well.\nfloat power();\n", False),
+    ("lights/a.h", "/// Power\n/// Of all lights.\nfloat power();\n", False),
+    ("lights/a.h", "// Offset; whatever it is\n", False),
+    ("tests/lights/a.cpp", "// What is tested\n", False),
+]
+
+
+def check_comment_openings():
+    """How many of COMMENTS come out wrong."""
+    failures = 0
+    for name, content, refused in COMMENTS:
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / name
+            path.parent.mkdir(parents=True)
+            path.write_text(content)
+            found, _ = check_comments.offences(Path(folder))
+        if bool(found) != refused:
+            failures += 1
+            print(f"{name}: {content!r}: expected {'an offence' if refused else 'none'}, got {found}")
+    return failures
 
 
 def check_citations():
@@ -102,7 +129,7 @@ def check_circles():
 
 
 def main():
-    failures = check_citations() + check_loops() + check_circles()
+    failures = check_citations() + check_comment_openings() + check_loops() + check_circles()
     for name, content, refused in CASES:
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / name
@@ -113,7 +140,7 @@ def main():
             failures += 1
             print(f"{name}: {content.strip()!r}: expected {'an offence' if refused else 'none'}, "
                   f"got {offences} in {count} files")
-    print(f"{len(CASES) + len(CITATIONS) + 4} cases, {failures} wrong")
+    print(f"{len(CASES) + len(CITATIONS) + len(COMMENTS) + 4} cases, {failures} wrong")
     return 1 if failures else 0
 
 
