@@ -1,4 +1,4 @@
-// Partial films, read and added up. Whoever sends such a file may have written anything into it.
+// Partial films, read and added up. The contents of such a file are not trusted.
 #include <fmt/format.h>
 
 #include <algorithm>

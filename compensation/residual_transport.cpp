@@ -156,7 +156,7 @@ bool ResidualTransport::may_hold(const Medium& medium, const Vec3& p) const {
 
 template <bool Media>
 bool ResidualTransport::place_by_free_path(ResidualPath& path, const Ray& ray, WalkContext& context) const {
-    Rgb emitted(0.0f);  // the emission on the way is not what VPLs stand for
+    Rgb emitted(0.0f);  // emission on the way is not part of the VPLs' light
     const WalkEvent event = walk<Media>(scene_, ray, path.state, path.weights, emitted, context);
     if (event.kind == WalkEvent::Kind::escaped) return false;
     path.vertex = make_vertex(event, ray);

@@ -2,7 +2,7 @@
 //
 // Engelhardt 2013, Eq. 10.11, where the integral over z is one over directions w and distances t:
 //   L_r(x <- y) = integral of  f*(x<-y<-z) B*(y,z) tau(y,z) C*(y->z) L(y <- z)  dt dw
-// L is the light that z reflects or scatters, without what it emits: VPLs stand for that alone. The integral
+// L is the light that z reflects or scatters, without what it emits: VPLs represent that alone. The integral
 // runs over points in the medium, with sigma_s there, plus the surface at the end of the ray. A step
 // estimates it with one vertex z, drawn with p(w) p(t); what is left to the caller is L at z. Since B* is 0
 // beyond the bounding radius, rays are no longer than that.
@@ -22,7 +22,7 @@ struct ResidualPath {
     core::ScatteringVertex vertex;  ///< the receiver y; after a step the vertex z, whose wo points back to y
     core::MediumState state;        ///< media at the vertex, on the side of wo
     core::PathWeights weights;      ///< of the path so far, without the light that it finds
-    /// Mean extinction around the vertex [1/m], where steps ask for it and a medium is near; found once,
+    /// Mean extinction around the vertex [1/m], where steps need it and a medium is near; found once,
     /// since many steps may start from one receiver.
     std::optional<core::Rgb> mean_extinction;
     bool mean_known = false;
@@ -68,7 +68,7 @@ class ResidualTransport {
         core::Bounds3 extent;
         media::MeanExtinction mean;
     };
-    std::vector<LocalMedium> media_;  ///< empty where free paths are exact: nothing asks for the mean
+    std::vector<LocalMedium> media_;  ///< empty where free paths are exact: nothing needs the mean
 };
 
 extern template bool ResidualTransport::step<true>(ResidualPath&, core::WalkContext&) const;

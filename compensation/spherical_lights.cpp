@@ -22,8 +22,8 @@ bool reflects_only(const SphericalLight& light) {
     return !light.detail || reflects_only(light.detail->vertex);
 }
 
-/// The sum over all samples; `arrives(w)`, the share of the light, is asked only about directions that carry
-/// any.
+/// The sum over all samples; `arrives(w)`, the share of the light, is evaluated only for directions that
+/// carry any.
 template <typename Arrives>
 Rgb sample_sphere(const ScatteringVertex& receiver, const SphericalLight& light, const SphereCone& cone,
                   const SampleCounts& n, Rng& rng, const Arrives& arrives) {
@@ -53,7 +53,7 @@ Rgb sample_sphere(const ScatteringVertex& receiver, const SphericalLight& light,
     return sum;
 }
 
-/// One receiver that looks at one sphere after the other.
+/// Light that one receiver gets from one sphere after the other.
 class Gatherer {
   public:
     Gatherer(const RayQueries& scene, const SphericalGather& settings, const ScatteringVertex& receiver,
@@ -113,7 +113,7 @@ class Gatherer {
     }
     Rgb from_sphere(const SphericalLight& light, const SphereCone& cone, const Vec3& w) const {
         const Vec3 origin = receiver_.ray_origin(w);
-        // Never 0/0: a direction along the plane carries no light and is not asked about.
+        // Never 0/0: a direction along the plane carries no light and is not evaluated.
         const float to_plane =
             glm::dot(target(light, w) - origin, light.vpl.normal) / glm::dot(w, light.vpl.normal);
         if (!(to_plane > 0.0f)) return Rgb(0.0f);  // behind the light's surface, looking further away

@@ -1,7 +1,7 @@
 // Virtual spherical lights (Hasan et al. 2009): VPLs whose light is spread over a sphere.
 //
 // The power that arrived at y_j is spread over the disc that a sphere of radius r_j cuts out of the surface:
-// every point in the sphere stands for y_j, with its BSDF and its normal. A receiver integrates over the cone
+// every point in the sphere represents y_j, with its BSDF and its normal. A receiver integrates over the cone
 // of directions that the sphere subtends (all directions, from inside), instead of looking at one point:
 //
 //   L_j = alpha_j / (pi r_j^2)  int_cone  f(x, wo, w) |cos_x|  f(y_j, w_j, -w) |cos_y|  dw
@@ -26,7 +26,7 @@
 namespace mote::compensation {
 
 struct SphericalLight {
-    const lights::VirtualPointLight& vpl;  ///< that it stands for
+    const lights::VirtualPointLight& vpl;  ///< that it represents
     const lights::VplDetail* detail;       ///< null where the VPL is one colour
     float radius;                          ///< [m]
 
@@ -40,7 +40,7 @@ struct SphericalLight {
     core::Vec3 centre() const { return detail ? detail->vertex.position : vpl.position; }
     /// alpha_j f(y_j, w_j, -w) |cos_y| for a receiver that sees the light in direction w.
     core::Rgb intensity_cos(const core::Vec3& w) const;
-    /// Density of -w when the VPL's BSDF chooses where light goes on to; 0 without detail.
+    /// Density of -w when the VPL's BSDF samples the next direction; 0 without detail.
     float pdf_solid_angle(const core::Vec3& w) const;
 };
 

@@ -42,7 +42,7 @@ class CellWalk {
 
     /// The t at which the ray leaves the cells.
     double end() const { return end_; }
-    /// Starts at t, or goes on from there.
+    /// Starts or continues at t.
     void go_to(double t) {
         const Vec4d zero{}, place = offset_ + t * direction_;
         const Vec4d inside = place > zero ? (place < last_cell_ ? place : last_cell_) : zero;

@@ -1,4 +1,4 @@
-// Dense voxels and their trilinear interpolation; outside they go on by one of three rules.
+// Dense voxels and their trilinear interpolation; outside they are continued by one of three rules.
 #pragma once
 
 #include <memory>

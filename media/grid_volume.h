@@ -1,6 +1,6 @@
 // <volume type="gridvolume">: a dense grid from a .vol file, as Mitsuba 3 places it: cell-centred voxels in
 // the unit cube (or the file's own box), trilinear. As the extinction of a medium it ends there: outside of
-// the box that is vacuum. Other volumes (albedo, emission) go on by the wrap mode.
+// the box that is vacuum. Other volumes (albedo, emission) continue by the wrap mode.
 #pragma once
 
 #include "core/math/transform.h"

@@ -36,7 +36,7 @@ class MajorantGrid {
     MajorantGrid(const Voxel& lower, const Voxel& upper, const Range& outside);
 
     /// Building: every voxel of the box is reported once, alone or in a block, by its inclusive corners.
-    /// Voxels that nobody reports count as `background` in finish(). Parts beyond the box are ignored.
+    /// Voxels that are not reported count as `background` in finish(). Parts beyond the box are ignored.
     template <typename ValueAt>  // Value(const Voxel&)
     void add_block(const Voxel& lower, const Voxel& upper, ValueAt&& value_at);
     void add_constant(const Voxel& lower, const Voxel& upper, const Value& value);

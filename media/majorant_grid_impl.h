@@ -96,7 +96,7 @@ void MajorantGrid<Value>::finish(const Value& background) {
     find_distances();
 }
 
-/// In two sweeps: each cell looks at the neighbours that its sweep has met, which is exact for this distance.
+/// In two sweeps: each cell reads the neighbours that its sweep has met, which is exact for this distance.
 template <typename Value>
 void MajorantGrid<Value>::find_distances() {
     constexpr int most = 255;

@@ -106,7 +106,7 @@ std::optional<double> TrackedMedium<Grid>::track(const core::Ray& ray, core::Tra
     for (bool more = clip(ray, begin, end); more;) {
         grid_.majorants.walk(origin, direction, begin, end, visit);
         if (!(uneven_from < uneven_to)) break;
-        // The walk goes on behind the piece with the same `depth`: the exponential has no memory.
+        // The walk continues behind the piece with the same `depth`: the exponential has no memory.
         more = voxel_by_voxel();
         begin = uneven_to, uneven_from = uneven_to;
     }

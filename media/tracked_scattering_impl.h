@@ -1,6 +1,6 @@
 // Scattering along a ray through a grid, all of it in one walk (Medium::scatter_along): ratio tracking
 // carries the transmittance, and candidates lie in strata of the majorant's optical depth, as many as are
-// asked for where the medium is thin.
+// needed where the medium is thin.
 #pragma once
 
 #include "core/scene/scattering_points.h"

@@ -1,6 +1,6 @@
 // A quantity that varies over space: density, albedo, temperature. Nested in a heterogeneous medium.
 //
-// A volume also knows how to build the medium whose extinction it is (make_medium): the tracking loops are
+// A volume also builds the medium whose extinction it is (make_medium): the tracking loops are
 // compiled for each kind of grid, so that no virtual call is left inside them.
 #pragma once
 

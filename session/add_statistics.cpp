@@ -22,7 +22,7 @@ void add_statistics(core::Statistics& sum, const core::Statistics& more) {
     for (const auto& [name, count] : more.lookups) sum.lookups[name] += count;
     for (const auto& [name, seconds] : more.seconds) sum.seconds[name] += seconds;
     for (const auto& [name, value] : more.values) {
-        if (name == "noise" || name == "varianceGain") continue;  // of the sum, which its film knows
+        if (name == "noise" || name == "varianceGain") continue;  // of the sum: from its film
         if (adds_up(name))
             sum.values[name] += value;
         else  // settings are the same everywhere; of what memory takes, the most

@@ -163,7 +163,7 @@ std::vector<Record> records_from_csv(const std::string& text, const std::string&
             throw InputError(fmt::format("{} fields, but {} columns", row->fields.size(), order.size()),
                              {path, row->line});
         Record r;
-        r.cpu = r.build = r.peak_memory_mb = unknown;  // other programs need not know
+        r.cpu = r.build = r.peak_memory_mb = unknown;  // other programs need not report them
         for (std::size_t i = 0; i < order.size(); ++i) {
             try {
                 order[i].read(r, row->fields[i]);

@@ -2,7 +2,7 @@
 //
 // Mitsuba's heterogeneous medium ends at the bounding box of its sigma_t, and that of a <volume
 // type="constvolume"> is the unit cube (src/media/heterogeneous.cpp, intersect_aabb; Volume::bbox). So does
-// ours for a gridvolume, which is written as it is; a constant goes on to the shape that bounds it, and is
+// ours for a gridvolume, which is written as it is; a constant is passed to the shape that bounds it, and is
 // therefore written as a homogeneous medium or as a grid of one voxel.
 #include <fmt/format.h>
 

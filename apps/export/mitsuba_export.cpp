@@ -46,7 +46,7 @@ void resolve_aliases(Element& parent, const core::IdTable& ids) {
     }
 }
 
-/// Moves the groups that instances hold to the front, with ids: Mitsuba knows them by reference only.
+/// Moves the groups that instances hold to the front, with ids: Mitsuba takes them by reference only.
 void collect_groups(Element& scene, const core::IdTable& ids) {
     std::vector<Element> groups;
     for (Element& e : scene.children) {

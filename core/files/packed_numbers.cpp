@@ -126,7 +126,7 @@ void unpack(const std::byte* from, const Packing& packing, std::span<T> to) {
                            for (std::size_t i = 0; i < count; ++i) {
                                Bits<T> bits = 0;
                                std::memcpy(&bits, from + offset + i * bytes, bytes);
-                               if constexpr (std::is_same_v<T, std::int64_t>)  // the sign goes on upwards
+                               if constexpr (std::is_same_v<T, std::int64_t>)  // the sign is extended upwards
                                    bits = Bits<T>(T(bits << above) >> above);
                                to[first + i] = std::bit_cast<T>(Bits<T>(bits << 8 * skipped(head)));
                            }

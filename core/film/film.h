@@ -24,9 +24,9 @@ class Film {
   public:
     static constexpr std::uint32_t most_passes = ExactSums::most_terms;  ///< of a part
 
-    /// `all_squares`: keep the sum of squares of every layer, not of the beauty and of those that ask for it.
-    /// Throws std::invalid_argument when two layers have one name, a Layer::where names none or one of
-    /// another part, or a part has no layer.
+    /// `all_squares`: keep the sum of squares of every layer, not only of the beauty and of those that
+    /// require it. Throws std::invalid_argument when two layers have one name, a Layer::where names none or
+    /// one of another part, or a part has no layer.
     Film(int width, int height, std::vector<Layer> layers, bool all_squares = false);
 
     int width() const { return width_; }                                               ///< [pixels]
@@ -34,7 +34,7 @@ class Film {
     std::size_t pixels() const { return std::size_t(width_) * std::size_t(height_); }  ///< width times height
     std::span<const Layer> layers() const { return layers_; }  ///< all of them, in order
     std::size_t parts() const { return parts_.size(); }        ///< how many
-    bool keeps_all_squares() const { return all_squares_; }    ///< as the constructor was told
+    bool keeps_all_squares() const { return all_squares_; }    ///< of the constructor
     std::uint32_t pass_count() const;                          ///< of all parts together
     std::uint32_t pass_count(std::size_t part) const { return parts_.at(part).passes; }  ///< of one part
     /// Index of the first pass of a part that the film holds, or will hold.

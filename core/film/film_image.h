@@ -1,4 +1,4 @@
-// A film as a layered picture, with the channel names that other programs know.
+// A film as a layered picture, with the channel names that other programs use.
 #pragma once
 
 #include "core/film/film.h"

@@ -1,5 +1,5 @@
-// Boxes are user geometry: Embree asks for their bounds, and calls back for each that a ray may pass. The
-// callback never reports a hit, so that rays go on to the end.
+// Boxes are user geometry: Embree queries their bounds, and calls back for each that a ray may pass. The
+// callback never reports a hit, so that rays continue to the end.
 #include "core/geometry/box_hierarchy.h"
 
 #include <atomic>

@@ -20,7 +20,7 @@ class BoxHierarchy {
 
     /// Calls visit(box, lanes) for every box that a ray of the packet passes within (t_min, t_max), in any
     /// order; bit i of `lanes` is set for ray i. A box may be visited several times, but by each ray once;
-    /// rays that pass a box at less than rounding may be left out or told. Safe from many threads.
+    /// rays that pass a box at less than rounding may be left out or reported. Safe from many threads.
     template <typename Visit>
     void for_each_box(const ShadowPacket& packet, const Visit& visit) const {
         visit_boxes(

@@ -51,7 +51,7 @@ class RawHits {
     std::size_t count_ = 0;
 };
 
-/// Context of a query for the callbacks. `collected` is null unless all hits are asked for. `base`
+/// Context of a query for the callbacks. `collected` is null unless all hits are requested. `base`
 /// comes first: the callbacks get its address.
 #if RTC_VERSION_MAJOR >= 4
 struct Query {

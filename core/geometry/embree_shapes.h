@@ -27,7 +27,7 @@ class TracedShape {
     const Curves* curves_;           // or null
 };
 
-/// Filter that records every hit in Query::collected and lets the ray go on.
+/// Filter that records every hit in Query::collected and lets the ray continue.
 void collect_hits(const RTCFilterFunctionNArguments* arguments);
 
 }  // namespace mote::core::embree

@@ -1,8 +1,8 @@
 // Shapes that stand in a scene many times and in memory once.
 //
 // A ShapeGroup holds shapes in a space of its own. An instance places all of them in the world; each of its
-// shapes is then an InstancedShape, a shape like any other for whoever asks for hits, media or bounds. Only
-// the ray tracer knows that they share their triangles.
+// shapes is then an InstancedShape, a shape like any other in queries of hits, media and bounds. Only
+// the ray tracer uses that they share their triangles.
 #pragma once
 
 #include "core/geometry/shape.h"

@@ -9,7 +9,7 @@ namespace mote::core {
 void flip_orientation(MeshData& data);
 
 /// Vertex normals as the mean of the adjacent faces' normals weighted by the angle at the vertex (Thuermer &
-/// Wuethrich 1998), as Mitsuba computes them for files without normals. Vertices are told apart by index.
+/// Wuethrich 1998), as Mitsuba computes them for files without normals. Vertices are distinguished by index.
 void compute_vertex_normals(MeshData& data);
 
 }  // namespace mote::core

@@ -88,7 +88,7 @@ void RayFacingDiscs::hits(const Ray& ray, std::vector<Hit>& hits) const {
               [](const Hit& a, const Hit& b) { return a.t != b.t ? a.t < b.t : a.index < b.index; });
     const auto same = [](const Hit& a, const Hit& b) {
         return a.index == b.index;
-    };  // Embree may offer one twice
+    };  // Embree may report one twice
     hits.erase(std::unique(hits.begin(), hits.end(), same), hits.end());
 }
 

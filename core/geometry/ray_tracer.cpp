@@ -154,7 +154,7 @@ void RayTracer::visit_hits(const Ray& ray, Group group, Visitor visitor, const v
     RTCRayHit r = embree_ray_hit(ray);
     embree::intersect_filtered(impl_->scene(group), query, r, embree::collect_hits);
 
-    // Embree may offer a triangle more than once; a quadric's two hits differ in t.
+    // Embree may report a triangle more than once; a quadric's two hits differ in t.
     const auto key = [&](const embree::RawHit& h) {
         return std::tuple(h.instance, h.geometry, h.primitive,
                           impl_->scenes.shape_of(h).once_per_primitive() ? 0.0f : h.t);

@@ -36,7 +36,7 @@ class RayTracer {
     bool occluded(const Ray& ray) const;
     /// First hits of sixteen rays at once.
     void occluded(ShadowPacket& packet) const;
-    /// Many packets in one call, in the fastest form this Embree offers.
+    /// Many packets in one call, in the fastest form that this Embree has.
     void occluded(std::span<ShadowPacket> packets) const;
     /// All hits of one group within (t_min, t_max), sorted by distance. Clears `hits` first.
     void all_hits(const Ray& ray, Group group, std::vector<SurfaceHit>& hits) const;

@@ -73,8 +73,8 @@ class Shape : public Object {
     virtual float area() const = 0;
     /// Uniform by area.
     virtual ShapeSample sample_area(const Vec2& u) const = 0;
-    /// Draws a point for lighting `p`: uniform by area unless the shape knows better (a sphere samples its
-    /// cone). The density is returned per solid angle at p in pdf_solid_angle.
+    /// Draws a point for lighting `p`: uniform by area unless the shape has a better density (a sphere
+    /// samples its cone). The density is returned per solid angle at p in pdf_solid_angle.
     virtual std::optional<ShapeSample> sample_visible(const Vec3& p, const Vec2& u,
                                                       float& pdf_solid_angle) const;
     /// Density of sample_visible() for the point `hit` seen from p in direction wi, per solid angle.

@@ -22,7 +22,7 @@ struct MeshData {
     std::vector<Vec3> normals;    ///< per vertex, or empty: geometric normals are used
     std::vector<Vec2> uvs;        ///< per vertex, or empty: barycentric coordinates are used
     std::vector<std::array<std::uint32_t, 3>> triangles;  ///< three vertices each
-    std::vector<MeshAttribute> attributes = {};           ///< that textures may ask for
+    std::vector<MeshAttribute> attributes = {};           ///< that textures may read
 };
 
 /// Triangles as one shape; its data does not change.
@@ -57,7 +57,7 @@ class TriangleMesh final : public Shape, private SurfaceAttributes {
 
   private:
     Vec3 shading_normal(std::uint32_t primitive, float u, float v, const Vec3& geometric) const;
-    /// dp/du and dp/dv; across the geometric normal where the texture coordinates do not tell.
+    /// dp/du and dp/dv; across the geometric normal where the texture coordinates do not define them.
     void fill_derivatives(std::uint32_t primitive, SurfaceHit& hit) const;
     TextureCoordinates texture_coordinates(std::uint32_t primitive, float u, float v) const;
 

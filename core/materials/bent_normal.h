@@ -6,7 +6,7 @@
 //
 // In the frame of the surface such a BSDF is not symmetric: f(wo, wi) holds |wi.m| / |wi.n| of the light's
 // direction, with m the bent normal and n the frame's, so that f |wi.n| is the nested f |wi.m|. Light that is
-// traced from the lights therefore asks for f with the two directions exchanged, and then all that is known
+// traced from the lights therefore evaluates f with the two directions exchanged, and then all that is known
 // of shading normals holds unchanged.
 #pragma once
 

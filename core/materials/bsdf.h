@@ -63,8 +63,8 @@ struct BsdfPoint {
     Vec3 dp_du{0.0f}, dp_dv{0.0f};  ///< derivatives of the position by the texture coordinates [m]
     Vec3 geometric_normal{0.0f, 0.0f, 1.0f};
     /// eval() widens a lobe whose peak, times the cosine of wi, would be higher than this [1/sr]: for light
-    /// that is known at a few directions only (compensation/roughness_clamping.h). Sampling knows nothing of
-    /// it.
+    /// that is known at a few directions only (compensation/roughness_clamping.h). Sampling does not depend
+    /// on it.
     float peak_limit = infinity;
 };
 
@@ -78,7 +78,7 @@ class Bsdf : public Object {
     virtual Rgb eval(const BsdfPoint& p, const Vec3& wo, const Vec3& wi, TransportMode mode) const = 0;
 
     /// At least eval() of any wi in a (local) cone, whatever the mode, without a peak_limit [1/sr]: for
-    /// whoever must know what a group of lights could send at most. Infinity: nothing is known.
+    /// upper bounds of what a group of lights sends. Infinity: no bound.
     virtual Rgb eval_bound(const BsdfPoint&, const Vec3& /*wo*/, const DirectionCone& /*wi*/) const {
         return Rgb(infinity);
     }

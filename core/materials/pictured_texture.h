@@ -5,7 +5,7 @@
 
 namespace mote::core {
 
-/// A texture that knows the size of its picture. Others have none: they are as square as the unit square.
+/// A texture with the size of its picture. Others have none: they are as square as the unit square.
 class PicturedTexture {
   public:
     virtual ~PicturedTexture() = default;

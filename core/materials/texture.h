@@ -13,7 +13,7 @@ class Texture : public Object {
   public:
     /// The value at a place.
     virtual Rgb eval(const TextureCoordinates& uv) const = 0;
-    /// One number, where a roughness or a weight is asked for: a picture's luminance.
+    /// One number, where a roughness or a weight is needed: a picture's luminance.
     virtual float scalar(const TextureCoordinates& uv) const { return luminance(eval(uv)); }
     /// Derivatives of scalar() by u and v: zero for what is constant piece by piece.
     virtual Vec2 scalar_gradient(const TextureCoordinates& /*uv*/) const { return {0.0f, 0.0f}; }

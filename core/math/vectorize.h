@@ -1,5 +1,6 @@
-// MOTE_INDEPENDENT_LANES before a loop tells the compiler that its iterations do not depend on each other
-// through memory, which it cannot prove once references have been inlined away. And what such loops use.
+// MOTE_INDEPENDENT_LANES before a loop asserts to the compiler that its iterations do not depend on each
+// other through memory, which it cannot prove once references have been inlined away. And what such loops
+// use.
 #pragma once
 
 #if defined(__clang__)

@@ -1,14 +1,14 @@
 // The wish to stop, passed down to whatever takes long: a flag that a signal or a clock sets.
 //
 // Loops that can end early return; what lies deeper throws Cancelled, which unwinds through parallel loops
-// and is caught where a pass is run. What was half done is thrown away. A look costs one load.
+// and is caught where a pass is run. What was half done is thrown away. A test costs one load.
 #pragma once
 
 #include <atomic>
 
 namespace mote::core {
 
-/// Thrown where work was asked to stop. No std::exception: it is nobody's error.
+/// Thrown where work is cancelled. No std::exception: it is no error.
 struct Cancelled {};
 
 /// Asks a flag of somebody else's whether work is to stop.

@@ -1,4 +1,4 @@
-// Numbers are read by std::from_chars, which knows no locale.
+// Numbers are read by std::from_chars, which has no locale.
 #include "core/objects/number_text.h"
 
 #include <algorithm>

@@ -130,7 +130,7 @@ std::int64_t Properties::get_int_in(const std::string& name, std::int64_t defaul
 std::string Properties::find_file(const std::string& name) const {
     namespace fs = std::filesystem;
     const std::string file = require_string(name);
-    std::error_code ignored;  // a path that cannot be looked at is not there
+    std::error_code ignored;  // a path that cannot be read is not there
     std::vector<fs::path> candidates;
     const bool absolute = fs::path(file).is_absolute() || search_paths.empty();
     if (absolute) candidates.emplace_back(file);

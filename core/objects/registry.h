@@ -1,7 +1,8 @@
 // The registry: which types exist in each category, how each is made, and its manual page.
 //
 // Built once at start by calling register_core(), register_media(), ... (static registration gets lost in
-// static libraries). The scene loader knows the registry alone; docs/scene-format.md is generated from it.
+// static libraries). The scene loader depends on the registry alone; docs/scene-format.md is generated from
+// it.
 #pragma once
 
 #include <functional>

@@ -1,7 +1,7 @@
 // The ray with which the eye path of a pixel starts in a pass: the first four numbers of its sampler choose
 // the place on the film, through the pixel's filter, and the place on the lens.
 //
-// Eye paths of integrators begin here (integrators/eye_path/eye_ray.h), so whoever needs the ray once more
+// Eye paths of integrators begin here (integrators/eye_path/eye_ray.h), so code that needs the ray once more
 // finds the very same one.
 #pragma once
 

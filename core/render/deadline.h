@@ -1,4 +1,4 @@
-// A flag that sets itself when its time is over: for work that looks at a CancelToken and may take so long.
+// A flag that sets itself when its time is over: for work that tests a CancelToken and may take so long.
 #pragma once
 
 #include <atomic>

@@ -1,7 +1,7 @@
 // Files of ours that hold a film: a head that says what it is, and the film.
 //
 // Little-endian: magic, version, size of the head, fields, size of the film; a checksum of this head; the
-// film, which holds its own checksum. Checksums are looked at before anything else in the file is believed.
+// film, which holds its own checksum. Checksums are verified before anything else in the file is used.
 #pragma once
 
 #include <array>

@@ -35,7 +35,7 @@ struct RenderOptions {
     std::uint64_t seed = 0;                    ///< of all random numbers
     int width = 0, height = 0;                 ///< of the film [pixels]
     SamplerKind sampler = SamplerKind::sobol;  ///< of eye and light paths
-    CancelToken cancelled = {};                ///< prepare() may throw Cancelled when it asks for it
+    CancelToken cancelled = {};                ///< prepare() may throw Cancelled once it is set
     /// Wanted cells (Layer::transport). The layers of the others may hold anything, and nothing should be
     /// spent on them.
     TransportSet cells = TransportSet::all();

@@ -1,5 +1,5 @@
 // How the points that a picture shows have moved since the frame before, as features of the first hit: what
-// denoisers of sequences ask for.
+// denoisers of sequences read.
 #pragma once
 
 #include <memory>

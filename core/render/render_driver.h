@@ -20,7 +20,7 @@ struct StopRule {
     std::optional<std::uint32_t> passes;  ///< this many in all, those of a checkpoint included
     std::optional<double> seconds;  ///< wall time from RenderRequest::seconds_before on: ends as near to it
                                     ///< as whole passes allow, after one at least
-    std::optional<double> noise;    ///< Film::noise() of the finished picture, looked at from 8 passes on
+    std::optional<double> noise;    ///< Film::noise() of the finished picture, tested from 8 passes on
 };
 
 /// Passes first .. end - 1 of a picture, counted over all parts: one share of a render on several machines.
@@ -31,7 +31,7 @@ struct PassRange {
 /// Told after every pass.
 struct RenderProgress {
     std::uint32_t passes, passes_of_this_run;    ///< the first holds those of a checkpoint too
-    std::optional<std::uint32_t> passes_wanted;  ///< where a number was asked for
+    std::optional<std::uint32_t> passes_wanted;  ///< where a number was given
     double seconds, seconds_left;                ///< seconds_left < 0: unknown
     /// Film::noise() of the finished picture; infinity: not known yet. Refreshed twice a second at most; what
     /// Estimator::finish() takes from it is that of the last preview.
@@ -52,13 +52,13 @@ struct RenderRequest {
     std::string content_hash;          ///< of the scene, its files and the options that change the picture
     bool all_squares = false;          ///< the film keeps variances of all layers
     std::vector<HitFeature> features;  ///< become layers of the film, behind those of the integrator
-    std::function<bool(const Film&)> enough;  ///< a rule of the caller's, asked where the noise rule looks
+    std::function<bool(const Film&)> enough;  ///< a rule of the caller's, tested with the noise rule
     std::function<void(const RenderProgress&)> progress;  ///< called after every pass; may be empty
     /// Shown the picture so far, as Estimator::finish() leaves it, as soon as every part has a pass, after
     /// some seconds those that have one, and then now and then: it takes a twentieth of the time at most. May
     /// be empty.
     std::function<void(const Film&)> preview;
-    std::function<void(const std::string&)> checkpoint_failed;  ///< told at once; it is tried again later
+    std::function<void(const std::string&)> checkpoint_failed;  ///< called at once; retried later
     std::function<void()> building_is_over;           ///< called before the first pass; may be empty
     std::function<void()> passes_are_over;            ///< called before Estimator::finish; may be empty
     const std::atomic<bool>* interrupted = nullptr;   ///< set by Ctrl-C, and when the time is over

@@ -4,9 +4,9 @@
 // CameraSample::weight, over the number of light paths traced) that ends at x adds c f_j(x) to every pixel j
 // within the filter's reach. Eye paths of the same pixel need no such factor: they draw x by f_j itself.
 //
-// Whoever weighs both techniques against each other (multiple importance sampling) may leave the filter out
-// of the weights: let eye paths have the density of one ray a pixel, as RayImportance counts it. The weights
-// of one path then add up to 1 in every pixel, whatever f_j is there.
+// Multiple importance sampling of both techniques may leave the filter out of the weights: let eye paths have
+// the density of one ray a pixel, as RayImportance counts it. The weights of one path then add up to 1 in
+// every pixel, whatever f_j is there.
 #pragma once
 
 #include <algorithm>

@@ -15,7 +15,7 @@ struct Statistics {
     std::map<std::string, double> values;          ///< "vpls", "bound", ...
     std::vector<std::string> warnings;
     std::uint64_t non_finite_samples = 0;  ///< pixels of passes with NaN or infinity (not added to the film)
-    std::uint64_t clamped_samples = 0;     ///< 0 unless clamping was asked for
+    std::uint64_t clamped_samples = 0;     ///< 0 unless clamping is enabled
 };
 
 }  // namespace mote::core

@@ -44,7 +44,7 @@ inline bool must_stop(const StopRule& rule, const RenderState& state) {
     return rule.noise && state.passes >= noise_rule_from && state.noise <= *rule.noise;
 }
 
-/// Seconds until the first rule will hold, if passes go on as before; negative where unknown.
+/// Seconds until the first rule will hold, if passes take as long as before; negative where unknown.
 inline double seconds_left(const StopRule& rule, const RenderState& state) {
     double left = infinity;
     const double per_pass = state.seconds_per_pass();

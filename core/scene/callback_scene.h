@@ -1,5 +1,5 @@
-// Somebody else's scene from a handful of functions: what algorithms ask (ray_queries.h, lit_scene.h),
-// answered by callbacks of the renderer that has the scene.
+// Another renderer's scene from a handful of functions: the queries of algorithms (ray_queries.h,
+// lit_scene.h), answered by callbacks of the renderer that has the scene.
 //
 // The least is one function, the first hit. What is left empty follows from the others or is absent. One
 // medium may fill space; renderers with boundaries between media implement RayQueries themselves. Functions
@@ -16,7 +16,7 @@
 
 namespace mote::core {
 
-/// A surface of another renderer: it has a BSDF, and no geometry that mote would ask for. Hits point to it,
+/// A surface of another renderer: it has a BSDF, and no geometry that mote would query. Hits point to it,
 /// so it must outlive whatever is made of them.
 class ForeignSurface final : public Shape {
   public:
@@ -34,14 +34,15 @@ class ForeignSurface final : public Shape {
     std::size_t primitive_count() const override { return 0; }                ///< zero
 };
 
-/// The functions, and what else algorithms want to know. Rays are segments: only t in (t_min, t_max) counts.
+/// The functions, and the data that algorithms need besides. Rays are segments: only t in (t_min, t_max)
+/// counts.
 struct SceneCallbacks {
     /// The closest surface, with its `shape` and the shape's BSDF. Empty: there is no surface.
     std::function<std::optional<SurfaceHit>(const Ray&)> first_hit = {};
     /// Is there no surface? Empty: as first_hit says.
     std::function<bool(const Ray&)> visible = {};
     /// Sixteen segments at a time: sets t_max to -infinity where a surface is in the way. Lanes
-    /// with t_max < t_min ask for nothing. Empty: visible() for each lane.
+    /// with t_max < t_min are idle. Empty: visible() for each lane.
     std::function<void(std::span<ShadowPacket>)> find_occluded = {};
     /// The transmittance between two points per channel, or an estimate of it without bias; surfaces are not
     /// looked at. Empty: that of `medium`, 1 without.
@@ -49,7 +50,7 @@ struct SceneCallbacks {
     /// Fills all of space within its own bounds; null: vacuum. Its emission is not among the lights unless
     /// its emitter is one of them.
     std::shared_ptr<Medium> medium = {};
-    /// All lights; light paths start at them. May be empty for algorithms that ask for none.
+    /// All lights; light paths start at them. May be empty for algorithms that use none.
     std::vector<std::shared_ptr<Emitter>> emitters = {};
     /// Holds everything with a surface and all lights that have a position [m].
     Bounds3 bounds = {};
@@ -86,7 +87,7 @@ class CallbackScene final : public LitScene {
     float probability_by_power(const Emitter* emitter) const override;
     MediumState emitter_medium_state(const Emitter& emitter, const EmissionSample& sample) const override;
 
-    /// The media at any point: what the walks and maps of mote want to be told where they begin.
+    /// The media at any point, where the walks and maps of mote begin.
     MediumState medium_state() const;
 
   private:

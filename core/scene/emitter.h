@@ -106,7 +106,7 @@ class Emitter : public Object {
     /// at infinity, in media.
     virtual std::optional<LightBounds> bounds() const { return std::nullopt; }
 
-    /// The chance that Scene::choose_light() chooses this light, told once to lights without bounds().
+    /// Sets the probability of this light in Scene::choose_light(); called once for lights without bounds().
     virtual void set_direct_probability(float /*probability*/) {}
 
     /// Area lights belong to a shape.

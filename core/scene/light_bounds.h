@@ -20,7 +20,7 @@ struct LightBounds {
 /// Holds both.
 LightBounds united(const LightBounds& a, const LightBounds& b);
 
-/// Where light is asked for.
+/// Receiver of light.
 struct LightReceiver {
     Vec3 position{0, 0, 0};  ///< [m]
     Vec3 normal{0, 0, 0};    ///< unit, on the side from which light counts; zero: it counts from all sides

@@ -51,7 +51,7 @@ LightImportances light_importances(const LightGroups& g, const LightReceiver& re
         const float x = g.center_x[i] - p.x, y = g.center_y[i] - p.y, z = g.center_z[i] - p.z;
         const float distance2 = x * x + y * y + z * z, radius2 = g.radius[i] * g.radius[i];
         const float distance = std::sqrt(std::max(distance2, 1e-30f));
-        // Within the sphere the distance says nothing: its radius stands for it.
+        // Within the sphere the distance says nothing: its radius replaces it.
         const float d2 = std::max(std::max(distance2, radius2), 1e-30f), per_d = 1.0f / std::sqrt(d2);
 
         const float along = -(g.axis_x[i] * x + g.axis_y[i] * y + g.axis_z[i] * z);

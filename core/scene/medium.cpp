@@ -1,4 +1,4 @@
-// Marching through media, and scattering along a ray, for those that know nothing better.
+// Marching through media, and scattering along a ray, for media without better methods.
 #include "core/scene/medium.h"
 
 #include <cmath>

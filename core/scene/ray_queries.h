@@ -34,10 +34,10 @@ class RayQueries {
     virtual void find_occluded(std::span<ShadowPacket> packets) const = 0;
 
     /// Can anything between two points that see each other take light away? If not, transmittance() is 1
-    /// everywhere and need not be asked for.
+    /// everywhere and need not be estimated.
     virtual bool attenuates() const = 0;
     /// The transmittance per channel from one point to another through all media and boundaries, estimated
-    /// without bias; surfaces are not looked at. `state` holds the media at `from`.
+    /// without bias; surfaces are not tested. `state` holds the media at `from`.
     virtual Rgb transmittance(const Vec3& from, const Vec3& to, const MediumState& state, Rng& rng,
                               TrackingCounters& counters) const = 0;
     /// Transmittance as a connection to a light, for multiple importance sampling (see Medium::connect).

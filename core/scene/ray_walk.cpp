@@ -39,7 +39,8 @@ float margin_at(const SurfaceHit& hit, const Ray& ray) {
 }
 
 /// A collision so near to what lies before or behind it (or null) that its position, once rounded, could be
-/// on the other side is moved off it: the path would go on in a medium that it is not in, and never leave it.
+/// on the other side is moved off it: the path would continue in a medium that it is not in, and never leave
+/// it.
 float kept_between(const SurfaceHit* before, float t, const SurfaceHit* behind, const Ray& ray) {
     const float near = before ? before->t + margin_at(*before, ray) : ray.t_min;
     const float far = behind ? behind->t - margin_at(*behind, ray) : infinity;

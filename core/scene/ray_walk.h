@@ -21,7 +21,7 @@ struct WalkContext {
     RayCounters rays;
     TrackingCounters tracking;
     std::vector<SurfaceHit> boundary_hits;  ///< up to the first surface on the last ray; reused between rays
-    CancelToken cancelled;                  ///< walk() looks at it, and throws
+    CancelToken cancelled;                  ///< walk() tests it, and throws
 };
 
 /// The channel that drives the distances of a path, drawn once a path (PathWeights::hero).
@@ -39,7 +39,7 @@ struct WalkEvent {
     const Medium* medium = nullptr;     ///< collision only
 };
 
-/// Throws Cancelled when the context asks for it. Advances along `ray` and updates `state` (media at the
+/// Throws Cancelled when the context is cancelled. Advances along `ray` and updates `state` (media at the
 /// end), `weights` (see Medium::sample_collision) and `emitted` (emission of media met on the way). `Media` =
 /// false compiles the media away: state and emitted are left alone, weights where there are no panes.
 template <bool Media>

@@ -6,7 +6,7 @@
 
 namespace mote::core {
 
-/// A path that came to the vertex from `vertex.wo` in `mode` goes on in direction wi. This is the density,
+/// A path that came to the vertex from `vertex.wo` in `mode` continues in direction wi. This is the density,
 /// per solid angle, with which a path of the other mode that comes from wi is scattered to vertex.wo. Zero
 /// for delta parts, as vertex.pdf_solid_angle() is.
 inline float reverse_pdf_solid_angle(const ScatteringVertex& vertex, const Vec3& wi, TransportMode mode) {

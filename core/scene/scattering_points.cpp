@@ -13,7 +13,7 @@ void ScatteringPoints::begin_part(const MediumState& state) { parts_.push_back(s
 
 void ScatteringPoints::add(const Vec3& position, const Rgb& weight) {
     if (count_ == 0 || !(max_component(weight) > 0.0f)) return;
-    if (candidates_.size() == most_candidates) {  // half as many stand for them, with the same mean
+    if (candidates_.size() == most_candidates) {  // half as many replace them, with the same mean
         draw(candidates_, most_candidates / 2, chosen_);
         candidates_.swap(chosen_);
     }

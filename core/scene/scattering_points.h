@@ -1,4 +1,4 @@
-// Points of a ray where light scatters towards its start: a few of them stand for the integral along all of
+// Points of a ray where light scatters towards its start: a few of them estimate the integral along all of
 // it.
 //
 // One walk along the ray (walk_to_surface(), ray_walk.h) finds what comes through to its end and leaves any
@@ -29,7 +29,7 @@ class ScatteringPoints {
     /// `count` points a ray; 0: what comes through alone is wanted.
     explicit ScatteringPoints(int count) : count_(count) {}
     int count() const { return count_; }
-    /// How many candidates a medium should offer, where it is free to choose.
+    /// Number of candidates that a medium should submit, where it is free to choose.
     int candidates() const { return 4 * std::max(count_, 1); }
 
     /// Begins a ray; `rng` is drawn from where there are too many candidates to keep, and in choose().

@@ -1,4 +1,4 @@
-// A complete scene: shapes, lights, media, the ray tracer, and the answers to what algorithms ask of it.
+// A complete scene: shapes, lights, media, the ray tracer, and the queries of algorithms.
 #pragma once
 
 #include <map>
@@ -64,7 +64,7 @@ class Scene final : public LitScene {
     const Camera& camera() const { return *parts_.camera; }  ///< of the scene
     /// The one that the file names, or null.
     const Integrator* integrator() const { return parts_.integrator.get(); }
-    const FilmSettings& film() const { return parts_.film; }  ///< what the file asks for
+    const FilmSettings& film() const { return parts_.film; }  ///< settings of the file
     FilmSettings& film() { return parts_.film; }              ///< may be changed before a render
     const Parts& parts() const { return parts_; }             ///< what it was made of
     const RayTracer& rays() const { return *rays_; }          ///< its shapes in Embree

@@ -71,7 +71,7 @@ Crossings crossings_of(const Shape& shape, const std::vector<SurfaceHit>& hits, 
 
 }  // namespace
 
-/// The hits along each of the probe directions from a point, found when they are asked for.
+/// The hits along each of the probe directions from a point, found when they are needed.
 class ProbeRays {
   public:
     ProbeRays(const RayTracer& rays, const Vec3& p) : rays_(rays), p_(p) {}

@@ -1,4 +1,4 @@
-// The medium around everything: one for the whole scene, whoever names it.
+// The medium around everything: one for the whole scene, whichever element names it.
 //
 // The sensor, a light, or a shape by its exterior: each may name it, and one name is enough for all that lies
 // outside of all shapes. Who is inside of a shape says nothing about what is outside. Two names are an error,

@@ -1,7 +1,7 @@
 // The transmittance along one ray to growing distances, from one walk.
 //
 // Estimates of neighbouring segments are independent, so their product is an unbiased estimate of the
-// transmittance to every distance asked for, and all of them together cost what one estimate to the farthest
+// transmittance to every requested distance, and all of them together cost what one estimate to the farthest
 // costs.
 #pragma once
 
@@ -24,7 +24,7 @@ class TransmittanceAlong {
 
     /// Estimate per channel of the transmittance from ray.t_min to `t`, which must not be nearer than before.
     Rgb advance_to(float t);
-    /// The media at the last distance asked for.
+    /// The media at the last requested distance.
     const MediumState& state() const { return state_; }
 
   private:

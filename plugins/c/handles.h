@@ -43,8 +43,8 @@ T& required(T* pointer, const char* name) {
     return *pointer;
 }
 
-/// Options as this library knows them: from null (defaults), from an older header (the rest is zero), or from
-/// a newer one whose further members are zero. `smallest` is the size of the first version. Throws
+/// Options in this library's own version: from null (defaults), from an older header (the rest is zero), or
+/// from a newer one whose further members are zero. `smallest` is the size of the first version. Throws
 /// InvalidArgument.
 template <typename Options>
 Options known_options(const Options* given, std::size_t smallest = sizeof(Options)) {

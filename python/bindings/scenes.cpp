@@ -46,7 +46,7 @@ void add_grid(SceneTree& tree, const std::string& name, const Floats& values, co
 
 using Defines = std::vector<std::pair<std::string, std::string>>;
 
-/// Loading takes long: other threads of Python go on meanwhile.
+/// Loading takes long: other threads of Python run meanwhile.
 template <typename Load>
 LoadedScene load(const std::string& integrator, const Defines& defines, bool lenient, const Load& load_now) {
     const session::SceneChanges changes{integrator, defines, lenient};

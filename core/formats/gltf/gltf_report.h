@@ -14,7 +14,7 @@ struct GltfFault {
 
 struct GltfReport {
     std::vector<GltfFault> faults;
-    std::vector<std::string> notes;  ///< what the user should know, and what changes nothing
+    std::vector<std::string> notes;  ///< information for the user that changes nothing
 
     /// Each once.
     void fault(const std::string& what, const std::string& done) {

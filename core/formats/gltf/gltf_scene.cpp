@@ -14,7 +14,7 @@
 namespace mote::core {
 namespace {
 
-/// Read here, harmless, or told of where they are met.
+/// Read here, harmless, or reported where they are met.
 const std::set<std::string>& known_extensions() {
     static const std::set<std::string> known = {
         "KHR_lights_punctual",        "KHR_materials_emissive_strength",

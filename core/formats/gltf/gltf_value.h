@@ -1,6 +1,6 @@
 // One value of a glTF document, and where it stands there: "materials[3].emissiveFactor".
 //
-// Whatever is not of the kind that is asked for is an InputError with that place. A value that is not there
+// A value that is not of the requested kind is an InputError with that place. A value that is not there
 // is a value too: it has no members, is an empty list, and gives the defaults.
 #pragma once
 

@@ -20,7 +20,7 @@ void remove_folder(const std::string& path) {
     fs::remove_all(path, ignored);
 }
 
-/// Holds nothing open but the pipe: whoever waits for the end of our output must not wait for this.
+/// Holds nothing open but the pipe: a reader that waits for the end of our output must not wait for this.
 void close_all_but(int kept) {
     ::dup2(kept, 0);
     if (::close_range(1, ~0u, 0) == 0) return;

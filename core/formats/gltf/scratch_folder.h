@@ -1,4 +1,4 @@
-// A folder for files that nobody keeps.
+// A folder for temporary files.
 #pragma once
 
 #include <sys/types.h>

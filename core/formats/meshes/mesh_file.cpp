@@ -36,7 +36,7 @@ std::string counted(std::size_t n, const char* singular, const char* plural, con
     return std::to_string(n) + " " + (n == 1 ? singular : plural) + " " + what;
 }
 
-/// Normals and texture coordinates that are not finite become zero, which stands for "none".
+/// Normals and texture coordinates that are not finite become zero, which means "none".
 void repair(MeshData& data, std::vector<std::string>& notes) {
     std::size_t normals = 0, uvs = 0;
     for (Vec3& n : data.normals)

@@ -7,7 +7,7 @@
 
 namespace mote::core {
 
-/// A little-endian PLY file, with the names that Mitsuba knows for normals, texture coordinates and
+/// A little-endian PLY file, with Mitsuba's names for normals, texture coordinates and
 /// attributes.
 std::string ply_bytes(const MeshData& mesh);
 

@@ -37,7 +37,7 @@ T number_at(std::string_view bytes, std::size_t at) {
     return value;
 }
 
-/// Bytes out of a zlib stream, as many as are asked for.
+/// Bytes out of a zlib stream, as many as are requested.
 class Inflater {
   public:
     Inflater(std::string_view packed, const SourceLocation& where) : where_(where) {

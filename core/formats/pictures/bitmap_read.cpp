@@ -1,6 +1,6 @@
 // Bitmaps of any common kind as linear RGB: OpenEXR through our own reader, all others through OpenImageIO.
 //
-// The kind is found from the first bytes, and only that kind's reader is asked: OpenImageIO itself would try
+// The kind is found from the first bytes, and only that kind's reader is called: OpenImageIO itself would try
 // every reader it has, video and volumes included, on a file that it does not know.
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -92,7 +92,7 @@ Decoded decode(const std::string& kind, std::vector<std::byte> bytes, std::size_
     // write three where they made room for one.
     config.attribute("bmp:monochrome_detect", 0);
     if (!input->set_ioproxy(&memory)) throw InputError("OpenImageIO reads " + kind + " from files alone");
-    // OpenImageIO knows that libpng failed; why, libpng has printed.
+    // OpenImageIO reports that libpng failed; libpng has printed the reason.
     const auto damaged = [&] {
         const std::string printed = quiet.last_line(), told = printable(input->geterror());
         return InputError("damaged picture: " + told +

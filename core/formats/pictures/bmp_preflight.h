@@ -1,6 +1,6 @@
 // A look at an untrusted BMP file before OpenImageIO sees it.
 //
-// OpenImageIO 2.4 believes a BMP header: it decodes runs in a file of 24 bits with the palette that such a
+// OpenImageIO 2.4 trusts a BMP header: it decodes runs in a file of 24 bits with the palette that such a
 // file has not, and reads in front of nothing. Earlier versions also take colours past a palette's end from
 // what lies behind it. This walk holds the header, the palette and every pixel that names a colour against
 // each other and against the size of the file.

@@ -1,7 +1,7 @@
 // A look at the header of an untrusted OpenEXR file before the library sees it.
 //
 // The library allocates what a header declares, and looks for every chunk that it promises, before it finds
-// out that the file is a hundred bytes long. This walk over the header believes nothing: every size that is
+// out that the file is a hundred bytes long. This walk over the header trusts nothing: every size that is
 // declared is held against the size of the file and against fixed limits.
 #pragma once
 

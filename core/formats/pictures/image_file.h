@@ -20,7 +20,7 @@ namespace mote::core {
 std::uint64_t write_exr(const std::string& path, const ImageChannels& image, bool half = false);
 /// Reads a scan-line or tiled OpenEXR. Throws InputError naming the file for anything damaged or too large.
 ImageChannels read_exr(const std::string& path);
-/// Its metadata alone, from the header: no pixel is looked at.
+/// Its metadata alone, from the header: no pixel is read.
 std::map<std::string, std::string> read_exr_metadata(const std::string& path);
 
 /// 8-bit sRGB preview: exposure in stops, then clipped. Values that are not finite are shown in magenta.

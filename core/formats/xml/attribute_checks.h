@@ -6,7 +6,7 @@
 
 namespace mote::core {
 
-/// Throws InputError, at the texture, where a BSDF or light nested in `element` asks for an attribute that
+/// Throws InputError, at the texture, where a BSDF or light nested in `element` requires an attribute that
 /// `shape` has not, or that holds values which are no reflectances (in a BSDF) or negative (in a light).
 /// Precondition: the nested objects have been made, so that nothing refers to itself.
 void check_mesh_attributes(const Element& element, const Shape& shape, const IdTable& ids);

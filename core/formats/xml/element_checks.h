@@ -30,8 +30,8 @@ using IdTable = std::map<std::string, const Element*>;
 IdTable collect_ids(const Element& scene, Faults& faults);
 /// The table; throws InputError for an id that is given twice.
 IdTable collect_ids(const Element& scene);
-/// The element that a nested object stands for: itself, or what a <ref> names. Throws InputError for an
-/// unknown id, with the nearest one.
+/// The element of a nested object: itself, or what a <ref> names. Throws InputError for an unknown id, with
+/// the nearest one.
 const Element& resolve(const Element& child, const IdTable& ids);
 
 /// Checks that nested objects and references are of a category that their parent takes.

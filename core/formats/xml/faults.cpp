@@ -22,7 +22,7 @@ std::vector<InputError> in_file_order(const std::vector<Fault>& faults,
         return it == files.end() ? std::ptrdiff_t(-1) : it - files.begin();
     };
     std::vector<InputError> errors;
-    std::set<std::string> seen;  // what several refer to is told once
+    std::set<std::string> seen;  // what several refer to is reported once
     for (const Fault& fault : faults)
         if (seen.insert(fault.error.what()).second) errors.push_back(fault.error);
     std::stable_sort(errors.begin(), errors.end(), [&](const InputError& a, const InputError& b) {

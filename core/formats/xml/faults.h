@@ -1,8 +1,8 @@
-// Errors of a scene: collected while the loader goes on, so that one run tells all of it.
+// Errors of a scene: collected while the loader continues, so that one run reports all of them.
 //
-// A fault belongs to an element of the scene, or to none (the command line). Whoever finds one goes on with
-// the next element; an object with a fault below it is not made, and neither are those that need it, without
-// a further word. Nobody throws for a scene's fault but throw_all().
+// A fault belongs to an element of the scene, or to none (the command line). A check that finds one continues
+// with the next element; an object with a fault below it is not made, and neither are those that need it,
+// without a further word. Nobody throws for a scene's fault but throw_all().
 #pragma once
 
 #include <set>
@@ -31,7 +31,7 @@ struct Fault {
 
 class Faults {
   public:
-    /// Throws SceneErrors with the 1000th: a file of such faults has told enough.
+    /// Throws SceneErrors with the 1000th: more would tell the user nothing new.
     void add(const Element* element, InputError error);
     /// Runs f and takes up the InputError that it may throw. Returns whether there was none.
     template <typename F>

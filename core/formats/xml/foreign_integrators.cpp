@@ -137,7 +137,7 @@ Faults faults_of(Element& alone, const Registry& registry) {
     return faults;
 }
 
-/// The integrator becomes one of another type, with the parameters that it knows.
+/// The integrator becomes one of another type, with the parameters that it has.
 void replace_type(SceneDocument& document, const std::string& type, const Registry& registry) {
     Element& element = own_integrator(document, type);
     const Manual* own = registry.find(Category::integrator, element.get("type"));

@@ -9,11 +9,11 @@
 
 namespace mote::core {
 
-/// Replaces the integrators that Mitsuba knows and `registry` does not by what computes the same picture,
+/// Replaces the integrators that Mitsuba has and `registry` has not by what computes the same picture,
 /// each with a warning: a nested one of aov, moment and stokes takes their place. The `aovs` of aov go to
 /// document.features.
 void replace_foreign_integrators(SceneDocument& document, const Registry& registry);
-/// --integrator: the type that the command line asks for, with the parameters of the file that it knows.
+/// --integrator: the type that the command line names, with those parameters of the file that it has.
 /// Whatever is wrong with the file's own integrator is a warning. Throws InputError for an unknown type.
 void override_integrator(SceneDocument& document, const std::string& type, const Registry& registry);
 

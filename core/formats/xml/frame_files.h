@@ -12,7 +12,7 @@ namespace mote::core {
 /// there is no such run.
 std::optional<std::string> with_frame_number(const std::string& name, int number);
 
-/// Puts the number into every file name of the scene that asks for one.
+/// Puts the number into every file name of the scene that has a placeholder for one.
 void number_files(Element& scene, int number);
 
 }  // namespace mote::core

@@ -24,7 +24,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
     return text;
 }
 
-/// Throws what is being handled, under the names that the user knows.
+/// Rethrows what is being handled, under the names that the user gave.
 [[noreturn]] void rethrow_renamed(const std::string& from, const std::string& to) {
     try {
         throw;

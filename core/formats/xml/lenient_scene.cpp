@@ -64,7 +64,7 @@ class Remedy {
         note(error, "ignored");
         return true;
     }
-    /// A value that the object cannot be made with, where the error tells its line.
+    /// A value that the object cannot be made with, where the error names its line.
     bool mend_value(Element& e, Category category, const InputError& error) {
         const auto culprit = std::find_if(e.children.begin(), e.children.end(), [&](const Element& c) {
             return is_value_tag(c.tag) && c.where.line != e.where.line &&

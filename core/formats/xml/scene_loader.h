@@ -22,7 +22,7 @@ namespace mote::core {
 /// Files, warnings and approximations of loading.
 struct LoadReport {
     std::vector<std::string> approximations;  ///< what leniency left out or replaced, and why
-    std::vector<std::string> features;        ///< layers of the first hit that the file asks for
+    std::vector<std::string> features;        ///< layers of the first hit that the file requests
 };
 
 /// Changes of a scene by the caller, and how strictly it is read.
@@ -30,7 +30,7 @@ struct LoadOptions {
     /// -D name=value: `name` is a $parameter of the file, or a path such as "integrator.paths" or
     /// "film.width". One that nothing used is an error.
     std::vector<std::pair<std::string, std::string>> defines;
-    /// Replaces the type of the file's integrator; its parameters are kept where the new type knows them, and
+    /// Replaces the type of the file's integrator; its parameters are kept where the new type has them, and
     /// whatever is wrong with them is a warning.
     std::string integrator;
     /// Stands in where the file has no integrator, or one of a type that is not known (a warning); empty: the
@@ -50,7 +50,7 @@ std::unique_ptr<Scene> load_scene(const std::string& path, const Registry& regis
 /// checked against the manual pages. build_scene() makes the scene of them.
 SceneDocument load_scene_elements(const std::string& path, const Registry& registry,
                                   const LoadOptions& options = {});
-/// Loads a scene from text; relative file names are looked up in `folder`. `name` stands for the file in
+/// Loads a scene from text; relative file names are looked up in `folder`. `name` is the file's name in
 /// messages.
 std::unique_ptr<Scene> load_scene_from_string(const std::string& xml, const std::string& folder,
                                               const Registry& registry, const LoadOptions& options = {},

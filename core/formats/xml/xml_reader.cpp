@@ -171,7 +171,7 @@ class Reader {
             include(parent, child, included);
     }
 
-    /// Does what the element asks for; the file of an <include> is left to the caller.
+    /// Applies the element; the file of an <include> is left to the caller.
     void obey(const Element& e, int depth, std::string& included) {
         if (!e.children.empty())
             throw InputError("<" + e.tag + "> holds no other elements", e.children.front().where);

@@ -14,7 +14,7 @@ struct SceneDocument {
     std::vector<std::string> files;         ///< every XML file read
     std::vector<std::string> search_paths;  ///< the scene's folder, then those of <path>
     std::vector<std::string> warnings;
-    std::vector<std::string> features;        ///< layers of the first hit that the scene asks for
+    std::vector<std::string> features;        ///< layers of the first hit that the scene requests
     std::vector<std::string> approximations;  ///< what leniency left out or replaced
 };
 
