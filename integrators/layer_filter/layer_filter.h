@@ -38,7 +38,7 @@ class LayerFilter {
     LayerFilter(const core::Scene& scene, const core::RenderOptions& options,
                 const LayerFilterParameters& parameters);
 
-    /// Sets the means of these layers to the filtered ones. A film of fewer than two passes knows no variance
+    /// Sets the means of these layers to the filtered ones. A film of fewer than two passes has no variance
     /// and stays as it is. Throws std::invalid_argument where a layer has no squares, and Cancelled.
     void apply(core::Film& film, std::span<const Choice> layers, core::CancelToken cancelled = {});
 

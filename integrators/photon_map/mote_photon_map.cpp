@@ -4,7 +4,7 @@
 // them as discs (the beam radiance estimate, Jarosz et al. 2008). Kernels hold the k nearest photons in the
 // first pass and shrink from pass to pass (Knaus & Zwicker 2011), so that the mean over passes converges to
 // the true picture: biased after any number of passes, unbiased in the limit. Direct light, and single
-// scattering unless it is asked of the photons, are sampled as in `mote_vpl`.
+// scattering unless it is estimated by photons, are sampled as in `mote_vpl`.
 #include <fmt/format.h>
 
 #include "gathering/photon_maps/photon_tracer.h"

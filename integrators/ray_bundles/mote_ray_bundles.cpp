@@ -1,9 +1,9 @@
 // `mote_ray_bundles`: light exchanged between all surfaces at once along global directions (Hermes 2010).
 //
 // Surfaces are an atlas of texels. Every pass exchanges radiance along the bundles of its own directions
-// (gathering/radiance_exchange) and then looks at the atlas from the eye. The mean over passes converges to
-// the picture of the atlas: biased by the size of texels, and by what the first batches of directions do not
-// know of long paths yet.
+// (gathering/radiance_exchange) and then views the atlas from the eye. The mean over passes converges to
+// the picture of the atlas: biased by the size of texels, and by the long paths that the first batches of
+// directions lack.
 #include <fmt/format.h>
 
 #include "integrators/eye_path/counters.h"

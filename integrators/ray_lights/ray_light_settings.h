@@ -19,7 +19,7 @@ struct RayLightSettings {
     std::optional<float> bound;    ///< b of VPLs from surface to surface [1/m^2]; nothing: automatic
     int scattering_points = 8;     ///< where an eye ray in media looks for the light of lights
 
-    /// As that of mote_vpl, by how many light paths a receiver looks at the lights of. Never that of fewer
+    /// As that of mote_vpl, by how many light paths a receiver evaluates the lights of. Never that of fewer
     /// than 16: where the radius is that of the scene, all light would be found by eye paths.
     float bound_for(const core::Bounds3& bounds) const {
         if (bound) return *bound;

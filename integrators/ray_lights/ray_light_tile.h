@@ -1,10 +1,10 @@
 // The eye paths of a 4x4 tile of pixels of `mote_ray_lights`.
 //
-// A path goes on to its first surface that is no mirror and no glass. Media before it are lines, which gather
-// ray lights and the VPLs on surfaces all along; lights themselves are looked for at a few scattering points
-// of each. The surface gathers ray lights, and VPLs with a bounded geometry term. What the bound takes comes
-// back exactly: the path goes on, and where it finds the next surface so near that G > b, that one is a
-// receiver as well, weighed by (G - b)/G, and so on.
+// A path continues to its first surface that is no mirror and no glass. Media before it are lines, which
+// gather ray lights and the VPLs on surfaces all along; lights themselves are looked for at a few scattering
+// points of each. The surface gathers ray lights, and VPLs with a bounded geometry term. What the bound takes
+// comes back exactly: the path continues, and where it finds the next surface so near that G > b, that one is
+// a receiver as well, weighed by (G - b)/G, and so on.
 #pragma once
 
 #include <array>
@@ -93,7 +93,7 @@ class RayLightTile {
         return most < 0 ? std::numeric_limits<std::int32_t>::max() : std::max(0, most - eye_depth - 1);
     }
 
-    /// Follows one eye path to its next vertex, and makes a receiver of it. Returns whether it goes on.
+    /// Follows one eye path to its next vertex, and makes a receiver of it. Returns whether it continues.
     bool advance(Lane& lane, int index) {
         EyePath<Media>& path = *lane.path;
         const bool first = path.scatterings() == 0 && (path.depth() == 0 || !path.vertex().connectable());
@@ -155,7 +155,7 @@ class RayLightTile {
     }
 
     /// At a vertex behind the first: (G - b)/G of the edge that led there. Returns whether anything is left;
-    /// mirrors and glass send what no VPL stands for.
+    /// mirrors and glass send what no VPL represents.
     bool keep_residual(Lane& lane) {
         EyePath<Media>& path = *lane.path;
         const core::ScatteringVertex& vertex = path.vertex();
@@ -243,7 +243,7 @@ class RayLightTile {
         for (std::size_t i = 0; i < lane_count; ++i) lanes_[i].sum[layer] += light[i];
     }
 
-    /// Scattering points that carry less than this share of the light are looked at by chance.
+    /// Scattering points that carry less than this share of the light are evaluated by Russian roulette.
     static constexpr float rare_light = 0.3f;
 
     const core::Scene& scene_;

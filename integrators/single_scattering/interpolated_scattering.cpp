@@ -74,7 +74,7 @@ bool InterpolatedScattering::upsample(const PassContext& context, const PassNumb
 auto InterpolatedScattering::find_lines(const PassNumbers& numbers, const InScattering& light,
                                         const InScatteringRays& source,
                                         const EpipolarPicture::Loop& loop) const -> Lines {
-    // Closer to the eye than this, single precision leaves no direction to tell lines apart.
+    // Closer to the eye than this, single precision leaves no direction to distinguish lines.
     const double nearest = 1e-5 * std::max(1e-30, double(scene_.bounds().radius()));
     const FilmPoint at = FilmProjection(scene_.camera(), options_.width, options_.height, numbers.lens)
                              .project(Vec3d(light.light_position()), nearest);

@@ -33,7 +33,7 @@ struct ScatteringCounts {
 
 class InterpolatedScattering {
   public:
-    /// Keeps references to all of them. The settings must not ask for every pixel.
+    /// Keeps references to all of them. The settings must not request every pixel.
     InterpolatedScattering(const core::Scene& scene, const core::RenderOptions& options,
                            const ScatteringSettings& settings, SharedCounters& counters)
         : scene_(scene), options_(options), settings_(settings), counters_(counters) {}

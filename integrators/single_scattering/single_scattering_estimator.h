@@ -66,7 +66,7 @@ constexpr TransportSet scattering_cell(ScatteringLights lights) {
     }
 }
 
-/// emission, direct, and where there are media single_scattering, and the marched rays when asked for.
+/// emission, direct, and where there are media single_scattering, and the marched rays when requested.
 std::vector<core::Layer> single_scattering_layers(bool media, const ScatteringSettings& settings);
 
 /// Plan entries of both integrators.

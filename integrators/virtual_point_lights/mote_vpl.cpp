@@ -3,7 +3,7 @@
 // Every pass traces a fresh set of light paths, leaves a VPL at each of their vertices, and gathers all of
 // them at the first connectable vertex of every pixel's eye path: on a surface, or where delta tracking met
 // the medium (Engelhardt 2013, Eqs. 10.4 to 10.9). Light from the primary lights that scatters once is
-// computed apart, by next-event estimation and scattering directions, so VPLs stand for everything that
+// computed apart, by next-event estimation and scattering directions, so VPLs represent everything that
 // scatters at least twice.
 //
 // The geometry term G* of a connection is bounded by b (Sec. 10.1.3), which removes the bright splotches

@@ -21,7 +21,7 @@ struct GatherSize {
 double depth_of_media(const core::Scene& scene);
 
 /// The choice by docs/many_lights.md: brute force costs lights times receivers; the others differ in what
-/// they know before they trace a ray, and that is worth most where most lights are hidden.
+/// they use before they trace a ray, and that is worth most where most lights are hidden.
 void plan_selection_advice(core::Plan& plan, const GatherSize& size);
 
 }  // namespace mote::integrators

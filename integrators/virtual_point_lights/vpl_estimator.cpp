@@ -214,7 +214,7 @@ class VplEstimator final : public Estimator {
         return {int(n), int(at % n), int(at / n)};
     }
 
-    /// Pixels between the lattice: those that find nobody alike once more, with their VPLs, the others by
+    /// Pixels between the lattice: those without similar neighbours once more, with their VPLs, the others by
     /// neighbours.
     bool upsample(const PassContext& context, const SharedPixels& shared, const lights::VplSet& vpls,
                   PassImage& image) {
@@ -254,7 +254,7 @@ class VplEstimator final : public Estimator {
         return (std::size_t(column) % n + n * (std::size_t(row) % n) + start + context.index) % (n * n);
     }
 
-    /// The pixels of the lanes, which have one share of the VPLs. `shared` is told what they see.
+    /// The pixels of the lanes, which have one share of the VPLs. `shared` receives what they see.
     void render_lanes(const PassContext& context, PassImage& image, EyeTile<Media>& tile, const Lanes& lanes,
                       SharedPixels* shared) const {
         const glm::ivec2 first = lanes[0];  // the others lie to the right and below

@@ -1,5 +1,5 @@
 // The passes of `mote_vpl`: a fresh set of light paths each, gathered at the eye path of every pixel, with
-// the compensation that is asked for.
+// the compensation that the settings select.
 #pragma once
 
 #include "core/render/integrator.h"

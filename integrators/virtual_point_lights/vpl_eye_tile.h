@@ -1,10 +1,10 @@
 // The eye paths of a 4x4 tile of pixels, advanced together to their connectable vertices, where all VPLs are
 // gathered at once (lights/virtual_lights/vpl_gather.h).
 //
-// With scattering points a path goes on to its first surface, and gathers there and at K points of the media
-// before it (core/scene/scattering_points.h): at each of them the light of lights, and every K-th VPL, which
-// counts K times. So the points of a ray cost no more VPLs than one collision does. Which point meets which
-// VPLs is random, so that the sum is unbiased.
+// With scattering points a path continues to its first surface, and gathers there and at K points of the
+// media before it (core/scene/scattering_points.h): at each of them the light of lights, and every K-th VPL,
+// which counts K times. So the points of a ray cost no more VPLs than one collision does. Which point meets
+// which VPLs is random, so that the sum is unbiased.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@
 
 namespace mote::integrators {
 
-/// Advances the lanes from one connectable vertex to the next, until no eye path goes on.
+/// Advances the lanes from one connectable vertex to the next, until every eye path has ended.
 template <bool Media>
 class EyeTile {
   public:
@@ -200,8 +200,8 @@ class EyeTile {
         if (at_vertex && path.depth() == 1) lane.seen = see_first_segment(scene_, path, lane.film);
         return at_vertex;
     }
-    /// Does a path whose media let little through go on behind them? By chance, which its weight makes up
-    /// for.
+    /// If true, a path whose media let little through continues behind them: by chance, which its weight
+    /// makes up for.
     bool survives(EyePath<Media>& path) {
         const float stays = core::max_component(path.throughput()) / rare_light;
         if (stays >= 1.0f) return true;
@@ -210,7 +210,7 @@ class EyeTile {
         return true;
     }
 
-    /// Light of lights at a point. `share` above 0: it is a receiver, too, and stands for so many points.
+    /// Light of lights at a point. `share` above 0: it is a receiver, too, and counts as so many points.
     void at_point(Lane& lane, int index, const core::ScatteringPoint& point, float share) {
         if (core::is_black(point.weight)) return;
         walk_.rng = lane.rng;

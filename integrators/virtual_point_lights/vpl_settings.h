@@ -46,7 +46,7 @@ struct VplSettings {
         return !compensation.enabled || compensation.strategy == compensation::Strategy::one_to_one;
     }
 
-    /// b from the size of the shapes and the number of light paths: inside r = b^(-1/2) a VPL stands for the
+    /// b from the size of the shapes and the number of light paths: inside r = b^(-1/2) a VPL represents the
     /// light of the paths around it, and N paths spread over a scene of radius R are about R / sqrt(N) apart.
     float bound_for(const core::Bounds3& bounds) const {
         if (!bounded) return core::infinity;

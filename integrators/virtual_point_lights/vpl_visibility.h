@@ -20,7 +20,7 @@ struct VisibilitySettings {
     lights::ImperfectMapSettings imperfect_map;
     core::SourceLocation where;
 
-    /// Maps are used: they are asked for, and there are media.
+    /// Maps are used: they are enabled, and there are media.
     bool used_in(const core::Scene& scene) const { return shadow_maps && scene.has_media(); }
     /// Throws InputError with its place when a map of this scene would be larger than the limit.
     void check(const core::Scene& scene) const;

@@ -69,8 +69,8 @@ struct OctahedralMap {
                 c.weights()};
     }
 
-    /// The texel that lies at column i of row j, both in [-1, size]: beyond an edge the map goes on where the
-    /// edge is met again, turned by half a circle about the edge's middle.
+    /// The texel that lies at column i of row j, both in [-1, size]: beyond an edge the map continues where
+    /// the edge is met again, turned by half a circle about the edge's middle.
     int folded(int i, int j) const {
         const int last = size - 1;
         const int row = unsigned(i) > unsigned(last) ? last - j : j;

@@ -32,7 +32,7 @@ struct SpotSettings {
 /// A cone of light.
 std::shared_ptr<core::Emitter> make_spot_light(const SpotSettings& settings);
 
-/// A picture thrown along +z of to_world (which must not scale): on a surface that faces the projector at
+/// A picture projected along +z of to_world (which must not scale): on a surface that faces the projector at
 /// distance 1 it gives the irradiance pi times `scale` times `irradiance` [W/m^2]. Null: white.
 struct ProjectorSettings {
     core::Transform to_world{};     ///< of the projector

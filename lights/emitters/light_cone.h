@@ -15,7 +15,7 @@ struct LightCone {
                             ///< varies smoothly; 0: nothing is known [radians]
 };
 
-/// A light that knows its cone. Emitters that are none shine everywhere.
+/// A light with a cone. Emitters that are none shine everywhere.
 class ConeLight {
   public:
     virtual ~ConeLight() = default;

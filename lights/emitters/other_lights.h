@@ -10,7 +10,7 @@ namespace mote::lights {
 
 class OtherLights final : public core::LitScene {
   public:
-    /// `scene` must outlive this. Each draw asks for the probabilities of all that are left out: a few.
+    /// `scene` must outlive this. Each draw evaluates the probabilities of all that are left out: a few.
     OtherLights(const core::LitScene& scene, std::vector<const core::Emitter*> left_out);
 
     /// Is there any other light?

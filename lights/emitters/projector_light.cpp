@@ -1,4 +1,4 @@
-// The projector: a picture thrown through a pinhole, the perspective camera turned round. Mitsuba 3's
+// The projector: a picture projected through a pinhole, the perspective camera turned round. Mitsuba 3's
 // definition: on the plane at distance 1 a surface that faces the projector receives pi times the picture, so
 // that the radiant intensity is
 //   I(w) = pi scale E(u, v) / cos^3,

@@ -12,7 +12,7 @@ struct SceneSphere {
     float radius = 1.0f;
 
     SceneSphere() = default;
-    /// A little larger than asked for, so that rounding starts no particle inside the scene.
+    /// A little larger than requested, so that rounding starts no particle inside the scene.
     SceneSphere(const core::Vec3& c, float r)
         : center(c), radius(std::fmax(r * 1.001f + 1e-6f * glm::length(c), 1e-18f)) {}
 

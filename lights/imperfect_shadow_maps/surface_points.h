@@ -2,7 +2,7 @@
 //
 // They are where straight lines through everything meet surfaces. Lines that are uniform within a sphere of
 // radius R meet a piece of surface in proportion to its area, wherever and however it lies: A / (2 pi R^2)
-// times a line. So no shape needs to know how it is sampled, and instances, meshes and balls are alike.
+// times a line. So no shape needs a sampler of its own, and instances, meshes and balls are alike.
 #pragma once
 
 #include <vector>

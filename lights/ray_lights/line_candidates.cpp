@@ -44,7 +44,7 @@ void LineCandidates::choose(const LaneFloats& steps, const LaneFloats& starts, L
     }
     for (std::size_t k = 0; k < lights_.size(); ++k) {
         const LaneFloats& expected = expected_[k];
-        // Few lanes connect to a light: whether any does is asked of all at once.
+        // Few lanes connect to a light: whether any does is tested for all at once.
         int reached = 0;
         for (int i = 0; i < lanes; ++i) reached += next.of[i] < expected.of[i] ? 1 : 0;
         for (int i = 0; i < lanes && reached > 0; ++i)

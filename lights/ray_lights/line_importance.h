@@ -3,7 +3,7 @@
 // Lines are cut into three segments. Over a piece of length l, whose ends lie A and B away from a point,
 // 1/w^2 is
 //   l / (|A| |B|) * angle / sin(angle)
-// where the angle is the one between A and B; sqrt(2 / (1 + cos)) stands for angle / sin(angle), and is at
+// where the angle is the one between A and B; sqrt(2 / (1 + cos)) replaces angle / sin(angle), and is at
 // most 1.6 times too small. The rest of the integrand is what it is in the middle of the piece. Visibility is
 // left out, and transmittance falls like a polynomial, not exponentially. It is 0 only where no light can
 // arrive at all.

@@ -1,7 +1,7 @@
 // Distances on lines: in proportion to one over the distance from another line, or over the squared distance
 // from a point.
 //
-// Virtual ray lights ask for the integral of 1/w^2 over two lines, w the distance of a point of one from a
+// Virtual ray lights need the integral of 1/w^2 over two lines, w the distance of a point of one from a
 // point of the other. Novak et al. 2012, Sec. 4: with h the smallest distance of the lines and theta their
 // angle,
 //   w^2 = h^2 + u^2 + v^2 - 2 u v cos(theta)

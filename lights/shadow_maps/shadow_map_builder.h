@@ -15,7 +15,7 @@ class ShadowMapBuilder {
     const core::RayCounters& rays() const { return rays_; }
 
   private:
-    /// A medium and where it is, asked once.
+    /// A medium and where it is, found once.
     struct BoundedMedium {
         const core::Medium* medium;
         core::Bounds3 bounds;

@@ -1,5 +1,5 @@
 // Gathering by shadow maps: receivers are stored first, then lights come one after the other with their maps
-// and add to all of them. The other way round than a tile that looks at all lights, because a map pays when
+// and add to all of them. The other way round than a tile that evaluates all lights, because a map pays when
 // many receivers look at it while it is there; the loop is the same (virtual_lights/vpl_gather.h).
 #pragma once
 
@@ -16,7 +16,7 @@ class ReceiverStore {
   public:
     /// Sixteen receivers and where they are seen.
     struct Tile : ReceiverLanes {
-        std::int32_t column, row;  ///< pixel of the first lane; lanes go on in rows of four
+        std::int32_t column, row;  ///< pixel of the first lane; lanes continue in rows of four
         std::int32_t spacing;      ///< pixels from lane to lane
         VplRange range;            ///< the VPLs that they look at
     };

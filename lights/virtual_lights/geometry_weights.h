@@ -4,7 +4,7 @@
 // two C*, and returns G* times its weight. It is called in the sixteen-lane loop and must be straight
 // arithmetic. A technique that is weighed against another one is a policy too: its weight is a function of
 // the same four numbers, or of more: with for_pair(receivers, vpls, index) it is made anew for every light,
-// and a policy that takes a fifth number is told the lane.
+// and a policy that takes a fifth number receives the lane.
 #pragma once
 
 #include "core/math/vectorize.h"

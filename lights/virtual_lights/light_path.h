@@ -45,7 +45,7 @@ struct AnySegment {
 /// Follows a particle of `emitter` whose power over the number of paths is `start` [W]: calls visit(vertex,
 /// alpha / paths, depth, state) at every vertex, delta surfaces included; `depth` counts from 1 at the first.
 /// The vertex's `wo` points back along the path; `state` holds the media on its side. Before, on_segment(ray,
-/// state, weights, event, depth) is told of the way there, with media and weights at its start and
+/// state, weights, event, depth) receives the segment to it, with media and weights at its start and
 /// context.boundary_hits; also where the particle leaves the scene.
 template <bool Media, typename Visit, typename OnSegment = AnySegment>
 void follow_particle(const core::LitScene& scene, const LightPathSettings& settings,

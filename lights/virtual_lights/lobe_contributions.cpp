@@ -96,7 +96,7 @@ bool lobe_contributions(const VplSet& vpls, const WeightedVpl& light, const Rece
                         LaneLight& out) {
     const VirtualPointLight& vpl = vpls.lights[light.index];
     const bool plain = vpl.detail == VirtualPointLight::no_detail && !receivers.any_directional;
-    // Roughness that is clamped pair by pair has no lobe to ask.
+    // Roughness that is clamped pair by pair has no lobe of its own.
     const bool quick = !plain && lobes.known && vpls.peak_density.empty();
     const auto own = quick ? lobe_of(vpls, vpl) : std::nullopt;
     if (!own) return contributions_of(vpls, light, receivers, weight, packet, out);

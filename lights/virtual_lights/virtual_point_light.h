@@ -57,12 +57,12 @@ struct VplSet {
     std::vector<VplDetail> details;         ///< of those that look different from different sides
     /// Media at every light, on the side that its light came from; none where the scene has no media.
     std::vector<core::MediumState> states;
-    /// By path: where it began. Only where LightPathSettings::keep_starts asks for it.
+    /// By path: where it began. Only where LightPathSettings::keep_starts is set.
     std::vector<LightStart> starts;
     /// Known directions at both ends of a connection, for roughness clamping
     /// (compensation/roughness_clamping.h); without, nothing is clamped.
     std::vector<float> peak_density;  ///< by light: lights per area around it, over m' [1/m^2]
-    float peak_directions = 0.0f;     ///< of receivers that know directions besides, over m' [1/sr]; 0: none
+    float peak_directions = 0.0f;     ///< of the receivers' other directions, over m' [1/sr]; 0: none
     std::uint32_t paths = 0;          ///< light paths traced, whether or not they left a VPL
     core::RayCounters rays;           ///< that the paths took
     core::TrackingCounters tracking;  ///< the same in media

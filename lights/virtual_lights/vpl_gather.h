@@ -4,7 +4,7 @@
 //   sum over j of  f*(x) w(G*(x,y_j)) V*(x,y_j) I_j
 // Three policies fill it in. Which pairs of receivers and lights meet, and how much each light counts
 // (vpl_choice.h): one tile and many lights, or one light and many stored tiles. What becomes of the geometry
-// term (geometry_weights.h). And V*, asked for a batch of pairs at a time: shadow rays and transmittance
+// term (geometry_weights.h). And V*, evaluated for a batch of pairs at a time: shadow rays and transmittance
 // (TracedVisibility), or a map of what the light sees (shadow_maps/shadow_map_gather.h).
 #pragma once
 

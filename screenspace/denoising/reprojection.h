@@ -2,7 +2,7 @@
 //
 // A pixel of the frame before is taken if it saw the same object, a normal alike and a position within a few
 // pixels' footprints; what is left of the bilinear weights is brought to 1. The footprint is the distance to
-// the nearest neighbour's position, so it knows distance and slant, and no unit.
+// the nearest neighbour's position, so it depends on distance and slant, and on no unit.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// How much of a denoised picture to believe, from the variance that the film measured.
+// Weight of a denoised picture against the noisy one, from the variance that the film measured.
 //
 // With b the bias of a denoised pixel and v the variance of the noisy one, y + g (x - y) has the least mean
 // square error, b^2 v / (b^2 + v), for g = b^2 / (b^2 + v): never above v nor b^2. Over a window

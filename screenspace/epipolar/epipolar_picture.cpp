@@ -26,7 +26,7 @@ EpipolarPicture::EpipolarPicture(EpipolarLines lines, const LineSampling& settin
     double sum = 0.0, weights = 0.0;
     for (const SampledLine& line : sampled_)
         for (const LineSample& s : line.samples()) {
-            // Lines are close to each other near the light: a sample stands for an area that grows with the
+            // Lines are close to each other near the light: a sample represents an area that grows with the
             // distance.
             const double weight = lines_.light_inside() ? double(s.texel) : 1.0;
             sum += weight * double(s.weight * max_component(s.light.radiance)), weights += weight;

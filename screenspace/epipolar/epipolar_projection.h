@@ -2,7 +2,7 @@
 //
 // Eye rays of one lens position are linear in the film position: they share their origin (pinhole, one point
 // of a lens), or their direction (parallel projection). Either way the inverse is a projective map, found
-// here from three rays, so that every camera that is linear can be projected to and not only those that offer
+// here from three rays, so that every camera that is linear can be projected to and not only those that have
 // it.
 #pragma once
 

@@ -54,8 +54,8 @@ struct GBuffer {
 GBuffer make_g_buffer(const core::RayQueries& scene, const core::Camera& camera, int width, int height);
 
 /// The first `count` surfaces along the ray, or as many as there are, into `hits`; distances from its origin.
-/// Each search goes on from the surface found before as rays of paths do (offset_origin): it meets no surface
-/// twice, and loses none that lies farther behind it than rounding moves both.
+/// Each search continues from the surface found before as rays of paths do (offset_origin): it meets no
+/// surface twice, and loses none that lies farther behind it than rounding moves both.
 void peel(const core::RayQueries& scene, const core::Ray& ray, int count,
           std::vector<core::SurfaceHit>& hits);
 

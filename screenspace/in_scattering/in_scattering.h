@@ -85,7 +85,7 @@ struct MarchScratch {
 void find_segments(const core::RayQueries& scene, const core::Ray& ray, const core::MediumState& state,
                    std::vector<MediumSegment>& segments, core::WalkContext& walk);
 
-/// Transmittance through one medium: deterministic, but for media that offer neither a closed form nor
+/// Transmittance through one medium: deterministic, but for media that have neither a closed form nor
 /// marching.
 core::Rgb marched_transmittance(const core::Medium& medium, const core::Ray& ray, float voxels,
                                 core::WalkContext& walk);

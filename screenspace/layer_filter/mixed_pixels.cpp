@@ -20,7 +20,7 @@ struct Estimate {
     float variance = 0.0f;
 };
 
-/// Neighbours farther away than this are asked only where there is none nearer [pixels].
+/// Neighbours farther away than this are used only where there is none nearer [pixels].
 constexpr int near_reach = 2, far_reach = 4;
 constexpr int variance_reach = 3;
 /// Where no neighbour sees the surface, as of a wire, what others nearby see is taken, with this share of it
@@ -39,7 +39,7 @@ class MixedPixel {
           x_(int(pixel % std::uint32_t(f.width))),
           y_(int(pixel / std::uint32_t(f.width))) {}
 
-    /// Eq. (4). Nothing where a sample finds nobody at all.
+    /// Eq. (4). Nothing where a sample has no neighbour at all.
     std::optional<Estimate> put_together(std::span<const FeatureSample> samples) const {
         Rgb sum(0.0f), squares(0.0f);
         float variance = 0.0f;

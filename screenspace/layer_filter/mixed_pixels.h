@@ -6,10 +6,9 @@
 // E(s) being the demodulated light of those neighbours, already filtered. r is wrong by its own sampling and
 // by how the light varies between the neighbours, y by its noise; both are weighed by that,
 //   f = r + V[r] / (V[r] + V[y]) (y - r), (5)
-// so that with many passes y is left. Where a sample finds nobody, as on a wire thinner than a pixel, E is
-// what is seen nearby, with a large variance. Pixels that see one surface which hardly any neighbour sees are
-// treated alike. Layers of media are put together from
-// neighbours of the samples' depths.
+// so that with many passes y is left. Where a sample has no neighbour, as on a wire thinner than a pixel, E
+// is what is seen nearby, with a large variance. Pixels that see one surface which hardly any neighbour sees
+// are treated alike. Layers of media are put together from neighbours of the samples' depths.
 #pragma once
 
 #include "screenspace/layer_filter/filter_planes.h"

@@ -9,7 +9,7 @@
 
 namespace mote::screenspace {
 
-/// Three colours, and random numbers with the variance of the layer (mean over channels), which tell what
+/// Three colours, and random numbers with the variance of the layer (mean over channels), which show what
 /// noise becomes.
 struct FilterChannels {
     static constexpr std::size_t colours = 3, probes = 2, count = colours + probes;

@@ -1,16 +1,16 @@
 // Mip pyramids over what a picture shows: patches of surface, and the light that they send (Engelhardt 2013,
 // Sec. 11.2.2).
 //
-// Level 0 is the picture; a node of the next level stands for up to 2 x 2 nodes. Means are weighted by area
+// Level 0 is the picture; a node of the next level represents up to 2 x 2 nodes. Means are weighted by area
 // and areas are added up, so that a node sends the power of its pixels; a plain mean over a border of the
 // picture, or over a patch seen at a slant beside one seen from the front, would not. Pixels without surface
 // have no area and drop out of everything. A pyramid of reflectance is not needed: light is stored as it is
 // reflected.
 //
-// The discontinuity pyramid marks nodes whose means stand for no real surface: where two children face
+// The discontinuity pyramid marks nodes whose means represent no real surface: where two children face
 // different ways, or one does not continue the plane of the other, or a child is marked (after Nichols &
-// Wyman 2009). Besides means, nodes keep bounds, which tell for sure what lies near: the mean of a pixel of
-// the foreground and one of the background is far from both.
+// Wyman 2009). Besides means, nodes keep bounds, which enclose for certain what lies near: the mean of a
+// pixel of the foreground and one of the background is far from both.
 #pragma once
 
 #include <cstdint>
@@ -45,7 +45,7 @@ class SurfacePyramid {
   public:
     struct Level : PyramidLevel {
         std::vector<SurfaceNode> nodes;
-        std::vector<std::uint8_t> discontinuity;  ///< 1: the node's means stand for no real surface
+        std::vector<std::uint8_t> discontinuity;  ///< 1: the node's means represent no real surface
     };
 
     /// One patch a pixel. Two nodes are taken for one surface up to `angle` [rad] between their normals, and

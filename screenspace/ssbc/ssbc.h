@@ -2,12 +2,12 @@
 // itself (Novak et al. 2011; Engelhardt 2013, Ch. 11).
 //
 // Reflected light R, the picture without emission, that was rendered with the bound b is R_0 = T L_e + T_b R.
-// With T = T_b + T_r it lacks T_r R, and T_r asks for nothing but surfaces nearer than b^(-1/2):
+// With T = T_b + T_r it lacks T_r R, and T_r needs nothing but surfaces nearer than b^(-1/2):
 //
 //   R = R_0 + T_r R = sum_n T_r^n R_0        Engelhardt 2013, Eq. 11.3
 //
-// N steps add the terms up to T_r^N and lack T_r^(N+1) R. No visibility is tested and no VPL is asked. What
-// the camera does not see is missing: surfaces behind others, and beyond the borders of the picture. The
+// N steps add the terms up to T_r^N and lack T_r^(N+1) R. No visibility is tested and no VPL is evaluated.
+// What the camera does not see is missing: surfaces behind others, and beyond the borders of the picture. The
 // former can be given as hidden sides (ssbc_layers.h). They send light from the first step on and receive it
 // as well, for the steps after.
 #pragma once

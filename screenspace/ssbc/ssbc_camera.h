@@ -2,7 +2,7 @@
 //
 // Files say where the camera stands (worldToCamera of OpenEXR), but few say its field of view. Positions do:
 // in camera space, column = c_x + f_x X / Z and row = c_y + f_y Y / Z, two straight lines to be fitted. How
-// well they fit also tells whether the positions are in that space at all.
+// well they fit also shows whether the positions are in that space at all.
 #pragma once
 
 #include <array>

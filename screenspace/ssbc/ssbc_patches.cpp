@@ -44,7 +44,7 @@ class Neighbourhood {
         return takes_part(side, dx, dy) &&
                same_surface(s_, here_, index(side, x_ + dx, y_ + dy), sine_) > 0.0f;
     }
-    /// Where the surface goes on there: on its own side, or else on the first that has it.
+    /// Where the surface continues there: on its own side, or else on the first that has it.
     std::optional<std::size_t> next(int dx, int dy) const {
         if (continues(side_, dx, dy)) return index(side_, x_ + dx, y_ + dy);
         for (int side = 0; side < layout_.sides; ++side)
@@ -63,7 +63,7 @@ class Neighbourhood {
         const float f = glm::dot(forward, forward), b = glm::dot(back, back);
         return b == 0.0f || (f > 0.0f && f < b) ? forward : back;
     }
-    /// Both steps; what has no neighbour to tell makes the patch a rectangle of the right area, but no strip
+    /// Both steps; without a neighbour the patch is made a rectangle of the right area, but no strip
     /// that is longer than those at a slant of 80 degrees.
     std::pair<Vec3, Vec3> steps() const {
         const Vec3& n = s_.normal[here_];

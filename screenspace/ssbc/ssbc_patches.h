@@ -5,7 +5,7 @@
 // light hangs on this. What touches the edge fills half of the view of a receiver beside it, and patches that
 // reach past the edge, or end before it, would send too much or nothing at all, in turns along the edge.
 //
-// Among the sides of several layers (ssbc_layers.h) a surface goes on wherever a neighbour has it, and an
+// Among the sides of several layers (ssbc_layers.h) a surface continues wherever a neighbour has it, and an
 // edge may be one with any side there, or with another side here: the floor behind a block ends at its back.
 #pragma once
 

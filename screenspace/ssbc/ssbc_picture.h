@@ -9,9 +9,9 @@
 
 namespace mote::screenspace {
 
-/// How the layers of the picture are called; each stands for its three channels, .X .Y .Z or .R .G .B. Empty:
-/// the first of the names here that the picture has. Those of Center were taken at pixel centres; the others
-/// may be filtered as the picture is, which leaves no sharp edges between surfaces.
+/// Names of the layers of the picture, each with three channels, .X .Y .Z or .R .G .B. Empty: the first of
+/// the names here that the picture has. Those of Center were taken at pixel centres; the others may be
+/// filtered as the picture is, which leaves no sharp edges between surfaces.
 struct SsbcChannels {
     std::string position;     ///< `Center.P`, `P`
     std::string normal;       ///< `Center.N`, `N`

@@ -30,7 +30,7 @@ struct RefinementRules {
 struct SumCounts {
     std::uint64_t receivers = 0;
     std::uint64_t samples = 0;  ///< nodes or pixels that were added up, over all receivers
-    std::uint64_t visits = 0;   ///< nodes that were looked at, those added up among them
+    std::uint64_t visits = 0;   ///< visited nodes, those added up among them
     std::uint64_t limited = 0;  ///< receivers whose form factors added up to more than one
     void operator+=(const SumCounts& other);
 };

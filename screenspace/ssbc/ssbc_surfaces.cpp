@@ -26,7 +26,7 @@ Rgb even_part(const Bsdf& bsdf, const BsdfPoint& p, const Vec3& wo) {
     return least;
 }
 
-/// Diffuse reflectance of a pixel. The albedo in the buffer knows which side of the surface is
+/// Diffuse reflectance of a pixel. The albedo in the buffer depends on which side of the surface is
 /// seen; the normals are turned to the viewer.
 Rgb diffuse_part(const GBuffer& buffer, std::size_t i) {
     if (!buffer.shape[i]) return buffer.reflectance[i];

@@ -2,7 +2,7 @@
 //
 // One pixel of every 2 x 2 is evaluated. The others take the mean of up to four of those around, weighted
 // by their distance in the picture and by whether they lie on the same surface. Where all weights are nearly
-// zero, or where the four are too unlike to stand for what lies between, the pixel is defective and has to be
+// zero, or where the four are too unlike to represent what lies between, the pixel is defective and has to be
 // evaluated itself.
 #pragma once
 

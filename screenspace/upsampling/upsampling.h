@@ -7,7 +7,7 @@
 // with k the bilinear weights and m what is known of every pixel without noise, such as transmittance times
 // albedo: a ratio of sums per channel, so that texture stays sharp and a channel without light has none.
 // Where what fits has less than a sixteenth of the bilinear weights, the pixel is to be shaded again, by
-// itself. It knows nothing of where light comes from. Biased by what light does between lattice points:
+// itself. It does not depend on where light comes from. Biased by what light does between lattice points:
 // contact shadows, mostly.
 #pragma once
 
@@ -28,7 +28,7 @@ struct UpsamplingPoint {
     float distance = FilterFeatures::far;           ///< of the surface along the ray [m]; of volumes alone
     float transmittance = 1.0f;                     ///< to there, mean over channels; of volumes alone
     core::Rgb modulation{0.0f};                     ///< m; black: no light, whatever the neighbours have
-    bool shared = true;  ///< false: its light is nobody else's, such as on glossy surfaces and behind mirrors
+    bool shared = true;  ///< false: its light is not shared, such as on glossy surfaces and behind mirrors
 };
 
 /// Every `spacing`-th pixel in both directions, from (column, row) on.
@@ -45,7 +45,7 @@ class Upsampling {
                std::span<const UpsamplingPoint> points);
 
     /// Pixels that must be shaded besides those of the lattice, in ascending order: those that have light but
-    /// find nobody to take it from.
+    /// have no neighbour to take it from.
     std::span<const std::uint32_t> again() const { return again_; }
     /// Sets the light of all pixels that are neither of the lattice nor among again(), from that of the
     /// lattice.

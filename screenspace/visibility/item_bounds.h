@@ -1,5 +1,5 @@
 // Where on the screen an item can be: a rectangle of pixels, and how far it reaches along the diagonals. An
-// octagon, that is, which stands for the silhouette of a bounding volume (Engelhardt 2013, Sec. 6.1.3).
+// octagon, that is, which bounds the silhouette of a bounding volume (Engelhardt 2013, Sec. 6.1.3).
 //
 // It must hold every pixel that shows the item; a rectangle alone will do.
 #pragma once

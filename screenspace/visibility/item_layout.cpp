@@ -13,7 +13,7 @@ ItemLayout::ItemLayout(std::span<const std::uint32_t> instances, int t) : t_(t),
     std::uint64_t items = 0;
     for (const std::uint32_t count : instances) {
         items += count;
-        // The largest number of 32 bits stands for no item.
+        // The largest number of 32 bits means no item.
         if ((items << (2 * t)) > no_item)
             throw std::length_error(
                 fmt::format("{} instances in {} tiles do not fit into IDs of 32 bits", items, tiles()));

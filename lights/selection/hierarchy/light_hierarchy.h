@@ -3,8 +3,8 @@
 //
 // One flat array in depth-first order: a cluster of three VPLs or more has its node, then the nodes of its
 // left child, then those of its right child. Clusters of one VPL or two are computed from the leaves, which
-// saves a third of the nodes. So every cluster knows its index, and threads build disjoint subtrees. The bits
-// do not depend on the number of threads.
+// saves a third of the nodes. So the index of every cluster is known, and threads build disjoint subtrees.
+// The bits do not depend on the number of threads.
 #pragma once
 
 #include <span>

@@ -77,7 +77,7 @@ void ReceiverBounds::unite(int i, const ReceiverBounds& a, const ReceiverBounds&
     lower_x[i] = std::min(p.lower_x[i], q.lower_x[i]), upper_x[i] = std::max(p.upper_x[i], q.upper_x[i]);
     lower_y[i] = std::min(p.lower_y[i], q.lower_y[i]), upper_y[i] = std::max(p.upper_y[i], q.upper_y[i]);
     lower_z[i] = std::min(p.lower_z[i], q.lower_z[i]), upper_z[i] = std::max(p.upper_z[i], q.upper_z[i]);
-    // One cone stands for both only where it is a cone of the same.
+    // One cone bounds both only where it is a cone of the same.
     const bool alike = p.has_cosine[i] == q.has_cosine[i] && (p.g_high[i] > 0.0f) == (q.g_high[i] > 0.0f);
     Rgb weight(0.0f);
     for (const ReceiverBounds* x : {&a, &b}) {

@@ -8,7 +8,7 @@ using namespace core;
 
 namespace {
 
-/// A lobe that the albedo knows nothing of still has a chance to be drawn.
+/// A lobe that the albedo does not contain still has a chance to be drawn.
 constexpr float least_albedo = 0.02f;
 
 /// At least the phase function's value towards any wi of the cone.

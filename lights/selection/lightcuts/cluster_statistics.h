@@ -1,6 +1,6 @@
 // Statistics of estimates by cluster of VPLs: their mean and mean square over the cluster's importance.
 //
-// Those of previous tiles tell whether a cluster is worth splitting: one that is occluded altogether, or
+// Those of previous tiles show whether a cluster is worth splitting: one that is occluded altogether, or
 // sends far less than its importance, is not. That moves cuts, not estimates: representatives are sampled
 // anew, and traced.
 #pragma once

@@ -9,7 +9,7 @@ using namespace core;
 
 namespace {
 
-/// Do two receivers lie on one face, as far as their normals tell? In a medium there are none.
+/// If true, two receivers lie on one face, by their normals. In a medium there are none.
 bool alike(const ReceiverLanes& x, int i, int j) {
     if (x.in_medium[i] != x.in_medium[j]) return false;
     if (x.in_medium[i] != 0.0f) return true;
@@ -42,7 +42,7 @@ ReceiverSets::ReceiverSets(const ReceiverLanes& x) : stages_(1) {
             for (int j = 0; j < i; ++j)
                 if (apart2[i][j] < least) least = apart2[i][j], a = i, b = j;
         if (!(least < far)) break;
-        // b goes on for both, a is no_representative's name any more.
+        // b represents both; a is no longer a representative.
         for (int i = 0; i < width; ++i) {
             if (i == a || i == b) continue;
             float& to_b = i > b ? apart2[i][b] : apart2[b][i];

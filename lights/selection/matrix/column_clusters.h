@@ -1,4 +1,4 @@
-// Columns of a matrix of light in clusters, each of which one column will stand for (Hasan et al. 2007).
+// Columns of a matrix of light in clusters, each of which one column will represent (Hasan et al. 2007).
 //
 // Row i, column j: what light j sends to receiver i. Of a cluster k, one column is drawn with a probability
 // in proportion to its norm and scaled by 1 / p. What that errs by, summed over rows, has the mean square

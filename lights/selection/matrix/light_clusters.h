@@ -1,4 +1,4 @@
-// All lights of a reduced matrix in clusters, whatever rows know of them.
+// All lights of a reduced matrix in clusters, whatever rows they appear in.
 //
 // Lights that a row sees, lights that are hidden from all and lights that face away from all are clustered
 // apart: the first two share the columns in proportion to the root of what they cost, the last, which have no

@@ -75,7 +75,8 @@ std::uint32_t SliceTree::build(std::span<const Point> points, std::size_t first,
     float cut = median;
     auto middle = std::partition(part.begin(), part.end(), [&](std::uint32_t i) { return value(i) < cut; });
     if (middle == part.begin()) {
-        // Not a denormal number, which threads that flush those to zero would not tell from a median of 0.
+        // Not a denormal number, which threads that flush those to zero would not distinguish from a median
+        // of 0.
         cut = std::nextafter(median, infinity);
         if (std::fabs(cut) < std::numeric_limits<float>::min()) cut = std::numeric_limits<float>::min();
         middle = std::partition(part.begin(), part.end(), [&](std::uint32_t i) { return value(i) < cut; });

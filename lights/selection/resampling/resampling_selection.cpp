@@ -19,7 +19,7 @@ using namespace core;
 
 namespace {
 
-/// Candidates from each cluster of the cut. Each is evaluated, which costs less than a cluster and tells
+/// Candidates from each cluster of the cut. Each is evaluated, which costs less than a cluster and reveals
 /// less.
 constexpr std::uint32_t candidates_a_cluster = 2;
 

@@ -8,7 +8,7 @@
 // at min_fraction a fixed fraction of the parent's: so no probability is 0, and n samples without light lower
 // it by sqrt(1 + n/k) at most. Estimates stay unbiased because probabilities depend on other tiles alone.
 //
-// Resampling knows the unoccluded r of every candidate, and the visibility of few rays: there m^2 is the
+// Resampling evaluates the unoccluded r of every candidate, and the visibility of few rays: there m^2 is the
 // product of two means, each learned by itself.
 #pragma once
 
