@@ -12,7 +12,7 @@ struct FrameFile {
     std::string path;
 };
 
-/// Is there a place for the number in the file's name (not its folder's)?
+/// True if the file's name (not its folder's) has a placeholder for the number.
 bool names_frames(const std::string& pattern);
 /// The name of a frame: as many digits as there are #, filled up with zeros, or more.
 std::string frame_name(const std::string& pattern, long number);

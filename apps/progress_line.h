@@ -1,4 +1,4 @@
-// How far a render is, on stderr: one live line on a terminal, a plain line every few seconds elsewhere.
+// Progress of a render, on stderr: one live line on a terminal, a plain line every few seconds elsewhere.
 #pragma once
 
 #include <chrono>

@@ -27,7 +27,7 @@ class UsageError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// Which scene, and what of it is changed: shared by render, plan and info.
+/// The scene, and the changes to it: shared by render, plan and info.
 struct SceneArguments {
     std::string scene;
     std::string integrator;

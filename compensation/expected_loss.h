@@ -1,4 +1,4 @@
-// How much light a bound takes from a medium, and how much is still missing after k steps of compensation.
+// Relative energy loss by a bound in a medium, and what of it is left after k steps of compensation.
 //
 // Where the light in a medium is about the same at y and at z, one application of the residual transport
 // (Engelhardt 2013, Eq. 10.11) to it is a factor,

@@ -83,7 +83,7 @@ class Gatherer {
     }
 
   private:
-    /// Does the whole sphere lie below the receiver's horizon, or the receiver below all of the light's?
+    /// True if the whole sphere lies below the receiver's horizon, or the receiver below all of the light's.
     bool turned_away(const SphericalLight& light) const {
         const Vec3 to = light.centre() - receiver_.position;
         if (reflects_ && glm::dot(normal_, to) < -light.radius) return true;

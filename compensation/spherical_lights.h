@@ -49,7 +49,7 @@ struct SphericalLight {
 /// Precondition: all VPLs lie on surfaces.
 std::vector<float> sphere_radii(const lights::VplSet& set, std::uint32_t neighbours, float scale);
 
-/// How the samples for one light are shared among the techniques. A diffuse BSDF has no technique of its own.
+/// Samples of each technique for one light. A diffuse BSDF has no technique of its own.
 struct SampleCounts {
     /// By the sphere's solid angle, by the BSDF of the receiver, by that of the light.
     int cone, receiver, light;
@@ -72,7 +72,7 @@ enum class SphereVisibility : std::uint8_t {
     per_light
 };
 
-/// How spheres are gathered.
+/// Settings of the gather of spheres.
 struct SphericalGather {
     std::uint32_t neighbours = 10;  ///< the distance of the farthest of them is the radius
     float radius_scale = 1.0f;      ///< multiplies it

@@ -1,4 +1,4 @@
-// Which estimator a heterogeneous medium uses, where there is a choice. docs/media.md says what each one
+// Estimator of a heterogeneous medium, where there is a choice. docs/media.md says what each one
 // costs.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Which file is which, before anything is written: an output is no input, no other output, and nothing that
+// Checks of all files before anything is written: an output is no input, no other output, and nothing that
 // the user did not name and mote did not write.
 #pragma once
 

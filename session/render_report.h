@@ -13,7 +13,7 @@
 
 namespace mote::session {
 
-/// Everything that is known when a render has ended.
+/// Results of a render that has ended.
 struct RenderReport {
     const core::Scene& scene;
     const core::Plan& plan;

@@ -1,4 +1,4 @@
-// How many threads the system grants: where a limit on processes is met, libraries that start one would
+// Number of threads that the system grants: where a limit on processes is met, libraries that start one would
 // abort.
 #pragma once
 

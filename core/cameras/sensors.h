@@ -47,7 +47,7 @@ double tan_half_fov_x(const ViewSettings& view, double aspect, const Properties&
 /// The transform itself. Throws InputError when it scales or shears; a mirror is allowed, as in Mitsuba 3.
 Transform rigid_to_world(const Transform& to_world, const Properties& properties);
 
-/// Is a film position on the film of `size` pixels, or at most `margin` pixels off?
+/// True if a film position is on the film of `size` pixels, or at most `margin` pixels off.
 inline bool on_film(const Vec2& film_position, const Vec2& size, float margin) {
     return film_position.x >= -margin && film_position.x < size.x + margin && film_position.y >= -margin &&
            film_position.y < size.y + margin;

@@ -1,5 +1,5 @@
-// Which of many boxes do sixteen neighbouring rays pass? Embree's hierarchy, for those who test what is in
-// the boxes by rules of their own.
+// The boxes that sixteen neighbouring rays pass, out of many: Embree's hierarchy, for those who test what is
+// in the boxes by rules of their own.
 #pragma once
 
 #include <memory>

@@ -37,7 +37,7 @@ bool convex(const std::vector<Vec2d>& p) {
     return true;
 }
 
-/// Is the corner `left[i]` an ear: convex, with no other corner inside its triangle?
+/// True if the corner `left[i]` is an ear: convex, with no other corner inside its triangle.
 bool is_ear(const std::vector<Vec2d>& p, const std::vector<std::uint32_t>& left, std::size_t i) {
     const std::size_t n = left.size();
     const std::uint32_t a = left[(i + n - 1) % n], b = left[i], c = left[(i + 1) % n];

@@ -33,7 +33,7 @@ LineHits intersect_round(const Vec& f, const Vec& d, double r) {
 /// The uniform scale of a similarity (rotation, uniform scale, translation, mirroring), or nothing.
 std::optional<double> similarity_scale(const Transform& to_world);
 
-/// How a point moves with its texture coordinates [m].
+/// Derivatives of a point with respect to its texture coordinates [m].
 struct Derivatives {
     Vec3d dp_du{0.0}, dp_dv{0.0};
 };

@@ -1,4 +1,4 @@
-// How many rays of each kind were cast.
+// Numbers of rays cast, by kind.
 #pragma once
 
 #include <cstdint>

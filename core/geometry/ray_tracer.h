@@ -32,7 +32,7 @@ class RayTracer {
 
     /// Closest hit in one group within (t_min, t_max).
     std::optional<SurfaceHit> closest(const Ray& ray, Group group = Group::surfaces) const;
-    /// Is anything among the surfaces within (t_min, t_max)?
+    /// True if a surface lies within (t_min, t_max).
     bool occluded(const Ray& ray) const;
     /// First hits of sixteen rays at once.
     void occluded(ShadowPacket& packet) const;

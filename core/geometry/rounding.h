@@ -13,7 +13,7 @@ namespace mote::core {
 /// Half a unit in the last place of 1: the relative error of one rounding to single precision.
 inline constexpr double half_ulp = 0x1p-24;
 
-/// How far rounding p to single precision can move it along the unit normal n [m].
+/// Upper bound of how far rounding p to single precision moves it along the unit normal n [m].
 inline float quantization_error(const Vec3& p, const Vec3& n) {
     const double sum = std::fabs(double(p.x) * double(n.x)) + std::fabs(double(p.y) * double(n.y)) +
                        std::fabs(double(p.z) * double(n.z));

@@ -13,7 +13,7 @@
 
 namespace mote::core {
 
-/// Which quantity travels along the path: radiance from the eye, or power (importance's adjoint) from a
+/// Quantity that travels along the path: radiance from the eye, or power (importance's adjoint) from a
 /// light. Matters where light crosses a refractive boundary: radiance is scaled by (eta_i/eta_o)^2, power is
 /// not.
 enum class TransportMode : std::uint8_t { radiance, power };
@@ -68,7 +68,7 @@ struct BsdfPoint {
     float peak_limit = infinity;
 };
 
-/// How a surface scatters light; see the top of this file for directions.
+/// Scattering of light by a surface; see the top of this file for directions.
 class Bsdf : public Object {
   public:
     /// Which parts it has.

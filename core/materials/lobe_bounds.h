@@ -8,7 +8,7 @@
 
 namespace mote::core {
 
-/// Is any direction of the cone above the surface?
+/// True if any direction of the cone is above the surface.
 inline bool reaches_up(const DirectionCone& cone) {
     return cone.axis.z > 0.0f || cone.angle >= 0.5f * pi || -cone.axis.z < std::sin(cone.angle) + 1e-6f;
 }

@@ -1,4 +1,4 @@
-// How much light a rough dielectric boundary reflects and lets pass, tabulated once per material.
+// Reflectance and transmittance of a rough dielectric boundary, tabulated once per material.
 #pragma once
 
 #include <array>

@@ -18,7 +18,7 @@ class CancelToken {
     /// The flag must outlive the token.
     CancelToken(const std::atomic<bool>& flag) : flag_(&flag) {}  // NOLINT: a flag is a token
 
-    /// Has the flag been set?
+    /// True if the flag has been set.
     bool requested() const { return flag_ && flag_->load(std::memory_order_relaxed); }
     /// Throws Cancelled where it has.
     void check() const {

@@ -1,4 +1,4 @@
-// How values of one C++ type are read from a scene file, checked, and shown.
+// Reading, checking and printing of values of one C++ type in scene files.
 //
 // KindOf<T>::kind() is the one object that does so for members of type T. A folder above adds a type of its
 // own (a texture, a volume) by a specialisation.

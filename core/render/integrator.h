@@ -70,9 +70,10 @@ class Estimator {
     /// Fills the layers of a part with one independent estimate, and calls image.finish() for every pixel
     /// whose light is complete. Returns false, or throws Cancelled, when it was cancelled half-way.
     virtual bool pass(const PassContext& context, PassImage& image) = 0;
-    /// Which part has the next pass. Of the film alone, so that it is the same after an interruption.
+    /// The part that has the next pass. Depends on the film alone, so that it is the same after an
+    /// interruption.
     virtual std::size_t next_part(const Film& /*film*/) const { return 0; }
-    /// Which part has the pass of this number, counted over all parts, before any pass was made. Throws
+    /// The part that has the pass of this number, counted over all parts, before any pass was made. Throws
     /// InputError where that depends on what passes find: such a picture cannot be shared out by passes.
     virtual std::size_t part_of_pass(std::uint32_t /*number*/) const { return 0; }
     /// Post-processes on the mean, after the last pass and for previews. May throw Cancelled.

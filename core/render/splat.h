@@ -1,4 +1,4 @@
-// Which pixels a light path reaches that ends at a film position, and what it weighs there.
+// Pixels that a light path reaches that ends at a film position, and its weight there.
 //
 // A pixel's value is int f_j(x) I(x) dx (see camera.h), so a light path of contribution c (its power times
 // CameraSample::weight, over the number of light paths traced) that ends at x adds c f_j(x) to every pixel j

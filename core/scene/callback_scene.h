@@ -39,7 +39,7 @@ class ForeignSurface final : public Shape {
 struct SceneCallbacks {
     /// The closest surface, with its `shape` and the shape's BSDF. Empty: there is no surface.
     std::function<std::optional<SurfaceHit>(const Ray&)> first_hit = {};
-    /// Is there no surface? Empty: as first_hit says.
+    /// True if there is no surface. Empty: by first_hit.
     std::function<bool(const Ray&)> visible = {};
     /// Sixteen segments at a time: sets t_max to -infinity where a surface is in the way. Lanes
     /// with t_max < t_min are idle. Empty: visible() for each lane.

@@ -1,5 +1,5 @@
-// How much light could come from a group of lights (Estevez and Kulla 2018, Eq. 3 and 4), asked of
-// eight groups at once.
+// Importance of clusters of lights (Estevez and Kulla 2018, Eq. 3 and 4), evaluated for eight of them at
+// once.
 #pragma once
 
 #include <array>

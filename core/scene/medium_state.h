@@ -1,4 +1,4 @@
-// Which media surround a point of a path: the shapes it is inside of, and the medium outside all of them.
+// Media that surround a point of a path: the shapes it is inside of, and the medium outside all of them.
 //
 // A scene has one outermost medium (Scene::outermost_medium): who is outside of all shapes is in it, be it
 // the sensor, a light, or a vertex of a path. Open walls, such as those of a room with a window, may part the
@@ -35,7 +35,7 @@ class MediumState {
     /// From outside to inside.
     void enter(const Shape& shape);
     void leave(const Shape& shape);
-    /// Is the point inside of it?
+    /// True if the point is inside of it.
     bool inside(const Shape& shape) const;
     bool inside_any() const { return count_ > 0; }  ///< of any shape
     /// True when more than `capacity` shapes were entered; the state is no longer reliable.

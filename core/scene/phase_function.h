@@ -19,7 +19,7 @@ struct PhaseSample {
     float pdf_solid_angle;  ///< [1/sr]
 };
 
-/// How a medium scatters at a point.
+/// Scattering of a medium at a point.
 class PhaseFunction : public Object {
   public:
     /// Its value [1/sr].

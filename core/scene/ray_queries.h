@@ -28,13 +28,13 @@ class RayQueries {
 
     /// The closest surface within (t_min, t_max).
     virtual std::optional<SurfaceHit> first_hit(const Ray& ray) const = 0;
-    /// Is there no surface within (t_min, t_max)?
+    /// True if there is no surface within (t_min, t_max).
     virtual bool visible(const Ray& segment) const = 0;
     /// Many packets of sixteen segments: t_max becomes -infinity where a surface is in the way.
     virtual void find_occluded(std::span<ShadowPacket> packets) const = 0;
 
-    /// Can anything between two points that see each other take light away? If not, transmittance() is 1
-    /// everywhere and need not be estimated.
+    /// True if anything between two points that see each other may attenuate light. If not, transmittance()
+    /// is 1 everywhere and need not be estimated.
     virtual bool attenuates() const = 0;
     /// The transmittance per channel from one point to another through all media and boundaries, estimated
     /// without bias; surfaces are not tested. `state` holds the media at `from`.
@@ -45,7 +45,7 @@ class RayQueries {
     virtual const Medium* connect(const Ray& ray, const MediumState& state, PathWeights& weights, Rng& rng,
                                   TrackingCounters& counters) const = 0;
 
-    /// Are there any surfaces that light passes straight?
+    /// True if there are surfaces that light passes straight.
     virtual bool has_boundaries() const = 0;
     /// All boundaries within (t_min, t_max), sorted by distance. Clears `hits` first. What lies between them
     /// is found by for_each_part() (media_along.h).
@@ -67,9 +67,10 @@ class RayQueries {
         for (const SurfaceHit& hit : hits)
             if (!visitor(visit, hit)) return;
     }
-    /// Are there panes among the boundaries, which reflect a part of the light? (Bsdf::straight_passage)
+    /// True if there are panes among the boundaries, which reflect a part of the light
+    /// (Bsdf::straight_passage).
     virtual bool has_panes() const { return false; }
-    /// Do any of them change its colour?
+    /// True if any of them changes its colour.
     virtual bool has_coloured_panes() const { return false; }
 
     /// Every medium that a ray can meet.

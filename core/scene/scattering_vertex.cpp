@@ -3,7 +3,7 @@
 namespace mote::core {
 namespace {
 
-/// Do shading and geometric normal agree on whether wo and wi lie on the same side?
+/// True if shading and geometric normal agree on whether wo and wi lie on the same side.
 bool sides_agree(const SurfaceHit& hit, const Vec3& wo, const Vec3& wi) {
     const float geometric = glm::dot(hit.geometric_normal, wo) * glm::dot(hit.geometric_normal, wi);
     const float shading = glm::dot(hit.shading.n, wo) * glm::dot(hit.shading.n, wi);

@@ -40,7 +40,7 @@ std::optional<std::array<Vec3d, 3>> triangle_of(const SurfaceHit& hit) {
     return corners(*mesh, [&](const Vec3d& p) { return placed->placement().to_world().point(p); });
 }
 
-/// Has rounding decided whether the ray hits it there, or in which order?
+/// True if rounding decides whether the ray hits it there, or in which order.
 bool rounding_decides(const SurfaceHit& hit, const Vec3& direction) {
     const auto triangle = triangle_of(hit);
     if (!triangle) return std::fabs(glm::dot(hit.geometric_normal, direction)) < 1e-4f;
@@ -60,8 +60,8 @@ bool leaves(const SurfaceHit& hit, const Vec3& direction) {
     return glm::dot(hit.geometric_normal, direction) > 0.0f;
 }
 
-/// Does the next crossing of the shape, or that there is none, agree with this one? `inward`: the shape's
-/// normals point inwards, and who is outside of everything counts as inside of it.
+/// True if the next crossing of the shape, or that there is none, agrees with this one. `inward`: the shape's
+/// normals point inwards, and what is outside of everything counts as inside of it.
 bool agrees_with_next(const RayTracer& rays, const Ray& ray, const SurfaceHit& hit, bool inward) {
     const double reach = 4.0 * rounding_at(hit, ray.direction, largest(Vec3d(hit.position)));
     const Ray beyond{ray.origin, ray.direction, float(double(hit.t) + reach), infinity};

@@ -1,4 +1,4 @@
-// Which media surround the lights: found once for every light that does not reach through a boundary.
+// Media that surround the lights: found once for every light that does not reach through a boundary.
 #include <algorithm>
 
 #include "core/geometry/triangle_mesh.h"
@@ -17,8 +17,8 @@ MediumState Scene::area_light_state(const Emitter& emitter, const Shape& shape, 
 
 namespace {
 
-/// May a boundary pass through the box, so that its two ends lie in different media? Triangles are compared
-/// by their bounds; of analytic shapes the bounds of the whole are all that is known.
+/// True if a boundary may pass through the box, so that its two ends lie in different media. Triangles are
+/// compared by their bounds; of analytic shapes the bounds of the whole are all that is known.
 bool may_cross(const Shape& boundary, const Bounds3& box) {
     const auto overlap = [&](const Bounds3& b) {
         return glm::all(glm::lessThanEqual(b.lower, box.upper)) &&

@@ -1,4 +1,4 @@
-// Which light is drawn: for a receiver by the light hierarchy, for a particle by power.
+// Light sampling: for a receiver by the light hierarchy, for a particle by power.
 //
 // Lights at infinity and the emission of media have no place in the hierarchy, and are drawn half by power
 // and half equally, so that no light is starved. All others share their part: most of it goes to the

@@ -1,4 +1,4 @@
-// Which media surround a point.
+// Media that surround a point.
 //
 // A point's shapes are found by casting a ray: along it the crossings of a closed shape alternate between
 // leaving and entering, and the first one tells on which side of the surface (as its normals have it) the
@@ -91,7 +91,7 @@ class ProbeRays {
 
 namespace {
 
-/// Is p on the inner side of a closed shape? Asks the probe rays until one gives a clean answer.
+/// True if p is on the inner side of a closed shape. Traces probe rays until one has a clean result.
 bool inside_closed(const Shape& shape, bool inward, ProbeRays& probes) {
     int inside = 0, outside = 0;
     for (std::size_t i = 0; i < probes.size(); ++i) {

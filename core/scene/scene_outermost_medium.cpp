@@ -28,7 +28,7 @@ std::string name_of(const Medium& medium) {
 
 }  // namespace
 
-/// Does some of the shape's surface lie outside of all other closed shapes? A few points tell.
+/// True if some of the shape's surface lies outside of all other closed shapes, by a few points.
 bool Scene::reaches_outside(const Shape& shape) const {
     constexpr int points = 16;
     for (int i = 0; i < points; ++i) {

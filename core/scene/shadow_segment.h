@@ -1,4 +1,4 @@
-// How far a shadow ray goes towards what it looks for.
+// Extent of a shadow ray towards its target.
 #pragma once
 
 namespace mote::core {

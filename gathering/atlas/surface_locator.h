@@ -20,8 +20,8 @@ class SurfaceLocator {
     /// `surfaces` must outlive the locator.
     explicit SurfaceLocator(const SurfaceTriangles& surfaces);
 
-    /// Nothing where the shape has no triangles in the list. Shapes that are no meshes have many triangles
-    /// for one primitive: of the eight nearest that whose plane is nearest holds.
+    /// Returns nothing where the shape has no triangles in the list. Shapes that are no meshes have many
+    /// triangles for one primitive: of the eight nearest that whose plane is nearest holds.
     std::optional<TrianglePlace> find(const core::SurfaceHit& hit) const;
 
   private:

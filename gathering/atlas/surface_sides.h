@@ -1,4 +1,4 @@
-// Which sides of a shape take part in the exchange of light.
+// Sides of a shape that take part in the exchange of light.
 #pragma once
 
 #include "core/geometry/shape.h"

@@ -45,7 +45,7 @@ namespace mote::gathering {
 /// Sec. 3.3). The weights use it for directions of any density: they add up to 1 all the same.
 inline constexpr float uniform_line_pdf = core::inv_two_pi;
 
-/// How many samples a receiver gets from each technique.
+/// Numbers of samples that a receiver gets from each technique.
 struct TechniqueSamples {
     float directions = 0.0f;    ///< M
     float paths = 0.0f;         ///< N, light paths

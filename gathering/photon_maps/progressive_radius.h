@@ -1,7 +1,7 @@
-// How kernels shrink from pass to pass, so that the mean over passes loses both bias and noise.
+// Radii of kernels that shrink from pass to pass, so that the mean over passes loses both bias and noise.
 //
 // Knaus & Zwicker 2011 (after Hachisuka et al. 2008):  r_{i+1}^2 / r_i^2 = (i + alpha) / (i + 1) for kernels
-// of two dimensions, i = 1, 2, ... Passes need not know each other: the product up to pass i is a quotient of
+// of two dimensions, i = 1, 2, ... Passes are independent: the product up to pass i is a quotient of
 // Gamma functions.
 #pragma once
 

@@ -6,7 +6,7 @@
 
 namespace mote::gathering {
 
-/// How many photons an estimate looks for, and the share of their radius that it uses (progressive_radius.h).
+/// Number of photons of an estimate, and the share of their radius that it uses (progressive_radius.h).
 struct DensityEstimate {
     std::size_t neighbours = 50;  ///< k
     float radius_share = 1.0f;    ///< of the distance of the k-th, in (0, 1]

@@ -20,7 +20,7 @@ class BundleProjection {
         const core::Vec3d d = core::Vec3d(p) - origin_;
         return {glm::dot(x_, d) - 0.5, glm::dot(y_, d) - 0.5, glm::dot(z_, d)};
     }
-    /// How far a vector goes on the grid.
+    /// Components of a vector on the grid.
     core::Vec3d vector(const core::Vec3d& v) const {
         return {glm::dot(x_, v), glm::dot(y_, v), glm::dot(z_, v)};
     }

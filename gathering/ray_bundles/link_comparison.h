@@ -1,4 +1,4 @@
-// How far a bundle that was built otherwise has the links of an exact one.
+// Agreement of the links of a bundle that was built otherwise with those of an exact one.
 #pragma once
 
 #include "gathering/ray_bundles/ray_bundle.h"

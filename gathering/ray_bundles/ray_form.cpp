@@ -67,7 +67,7 @@ class PacketMaker {
     float length_;
 };
 
-/// Do the boxes of the triangle and of the packet at (x0, y0) meet on the grid?
+/// True if the boxes of the triangle and of the packet at (x0, y0) meet on the grid.
 bool may_hit(const std::array<Vec3d, 3>& p, double x0, double y0) {
     constexpr double last = side - 1;
     return least_of(p[0].x, p[1].x, p[2].x) <= x0 + last && most_of(p[0].x, p[1].x, p[2].x) >= x0 &&

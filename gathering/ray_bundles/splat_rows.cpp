@@ -40,7 +40,7 @@ struct RowLanes {
     }
 };
 
-/// Which discs have rays in a row; returns how many.
+/// Finds the discs that have rays in a row; returns their number.
 int discs_with_rays(const RowLanes& rows, int* with) {
     int found = 0;
     for (int i = 0; i < discs; ++i) with[found] = i, found += rows.count[i] > 0 ? 1 : 0;

@@ -1,4 +1,4 @@
-// Which of many candidates keep a distance from each other: Poisson-disc points on surfaces.
+// Selects candidates that keep a distance from each other: Poisson-disc points on surfaces.
 #pragma once
 
 #include <cstdint>

@@ -74,7 +74,7 @@ void plan_single_scattering(core::Plan& plan, const core::Scene& scene,
                             const core::Requirements& requirements, const ScatteringSettings& settings);
 /// Lights that are marched: those with a position, not black.
 std::vector<const core::Emitter*> positional_lights(const core::Scene& scene);
-/// Does anything else light the media?
+/// True if anything else lights the media.
 bool has_other_lights(const core::Scene& scene);
 
 }  // namespace mote::integrators

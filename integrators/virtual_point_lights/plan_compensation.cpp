@@ -36,7 +36,7 @@ void plan_simplifications(Plan& plan, const CompensationSettings& s) {
                   "integrator.compensation.transmittance=exact");
 }
 
-/// Do any two of: surfaces, media, lie within `radius`? Judged by the boxes of surfaces and media.
+/// True if any two of: surfaces, media, lie within `radius`, by the boxes of surfaces and media.
 bool surface_within_reach(const Scene& scene, float radius) {
     for (const auto& medium : scene.media()) {
         const Bounds3 box = scene.medium_extent(*medium);

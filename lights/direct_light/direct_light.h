@@ -24,7 +24,7 @@ inline core::Rgb throughput_of(const core::PathWeights& weights) {
     return weights.throughput / channel_average<Media>(weights.unidirectional);
 }
 
-/// How lights are sampled.
+/// Options of light sampling.
 struct LightSampling {
     /// Point and spot lights do not count at a vertex in a medium: they were sampled along the ray that led
     /// there (equiangular sampling, marching).

@@ -13,7 +13,7 @@ class OtherLights final : public core::LitScene {
     /// `scene` must outlive this. Each draw evaluates the probabilities of all that are left out: a few.
     OtherLights(const core::LitScene& scene, std::vector<const core::Emitter*> left_out);
 
-    /// Is there any other light?
+    /// True if there is any other light.
     bool any() const { return any_; }
 
     core::LightChoice choose_light(const core::LightReceiver& receiver, float u) const override;

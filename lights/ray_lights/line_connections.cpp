@@ -58,7 +58,7 @@ InverseSquare around(const MediumLine& line, const Vec3d& point, float softening
     return {nearest, std::sqrt(glm::dot(off, off) + square(double(softening)) + square(least))};
 }
 
-/// Do weights of cells alone say too little? Not where light scatters evenly, and media are thin.
+/// True if weights of cells alone are not enough. Not where light scatters evenly, and media are thin.
 bool steers(const MediumLine& line) { return line.cells > 1; }
 
 /// Weights of a line's cells for light between it and a point, in memory of `weights` where they are steered.

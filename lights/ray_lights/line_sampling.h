@@ -21,7 +21,7 @@
 
 namespace mote::lights {
 
-/// How two lines lie to each other. Distances in metres along each, from its origin.
+/// Nearest points of two lines. Distances in metres along each, from its origin.
 struct LinePair {
     double nearest_first = 0.0, nearest_second = 0.0;  ///< of the points that are nearest to each other
     double distance = 0.0;                             ///< h: of these two points

@@ -9,7 +9,7 @@
 
 namespace mote::lights {
 
-/// How a path begins: a particle, and its power over the number of paths [W].
+/// Start of a path: a particle, and its power over the number of paths [W].
 struct LightPathStart {
     const core::Emitter* emitter;   ///< where it begins
     core::EmissionSample emission;  ///< the particle

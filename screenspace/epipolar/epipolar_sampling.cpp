@@ -11,8 +11,8 @@ namespace {
 
 float brightness(const Rgb& c) { return max_component(glm::abs(c)); }
 
-/// Does the light or the transmittance of two rays differ by more than the tolerance? Light counts relative
-/// to that of either and to `mean`, whichever is more.
+/// True if the light or the transmittance of two rays differs by more than the tolerance. Light counts
+/// relative to that of either and to `mean`, whichever is more.
 bool differ(const LineSample& a, const LineSample& b, float tolerance, float mean) {
     const float weight = 0.5f * (a.weight + b.weight);
     const float local =

@@ -18,7 +18,8 @@
 
 namespace mote::screenspace {
 
-/// How a ray passes a light. One that is on the ray is kept off it by what single precision resolves.
+/// Geometry of a ray that passes a light. One that is on the ray is kept off it by what single precision
+/// resolves.
 struct PassingRay {
     double nearest;   ///< along the ray, of the point nearest to the light [m]
     double distance;  ///< of that point from the light: h [m]

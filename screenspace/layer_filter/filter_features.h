@@ -26,7 +26,7 @@ struct FeatureSample {
     core::Rgb scattering{0.0f};  ///< int T sigma_s dt up to the surface: share of light scattered there
 };
 
-/// How a pixel lies on its surface, for distances in pixels.
+/// Footprint of a pixel on its surface, for distances in pixels.
 struct PixelFrame {
     core::Vec3 along_x{0.0f}, along_y{0.0f};  ///< pixels to the right and down per metre, tangential [1/m]
     float footprint = 0.0f;                   ///< of a pixel at the surface, across the ray [m]

@@ -61,7 +61,7 @@ class MixedPixel {
         return r;
     }
 
-    /// Does hardly any neighbour see what this pixel sees?
+    /// True if hardly any neighbour sees what this pixel sees.
     bool lonely(const FeatureSample& s) const {
         float sum = 0.0f;
         for_each_neighbour(near_reach, [&](std::uint32_t q) {

@@ -1,4 +1,4 @@
-// How alike two pixels are: a weight in [0, 1] from geometry alone, (1 - x^2)^2 of each difference x in units
+// Similarity of two pixels: a weight in [0, 1] from geometry alone, (1 - x^2)^2 of each difference x in units
 // of its tolerance, and exactly zero from there on, so that nothing leaks.
 #pragma once
 

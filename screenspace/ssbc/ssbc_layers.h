@@ -29,7 +29,7 @@ struct HiddenSide {
 /// The hidden sides of n layers: behind the first, before and behind each of the others; 2 n - 1 in all.
 std::vector<SsbcSurfaces> hidden_sides(std::span<const GBuffer> layers);
 
-/// How many sides n layers hide, and what they are called: "1_back", "2", "2_back", ...
+/// Number of sides that n layers hide, and their names: "1_back", "2", "2_back", ...
 constexpr std::size_t hidden_side_count(int layers) { return layers > 1 ? 2 * std::size_t(layers) - 1 : 0; }
 /// Name of one side, counted from 0.
 std::string hidden_side_name(std::size_t side);

@@ -1,4 +1,4 @@
-// Which pixels light is gathered at, in an order that keeps neighbours together.
+// Pixels that light is gathered at, in an order that keeps neighbours together.
 #pragma once
 
 #include <cstdint>

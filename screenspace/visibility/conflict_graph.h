@@ -1,4 +1,4 @@
-// Which items cannot share a colour channel, and a channel for as many as possible (Engelhardt 2013,
+// Items that cannot share a colour channel, and a channel for as many as possible (Engelhardt 2013,
 // Sec. 6.1.2).
 //
 // Two items are in conflict where their rectangles overlap. The graph is coloured as registers are allocated

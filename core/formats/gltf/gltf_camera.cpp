@@ -65,7 +65,7 @@ void add_orthographic(pugi::xml_node scene, const GltfNode& node, const GltfValu
     add_film(sensor, std::fabs(x / y));
 }
 
-/// How far from its center a box just fills the view along `forward`.
+/// Distance from its center at which a box just fills the view along `forward`.
 double distance_to_see(const Vec3d& half, const Vec3d& forward, double tan_x, double tan_y) {
     const Vec3d x = glm::normalize(glm::cross(forward, Vec3d(0, 1, 0))), y = glm::cross(x, forward);
     double distance = 0.0;

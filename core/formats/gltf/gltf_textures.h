@@ -30,7 +30,7 @@ class GltfTextures {
     };
     /// Nothing where there is no texture, or none that can be read.
     std::optional<std::size_t> image_of(const GltfValue& info);
-    /// Which set of texture coordinates it is looked up with.
+    /// Set of texture coordinates that it is looked up with.
     static std::size_t uv_set(const GltfValue& info);
 
     Picture colours(std::size_t image, const Rgb& factor);

@@ -25,7 +25,7 @@ MeshFile read_obj(std::string text, const std::string& path, bool flip_v);
 MeshFile read_ply(std::string_view bytes, const std::string& path, bool flip_v);
 /// Mitsuba's format, version 3 or 4: the mesh of that number, from 0. Throws InputError.
 MeshFile read_serialized(std::string_view bytes, const std::string& path, std::int64_t shape_index);
-/// Whatever assimp reads, in a child process with limits on time (60 s) and memory. Throws InputError.
+/// Reads any format of assimp's, in a child process with limits on time (60 s) and memory. Throws InputError.
 MeshFile read_with_assimp(const std::string& path, bool flip_v);
 
 /// load_mesh() for a format given by name: "obj", "ply", "serialized", or "" for what the file's extension

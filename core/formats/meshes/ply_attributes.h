@@ -1,4 +1,4 @@
-// Which properties of a PLY element make attributes of the mesh, by Mitsuba's names.
+// Properties of a PLY element that make attributes of the mesh, by Mitsuba's names.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Do the shapes that use textures of type mesh_attribute have those attributes?
+// Checks that shapes with textures of type mesh_attribute have those attributes.
 #pragma once
 
 #include "core/formats/xml/element_checks.h"

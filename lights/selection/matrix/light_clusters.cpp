@@ -30,8 +30,8 @@ ColumnClusters in_order(std::span<const std::uint32_t> members, std::span<const 
     return result;
 }
 
-/// How many of `columns` each class has. Costs fall with the square of their number, so it is in proportion
-/// to their roots.
+/// Number of `columns` that each class has. Costs fall with the square of their number, so it is in
+/// proportion to their roots.
 std::array<std::size_t, 3> apportion(const ReducedMatrix& matrix, std::size_t columns,
                                      const std::array<std::vector<std::uint32_t>, 3>& members) {
     std::array<std::size_t, 3> share{};

@@ -48,7 +48,7 @@ Lanes measured(std::span<const int> order, std::span<const Feature> all, int fir
     return l;
 }
 
-/// How many of the sorted lanes lie before the widest gap; of like ones that in the middle.
+/// Number of the sorted lanes before the widest gap; of like ones that in the middle.
 template <typename Value>
 int widest_gap(std::span<const int> sorted, const Value& value) {
     const auto count = int(sorted.size());
