@@ -13,8 +13,8 @@ using namespace core;
 using namespace gathering;
 
 constexpr std::uint32_t side = 16;  // texels; 256 rays a receiver
-/// All surfaces of the room are closed. Each texel is asked at 2 x 2 places.
-constexpr MicroBufferSettings settings{.side = side, .rays = 2, .back_faces = false};
+/// Four texels for each of `side`^2, with nodes as large as for one.
+constexpr MicroBufferSettings settings{.side = 2 * side, .cut = 4.0f};
 
 /// Bare Embree over a triangle list.
 class BareScene {
@@ -153,7 +153,7 @@ GatherErrors gather_errors(const LitPoints& points) {
         Rng rng(i);
         const double exact = lit_room().by_rays(receiver, 96, false, rng);
         buffers.render(std::span(&receiver, 1), texels);
-        const Rgb e = gathered(texels, buffers.texels().cosine_weights(), light);
+        const Rgb e = gathered(texels, buffers.texels().cosine_weight(), light);
         const auto squared = [&](double x) { return (x - exact) * (x - exact); };
         errors.micro += squared(double(e.x) / double(pi));
         errors.independent += squared(lit_room().by_rays(receiver, side, true, rng));

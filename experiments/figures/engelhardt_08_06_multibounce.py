@@ -28,8 +28,8 @@ def figure(mote, quick, output):
     view = IndirectView(mote, CORNELL, size, reference_passes, "all", depth=DEPTH)
     pairs = {"virtual point lights": (view.render("vpls", {"integrator": "mote_vpl"} | with_options(paths=paths, bounded=False), 1),
                                       view.render("gathered_vpls", micro(light="vpls", paths=paths, bound=0, **fine), 1)),
-             "photons": (view.render("photons", {"integrator": "mote_photon_map"} | with_options(photon_paths=photons, neighbours=NEIGHBOURS), 1),
-                         view.render("gathered_photons", micro(light="photons", photon_paths=photons, neighbours=NEIGHBOURS, **fine), 1))}
+             "photons": (view.render("photons", {"integrator": "mote_photon_map"} | with_options(photon_paths=photons), 1),
+                         view.render("gathered_photons", micro(light="photons", paths=photons, **fine), 1))}
     rows, panels = [], [("path", view.truth)]
     for name, (seen, gathered) in pairs.items():
         claims.check(f"final gathering removes the splotches of {name}: the worst hundredth of the pixels is off by less than two thirds as much",
@@ -41,7 +41,7 @@ def figure(mote, quick, output):
     before = None
     for bounces in (1, 2, 3):
         of = IndirectView(mote, CORNELL, size, reference_passes, f"bounces_{bounces}", depth=2 + bounces)
-        picture = of.render("radiosity", micro(light="radiosity", bounces=bounces, **fine), 1)
+        picture = of.render("radiosity", micro(light="radiosity", **fine), 1)
         claims.check(f"radiosity of {bounces} bounces is path of as many, its mean within {MEAN:.0%}", f"{of.ratio(picture) - 1:+.1%}, error {of.error(picture):.1%}",
                      abs(of.ratio(picture) - 1) < MEAN)
         mean = of.light(picture).mean()
@@ -56,7 +56,7 @@ def figure(mote, quick, output):
     return claims.exit_code()
 
 
-MEAN, NEIGHBOURS = 0.08, 20
+MEAN = 0.08
 
 
 def draw(panels, light, output):

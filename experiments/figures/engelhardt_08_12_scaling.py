@@ -26,7 +26,7 @@ def figure(mote, quick, output):
     powers = range(12, 17, 2) if quick else range(12, 21, 2)
 
     def gather(points, **more):
-        settings = size | micro(light="direct", light_samples=1, candidates=0, micro_buffer=BUFFER, points=points, max_depth=3, **more)
+        settings = size | micro(light="direct", micro_buffer=BUFFER, points=points, max_depth=3, **more)
         picture = mote.render(BUNNY, "_".join(["points", str(points), *more]), settings, passes=1, threads=1)
         return picture.value("gather_cpu_seconds"), picture.value("light_cpu_seconds"), picture.value("receivers")
 

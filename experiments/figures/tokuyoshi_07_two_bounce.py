@@ -17,7 +17,7 @@ from panels import TITLE, Canvas, show
 from renders import luminance, main, write_csv
 
 FRAMES = (0, 140)
-SAMPLES = with_options(paths=21, directions=21, joined=4)
+SAMPLES = with_options(paths=21, directions=21)
 ONE = {"vpls": with_options(techniques="vpls"), "bundles": with_options(techniques="bundles"), "combined": {}}
 TWO = {"two bounces, bounded": with_options(bound=1.0), "two bounces, weighed": {}}
 

@@ -26,14 +26,14 @@ def box_methods(paths):
             "clamping": VPL | shared | with_options(bound=1.0),
             "spherical lights": {"integrator": "mote_vsl"} | shared,
             "roughness clamping": VPL | shared | with_options(bounded=False) | ROUGH,
-            "with bundles": BUNDLES | shared | with_options(directions=paths // 4, own_rays=False),
-            "with bundles and roughness clamping": BUNDLES | shared | with_options(directions=paths // 4, own_rays=False) | ROUGH,
+            "with bundles": BUNDLES | shared | with_options(directions=paths // 4, glossy="lines"),
+            "with bundles and roughness clamping": BUNDLES | shared | with_options(directions=paths // 4, glossy="clamping"),
             "with bundles and own rays": BUNDLES | shared | with_options(directions=paths // 4)}
 
 
 def sky_methods(directions):
-    base = BUNDLES | with_options(sky=True, techniques="bundles", paths=0, joined=0, own_rays=False, directions=directions)
-    return {"sky, none": base, "sky, roughness clamping": base | ROUGH}
+    base = BUNDLES | with_options(sky=True, techniques="bundles", paths=0, directions=directions)
+    return {"sky, none": base | with_options(glossy="lines"), "sky, roughness clamping": base | with_options(glossy="clamping")}
 
 
 def most(view, pictures):

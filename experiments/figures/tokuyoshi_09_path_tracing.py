@@ -17,7 +17,7 @@ from panels import TITLE, Canvas, show
 from renders import luminance, main, write_csv
 
 METHODS = {"path": ({"integrator": "path"}, 8), "combined": (BUNDLES, 4),
-           "combined, roughness clamping": (BUNDLES | with_options(roughness_clamping=True), 4)}
+           "combined, roughness clamping": (BUNDLES | with_options(glossy="clamping"), 4)}
 SHARES = {"light paths": "light_path_cpu_seconds", "eye paths and direct light": "eye_path_cpu_seconds",
           "gathering virtual point lights": "vpl_cpu_seconds", "bundles": "bundle_cpu_seconds"}
 

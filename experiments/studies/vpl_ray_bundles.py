@@ -21,10 +21,7 @@ BUNDLES = "mote_vpl_ray_bundles"
 # Shares of 1024 light paths: the same work as 64 for all pixels, with an error that does not hang on a few paths.
 SHARED = {"interleaving": 4, "paths": 1024}
 METHODS = {"combined": (BUNDLES, SHARED), "combined, 4 directions": (BUNDLES, SHARED | {"directions": 4}),
-           "combined, paths end": (BUNDLES, SHARED | {"continuation": 0}),
-           "combined, 1 direct": (BUNDLES, SHARED | {"direct_paths": 1}), "bundles, 1 direct":
-           (BUNDLES, SHARED | {"techniques": "bundles", "direct_paths": 1}), "bundles": (BUNDLES, SHARED | {"techniques": "bundles"}),
-           "bundles, 16 joined": (BUNDLES, SHARED | {"techniques": "bundles", "joined": 16}),
+           "bundles": (BUNDLES, SHARED | {"techniques": "bundles"}),
            "vpls": (BUNDLES, SHARED | {"techniques": "vpls"}),
            "vpls, 4096 paths": (BUNDLES, SHARED | {"techniques": "vpls", "paths": 4096}),
            "path": ("path", {})}

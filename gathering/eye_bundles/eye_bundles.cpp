@@ -33,7 +33,7 @@ bool any_of(const auto& found) {
 void EyeBundles::add(const ReceiverArray& receivers, std::span<const BundleDirection> lines,
                      std::size_t index, TileLight& indirect, TileLight& direct) {
     const BundleDirection& line = lines[index];
-    const float density = pass_.samples.directions * line.pdf_line * (pass_.two_way ? 1.0f : 0.5f);  // M p_r
+    const float density = pass_.samples.directions * line.pdf_line;  // M p_r
     for (int side = 0; side < 2; ++side) {
         for (std::size_t i = 0; i < width; ++i) {
             const BundleReceiver& x = receivers[i];
@@ -43,7 +43,7 @@ void EyeBundles::add(const ReceiverArray& receivers, std::span<const BundleDirec
                        w = side == 0 ? leaving : -leaving;
             // Only where light comes through a surface are there two directions that count.
             if (side == 1 && !x.vertex->bsdf->traits().transmissive) continue;
-            if (pass_.two_way || w == line.direction) trace(x, w, density, line.kept, found_[i], direct[i]);
+            trace(x, w, density, line.kept, found_[i], direct[i]);
         }
         light_found_points(lines, index, indirect);
     }
@@ -58,9 +58,8 @@ void EyeBundles::add_own_rays(const ReceiverArray& receivers, std::span<const Bu
         const Vec2 u = x.sampler->next_2d();
         const auto drawn = x.vertex->sample(walk_.rng.next_float(), u, TransportMode::radiance);
         if (!drawn || drawn->delta) continue;  // the eye path itself goes on behind mirrors
-        const float ways = pass_.two_way ? 1.0f : 0.5f;
-        trace(x, drawn->wi, pass_.samples.directions * line_pdf(pass_.sky, drawn->wi) * ways, nullptr,
-              found_[i], direct[i]);
+        trace(x, drawn->wi, pass_.samples.directions * line_pdf(pass_.sky, drawn->wi), nullptr, found_[i],
+              direct[i]);
     }
     light_found_points(lines, lines.size(), indirect);
 }
@@ -106,14 +105,14 @@ bool EyeBundles::continue_path(Found& y) {
     return true;
 }
 
-/// Paths from the points that line `first` found, along lines of the same pass chosen at random. A line that
-/// a path has not had yet is as good as a new one, because lines are independent of each other; one that it
-/// had leads straight back.
+/// Follows paths from the points that line `first` found, along lines of the same pass chosen at random. A
+/// line that a path has not had yet is as good as a new one, because lines are independent of each other; one
+/// that it had leads straight back, and would bias the light by 0.6 over the number of lines.
 void EyeBundles::go_on(std::span<const BundleDirection> lines, std::size_t first, TileLight& indirect) {
     std::array<std::vector<std::size_t>, width> unused;
     for (auto& left : unused)
         for (std::size_t m = 0; m < lines.size(); ++m)
-            if (m != first || pass_.repeats) left.push_back(m);
+            if (m != first) left.push_back(m);
     for (int bounce = 2; bounce <= pass_.bounces; ++bounce) {
         for (std::size_t i = 0; i < width; ++i) {
             const Found y = found_[i];
@@ -122,7 +121,7 @@ void EyeBundles::go_on(std::span<const BundleDirection> lines, std::size_t first
             const auto drawn =
                 std::min(std::size_t(walk_.rng.next_float() * float(unused[i].size())), unused[i].size() - 1);
             const BundleDirection& line = lines[unused[i][drawn]];
-            if (!pass_.repeats) std::swap(unused[i][drawn], unused[i].back()), unused[i].pop_back();
+            std::swap(unused[i][drawn], unused[i].back()), unused[i].pop_back();
             const BundleReceiver here{&y.vertex, y.throughput, y.max_vpl_depth - 1, y.sampler, false};
             Rgb direct(0.0f);
             trace(here, towards_eye_side(y.vertex, line.direction), line.pdf_line, line.kept, found_[i],
@@ -133,7 +132,7 @@ void EyeBundles::go_on(std::span<const BundleDirection> lines, std::size_t first
     }
 }
 
-/// What lies along the ray from x: as a kept bundle has it, or as a ray finds it.
+/// First event along the ray from x, looked up in a kept bundle or traced.
 WalkEvent EyeBundles::look(const ScatteringVertex& x, const Ray& ray, const RayBundle* kept,
                            Rgb& throughput) {
     WalkEvent event;

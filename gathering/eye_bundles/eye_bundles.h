@@ -12,13 +12,13 @@
 
 #include "core/scene/lit_scene.h"
 #include "gathering/eye_bundles/bundle_directions.h"
-#include "gathering/eye_bundles/kept_links.h"
+#include "gathering/eye_bundles/imperfect_links.h"
 #include "gathering/eye_bundles/path_weights.h"
 #include "lights/virtual_lights/vpl_gather.h"
 
 namespace mote::gathering {
 
-/// Which technique makes the paths that both can make.
+/// Technique of the paths that both can make.
 enum class Techniques : std::uint8_t { combined, vpls, bundles };
 
 /// A point that the eye sees.
@@ -30,7 +30,7 @@ struct BundleReceiver {
     bool first = true;  ///< what the eye sees; false: a point further on, which has lines alone
 };
 
-/// What bundles do, for a pass.
+/// Settings and lights of a pass, shared by all receivers.
 struct BundlePass {
     const core::LitScene& scene;
     const lights::VplSet& vpls;
@@ -40,13 +40,11 @@ struct BundlePass {
     std::size_t stride = 1;           ///< every so many VPLs are joined to a point, from a random one on
     std::optional<float> bound = {};  ///< of paths of two bounces and more, as in the paper; nothing: weighed
     const core::Emitter* sky = nullptr;  ///< whose direct light the bundles find; null: nobody's
-    bool own_rays = true;                ///< of glossy receivers: one more direction each, drawn by the BSDF
-    bool two_way = true;                 ///< false: a direction serves one way, as a shadow map does
-    /// Bounces of paths that choose one of the pass's own lines after the other, at random (the paper's
+    bool own_rays = true;  ///< of glossy receivers: one more direction each, sampled by the BSDF
+    /// Bounces of paths that take the pass's own lines in random order, each at most once (the paper's
     /// Sec. 7); 0: virtual point lights are joined instead.
     int bounces = 0;
-    bool repeats = false;              ///< such a path may choose a line again: biased (docs/design.md)
-    const KeptLinks* links = nullptr;  ///< of lines with kept bundles
+    const ImperfectLinks* links = nullptr;  ///< of lines with kept bundles
 };
 
 using ReceiverArray = std::array<BundleReceiver, lights::ReceiverLanes::width>;

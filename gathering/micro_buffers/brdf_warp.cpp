@@ -106,7 +106,7 @@ void BrdfWarp::fill_directions(std::uint32_t side, const Vec2& place, RayDirecti
     rays.resize(side);
     for (std::uint32_t i = 0; i < side * side; ++i) {
         const Vec2 at = (Vec2(float(i % side), float(i / side)) + place) / float(side);
-        rays.set(i, square_to_hemisphere(HemisphereMap::cosine, to_cosine_square(at)));
+        rays.set(i, square_to_hemisphere(to_cosine_square(at)));
     }
 }
 

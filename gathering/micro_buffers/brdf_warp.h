@@ -2,7 +2,7 @@
 // Sec. 8.1.3).
 //
 // The BSDF for one direction to the viewer, times the cosine, is tabulated over the cosine square
-// (HemisphereMap::cosine, whose area is projected solid angle over pi: a diffuse BSDF is constant there). Its
+// (hemisphere_texels.h, whose area is projected solid angle over pi: a diffuse BSDF is constant there). Its
 // marginal distribution by u and its conditional ones by v, both linear within cells, map the cosine square
 // (u, v) to the warped one (x, y) and back.
 #pragma once
@@ -26,8 +26,7 @@ class BrdfWarp {
             for (std::uint32_t v = 0; v < cells; ++v) {
                 core::Rgb sum(0.0f);
                 for (int k = 0; k < 4; ++k)
-                    sum += f(square_to_hemisphere(HemisphereMap::cosine,
-                                                  size * core::Vec2(float(u) + 0.25f + 0.5f * float(k % 2),
+                    sum += f(square_to_hemisphere(size * core::Vec2(float(u) + 0.25f + 0.5f * float(k % 2),
                                                                     float(v) + 0.25f + 0.5f * float(k / 2))));
                 values_[u * cells + v] = 0.25f * sum;
             }

@@ -28,8 +28,8 @@ class GroupWalk {
             lanes_.wake[i] = i < used_ ? 0u : 0xffffffffu;
         }
         const float side = float(settings.side);
-        // A ball looks small below this r^2 / d^2; for cosine texels times d / z.
-        threshold_ = settings.cut / (side * side) * (settings.map == HemisphereMap::cosine ? 1.0f : 2.0f);
+        // A ball looks small below this r^2 / d^2 times d / z.
+        threshold_ = settings.cut / (side * side);
     }
 
     void run(std::size_t stride, float* distances, std::uint32_t* hits) {
@@ -51,12 +51,10 @@ class GroupWalk {
     /// Which lanes take the node, which are done with it; returns whether any must enter it.
     bool decide(const PointNode& node, const NodePlace& place) {
         const std::uint32_t begin = place.index << place.level, end = begin + (1u << place.level);
-        const bool leaf = place.level == 0, cosine = settings_.map == HemisphereMap::cosine;
+        const bool leaf = place.level == 0;
         const bool whole = node.cone_cos >= flat_cosine;
         const float r = node.radius, r2 = r * r, four_r2 = leaf ? 0.0f : 4.0f * r2;
         const float cone_sin = cone_sine(node);
-        const float reach = leaf ? 0.0f : r;
-        const bool fronts = !settings_.back_faces;
         const float threshold = threshold_;
         std::int32_t any_enter = 0, any_taken = 0;
         MOTE_INDEPENDENT_LANES
@@ -66,10 +64,10 @@ class GroupWalk {
             const float d2 = fused_dot(x, y, z, x, y, z), d = std::sqrt(d2);
             const float up = fused_dot(x, y, z, lanes_.n[0][i], lanes_.n[1][i], lanes_.n[2][i]) + r;
             const float away = fused_dot(x, y, z, node.axis.x, node.axis.y, node.axis.z);
-            const bool hidden = (up <= 0.0f) | (fronts & (away > d * cone_sin + reach));
+            const bool hidden = up <= 0.0f;
             const float slant = min_of(max_of(std::fabs(away) + cone_sin * d, least_slant * d), d);
-            // r^2 / d^2 * slant / d against the threshold (times d / up).
-            const float size = r2 * slant * (cosine ? up : d), limit = threshold * d2 * d2;
+            // r^2 / d^2 * slant / d against the threshold times d / up.
+            const float size = r2 * slant * up, limit = threshold * d2 * d2;
             const bool small = leaf | (whole & (size <= limit) & (four_r2 < d2));
             const bool awake = lanes_.wake[i] <= begin;
             const bool taken = awake & !hidden & small, enter = awake & !hidden & !small;
@@ -84,12 +82,10 @@ class GroupWalk {
     void project(const PointNode& node, bool one_texel) {
         const float side = float(rays_.side), half = 0.5f * side;
         const float after_x = 1.0f - settings_.place.x, after_y = 1.0f - settings_.place.y;
-        const float bend = settings_.map == HemisphereMap::cosine ? 0.0f : 1.0f;
         // What looks large may reach anywhere.
         const float per_angle = one_texel ? 0.0f : square_reach * side, beside = one_texel ? 0.49f : 0.02f;
         const float largest = one_texel ? infinity : 0.5f;
-        const float per_slope = one_texel ? 0.0f : half * (bend > 0.0f ? 0.7072f : 1.0f);
-        const float least_slope = bend;
+        const float per_slope = one_texel ? 0.0f : half;
         const PointNode n = node;
         MOTE_INDEPENDENT_LANES
         for (std::uint32_t i = 0; i < width; ++i) {
@@ -109,7 +105,7 @@ class GroupWalk {
             const float over_d = 1.0f / max_of(std::sqrt(flat2 + cz * cz), 1e-30f);
             // hemisphere_to_square(): the disc, then the concentric square.
             const float up = max_of(cz, 0.0f) * over_d;
-            const float radius = min_of(std::sqrt(flat2) * over_d / std::sqrt(1.0f + bend * up), 1.0f);
+            const float radius = min_of(std::sqrt(flat2) * over_d, 1.0f);
             const float ax = std::fabs(cx), ay = std::fabs(cy), longer = max_of(ax, ay);
             const float across =
                 radius * (4.0f * inv_pi) * arc_tangent(min_of(ax, ay) / max_of(longer, 1e-30f));
@@ -117,11 +113,10 @@ class GroupWalk {
             const float py = half + half * std::copysign(ax < ay ? radius : across, cy);
             const float angle = n.radius * over_d;
             const float any = angle < largest ? per_angle * angle : side;
-            // Along the longer coordinate, the distance from the middle, by the slope of sin (or of sqrt(1 -
-            // cos)) anywhere in the ball, unless the ball may reach a diagonal, where coordinates change
-            // roles.
+            // Along the longer coordinate, the distance from the middle, by the slope of sin anywhere in the
+            // ball, unless the ball may reach a diagonal, where coordinates change roles.
             const float wide = 1.05f * angle;  // its arc sine, up to a half
-            const float outwards = per_slope * wide * max_of(min_of(up + wide, 1.0f), least_slope);
+            const float outwards = per_slope * wide * min_of(up + wide, 1.0f);
             const float room = half * (radius - across) - any;
             const float reach = beside + any, narrow = beside + (room > outwards ? outwards : any);
             const float reach_x = ax < ay ? reach : narrow, reach_y = ax < ay ? narrow : reach;
@@ -134,11 +129,8 @@ class GroupWalk {
     }
 
     void fill(const PointNode& node, std::uint32_t index, std::uint32_t i, DepthRows out) {
-        const LocalDisc disc{{cx_[i], cy_[i], cz_[i]},
-                             {ax_[i], ay_[i], az_[i]},
-                             node.radius,
-                             settings_.back_faces ? near_back * node.radius : infinity,
-                             index};
+        const LocalDisc disc{
+            {cx_[i], cy_[i], cz_[i]}, {ax_[i], ay_[i], az_[i]}, node.radius, near_back * node.radius, index};
         fill_box(rays_, disc, {x0_[i], y0_[i], x1_[i], y1_[i]}, out);
     }
 

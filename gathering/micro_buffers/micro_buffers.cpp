@@ -11,13 +11,9 @@ namespace mote::gathering {
 using namespace core;
 
 MicroBuffers::MicroBuffers(const PointHierarchy& hierarchy, const MicroBufferSettings& settings)
-    : hierarchy_(hierarchy),
-      settings_(settings),
-      texels_(settings.map, settings.side * settings.rays, settings.place) {
+    : hierarchy_(hierarchy), settings_(settings), texels_(settings.side, settings.place) {
     rays_.resize(texels_.side());
     for (std::uint32_t i = 0; i < texels_.count(); ++i) rays_.set(i, texels_.directions()[i]);
-
-    if (settings.rays == 0) throw InputError("a texel of micro-buffers needs rays");
     if (!(settings.cut > 0.0f)) throw InputError("the cut of micro-buffers must be positive");
 }
 
@@ -54,35 +50,32 @@ void MicroBuffers::render_warped(std::span<const MicroReceiver> receivers, std::
 
 namespace {
 
-template <typename Weight>
-Rgb weighted_sum(std::span<const MicroTexel> texels, std::span<const Weight> weights,
-                 const NodeRadiance& radiance, const Rgb& environment) {
+template <typename WeightOf>
+Rgb weighted_sum(std::span<const MicroTexel> texels, const WeightOf& weight_of,
+                 const NodeRadiance& radiance) {
     Vec3d sum(0.0);
-    for (std::size_t i = 0; i < texels.size(); ++i) {
-        const MicroTexel& t = texels[i];
-        const Rgb& seen = t.empty() ? environment : radiance.of(t.node(), t.from_behind());
-        sum += Vec3d(Vec3(weights[i])) * Vec3d(seen);
-    }
+    for (std::size_t i = 0; i < texels.size(); ++i)
+        if (const MicroTexel& t = texels[i]; !t.empty())
+            sum += Vec3d(Vec3(weight_of(i))) * Vec3d(radiance.of(t.node(), t.from_behind()));
     return Rgb(sum);
 }
 
 }  // namespace
 
-Rgb gathered(std::span<const MicroTexel> texels, std::span<const float> weights, const NodeRadiance& radiance,
-             const Rgb& environment) {
-    return weighted_sum(texels, weights, radiance, environment);
+Rgb gathered(std::span<const MicroTexel> texels, float weight, const NodeRadiance& radiance) {
+    return weighted_sum(
+        texels, [&](std::size_t) { return weight; }, radiance);
 }
 
-Rgb gathered(std::span<const MicroTexel> texels, std::span<const Rgb> weights, const NodeRadiance& radiance,
-             const Rgb& environment) {
-    return weighted_sum(texels, weights, radiance, environment);
+Rgb gathered(std::span<const MicroTexel> texels, std::span<const Rgb> weights, const NodeRadiance& radiance) {
+    return weighted_sum(
+        texels, [&](std::size_t i) { return weights[i]; }, radiance);
 }
 
 void gather_irradiance(const MicroBuffers& buffers, const NodeRadiance& radiance,
-                       std::span<const MicroReceiver> receivers, std::span<Rgb> irradiance,
-                       const Rgb& environment) {
+                       std::span<const MicroReceiver> receivers, std::span<Rgb> irradiance) {
     buffers.for_each(receivers, [&](std::size_t i, std::span<const MicroTexel> texels) {
-        irradiance[i] = gathered(texels, buffers.texels().cosine_weights(), radiance, environment);
+        irradiance[i] = gathered(texels, buffers.texels().cosine_weight(), radiance);
     });
 }
 

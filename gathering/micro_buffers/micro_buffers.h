@@ -38,20 +38,13 @@ struct MicroTexel {
 /// How fine buffers are, and what may be left out.
 struct MicroBufferSettings {
     std::uint32_t side = 16;  ///< texels
-    /// Each texel is cut into rays x rays parts, with a ray each: the buffer has (side rays)^2 entries, nodes
-    /// are as for side^2.
-    std::uint32_t rays = 1;
-    HemisphereMap map = HemisphereMap::cosine;
-    /// Where in each of these its ray lies, in [0, 1)^2: buffers that are averaged should differ in it, else
+    /// Where in each of them its ray lies, in [0, 1)^2: buffers that are averaged should differ in it, else
     /// all of them miss the same.
     core::Vec2 place{0.5f};
     /// A node is not entered whose solid angle is at most this share of its texel's.
     float cut = 1.0f;
-    /// Whether points fill all texels whose rays meet them (Fig. 8.13), or only the one that they fall on.
+    /// If true, points fill all texels whose rays meet them (Fig. 8.13), else only the one that they fall on.
     bool cast_leaves = true;
-    /// Whether surfaces are seen from behind. Where all are closed they need not be: less time, and no rim of
-    /// discs that reach beyond an edge.
-    bool back_faces = true;
 };
 
 /// Makes the buffers of receivers over one hierarchy; has no state that changes.
@@ -67,8 +60,7 @@ class MicroBuffers {
     /// Fills texels_each() texels for every receiver, one after the other. In one thread.
     void render(std::span<const MicroReceiver> receivers, std::span<MicroTexel> texels) const;
     /// The same with a warped buffer for each receiver: warps[i] belongs to receivers[i], and its
-    /// fill_weights(texels().side(), ...) are the texels' weights. The map of the settings is not used, and
-    /// points fill all texels that they meet.
+    /// fill_weights(texels().side(), ...) are the texels' weights. Points fill all texels that they meet.
     void render_warped(std::span<const MicroReceiver> receivers, std::span<const BrdfWarp> warps,
                        std::span<MicroTexel> texels) const;
     /// visit(i, texels) for every receiver i, from many threads at once; receivers that follow each other
@@ -94,18 +86,15 @@ class MicroBuffers {
     RayDirections rays_;
 };
 
-/// Sum of weight times radiance over the texels; texels that meet nothing see `environment`. With
-/// cosine_weights() this is irradiance [W/m^2].
-core::Rgb gathered(std::span<const MicroTexel> texels, std::span<const float> weights,
-                   const NodeRadiance& radiance, const core::Rgb& environment = core::Rgb(0.0f));
+/// Sum of weight times radiance over the texels. With cosine_weight() this is irradiance [W/m^2].
+core::Rgb gathered(std::span<const MicroTexel> texels, float weight, const NodeRadiance& radiance);
 
-/// The same with the weights of a BrdfWarp: reflected radiance [W/(m^2 sr)].
+/// Sum with the weights of a BrdfWarp: reflected radiance [W/(m^2 sr)].
 core::Rgb gathered(std::span<const MicroTexel> texels, std::span<const core::Rgb> weights,
-                   const NodeRadiance& radiance, const core::Rgb& environment = core::Rgb(0.0f));
+                   const NodeRadiance& radiance);
 
 /// Irradiance of each receiver [W/m^2], in parallel; the same for any number of threads.
 void gather_irradiance(const MicroBuffers& buffers, const NodeRadiance& radiance,
-                       std::span<const MicroReceiver> receivers, std::span<core::Rgb> irradiance,
-                       const core::Rgb& environment = core::Rgb(0.0f));
+                       std::span<const MicroReceiver> receivers, std::span<core::Rgb> irradiance);
 
 }  // namespace mote::gathering

@@ -19,11 +19,4 @@ inline float cone_sine(const PointNode& node) {
     return node.cone_cos > 0.0f ? core::safe_sqrt(1.0f - node.cone_cos * node.cone_cos) : 2.0f;
 }
 
-/// All points of the node show their backs to who looks along `towards`, the way to its center. A leaf is a
-/// disc, of which no part lies elsewhere.
-inline bool faces_away(const PointNode& node, const core::Vec3& towards, bool leaf) {
-    return glm::dot(node.axis, towards) >
-           glm::length(towards) * cone_sine(node) + (leaf ? 0.0f : node.radius);
-}
-
 }  // namespace mote::gathering

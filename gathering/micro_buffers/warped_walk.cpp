@@ -21,8 +21,7 @@ WarpedImage image_of(const BrdfWarp& warp, const Vec3& center, float radius, flo
     const float d = glm::length(center);
     Vec2 lower(0.0f), upper(1.0f);
     if (radius < 0.5f * d) {
-        const Vec2 at = hemisphere_to_square(HemisphereMap::cosine,
-                                             Vec3(center.x, center.y, std::max(center.z, 0.0f)) / d);
+        const Vec2 at = hemisphere_to_square(Vec3(center.x, center.y, std::max(center.z, 0.0f)) / d);
         const float reach = square_reach * radius / d + 1e-5f;
         lower = glm::max(at - reach, Vec2(0.0f)), upper = glm::min(at + reach, Vec2(1.0f));
     }
@@ -39,15 +38,14 @@ void walk_warped(const PointHierarchy& hierarchy, const MicroBufferSettings& set
     if (hierarchy.empty()) return;
     const float side = float(rays.side);
     // As large as the box around a disc of the cut's share of a texel.
-    const float largest = settings.cut * sqr(2.0f * square_reach * float(settings.rays));
+    const float largest = settings.cut * sqr(2.0f * square_reach);
     for (NodePlace place = hierarchy.root(); hierarchy.exists(place);) {
         const std::uint32_t index = hierarchy.node_index(place);
         const PointNode& node = hierarchy.nodes()[index];
         const Vec3 center = fused_local(receiver.frame, node.center - receiver.position);
         const bool leaf = place.level == 0;
         const NodePlace after = place.skip();
-        const bool below = center.z + node.radius <= 0.0f;
-        if (below || (!settings.back_faces && faces_away(node, node.center - receiver.position, leaf))) {
+        if (center.z + node.radius <= 0.0f) {  // below the receiver's horizon
             place = after;
             continue;
         }
@@ -60,7 +58,7 @@ void walk_warped(const PointHierarchy& hierarchy, const MicroBufferSettings& set
         }
         if (!image.empty()) {
             const LocalDisc disc{center, fused_local(receiver.frame, node.axis), node.radius,
-                                 settings.back_faces ? near_back * node.radius : infinity, index};
+                                 near_back * node.radius, index};
             // The rays at i + place, as in group_walk.cpp.
             const Vec2 to_next = Vec2(1.0f) - settings.place;
             const glm::ivec2 first(glm::max(image.lower - 0.01f + to_next, Vec2(0.0f))),

@@ -8,8 +8,6 @@ namespace mote::gathering {
 
 class NodeRadiance {
   public:
-    static constexpr std::size_t bytes_per_point = 2 * sizeof(core::Rgb);  ///< and side
-
     /// Diffuse radiance of each point in the surfels' order, on the front, and on the back where that is not
     /// empty: an empty back is black [W/(m^2 sr); divide a radiosity by pi]. Throws InputError where a span
     /// has another size than the hierarchy, or a value is not finite.
@@ -26,22 +24,5 @@ class NodeRadiance {
     std::vector<core::Rgb> front_, back_;
     core::Rgb black_{0.0f};
 };
-
-/// Means of any value that can be added and scaled, leaves in the surfels' order, nodes as in nodes().
-template <typename Value>
-std::vector<Value> pulled_up(const PointHierarchy& hierarchy, std::span<const Value> of_surfels) {
-    std::vector<Value> values(hierarchy.nodes().size());
-    for (std::uint32_t i = 0; i < hierarchy.points(); ++i) values[i] = of_surfels[hierarchy.order()[i]];
-    for (std::uint32_t level = 1; level < hierarchy.levels(); ++level)
-        for (std::uint32_t i = 0; i < hierarchy.count(level); ++i) {
-            const NodePlace node{level, i}, a = node.first_child(), b{a.level, a.index + 1};
-            Value& mean = values[hierarchy.node_index(node)];
-            mean = values[hierarchy.node_index(a)];
-            if (!hierarchy.exists(b)) continue;
-            const float share = float(hierarchy.points_below(b)) / float(hierarchy.points_below(node));
-            mean = mean + share * (values[hierarchy.node_index(b)] - mean);
-        }
-    return values;
-}
 
 }  // namespace mote::gathering

@@ -47,13 +47,13 @@ void PointHierarchy::check_memory(std::size_t points, std::size_t budget) {
                                      memory_text(double(budget))));
 }
 
-PointHierarchy::PointHierarchy(const Surfels& surfels, const HierarchySettings& settings)
+PointHierarchy::PointHierarchy(const Surfels& surfels, std::size_t memory_budget)
     : disc_radius_(surfels.radius), patch_(surfels.patch()) {
-    check_memory(surfels.size(), settings.memory_budget);
+    check_memory(surfels.size(), memory_budget);
     first_.push_back(0);
     for (auto count = std::uint32_t(surfels.size()); count > 0; count = count > 1 ? (count + 1) / 2 : 0)
         first_.push_back(first_.back() + count);
-    order_ = point_order(surfels, settings.order);
+    order_ = point_order(surfels);
     nodes_.resize(first_.back());
     for (std::uint32_t i = 0; i < points(); ++i)
         nodes_[i] = {surfels.positions[order_[i]], disc_radius_, surfels.normals[order_[i]], 1.0f};

@@ -38,12 +38,6 @@ struct NodePlace {
     }
 };
 
-/// How a hierarchy is built.
-struct HierarchySettings {
-    PointOrder order = PointOrder::median;             ///< in which ranges of points are nodes
-    std::size_t memory_budget = std::size_t(1) << 30;  ///< [B]
-};
-
 /// The tree over a set of points.
 class PointHierarchy {
   public:
@@ -55,7 +49,7 @@ class PointHierarchy {
     static void check_memory(std::size_t points, std::size_t budget);
     /// Throws InputError for more than 2^24 points or more memory than the budget, naming the count that
     /// fits. Does not refer to the points later. The same for any number of threads.
-    explicit PointHierarchy(const Surfels& surfels, const HierarchySettings& settings = {});
+    explicit PointHierarchy(const Surfels& surfels, std::size_t memory_budget = std::size_t(1) << 30);
 
     /// How many points, which are the leaves.
     std::uint32_t points() const { return first_.size() > 1 ? first_[1] : 0; }

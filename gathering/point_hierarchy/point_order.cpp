@@ -44,7 +44,7 @@ void cut_at_medians(const Surfels& surfels, std::uint32_t* order, std::size_t fi
 
 }  // namespace
 
-std::vector<std::uint32_t> point_order(const Surfels& surfels, PointOrder kind) {
+std::vector<std::uint32_t> point_order(const Surfels& surfels) {
     Bounds3 bounds;
     for (const Vec3& p : surfels.positions) bounds.extend(p);
     std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed(surfels.size());
@@ -55,7 +55,6 @@ std::vector<std::uint32_t> point_order(const Surfels& surfels, PointOrder kind) 
     std::sort(keyed.begin(), keyed.end());
     std::vector<std::uint32_t> order(keyed.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = keyed[i].second;
-    if (kind == PointOrder::morton) return order;
     for (std::size_t first = 0, last = 0; first < order.size(); first = last) {
         while (last < order.size() && keyed[last].first >> 60 == keyed[first].first >> 60) ++last;
         cut_at_medians(surfels, order.data(), first, last, std::uint32_t(std::bit_width(order.size())));

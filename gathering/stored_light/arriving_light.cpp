@@ -33,16 +33,14 @@ ArrivedLight at_all_places(std::size_t places, CancelToken cancelled, const Fill
     return light;
 }
 
-/// Both techniques for the light of one light, as irradiance.
-template <bool Media>
-Rgb sample_direct(const LitScene& scene, const ScatteringVertex& vertex, const MediumState& state,
-                  Sampler& sampler, WalkContext& walk) {
-    PathWeights weights;
-    if constexpr (Media) weights.hero = draw_hero(walk.rng);
+/// Irradiance by one light, sampled by both techniques.
+Rgb sample_direct(const LitScene& scene, const ScatteringVertex& vertex, Sampler& sampler,
+                  WalkContext& walk) {
+    const PathWeights weights;
     const float u_light = sampler.next_1d();
-    Rgb light = lights::sample_light<Media>(scene, vertex, weights, state, u_light, sampler.next_2d(), walk);
+    Rgb light = lights::sample_light<false>(scene, vertex, weights, {}, u_light, sampler.next_2d(), walk);
     if (const auto next = vertex.sample(0.5f, sampler.next_2d(), TransportMode::radiance))
-        light += lights::light_towards<Media>(scene, vertex, *next, weights, state, walk);
+        light += lights::light_towards<false>(scene, vertex, *next, weights, {}, walk);
     return pi * light;
 }
 
@@ -50,7 +48,6 @@ Rgb sample_direct(const LitScene& scene, const ScatteringVertex& vertex, const M
 
 ArrivedLight direct_light_at(const LitScene& scene, const LightPlaces& places, int samples, std::uint64_t key,
                              CancelToken cancelled) {
-    const bool media = scene.has_media();
     return at_all_places(
         places.size(), cancelled,
         [&](std::size_t first, std::size_t end, std::vector<Rgb>& irradiance, RayCounters& rays) {
@@ -58,13 +55,10 @@ ArrivedLight direct_light_at(const LitScene& scene, const LightPlaces& places, i
             walk.cancelled = cancelled;
             for (std::size_t i = first; i < end; ++i) {
                 const ScatteringVertex vertex = places.vertex(i);
-                const MediumState state = media ? places.state(i) : MediumState();
                 for (int k = 0; k < samples; ++k) {
                     Sampler sampler(SamplerKind::sobol, key, std::uint32_t(k), i);
                     walk.rng = sampler.make_rng();
-                    irradiance[i] += (media ? sample_direct<true>(scene, vertex, state, sampler, walk)
-                                            : sample_direct<false>(scene, vertex, state, sampler, walk)) /
-                                     float(samples);
+                    irradiance[i] += sample_direct(scene, vertex, sampler, walk) / float(samples);
                 }
             }
             rays = walk.rays;

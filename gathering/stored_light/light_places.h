@@ -15,8 +15,6 @@ class LightPlaces {
     virtual std::size_t size() const = 0;
     /// A white vertex (white_vertex()). Safe from many threads.
     virtual core::ScatteringVertex vertex(std::size_t place) const = 0;
-    /// The media on the vertex's side of its surface; asked for in scenes that have media.
-    virtual core::MediumState state(std::size_t /*place*/) const { return {}; }
 };
 
 /// A Lambertian vertex of reflectance 1 at a hit, on the front of its surface or on the back, seen from

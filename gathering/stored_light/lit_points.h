@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "gathering/stored_light/arriving_light.h"
-#include "gathering/stored_light/lit_volume.h"
 #include "gathering/stored_light/point_radiosity.h"
 #include "lights/virtual_lights/light_path.h"
 
@@ -21,39 +20,29 @@ enum class StoredLight : std::uint8_t {
 
 struct LitPointSettings {
     std::uint32_t points = 65536;
-    std::uint32_t candidates = 8;  ///< for each point (SurfelSettings); 0: stratified points
     StoredLight light = StoredLight::direct;
-    int light_samples = 4;            ///< drawn lights a place
-    int bounces = 6;                  ///< of radiosity, the first from direct light
-    std::uint32_t level = 6;          ///< of radiosity (PointRadiositySettings)
+    int bounces = 6;                  ///< reflections between points; the first has direct light
     lights::LightPathSettings paths;  ///< of virtual point lights, or of photons
     float bound = core::infinity;     ///< on G* between a virtual point light and a place [1/m^2]
-    std::size_t neighbours = 50;      ///< photons of an estimate
     std::size_t memory_budget = std::size_t(1) << 30;  ///< of points and their hierarchy, each [B]
-    LitVolumeSettings volume;                          ///< of scenes with media
 };
 
-/// What making the light of a pass took.
+/// Cost of making the light of a pass.
 struct LitPointCost {
     core::RayCounters rays;
     core::TrackingCounters tracking;
     std::size_t places = 0, light_points = 0, bytes = 0;  ///< `light_points`: virtual lights or photons
-    std::size_t volume_points = 0;
 };
 
 class LitPoints {
   public:
-    /// Throws the InputError of points beyond the budget, before anything is made. `media`: of a scene that
-    /// has any.
-    static void check_memory(const LitPointSettings& settings, bool media);
-    /// A fresh set for (seed, pass). `surfaces` and `shapes` are those of the scene and kept by reference.
-    /// `state_at`: of scenes with media. Points in media store direct light, and with `radiosity` what they
-    /// exchange; that of virtual point lights and photons they do not. Throws core::Cancelled, and InputError
-    /// where the points exceed the budget.
+    /// Throws the InputError of points beyond the budget, before anything is made.
+    static void check_memory(const LitPointSettings& settings);
+    /// Points of (seed, pass) in a scene without media. Keeps references to `surfaces` and `shapes`, those of
+    /// the scene. Throws core::Cancelled, and InputError where the points exceed the budget.
     LitPoints(const core::LitScene& scene, const SurfaceTriangles& surfaces, ShapeSpan shapes,
               const LitPointSettings& settings, const MicroBufferSettings& buffers, std::uint64_t seed,
-              std::uint32_t pass, core::SamplerKind sampler, core::CancelToken cancelled,
-              const MediumStateAt& state_at = {});
+              std::uint32_t pass, core::SamplerKind sampler, core::CancelToken cancelled);
     LitPoints(const LitPoints&) = delete;
     LitPoints& operator=(const LitPoints&) = delete;
 
@@ -61,23 +50,17 @@ class LitPoints {
     /// Light that points reflect; emission is none of it.
     const NodeRadiance& radiance() const { return *radiance_; }
     const Surfels& surfels() const { return surfels_; }
-    /// Points in media; null where the scene has none.
-    const LitVolume* volume() const { return volume_ ? &*volume_ : nullptr; }
     const LitPointCost& cost() const { return cost_; }
 
   private:
     std::vector<core::Rgb> arriving(const core::LitScene& scene, const SurfelSides& sides,
                                     const LitPointSettings& settings, std::uint64_t seed, std::uint32_t pass,
                                     core::SamplerKind sampler, core::CancelToken cancelled);
-    std::vector<core::Rgb> exchanged_in_media(const core::LitScene& scene, const SurfelSides& sides,
-                                              std::vector<core::Rgb> light, const LitPointSettings& settings,
-                                              std::uint64_t key, core::CancelToken cancelled);
 
     Surfels surfels_;
     std::optional<PointHierarchy> hierarchy_;
     std::optional<MicroBuffers> buffers_;
     std::optional<NodeRadiance> radiance_;
-    std::optional<LitVolume> volume_;
     LitPointCost cost_;
 };
 

@@ -22,9 +22,8 @@ Rgb reflectance_at(const SurfaceHit& hit, bool back) {
 
 }  // namespace
 
-SurfelSides::SurfelSides(const SurfaceTriangles& surfaces, ShapeSpan shapes, const Surfels& surfels,
-                         MediumStateAt state_at)
-    : surfaces_(surfaces), shapes_(shapes), surfels_(surfels), state_at_(std::move(state_at)) {
+SurfelSides::SurfelSides(const SurfaceTriangles& surfaces, ShapeSpan shapes, const Surfels& surfels)
+    : surfaces_(surfaces), shapes_(shapes), surfels_(surfels) {
     std::vector<SurfaceSides> sides(shapes.size());
     for (std::size_t i = 0; i < shapes.size(); ++i)
         if (shapes[i]->bsdf && shapes[i]->bsdf->traits().smooth) sides[i] = sides_of(*shapes[i]);
@@ -52,12 +51,6 @@ SurfaceHit SurfelSides::hit(std::uint32_t surfel) const {
 
 ScatteringVertex SurfelSides::vertex(std::size_t place) const {
     return white_vertex(hit(places_[place].surfel), !places_[place].back);
-}
-
-MediumState SurfelSides::state(std::size_t place) const {
-    if (!state_at_) return {};
-    const ScatteringVertex v = vertex(place);
-    return state_at_(v.ray_origin(v.wo));
 }
 
 SurfelSides::Radiance SurfelSides::reflected(std::span<const Rgb> irradiance) const {

@@ -4,20 +4,17 @@
 #include "gathering/atlas/surface_place.h"
 #include "gathering/stored_light/light_places.h"
 #include "gathering/surface_points/surfels.h"
-#include "gathering/volume_points/medium_samples.h"
 
 namespace mote::gathering {
 
 class SurfelSides final : public LightPlaces {
   public:
-    /// All three are kept by reference. Reflectances are looked up once; a side whose surface reflects
-    /// nothing there is no place. `state_at`: of scenes with media.
-    SurfelSides(const SurfaceTriangles& surfaces, ShapeSpan shapes, const Surfels& surfels,
-                MediumStateAt state_at = {});
+    /// Keeps references to all three. Looks reflectances up once; a side whose surface reflects nothing is
+    /// left out.
+    SurfelSides(const SurfaceTriangles& surfaces, ShapeSpan shapes, const Surfels& surfels);
 
     std::size_t size() const override { return places_.size(); }
     core::ScatteringVertex vertex(std::size_t place) const override;
-    core::MediumState state(std::size_t place) const override;
     /// Of a Lambertian surface; of every other one what it reflects of light from straight above, to
     /// everywhere alike (Engelhardt 2013, Sec. 8.4.1: points send light diffusely). Mirrors and clear glass
     /// are black.
@@ -45,7 +42,6 @@ class SurfelSides final : public LightPlaces {
     const SurfaceTriangles& surfaces_;
     ShapeSpan shapes_;
     const Surfels& surfels_;
-    MediumStateAt state_at_;
     std::vector<Place> places_;
     bool any_back_ = false;
 };

@@ -13,16 +13,6 @@ using namespace core;
 namespace {
 
 constexpr std::uint32_t largest_count = 1u << 24;
-/// Farther than this from its point, in roots of a point's patch, hardly any place is by area alone.
-constexpr double stratified_reach = 1.0;
-
-void check_memory(std::uint32_t count, std::size_t bytes_per_point, std::size_t budget) {
-    const std::size_t fits = std::min<std::size_t>(budget / bytes_per_point, largest_count);
-    if (count <= fits) return;
-    throw InputError(fmt::format("{} points on surfaces take{}; {} fit into the{} allowed", count,
-                                 memory_text(double(count) * double(bytes_per_point)), fits,
-                                 memory_text(double(budget))));
-}
 
 Surfels placed(const SurfaceTriangles& triangles, std::vector<SurfacePoint> places, double area) {
     Surfels surfels;
@@ -40,26 +30,20 @@ Surfels placed(const SurfaceTriangles& triangles, std::vector<SurfacePoint> plac
 
 }  // namespace
 
-void check_surfel_memory(std::uint32_t count, const SurfelSettings& settings, bool blue_noise) {
-    constexpr std::size_t point = sizeof(Vec3) * 2 + sizeof(SurfacePoint);
-    check_memory(count, blue_noise ? settings.candidates * (point + 8) + 64 : point, settings.memory_budget);
-}
-
-Surfels stratified_surfels(const SurfaceTriangles& triangles, std::uint32_t count,
-                           const SurfelSettings& settings) {
-    check_surfel_memory(count, settings, false);
-    const SurfacePoints surface(triangles);
-    std::vector<SurfacePoint> places;
-    surface.draw(settings.seed, count, 0, count, places);
-    Surfels surfels = placed(triangles, std::move(places), surface.area());
-    surfels.radius = settings.disc_size * float(stratified_reach * std::sqrt(surfels.patch()));
-    return surfels;
+void check_surfel_memory(std::uint32_t count, const SurfelSettings& settings) {
+    constexpr std::size_t candidate = sizeof(Vec3) * 2 + sizeof(SurfacePoint) + 8;
+    const std::size_t bytes_per_point = settings.candidates * candidate + 64;
+    const std::size_t fits = std::min<std::size_t>(settings.memory_budget / bytes_per_point, largest_count);
+    if (count <= fits) return;
+    throw InputError(fmt::format("{} points on surfaces take{}; {} fit into the{} allowed", count,
+                                 memory_text(double(count) * double(bytes_per_point)), fits,
+                                 memory_text(double(settings.memory_budget))));
 }
 
 Surfels blue_noise_surfels(const SurfaceTriangles& triangles, std::uint32_t count,
                            const SurfelSettings& settings) {
     if (settings.candidates == 0) throw InputError("points on surfaces need candidates");
-    check_surfel_memory(count, settings, true);
+    check_surfel_memory(count, settings);
     const SurfacePoints surface(triangles);
     const auto candidates =
         std::uint32_t(std::min<std::uint64_t>(std::uint64_t(count) * settings.candidates, 0xffffffffu));
@@ -73,7 +57,7 @@ Surfels blue_noise_surfels(const SurfaceTriangles& triangles, std::uint32_t coun
         chosen.positions.push_back(all.positions[i]), chosen.normals.push_back(all.normals[i]);
         chosen.places.push_back(all.places[i]);
     }
-    chosen.area = surface.area(), chosen.radius = settings.disc_size * darts.covering_radius;
+    chosen.area = surface.area(), chosen.radius = darts.covering_radius;
     return chosen;
 }
 

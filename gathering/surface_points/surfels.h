@@ -26,9 +26,6 @@ struct SurfelSettings {
     std::uint64_t seed = 1;  ///< determines the points, on any number of threads
     /// Candidates for each point: more make the points more even, and take as much longer.
     std::uint32_t candidates = 8;
-    /// Of the discs, in units of the radius within which there is a point for every candidate: below 1 there
-    /// are holes.
-    float disc_size = 1.0f;
     std::size_t memory_budget = std::size_t(1) << 30;  ///< while points are chosen [B]
     core::CancelToken cancelled = {};
 };
@@ -42,11 +39,7 @@ struct SurfelSettings {
 Surfels blue_noise_surfels(const SurfaceTriangles& triangles, std::uint32_t count,
                            const SurfelSettings& settings = {});
 
-/// Throws the InputError of the two functions, for points beyond the budget, and does nothing else.
-void check_surfel_memory(std::uint32_t count, const SurfelSettings& settings, bool blue_noise);
-
-/// The same with points that are stratified by area alone: quick, with clumps and gaps between patches.
-Surfels stratified_surfels(const SurfaceTriangles& triangles, std::uint32_t count,
-                           const SurfelSettings& settings = {});
+/// Throws the InputError of blue_noise_surfels() for points beyond the budget, and does nothing else.
+void check_surfel_memory(std::uint32_t count, const SurfelSettings& settings);
 
 }  // namespace mote::gathering

@@ -11,10 +11,7 @@ namespace mote::integrators {
 using namespace core;
 namespace {
 
-template <bool Media>
 class MicroEstimator final : public Estimator {
-    using EyeTile = MicroEyeTile<Media>;
-
   public:
     MicroEstimator(const Scene& scene, const RenderOptions& options, const MicroSettings& settings)
         : scene_(scene),
@@ -23,7 +20,6 @@ class MicroEstimator final : public Estimator {
           surfaces_(gathering::surface_triangles(scene.shapes())) {
         settings_.eye.wanted = options.cells;
         settings_.points.bound = bound();
-        if (Media) state_at_ = [&scene](const Vec3& p) { return scene.medium_state_at(p, nullptr); };
     }
 
     bool pass(const PassContext& context, PassImage& image) override {
@@ -31,7 +27,7 @@ class MicroEstimator final : public Estimator {
         const double begin = process_cpu_seconds();
         const gathering::LitPoints points(scene_, surfaces_, scene_.shapes(), point_settings(),
                                           settings_.buffers, options_.seed, context.index, options_.sampler,
-                                          context.cancelled, state_at_);
+                                          context.cancelled);
         const double lit = process_cpu_seconds();
         add_cost(points.cost(), lit - begin);
         std::optional<SharedPixels> shared;
@@ -50,13 +46,12 @@ class MicroEstimator final : public Estimator {
     }
 
     void add_statistics(Statistics& statistics) const override {
-        counters_.report(statistics, Media);
+        counters_.report(statistics, false);
         statistics.values["points"] = double(settings_.points.points);
-        if (Media) statistics.values["volume_points"] = double(volume_points_);
         statistics.values["places"] += double(places_);
         statistics.values["receivers"] += double(receivers_.load());
         statistics.values["point_bytes_peak"] = double(bytes_);
-        // What Fig. 8.12 plots, and what comes before it.
+        // Engelhardt 2013, Fig. 8.12 plots the second.
         statistics.values["light_cpu_seconds"] += light_seconds_;
         statistics.values["gather_cpu_seconds"] += gather_seconds_;
         if (settings_.points.light == gathering::StoredLight::vpls)
@@ -67,37 +62,35 @@ class MicroEstimator final : public Estimator {
     }
 
   private:
-    static constexpr std::size_t lane_count = std::size_t(EyeTile::width);
+    static constexpr std::size_t lane_count = std::size_t(MicroEyeTile::width);
     using Lanes = std::array<glm::ivec2, lane_count>;  ///< pixels; x < 0: none
     struct Box {
         int x0, y0, x1, y1;
     };
 
-    /// As mote_vpl has it.
+    /// The automatic bound is that of mote_vpl.
     float bound() const {
         if (settings_.bound) return *settings_.bound > 0.0f ? *settings_.bound : infinity;
         const float radius = scene_.rays().bounds().radius();
         return radius > 0.0f ? float(settings_.points.paths.paths) / sqr(radius) : infinity;
     }
-    /// One point without light, where nobody asks for indirect light.
+    /// A single point without light where indirect light is not wanted.
     gathering::LitPointSettings point_settings() const {
         gathering::LitPointSettings points = settings_.points;
-        const TransportSet wanted = settings_.eye.wanted;
-        const bool any = wanted[Transport::indirect] || (Media && wanted[Transport::multiple_scattering]);
-        if (any && settings_.most_bounces() != 0) return points;
-        points.points = points.volume.points = 1, points.light = gathering::StoredLight::direct;
+        if (settings_.eye.wanted[Transport::indirect] && settings_.max_bounces() != 0) return points;
+        points.points = 1, points.light = gathering::StoredLight::direct;
         return points;
     }
     void add_cost(const gathering::LitPointCost& cost, double seconds) {
         counters_.add(cost.rays, cost.tracking);
         places_ += cost.places, light_points_ += cost.light_points, bytes_ = std::max(bytes_, cost.bytes);
-        volume_points_ = cost.volume_points, light_seconds_ += seconds;
+        light_seconds_ += seconds;
     }
 
     /// Pixels of a task: a multiple of the tiles of receivers, whose pixels are `upsampling` apart.
     int tile_size() const {
         const int n = settings_.upsampling;
-        return EyeTile::side * n * std::max(1, 4 / n);
+        return MicroEyeTile::side * n * std::max(1, 4 / n);
     }
     /// The lattice goes round from pass to pass.
     screenspace::ShadedLattice lattice(const PassContext& context) const {
@@ -110,7 +103,7 @@ class MicroEstimator final : public Estimator {
     void with_tile(const PassContext& context, const gathering::LitPoints& points, const Render& render) {
         WalkContext walk;
         walk.cancelled = context.cancelled;
-        const auto tile = std::make_unique<EyeTile>(scene_, settings_, points, walk);
+        const auto tile = std::make_unique<MicroEyeTile>(scene_, settings_, points, walk);
         render(*tile);
         counters_.add(walk.rays, walk.tracking);
         receivers_ += tile->receivers();
@@ -118,9 +111,9 @@ class MicroEstimator final : public Estimator {
 
     void render_tile(const PassContext& context, const gathering::LitPoints& points, PassImage& image,
                      SharedPixels* shared, const Box& box) {
-        constexpr int side = EyeTile::side;
+        constexpr int side = MicroEyeTile::side;
         const int n = settings_.upsampling;
-        with_tile(context, points, [&](EyeTile& tile) {
+        with_tile(context, points, [&](MicroEyeTile& tile) {
             for (int y = box.y0; y < box.y1; y += side * n)
                 for (int x = box.x0; x < box.x1; x += side * n)
                     for (int i = 0; i < n * n; ++i) {
@@ -144,7 +137,7 @@ class MicroEstimator final : public Estimator {
         const std::vector<std::uint32_t> again = shared.again();
         constexpr std::size_t task = 256;
         tbb::parallel_for(std::size_t(0), (again.size() + task - 1) / task, [&](std::size_t t) {
-            with_tile(context, points, [&](EyeTile& tile) {
+            with_tile(context, points, [&](MicroEyeTile& tile) {
                 const std::size_t end = std::min((t + 1) * task, again.size());
                 for (std::size_t i = t * task; i < end && !context.cancelled; i += lane_count) {
                     Lanes lanes;
@@ -164,7 +157,7 @@ class MicroEstimator final : public Estimator {
         return true;
     }
 
-    void render_lanes(const PassContext& context, PassImage& image, EyeTile& tile, const Lanes& lanes,
+    void render_lanes(const PassContext& context, PassImage& image, MicroEyeTile& tile, const Lanes& lanes,
                       SharedPixels* shared) const {
         for (std::size_t lane = 0; lane < lanes.size(); ++lane)
             if (lanes[lane].x >= 0)
@@ -174,7 +167,7 @@ class MicroEstimator final : public Estimator {
         tile.run();
         for (std::size_t lane = 0; lane < lanes.size(); ++lane)
             if (const glm::ivec2 p = lanes[lane]; p.x >= 0) {
-                store(tile.sum(int(lane)), image, p.x, p.y, Media);
+                store(tile.sum(int(lane)), image, p.x, p.y, false);
                 if (shared) shared->set(p.x, p.y, tile.seen(int(lane)));
             }
     }
@@ -183,11 +176,10 @@ class MicroEstimator final : public Estimator {
     RenderOptions options_;
     MicroSettings settings_;
     gathering::SurfaceTriangles surfaces_;
-    gathering::MediumStateAt state_at_;
     SharedCounters counters_;
     std::atomic<std::uint64_t> receivers_{0};
     std::uint64_t places_ = 0, light_points_ = 0, shaded_again_ = 0;
-    std::size_t bytes_ = 0, volume_points_ = 0;
+    std::size_t bytes_ = 0;
     double light_seconds_ = 0.0, gather_seconds_ = 0.0;
 };
 
@@ -195,8 +187,7 @@ class MicroEstimator final : public Estimator {
 
 std::unique_ptr<Estimator> make_micro_estimator(const Scene& scene, const RenderOptions& options,
                                                 const MicroSettings& settings) {
-    if (scene.has_media()) return std::make_unique<MicroEstimator<true>>(scene, options, settings);
-    return std::make_unique<MicroEstimator<false>>(scene, options, settings);
+    return std::make_unique<MicroEstimator>(scene, options, settings);
 }
 
 }  // namespace mote::integrators

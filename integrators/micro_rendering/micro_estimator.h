@@ -1,4 +1,4 @@
-// The passes of `mote_micro_rendering`: fresh points with fresh light each, which all pixels share.
+// Passes of `mote_micro_rendering`: fresh points with fresh light each, shared by all pixels.
 #pragma once
 
 #include "core/render/integrator.h"
@@ -6,7 +6,7 @@
 
 namespace mote::integrators {
 
-/// Throws InputError for what is not done in media: upsampling, and light by virtual point lights or photons.
+/// Precondition: the scene has no media.
 std::unique_ptr<core::Estimator> make_micro_estimator(const core::Scene& scene,
                                                       const core::RenderOptions& options,
                                                       const MicroSettings& settings);

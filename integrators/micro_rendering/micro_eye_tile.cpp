@@ -8,13 +8,12 @@ using gathering::MicroTexel;
 
 namespace {
 
-/// Along a side of the table that a BSDF's warp is made of.
+/// Cells along a side of the table that a BSDF's warp is made of.
 constexpr std::uint32_t warp_cells = 24;
 
 }  // namespace
 
-template <bool Media>
-void MicroEyeTile<Media>::start(int index, const EyeRay& eye) {
+void MicroEyeTile::start(int index, const EyeRay& eye) {
     Lane& lane = lanes_[std::size_t(index)];
     lane.sum = {}, lane.seen = {}, lane.alive = true, lane.film = eye.film;
     walk_.rng = eye.rng;
@@ -22,14 +21,12 @@ void MicroEyeTile<Media>::start(int index, const EyeRay& eye) {
     lane.rng = walk_.rng;
 }
 
-template <bool Media>
-void MicroEyeTile<Media>::stop(int index) {
+void MicroEyeTile::stop(int index) {
     Lane& lane = lanes_[std::size_t(index)];
     lane.sum = {}, lane.alive = false;
 }
 
-template <bool Media>
-void MicroEyeTile<Media>::run() {
+void MicroEyeTile::run() {
     for (bool any = true; any;) {
         any = false;
         for (Lane& lane : lanes_) {
@@ -41,24 +38,22 @@ void MicroEyeTile<Media>::run() {
     }
 }
 
-/// Follows one eye path to its next vertex; makes it a receiver where it can be connected. Returns whether
-/// there is one.
-template <bool Media>
-bool MicroEyeTile<Media>::advance(Lane& lane) {
+/// Follows one eye path to its next vertex; makes it a receiver where it can be connected. False at the
+/// path's end.
+bool MicroEyeTile::advance(Lane& lane) {
     walk_.rng = lane.rng;
-    EyePath<Media>& path = *lane.path;
+    EyePath<false>& path = *lane.path;
     const bool at_vertex = path.advance(walk_, lane.sum);
-    if constexpr (!Media) {
-        if (at_vertex && path.depth() == 1) lane.seen = see_first_segment(scene_, path, lane.film);
-        if (at_vertex && path.depth() == 1 && !path.vertex().connectable()) lane.seen.share_nothing();
+    if (at_vertex && path.depth() == 1) {
+        lane.seen = see_first_segment(scene_, path, lane.film);
+        if (!path.vertex().connectable()) lane.seen.share_nothing();
     }
     if (at_vertex && path.vertex().connectable()) {
         if (path.wants_connection()) lane.sum[path.layer_of_connection()] += path.sample_light(walk_);
         // A light, a point, the receiver and the eye: two edges more.
         const bool fits = settings_.eye.max_depth < 0 || path.depth() + 2 <= settings_.eye.max_depth;
-        const Transport layer = transport_layer(2, path.vertex().on_surface());
-        if (fits && settings_.eye.wanted[layer]) {
-            if constexpr (!Media) see_receiver(lane.seen, path);
+        if (fits && settings_.eye.wanted[Transport::indirect]) {
+            see_receiver(lane.seen, path);
             if (settings_.glossy_upsampling && path.depth() == 1) lane.seen.surface.shared = true;
             lane.receives = gathers_;
         }
@@ -67,71 +62,55 @@ bool MicroEyeTile<Media>::advance(Lane& lane) {
     return at_vertex;
 }
 
-template <bool Media>
-void MicroEyeTile<Media>::gather() {
-    std::array<Lane*, width> usual{}, other{};
-    std::size_t usual_count = 0, other_count = 0;
+void MicroEyeTile::gather() {
+    std::array<Lane*, width> diffuse{}, glossy{};
+    std::size_t diffuse_count = 0, glossy_count = 0;
     for (Lane& lane : lanes_) {
         if (!lane.receives) continue;
-        const ScatteringVertex& vertex = lane.path->vertex();
-        const bool apart = Media ? !vertex.on_surface() : settings_.warped && !vertex.diffuse_reflectance();
-        (apart ? other[other_count++] : usual[usual_count++]) = &lane;
+        const bool is_diffuse = lane.path->vertex().diffuse_reflectance().has_value();
+        (is_diffuse ? diffuse[diffuse_count++] : glossy[glossy_count++]) = &lane;
     }
     walk_.cancelled.check();
-    receivers_ += usual_count + other_count;
-    const auto first = std::span<Lane*const>(usual).first(usual_count),
-               second = std::span<Lane*const>(other).first(other_count);
-    if (usual_count > 0) Media ? gather_through_media(first) : gather_diffuse(first);
-    if (other_count > 0) Media ? gather_in_media(second) : gather_glossy(second);
+    receivers_ += diffuse_count + glossy_count;
+    if (diffuse_count > 0) gather_diffuse(std::span<Lane* const>(diffuse).first(diffuse_count));
+    if (glossy_count > 0) gather_glossy(std::span<Lane* const>(glossy).first(glossy_count));
 }
 
-template <bool Media>
-MicroReceiver MicroEyeTile<Media>::receiver_of(Lane& lane) {
+MicroReceiver MicroEyeTile::receiver_of(Lane& lane) {
     return gathering::micro_receiver(lane.path->vertex(), lane.path->sampler().next_1d());
 }
 
-/// Buffers of equal projected solid angles.
-template <bool Media>
-void MicroEyeTile<Media>::gather_diffuse(std::span<Lane* const> lanes) {
-    place_.clear();
-    for (Lane* lane : lanes) place_.push_back(receiver_of(*lane));
+/// Gathers with texels of equal projected solid angles.
+void MicroEyeTile::gather_diffuse(std::span<Lane* const> lanes) {
+    group_.clear();
+    for (Lane* lane : lanes) group_.push_back(receiver_of(*lane));
     const std::size_t each = points_.buffers().texels_each();
-    points_.buffers().render(place_, std::span(texels_).first(lanes.size() * each));
-    const auto cosines = points_.buffers().texels().cosine_weights();
-    const auto directions = points_.buffers().texels().directions();
+    points_.buffers().render(group_, std::span(texels_).first(lanes.size() * each));
+    const float cosine_weight = points_.buffers().texels().cosine_weight();
     for (std::size_t k = 0; k < lanes.size(); ++k) {
-        const EyePath<Media>& path = *lanes[k]->path;
+        const EyePath<false>& path = *lanes[k]->path;
         const ScatteringVertex& vertex = path.vertex();
+        if (!(glm::dot(group_[k].frame.n, vertex.wo) > 0.0f)) continue;  // seen from below the shading normal
         const auto texels = std::span<const MicroTexel>(texels_).subspan(k * each, each);
-        const auto reflectance = vertex.diffuse_reflectance();
-        Rgb light(0.0f);
-        if (!reflectance) {
-            for (std::size_t i = 0; i < each; ++i)
-                weights_[i] = cosines[i] *
-                              vertex.eval(place_[k].frame.to_world(directions[i]), TransportMode::radiance);
-            light = gathering::gathered(texels, weights_, points_.radiance());
-        } else if (glm::dot(place_[k].frame.n, vertex.wo) >
-                   0.0f) {  // else seen from below the shading normal
-            light = inv_pi * *reflectance * gathering::gathered(texels, cosines, points_.radiance());
-        }
+        const Rgb light = inv_pi * *vertex.diffuse_reflectance() *
+                          gathering::gathered(texels, cosine_weight, points_.radiance());
         lanes[k]->sum[Transport::indirect] += path.throughput() * light;
     }
 }
 
-/// Buffers whose texels are small where the BSDF reflects much.
-template <bool Media>
-void MicroEyeTile<Media>::gather_glossy(std::span<Lane* const> lanes) {
-    place_.clear(), warps_.clear();
+/// Gathers with texels that are small where the BSDF reflects much (Engelhardt 2013, Sec. 8.1.3).
+void MicroEyeTile::gather_glossy(std::span<Lane* const> lanes) {
+    group_.clear(), warps_.clear();
     for (Lane* lane : lanes) {
-        place_.push_back(receiver_of(*lane));
+        group_.push_back(receiver_of(*lane));
         const ScatteringVertex& vertex = lane->path->vertex();
-        const Frame& frame = place_.back().frame;
+        const Frame& frame = group_.back().frame;
         warps_.emplace_back(warp_cells, [&](const Vec3& wi) {
             return vertex.eval(frame.to_world(wi), TransportMode::radiance);
         });
     }
     const std::size_t each = points_.buffers().texels_each();
-    points_.buffers().render_warped(place_, warps_, std::span(texels_).first(lanes.size() * each));
+    points_.buffers().render_warped(group_, warps_, std::span(texels_).first(lanes.size() * each));
     for (std::size_t k = 0; k < lanes.size(); ++k) {
         if (warps_[k].black()) continue;
         warps_[k].fill_weights(points_.buffers().texels().side(), weights_);
@@ -141,62 +120,5 @@ void MicroEyeTile<Media>::gather_glossy(std::span<Lane* const> lanes) {
                                 points_.radiance());
     }
 }
-
-/// Receivers on surfaces: buffers of equal projected solid angles, whatever the BSDF.
-template <bool Media>
-void MicroEyeTile<Media>::gather_through_media(std::span<Lane* const> lanes) {
-    place_.clear();
-    for (Lane* lane : lanes) place_.push_back(receiver_of(*lane));
-    const gathering::FogBuffers& buffers = points_.volume()->hemispheres();
-    const std::size_t each = buffers.texels_each();
-    const auto all = std::span(radiance_).first(lanes.size() * each);
-    buffers.render(place_, points_.radiance(), points_.volume()->light(), all, fog_);
-    const auto cosines = buffers.surfaces().texels().cosine_weights();
-    const auto directions = buffers.surfaces().texels().directions();
-    for (std::size_t k = 0; k < lanes.size(); ++k) {
-        const ScatteringVertex& vertex = lanes[k]->path->vertex();
-        const auto radiance = std::span<const Rgb>(all).subspan(k * each, each);
-        const auto reflectance = vertex.diffuse_reflectance();
-        Rgb light(0.0f);
-        if (!reflectance) {
-            for (std::size_t i = 0; i < each; ++i)
-                weights_[i] = cosines[i] *
-                              vertex.eval(place_[k].frame.to_world(directions[i]), TransportMode::radiance);
-            light = gathering::weighted(radiance, std::span<const Rgb>(weights_));
-        } else if (glm::dot(place_[k].frame.n, vertex.wo) > 0.0f) {
-            light = inv_pi * *reflectance * gathering::weighted(radiance, cosines);
-        }
-        lanes[k]->sum[Transport::indirect] += lanes[k]->path->throughput() * light;
-    }
-}
-
-/// Receivers in media: two buffers of equal solid angles, weighed with the phase function.
-template <bool Media>
-void MicroEyeTile<Media>::gather_in_media(std::span<Lane* const> lanes) {
-    const gathering::FogBuffers& buffers = points_.volume()->spheres();
-    const std::size_t each = buffers.texels_each();
-    const auto solid_angles = buffers.surfaces().texels().solid_angles();
-    const auto directions = buffers.surfaces().texels().directions();
-    const auto halves_of = std::span(radiance_).first(2 * each);
-    for (Lane* lane : lanes) {
-        const ScatteringVertex& vertex = lane->path->vertex();
-        Sampler& sampler = lane->path->sampler();
-        const Vec2 u = sampler.next_2d();
-        const auto halves = gathering::sphere_receivers(vertex.position, u, sampler.next_1d());
-        buffers.render(halves, points_.radiance(), points_.volume()->light(), halves_of, fog_);
-        Rgb light(0.0f);
-        for (std::size_t half = 0; half < halves.size(); ++half) {
-            for (std::size_t i = 0; i < each; ++i)
-                weights_[i] = solid_angles[i] * vertex.eval(halves[half].frame.to_world(directions[i]),
-                                                            TransportMode::radiance);
-            light += gathering::weighted(std::span<const Rgb>(halves_of).subspan(half * each, each),
-                                         std::span<const Rgb>(weights_));
-        }
-        lane->sum[Transport::multiple_scattering] += lane->path->throughput() * light;
-    }
-}
-
-template class MicroEyeTile<false>;
-template class MicroEyeTile<true>;
 
 }  // namespace mote::integrators

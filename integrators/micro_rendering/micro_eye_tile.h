@@ -1,5 +1,5 @@
-// The eye paths of sixteen pixels, advanced together to their connectable vertices, on surfaces and in media,
-// where each gathers the light of points with a micro-buffer, or with two around a vertex in a medium.
+// The eye paths of sixteen pixels, advanced together to their connectable vertices, where each gathers the
+// light of points with a micro-buffer.
 #pragma once
 
 #include <array>
@@ -11,7 +11,6 @@
 
 namespace mote::integrators {
 
-template <bool Media>
 class MicroEyeTile {
   public:
     static constexpr int side = 4, width = side * side;
@@ -23,24 +22,22 @@ class MicroEyeTile {
           points_(points),
           walk_(walk),
           texels_(std::size_t(width) * points.buffers().texels_each()),
-          weights_(points.buffers().texels_each()) {
-        if (Media) radiance_.resize(texels_.size());
-    }
+          weights_(points.buffers().texels_each()) {}
 
     void start(int lane, const EyeRay& eye);
     void stop(int lane);
-    /// Do lanes to come gather? Else receivers are seen, and nothing arrives at them.
+    /// If false, the following lanes only record their receivers; they gather no light.
     void gathers(bool yes) { gathers_ = yes; }
-    /// Follows the eye paths.
+    /// Advances all eye paths to their ends and gathers at each of their vertices.
     void run();
     const TransportSum& sum(int lane) const { return lanes_[std::size_t(lane)].sum; }
-    /// What the lane's eye path met first, after run().
+    /// First vertex of the lane's eye path, after run().
     const SeenPixel& seen(int lane) const { return lanes_[std::size_t(lane)].seen; }
     std::uint64_t receivers() const { return receivers_; }  ///< so far
 
   private:
     struct Lane {
-        std::optional<EyePath<Media>> path;
+        std::optional<EyePath<false>> path;
         core::Rng rng;  ///< of the path, while other lanes advance
         TransportSum sum;
         SeenPixel seen;
@@ -53,26 +50,19 @@ class MicroEyeTile {
     void gather();
     void gather_diffuse(std::span<Lane* const> lanes);
     void gather_glossy(std::span<Lane* const> lanes);
-    void gather_through_media(std::span<Lane* const> lanes);
-    void gather_in_media(std::span<Lane* const> lanes);
-    gathering::MicroReceiver receiver_of(Lane& lane);
+    static gathering::MicroReceiver receiver_of(Lane& lane);
 
     const core::Scene& scene_;
     const MicroSettings& settings_;
     const gathering::LitPoints& points_;
     core::WalkContext& walk_;
-    Receivers place_;  ///< of the lanes that gather together
+    Receivers group_;  ///< receivers of the lanes that gather together
     std::vector<gathering::BrdfWarp> warps_;
     std::vector<gathering::MicroTexel> texels_;
     std::vector<core::Rgb> weights_;
-    std::vector<core::Rgb> radiance_;  ///< of texels, through media
-    gathering::FogScratch fog_;
     std::array<Lane, width> lanes_;
     bool gathers_ = true;
     std::uint64_t receivers_ = 0;
 };
-
-extern template class MicroEyeTile<false>;
-extern template class MicroEyeTile<true>;
 
 }  // namespace mote::integrators

@@ -1,12 +1,10 @@
 // `mote_micro_rendering`: final gathering from points (Engelhardt 2013, Ch. 8; Ritschel et al. 2009), on
-// surfaces and in media.
+// surfaces.
 //
 // Every pass spreads points over all surfaces and stores at each the light that it reflects. At what the eye
-// sees a micro-buffer, a picture of a few texels over the hemisphere, says which points are visible; their
-// light is what the receiver reflects. Points in media store what they scatter, and are seen before the
-// surfaces; where an eye path scatters in a medium, two buffers are its sphere. Direct light and single
-// scattering are computed apart. Biased: points are even over their discs and balls, groups of points over a
-// texel.
+// sees a micro-buffer, an image of a few texels over the hemisphere, holds the points that are visible; the
+// receiver reflects their light. Direct light is computed apart. Biased: light is even over the disc of a
+// point, and over a texel.
 #include <fmt/format.h>
 
 #include "integrators/micro_rendering/micro_estimator.h"
@@ -23,7 +21,7 @@ class MoteMicroRendering final : public Integrator {
     explicit MoteMicroRendering(const Properties& p) : settings_(read_micro_settings(p)) {}
 
     std::string type() const override { return "mote_micro_rendering"; }
-    std::vector<Layer> layers(const Scene& s) const override { return transport_layers(s.has_media()); }
+    std::vector<Layer> layers(const Scene&) const override { return transport_layers(false); }
     Plan plan(const Scene& scene, const Requirements& requirements) const override;
     std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
         settings_.check(scene.has_media());
@@ -32,15 +30,13 @@ class MoteMicroRendering final : public Integrator {
 
   private:
     void plan_light(Plan& plan) const;
-    void plan_media(Plan& plan, const Requirements& r) const;
     void plan_missing(Plan& plan, const Scene& scene, const Requirements& r) const;
     MicroSettings settings_;
 };
 
 void MoteMicroRendering::plan_light(Plan& plan) const {
     const gathering::LitPointSettings& p = settings_.points;
-    plan.run("light of points", fmt::format("{} drawn lights each", p.light_samples),
-             "what they reflect is gathered");
+    plan.run("light of points", "four sampled lights each", "what they reflect is gathered");
     switch (p.light) {
         case StoredLight::direct:
             plan.miss("light of more bounces", "two reflections and more before what the eye sees",
@@ -55,9 +51,9 @@ void MoteMicroRendering::plan_light(Plan& plan) const {
             break;
         case StoredLight::radiosity:
             plan.run("further bounces", fmt::format("{}, exchanged between points", p.bounces),
-                     fmt::format("one of {} points gathers for all of them", 1u << p.level));
+                     "one of 64 points gathers for all of them");
             plan.miss("long paths", fmt::format("light of more than {} reflections before", p.bounces),
-                      "bounces says so");
+                      "light is 'radiosity'");
             break;
         case StoredLight::photons:
             plan.run("further bounces", fmt::format("the density of photons of {} paths", p.paths.paths),
@@ -87,17 +83,6 @@ void MoteMicroRendering::plan_missing(Plan& plan, const Scene& scene, const Requ
                  "biased: light is blurred between them; pixels that find nobody alike are rendered again");
 }
 
-void MoteMicroRendering::plan_media(Plan& plan, const Requirements& r) const {
-    if (!r.any_media()) return plan.leave_out("media", "no code for media runs", "the scene has none");
-    plan.run("points in media", fmt::format("{} a pass", settings_.points.volume.points),
-             "biased: light is even over a point's ball, which reaches beyond the border of its medium");
-    plan.run("transmittance to points", "24 steps through a grid of the extinction, for each texel",
-             "biased by the grid's cells and by the size of texels");
-    if (settings_.warped && r.any_glossy())
-        plan.miss("buffers that follow glossy surfaces", "all receivers have cosine-weighted texels",
-                  "the scene has media");
-}
-
 Plan MoteMicroRendering::plan(const Scene& scene, const Requirements& r) const {
     Plan plan;
     plan.integrator = type();
@@ -108,7 +93,7 @@ Plan MoteMicroRendering::plan(const Scene& scene, const Requirements& r) const {
     plan_light(plan);
     plan_missing(plan, scene, r);
     plan_choice_of_lights(plan, scene);
-    plan_media(plan, r);
+    if (!r.any_media()) plan.leave_out("media", "no code for media runs", "the scene has none");
     try {
         settings_.check(r.any_media());
     } catch (const InputError& error) {
@@ -122,8 +107,8 @@ Plan MoteMicroRendering::plan(const Scene& scene, const Requirements& r) const {
 void register_mote_micro_rendering(Registry& registry) {
     registry.add(
         {Category::integrator, "mote_micro_rendering",
-         "Final gathering from points: what the eye sees gathers the light of points on all surfaces with "
-         "micro-buffers (Ritschel et al. 2009), and of points in media. Biased by the size of points and "
+         "Final gathering from points, for scenes without media: what the eye sees gathers the light of "
+         "points on all surfaces with micro-buffers (Ritschel et al. 2009). Biased by the size of points and "
          "texels.",
          micro_parameters(),
          R"(<integrator type="mote_micro_rendering"><integer name="points" value="100000"/></integrator>)"},

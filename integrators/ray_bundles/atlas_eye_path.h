@@ -1,8 +1,7 @@
 // One eye path that ends on the light of an atlas.
 //
-// Lambertian surfaces show what the atlas holds: at the first vertex (a view of the atlas), or where the path
-// that left it arrives (final gathering). All other surfaces draw a light and scatter on, until one is met
-// that does.
+// Lambertian surfaces show what the atlas holds. All other surfaces sample a light and scatter on, until one
+// is met that does.
 #pragma once
 
 #include "integrators/eye_path/eye_path.h"
@@ -12,7 +11,6 @@ namespace mote::integrators {
 
 struct AtlasEyeSettings {
     EyePathLimits limits;
-    bool final_gathering = false;
     bool sample_direct = false;  ///< direct light of the first vertex is sampled, not looked up
     /// Lights that bundles do not carry; null: there are none.
     const core::LitScene* other_lights = nullptr;
@@ -33,7 +31,7 @@ class AtlasEyePath {
             if (!vertex.connectable()) continue;
             const auto reflectance = vertex.diffuse_reflectance();
             const auto light = reflectance ? view_.at(vertex) : std::nullopt;
-            if (!light || (settings_.final_gathering && path.scatterings() == 0)) {
+            if (!light) {
                 if (path.wants_connection()) sum[path.layer_of_connection()] += path.sample_light(context_);
                 continue;
             }

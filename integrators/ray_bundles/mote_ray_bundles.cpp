@@ -18,6 +18,9 @@ using namespace core;
 
 namespace {
 
+/// Lights sampled for a texel: its noise is averaged by all directions that the texel sends to.
+constexpr int light_samples = 4;
+
 /// Lights that rays of a bundle meet, or that no surface can draw.
 std::vector<const Emitter*> lights_of_bundles(const Scene& scene) {
     std::vector<const Emitter*> result;
@@ -41,7 +44,6 @@ class RayBundleEstimator final : public Estimator {
           others_(scene, lights_of_bundles(scene)) {
         settings_.eye.wanted = options.cells;
         eye_.limits = settings_.eye;
-        eye_.final_gathering = settings.final_gathering;
         eye_.sample_direct = !settings.exchange.lights;
         if (others_.any()) eye_.other_lights = &others_;
     }
@@ -85,8 +87,7 @@ class RayBundleEstimator final : public Estimator {
         const bool all = !settings_.exchange.lights;
         if (!wants_surfaces() || (!all && !others_.any())) return {};
         const LitScene& lights = all ? static_cast<const LitScene&>(scene_) : others_;
-        return gathering::texel_direct_light(lights, atlas_, materials_, settings_.light_samples, key,
-                                             cancelled);
+        return gathering::texel_direct_light(lights, atlas_, materials_, light_samples, key, cancelled);
     }
 
     gathering::ArrivingLight exchange(const gathering::TexelDirectLight& sampled, std::uint64_t key,
@@ -165,12 +166,9 @@ Plan MoteRayBundles::plan(const Scene& scene, const Requirements& r) const {
         plan.run("area lights and environment", e.lights ? "by bundles" : "drawn at texels and pixels",
                  e.lights ? "direct is 'bundles'" : "direct is 'lights'");
     if (r.lights_point > 0)
-        plan.run("lights with a position",
-                 fmt::format("{} draws a texel, one a pixel", settings_.light_samples),
+        plan.run("lights with a position", fmt::format("{} samples a texel, one a pixel", light_samples),
                  "no ray of a bundle meets them");
-    plan.run("view", settings_.final_gathering ? "final gathering" : "the atlas",
-             settings_.final_gathering ? "paths from diffuse surfaces end where they arrive"
-                                       : "on diffuse surfaces; paths scatter on from all others");
+    plan.run("view", "the atlas", "on diffuse surfaces; paths scatter on from all others");
     plan_choice_of_lights(plan, scene);
     plan_missing(plan, scene, r);
     return plan;

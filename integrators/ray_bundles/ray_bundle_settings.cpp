@@ -11,18 +11,6 @@ using namespace core;
 
 namespace {
 
-/// Is the string `name` the second of two words? Throws InputError where it is neither.
-bool second_of(const Properties& p, const std::string& name, const std::string& first,
-               const std::string& second) {
-    const std::string word = p.get_string(name, first);
-    const std::vector<std::string> known{first, second};
-    if (word != first && word != second)
-        throw InputError(fmt::format("{} is '{}' or '{}', not '{}'{}", name, first, second, printable(word),
-                                     suggestion(word, known)),
-                         p.where_of(name));
-    return word == second;
-}
-
 float positive(const Properties& p, const std::string& name, double usual, bool or_zero) {
     const double x = p.get_float(name, usual);
     if (!(x > 0.0 || (or_zero && x == 0.0)) || !(x < 1e6))
@@ -40,22 +28,16 @@ RayBundleSettings read_ray_bundle_settings(const Properties& p) {
     s.atlas.texels_per_metre = positive(p, "texels_per_metre", 0.0, true);
     s.atlas.texel_budget = std::size_t(p.get_int_in("texel_budget", 1 << 16, 1, std::int64_t(1) << 28));
     auto& e = s.exchange;
-    e.batch = std::uint32_t(p.get_int_in("batch", 16, 1, 256));
-    e.directions = std::uint32_t(p.get_int_in("directions", 512, 1, 1 << 24));
-    if (e.directions < e.batch)
-        throw InputError(fmt::format("directions must not be below batch, which is {}", e.batch),
-                         p.where_of("directions"));
-    e.warm_up = std::uint32_t(p.get_int_in("warm_up", 8, 0, 1 << 20));
+    // Fewer directions than a batch exchange nothing.
+    e.directions = std::uint32_t(p.get_int_in("directions", 512, e.batch, 1 << 24));
     e.bounces = int(p.get_int_in("bounces", 8, 1, 4096));
     e.rays_per_texel = positive(p, "rays_per_texel", 1.0, false);
-    e.transfer = second_of(p, "transfer", "interleaved", "one_bounce")
+    e.transfer = p.get_choice("transfer", "interleaved", {"interleaved", "one_bounce"}) == "one_bounce"
                      ? gathering::LightTransfer::one_bounce
                      : gathering::LightTransfer::interleaved;
-    e.lights = !second_of(p, "direct", "bundles", "lights");
+    e.lights = p.get_choice("direct", "bundles", {"bundles", "lights"}) == "bundles";
     e.glossy = p.get_bool("glossy_transfer", true);
-    s.light_samples = int(p.get_int_in("light_samples", 4, 1, 4096));
     s.eye_samples = int(p.get_int_in("eye_samples", 4, 1, 4096));
-    s.final_gathering = second_of(p, "view", "atlas", "final_gathering");
     return s;
 }
 
@@ -65,32 +47,31 @@ std::vector<Parameter> ray_bundle_parameters() {
          "depth from which Russian roulette may end a path at surfaces that are not diffuse"},
         hide_emitters_parameter(),
         {"directions", "integer", "512",
-         "directions of a pass; one bounce at a time: of all bounces together"},
-        {"batch", "integer", "16",
-         "directions after which senders and receivers are exchanged; threads have a direction each"},
+         "directions of a pass, 16 or more: noise falls with the root of their number, time grows with it; "
+         "one "
+         "bounce at a time: of all bounces together"},
         {"transfer", "string", "interleaved",
-         "'interleaved': what a batch received is sent by the next, all bounces at once; 'one_bounce': one "
-         "bounce "
-         "after the other"},
+         "'interleaved': what 16 directions received is sent by the next 16, all bounces at once; "
+         "'one_bounce': one bounce after the other, with up to twice the noise"},
         {"bounces", "integer", "8",
          "one bounce at a time: reflections that are followed, the last towards the eye"},
-        {"warm_up", "integer", "8", "interleaved: batches at the start whose indirect light is not counted"},
         {"direct", "string", "bundles",
-         "light of area lights and of the environment: carried by 'bundles', or drawn by 'lights' at texels "
-         "and "
-         "pixels; lights with a position are drawn in either case"},
-        {"light_samples", "integer", "4", "connections of a texel to lights that are drawn"},
+         "light of area lights and of the environment: carried by 'bundles', or sampled by 'lights' at "
+         "texels "
+         "and pixels, which small lights need; lights with a position are sampled in either case"},
         {"glossy_transfer", "boolean", "true",
          "surfaces that are not diffuse reflect light to others (interleaved alone); false: towards the eye "
-         "alone"},
-        {"view", "string", "atlas",
-         "light on diffuse surfaces: that of the 'atlas', or where paths from there arrive "
-         "('final_gathering')"},
-        {"texels_per_metre", "float", "0", "of the atlas; 0: as many as texel_budget allows"},
+         "alone, faster and darker"},
+        {"texels_per_metre", "float", "0",
+         "of the atlas: details of light smaller than a texel are blurred; 0: as many as texel_budget "
+         "allows"},
         {"texel_budget", "integer", "65536",
-         "texels at most, both sides of two-sided surfaces counted; a density that needs more is refused"},
-        {"rays_per_texel", "float", "1", "rays of a bundle that meet a texel seen at right angles"},
-        {"eye_samples", "integer", "4", "eye paths a pixel and pass"}};
+         "texels at most, both sides of two-sided surfaces counted; a density that needs more is refused. "
+         "Bias "
+         "falls with their number, time grows with it"},
+        {"rays_per_texel", "float", "1",
+         "rays of a bundle that meet a texel seen at right angles: less noise of texels, more time"},
+        {"eye_samples", "integer", "4", "eye paths a pixel and pass: smooth edges, and more time"}};
 }
 
 }  // namespace mote::integrators

@@ -1,4 +1,4 @@
-// The settings of mote_ray_bundles.
+// Settings of mote_ray_bundles.
 #pragma once
 
 #include "core/objects/properties.h"
@@ -12,14 +12,12 @@ struct RayBundleSettings {
     EyePathLimits eye;
     gathering::AtlasSettings atlas;
     gathering::ExchangeSettings exchange;
-    int light_samples = 4;  ///< a texel and pass
-    int eye_samples = 4;    ///< a pixel and pass
-    bool final_gathering = false;
+    int eye_samples = 4;  ///< a pixel and pass
 };
 
-/// Of a scene file, checked. Throws InputError.
+/// Settings of a scene file, checked. Throws InputError.
 RayBundleSettings read_ray_bundle_settings(const core::Properties& properties);
-/// Their rows in the manual page.
+/// Rows of the manual page.
 std::vector<core::Parameter> ray_bundle_parameters();
 
 }  // namespace mote::integrators

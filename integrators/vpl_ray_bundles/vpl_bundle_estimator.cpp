@@ -4,6 +4,7 @@
 
 #include "integrators/eye_path/counters.h"
 #include "integrators/eye_path/eye_ray.h"
+#include "integrators/layer_filter/layer_filter.h"
 #include "integrators/vpl_ray_bundles/vpl_bundle_tile.h"
 
 namespace mote::integrators {
@@ -19,10 +20,10 @@ class VplBundleEstimator final : public Estimator {
         settings_.sky = settings_.sky && settings_.has_bundles() && scene.environment();
         const bool wants_direct =
             settings_.eye.wanted[Transport::direct] || settings_.eye.wanted[Transport::emission];
-        eye_paths_ = wants_direct ? settings_.direct_paths_of_pass() : 1;
-        if (settings_.keeps_links && settings_.has_bundles())
-            links_ = std::make_unique<gathering::KeptLinks>(scene.shapes(), settings_.links);
-        if (settings_.filters) filter_.emplace(scene, options, settings_.filter);
+        eye_paths_ = wants_direct ? settings_.direct_paths() : 1;
+        if (settings_.imperfect_links && settings_.has_bundles())
+            links_ = std::make_unique<gathering::ImperfectLinks>(scene.shapes());
+        if (settings_.filters) filter_.emplace(scene, options, LayerFilterParameters());
     }
 
     void finish(Film& film, CancelToken cancelled) override {
@@ -52,7 +53,7 @@ class VplBundleEstimator final : public Estimator {
         statistics.values["vpls"] += double(vpls_);
         statistics.values["light_paths"] += double(paths_);
         statistics.values["vpl_bytes_peak"] = double(bytes_);
-        // What Table 1 of the paper lists.
+        // Table 1 of the paper.
         statistics.values["light_path_cpu_seconds"] += light_seconds_;
         statistics.values["eye_path_cpu_seconds"] += time_.eye;
         statistics.values["vpl_cpu_seconds"] += time_.vpls;
@@ -123,9 +124,9 @@ class VplBundleEstimator final : public Estimator {
     const Scene& scene_;
     RenderOptions options_;
     VplBundleSettings settings_;
-    int eye_paths_ = 1;                                  ///< of a pixel and pass
-    std::unique_ptr<const gathering::KeptLinks> links_;  ///< null: rays are traced
-    std::optional<LayerFilter> filter_;                  ///< nothing: pixels stay as they are
+    int eye_paths_ = 1;                                       ///< of a pixel and pass
+    std::unique_ptr<const gathering::ImperfectLinks> links_;  ///< null: rays are traced
+    std::optional<LayerFilter> filter_;                       ///< nothing: pixels stay as they are
     SharedCounters counters_;
     std::mutex time_mutex_;
     VplBundleTime time_;

@@ -1,5 +1,6 @@
 #include "integrators/vpl_ray_bundles/vpl_bundle_pass.h"
 
+#include "compensation/roughness_clamping.h"
 #include "lights/virtual_lights/particle_tracer.h"
 
 namespace mote::integrators {
@@ -8,7 +9,7 @@ using namespace core;
 using gathering::Techniques;
 
 VplBundlePass::VplBundlePass(const LitScene& lit, const VplBundleSettings& settings,
-                             const gathering::KeptLinks* links, const RenderOptions& options,
+                             const gathering::ImperfectLinks* links, const RenderOptions& options,
                              const PassContext& context)
     : vpls(lights::trace_light_paths(lit, settings.light_paths(), options.seed, context.index,
                                      options.sampler, context.cancelled)),
@@ -18,11 +19,11 @@ VplBundlePass::VplBundlePass(const LitScene& lit, const VplBundleSettings& setti
     samples.directions = settings.has_bundles() ? float(settings.directions) : 0.0f;
     samples.paths = float(settings.paths), samples.light_share = share;
     const std::size_t lights = vpls.lights.size();
-    bundles.own_rays = settings.own_rays && settings.bounces == 0;
-    bundles.two_way = settings.two_way, bundles.bounces = settings.bounces,
-    bundles.repeats = settings.repeats;
-    if (settings.has_bundles() && settings.joined > 0 && settings.bounces == 0 && lights > 0) {
-        bundles.stride = (lights + settings.joined - 1) / settings.joined;
+    bundles.bounces = settings.bounces();
+    bundles.own_rays = settings.glossy == GlossyTreatment::own_rays && bundles.bounces == 0;
+    if (const std::uint32_t joined = settings.joined_lights();
+        settings.has_bundles() && joined > 0 && lights > 0) {
+        bundles.stride = (lights + joined - 1) / joined;
         samples.joined_share = 1.0f / float(bundles.stride);
     }
     bundles.bound = settings.bound;
@@ -36,27 +37,27 @@ VplBundlePass::VplBundlePass(const LitScene& lit, const VplBundleSettings& setti
     samples.continued = settings.continuation_of_pass();
     rivals = gathering::rivals_of(lit, vpls, samples);
     bundles.rivals = rivals;
-    // What bundles make alone, VPLs leave to them.
+    // VPLs leave to bundles what these make alone.
     const bool all = settings.techniques == Techniques::bundles;
     for (std::size_t j = 0; j < lights; ++j)
         if ((rivals[j] > 0.0f && (all || (settings.bound && vpls.lights[j].depth > 1))) ||
-            settings.bounces > 0)
+            bundles.bounces > 0)
             rivals[j] = gathering::certain;
-    if (settings.clamping.enabled) {
-        compensation::clamp_roughness(vpls, settings.clamping, share);
-        vpls.peak_directions =
-            samples.directions * gathering::uniform_line_pdf / float(settings.clamping.neighbours);
+    if (settings.glossy == GlossyTreatment::clamping) {
+        const compensation::RoughnessClamping clamping{.enabled = true};
+        compensation::clamp_roughness(vpls, clamping, share);
+        vpls.peak_directions = samples.directions * gathering::uniform_line_pdf / float(clamping.neighbours);
     }
 }
 
-/// Of the pixels at one place in their block of n x n.
+/// Draws the lines of each place in the blocks of n x n pixels.
 void VplBundlePass::draw_lines(const VplBundleSettings& settings, const RenderOptions& options,
                                const PassContext& context) {
     const int n = settings.interleaving;
     lines.resize(std::size_t(n) * std::size_t(n));
     if (!settings.has_bundles()) return;
     // Paths that go on along other lines of the set take them for independent ones.
-    const SamplerKind kind = settings.bounces > 1 ? SamplerKind::independent : options.sampler;
+    const SamplerKind kind = settings.bounces() > 1 ? SamplerKind::independent : options.sampler;
     for (std::size_t place = 0; place < lines.size(); ++place)
         for (std::uint32_t m = 0; m < settings.directions; ++m)
             lines[place].push_back(gathering::bundle_direction(bundles.sky, kind, options.seed,

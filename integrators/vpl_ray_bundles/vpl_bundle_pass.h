@@ -1,4 +1,4 @@
-// What the pixels of a pass share: virtual point lights, their weights against bundles, and directions.
+// Shared by the pixels of a pass: virtual point lights, their weights against bundles, and directions.
 #pragma once
 
 #include "core/render/integrator.h"
@@ -14,13 +14,13 @@ struct VplBundlePass {
     gathering::BundlePass bundles;
     /// By place in a block of interleaved pixels, y after x.
     std::vector<std::vector<gathering::BundleDirection>> lines;
-    std::vector<gathering::RayBundle> kept;      ///< of all lines, where they are looked up
+    std::vector<gathering::RayBundle> kept;      ///< imperfect bundles of all lines, where they are looked up
     std::optional<lights::OtherLights> but_sky;  ///< where bundles find the sky's direct light
 
     /// `links`: null where rays are traced. Throws core::Cancelled; InputError where kept bundles exceed
     /// their budget.
     VplBundlePass(const core::LitScene& lit, const VplBundleSettings& settings,
-                  const gathering::KeptLinks* links, const core::RenderOptions& options,
+                  const gathering::ImperfectLinks* links, const core::RenderOptions& options,
                   const core::PassContext& context);
     VplBundlePass(const VplBundlePass&) = delete;
     VplBundlePass& operator=(const VplBundlePass&) = delete;
@@ -32,7 +32,7 @@ struct VplBundlePass {
         for (const auto& bundle : kept) sum += bundle.memory_bytes();
         return sum;
     }
-    /// Whose direct light eye paths look for; null: all.
+    /// Lights whose direct light eye paths sample; null: all.
     const core::LitScene* eye_lights() const { return but_sky ? &*but_sky : nullptr; }
 
   private:

@@ -33,8 +33,6 @@ IDEAS = {
         "integrators/bidirectional/strategies.h": 1,
         # A light path, and a connection to infinity: estimates that are multiplied must be independent.
         "integrators/bidirectional/strategies.cpp": 2,
-        # Connections of a point that stores its light.
-        "gathering/stored_light/arriving_light.cpp": 1, "gathering/stored_light/arriving_fluence.cpp": 1,
     }),
     "scattering from a vertex of an eye path": (r"\bapply_scattering<\w+>\(", {
         "integrators/eye_path/eye_path.h": 1,

@@ -48,7 +48,7 @@ Reflected reflected(const PointHierarchy& hierarchy, const NodeRadiance& radianc
     Reflected result;
     result.warped = gathered(texels, weights, radiance);
     for (std::size_t i = 0; i < weights.size(); ++i)
-        weights[i] = f(buffers.texels().directions()[i]) * buffers.texels().cosine_weights()[i];
+        weights[i] = f(buffers.texels().directions()[i]) * buffers.texels().cosine_weight();
     buffers.render(std::span(&receiver, 1), texels);
     result.cosine = gathered(texels, weights, radiance);
     return result;

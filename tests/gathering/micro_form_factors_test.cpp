@@ -160,7 +160,7 @@ TEST_CASE("the error of micro-buffers falls with texels, points and the cut",
     const double cuts[] = {16, 8, 4, 2};
     double by_cut[4];
     for (int i = 0; i < 4; ++i)
-        by_cut[i] = plate.error(0, 0.5, {.side = 16, .rays = 4, .cut = float(cuts[i])}, 64);
+        by_cut[i] = plate.error(0, 0.5, {.side = 64, .cut = 16.0f * float(cuts[i])}, 64);
     INFO("cut: c^" << tests::exponent(cuts, by_cut) << ", " << by_cut[0] << " to " << by_cut[3]);
     CHECK(tests::exponent(cuts, by_cut) > 0.3);
 }

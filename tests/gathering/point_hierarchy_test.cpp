@@ -1,5 +1,7 @@
 // The tree of points: every node is where level and index say, and holds what is below it.
 #include <algorithm>
+#include <numeric>
+#include <random>
 
 #include "core/math/random.h"
 #include "core/math/warp.h"
@@ -25,11 +27,18 @@ Surfels points_in_a_ball(std::uint32_t count) {
     return s;
 }
 
-/// Sum over nodes of the balls' sections, in units of what the points stand for.
-double looseness(const PointHierarchy& h) {
-    double sum = 0.0;
-    for (const PointNode& node : h.nodes()) sum += double(sqr(node.radius));
-    return sum;
+/// A square grid of 2^k x 2^k points at distances of 1, in random order.
+Surfels square_grid(std::uint32_t side) {
+    Surfels s;
+    std::vector<std::uint32_t> places(side * side);
+    std::iota(places.begin(), places.end(), 0u);
+    std::shuffle(places.begin(), places.end(), std::mt19937(1));
+    for (const std::uint32_t i : places) {
+        s.positions.emplace_back(float(i % side), float(i / side), 0.0f);
+        s.normals.emplace_back(0.0f, 0.0f, 1.0f), s.places.push_back({i, 0.0f, 0.0f});
+    }
+    s.radius = 0.1f, s.area = double(side * side);
+    return s;
 }
 
 }  // namespace
@@ -55,26 +64,31 @@ TEST_CASE("a walk that enters all nodes meets each once, one that enters none en
 
 TEST_CASE("nodes hold the points below them, and faces of all", "[point_hierarchy]") {
     const Surfels s = points_in_a_ball(1000);
-    for (const PointOrder order : {PointOrder::morton, PointOrder::median}) {
-        const PointHierarchy h(s, {.order = order});
-        std::vector<std::uint32_t> sorted(h.order().begin(), h.order().end());
-        std::sort(sorted.begin(), sorted.end());
-        for (std::uint32_t i = 0; i < 1000; ++i) CHECK(sorted[i] == i);
-        for (std::uint32_t level = 0; level < h.levels(); ++level)
-            for (std::uint32_t i = 0; i < h.count(level); ++i) {
-                const PointNode& node = h.nodes()[h.node_index({level, i})];
-                bool holds = true;
-                for (std::uint32_t k = 0; k < h.points_below({level, i}); ++k) {
-                    const std::uint32_t at = h.order()[(i << level) + k];
-                    holds &= glm::length(s.positions[at] - node.center) <= node.radius;
-                    holds &= glm::dot(s.normals[at], node.axis) >= node.cone_cos - 1e-6f;
-                }
-                CHECK(holds);
+    const PointHierarchy h(s);
+    std::vector<std::uint32_t> sorted(h.order().begin(), h.order().end());
+    std::sort(sorted.begin(), sorted.end());
+    for (std::uint32_t i = 0; i < 1000; ++i) CHECK(sorted[i] == i);
+    for (std::uint32_t level = 0; level < h.levels(); ++level)
+        for (std::uint32_t i = 0; i < h.count(level); ++i) {
+            const PointNode& node = h.nodes()[h.node_index({level, i})];
+            bool holds = true;
+            for (std::uint32_t k = 0; k < h.points_below({level, i}); ++k) {
+                const std::uint32_t at = h.order()[(i << level) + k];
+                holds &= glm::length(s.positions[at] - node.center) <= node.radius;
+                holds &= glm::dot(s.normals[at], node.axis) >= node.cone_cos - 1e-6f;
             }
-    }
-    // Cuts at medians make smaller balls than the curve does.
-    CHECK(looseness(PointHierarchy(s, {.order = PointOrder::median})) <
-          0.8 * looseness(PointHierarchy(s, {.order = PointOrder::morton})));
+            CHECK(holds);
+        }
+}
+
+// Half the diagonal of 2^k x 2^k points, and 0.9 of a disc.
+TEST_CASE("cuts at medians make squares of a square grid", "[point_hierarchy]") {
+    const PointHierarchy h(square_grid(16));
+    for (std::uint32_t k = 0; k <= 4; ++k)
+        for (std::uint32_t i = 0; i < h.count(2 * k); ++i) {
+            const float radius = h.nodes()[h.node_index({2 * k, i})].radius;
+            CHECK(radius == Approx(std::sqrt(0.5) * ((1 << k) - 1) + (k == 0 ? 0.1 : 0.09)).epsilon(1e-5));
+        }
 }
 
 TEST_CASE("light of nodes is the mean of their points, side by side", "[point_hierarchy]") {
@@ -117,9 +131,9 @@ TEST_CASE("hierarchies at the extremes", "[point_hierarchy]") {
     // 2^24 points are asked for before anything is taken; the message says how many fit.
     Surfels many;
     many.positions.resize(PointHierarchy::largest_count), many.area = 1.0;
-    CHECK_THROWS_WITH(PointHierarchy(many, {.memory_budget = std::size_t(1) << 30}),
+    CHECK_THROWS_WITH(PointHierarchy(many, std::size_t(1) << 30),
                       ContainsSubstring("16777216 points") && ContainsSubstring("15790320 points fit"));
     many.positions.resize(PointHierarchy::largest_count + 1);
-    CHECK_THROWS_WITH(PointHierarchy(many, {.memory_budget = std::size_t(1) << 40}),
+    CHECK_THROWS_WITH(PointHierarchy(many, std::size_t(1) << 40),
                       ContainsSubstring("16777216 points fit"));
 }

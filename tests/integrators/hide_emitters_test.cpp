@@ -62,9 +62,7 @@ std::string integrator(const std::string& type, bool hide) {
     if (type == "mote_micro_rendering")
         text += "<integer name='points' value='100'/><integer name='micro_buffer' value='4'/>";
     if (type == "mote_ray_bundles")
-        text +=
-            "<integer name='directions' value='16'/><integer name='warm_up' value='0'/>"
-            "<integer name='texel_budget' value='200'/>";
+        text += "<integer name='directions' value='16'/><integer name='texel_budget' value='200'/>";
     return text + "</integrator>";
 }
 

@@ -152,9 +152,7 @@ TEST_CASE("a method that is asked for one cell gives it its own mean and traces 
         if (type == "mote_micro_rendering")
             few = "<integer name='points' value='200'/><integer name='micro_buffer' value='4'/>";
         if (type == "mote_ray_bundles")
-            few =
-                "<integer name='directions' value='16'/><integer name='warm_up' value='1'/>"
-                "<integer name='texel_budget' value='2000'/>";
+            few = "<integer name='directions' value='32'/><integer name='texel_budget' value='2000'/>";
         const auto integrator = integrator_from("<integrator type='" + type + "'>" + few + "</integrator>");
         const auto all = render_statistics(scene, *integrator, {8, 200, 1});
         for (const Layer& layer : integrator->layers(scene)) {

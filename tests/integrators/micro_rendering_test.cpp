@@ -1,7 +1,6 @@
 // `mote_micro_rendering` against the path tracer. It is biased by the size of points and texels, so means are
 // compared within a stated bound, which shrinks with more of both.
 #include <cmath>
-#include <filesystem>
 
 #include "core/objects/error.h"
 #include "core/render/pass_runner.h"
@@ -77,9 +76,9 @@ TEST_CASE("micro-rendering has the mean of path, within the size of its points",
     };
     const auto c =
         GENERATE(Case{grey, word("light", "direct"), 3, 500}, Case{grey, word("light", "direct"), 3, 4500},
-                 Case{grey, word("light", "radiosity") + number("radiosity_level", 5), 5},
+                 Case{grey, word("light", "radiosity"), 5},
                  Case{grey, word("light", "vpls") + number("paths", 40) + unbounded, 4},
-                 Case{grey, word("light", "photons") + number("photon_paths", 4000), 4},
+                 Case{grey, word("light", "photons") + number("paths", 4000), 4},
                  Case{grey, word("light", "direct") + number("upsampling", 2), 3});
     CAPTURE(c.settings, c.max_depth);
     const auto scene = scene_from(box(c.wall, ""), 12);
@@ -102,8 +101,7 @@ TEST_CASE("micro-rendering has the mean of path, within the size of its points",
 
 // A diffuse floor, lit by a point, in a glossy wall: nothing else sends light to what is seen. The floor is 2
 // by 2, and its discs make it larger by their radius on either side of its border.
-TEST_CASE("glossy receivers have the mean of path, whatever their buffers follow",
-          "[micro_rendering][equality]") {
+TEST_CASE("glossy receivers have the mean of path", "[micro_rendering][equality]") {
     const std::string light =
         R"(<emitter type="point"><point name="position" x="0" y="0" z="0"/><rgb name="intensity" value="3"/></emitter>)";
     const std::string floor =
@@ -119,17 +117,12 @@ TEST_CASE("glossy receivers have the mean of path, whatever their buffers follow
     const auto expected = render_statistics(*scene, *path(3), {.block = 8, .passes = 600});
     const int points = 3000;
     const double disc = std::sqrt(2.0 * 8.0 / (points * 3.14159265)), bias = 2.0 * disc;
-    for (const char* warp : {"true", "false"}) {
-        const auto found = render_statistics(
-            *scene,
-            *micro(word("light", "direct") + fmt::format(R"(<boolean name="brdf_warp" value="{}"/>)", warp),
-                   3, points),
-            {.block = 8, .passes = 8, .seed = 2});
-        const Difference indirect = difference(found, expected, "indirect");
-        CAPTURE(warp, indirect.relative, indirect.error, bias);
-        CHECK(indirect.within(bias));
-        CHECK_FALSE(difference(found, expected, "indirect", 0.7).within(bias));
-    }
+    const auto found = render_statistics(*scene, *micro(word("light", "direct"), 3, points),
+                                         {.block = 8, .passes = 8, .seed = 2});
+    const Difference indirect = difference(found, expected, "indirect");
+    CAPTURE(indirect.relative, indirect.error, bias);
+    CHECK(indirect.within(bias));
+    CHECK_FALSE(difference(found, expected, "indirect", 0.7).within(bias));
 }
 
 TEST_CASE("upsampling gathers at fewer pixels, and at those that have no neighbours alike",
@@ -161,70 +154,14 @@ TEST_CASE("mirrors show what points light", "[micro_rendering]") {
     CHECK(without > 0.0);
 }
 
-// Balls of radius r reach beyond the fog's border, or into walls, and lose up to 3/16 r of the way on either
-// side (fog_buffers_test.cpp); the fog is 1.7 across, and the way through it half that in the mean. The
-// extinction's cells are 0.06, and texels' transmittances are those of their middle: half a percent at these
-// depths, measured there.
-TEST_CASE("micro-rendering in media has the mean of volpath, within the size of its points",
-          "[micro_rendering][equality]") {
-    const std::string smoke =
-        (std::filesystem::temp_directory_path() / "mote_micro_rendering_test.vol").string();
-    const std::string grid = smoke_medium(smoke);
-    const auto fog = [](const std::string& sigma_t, double g, const std::string& name) {
-        return fmt::format(R"(<medium type="homogeneous" {}><rgb name="sigma_t" value="{}"/>
-            <rgb name="albedo" value="0.9, 0.85, 0.8"/><phase type="hg"><float name="g" value="{}"/></phase></medium>)",
-                           name, sigma_t, g);
-    };
-    const std::string interior = R"(name="interior")";
-    struct Case {
-        std::string scene, settings;
-        int max_depth, volume_points = 2000;
-    };
-    std::string inside = box(grey, "");
-    inside.insert(inside.find("</sensor>"), fog("0.25, 0.3, 0.4", 0.0, ""));
-    const std::string direct = word("light", "direct");
-    const auto c = GENERATE_COPY(Case{box(grey, fog("0.3, 0.6, 1.2", 0.6, interior)), direct, 3},
-                                 Case{box(mixed, grid), direct, 3}, Case{inside, direct, 3},
-                                 Case{inside, number("radiosity_level", 3) + number("volume_level", 2), 4});
-    CAPTURE(c.settings, c.max_depth, c.volume_points);
-    const auto scene = scene_from(c.scene, 12);
-    const auto volpath = integrator_from(fmt::format(
-        R"(<integrator type="volpath"><integer name="max_depth" value="{}"/></integrator>)", c.max_depth));
-    const auto expected = render_statistics(*scene, *volpath, {.block = 12, .passes = 1200});
-    const auto found = render_statistics(
-        *scene, *micro(c.settings + number("volume_points", c.volume_points), c.max_depth, 2000),
-        {.block = 12, .passes = 24, .seed = 2});
-    const double area = 5 * 4.0 + 6 * 0.36 + 0.25, disc = std::sqrt(2.0 * area / (2000 * 3.14159265));
-    const double ball = std::cbrt(3.0 * 4.96 / (4.0 * 3.14159265 * c.volume_points));
-    const double of_balls = 2.0 * 3.0 / 16.0 * ball / 0.85 + 0.005;
-    for (const std::string& layer : {std::string("direct"), std::string("single_scattering"),
-                                     std::string("indirect"), std::string("multiple_scattering")}) {
-        const Difference d = difference(found, expected, layer);
-        const bool gathered = layer == "indirect" || layer == "multiple_scattering";
-        const double bias = gathered ? 4.0 * disc / 0.6 / 8.0 + of_balls : 0.0;
-        CAPTURE(layer, d.relative, d.error, bias);
-        CHECK(d.within(bias));
-        if (gathered)
-            CHECK_FALSE(difference(found, expected, layer, 1.0 + 2.0 * bias + 9.0 * d.error).within(bias));
-    }
-    std::filesystem::remove(smoke);
-}
-
 TEST_CASE("mote_micro_rendering refuses wrong settings, and says what it does", "[micro_rendering][input]") {
     const auto foggy = scene_from(box(grey, R"(<medium type="homogeneous" name="interior"/>)"));
-    for (const std::string& wrong : {word("light", "vpls"), word("light", "photons"), number("upsampling", 2),
-                                     number("volume_points", 1 << 24)}) {
-        CAPTURE(wrong);
-        const auto integrator = micro(wrong, -1);
-        CHECK_THROWS_AS(integrator->prepare(*foggy, {}), InputError);
-        CHECK(integrator->plan(*foggy, find_requirements(*foggy)).to_text().find("refused") !=
-              std::string::npos);
-    }
-    CHECK(micro("", -1)->plan(*foggy, find_requirements(*foggy)).to_text().find("points in media") !=
+    CHECK_THROWS_AS(micro("", -1)->prepare(*foggy, {}), InputError);
+    CHECK(micro("", -1)->plan(*foggy, find_requirements(*foggy)).to_text().find("refused") !=
           std::string::npos);
     for (const std::string& wrong :
          {number("micro_buffer", 0), number("micro_buffer", 257), number("points", 0), word("light", "lamp"),
-          number("upsampling", 0), number("bounces", 0), std::string(R"(<float name="cut" value="0"/>)")})
+          number("upsampling", 0), std::string(R"(<float name="cut" value="0"/>)")})
         CHECK_THROWS_AS(
             integrator_from("<integrator type=\"mote_micro_rendering\">" + wrong + "</integrator>"),
             InputError);

@@ -232,8 +232,7 @@ TEST_CASE("every integrator has features beside its picture, and keeps its bits"
             type == "mote_vsl" || type == "mote_vpl_ray_bundles" || bundles || points ? clear : foggy;
         // The default exchanges light along more directions than features need.
         const std::string few =
-            bundles  ? R"(<integer name="directions" value="16"/><integer name="warm_up" value="0"/>
-            <integer name="texel_budget" value="1000"/>)"
+            bundles  ? R"(<integer name="directions" value="16"/><integer name="texel_budget" value="1000"/>)"
             : points ? R"(<integer name="points" value="200"/><integer name="micro_buffer" value="4"/>)"
                      : "";
         const auto integrator = integrator_from("<integrator type=\"" + type + "\">" + few + "</integrator>");

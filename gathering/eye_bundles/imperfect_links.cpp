@@ -1,4 +1,4 @@
-#include "gathering/eye_bundles/kept_links.h"
+#include "gathering/eye_bundles/imperfect_links.h"
 
 #include "core/math/random.h"
 
@@ -6,35 +6,27 @@ namespace mote::gathering {
 
 using namespace core;
 
-KeptLinks::KeptLinks(ShapeSpan shapes, const KeptLinkSettings& settings)
-    : shapes_(shapes), settings_(settings), surfaces_(surface_triangles(shapes)) {
+ImperfectLinks::ImperfectLinks(ShapeSpan shapes, const ImperfectLinkSettings& settings)
+    : shapes_(shapes),
+      settings_(settings),
+      surfaces_(surface_triangles(shapes)),
+      imperfect_(surfaces_, settings.points) {
     const float radius = surfaces_.bounds.empty() ? 1.0f : surfaces_.bounds.radius();
-    spacing_ = settings.spacing > 0.0f ? settings.spacing : std::max(radius / 128.0f, 1e-30f);
-    reach_ = spacing_;
-    if (!settings.imperfect) {
-        exact_ = std::make_unique<BundleTracer>(surfaces_);
-        return;
-    }
-    imperfect_ = std::make_unique<ImperfectBundles>(surfaces_, settings.points);
-    reach_ += float(imperfect_->disc_radius({.splat_size = settings.splat_size}));
+    spacing_ = std::max(radius / 128.0f, 1e-30f);
+    reach_ = spacing_ + float(imperfect_.disc_radius({.splat_size = settings.splat_size}));
 }
 
-RayBundle KeptLinks::bundle(const Vec3& direction, std::uint64_t number, std::size_t bundles,
-                            CancelToken cancelled) const {
+RayBundle ImperfectLinks::bundle(const Vec3& direction, std::uint64_t number, std::size_t bundles,
+                                 CancelToken cancelled) const {
     Rng rng(hash_keys(number, 0x6c696e6bull));
     const BundleGrid grid = bundle_grid(direction, surfaces_.bounds, spacing_, rng.next_vec2());
-    const std::size_t budget = settings_.memory_budget / std::max<std::size_t>(bundles, 1);
-    if (exact_) {
-        BundleSettings s;
-        s.memory_budget = budget, s.cancelled = cancelled;
-        return exact_->trace(grid, s);
-    }
     ImperfectSettings s;
-    s.splat_size = settings_.splat_size, s.memory_budget = budget, s.cancelled = cancelled;
-    return imperfect_->trace(grid, number, s);
+    s.splat_size = settings_.splat_size, s.cancelled = cancelled;
+    s.memory_budget = settings_.memory_budget / std::max<std::size_t>(bundles, 1);
+    return imperfect_.trace(grid, number, s);
 }
 
-SurfaceHit KeptLinks::place(const BundleHit& hit) const {
+SurfaceHit ImperfectLinks::place(const BundleHit& hit) const {
     SurfaceHit place = surface_place(surfaces_, shapes_, hit.index(), Vec2(hit.u(), hit.v()));
     // Shadow rays meet the shape itself, whose triangles may lie below it.
     const Vec3 outside = hit.from_behind() ? -place.geometric_normal : place.geometric_normal;
@@ -42,8 +34,8 @@ SurfaceHit KeptLinks::place(const BundleHit& hit) const {
     return place;
 }
 
-std::optional<LinkEnd> KeptLinks::next(const RayBundle& bundle, const ScatteringVertex& x,
-                                       const Vec3& w) const {
+std::optional<LinkEnd> ImperfectLinks::next(const RayBundle& bundle, const ScatteringVertex& x,
+                                            const Vec3& w) const {
     const BundleGrid& grid = bundle.grid;
     const Vec3 at = x.position - grid.origin;
     const float column = glm::dot(at, grid.right) / grid.spacing, row = glm::dot(at, grid.up) / grid.spacing;
