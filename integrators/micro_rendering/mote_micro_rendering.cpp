@@ -18,7 +18,9 @@ namespace {
 
 class MoteMicroRendering final : public Integrator {
   public:
-    explicit MoteMicroRendering(const Properties& p) : settings_(read_micro_settings(p)) {}
+    explicit MoteMicroRendering(const MicroSettings& settings) : settings_(settings) {
+        settings_.limit_bounces();
+    }
 
     std::string type() const override { return "mote_micro_rendering"; }
     std::vector<Layer> layers(const Scene&) const override { return transport_layers(false); }
@@ -105,14 +107,14 @@ Plan MoteMicroRendering::plan(const Scene& scene, const Requirements& r) const {
 }  // namespace
 
 void register_mote_micro_rendering(Registry& registry) {
-    registry.add(
-        {Category::integrator, "mote_micro_rendering",
-         "Final gathering from points, for scenes without media: what the eye sees gathers the light of "
-         "points on all surfaces with micro-buffers (Ritschel et al. 2009). Biased by the size of points and "
-         "texels.",
-         micro_parameters(),
-         R"(<integrator type="mote_micro_rendering"><integer name="points" value="100000"/></integrator>)"},
-        [](const Properties& p) { return std::make_shared<MoteMicroRendering>(p); });
+    add_type(
+        registry, Category::integrator, "mote_micro_rendering",
+        "Final gathering from points, for scenes without media: what the eye sees gathers the light of "
+        "points on all surfaces with micro-buffers (Ritschel et al. 2009). Biased by the size of points and "
+        "texels.",
+        micro_parameters(),
+        R"(<integrator type="mote_micro_rendering"><integer name="points" value="100000"/></integrator>)",
+        [](const MicroSettings& s) { return std::make_shared<MoteMicroRendering>(s); });
 }
 
 }  // namespace mote::integrators

@@ -132,7 +132,7 @@ class RayBundleEstimator final : public Estimator {
 
 class MoteRayBundles final : public Integrator {
   public:
-    explicit MoteRayBundles(const Properties& p) : settings_(read_ray_bundle_settings(p)) {}
+    explicit MoteRayBundles(const RayBundleSettings& settings) : settings_(settings) {}
 
     std::string type() const override { return "mote_ray_bundles"; }
     std::vector<Layer> layers(const Scene&) const override { return transport_layers(false); }
@@ -196,13 +196,13 @@ void MoteRayBundles::plan_missing(Plan& plan, const Scene& scene, const Requirem
 }  // namespace
 
 void register_mote_ray_bundles(Registry& registry) {
-    registry.add(
-        {Category::integrator, "mote_ray_bundles",
-         "Global ray-bundles: light is exchanged between all surfaces along parallel rays, and seen as an "
-         "atlas holds it. For diffuse surfaces without media.",
-         ray_bundle_parameters(),
-         R"(<integrator type="mote_ray_bundles"><integer name="directions" value="512"/></integrator>)"},
-        [](const Properties& p) { return std::make_shared<MoteRayBundles>(p); });
+    add_type(
+        registry, Category::integrator, "mote_ray_bundles",
+        "Global ray-bundles: light is exchanged between all surfaces along parallel rays, and seen as an "
+        "atlas holds it. For diffuse surfaces without media.",
+        ray_bundle_parameters(),
+        R"(<integrator type="mote_ray_bundles"><integer name="directions" value="512"/></integrator>)",
+        [](const RayBundleSettings& s) { return std::make_shared<MoteRayBundles>(s); });
 }
 
 }  // namespace mote::integrators

@@ -1,23 +1,18 @@
 // Settings of mote_ray_bundles.
 #pragma once
 
-#include "core/objects/properties.h"
-#include "core/objects/registry.h"
 #include "gathering/radiance_exchange/radiance_exchange.h"
-#include "integrators/eye_path/eye_path_limits.h"
+#include "integrators/eye_path/eye_path_parameters.h"
 
 namespace mote::integrators {
 
 struct RayBundleSettings {
     EyePathLimits eye;
-    gathering::AtlasSettings atlas;
+    gathering::AtlasSettings atlas{.texel_budget = 1 << 16};
     gathering::ExchangeSettings exchange;
     int eye_samples = 4;  ///< a pixel and pass
 };
 
-/// Settings of a scene file, checked. Throws InputError.
-RayBundleSettings read_ray_bundle_settings(const core::Properties& properties);
-/// Rows of the manual page.
-std::vector<core::Parameter> ray_bundle_parameters();
+const core::ParameterList<RayBundleSettings>& ray_bundle_parameters();
 
 }  // namespace mote::integrators

@@ -16,41 +16,66 @@
 namespace mote::integrators {
 
 using namespace core;
-using gathering::Techniques;
 namespace {
 
-GlossyTreatment read_glossy(const Properties& p) {
-    const std::string word = p.get_choice("glossy", "own_rays", {"own_rays", "lines", "clamping"});
-    return word == "own_rays" ? GlossyTreatment::own_rays
-           : word == "lines"  ? GlossyTreatment::lines
-                              : GlossyTreatment::clamping;
+VplBundleSettings defaults() {
+    VplBundleSettings s;
+    s.eye.max_scatterings = 1;  // VPLs and bundles take over from there
+    return s;
+}
+
+const ParameterList<VplBundleSettings>& vpl_bundle_parameters() {
+    using S = VplBundleSettings;
+    static const ParameterList<S> list(
+        defaults(),
+        {within(&S::eye, eye_path_rows()),
+         row("paths", &S::paths, between(0, 1 << 26),
+             "Light paths traced in every pass: time grows with them, variance falls."),
+         row("directions", &S::directions, between(0, 65536),
+             "Lines along which rays leave what the eye sees, in every pass: time grows with them, variance "
+             "falls; 0: none."),
+         row("techniques", &S::choice,
+             {{"combined", BundleTechniques::combined},
+              {"vpls", BundleTechniques::vpls},
+              {"bundles", BundleTechniques::bundles},
+              {"reused_bundles", BundleTechniques::reused_bundles}},
+             "combined: VPLs and bundles with MIS weights. vpls, bundles: one alone, with several times the "
+             "error. reused_bundles: bundles alone, whose paths continue along the other directions of their "
+             "pass; time grows with their bounces."),
+         row("bound", &S::bound, above(0, "1/m^2"),
+             "Bound on the geometry term of paths of two bounces and more, which are left to bundles then, "
+             "as in "
+             "the paper: darker. Without it they have MIS weights, and nothing is lost.")
+             .when_absent("none"),
+         row("sky", &S::sky,
+             "Direct light of the sky by bundles too, half of whose directions are sampled by it."),
+         row("glossy", &S::glossy,
+             {{"own_rays", GlossyTreatment::own_rays},
+              {"lines", GlossyTreatment::lines},
+              {"clamping", GlossyTreatment::clamping}},
+             "own_rays: a glossy surface also sends one ray by its BSDF, with MIS weights. lines: lines "
+             "alone, as "
+             "in the paper, with nearly twice the error. clamping: lobes widened to the density of the "
+             "lights, "
+             "biased."),
+         row("links", &S::imperfect_links, {{"rays", false}, {"imperfect", true}},
+             "rays: a ray of each point finds what a line meets, exact. imperfect: looked up in bundles of "
+             "discs "
+             "around points, which lose light through holes."),
+         row("interleaving", &S::interleaving, between(1, 8),
+             "n: a pixel of n x n has directions of its own, and every n^2-th VPL, which counts n^2 times: "
+             "less "
+             "work a pass, and more noise."),
+         row("filter", &S::filters,
+             "Smooths indirect light in image space, as far as noise that differs from pixel to pixel "
+             "explains "
+             "its detail: for interleaving.")});
+    return list;
 }
 
 class MoteVplRayBundles final : public Integrator {
   public:
-    explicit MoteVplRayBundles(const Properties& p) {
-        settings_.eye = read_eye_path_limits(p);
-        settings_.eye.max_scatterings = 1;  // from then on virtual lights and bundles take over
-        settings_.paths = std::uint32_t(p.get_int_in("paths", 64, 0, std::int64_t(1) << 26));
-        settings_.directions = std::uint32_t(p.get_int_in("directions", 8, 0, 65536));
-        const std::string techniques =
-            p.get_choice("techniques", "combined", {"combined", "vpls", "bundles", "reused_bundles"});
-        settings_.techniques = techniques == "combined" ? Techniques::combined
-                               : techniques == "vpls"   ? Techniques::vpls
-                                                        : Techniques::bundles;
-        settings_.reuses_lines = techniques == "reused_bundles";
-        if (p.has("bound")) {
-            const double bound = p.require_float("bound");
-            if (!(bound > 0.0) || !std::isfinite(float(bound)))
-                throw InputError("bound must be positive and finite", p.where_of("bound"));
-            settings_.bound = float(bound);
-        }
-        settings_.sky = p.get_bool("sky", false);
-        settings_.glossy = read_glossy(p);
-        settings_.imperfect_links = p.get_choice("links", "rays", {"rays", "imperfect"}) == "imperfect";
-        settings_.interleaving = int(p.get_int_in("interleaving", 1, 1, 8));
-        settings_.filters = p.get_bool("filter", false);
-    }
+    explicit MoteVplRayBundles(const VplBundleSettings& settings) : settings_(settings) {}
 
     std::string type() const override { return "mote_vpl_ray_bundles"; }
     bool works_on_mean() const override { return settings_.filters; }
@@ -93,11 +118,12 @@ void MoteVplRayBundles::plan_techniques(Plan& plan) const {
     }
     plan.run("bundles", std::to_string(settings_.directions) + " directions a pass",
              settings_.sky ? "half of them by the light of the sky" : "uniform; a line serves both ways");
-    plan.run("weights", settings_.techniques == Techniques::combined ? "balance heuristic" : "bundles alone",
-             settings_.techniques == Techniques::combined
+    plan.run("weights",
+             settings_.choice == BundleTechniques::combined ? "balance heuristic" : "bundles alone",
+             settings_.choice == BundleTechniques::combined
                  ? "bundles take what is close to the receiver, virtual point lights what is far"
                  : "asked for: virtual point lights are left what bundles cannot make");
-    if (settings_.reuses_lines)
+    if (settings_.reuses_lines())
         plan.run("bounces", std::to_string(settings_.bounces()) + " along directions of the same pass",
                  "in random order: the bundles of a pass are used again");
     else
@@ -107,7 +133,7 @@ void MoteVplRayBundles::plan_techniques(Plan& plan) const {
     if (settings_.continuation_of_pass() > 0.0f)
         plan.run("paths of bundles", fmt::format("go on by a chance of {:.4g}", settings_.continuation),
                  "light between surfaces that are close to each other and to the receiver");
-    if (settings_.glossy == GlossyTreatment::own_rays && !settings_.reuses_lines)
+    if (settings_.glossy == GlossyTreatment::own_rays && !settings_.reuses_lines())
         plan.run("glossy surfaces", "one ray of their own, by the BSDF", "lines do not follow narrow lobes");
     if (settings_.interleaving > 1)
         plan.run("interleaving",
@@ -117,12 +143,12 @@ void MoteVplRayBundles::plan_techniques(Plan& plan) const {
 }
 
 void MoteVplRayBundles::plan_bias(Plan& plan) const {
-    if (settings_.techniques == Techniques::vpls || !settings_.has_bundles())
+    if (settings_.choice == BundleTechniques::vpls || !settings_.has_bundles())
         plan.run("bound", "none", "right in the mean, with splotches around VPLs");
     if (settings_.bound)
         plan.miss("short distances", "light of two bounces and more between close points is darkened",
                   "bound is set; without it these paths are weighed and nothing is missing");
-    if (settings_.reuses_lines)
+    if (settings_.reuses_lines())
         plan.miss("light of more bounces", "no more than " + std::to_string(settings_.bounces()),
                   "a path takes each line once, and max_depth limits it");
     if (settings_.imperfect_links)
@@ -163,50 +189,13 @@ Plan MoteVplRayBundles::plan(const Scene& scene, const Requirements& r) const {
 }  // namespace
 
 void register_mote_vpl_ray_bundles(Registry& registry) {
-    auto parameters = eye_path_parameters();
-    parameters.push_back(
-        {"paths", "integer", "64", "light paths traced in every pass: time grows with them, variance falls"});
-    parameters.push_back({"directions", "integer", "8",
-                          "lines along which rays leave what the eye sees, in every pass: time grows with "
-                          "them, variance falls; 0: none"});
-    parameters.push_back(
-        {"techniques", "string", "combined",
-         "combined: virtual point lights and bundles, weighted against each other; vpls or bundles: one "
-         "alone, "
-         "with several times the error; reused_bundles: bundles alone, whose paths go on along the other "
-         "directions of their pass, which takes as much longer as paths have bounces"});
-    parameters.push_back(
-        {"bound", "float", "none",
-         "bound [1/m^2] on the geometry term of paths of two bounces and more, which are left "
-         "to bundles then, as in the paper: darker; none: they are weighted, and nothing is lost"});
-    parameters.push_back(
-        {"sky", "boolean", "false",
-         "direct light of the sky by bundles too, half of whose directions are sampled by it"});
-    parameters.push_back(
-        {"glossy", "string", "own_rays",
-         "own_rays: a glossy surface also sends one ray by its BSDF, weighted against the lines; lines: "
-         "lines "
-         "alone, as in the paper, with nearly twice the error; clamping: lobes widened to the density of the "
-         "lights that are known, biased"});
-    parameters.push_back(
-        {"links", "string", "rays",
-         "rays: a ray of each point finds what a line meets, exact; imperfect: looked up in bundles of discs "
-         "around points, which lose light through holes"});
-    parameters.push_back(
-        {"interleaving", "integer", "1",
-         "n, up to 8: a pixel of n x n has directions of its own, and every n^2-th VPL, which "
-         "counts n^2 times: less work a pass, and more noise"});
-    parameters.push_back({"filter", "boolean", "false",
-                          "smooth indirect light in image space, as far as noise that differs from pixel to "
-                          "pixel explains its detail: for interleaving"});
-    registry.add(
-        {Category::integrator, "mote_vpl_ray_bundles",
-         "Virtual point lights combined with bundles of parallel rays from what the eye sees (Tokuyoshi & "
-         "Ogaki "
-         "2012), for scenes without media. Unbiased, without splotches in corners.",
-         parameters,
-         R"(<integrator type="mote_vpl_ray_bundles"><integer name="directions" value="16"/></integrator>)"},
-        [](const Properties& p) { return std::make_shared<MoteVplRayBundles>(p); });
+    add_type(
+        registry, Category::integrator, "mote_vpl_ray_bundles",
+        "Virtual point lights combined with bundles of parallel rays from what the eye sees (Tokuyoshi & "
+        "Ogaki 2012), for scenes without media. Unbiased, without splotches in corners.",
+        vpl_bundle_parameters(),
+        R"(<integrator type="mote_vpl_ray_bundles"><integer name="directions" value="16"/></integrator>)",
+        [](const VplBundleSettings& s) { return std::make_shared<MoteVplRayBundles>(s); });
 }
 
 }  // namespace mote::integrators

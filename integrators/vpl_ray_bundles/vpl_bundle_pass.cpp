@@ -13,7 +13,7 @@ VplBundlePass::VplBundlePass(const LitScene& lit, const VplBundleSettings& setti
                              const PassContext& context)
     : vpls(lights::trace_light_paths(lit, settings.light_paths(), options.seed, context.index,
                                      options.sampler, context.cancelled)),
-      bundles{lit, vpls, {}, {}, settings.techniques} {
+      bundles{lit, vpls, {}, {}, settings.techniques()} {
     const float share = 1.0f / float(settings.interleaving * settings.interleaving);
     auto& samples = bundles.samples;
     samples.directions = settings.has_bundles() ? float(settings.directions) : 0.0f;
@@ -38,7 +38,7 @@ VplBundlePass::VplBundlePass(const LitScene& lit, const VplBundleSettings& setti
     rivals = gathering::rivals_of(lit, vpls, samples);
     bundles.rivals = rivals;
     // VPLs leave to bundles what these make alone.
-    const bool all = settings.techniques == Techniques::bundles;
+    const bool all = settings.techniques() == Techniques::bundles;
     for (std::size_t j = 0; j < lights; ++j)
         if ((rivals[j] > 0.0f && (all || (settings.bound && vpls.lights[j].depth > 1))) ||
             bundles.bounces > 0)

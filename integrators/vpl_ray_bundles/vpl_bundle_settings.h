@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "gathering/eye_bundles/eye_bundles.h"
-#include "integrators/eye_path/eye_path_limits.h"
+#include "integrators/eye_path/eye_path_parameters.h"
 #include "lights/virtual_lights/light_path.h"
 
 namespace mote::integrators {
@@ -16,6 +16,14 @@ enum class GlossyTreatment : std::uint8_t {
     own_rays,  ///< a ray of their own, by the BSDF
     lines,     ///< none: lines and virtual point lights alone, as in the paper
     clamping   ///< lobes widened to the density of lights (Tokuyoshi & Ogaki 2012, Sec. 5)
+};
+
+/// Techniques of the paths that VPLs and bundles can both make.
+enum class BundleTechniques : std::uint8_t {
+    combined,
+    vpls,
+    bundles,
+    reused_bundles  ///< bundles alone, whose paths take the pass's own lines instead of joined VPLs
 };
 
 struct VplBundleSettings {
@@ -30,8 +38,7 @@ struct VplBundleSettings {
     EyePathLimits eye;  ///< max_depth counts the whole path from light to eye
     std::uint32_t paths = 64;
     std::uint32_t directions = 8;  ///< of a pass
-    gathering::Techniques techniques = gathering::Techniques::combined;
-    bool reuses_lines = false;   ///< paths of bundles take the pass's own lines, instead of joined VPLs
+    BundleTechniques choice = BundleTechniques::combined;
     std::optional<float> bound;  ///< b [1/m^2] of paths of two bounces and more; nothing: weighted
     bool sky = false;            ///< direct light of the sky by bundles
     GlossyTreatment glossy = GlossyTreatment::own_rays;
@@ -39,6 +46,12 @@ struct VplBundleSettings {
     int interleaving = 1;          ///< n: a pixel of n x n has every n^2-th VPL, and directions of its own
     bool filters = false;
 
+    gathering::Techniques techniques() const {
+        return choice == BundleTechniques::combined ? gathering::Techniques::combined
+               : choice == BundleTechniques::vpls   ? gathering::Techniques::vpls
+                                                    : gathering::Techniques::bundles;
+    }
+    bool reuses_lines() const { return choice == BundleTechniques::reused_bundles; }
     /// Eye paths a pixel and pass whose direct light counts, in the mean: as many as make the error of a pass
     /// smallest where one path has as much of it in its direct light as in its indirect light, the root of
     /// how many times as much work the latter is. Times are those of the atrium of scenes/, of which only
@@ -54,15 +67,15 @@ struct VplBundleSettings {
     std::uint32_t joined_lights() const { return bounces() > 0 || paths == 0 ? 0 : joined; }
     /// Bounces of paths along the pass's own lines; 0: they join VPLs instead.
     int bounces() const {
-        if (!reuses_lines) return 0;
+        if (!reuses_lines()) return 0;
         const int lines = int(directions);
         return eye.max_depth < 0 ? lines : std::clamp(eye.max_depth - 2, 1, std::max(lines, 1));
     }
     /// c, where there are techniques to weight such paths against.
     float continuation_of_pass() const {
-        return techniques == gathering::Techniques::combined && !bound ? continuation : 0.0f;
+        return choice == BundleTechniques::combined && !bound ? continuation : 0.0f;
     }
-    bool has_bundles() const { return techniques != gathering::Techniques::vpls && directions > 0; }
+    bool has_bundles() const { return choice != BundleTechniques::vpls && directions > 0; }
     lights::LightPathSettings light_paths() const {
         lights::LightPathSettings s;
         s.paths = paths, s.rr_depth = eye.rr_depth, s.keep_starts = true;
