@@ -28,13 +28,7 @@ using Words = std::vector<std::string>;
 
 /// Values of string parameters whose rows declare no choices, by type and name.
 const std::map<std::string, Words> words = {
-    {"mote_ray_bundles.transfer", {"interleaved", "one_bounce"}},
-    {"mote_ray_bundles.direct", {"bundles", "lights"}},
-    {"mote_vpl_ray_bundles.techniques", {"combined", "vpls", "bundles", "reused_bundles"}},
-    {"mote_vpl_ray_bundles.links", {"rays", "imperfect"}},
-    {"mote_vpl_ray_bundles.glossy", {"own_rays", "lines", "clamping"}},
     {"mote_layers.shares", {"3", "2, 1", "1, 2, 1"}},
-    {"mote_micro_rendering.light", {"direct", "vpls", "radiosity", "photons"}},
 };
 
 /// Numbers by name. The first is used throughout and keeps pictures quick, but for light paths, which are

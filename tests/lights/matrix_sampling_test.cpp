@@ -20,7 +20,7 @@ using namespace mote::core;
 using namespace mote::tests;
 using lights::ColumnClusters, lights::ColumnSampler, lights::LightClass;
 using lights::PathReceiver, lights::MatrixClusters, lights::MatrixSettings, lights::WeightedVpl;
-using Rows = lights::RowVisibilitySettings::Kind;
+using RowKind = lights::RowVisibilitySettings::Kind;
 
 namespace {
 
@@ -58,7 +58,7 @@ struct Room {
             receivers.push_back(r);
         }
     }
-    lights::RowContext context(Rows visibility = Rows::rays, float bound = 4.0f) {
+    lights::RowContext context(RowKind visibility = RowKind::rays, float bound = 4.0f) {
         lights::RowVisibilitySettings settings;
         settings.kind = visibility, settings.map_size = 24;
         return {*scene, vpls, bound, settings, rays, tracking};
@@ -101,8 +101,8 @@ TEST_CASE("Light by a matrix has the mean of all lights, on both sides of a wall
           "[light_selection][matrix][statistics]") {
     constexpr double critical = 3.3;  // two-sided, 0.1 %
     Rng rng(6);
-    for (const Rows visibility : {Rows::rays, Rows::shadow_maps}) {
-        Room room(visibility == Rows::rays ? plastic : diffuse);
+    for (const RowKind visibility : {RowKind::rays, RowKind::shadow_maps}) {
+        Room room(visibility == RowKind::rays ? plastic : diffuse);
         REQUIRE(room.vpls.lights.size() > 500);
         // Few receivers make rows, others are lit.
         const auto few = std::span(room.receivers).first(20);
@@ -205,11 +205,11 @@ TEST_CASE("More columns than lights are all lights, each once", "[light_selectio
 TEST_CASE("Maps of receivers see what rays see", "[light_selection][matrix]") {
     Room room(diffuse, 200);
     const auto few = std::span(room.receivers).first(32);
-    const auto matrix_of = [&](Rows visibility, std::span<const PathReceiver> receivers) {
+    const auto matrix_of = [&](RowKind visibility, std::span<const PathReceiver> receivers) {
         const auto context = room.context(visibility);
         return lights::reduced_matrix(context, receivers, 1);
     };
-    const auto by_rays = matrix_of(Rows::rays, few);
+    const auto by_rays = matrix_of(RowKind::rays, few);
     const auto differ = [&](const lights::ReducedMatrix& other) {
         double difference = 0.0, sum = 0.0;
         for (std::size_t j = 0; j < by_rays.classes.size(); ++j)
@@ -223,7 +223,7 @@ TEST_CASE("Maps of receivers see what rays see", "[light_selection][matrix]") {
     };
     std::vector<PathReceiver> turned(few.begin(), few.end());
     std::rotate(turned.begin(), turned.begin() + 1, turned.end());
-    for (const Rows visibility : {Rows::shadow_maps}) {
+    for (const RowKind visibility : {RowKind::shadow_maps}) {
         const double maps = differ(matrix_of(visibility, few));
         INFO("visibility " << int(visibility) << ": " << maps);
         CHECK(maps < 0.2);
@@ -261,7 +261,7 @@ TEST_CASE("No lights, one, dark ones, no receivers", "[light_selection][matrix][
     const MatrixSettings settings = settings_of(16, 8, 2);
     const auto vpls = room.vpls;
     const auto draw = [&](std::span<const PathReceiver> receivers, float bound = 4.0f) {
-        const MatrixClusters matrix(room.context(Rows::rays, bound), receivers, settings, 1);
+        const MatrixClusters matrix(room.context(RowKind::rays, bound), receivers, settings, 1);
         return matrix.sample(tile, rng, drawn);
     };
     room.vpls.lights.clear();

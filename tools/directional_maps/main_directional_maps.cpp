@@ -17,7 +17,6 @@
 namespace {
 
 using namespace mote;
-using namespace mote::lights;
 using namespace mote::tools;
 using core::Vec3;
 

@@ -10,6 +10,7 @@
 #include "integrators/virtual_point_lights/path_receivers.h"
 #include "lights/register_lights.h"
 #include "lights/selection/register_selection.h"
+#include "lights/virtual_lights/particle_tracer.h"
 #include "media/register_media.h"
 
 namespace mote::studies {
