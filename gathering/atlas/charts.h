@@ -22,7 +22,7 @@ struct Chart {
 
 /// All charts of a list of triangles.
 struct Charts {
-    /// Stands for no chart.
+    /// Index of no chart.
     static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
     std::vector<Chart> charts;             ///< in the order in which they were grown
     std::vector<std::uint32_t> triangles;  ///< chart by chart

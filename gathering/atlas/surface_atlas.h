@@ -2,8 +2,8 @@
 // area.
 //
 // Charts (charts.h) are rectangles of cells. A cell that holds less than half of its area of surface is
-// joined to a neighbour, one that holds none stands for the nearest that does: so whoever looks a place up,
-// or interpolates between cells, meets texels of the surface alone, and needs no guard band between charts.
+// joined to a neighbour, one that holds none refers to the nearest that does: so lookups and interpolation
+// between cells meet texels of the surface alone, and need no guard band between charts.
 #pragma once
 
 #include <optional>
@@ -38,18 +38,16 @@ struct AtlasTexel {
 /// The texels, and which of them lies where.
 class SurfaceAtlas {
   public:
-    static constexpr std::uint32_t none = Charts::none;  ///< stands for no texel
+    static constexpr std::uint32_t none = Charts::none;  ///< index of no texel
 
-    /// Throws InputError where the density or the number of charts asks for more texels than the budget, and
+    /// Throws InputError where the density or the number of charts takes more texels than the budget, and
     /// says which density fits. `surfaces` and `shapes` must outlive the atlas.
     SurfaceAtlas(const SurfaceTriangles& surfaces, ShapeSpan shapes, const AtlasSettings& settings);
 
     std::span<const AtlasTexel> texels() const { return texels_; }  ///< chart by chart
     std::size_t size() const { return texels_.size(); }             ///< how many texels
     std::size_t charts() const { return charts_; }                  ///< how many charts
-    float texels_per_metre() const {
-        return texels_per_metre_;
-    }  ///< along an edge, as it was asked for or chosen
+    float texels_per_metre() const { return texels_per_metre_; }    ///< along an edge, as requested or chosen
     const SurfaceTriangles& surfaces() const { return *surfaces_; }  ///< that it was made of
     ShapeSpan shapes() const { return shapes_; }                     ///< that the triangles belong to
     std::size_t memory_bytes() const;                                ///< [B]

@@ -14,8 +14,8 @@ using ShapeSpan = std::span<const std::shared_ptr<core::Shape>>;
 core::SurfaceHit surface_place(const SurfaceTriangles& surfaces, ShapeSpan shapes, std::uint32_t triangle,
                                const core::Vec2& barycentric);
 
-/// How far the triangles that stand for a shape may lie below it: twice the chord error of tessellations, for
-/// shapes that are no meshes [m]. Shadow rays meet the shape itself.
+/// Bound of the depth below a shape at which its triangles may lie: twice the chord error of tessellations,
+/// for shapes that are no meshes [m]. Shadow rays meet the shape itself.
 inline float depth_below(const core::Shape& shape) {
     constexpr float chord_error = TessellationSettings{}.chord_error;
     return shape.primitive_count() > 1 ? 0.0f

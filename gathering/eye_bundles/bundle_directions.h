@@ -27,7 +27,7 @@ inline float line_pdf(const core::Emitter* sky, const core::Vec3& w) {
 }
 
 /// Line `index` of a set whose consecutive numbers are low-discrepancy points: the passes of a render share
-/// one set. `set` tells the sets of interleaved pixels apart.
+/// one set. `set` distinguishes the sets of interleaved pixels.
 BundleDirection bundle_direction(const core::Emitter* sky, core::SamplerKind kind, std::uint64_t seed,
                                  std::uint32_t set, std::uint32_t index);
 

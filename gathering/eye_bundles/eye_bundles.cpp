@@ -177,7 +177,7 @@ void EyeBundles::trace(const BundleReceiver& x, const Vec3& w, float pdf_lines, 
     y.fewer = fewer_than_one(pass_.samples, found);
 }
 
-/// Of a light that is connected to y.
+/// Weight of a light that is connected to y.
 float EyeBundles::weight_of_connection(const Found& y, const LightChoice& choice,
                                        const DirectSample& light) const {
     if (pass_.techniques == Techniques::bundles) return 1.0f;

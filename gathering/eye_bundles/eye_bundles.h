@@ -3,8 +3,8 @@
 // Secs. 3 and 4).
 //
 // At a point y that a ray from x finds, the light of one light is connected (paths of one bounce, Eq. 3), and
-// a few virtual point lights are joined (two bounces and more, Eq. 7). From some of them the path goes on, to
-// a next point that is lit alike. Weights are those of path_weights.h.
+// a few virtual point lights are joined (two bounces and more, Eq. 7). From some of them the path continues,
+// to a next point that is lit alike. Weights are those of path_weights.h.
 #pragma once
 
 #include <array>
@@ -61,7 +61,7 @@ class EyeBundles {
     /// that of the sky to `direct`. Draws from the receivers' samplers and from the walk's generator.
     void add(const ReceiverArray& receivers, std::span<const BundleDirection> lines, std::size_t index,
              lights::TileLight& indirect, lights::TileLight& direct);
-    /// What the glossy receivers' own rays find, weighed against lines.
+    /// Adds the light that the glossy receivers' own rays find, weighted against lines.
     void add_own_rays(const ReceiverArray& receivers, std::span<const BundleDirection> lines,
                       lights::TileLight& indirect, lights::TileLight& direct);
 

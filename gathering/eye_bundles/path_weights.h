@@ -18,7 +18,7 @@
 // 7 and 8). Here they are weighed as well: near y the VPL before it has w_2 -> 0, near x the VPL at y has w_1
 // -> 0. Nothing is left out.
 //
-// Where both edges are short, in a corner of a corner, neither has small values. So a bundle's path goes on
+// Where both edges are short, in a corner of a corner, neither has small values. So a bundle's path continues
 // from y with chance c, by a cosine-weighted direction with the density e(y -> z) per area, and what it finds
 // is lit in turn, again and again. A path v_1 .. v_j, x has then j + 1 techniques: its last k vertices are
 // found from x, and the last found is joined to what is before it. The density of the k-th is
@@ -51,7 +51,7 @@ struct TechniqueSamples {
     float paths = 0.0f;         ///< N, light paths
     float light_share = 1.0f;   ///< s_1, the chance of a VPL to meet a receiver
     float joined_share = 0.0f;  ///< s_2, the chance of a VPL to be joined to a point that a bundle found
-    float continued = 0.0f;     ///< c, the chance of a bundle's path to go on from a point
+    float continued = 0.0f;     ///< c, the probability that a bundle's path continues from a point
 };
 
 /// Larger than any ratio of densities that matters, and small enough to be multiplied.
@@ -79,7 +79,7 @@ inline float continued_pdf(float g) { return g * core::inv_pi; }
 inline bool may_continue(const core::ScatteringVertex& y) { return !y.bsdf->traits().transmissive; }
 
 /// b_k of Eq. (2) at a point y that a bundle's path found. On a glossy surface a part of it has the density
-/// of light that comes from z and goes on to the point before y.
+/// of light that comes from z and continues to the point before y.
 struct FewerFound {
     float plain = 0.0f, by_pdf = 0.0f;
 

@@ -34,7 +34,7 @@ class BrdfWarp {
     }
 
     std::uint32_t cells() const { return cells_; }  ///< along each side of the table
-    /// Of the table: f times the cosine over the hemisphere, the directional albedo.
+    /// Directional albedo: f times the cosine over the hemisphere, by the table.
     core::Rgb integral() const { return integral_; }
     bool black() const { return !(total_ > 0.0); }  ///< reflects nothing: there is no warp
 
@@ -42,14 +42,15 @@ class BrdfWarp {
     /// cells where nothing is reflected the first is not onto.
     core::Vec2 to_cosine_square(const core::Vec2& warped) const;
     core::Vec2 to_warped_square(const core::Vec2& cosine) const;
-    /// What holds the image of the box [lower, upper] of the cosine square.
+    /// Bounding box of the image of the box [lower, upper] of the cosine square.
     void warp_box(const core::Vec2& lower, const core::Vec2& upper, core::Vec2& warped_lower,
                   core::Vec2& warped_upper) const;
 
-    /// Of one place in [0, 1)^2 of each of side x side texels; black warps leave those of the cosine square.
+    /// Directions of one place in [0, 1)^2 of each of side x side texels; black warps leave those of the
+    /// cosine square.
     void fill_directions(std::uint32_t side, const core::Vec2& place, RayDirections& rays) const;
-    /// What each texel's radiance counts for: the sum of weight times radiance is reflected radiance. They
-    /// sum to integral() in luminance, in other channels as far as texels are smaller than cells.
+    /// Weight of each texel: the sum of weight times radiance is reflected radiance. The weights sum to
+    /// integral() in luminance, in other channels as far as texels are smaller than cells.
     void fill_weights(std::uint32_t side, std::span<core::Rgb> weights) const;
 
   private:

@@ -47,7 +47,7 @@ struct DepthRows {
 };
 
 /// Keeps the disc where it is nearer than what is there. All rays within the box are tried, and some beside
-/// it: a ray meets the disc or does not, the box only says which need not be asked.
+/// it: a ray meets the disc or does not, the box only excludes rays that need no test.
 inline void fill_box(const RayDirections& rays, const LocalDisc& disc, const TexelBox& box, DepthRows out) {
     constexpr std::uint32_t back_bit = 0x80000000u;
     const core::Vec3 c = disc.center, a = disc.axis;

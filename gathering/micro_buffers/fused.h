@@ -21,7 +21,7 @@ inline float fused_dot(float ax, float ay, float az, float bx, float by, float b
     return fused(ax, bx, fused(ay, by, az * bz));
 }
 
-/// Frame::to_local(), to the last bit as walks of groups have it: discs in one plane are told apart by no
+/// Frame::to_local(), to the last bit as walks of groups have it: discs in one plane differ by no
 /// more.
 inline core::Vec3 fused_local(const core::Frame& f, const core::Vec3& v) {
     return {fused_dot(v.x, v.y, v.z, f.s.x, f.s.y, f.s.z), fused_dot(v.x, v.y, v.z, f.t.x, f.t.y, f.t.z),

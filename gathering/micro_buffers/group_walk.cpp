@@ -48,7 +48,7 @@ class GroupWalk {
     }
 
   private:
-    /// Which lanes take the node, which are done with it; returns whether any must enter it.
+    /// Finds the lanes that take the node and those that are done with it; returns whether any must enter it.
     bool decide(const PointNode& node, const NodePlace& place) {
         const std::uint32_t begin = place.index << place.level, end = begin + (1u << place.level);
         const bool leaf = place.level == 0;

@@ -21,7 +21,7 @@ struct MicroReceiver {
     core::Frame frame;  ///< n: the normal on the side that gathers. Turn s and t at random: no banding
 };
 
-/// What the ray of a texel meets first.
+/// First hit of the ray of a texel.
 struct MicroTexel {
     static constexpr std::uint32_t nothing = 0xffffffffu;   ///< value of `hit` where the ray meets nothing
     static constexpr std::uint32_t back_bit = 0x80000000u;  ///< set in `hit` where a back is met
@@ -35,7 +35,7 @@ struct MicroTexel {
     bool from_behind() const { return (hit & back_bit) != 0; }
 };
 
-/// How fine buffers are, and what may be left out.
+/// Resolution of buffers, and what they may leave out.
 struct MicroBufferSettings {
     std::uint32_t side = 16;  ///< texels
     /// Where in each of them its ray lies, in [0, 1)^2: buffers that are averaged should differ in it, else

@@ -1,4 +1,4 @@
-// What holds for nodes in every walk that fills micro-buffers.
+// Rules for nodes that every walk that fills micro-buffers shares.
 #pragma once
 
 #include "gathering/point_hierarchy/point_hierarchy.h"
@@ -10,8 +10,8 @@ namespace mote::gathering {
 inline constexpr float near_back = 1.0f;
 /// A node is a disc where its normals lie within this cosine of their mean; others are entered.
 inline constexpr float flat_cosine = 0.8f;
-/// How far in the concentric square, of side 1, directions within a small angle lie apart at most: both maps
-/// stretch by 0.81, and the angle is up to 0.5.
+/// Distance in the concentric square, of side 1, of directions that are a small angle apart, at most and over
+/// the angle: both maps stretch by 0.81, and the angle is up to 0.5.
 inline constexpr float square_reach = 0.86f;
 
 /// Sine of the cone's half angle; more than any where the cone is wider than a hemisphere.

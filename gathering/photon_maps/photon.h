@@ -17,7 +17,7 @@ struct Photon {
 };
 static_assert(sizeof(Photon) == 32);
 
-/// A surface normal in 16 bits (within about 0.02 rad): enough to tell one wall from the next.
+/// A surface normal in 16 bits (within about 0.02 rad): enough to distinguish one wall from the next.
 inline std::uint16_t encode_normal(const core::Vec3& n) {
     const core::Vec2 p = core::octahedral_project(n);
     const auto quantize = [](float x) { return std::uint32_t(std::lround((x * 0.5f + 0.5f) * 255.0f)); };

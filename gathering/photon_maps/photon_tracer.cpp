@@ -11,7 +11,7 @@ using namespace core;
 namespace {
 
 constexpr std::uint32_t chunk_size = 64;              ///< paths of one task
-constexpr std::uint32_t batch_size = 16384;           ///< paths between two looks at the memory
+constexpr std::uint32_t batch_size = 16384;           ///< paths between two checks of the memory
 constexpr std::uint32_t photon_stream = 0x50484f54u;  // keeps light paths apart from pixels of the same index
 
 std::uint16_t medium_index(const LitScene& scene, const PhaseFunction* phase) {
@@ -27,7 +27,7 @@ bool is_kept(std::uint64_t path_key, std::uint32_t depth, int halvings) {
     return halvings == 0 || hash_keys(path_key, depth) >> (64 - halvings) == 0;
 }
 
-/// A photon with what thinning needs to know again.
+/// A photon with the data that thinning needs.
 struct Candidate {
     Photon photon;
     std::uint64_t path_key;

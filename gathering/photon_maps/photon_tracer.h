@@ -27,7 +27,7 @@ struct PhotonSet {
     std::uint64_t met = 0;            ///< photons before thinning
     int halvings = 0;                 ///< n
     core::RayCounters rays;           ///< that were traced
-    core::TrackingCounters tracking;  ///< what media were asked for
+    core::TrackingCounters tracking;  ///< queries of media
 };
 
 /// Traces in parallel. (seed, pass, path index) determines every path; the order of the photons does not

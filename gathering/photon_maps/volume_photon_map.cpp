@@ -13,7 +13,8 @@ using namespace core;
 
 namespace {
 
-/// A few neighbours tell the density well enough for a radius , and cost less than many (Jarosz et al. 2008).
+/// A few neighbours estimate the density well enough for a radius, and cost less than many (Jarosz et al.
+/// 2008).
 constexpr std::size_t pilot_neighbours = 8;
 
 /// Radius that would hold `wanted` photons at the density around photon `i`: volumes grow as numbers.

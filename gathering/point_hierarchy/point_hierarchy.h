@@ -51,7 +51,7 @@ class PointHierarchy {
     /// fits. Does not refer to the points later. The same for any number of threads.
     explicit PointHierarchy(const Surfels& surfels, std::size_t memory_budget = std::size_t(1) << 30);
 
-    /// How many points, which are the leaves.
+    /// Number of points, which are the leaves.
     std::uint32_t points() const { return first_.size() > 1 ? first_[1] : 0; }
     bool empty() const { return points() == 0; }        ///< there is no node then
     float disc_radius() const { return disc_radius_; }  ///< of each point [m]
@@ -64,14 +64,14 @@ class PointHierarchy {
     /// 0 where there are no points.
     std::uint32_t levels() const { return std::uint32_t(first_.size()) - 1; }
     std::uint32_t first(std::uint32_t level) const { return first_[level]; }  ///< node index
-    /// How many nodes a level has.
+    /// Number of nodes of a level.
     std::uint32_t count(std::uint32_t level) const { return first_[level + 1] - first_[level]; }
     NodePlace root() const { return {levels() - 1, 0}; }  ///< of a tree that is not empty
-    /// Whether the tree has a node there.
+    /// True if the tree has a node there.
     bool exists(const NodePlace& p) const { return p.level < levels() && p.index < count(p.level); }
     /// Into nodes().
     std::uint32_t node_index(const NodePlace& p) const { return first_[p.level] + p.index; }
-    /// How many points are below the node.
+    /// Number of points below the node.
     std::uint32_t points_below(const NodePlace& p) const {
         return std::min(points() - (p.index << p.level), 1u << p.level);
     }

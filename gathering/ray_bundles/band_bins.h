@@ -11,7 +11,7 @@ namespace mote::gathering {
 class BandBins {
   public:
     /// In parallel; triangles that fall between all rays are in no bin. Throws InputError where the bins
-    /// would take more than the budget, Cancelled when asked to stop.
+    /// would take more than the budget, Cancelled when it is cancelled.
     BandBins(const TriangleCull& cull, const BundleGrid& grid, std::uint32_t rows_per_band,
              std::size_t memory_budget, core::CancelToken cancelled);
 

@@ -8,7 +8,7 @@
 namespace mote::gathering {
 
 /// The rays. Ray (x, y) begins at `origin` + (x + 1/2) spacing `right` + (y + 1/2) spacing `up`, outside of
-/// the bounds that the grid was made for, and stands for the area spacing^2 perpendicular to `direction`.
+/// the bounds that the grid was made for, and represents the area spacing^2 perpendicular to `direction`.
 /// Its number is y * columns + x.
 struct BundleGrid {
     core::Vec3 direction{0, 0, 1};           ///< unit

@@ -1,7 +1,7 @@
 // Ray-bundles through points instead of triangles (Tokuyoshi & Ogaki 2012, "Imperfect ray-bundle tracing"):
 // their time does not depend on how many triangles there are.
 //
-// Each direction has another set of points. A point stands for a patch of the surface, by a disc in its
+// Each direction has another set of points. A point represents a patch of the surface, by a disc in its
 // triangle's plane. The poster draws a triangle around the disc in tangent space and cuts the disc out of it;
 // on the grid that is an ellipse, whose rays are found row by row. Where discs do not meet there are holes,
 // through which light leaks; larger discs close them, and overlap: a ray then has several hits of one

@@ -11,7 +11,7 @@ namespace mote::gathering {
 
 class ScanForm {
   public:
-    /// Keeps references to the triangles and the grid. Throws Cancelled when asked to stop.
+    /// Keeps references to the triangles and the grid. Throws Cancelled when it is cancelled.
     ScanForm(const SurfaceTriangles& triangles, const TriangleCull& cull, const BundleGrid& grid,
              std::size_t memory_budget, core::CancelToken cancelled);
 

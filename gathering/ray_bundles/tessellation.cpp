@@ -8,7 +8,7 @@ using namespace core;
 
 namespace {
 
-constexpr int least_pieces = 8;  // of each side, so that no bend hides between the points that are looked at
+constexpr int least_pieces = 8;  // of each side, so that no bend hides between the points that are tested
 constexpr float shortest = 0x1p-16f;  // side of a piece
 
 float distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
@@ -70,7 +70,7 @@ std::vector<TriangleList::Corner> grid_of(const Shape& shape, const Tessellation
     return grid;
 }
 
-/// Texture coordinates around a body jump from 1 to 0 somewhere; within a triangle they go on.
+/// Texture coordinates around a body jump from 1 to 0 somewhere; within a triangle they continue.
 void unwrap(TriangleList::Corner (&corners)[3]) {
     const float most = std::max({corners[0].uv.x, corners[1].uv.x, corners[2].uv.x});
     for (auto& c : corners)

@@ -1,4 +1,4 @@
-// Irradiance at places, from whatever light is asked for: lights themselves, virtual point lights, photons.
+// Irradiance at places, from the selected kinds of light: lights themselves, virtual point lights, photons.
 //
 // All of it runs on the threads of TBB, is the same for any number of them, and throws core::Cancelled.
 #pragma once

@@ -1,4 +1,4 @@
-// Points that stand for the surfaces of a scene: discs of one radius, each for an equal share of the area.
+// Points that represent the surfaces of a scene: discs of one radius, each for an equal share of the area.
 #pragma once
 
 #include <span>
@@ -15,13 +15,13 @@ struct Surfels {
     std::vector<core::Vec3> normals;    ///< unit, of the triangle, on its front
     std::vector<SurfacePoint> places;   ///< on which triangle, and where
     float radius = 0.0f;                ///< of the discs, which together hide the surface [m]
-    double area = 0.0;                  ///< of the surface: each point stands for area / size() [m^2]
+    double area = 0.0;                  ///< of the surface: each point represents area / size() [m^2]
 
     std::size_t size() const { return positions.size(); }                             ///< how many points
     double patch() const { return positions.empty() ? 0.0 : area / double(size()); }  ///< [m^2]
 };
 
-/// How points are chosen, and how large their discs are.
+/// Settings of the choice of points, and the size of their discs.
 struct SurfelSettings {
     std::uint64_t seed = 1;  ///< determines the points, on any number of threads
     /// Candidates for each point: more make the points more even, and take as much longer.

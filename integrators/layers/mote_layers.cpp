@@ -19,7 +19,7 @@ using namespace core;
 namespace {
 
 /// Kind of filter for a layer; nothing for one that stays as it is. Indirect light is smooth but where
-/// surfaces and media are not, which features tell; so is light of large lights scattered in media, and
+/// surfaces and media are not, which features show; so is light of large lights scattered in media, and
 /// shafts of others show as soon as noise is below them.
 std::optional<screenspace::LayerKind> filtered_kind(const Layer& layer) {
     if (layer.auxiliary) return std::nullopt;

@@ -2,9 +2,9 @@
 // fastest for the work.
 //
 // With a variance s_i^2 of one pass of part i and w_i its work, n_i passes leave the error sum s_i^2 / n_i at
-// the cost sum n_i w_i. One more pass of part i takes s_i^2 / (n_i (n_i + 1)) for w_i; whoever always takes
-// the best of these comes to n_i ~ s_i / sqrt(w_i). Variances and work are those that the film has seen so
-// far (Film::work): the schedule is a function of the film alone.
+// the cost sum n_i w_i. One more pass of part i takes s_i^2 / (n_i (n_i + 1)) for w_i; always taking
+// the best of these leads to n_i ~ s_i / sqrt(w_i). Variances and work are those that the film has recorded
+// so far (Film::work): the schedule is a function of the film alone.
 #pragma once
 
 #include <span>

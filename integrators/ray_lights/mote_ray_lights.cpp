@@ -3,7 +3,7 @@
 // Every pass traces a fresh set of light paths. Their segments in media are lights all along, and eye rays
 // gather them all along: there is no point from which 1/d^2 could blow up, so that nothing has to be bounded
 // or brought back in media. Surfaces keep VPLs, bounded, and what the bound takes is found by eye paths that
-// go on (ray_light_tile.h). So the mean is right, but for light that passes mirrors and glass last.
+// continue (ray_light_tile.h). So the mean is right, but for light that passes mirrors and glass last.
 #include <fmt/format.h>
 
 #include "integrators/eye_path/counters.h"

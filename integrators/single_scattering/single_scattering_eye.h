@@ -18,7 +18,7 @@
 namespace mote::integrators {
 
 struct EyeSettings {
-    /// Rays through mirrors and glass, and one that tells what a surface scatters.
+    /// Rays through mirrors and glass, and one that shows what a surface scatters.
     EyePathLimits limits{.max_depth = 33, .rr_depth = 1 << 30, .max_scatterings = 1};
     float voxels = 1.0f;
     const lights::LightShadowMaps* maps = nullptr;  ///< of lights without a position; null: traced
