@@ -164,8 +164,8 @@ int render_sequence(const RenderArguments& arguments) {
         }
         sequence.previous = frame.scene;
         sequence.before.reset();
-        // Also without motion: meshes that the next frame has as well are kept as long as somebody holds
-        // them.
+        // Also without motion: meshes that the next frame has as well are kept as long as they are referred
+        // to.
         if (sequence.rendered) sequence.before = LoadedScene::frame_of(std::move(*sequence.rendered));
         sequence.rendered.reset();
     }

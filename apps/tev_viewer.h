@@ -4,8 +4,8 @@
 //   CreateImage (4): u8 take the focus, name, i32 width, height, channels, a name for each channel
 //   UpdateImage (3): u8 take the focus, name, name of the channel, i32 x, y, width, height, floats row by row
 //
-// A thread of its own does the sending. Nobody ever waits for it: of pictures that come while one is on its
-// way only the last is kept, and where no viewer listens nothing happens.
+// A thread of its own does the sending. No caller ever waits for it: of pictures that come while one is on
+// its way only the last is kept, and where no viewer listens nothing happens.
 #pragma once
 
 #include <memory>

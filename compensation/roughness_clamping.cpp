@@ -19,7 +19,7 @@ void clamp_roughness(lights::VplSet& vpls, const RoughnessClamping& clamping, fl
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size(), 256), [&](const auto& range) {
         std::vector<KdTree::Neighbour> heap;
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
-            // The light itself is one of those found. Fewer than m' lights know m'/n of the density.
+            // The light itself is one of those found. Fewer than m' lights have m'/n of the density.
             tree.nearest(points[i], std::size_t(clamping.neighbours) + 1, infinity, heap);
             const float r2 = heap.front().distance_squared;
             const float known = float(heap.size() - 1) / float(clamping.neighbours);

@@ -6,7 +6,7 @@
 //
 //   L_j = alpha_j / (pi r_j^2)  int_cone  f(x, wo, w) |cos_x|  f(y_j, w_j, -w) |cos_y|  dw
 //
-// |cos_y| stands for the share of the cone that a plane disc covers. As r -> 0 the cone's solid angle is
+// The factor |cos_y| is the share of the cone that a plane disc covers. As r -> 0 the cone's solid angle is
 // pi r^2 / d^2 and the VPL's f G f alpha is left; near y_j, where that has no bound, L_j has. It is biased:
 // light is blurred over the spheres, also around edges and corners that lie within one.
 //

@@ -43,8 +43,8 @@ Limits limits_of(const Settings& s, const MethodsFile& file) {
     return {file.seconds, file.passes};
 }
 
-/// Renders a reference where none was given, for as long as all methods together take at most, or goes on
-/// with it. Returns false when interrupted.
+/// Renders a reference where none was given, for as long as all methods together take at most, or continues
+/// it. Returns false when interrupted.
 bool make_automatic_reference(const Settings& s, const MethodsFile& file, const Limits& limits, Host& host) {
     Settings reference = s;
     reference.passes.reset();
@@ -199,8 +199,8 @@ bool measure(const Settings& s, Host& host) {
         if (!make_automatic_reference(s, file, limits, host)) return false;
         host.idle_while("loading the reference", "the same command continues");
     }
-    // A reference of our own may be noisy, and the page says so; one that was given must resolve what was
-    // asked.
+    // A reference of our own may be noisy, and the page says so; one that was given must have the requested
+    // resolution.
     const Reference reference =
         load_reference(reference_file(s), scene, content,
                        {automatic ? core::infinity : s.resolve, s.trust_reference, s.force_reference});

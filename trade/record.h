@@ -28,7 +28,7 @@ struct Record {
     std::uint64_t non_finite = 0;
     double peak_memory_mb = 0.0;   ///< of the process so far, all methods alive
     bool final = false;            ///< the last of its method and seed
-    bool below_reference = false;  ///< less than the reference tells from none
+    bool below_reference = false;  ///< less than the reference distinguishes from none
 };
 
 /// RFC 4180, with a header row. Numbers read back as the same numbers; empty for unknown.

@@ -15,8 +15,8 @@
 
 namespace mote::trade {
 
-/// The smallest error that a picture with this variance tells from none: the root of two standard errors of
-/// the square of an error that is zero. `weights` are its own. Infinity where it is black.
+/// The smallest error that a picture with this variance distinguishes from none: the root of two standard
+/// errors of the square of an error that is zero. `weights` are its own. Infinity where it is black.
 double smallest_error(std::span<const core::Rgb> variance, const core::RelativeWeights& weights);
 /// Smallest error that the film of a reference judges. Infinity for fewer than two passes.
 double smallest_error(const core::Film& film);

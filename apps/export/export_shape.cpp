@@ -68,8 +68,9 @@ bool overlap(const core::Bounds3& a, const core::Bounds3& b) {
     return glm::all(glm::lessThan(a.lower, b.upper)) && glm::all(glm::lessThan(b.lower, a.upper));
 }
 
-/// Ours knows all shapes that a point is inside of, and the medium around all of them; Mitsuba's paths know
-/// the last one they crossed, and take what is outside of it to be empty unless it says otherwise.
+/// mote's exterior is all shapes that a point is inside of, and the medium around all of them; Mitsuba's
+/// paths track the last shape that they crossed, and take what is outside of it to be empty unless it says
+/// otherwise.
 void write_exterior(Element& element, const core::Shape& shape, const ExportContext& context) {
     if (!shape.has_medium_boundary || shape.exterior) return;
     bool nested = false;

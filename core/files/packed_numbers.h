@@ -1,7 +1,7 @@
 // Arrays of numbers as fewer bytes: bytes that are redundant in all of 256 neighbours are left out.
 //
 // Low bytes are zero where sums are those of a few floats, or rows of a picture are black; high bytes of
-// small whole numbers repeat the sign. A checkpoint that is written when somebody pressed Ctrl-C has about
+// small whole numbers repeat the sign. A checkpoint that is written after an interruption has about
 // half the bytes for it. Layout: for each group of 256 numbers one byte, how many bytes of each are kept (0
 // to 8) plus 16 times how many zero bytes there were below them; then the kept bytes of all numbers in order,
 // little-endian.

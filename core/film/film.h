@@ -66,7 +66,7 @@ class Film {
     /// Mean over passes of one layer, as float. Over the passes of Layer::where, zero where there are none.
     std::vector<Rgb> mean(std::size_t layer) const;
     /// The beauty: the float sum of the float means of all layers that are not auxiliary, in order, so that
-    /// whoever adds up the layers of a written file gets the same bits.
+    /// adding up the layers of a written file gives the same bits.
     std::vector<Rgb> beauty() const;
     /// Variance of the beauty's mean per pixel and channel: (sum of squares / n - mean^2) / (n - 1), added up
     /// over parts. Zero for n < 2.

@@ -129,7 +129,7 @@ void Film::deserialize(std::span<const std::byte> bytes) {
             throw InputError("the film is damaged: it has too many passes");
 
     // Into a film of its own: this one is changed when all is known to be right. What it holds besides its
-    // sums follows from the numbers of passes, which bytes must stand for before memory is asked for.
+    // sums follows from the numbers of passes, which the length must allow before memory is allocated.
     std::uint64_t least = 0;
     const auto expect = [&](std::uint64_t numbers) {
         least += least_packed_size(numbers);

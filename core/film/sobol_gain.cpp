@@ -1,6 +1,6 @@
 // The trend of log2 d is a line whose slope changes from one block size to the next: a Kalman filter follows
 // it from the small blocks, of which there are many, to the large ones, each as certain as its number of
-// blocks and pixels makes it. How fast slopes change nobody knows, and perhaps there is no trend at all: all
+// blocks and pixels makes it. How fast slopes change is unknown, and perhaps there is no trend at all: all
 // of these explanations count by how probable they make what was seen (model averaging; Kass and Raftery
 // 1995), so that little data is taken for independent passes.
 //

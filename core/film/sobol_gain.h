@@ -2,11 +2,11 @@
 //
 // 2^k points of an aligned block, scrambled anew in every pixel (Owen 1997), have a mean of the variance
 // R[k] / 2^k, where R is constant for independent points and falls for others. The sums over the halves A and
-// B of a block of 2^(k+1) tell of it:
+// B of a block of 2^(k+1) show it:
 //
 //   d[k] = E (A - B)^2 / 2^(k+2) = R[k] - R[k+1] / 2                                              (1)
 //
-// so R follows from the top down. The top itself nobody sees in a single picture, but the trend of d leads
+// so R follows from the top down. The top itself is not seen in a single picture, but the trend of d leads
 // there (sobol_gain.cpp).
 #pragma once
 

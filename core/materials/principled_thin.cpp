@@ -150,8 +150,8 @@ class PrincipledThin final : public Bsdf {
         const float scale = transmitted ? 0.65f * eta_.eval(p.uv) - 0.35f : 1.0f;
         return principled_facets(scale * roughness_.eval(p.uv), anisotropic_.eval(p.uv));
     }
-    /// Mitsuba lets light pass a facet only where the way on, not mirrored, is behind that facet, and asks
-    /// for no such thing of the view. The transport of power is the adjoint: there the light's side is wo's.
+    /// Mitsuba lets light pass a facet only where the way on, not mirrored, is behind that facet, and has no
+    /// such condition on the view. The transport of power is the adjoint: there the light's side is wo's.
     static bool facet_seen(const ThinPair& d, TransportMode mode) {
         if (!d.transmitted) return true;
         const Vec3& light = mode == TransportMode::radiance ? d.mirrored : d.wo;

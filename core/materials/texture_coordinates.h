@@ -23,8 +23,8 @@ class SurfaceAttributes {
     virtual Vec2 attribute_range(std::string_view name) const = 0;
 };
 
-/// The coordinates (u, v) themselves, together with the point of the shape that they belong to. Whoever has
-/// coordinates alone gives them as they are: textures other than mesh_attribute and volume need no more.
+/// The coordinates (u, v) themselves, together with the point of the shape that they belong to. Coordinates
+/// alone suffice for textures other than mesh_attribute and volume.
 struct TextureCoordinates : Vec2 {
     const SurfaceAttributes* attributes = nullptr;  ///< of the shape, or null
     std::uint32_t primitive = 0;

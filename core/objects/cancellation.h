@@ -11,7 +11,7 @@ namespace mote::core {
 /// Thrown where work is cancelled. No std::exception: it is no error.
 struct Cancelled {};
 
-/// Asks a flag of somebody else's whether work is to stop.
+/// Reference to a flag that cancels work.
 class CancelToken {
   public:
     CancelToken() = default;  ///< never

@@ -16,7 +16,8 @@ class OutOfMemory : public std::bad_alloc {
     std::string purpose_;
 };
 
-/// Runs `work`; where memory runs out says that it was for `purpose`, unless somebody knew better.
+/// Runs `work`; where memory runs out says that it was for `purpose`, unless the error names a purpose
+/// already.
 template <typename Work>
 auto with_memory_for(const std::string& purpose, Work&& work) -> decltype(work()) {
     try {

@@ -1,4 +1,4 @@
-// Processor time, which says what work costs whoever else uses the machine.
+// Processor time, which measures work independently of other users of the machine.
 #pragma once
 
 #include <time.h>

@@ -13,8 +13,8 @@ namespace mote::core {
 /// Camera and shapes of the frame before.
 class PreviousFrame {
   public:
-    /// Keeps the scene's camera and shapes, and nothing of their materials, lights and media: nobody else may
-    /// own it.
+    /// Keeps the scene's camera and shapes, and nothing of their materials, lights and media: it must be the
+    /// scene's only owner.
     explicit PreviousFrame(std::shared_ptr<Scene> scene);
 
     const Camera& camera() const { return *camera_; }

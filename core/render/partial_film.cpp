@@ -33,7 +33,8 @@ PartialFilm read_from(std::span<const std::byte> bytes) {
         layer.part = reader.number<std::uint32_t>();
         if (layer.part >= count) throw InputError("damaged (a layer of no part)");
     }
-    // Three channels a layer, three arrays of a sum: before memory is asked for that the file cannot fill.
+    // Three channels a layer, three arrays of a sum: tested before memory is allocated that the file cannot
+    // fill.
     if (9 * std::uint64_t(count) * least_packed_size(std::uint64_t(width) * height) > file.film.size())
         throw InputError("damaged (its length is wrong)");
     try {

@@ -1,7 +1,7 @@
 // Partial films: the passes that one machine has rendered of a picture that several make together.
 //
 // A file of its own (headed_file.h) that needs no scene to be read: the layers stand in its head, and a text
-// of whoever wrote it that says which render it is of.
+// of its writer that names the render.
 #pragma once
 
 #include <string>

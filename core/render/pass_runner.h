@@ -1,5 +1,5 @@
-// One integrator at work on one film, a pass at a time: for the render driver, and for whoever lets several
-// integrators take turns.
+// One integrator at work on one film, a pass at a time: for the render driver, and for comparisons in which
+// several integrators take turns.
 #pragma once
 
 #include <atomic>

@@ -155,7 +155,7 @@ class PassLoop {
         return runner_.estimator().changes_noise() ? filtered_noise_is_due(state_.passes)
                                                    : noise_is_due(state_.passes);
     }
-    /// The film is afterwards as it was: which part is next must not depend on whether somebody looked.
+    /// The film is afterwards as it was: which part is next must not depend on previews.
     void show_preview() {
         // The noise in reports of progress is that of the picture that a preview would show.
         const bool for_the_noise = request_.progress && !stop_.noise && runner_.estimator().changes_noise();
@@ -193,7 +193,7 @@ class PassLoop {
         const Clock::time_point begin = Clock::now();
         if (!runner_.estimator().changes_noise())
             state_.noise = result_.film.noise();
-        else if (stop_.noise)  // the rule must not depend on when somebody looked before
+        else if (stop_.noise)  // the rule must not depend on earlier previews
             state_.noise = finished_noise_now();
         else if (std::isfinite(left_of_noise_))
             state_.noise = left_of_noise_ * result_.film.noise();

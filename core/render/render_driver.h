@@ -87,10 +87,10 @@ struct RenderResult {
 inline constexpr double most_finish_seconds = 1.0;
 
 /// Renders until a stop rule holds. When interrupted, the running pass is dropped and everything before it
-/// kept. Throws InputError when a range of passes is asked for and the integrator cannot tell which those
+/// kept. Throws InputError when a range of passes is requested and the integrator cannot tell which those
 /// are, when a checkpoint does not belong to this render or is damaged, and when something else stands where
-/// it is to be written. One that cannot be written is a
-/// warning and another try later: the one before it stays intact.
+/// it is to be written. One that cannot be written is a warning and another try later: the one before it
+/// stays intact.
 RenderResult render(const Scene& scene, const Integrator& integrator, const RenderRequest& request);
 
 /// The filter of a film as a distribution of offsets. Throws InputError for an unknown name.

@@ -45,7 +45,7 @@ struct SceneCallbacks {
     /// with t_max < t_min are idle. Empty: visible() for each lane.
     std::function<void(std::span<ShadowPacket>)> find_occluded = {};
     /// The transmittance between two points per channel, or an estimate of it without bias; surfaces are not
-    /// looked at. Empty: that of `medium`, 1 without.
+    /// tested. Empty: that of `medium`, 1 without.
     std::function<Rgb(const Vec3& from, const Vec3& to)> transmittance = {};
     /// Fills all of space within its own bounds; null: vacuum. Its emission is not among the lights unless
     /// its emitter is one of them.

@@ -1,4 +1,4 @@
-// A point of a triangle of the list as the rest of the project knows points: a hit on its shape.
+// A point of a triangle of the list as a hit on its shape.
 #pragma once
 
 #include "core/geometry/shape.h"

@@ -25,7 +25,7 @@ enum class Techniques : std::uint8_t { combined, vpls, bundles };
 struct BundleReceiver {
     const core::ScatteringVertex* vertex = nullptr;  ///< null: an idle lane
     core::Rgb throughput{0.0f};
-    std::int32_t max_vpl_depth = 0;  ///< of the VPLs that it may gather; a bundle's point stands for one
+    std::int32_t max_vpl_depth = 0;  ///< of the VPLs that it may gather; a bundle's point counts as one
     core::Sampler* sampler = nullptr;
     bool first = true;  ///< what the eye sees; false: a point further on, which has lines alone
 };
@@ -39,7 +39,7 @@ struct BundlePass {
     Techniques techniques = Techniques::combined;
     std::size_t stride = 1;           ///< every so many VPLs are joined to a point, from a random one on
     std::optional<float> bound = {};  ///< of paths of two bounces and more, as in the paper; nothing: weighed
-    const core::Emitter* sky = nullptr;  ///< whose direct light the bundles find; null: nobody's
+    const core::Emitter* sky = nullptr;  ///< whose direct light the bundles find; null: none
     bool own_rays = true;  ///< of glossy receivers: one more direction each, sampled by the BSDF
     /// Bounces of paths that take the pass's own lines in random order, each at most once (the paper's
     /// Sec. 7); 0: virtual point lights are joined instead.

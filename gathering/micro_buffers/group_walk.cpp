@@ -78,11 +78,11 @@ class GroupWalk {
         return any_enter != 0;
     }
 
-    /// Where the node is in each lane's frame, and which texels it may reach.
+    /// Position of the node in each lane's frame, and the texels that it may reach.
     void project(const PointNode& node, bool one_texel) {
         const float side = float(rays_.side), half = 0.5f * side;
         const float after_x = 1.0f - settings_.place.x, after_y = 1.0f - settings_.place.y;
-        // What looks large may reach anywhere.
+        // Nodes that subtend a large angle may reach any texel.
         const float per_angle = one_texel ? 0.0f : square_reach * side, beside = one_texel ? 0.49f : 0.02f;
         const float largest = one_texel ? infinity : 0.5f;
         const float per_slope = one_texel ? 0.0f : half;

@@ -59,7 +59,7 @@ class MicroBuffers {
     std::uint32_t texels_each() const { return texels_.count(); }   ///< of a receiver
     /// Fills texels_each() texels for every receiver, one after the other. In one thread.
     void render(std::span<const MicroReceiver> receivers, std::span<MicroTexel> texels) const;
-    /// The same with a warped buffer for each receiver: warps[i] belongs to receivers[i], and its
+    /// render() with a warped buffer for each receiver: warps[i] belongs to receivers[i], and its
     /// fill_weights(texels().side(), ...) are the texels' weights. Points fill all texels that they meet.
     void render_warped(std::span<const MicroReceiver> receivers, std::span<const BrdfWarp> warps,
                        std::span<MicroTexel> texels) const;

@@ -1,9 +1,9 @@
 // Points on surfaces as a complete binary tree in one array (Engelhardt 2013, Sec. 8.1.1).
 //
-// Points lie in an order in which neighbours are near (point_order.h); node i of level l stands for
-// points [i 2^l, (i + 1) 2^l) as far as there are any, so that any number of points has a tree. Levels lie
-// one after the other, leaves first and the root last. Children, and where a walk goes on that does not enter
-// a node, follow from level and index: nothing of it is stored.
+// Points lie in an order in which neighbours are near (point_order.h); node i of level l holds points [i 2^l,
+// (i + 1) 2^l) as far as there are any, so that any number of points has a tree. Levels lie one after the
+// other, leaves first and the root last. Children, and the next node of a walk that does not enter a node,
+// follow from level and index: nothing of it is stored.
 #pragma once
 
 #include <bit>
@@ -16,7 +16,7 @@
 
 namespace mote::gathering {
 
-/// What a node stands for lies in a ball and faces into a cone.
+/// Bounds of the points of a node: a ball, and a cone of normals.
 struct PointNode {
     core::Vec3 center;  ///< [m]
     float radius;       ///< of a leaf its disc's; of a node, of a ball that reaches beyond its points [m]
@@ -24,7 +24,7 @@ struct PointNode {
     float cone_cos;  ///< cosine of the largest angle between the axis and a point's normal; -1: any direction
 };
 
-/// Where a node is in the tree.
+/// Position of a node in the tree.
 struct NodePlace {
     std::uint32_t level;  ///< 0: leaves
     std::uint32_t index;  ///< within the level
@@ -55,7 +55,7 @@ class PointHierarchy {
     std::uint32_t points() const { return first_.size() > 1 ? first_[1] : 0; }
     bool empty() const { return points() == 0; }        ///< there is no node then
     float disc_radius() const { return disc_radius_; }  ///< of each point [m]
-    double patch() const { return patch_; }             ///< area that each point stands for [m^2]
+    double patch() const { return patch_; }             ///< area of each point [m^2]
     /// order()[i] is the place of leaf i among the surfels.
     std::span<const std::uint32_t> order() const { return order_; }
 

@@ -32,10 +32,10 @@ class ImperfectBundles {
                               std::uint32_t sets = 32);
 
     double disc_radius(const ImperfectSettings& settings) const;  ///< [m]
-    /// What set `set` (modulo their number) of points hides. Hits name the triangle of the disc; beside that
-    /// triangle u and v are those of its nearest border. Same bits for any number of threads. Throws
-    /// InputError where the hits exceed the budget or the splat size is not positive, Cancelled when asked to
-    /// stop.
+    /// Hits of the discs of set `set` (modulo their number) of points. They name the triangle of the disc;
+    /// beside that triangle u and v are those of its nearest border. Same bits for any number of threads.
+    /// Throws InputError where the hits exceed the budget or the splat size is not positive, Cancelled when
+    /// it is cancelled.
     RayBundle trace(const BundleGrid& grid, std::uint64_t set, const ImperfectSettings& settings = {}) const;
     std::size_t memory_bytes() const { return pool_.memory_bytes(); }
 

@@ -21,7 +21,7 @@ ScatteringVertex white_vertex(const SurfaceHit& hit, bool front) {
     ScatteringVertex v;
     v.hit = hit;
     if (!front) {
-        // Turned over, so that the vertex stands on the front of what it knows.
+        // Turned over, so that the vertex lies on the front of its surface.
         v.hit.geometric_normal = -hit.geometric_normal;
         v.hit.shading = Frame(-hit.shading.n);
     }

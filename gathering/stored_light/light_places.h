@@ -1,8 +1,8 @@
 // Places on surfaces where light arrives that is to be stored: one side of a point each.
 //
-// What is stored is irradiance [W/m^2], the light that a white Lambertian surface would reflect times pi. So
-// every place is such a vertex, whatever the surface is made of, and whoever sums light at vertices (lights
-// that are drawn, virtual point lights, photons) fills it by the code that serves eye paths.
+// Irradiance is stored [W/m^2], the light that a white Lambertian surface would reflect times pi. So every
+// place is such a vertex, whatever the surface is made of, and code that sums light at vertices (lights that
+// are sampled, virtual point lights, photons) serves places as it serves eye paths.
 #pragma once
 
 #include "core/scene/scattering_vertex.h"
@@ -18,8 +18,8 @@ class LightPlaces {
 };
 
 /// A Lambertian vertex of reflectance 1 at a hit, on the front of its surface or on the back, seen from
-/// straight above. Shapes that are no meshes are known by triangles that lie a little below them: their
-/// vertices are moved out to the surface.
+/// straight above. Triangles of shapes that are no meshes lie a little below the shapes: their vertices are
+/// moved out to the surface.
 core::ScatteringVertex white_vertex(const core::SurfaceHit& hit, bool front);
 
 }  // namespace mote::gathering

@@ -15,9 +15,9 @@ class SurfelSides final : public LightPlaces {
 
     std::size_t size() const override { return places_.size(); }
     core::ScatteringVertex vertex(std::size_t place) const override;
-    /// Of a Lambertian surface; of every other one what it reflects of light from straight above, to
-    /// everywhere alike (Engelhardt 2013, Sec. 8.4.1: points send light diffusely). Mirrors and clear glass
-    /// are black.
+    /// Reflectance of a Lambertian surface; that of every other one is for light from straight above, which
+    /// is sent everywhere alike (Engelhardt 2013, Sec. 8.4.1: points send light diffusely). Mirrors and clear
+    /// glass are black.
     const core::Rgb& reflectance(std::size_t place) const { return places_[place].reflectance; }
     std::uint32_t surfel(std::size_t place) const { return places_[place].surfel; }
     bool back(std::size_t place) const { return places_[place].back; }

@@ -130,7 +130,7 @@ class MicroEstimator final : public Estimator {
         });
     }
 
-    /// Pixels between the lattice: those that find nobody alike once more, with buffers of their own
+    /// Pixels between the lattice: those without similar neighbours once more, with buffers of their own
     /// (Engelhardt 2013, Sec. 8.2.3), the others by neighbours.
     bool upsample(const PassContext& context, const gathering::LitPoints& points, const SharedPixels& shared,
                   PassImage& image) {

@@ -2,7 +2,7 @@
 //
 // A fault belongs to an element of the scene, or to none (the command line). A check that finds one continues
 // with the next element; an object with a fault below it is not made, and neither are those that need it,
-// without a further word. Nobody throws for a scene's fault but throw_all().
+// without a further word. Nothing but throw_all() throws for a scene's fault.
 #pragma once
 
 #include <set>

@@ -9,7 +9,7 @@
 
 namespace mote::core {
 
-/// Removes the parameters of one element that Mitsuba (or another renderer of its language) knows but that
+/// Removes the parameters of one element that Mitsuba (or another renderer of its language) has but that
 /// change nothing here, and says so in one warning. One whose value would change the picture becomes a fault.
 void drop_foreign_parameters(Element& element, const Manual& manual, std::vector<std::string>& warnings);
 

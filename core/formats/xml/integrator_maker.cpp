@@ -13,7 +13,7 @@ namespace mote::core {
 namespace {
 
 /// Parameters that the scene file sets for integrators of this type, else for its own, as far as this type
-/// knows it.
+/// has them.
 std::vector<Element> inherited_values(const Scene& scene, const std::string& type, const Manual& manual) {
     std::vector<Element> values;
     const Scene::Parts& parts = scene.parts();

@@ -1,5 +1,5 @@
-// Which of a tile's receivers share a shadow ray: those that lie so close together that a light hardly tells
-// them apart.
+// Sets of a tile's receivers that share a shadow ray: those that lie so close together that a light hardly
+// distinguishes them.
 //
 // Receivers are joined pair by pair, those first whose set stays smallest (complete linkage), so every stage
 // is a partition into sets of a known diameter. Those of a surface lie on one face, those of media beside
