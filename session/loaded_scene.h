@@ -50,7 +50,7 @@ class LoadedScene {
 
     const core::Scene& scene() const { return *scene_; }           ///< lives as long as this, or a copy of it
     const core::Registry& registry() const { return *registry_; }  ///< the types that it was loaded with
-    const core::LoadReport& report() const { return report_; }     ///< what was approximated
+    const core::LoadReport& report() const { return report_; }     ///< approximations
     const SceneChanges& changes() const { return changes_; }       ///< with which it was loaded
     /// Throws InputError where the scene names none.
     const core::Integrator& integrator() const;

@@ -23,7 +23,7 @@ struct RenderReport {
     std::uint64_t seed;
     int threads;
     std::vector<std::string> command_line;
-    std::vector<std::string> approximations = {};  ///< what leniency left out or replaced
+    std::vector<std::string> approximations = {};  ///< left out or replaced by leniency
 };
 
 /// The command line as a shell would take it.
@@ -37,7 +37,7 @@ double finished_share(std::span<const std::uint8_t> finished);
 /// Channels that are added to the layers of a film.
 struct PictureExtras {
     bool auxiliary = false;     ///< channels at pixel centres, and numbers of objects and materials
-    bool in_scattered = false;  ///< what light of media is regressed on (session/in_scattered_feature.h)
+    bool in_scattered = false;  ///< feature of light of media (session/in_scattered_feature.h)
 };
 /// The picture as it is written: layers, variances, metadata, extras. An interrupted one has no in-scattered
 /// light; one of a part of the first pass says in A which pixels are finished.

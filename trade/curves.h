@@ -49,7 +49,7 @@ void mark_pareto_front(std::vector<Curve>& curves);
 /// Limits of the reference.
 struct Judge {
     double floor = 0.0;       ///< errors below are not judged
-    double bias_error = 0.0;  ///< what its noise adds to the standard error of every bias
+    double bias_error = 0.0;  ///< standard error that its noise adds to every bias
 };
 
 /// Bias of more than three standard errors, those of the reference included.

@@ -199,8 +199,8 @@ bool measure(const Settings& s, Host& host) {
         if (!make_automatic_reference(s, file, limits, host)) return false;
         host.idle_while("loading the reference", "the same command continues");
     }
-    // A reference of our own may be noisy, and the page says so; one that was given must have the requested
-    // resolution.
+    // A reference of our own may be noisy, and the page says so; one that was given must resolve the
+    // requested error.
     const Reference reference =
         load_reference(reference_file(s), scene, content,
                        {automatic ? core::infinity : s.resolve, s.trust_reference, s.force_reference});

@@ -17,7 +17,7 @@ struct Record {
     std::uint64_t seed = 0;
     std::uint32_t passes = 0;
     double wall = 0.0;          ///< seconds for build, passes and one finish
-    double cpu = 0.0;           ///< the same in seconds of processor time, all threads together
+    double cpu = 0.0;           ///< processor time [s], all threads together
     double build = 0.0;         ///< the part of wall that was spent before the first pass
     double error = unknown;     ///< of core/metrics/relative_error.h, without the noise of the reference
     double error_se = unknown;  ///< its standard error, from the noise of the reference

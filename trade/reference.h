@@ -27,7 +27,7 @@ struct Reference {
     std::vector<core::Rgb> variance;  ///< of its mean, pixel by pixel; empty where it does not say
     core::RelativeWeights weights;    ///< of relative_error.h
     std::optional<double> noise;      ///< its own, where the variance is known
-    double bias_error = 0.0;          ///< what its noise adds to the standard error of every bias
+    double bias_error = 0.0;          ///< standard error that its noise adds to every bias
     std::optional<std::uint64_t> seed;
 
     std::string metadata(const std::string& key) const;  ///< "" where there is none

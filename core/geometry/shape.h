@@ -58,7 +58,7 @@ class Shape : public Object {
     /// Otherwise any frame will do.
     bool tangent_matters = false;
     std::uint32_t index = 0;         ///< position in Scene::shapes
-    std::vector<std::string> notes;  ///< what was repaired at load, e.g. "12 degenerate triangles dropped"
+    std::vector<std::string> notes;  ///< repairs at load, e.g. "12 degenerate triangles dropped"
 
     /// Holds every point of it [m].
     virtual Bounds3 bounds() const = 0;

@@ -54,7 +54,7 @@ struct EmissionSample {
     float pdf_area;  ///< of the origin; 1 for a delta position. Lights at infinity: over the disk they start
                      ///< from. Media: per volume [1/m^3]
     float pdf_solid_angle;           ///< of the direction; 1 for a delta direction
-    const Shape* shape = nullptr;    ///< whose surface it leaves, or null
+    const Shape* shape = nullptr;    ///< shape that it leaves, or null
     const Medium* inside = nullptr;  ///< the particle counts only where this medium is the one at its origin
 };
 

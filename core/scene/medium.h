@@ -35,7 +35,7 @@ struct TrackingCounters {
 struct PathWeights {
     Rgb throughput{1.0f};      ///< weight of the light found at the end, before the division above
     Rgb unidirectional{1.0f};  ///< pdf_c / pdf_hero of the path as sampled, per channel c
-    Rgb light{0.0f};    ///< the same with the last vertex found by light sampling; black where it cannot be
+    Rgb light{0.0f};    ///< by light sampling of the last vertex instead, over pdf_hero; black where none
     int hero = 0;       ///< the channel that drives distance sampling: 0, 1 or 2
     Vec3 vertex{0.0f};  ///< where the path scattered last, and light sampling would start from
 };
@@ -49,7 +49,7 @@ struct MediumCoefficients {
 
 /// Properties of a medium that choose the code that renders it.
 struct MediumTraits {
-    bool homogeneous = false;     ///< the same everywhere
+    bool homogeneous = false;     ///< constant in space
     bool emissive = false;        ///< glows
     bool isotropic = true;        ///< phase function
     bool chromatic = false;       ///< extinction differs between channels

@@ -18,7 +18,7 @@ enum class SurfaceSide : std::uint8_t { front, back };
 
 struct AtlasSettings {
     float texels_per_metre = 0.0f;  ///< 0: as many as `texel_budget` allows
-    /// Of all sides together; more are refused.
+    /// Budget of the texels of all sides together; more are refused.
     std::size_t texel_budget = std::size_t(1) << 17;
     float chart_cosine = 0.8f;  ///< of make_charts()
 };

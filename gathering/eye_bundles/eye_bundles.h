@@ -27,7 +27,7 @@ struct BundleReceiver {
     core::Rgb throughput{0.0f};
     std::int32_t max_vpl_depth = 0;  ///< of the VPLs that it may gather; a bundle's point counts as one
     core::Sampler* sampler = nullptr;
-    bool first = true;  ///< what the eye sees; false: a point further on, which has lines alone
+    bool first = true;  ///< seen by the eye; false: a point further on, which has lines alone
 };
 
 /// Settings and lights of a pass, shared by all receivers.

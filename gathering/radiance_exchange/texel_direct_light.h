@@ -16,7 +16,7 @@ struct TexelLightSample {
 
 struct TexelDirectLight {
     std::vector<core::Rgb> irradiance;  ///< by texel [W/m^2]; empty where there is no such light
-    /// Of glossy texels, `samples` each in the order of TexelMaterials::glossy.
+    /// Samples of glossy texels, `samples` each in the order of TexelMaterials::glossy.
     std::vector<TexelLightSample> glossy;
     int samples = 0;
 };

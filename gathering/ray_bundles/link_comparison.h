@@ -8,7 +8,7 @@ namespace mote::gathering {
 struct LinkComparison {
     std::uint64_t exact = 0;   ///< links
     std::uint64_t other = 0;   ///< links of the other bundle
-    std::uint64_t shared = 0;  ///< whose ends lie within the tolerance of each other on the same ray
+    std::uint64_t shared = 0;  ///< links whose ends lie within the tolerance of each other on the same ray
 
     double missing() const { return exact == 0 ? 0.0 : 1.0 - double(shared) / double(exact); }
     double wrong() const { return other == 0 ? 0.0 : 1.0 - double(shared) / double(other); }

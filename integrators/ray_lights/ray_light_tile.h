@@ -257,7 +257,7 @@ class RayLightTile {
     std::vector<lights::EyeLines> eyes_;  ///< of this step
     std::vector<lights::LineCandidates> along_eyes_;
     lights::LineCandidates at_points_;
-    lights::ReceiverTile attenuation_;  ///< what lines need of a tile: states and generators
+    lights::ReceiverTile attenuation_;  ///< states and generators of lines
 };
 
 }  // namespace mote::integrators

@@ -31,7 +31,7 @@ struct ImperfectMapSettings {
     int all_points = 131072;  ///< of the scene
     float splat = 4.0f;       ///< how often the discs of a map cover a surface
     bool pull_push = true;    ///< fill holes and close gaps
-    float bias = 0.5f;        ///< what is nearer by less than so many texels' width casts no shadow
+    float bias = 0.5f;        ///< occluders nearer by less than so many texels' width cast no shadow
 
     /// Texels of one map, with a border that continues it over its edges.
     std::size_t bytes() const { return std::size_t(size + 2) * std::size_t(size + 2) * sizeof(float); }

@@ -32,7 +32,7 @@ struct EyeReceivers {
     LaneFloats
         weight[line_segments];  ///< throughput times what scatters in the middle, times the piece's length
     LaneFloats direction_x, direction_y, direction_z;
-    LaneFloats near_squared;           ///< what 1/w^2 is cut off at [m^2]
+    LaneFloats near_squared;           ///< softening of 1/w^2 [m^2]
     LaneFloats extinction, asymmetry;  ///< between the ray and lights [1/m]; g of the phase function
     std::int32_t max_depth[ReceiverLanes::width] = {};  ///< of lights; 0: idle
     bool directional = false;                           ///< does a phase function depend on direction?

@@ -26,7 +26,7 @@ struct MediumKind {
     bool homogeneous, isotropic;
     core::MediumCoefficients coefficients;  ///< of a homogeneous medium
     float voxel_size;                       ///< of others [m]
-    core::Bounds3 bounds;                   ///< the same
+    core::Bounds3 bounds;                   ///< of others
 };
 
 /// Those of a scene that scatter.

@@ -29,7 +29,7 @@ class ReceiverStore {
 
     const std::vector<Tile>& tiles() const { return tiles_; }  ///< in the order in which they were added
     std::size_t receivers() const { return receivers_; }       ///< lanes that are not idle
-    /// Of the tiles.
+    /// Memory of the tiles [B].
     std::size_t memory_bytes() const {
         return tiles_.capacity() * sizeof(Tile) + vertices_.size() * sizeof(core::ScatteringVertex);
     }

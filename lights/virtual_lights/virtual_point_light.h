@@ -65,7 +65,7 @@ struct VplSet {
     float peak_directions = 0.0f;     ///< of the receivers' other directions, over m' [1/sr]; 0: none
     std::uint32_t paths = 0;          ///< light paths traced, whether or not they left a VPL
     core::RayCounters rays;           ///< that the paths took
-    core::TrackingCounters tracking;  ///< the same in media
+    core::TrackingCounters tracking;  ///< that the paths took in media
 
     /// Bytes of all lists.
     std::size_t memory_bytes() const {

@@ -23,7 +23,7 @@ namespace mote::lights {
 struct GatherScratch {
     static constexpr std::size_t batch = 32;        ///< pairs of a light and a tile
     std::array<core::ShadowPacket, batch> packets;  ///< of shadow rays
-    std::array<LaneLight, batch> light;             ///< what arrives where nothing is in the way
+    std::array<LaneLight, batch> light;             ///< unoccluded
 
     GatherScratch() {
         for (core::ShadowPacket& packet : packets) packet.clear();
@@ -53,7 +53,7 @@ void gather_pairs(const VplSet& vpls, const Pairs& pairs, const Weight& weight, 
 
 /// Scene, scratch memory and counters of gathering by rays.
 struct GatherContext {
-    const core::RayQueries& scene;     ///< what lies between
+    const core::RayQueries& scene;     ///< occluders and media
     GatherScratch& scratch;            ///< of this task
     core::RayCounters& rays;           ///< counted up
     core::TrackingCounters& tracking;  ///< counted up

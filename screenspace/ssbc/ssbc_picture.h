@@ -24,7 +24,7 @@ struct SsbcChannels {
 /// A picture as compensate() wants it.
 struct SsbcPicture {
     SsbcSurfaces surfaces;           ///< that it shows
-    std::vector<HiddenSide> hidden;  ///< what the picture does not show, where it is known
+    std::vector<HiddenSide> hidden;  ///< sides that the picture does not show, where they are known
     std::vector<core::Rgb> light;    ///< that they reflect, by pixel
     std::string light_from;          ///< the layers that were taken for it, in words
 };

@@ -18,7 +18,7 @@ namespace mote::screenspace {
 /// When a node is replaced by its children (Engelhardt 2013, Sec. 11.2.2).
 struct RefinementRules {
     float projected_angle = 0.08f;                ///< refine what appears larger than this [sr]
-    float discontinuity_projected_angle = 0.04f;  ///< the same for a node that spans a discontinuity [sr]
+    float discontinuity_projected_angle = 0.04f;  ///< for a node that spans a discontinuity [sr]
     int levels = 6;                               ///< of the pyramid that may be summed; 1: pixels alone
     int splits = 6;  ///< a pixel's patch that appears larger may be halved this often, one after the other
     /// How large a node appears: at most, by its bounds, or as the paper has it, by its mean position and

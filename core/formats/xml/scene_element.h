@@ -18,7 +18,7 @@ struct Element {
     SourceLocation where;
     std::string folder;                       ///< of the file it stands in
     bool legacy = false;                      ///< from a file of version < 2: camelCase names, old spellings
-    std::shared_ptr<const InputError> fault;  ///< what reading found wrong with it; reported later (faults.h)
+    std::shared_ptr<const InputError> fault;  ///< found by reading; reported later (faults.h)
 
     /// Runs f; the InputError that it may throw becomes the element's fault, unless it has one already.
     template <typename F>

@@ -21,7 +21,7 @@ namespace mote::core {
 
 /// Files, warnings and approximations of loading.
 struct LoadReport {
-    std::vector<std::string> approximations;  ///< what leniency left out or replaced, and why
+    std::vector<std::string> approximations;  ///< left out or replaced by leniency, and why
     std::vector<std::string> features;        ///< layers of the first hit that the file requests
 };
 

@@ -15,7 +15,7 @@ struct SceneDocument {
     std::vector<std::string> search_paths;  ///< the scene's folder, then those of <path>
     std::vector<std::string> warnings;
     std::vector<std::string> features;        ///< layers of the first hit that the scene requests
-    std::vector<std::string> approximations;  ///< what leniency left out or replaced
+    std::vector<std::string> approximations;  ///< left out or replaced by leniency
 };
 
 /// Throws InputError with file and line for a file that cannot be read, malformed XML, or more than the

@@ -27,7 +27,7 @@ class ResamplingTarget {
     /// Target times the weight of the VPL, by lane, where `extinction` is that at the VPL (0 without
     /// medium()). Returns false, and nothing counts, where it is 0 at every lane.
     bool of_light(const WeightedVpl& light, float extinction, GatherScratch& scratch, Lanes& out) const;
-    const core::Medium* medium() const { return medium_; }  ///< whose extinction at VPLs counts, or null
+    const core::Medium* medium() const { return medium_; }  ///< medium with the extinction at VPLs, or null
     float extinction_at(const core::Vec3& light) const;
     /// One lane's unoccluded light, with its shadow ray; the value is its luminance.
     struct Connection {
