@@ -90,8 +90,8 @@ double weight_joined(const Traced& t, std::size_t j, const ScatteringVertex& y, 
     return double(policy.for_pair(tile, t.vpls, j)(g, dz2, cos_y, 0.0f, 0) / g);
 }
 
-/// Sum over all techniques that find the last vertices of the path of VPL j by bundles, from x on: the last
-/// of them connects the light. Empty where a ray hits something else on its way.
+/// Sum of the weights of all techniques that find the last vertices of the path of VPL j by bundles, from x
+/// on: the last of them connects the light. Empty where a ray hits something else on its way.
 std::optional<double> weights_of_bundles(const Traced& t, std::size_t j, const ScatteringVertex& x) {
     double sum = 0.0;
     ScatteringVertex last = x;

@@ -228,7 +228,8 @@ TEST_CASE("connections by steps count every light once", "[ray_lights]") {
     CHECK(pick(2, 1.0f, 0.5f).empty());
 }
 
-// Importance of connections: above 0 wherever light arrives, or it would be lost, and about the mean.
+// Importance of connections: above 0 wherever light arrives, or it would be lost, and about the mean of the
+// light that arrives.
 TEST_CASE("expected light is about what arrives, and nowhere 0 where any does", "[ray_lights]") {
     Rng rng(11);
     TrackingCounters counters;
