@@ -22,7 +22,7 @@ struct PictureFile {
 /// Throws InputError for a folder, a pipe or a device where a file is needed.
 void require_input(const std::string& path);
 
-/// How --half is reported that could not hold so many values.
+/// Report of --half that could not hold so many values.
 std::string clamped_text(std::uint64_t values);
 
 /// `layer`: "" is the beauty. Throws InputError naming the file, with the nearest layer there is.

@@ -19,7 +19,7 @@ namespace mote::media {
 
 class Volume;
 
-/// Everything about a medium except the grid of its extinction.
+/// Properties of a medium except the grid of its extinction.
 struct MediumParts {
     float scale = 1.0f;                          ///< multiplies the grid's values to give sigma_t [1/m]
     std::shared_ptr<const Volume> albedo;        ///< single-scattering albedo, 0 to 1

@@ -90,8 +90,8 @@ class MajorantGrid {
     void find_distances();
 
     std::vector<Range> cells_;
-    /// How many cells away, along the axis on which it is farthest, the nearest cell is that is not empty: 0
-    /// for those themselves. A walk leaps over what lies nearer.
+    /// Distance [cells], along the axis on which it is farthest, of the nearest cell that is not empty: 0 for
+    /// those themselves. A walk leaps over what lies nearer.
     std::vector<std::uint8_t> distance_;
     std::vector<double> covered_;  ///< voxels reported per cell; only while building
 };

@@ -1,4 +1,4 @@
-// Everything in media/ by name.
+// Registers all types of media/ by name.
 #include "media/register_media.h"
 
 #include "media/constant_volume.h"

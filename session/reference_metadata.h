@@ -21,8 +21,8 @@ std::string world_to_camera(const core::Camera& camera);
 /// Two such texts, apart from rounding to float.
 bool same_camera(const std::string& a, const std::string& b);
 
-/// How much smaller than its layer `Variance` the variance of a picture is, over all pixels: passes are Sobol
-/// points, and better than independent ones (Film::gain_and_noise).
+/// Factor by which the variance of a picture is smaller than its layer `Variance`, over all pixels: passes
+/// are Sobol points, and better than independent ones (Film::gain_and_noise).
 inline const char* const variance_gain_key = "varianceGain";
 /// Variance of the beauty's mean, pixel by pixel, with that gain; empty where it is not known.
 std::vector<core::Rgb> variance_of_beauty(const core::ImageChannels& image);

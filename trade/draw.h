@@ -13,7 +13,7 @@ namespace mote::trade {
 /// Errors that the table gives times for.
 inline constexpr double errors_of_interest[] = {0.05, 0.02, 0.01};
 
-/// Everything that plot, summary and page show.
+/// Contents of plot, summary and page.
 struct Results {
     nlohmann::json facts;
     std::vector<Curve> curves;  ///< in the order of the methods file, then peers; the front is marked

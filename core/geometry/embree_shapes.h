@@ -15,7 +15,7 @@ class TracedShape {
 
     const Shape& shape() const { return *shape_; }
     Geometry make_geometry(RTCDevice device) const;
-    /// Everything of a hit but t. The direction need not have unit length.
+    /// Fills a hit except t. The direction need not have unit length.
     void fill_hit(const Vec3& origin, const Vec3& direction, const RawHit& raw, SurfaceHit& hit) const;
     /// Two hits of one primitive on a ray are the same hit; a quadric has two that differ.
     bool once_per_primitive() const { return mesh_ != nullptr; }

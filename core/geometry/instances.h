@@ -32,8 +32,8 @@ class Placement {
     double area_factor(const Vec3d& local_normal) const {
         return determinant_ * glm::length(normals_ * local_normal);
     }
-    /// How far along its normal a point in the world may lie off the surface that Embree traces [m], given
-    /// the same in the group's space.
+    /// Bound of the distance along its normal of a point in the world from the surface that Embree traces
+    /// [m], given the same in the group's space.
     float error(const Vec3& position, const Vec3& normal, float local_error) const;
 
   private:

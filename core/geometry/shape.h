@@ -64,8 +64,8 @@ class Shape : public Object {
     virtual Bounds3 bounds() const = 0;
     /// Holds all geometric normals.
     virtual DirectionCone normals() const { return DirectionCone::all(); }
-    /// How far its points lie from bounds().center() in this direction (unit) at most [m]; by default those
-    /// of the box.
+    /// Max distance of its points from bounds().center() in this direction (unit) [m]; by default that of the
+    /// box.
     virtual float support(const Vec3& direction) const {
         return 0.5f * glm::dot(glm::abs(direction), bounds().diagonal());
     }

@@ -71,7 +71,7 @@ struct BsdfPoint {
 /// Scattering of light by a surface; see the top of this file for directions.
 class Bsdf : public Object {
   public:
-    /// Which parts it has.
+    /// Parts of the BSDF.
     virtual BsdfTraits traits() const = 0;
 
     /// Smooth part of the BSDF [1/sr], without cosine. Zero for delta parts.

@@ -54,7 +54,7 @@ struct PrincipledParameters : PrincipledWeights {
     TexturePtr clearcoat = grey_texture(0.0f);        ///< weight of a second coating
     TexturePtr clearcoat_gloss = grey_texture(0.0f);  ///< its smoothness
     float eta = 1.5f;                                 ///< below the surface over above
-    /// How often lobes are sampled, relative to each other.
+    /// Frequencies at which lobes are sampled, relative to each other.
     struct Rates {
         float diffuse = 1.0f, specular = 1.0f, clearcoat = 1.0f;  ///< one a lobe
     } rates{};                                                    ///< see Rates
@@ -63,7 +63,7 @@ struct PrincipledParameters : PrincipledWeights {
 struct PrincipledThinParameters : PrincipledWeights {
     TexturePtr eta = grey_texture(1.5f);         ///< index of refraction
     TexturePtr diff_trans = grey_texture(0.0f);  ///< 0 to 2
-    /// How often lobes are sampled, relative to each other.
+    /// Frequencies at which lobes are sampled, relative to each other.
     struct Rates {
         /// One a lobe, reflected and let through.
         float diffuse = 1.0f, diffuse_through = 1.0f, specular = 1.0f, specular_through = 1.0f;

@@ -39,7 +39,7 @@ std::shared_ptr<T> object_of(const Properties::Child& child) {
     return object;
 }
 
-/// How members of type T take nested objects: as settings; as the object itself; as any number of them.
+/// Nested objects of members of type T: as settings; as the object itself; as any number of them.
 template <typename T>
 struct NestedMember {
     static constexpr bool single = true;

@@ -78,8 +78,8 @@ class Estimator {
     virtual std::size_t part_of_pass(std::uint32_t /*number*/) const { return 0; }
     /// Post-processes on the mean, after the last pass and for previews. May throw Cancelled.
     virtual void finish(Film& /*film*/, CancelToken /*cancelled*/) {}
-    /// Does finish() tell the film what it leaves of the variance (Film::set_mean)? Then the noise is that of
-    /// the finished picture.
+    /// True if finish() sets what it leaves of the variance (Film::set_mean): then the noise is that of the
+    /// finished picture.
     virtual bool changes_noise() const { return false; }
     /// Adds this estimator's counters (rays, lookups, VPLs, ...).
     virtual void add_statistics(Statistics& /*statistics*/) const {}
@@ -90,7 +90,8 @@ class Integrator : public Object {
   public:
     /// As in scene files.
     virtual std::string type() const = 0;
-    /// Does Estimator::finish() read and write layers of the film? Then it must be the film's only method.
+    /// True if Estimator::finish() reads and writes layers of the film: then it must be the film's only
+    /// method.
     virtual bool works_on_mean() const { return false; }
     /// The layers it fills, in order; those that are not auxiliary add up to the beauty.
     virtual std::vector<Layer> layers(const Scene& scene) const = 0;

@@ -1,5 +1,5 @@
-// How the points that a picture shows have moved since the frame before, as features of the first hit: what
-// denoisers of sequences read.
+// Motion of the points that a picture shows since the frame before, as features of the first hit: input of
+// denoisers of sequences.
 #pragma once
 
 #include <memory>

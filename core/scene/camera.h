@@ -59,7 +59,7 @@ class Camera : public Object {
     /// and far clipping planes. The weight of every ray is 1.
     virtual Ray sample_ray(const Vec2& film_position, const Vec2& u_lens) const = 0;
 
-    /// Which parts are deltas.
+    /// Parts that are deltas.
     virtual CameraTraits traits() const = 0;
 
     /// The importance of a ray from `origin` on the lens, unit `direction` into the scene. A delta part is

@@ -1,4 +1,4 @@
-// How long a path that loses nothing may live.
+// Russian roulette, and the length of paths that lose nothing.
 //
 // Survival follows the throughput, so paths through absorbing scenes end soon and keep weights near one.
 // Where nothing absorbs, throughput never falls: a lower chance would only raise the weights of the

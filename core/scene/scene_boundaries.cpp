@@ -16,8 +16,9 @@ namespace {
 
 double largest(const Vec3d& v) { return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}); }
 
-/// How far along the ray, and across an edge, a hit may lie from where it belongs [m], with coordinates of up
-/// to `size`: some units in the last place of them and of the distance, from which the triangle is seen.
+/// Distance of a hit from where it belongs, along the ray and across an edge, at most [m], with coordinates
+/// of up to `size`: some units in the last place of them and of the distance, from which the triangle is
+/// seen.
 double rounding_at(const SurfaceHit& hit, const Vec3& direction, double size) {
     const double cosine = std::fabs(glm::dot(hit.geometric_normal, direction));
     return 1e-6 * (double(hit.t) + size) / std::max(cosine, 1e-5);

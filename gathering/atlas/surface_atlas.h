@@ -72,7 +72,7 @@ class SurfaceAtlas {
     /// may be negative. Nothing where that side neither reflects nor emits.
     std::optional<Blend> blend(std::uint32_t triangle, float u, float v, SurfaceSide side) const;
 
-    /// How far barycentric coordinates go in a cell's width and in its height.
+    /// Steps of the barycentric coordinates over a cell's width and over its height.
     std::array<core::Vec2, 2> cell_steps(std::uint32_t triangle) const;
 
     /// The hit at the position of a texel, for its BSDF and its emission.

@@ -21,8 +21,8 @@ std::uint16_t medium_index(const LitScene& scene, const PhaseFunction* phase) {
     return 0;  // not reached: a vertex in a medium has the phase function of one of the scene's media
 }
 
-/// Is photon number `depth` of this path kept when 2^-halvings of all are? A photon kept at one n was kept at
-/// all smaller ones.
+/// True if photon number `depth` of this path is kept when 2^-halvings of all are. A photon kept at one n was
+/// kept at all smaller ones.
 bool is_kept(std::uint64_t path_key, std::uint32_t depth, int halvings) {
     return halvings == 0 || hash_keys(path_key, depth) >> (64 - halvings) == 0;
 }

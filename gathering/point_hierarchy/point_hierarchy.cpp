@@ -15,8 +15,8 @@ using namespace core;
 
 namespace {
 
-/// How far nodes reach beyond their points, in radii of a disc: neighbours reach towards each other, so that
-/// there are no holes, and what is beyond their edges is not theirs. At 0.7 a closed sphere has holes.
+/// Distance that nodes reach beyond their points, in radii of a disc: neighbours reach towards each other, so
+/// that there are no holes, and what is beyond their edges is not theirs. At 0.7 a closed sphere has holes.
 constexpr float overlap = 0.9f;
 
 /// The ball around the middle of the box, and the cone around the mean normal, of leaves [first, last).

@@ -12,7 +12,7 @@ using namespace core;
 
 namespace {
 
-/// Which of the six axes the normal is nearest to.
+/// Index of the nearest of the six axes to the normal.
 std::uint64_t facing(const Vec3& n) {
     const Vec3 a = glm::abs(n);
     const int axis = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;

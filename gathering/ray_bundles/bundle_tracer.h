@@ -18,7 +18,7 @@ namespace mote::gathering {
 class RayForm;
 class TriangleCull;
 
-/// How hits are found.
+/// Methods of finding hits.
 enum class BundleForm : std::uint8_t {
     automatic,  ///< the one that should be faster
     rays,       ///< packets of rays through a hierarchy

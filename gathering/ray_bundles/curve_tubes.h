@@ -10,7 +10,7 @@ class Placement;
 
 namespace mote::gathering {
 
-/// How finely.
+/// Resolution of the tubes.
 struct TubeCuts {
     std::vector<std::uint32_t> along;  ///< pieces of each segment
     std::uint32_t around = 0;          ///< sides of the tube

@@ -32,9 +32,9 @@ inline double triangle_area(const std::array<core::Vec3, 3>& corners) {
     return 0.5 * glm::length(glm::cross(core::Vec3d(corners[1]) - a, core::Vec3d(corners[2]) - a));
 }
 
-/// How curved shapes become triangles.
+/// Settings of the tessellation of curved shapes.
 struct TessellationSettings {
-    /// How far a sphere, cylinder, disk or curve may lie off its triangles, as a share of its extent.
+    /// Max distance of a sphere, cylinder, disk or curve from its triangles, as a share of its extent.
     float chord_error = 1e-3f;
     std::size_t memory_budget = std::size_t(4) << 30;  ///< [B]
 };

@@ -19,7 +19,7 @@ float distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
     return glm::length(p - (a + t * along));
 }
 
-/// How far the surface bends between two points of the square [m].
+/// Distance by which the surface bends between two points of the square [m].
 float bend(const Shape& shape, const Vec2& from, const Vec2& to) {
     const Vec3 a = shape.sample_area(from).position, b = shape.sample_area(to).position;
     float most = 0.0f;

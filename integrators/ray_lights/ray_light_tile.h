@@ -228,8 +228,8 @@ class RayLightTile {
         return sum;
     }
 
-    /// How much light a connection carries: never less than on the segments before, so that what matters less
-    /// has fewer.
+    /// Light that a connection carries: never less than on the segments before, so that what matters less has
+    /// fewer.
     lights::LaneFloats steps_of(const lights::LaneFloats& expected) {
         lights::LaneFloats steps;
         if (settings_.connections == 0) return steps;

@@ -245,8 +245,9 @@ class VplEstimator final : public Estimator {
         return true;
     }
 
-    /// Which of the n^2 shares of the VPLs pixels of (column, row) gather. Every pixel comes by all of them,
-    /// beginning anywhere: that makes its mean right, since the first VPLs of a set are not like the last.
+    /// Index of the one of n^2 shares of the VPLs that pixels of (column, row) gather. Every pixel comes by
+    /// all of them, beginning anywhere: that makes its mean right, since the first VPLs of a set are not like
+    /// the last.
     std::size_t share_of(const PassContext& context, int column, int row) const {
         const auto n = std::size_t(settings_.interleaving);
         const auto start = std::size_t(hash_keys(options_.seed, 0x696e7465726cull) % (n * n));

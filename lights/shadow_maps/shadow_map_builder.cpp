@@ -13,8 +13,8 @@ namespace {
 /// Slope of a surface against its ray above which it is taken as that steep: a hit that grazes must not hide
 /// everything behind it.
 constexpr float steepest = 10.0f;
-/// How far, in texels at right angles to the ray, the march continues behind a surface: neighbours may see
-/// parts of it that lie farther away.
+/// Distance, in texels at right angles to the ray, that the march continues behind a surface: neighbours may
+/// see parts of it that lie farther away.
 constexpr float march_behind = 4.0f;
 }  // namespace
 

@@ -33,7 +33,7 @@ struct WindowSums {
         };
         count = sums(one), now = sums(a), now_squared = sums(a2), past = sums(b), past_squared = sums(b2);
     }
-    /// How many standard errors lie between the means of a window; 0 where nothing can be said.
+    /// Number of standard errors between the means of a window; 0 where nothing can be said.
     float excess(std::size_t p) const {
         const float n = count[p];
         if (n < 2.0f) return 0.0f;

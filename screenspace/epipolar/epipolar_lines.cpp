@@ -8,7 +8,7 @@ namespace mote::screenspace {
 
 namespace {
 
-/// How far one can go from p in direction v before leaving the rectangle, and by which side: 0 top (lower y),
+/// Distance from p in direction v to the border of the rectangle, and the side that is met: 0 top (lower y),
 /// 1 right, 2 bottom, 3 left.
 struct Exit {
     double t = 0.0;

@@ -15,7 +15,7 @@
 
 namespace mote::screenspace {
 
-/// How densely rays are marched.
+/// Density of marched rays.
 struct LineSampling {
     int initial = 16;  ///< samples spread over the lit part, at least 2
     int cap = 1024;  ///< samples of one line, at most: far above what shafts need, so that memory is bounded

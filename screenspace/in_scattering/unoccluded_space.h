@@ -1,5 +1,5 @@
-// Does anything reach into a triangle of space? If not, no ray within it is stopped, and none of them has to
-// be traced.
+// Tests whether anything reaches into a triangle of space. If not, no ray within it is stopped, and none of
+// them has to be traced.
 //
 // A tree of boxes over the triangles of meshes and the bounds of all other shapes; against it, the triangle
 // by separating axes (Akenine-Moller 2001). One-sided: `clear` is certain, with room for the rounding of

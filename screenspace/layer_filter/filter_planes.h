@@ -12,8 +12,8 @@ struct FilterPlanes {
     LayerKind kind;
     std::vector<float> px, py, pz, nx, ny, nz, sx, sy, sz;  ///< position, normals; of surfaces alone
     std::vector<float> footprint, distance, transmittance, log_transmittance;
-    /// How much a pixel counts for others, 0 where it takes no part: modulated by S, a volume layer's mean is
-    /// the ratio of two means; a surface behind smoke is seen by as many paths as come through.
+    /// Weight of a pixel for others, 0 where it takes no part: modulated by S, a volume layer's mean is the
+    /// ratio of two means; a surface behind smoke is seen by as many paths as come through.
     std::vector<float> weight;
     std::vector<float> channels;  ///< which channels have light, as bits: others are never averaged with them
     const std::vector<PixelFrame>* frame;

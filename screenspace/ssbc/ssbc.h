@@ -22,7 +22,7 @@
 
 namespace mote::screenspace {
 
-/// How light is brought back.
+/// Settings of the compensation.
 struct SsbcSettings {
     float bound = 0.0f;  ///< b [1/m^2] that the picture was rendered with; 0: with no indirect light at all
     int steps = 2;       ///< how often T_r is applied, at least once

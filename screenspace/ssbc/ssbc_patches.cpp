@@ -52,8 +52,9 @@ class Neighbourhood {
         return std::nullopt;
     }
 
-    /// How far the point of the surface moves with one pixel [m], from neighbours on the same surface; zero
-    /// where there are none. The nearer of two: where the surface runs to the horizon the other is anywhere.
+    /// Distance that the point of the surface moves with one pixel [m], from neighbours on the same surface;
+    /// zero where there are none. The nearer of two: where the surface runs to the horizon the other is
+    /// anywhere.
     Vec3 step(int dx, int dy) const {
         const Vec3 &p = s_.position[here_], &n = s_.normal[here_];
         Vec3 forward(0.0f), back(0.0f);
@@ -76,8 +77,8 @@ class Neighbourhood {
         const Frame frame(n);
         return {frame.s * std::sqrt(area), frame.t * std::sqrt(area)};
     }
-    /// How much of `towards`, the step to a neighbour, belongs to the patch: all of it up to a concave edge,
-    /// the nearest one.
+    /// Fraction of `towards`, the step to a neighbour, that belongs to the patch: all of it up to a concave
+    /// edge, the nearest one.
     float reach(int dx, int dy, const Vec3& towards, const Vec3& other_step) const {
         float nearest = infinity;
         const auto look_at = [&](std::size_t there) {
@@ -99,8 +100,7 @@ class Neighbourhood {
         const float aligned = glm::dot(s_.normal[here_], s_.normal[there]);
         return 1.0f - sqr(aligned) > sqr(sine_);
     }
-    /// How much of the step lies before the surface `there`, if both meet in a concave edge within the step.
-    /// An edge is cut off along one step alone, the one that crosses it more steeply.
+    /// Fraction of the step before the surface `there`, if both meet in a concave edge within the step.
     std::optional<float> cut(std::size_t there, int dx, const Vec3& towards, const Vec3& other_step) const {
         const Vec3 d = s_.position[there] - s_.position[here_];
         const float over_there = -glm::dot(s_.normal[there], d), over_here = glm::dot(s_.normal[here_], d);

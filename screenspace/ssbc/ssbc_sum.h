@@ -21,7 +21,7 @@ struct RefinementRules {
     float discontinuity_projected_angle = 0.04f;  ///< for a node that spans a discontinuity [sr]
     int levels = 6;                               ///< of the pyramid that may be summed; 1: pixels alone
     int splits = 6;  ///< a pixel's patch that appears larger may be halved this often, one after the other
-    /// How large a node appears: at most, by its bounds, or as the paper has it, by its mean position and
+    /// Apparent size of a node: at most, by its bounds, or as the paper has it, by its mean position and
     /// normal. The mean of two walls that meet faces neither, and what lies beside the receiver is missed.
     enum class Estimate : std::uint8_t { at_most, at_mean } estimate = Estimate::at_most;
     core::CancelToken cancelled = {};  ///< thrown at
