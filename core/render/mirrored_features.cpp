@@ -11,7 +11,8 @@ namespace {
 constexpr float widest_density =
     1.0f;  ///< [1/sr], of the skirts of a narrow lobe: thrice that of a diffuse one
 
-/// True where there is a narrow lobe about the mirrored direction, or about the middle of what the BSDF draws.
+/// True where there is a narrow lobe about the mirrored direction, or about the middle of what the BSDF
+/// draws.
 bool has_narrow_lobe(const SurfaceHit& hit, const Vec3& wo) {
     const Bsdf& bsdf = *hit.shape->bsdf;
     const BsdfTraits traits = bsdf.traits();

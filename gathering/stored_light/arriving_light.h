@@ -21,8 +21,8 @@ struct ArrivedLight {
 };
 
 /// Direct light: `samples` lights and as many directions are sampled for every place and weighted by multiple
-/// importance sampling, as at the vertices of eye paths (lights/direct_light/direct_light.h). Random numbers are
-/// keyed by `key` and the place. Unbiased in scenes without media.
+/// importance sampling, as at the vertices of eye paths (lights/direct_light/direct_light.h). Random numbers
+/// are keyed by `key` and the place. Unbiased in scenes without media.
 ArrivedLight direct_light_at(const core::LitScene& scene, const LightPlaces& places, int samples,
                              std::uint64_t key, core::CancelToken cancelled);
 
