@@ -28,7 +28,7 @@ data=${MOTE_TEST_DATA:-$(dirname "$source")/shared/data}
 root=
 inside() {
   chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 HOME=/root DEBIAN_FRONTEND=noninteractive \
-    ${PIP_CERT:+PIP_CERT=/root/certificates.crt} "$@"
+    ${PIP_CERT:+PIP_CERT=/srv/certificates.crt} "$@"
 }
 unmount() {
   local folder
@@ -39,7 +39,7 @@ unmount() {
 }
 trap unmount EXIT
 
-# A Debian of this release in $root, with the checkout in /root/mote.
+# A Debian of this release in $root, with the checkout in /srv/mote.
 prepare() {
   local release=$1
   ((keep)) && [[ -e $root/etc/debian_version ]] || { rm -rf --one-file-system "$root" && debootstrap --variant=minbase "$release" "$root"; }
@@ -47,12 +47,12 @@ prepare() {
   mount -t proc proc "$root/proc"
   mount --bind /dev "$root/dev"
   [[ ! -d $data ]] || mount --bind -o ro "$data" "$root/root/shared/data"
-  [[ -z ${PIP_CERT:-} ]] || cp -L "$PIP_CERT" "$root/root/certificates.crt"
+  [[ -z ${PIP_CERT:-} ]] || cp -L "$PIP_CERT" "$root/srv/certificates.crt"
   inside apt-get update -q
   inside apt-get install -y -q --no-install-recommends git ca-certificates
-  [[ -d $root/root/mote/.git ]] || git clone -q "file://$source" "$root/root/mote"
-  git -C "$root/root/mote" fetch -q "file://$source" "$(git -C "$source" rev-parse HEAD)"
-  git -C "$root/root/mote" checkout -q --detach FETCH_HEAD
+  [[ -d $root/srv/mote/.git ]] || git clone -q "file://$source" "$root/srv/mote"
+  git -C "$root/srv/mote" fetch -q "file://$source" "$(git -C "$source" rev-parse HEAD)"
+  git -C "$root/srv/mote" checkout -q --detach FETCH_HEAD
 }
 
 failed=0
@@ -63,7 +63,7 @@ for release in "${releases[@]}"; do
   prepare "$release" > "$log" 2>&1 || { tail -n 20 "$log" && exit 1; }
   for command in ./quickstart ./test; do
     begin=$SECONDS
-    if inside sh -c "cd /root/mote && $command" > "$log.part" 2>&1; then said=passes; else said=FAILS failed=1; fi
+    if inside sh -c "cd /srv/mote && $command" > "$log.part" 2>&1; then said=passes; else said=FAILS failed=1; fi
     tail -n 12 "$log.part"
     echo "== $release: $command $said, $((SECONDS - begin)) s: $log"
     cat "$log.part" >> "$log"
