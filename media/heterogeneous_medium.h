@@ -74,8 +74,8 @@ class HeterogeneousMedium : public core::Medium {
                                             core::TrackingCounters& counters) const = 0;
 
   protected:
-    explicit HeterogeneousMedium(MediumParts parts);
-    core::Rgb albedo_at(const core::Vec3& p) const;
+    explicit HeterogeneousMedium(MediumParts parts);  ///< volumes and phase function that it takes over
+    core::Rgb albedo_at(const core::Vec3& p) const;   ///< single-scattering albedo [1]
     /// True if nothing scatters or emits: the transmittance is all there is.
     bool absorbs_alone() const { return absorbs_alone_; }
 

@@ -25,7 +25,7 @@ class RenderObserver {
     virtual ~RenderObserver() = default;
     virtual void progress(const core::RenderProgress&) {}  ///< after passes, the last one among them
     virtual bool cancelled() { return false; }             ///< true: stop, and keep what there is
-    virtual bool wants_previews() const { return false; }
+    virtual bool wants_previews() const { return false; }  ///< true: preview() is called
     /// The picture so far, its beauty alone, from the first pass on. Now and then, so that it takes a
     /// twentieth of the time at most.
     virtual void preview(const core::ImageChannels&) {}
@@ -36,15 +36,15 @@ class RenderObserver {
 
 /// Passes that were rendered elsewhere, from the first on, added up.
 struct EarlierPasses {
-    std::shared_ptr<const core::Film> film;
-    core::Statistics statistics;
-    std::string scene_hash;  ///< of their render
+    std::shared_ptr<const core::Film> film;  ///< their sums
+    core::Statistics statistics;             ///< of all of them together
+    std::string scene_hash;                  ///< of their render
 };
 
 /// The frame before in a sequence: where its camera and shapes were.
 struct FrameBefore {
-    std::shared_ptr<const core::PreviousFrame> frame;
-    std::vector<std::string> settings;  ///< frame_before_settings() of its scene
+    std::shared_ptr<const core::PreviousFrame> frame;  ///< its camera and shapes
+    std::vector<std::string> settings;                 ///< frame_before_settings() of its scene
 };
 
 /// When a render ends, and what it makes.
@@ -57,13 +57,13 @@ struct RenderSettings {
     std::function<bool(const core::Film&)> enough;
     std::optional<core::PassRange>
         range;  ///< these passes alone, whatever `stop` says: leaves Rendered::film
-    std::optional<EarlierPasses> begin_with;
-    int threads = 0;                 ///< 0: one for every core
-    std::string checkpoint;          ///< file; "": none. Removed when the render is complete
-    double checkpoint_every = 60.0;  ///< [s]
-    bool keep_checkpoint = false;    ///< also of a complete render, to continue with more passes
-    bool resume = false;             ///< continue from the checkpoint, which must be of this very render
-    bool auxiliary = false;          ///< also what is seen: positions, normals, depth, albedo, with variances
+    std::optional<EarlierPasses> begin_with;  ///< added before the first pass of this render
+    int threads = 0;                          ///< 0: one for every core
+    std::string checkpoint;                   ///< file; "": none. Removed when the render is complete
+    double checkpoint_every = 60.0;           ///< [s]
+    bool keep_checkpoint = false;             ///< also of a complete render, to continue with more passes
+    bool resume = false;     ///< continue from the checkpoint, which must be of this very render
+    bool auxiliary = false;  ///< also what is seen: positions, normals, depth, albedo, with variances
     std::optional<FrameBefore> frame_before;  ///< with `auxiliary`: for motion vectors
     std::string denoise;                      ///< "oidn" or "bmfr": adds the layer `denoised`
     std::vector<std::string> command_line;    ///< for the metadata

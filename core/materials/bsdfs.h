@@ -49,6 +49,7 @@ struct PrincipledWeights {
     TexturePtr spec_tint = grey_texture(0.0f), sheen = grey_texture(0.0f);         ///< tint; cloth
     TexturePtr sheen_tint = grey_texture(0.0f), flatness = grey_texture(0.0f);     ///< of diffuse lobes
 };
+/// The principled model for solid bodies (Burley 2012).
 struct PrincipledParameters : PrincipledWeights {
     TexturePtr metallic = grey_texture(0.0f);         ///< weight of the metal
     TexturePtr clearcoat = grey_texture(0.0f);        ///< weight of a second coating
@@ -72,10 +73,10 @@ struct PrincipledThinParameters : PrincipledWeights {
 
 /// Lambertian reflection, on the side of the normal.
 std::shared_ptr<Bsdf> make_diffuse(TexturePtr reflectance = grey_texture(0.5f));
-std::shared_ptr<Bsdf> make_conductor(const ConductorParameters& parameters);
+std::shared_ptr<Bsdf> make_conductor(const ConductorParameters& parameters);  ///< smooth metal
 /// Rough metal.
 std::shared_ptr<Bsdf> make_rough_conductor(const ConductorParameters& parameters, const Roughness& roughness);
-std::shared_ptr<Bsdf> make_dielectric(const DielectricParameters& parameters);
+std::shared_ptr<Bsdf> make_dielectric(const DielectricParameters& parameters);  ///< smooth glass
 /// A pane, which does not refract.
 std::shared_ptr<Bsdf> make_thin_dielectric(const DielectricParameters& parameters);
 /// Throws InputError when the two indices are nearly equal: no normals are refracted then.

@@ -3,6 +3,7 @@
 //
 //   mote render room.xml --integrator mote_vpl --passes 4 --auxiliary -o room.exr
 //   ssbc room.exr compensated.exr
+#include <mote/core/formats/pictures/image_file.h>
 #include <mote/screenspace/ssbc/ssbc.h>
 #include <mote/screenspace/ssbc/ssbc_picture.h>
 

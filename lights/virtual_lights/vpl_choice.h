@@ -38,7 +38,7 @@ struct VplRange {
 
 /// Samples of a selector for a tile: n VPLs with weights 1 / (n p). A VPL may come more than once.
 struct SampledVpls {
-    std::span<const WeightedVpl> samples;
+    std::span<const WeightedVpl> samples;  ///< in the order in which they are gathered
 
     /// Calls visit(WeightedVpl), as the top of this file says.
     template <typename Visit>

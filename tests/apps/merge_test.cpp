@@ -131,7 +131,7 @@ TEST_CASE("what does not belong together is not merged, and the reason is said",
     std::string scene = read_file(folder.file("scene.xml"));
     write_file(folder.file("scene.xml"), scene + "\n");
     CHECK(says(folder.run({"merge", "a.film", "-o", "m.exr", "--quiet"}),
-               "of another render: the scene, a file"));
+               "are of another one: the scene, a file"));
     REQUIRE(folder.render("2:5", "b.film", path).exit_code == 0);
     CHECK(says(merge("b.film"), "contents of the scene or of a file that it names differ"));
     CHECK_FALSE(std::filesystem::exists(folder.file("m.exr")));

@@ -68,6 +68,9 @@ void write_crowd(const Folder& folder) {
                                              "</scene>");
 }
 
+/// True before a run, and after one whose signal came while the program still started.
+bool too_early(const RunResult& r) { return r.exit_code == -1 || r.err == "mote: interrupted\n"; }
+
 }  // namespace
 
 TEST_CASE("--time ends within a pass, and says what it has of it", "[command][stopping]") {
@@ -107,7 +110,7 @@ TEST_CASE("Signals stop a pass that would take an hour", "[command][stopping]") 
         RunResult r;
         // A busy machine may take longer to start the program, which has no handler yet then: once more,
         // later.
-        for (int wait = 500; r.exit_code == -1 && wait < 20000; wait *= 2) {
+        for (int wait = 500; too_early(r) && wait < 20000; wait *= 2) {
             MoteProcess process(folder, folder.render(long_pass));
             std::this_thread::sleep_for(std::chrono::milliseconds(wait));
             process.send(number);
@@ -138,7 +141,7 @@ TEST_CASE("A terminal that hangs up saves the picture and the checkpoint", "[com
 TEST_CASE("A pipe that nobody reads can be interrupted", "[command][stopping]") {
     for (const char* passes : {"1", "1000000"}) {  // while it is opened, and while passes are rendered
         RunResult r;
-        for (int wait = 500; r.exit_code == -1 && wait < 20000; wait *= 2) {  // as above
+        for (int wait = 500; too_early(r) && wait < 20000; wait *= 2) {  // as above
             const Folder folder;
             REQUIRE(::mkfifo(folder.file("a.exr").c_str(), 0600) == 0);
             MoteProcess process(folder, folder.render({"--integrator", "path", "--passes", passes}));
@@ -153,7 +156,7 @@ TEST_CASE("A pipe that nobody reads can be interrupted", "[command][stopping]") 
 
 TEST_CASE("A signal ends a command that has nothing to lose with a line", "[command][stopping]") {
     RunResult r;
-    for (int wait = 250; r.exit_code == -1 && wait < 20000; wait *= 2) {  // as above
+    for (int wait = 250; too_early(r) && wait < 20000; wait *= 2) {  // as above
         const Folder folder;
         write_crowd(folder);
         MoteProcess process(folder, {"plan", "crowd.xml"});
@@ -231,7 +234,7 @@ TEST_CASE("A trade and its reference end at once while the scene is loaded", "[c
     for (const auto& arguments : {std::vector<std::string>{"trade", "crowd.xml", "--make-reference", "r.exr"},
                                   std::vector<std::string>{"trade", "crowd.xml"}}) {
         RunResult r;
-        for (int wait = 250; r.exit_code == -1 && wait < 20000; wait *= 2) {  // as above
+        for (int wait = 250; too_early(r) && wait < 20000; wait *= 2) {  // as above
             MoteProcess process(folder, arguments);
             std::this_thread::sleep_for(std::chrono::milliseconds(wait));
             process.send(SIGINT);

@@ -113,8 +113,8 @@ TEST_CASE("lights with a position are drawn at texels and pixels", "[ray_bundles
 
 // Light that a rough mirror casts on the floor: found by bundles alone, with the next direction known. The
 // variance of a pass falls with its directions as 1 / n or faster: the standard error of 4 n is half that of
-// n at most, up to a factor of 1.6 (F quantile of two variances over 24 passes each, 1 % one-sided: 2.7). Eight
-// batches of 16 directions count in neither.
+// n at most, up to a factor of 1.6 (F quantile of two variances over 24 passes each, 1 % one-sided: 2.7).
+// Eight batches of 16 directions count in neither.
 TEST_CASE("glossy transfer is path's, and its noise falls with the directions", "[ray_bundles][glossy]") {
     const auto scene = scene_from(glossy_corner(0.4), 8);
     const auto path = render(*scene, R"(<integrator type="path"/>)", 3000, 3);
@@ -156,6 +156,8 @@ TEST_CASE("what ray-bundles cannot do is in the plan, and wrong words are named"
     };
     CHECK(refused(R"(<string name="transfer" value="one_bounc"/>)").find("did you mean 'one_bounce'") !=
           std::string::npos);
-    CHECK(refused(number("directions", 8)).find("directions must lie between 16 and") != std::string::npos);
-    CHECK(refused(R"(<float name="texels_per_metre" value="-1"/>)").find("0 or more") != std::string::npos);
+    CHECK(refused(number("directions", 8)).find("'directions' is 8 but must lie between 16 and") !=
+          std::string::npos);
+    CHECK(refused(R"(<float name="texels_per_metre" value="-1"/>)").find("-1 but must lie between 0 and") !=
+          std::string::npos);
 }

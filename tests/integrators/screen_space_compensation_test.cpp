@@ -366,7 +366,7 @@ TEST_CASE("screen-space compensation of media is refused by name", "[compensatio
     CHECK_THAT(
         refusal(
             R"(<compensation type="screen_space"><string name="receivers" value="media"/></compensation>)"),
-        ContainsSubstring("surfaces alone") && ContainsSubstring("'media'"));
+        ContainsSubstring("known: surfaces") && ContainsSubstring("'media'"));
     CHECK_THAT(
         refusal(R"(<compensation type="screen_space"><integer name="steps" value="0"/></compensation>)"),
         ContainsSubstring("steps"));
