@@ -50,7 +50,6 @@ int main() {
     const Source source;
     EpipolarPicture picture(EpipolarLines(on_film, {{0.0, 0.0}, {width, height}}, 256, 0.5), {}, source,
                             loop);
-    picture.march(source, loop);
 
     Pixels pixels;
     double error = 0.0, light = 0.0;

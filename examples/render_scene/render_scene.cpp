@@ -11,6 +11,11 @@
 
 using namespace mote;
 
+/// Prints how many passes there are.
+struct Passes final : session::RenderObserver {
+    void progress(const core::RenderProgress& p) override { std::fprintf(stderr, "\r%u passes", p.passes); }
+};
+
 int main(int argc, char** argv) {
     if (argc < 4) return std::fputs("render_scene SCENE OUT.exr PASSES [NAME=VALUE...]\n", stderr), 2;
     try {
@@ -26,10 +31,8 @@ int main(int argc, char** argv) {
 
         session::RenderSettings settings;
         settings.stop.passes = std::uint32_t(std::atoi(argv[3]));
-        settings.progress = [](const core::RenderProgress& p) {
-            std::fprintf(stderr, "\r%u passes", p.passes);
-        };
-        const session::Rendered rendered = session::render(scene, settings);
+        Passes passes;
+        const session::Rendered rendered = session::render(scene, settings, passes);
         core::write_exr(argv[2], rendered.image);
         std::printf("\n%s: %d x %d pixels, %u passes\n", argv[2], rendered.image.width, rendered.image.height,
                     rendered.passes);

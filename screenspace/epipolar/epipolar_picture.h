@@ -37,8 +37,9 @@ class EpipolarPicture {
 
     std::span<const SampledLine> sampled() const {
         return sampled_;
-    }                                       ///< with their light, around the border
-    PictureCounts counts() const;           ///< work done so far
+    }  ///< with their light, around the border
+    /// Work done so far.
+    PictureCounts counts() const;
     std::vector<Vec2d> marched_at() const;  ///< film positions of the marched rays
 
   private:
