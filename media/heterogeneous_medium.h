@@ -76,8 +76,6 @@ class HeterogeneousMedium : public core::Medium {
   protected:
     explicit HeterogeneousMedium(MediumParts parts);  ///< volumes and phase function that it takes over
     core::Rgb albedo_at(const core::Vec3& p) const;   ///< single-scattering albedo [1]
-    /// True if nothing scatters or emits: the transmittance is all there is.
-    bool absorbs_alone() const { return absorbs_alone_; }
 
     MediumParts parts_;                         ///< as given
     std::optional<core::Rgb> constant_albedo_;  ///< where it is the same everywhere

@@ -18,8 +18,4 @@ const ParameterList<EyePathLimits>& eye_path_rows() {
     return list;
 }
 
-EyePathLimits read_eye_path_limits(const Properties& properties) { return eye_path_rows().read(properties); }
-std::vector<Parameter> eye_path_parameters() { return eye_path_rows().parameters(); }
-Parameter hide_emitters_parameter() { return eye_path_parameters().back(); }
-
 }  // namespace mote::integrators

@@ -9,11 +9,4 @@ namespace mote::integrators {
 /// max_depth, rr_depth and hide_emitters: `within(&Settings::eye, eye_path_rows())`.
 const core::ParameterList<EyePathLimits>& eye_path_rows();
 
-/// max_depth, rr_depth and hide_emitters of a scene file, checked. Throws InputError.
-EyePathLimits read_eye_path_limits(const core::Properties& properties);
-/// Their rows in a manual page.
-std::vector<core::Parameter> eye_path_parameters();
-/// The last of them alone.
-core::Parameter hide_emitters_parameter();
-
 }  // namespace mote::integrators

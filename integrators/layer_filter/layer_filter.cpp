@@ -32,9 +32,6 @@ const ParameterList<LayerFilterParameters>& layer_filter_rows() {
     return list;
 }
 
-LayerFilterParameters read_layer_filter(const Properties& p) { return layer_filter_rows().read(p); }
-std::vector<Parameter> layer_filter_parameters() { return layer_filter_rows().parameters(); }
-
 LayerFilter::LayerFilter(const Scene& scene, const RenderOptions& options,
                          const LayerFilterParameters& parameters)
     : scene_(scene), options_(options), parameters_(parameters) {}

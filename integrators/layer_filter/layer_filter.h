@@ -22,11 +22,6 @@ struct LayerFilterParameters {
 /// filter_levels, filter_confidence and filter_samples: `within(&Settings::filter, layer_filter_rows())`.
 const core::ParameterList<LayerFilterParameters>& layer_filter_rows();
 
-/// filter_levels, filter_confidence and filter_samples of a scene file, checked. Throws InputError.
-LayerFilterParameters read_layer_filter(const core::Properties& properties);
-/// Their rows in a manual page.
-std::vector<core::Parameter> layer_filter_parameters();
-
 class LayerFilter {
   public:
     struct Choice {

@@ -28,7 +28,7 @@ class MoteVpl final : public Integrator {
   public:
     explicit MoteVpl(const VplSettings& settings) : settings_(settings) {}
     explicit MoteVpl(const Properties& properties) {
-        settings_.eye = read_eye_path_limits(properties);
+        settings_.eye = eye_path_rows().read(properties);
         settings_.eye.max_scatterings = 1;  // from then on virtual lights take over
         const auto paths = properties.get_int("paths", 256);
         if (paths < 0 || paths > (std::int64_t(1) << 26))
@@ -257,7 +257,7 @@ std::shared_ptr<const Integrator> make_drawn_vpls(const EyePathLimits& limits) {
 }
 
 void register_mote_vpl(Registry& registry) {
-    auto parameters = eye_path_parameters();
+    auto parameters = eye_path_rows().parameters();
     parameters.push_back(
         {"paths", "integer", "256",
          "light paths traced in every pass, some three VPLs each: time without a selection is in "

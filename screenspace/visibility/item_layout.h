@@ -25,7 +25,6 @@ class ItemLayout {
     std::uint64_t bins() const { return std::uint64_t(items()) << (2 * t_); }
     std::uint32_t objects() const { return std::uint32_t(first_item_.size() - 1); }
 
-    std::uint32_t first_item(std::uint32_t object) const { return first_item_[object]; }
     /// Number in a picture where it shows this instance: (base + instance 4^t) / 4^t. Throws
     /// std::out_of_range where there is no such instance.
     std::uint32_t item(std::uint32_t object, std::uint32_t instance) const;
