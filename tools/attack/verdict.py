@@ -1,0 +1,54 @@
+"""What pictures of several seeds say: whether means agree with the reference's, and whether stated noise is the spread."""
+import importlib
+import math
+
+import numpy as np
+
+from student import welch
+
+FALSE_ALARMS = 0.01  # probability of any in a whole run, of means whose distribution is near normal
+STAGES = (4, 8, 16, 32)
+CONTINUE = 0.1  # a pair whose smallest p is above this is not rendered again
+LIE = 2.0  # spread between seeds over stated noise
+
+
+def regions(picture):
+    """Means of the whole picture and, where it has as many pixels, of its quarters."""
+    height, width = picture.shape[:2]
+    parts = [picture]
+    if height >= 4 and width >= 4:
+        y, x = height // 2, width // 2
+        parts += [picture[:y, :x], picture[:y, x:], picture[y:, :x], picture[y:, x:]]
+    return [float(np.mean(part, dtype=np.float64)) for part in parts]
+
+
+def compare_means(pictures, reference, bias):
+    """(p, text, relative difference) of the region that differs most; p has Bonferroni's correction for the number of regions.
+    The allowed bias is relative to the region or, since blur brings light from elsewhere, to the whole picture."""
+    ours, theirs = ([regions(p) for p in series] for series in (pictures, reference))
+    names = ("picture", "top left", "top right", "bottom left", "bottom right")
+    rows, whole = [], abs(np.mean([means[0] for means in theirs]))
+    for name, a, b in zip(names, zip(*ours), zip(*theirs)):
+        t, p, relative = welch(a, b, bias * max(abs(np.mean(b)), whole))
+        rows.append((p, -t, f"{name}: mean {np.mean(a):.4g} against {np.mean(b):.4g} ({100 * relative:+.3g} %, t {t:.1f}, {len(a)} seeds)",
+                     relative))
+    p, _, text, relative = min(rows)
+    return min(1.0, p * len(rows)), text, relative
+
+
+def threshold(stage, pairs):
+    """Level of a stage of one pair."""
+    return FALSE_ALARMS / pairs / 2 ** (stage + 1)
+
+
+def noise_lies(pictures, noises, reference):
+    """(ratio, text) of the spread between seeds over the stated noise; None where one is not known."""
+    known = [n for n in noises if n is not None and math.isfinite(n)]
+    if len(known) < len(noises) or not any(np.any(p) for p in pictures) or not np.any(reference):
+        return None
+    mote = importlib.import_module("mote")
+    spread = mote.series_error(pictures, np.mean(reference, axis=0, dtype=np.float64).astype(np.float32))["noise"]
+    stated = float(np.median(known))
+    if not math.isfinite(spread) or spread < 1e-5:
+        return None
+    return spread / max(stated, 1e-9), f"stated noise {stated:.3g}, spread between {len(pictures)} seeds {spread:.3g}"
