@@ -56,6 +56,7 @@ prepare() {
 }
 
 failed=0
+mkdir -p "$source/build"
 for release in "${releases[@]}"; do
   root=$source/build/bare_$release log=$source/build/bare_$release.log
   echo "== a bare $release"

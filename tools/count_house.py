@@ -29,13 +29,13 @@ OPENING = re.compile(r"(?:Of|Whether|The same|What|Who|Whose|Whoever)\b")
 TWINS = {
     "the cut by largest expected light": (r"\bstd::pop_heap\(cut_", 1),
     "the box of differences of positions": (r"const float near2 = max_of\(nx \* nx", 1),
-    "helpers for sixteen lanes": (r"struct alignas\(\d+\) Lane(?:Floats|Values|Light)\b|using Lanes = std::array<float", 2),
+    "helpers for sixteen lanes": (r"struct alignas\(\d+\) Lane(?:s|Floats|Values|Light)\b|using Lanes = std::array<float", 2),
     "classes named LightTree": (r"\b(?:class|struct) LightTree(?: final)?(?: : [^;{]+)? \{", 1),
     "types named SurfacePoints": (r"\b(?:class|struct) SurfacePoints(?: final)?(?: : [^;{]+)? \{", 1),
     "classes named TracedVisibility": (r"\b(?:class|struct) TracedVisibility(?: final)?(?: : [^;{]+)? \{", 1),
-    "samplers of all surfaces": (r"\bSurfacePoints sample_surface_points\([^;{]*\{|\bSurfacePoints::SurfacePoints\(|"
+    "samplers of all surfaces": (r"\bSurfaceSamples sample_surfaces\([^;{]*\{|\bSurfacePoints::SurfacePoints\(|"
                                  r"\bSurfels stratified_surfels\([^;{]*\)\s*\{", 1),
-    "places that set a lane's shadow ray": (r"\bt_max\[\w+\] = [^;]*\bshadow_t_max\b", 1),
+    "places that set a lane's shadow ray": (r"\borigin_x\[\w+\] = ", 1),
 }
 
 # Errors of pictures computed outside core/metrics: the squared difference from one reference or two, and the weights of

@@ -38,20 +38,15 @@ RTCRay embree_ray(const ShadowPacket& p, int i) {
 
 /// Some builds of Embree (Debian's) abort on rays that are not finite or reach beyond what it can trace:
 /// those hit nothing.
-bool traceable(float origin_x, float origin_y, float origin_z, float direction_x, float direction_y,
-               float direction_z, float t_min, float t_max) {
+bool traceable(const Vec3& origin, const Vec3& direction, float t_min, float t_max) {
     constexpr float limit = 1e18f;
-    return (std::fabs(origin_x) < limit) && (std::fabs(origin_y) < limit) && (std::fabs(origin_z) < limit) &&
-           (std::fabs(direction_x) < limit) && (std::fabs(direction_y) < limit) &&
-           (std::fabs(direction_z) < limit) && (std::fabs(t_min) < infinity) && (t_max >= t_min);
+    return (std::fabs(origin.x) < limit) && (std::fabs(origin.y) < limit) && (std::fabs(origin.z) < limit) &&
+           (std::fabs(direction.x) < limit) && (std::fabs(direction.y) < limit) &&
+           (std::fabs(direction.z) < limit) && (std::fabs(t_min) < infinity) && (t_max >= t_min);
 }
-bool traceable(const Ray& r) {
-    return traceable(r.origin.x, r.origin.y, r.origin.z, r.direction.x, r.direction.y, r.direction.z, r.t_min,
-                     r.t_max);
-}
+bool traceable(const Ray& r) { return traceable(r.origin, r.direction, r.t_min, r.t_max); }
 bool traceable(const ShadowPacket& p, int i) {
-    return traceable(p.origin_x[i], p.origin_y[i], p.origin_z[i], p.direction_x[i], p.direction_y[i],
-                     p.direction_z[i], p.t_min[i], p.t_max[i]);
+    return traceable(p.origin(i), p.direction(i), p.t_min[i], p.t_max[i]);
 }
 
 RTCRayHit embree_ray_hit(const Ray& ray) {

@@ -1,7 +1,10 @@
 // Sixteen shadow rays at once.
 #pragma once
 
+#include <concepts>
 #include <cstdint>
+
+#include "core/math/vec.h"
 
 namespace mote::core {
 
@@ -22,6 +25,21 @@ struct alignas(64) ShadowPacket {
     void clear() {
         for (int lane = 0; lane < width; ++lane)
             time[lane] = 0.0f, mask[lane] = 0xffffffffu, id[lane] = std::uint32_t(lane), flags[lane] = 0;
+    }
+    /// A lane's segment: origin [m], direction of any length, and its end in lengths of the direction.
+    template <std::integral Lane>
+    void set(Lane lane, const Vec3& origin, const Vec3& direction, float end) {
+        origin_x[lane] = origin.x, origin_y[lane] = origin.y, origin_z[lane] = origin.z;
+        direction_x[lane] = direction.x, direction_y[lane] = direction.y, direction_z[lane] = direction.z;
+        t_min[lane] = 0.0f, t_max[lane] = end;
+    }
+    template <std::integral Lane>
+    Vec3 origin(Lane lane) const {
+        return {origin_x[lane], origin_y[lane], origin_z[lane]};  ///< [m]
+    }
+    template <std::integral Lane>
+    Vec3 direction(Lane lane) const {
+        return {direction_x[lane], direction_y[lane], direction_z[lane]};  ///< of any length
     }
     /// After it was traced: is something in the way?
     bool occluded(int lane) const { return t_max[lane] < 0.0f; }

@@ -42,8 +42,7 @@ void CallbackScene::find_occluded(std::span<ShadowPacket> packets) const {
     for (ShadowPacket& p : packets)
         for (int i = 0; i < ShadowPacket::width; ++i) {
             if (p.t_max[i] < p.t_min[i]) continue;
-            const Vec3 origin{p.origin_x[i], p.origin_y[i], p.origin_z[i]};
-            const Vec3 way{p.direction_x[i], p.direction_y[i], p.direction_z[i]};
+            const Vec3 origin = p.origin(i), way = p.direction(i);
             const float length = glm::length(way);  // of packets it need not be 1
             if (!visible({origin, way / length, p.t_min[i] * length, p.t_max[i] * length}))
                 p.t_max[i] = -infinity;

@@ -60,7 +60,7 @@ void imperfect_lookups_against_rays(benchmark::State& state) {
     Pairs pairs;
     ImperfectShadowMaps maps;
     const ImperfectMapSettings settings{.size = int(state.range(0))};
-    const SurfacePoints points = sample_surface_points(*pairs.scene, std::size_t(settings.all_points), 1);
+    const SurfaceSamples points = sample_surfaces(*pairs.scene, std::size_t(settings.all_points), 1);
     const double build = seconds_of([&] {
         const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
         maps.build(points, pairs.vpls, settings, 1);

@@ -215,11 +215,7 @@ void EyeBundles::connect_lights(TileLight& indirect) {
         PathWeights panes;
         connect_through_panes(pass_.scene, shadow, panes);
         light[i] *= panes.throughput;
-        shadow_.origin_x[i] = shadow.origin.x, shadow_.origin_y[i] = shadow.origin.y;
-        shadow_.origin_z[i] = shadow.origin.z, shadow_.t_min[i] = 0.0f;
-        shadow_.direction_x[i] = sample->wi.x, shadow_.direction_y[i] = sample->wi.y;
-        shadow_.direction_z[i] = sample->wi.z;
-        shadow_.t_max[i] = sample->distance * shadow_fraction;
+        shadow_.set(i, shadow.origin, sample->wi, sample->distance * shadow_fraction);
         any = true, ++walk_.rays.occlusion;
     }
     if (!any) return;

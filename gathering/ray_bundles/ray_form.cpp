@@ -42,10 +42,6 @@ class PacketMaker {
         const double middle = glm::dot(to_center, d) / glm::dot(d, d);
         start_ = Vec3d(grid.origin) + std::max(0.0, middle - reach) * d;
         length_ = float(2.0 * reach * 1.001);
-        for (int lane = 0; lane < width; ++lane) {
-            packet_.direction_x[lane] = grid.direction.x, packet_.direction_y[lane] = grid.direction.y;
-            packet_.direction_z[lane] = grid.direction.z, packet_.t_min[lane] = 0.0f;
-        }
     }
     const ShadowPacket& at(std::uint32_t x0, std::uint32_t y0, std::uint32_t end_row) {
         const double step = double(grid_.spacing);
@@ -53,9 +49,8 @@ class PacketMaker {
             const std::uint32_t x = x0 + std::uint32_t(lane) % side, y = y0 + std::uint32_t(lane) / side;
             const Vec3d origin = start_ + (double(x) + 0.5) * step * Vec3d(grid_.right) +
                                  (double(y) + 0.5) * step * Vec3d(grid_.up);
-            packet_.origin_x[lane] = float(origin.x), packet_.origin_y[lane] = float(origin.y);
-            packet_.origin_z[lane] = float(origin.z);
-            packet_.t_max[lane] = x < grid_.columns && y < end_row ? length_ : -infinity;
+            packet_.set(lane, Vec3(origin), grid_.direction,
+                        x < grid_.columns && y < end_row ? length_ : -infinity);
         }
         return packet_;
     }

@@ -181,8 +181,8 @@ class RayLightTile {
         if (eyes_.empty() && !receivers_.any_active) return;
         if (!sample_candidates()) return;
         const lights::PointReceivers points(receivers_, around(), pass_.bound);
-        lights::LaneFloats expected = evaluate_all(points);
-        const lights::LaneFloats steps = steps_of(expected);
+        core::Lanes expected = evaluate_all(points);
+        const core::Lanes steps = steps_of(expected);
         if (receivers_.any_active)
             add(gather_.to_points(at_points_, steps, pass_.bound, receivers_), Transport::indirect);
         for (std::size_t n = 0; n < eyes_.size(); ++n) {
@@ -208,34 +208,33 @@ class RayLightTile {
         return true;
     }
 
-    lights::LaneFloats around() const {
-        lights::LaneFloats extinction;
-        for (std::size_t i = 0; i < lane_count; ++i) extinction.of[i] = lanes_[i].extinction;
+    core::Lanes around() const {
+        core::Lanes extinction;
+        for (std::size_t i = 0; i < lane_count; ++i) extinction[i] = lanes_[i].extinction;
         return extinction;
     }
 
     /// Importance of all candidates for points and lines: sums by lane.
-    lights::LaneFloats evaluate_all(const lights::PointReceivers& points) {
+    core::Lanes evaluate_all(const lights::PointReceivers& points) {
         at_points_.clear();
         if (receivers_.any_active) gather_.evaluate(points, at_points_);
-        lights::LaneFloats sum = at_points_.total();
+        core::Lanes sum = at_points_.total();
         while (along_eyes_.size() < eyes_.size()) along_eyes_.emplace_back();
         for (std::size_t n = 0; n < eyes_.size(); ++n) {
             along_eyes_[n].clear();
             gather_.evaluate(eyes_[n], along_eyes_[n]);
-            for (std::size_t i = 0; i < lane_count; ++i) sum.of[i] += along_eyes_[n].total().of[i];
+            for (std::size_t i = 0; i < lane_count; ++i) sum[i] += along_eyes_[n].total()[i];
         }
         return sum;
     }
 
     /// Light that a connection carries: never less than on the segments before, so that what matters less has
     /// fewer.
-    lights::LaneFloats steps_of(const lights::LaneFloats& expected) {
-        lights::LaneFloats steps;
+    core::Lanes steps_of(const core::Lanes& expected) {
+        core::Lanes steps;
         if (settings_.connections == 0) return steps;
         for (std::size_t i = 0; i < lane_count; ++i)
-            steps.of[i] = lanes_[i].step =
-                std::max(lanes_[i].step, expected.of[i] / float(settings_.connections));
+            steps[i] = lanes_[i].step = std::max(lanes_[i].step, expected[i] / float(settings_.connections));
         return steps;
     }
 

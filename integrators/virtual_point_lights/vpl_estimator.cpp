@@ -34,7 +34,7 @@ class VplEstimator final : public Estimator {
             hidden_.emplace(scene, options, *settings.screen_space, settings.eye.max_depth, bound_);
         if (settings_.visibility.used_in(scene)) maps_.emplace(scene, settings_.visibility);
         if (settings_.visibility.imperfect)
-            points_ = lights::sample_surface_points(
+            points_ = lights::sample_surfaces(
                 scene, std::size_t(settings.visibility.imperfect_map.all_points), options.seed);
         if (settings_.reflective_maps > 0)
             reflective_.emplace(scene, settings.reflective_maps, settings.paths);
@@ -316,7 +316,7 @@ class VplEstimator final : public Estimator {
     std::unique_ptr<lights::VplSelector> selector_;  ///< of this pass
     Statistics selection_statistics_;
     std::optional<lights::ReflectiveShadowMaps> reflective_;  ///< nothing: lights draw their paths
-    lights::SurfacePoints points_;
+    lights::SurfaceSamples points_;
     lights::ImperfectShadowMaps imperfect_;  ///< of this pass, from these points
     double imperfect_seconds_ = 0.0;
     std::uint64_t imperfect_lookups_ = 0;

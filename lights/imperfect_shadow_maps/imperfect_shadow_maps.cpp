@@ -41,7 +41,7 @@ class Splats {
         texel_width_ = view.spacing(1.0f);
     }
 
-    void add(const SurfacePoint& point) {
+    void add(const SurfaceSample& point) {
         const Vec3 d = view_.frame.to_local(point.position - view_.origin);
         const bool half = view_.kind == ShadowMapView::Kind::hemispherical;
         const float distance = glm::length(d);
@@ -89,7 +89,7 @@ class Splats {
 
 }  // namespace
 
-void ImperfectShadowMaps::build(const SurfacePoints& points, const VplSet& vpls,
+void ImperfectShadowMaps::build(const SurfaceSamples& points, const VplSet& vpls,
                                 const ImperfectMapSettings& settings, std::uint64_t key,
                                 CancelToken cancelled) {
     using Kind = ShadowMapView::Kind;

@@ -18,7 +18,7 @@
 #include <span>
 
 #include "core/objects/cancellation.h"
-#include "lights/imperfect_shadow_maps/surface_points.h"
+#include "lights/imperfect_shadow_maps/surface_samples.h"
 #include "lights/shadow_maps/shadow_map_view.h"
 #include "lights/virtual_lights/virtual_point_light.h"
 #include "lights/virtual_lights/vpl_receivers.h"
@@ -42,7 +42,7 @@ class ImperfectShadowMaps {
   public:
     /// Maps of all lights of a set, on the threads of TBB; `key` says which points go into which map. The
     /// same for any number of threads. Throws core::Cancelled.
-    void build(const SurfacePoints& points, const VplSet& vpls, const ImperfectMapSettings& settings,
+    void build(const SurfaceSamples& points, const VplSet& vpls, const ImperfectMapSettings& settings,
                std::uint64_t key, core::CancelToken cancelled = {});
 
     std::size_t count() const { return views_.size(); }                           ///< maps

@@ -26,34 +26,34 @@ float connect_by_steps(const LineChoice& light, float expected, float step, floa
 
 }  // namespace
 
-void LineCandidates::add(std::uint32_t light, bool ray, float weight, const LaneFloats& expected) {
+void LineCandidates::add(std::uint32_t light, bool ray, float weight, const Lanes& expected) {
     lights_.push_back({light, ray, weight});
-    LaneFloats& weighted = expected_.emplace_back();
+    Lanes& weighted = expected_.emplace_back();
     for (int i = 0; i < ReceiverLanes::width; ++i) {
-        weighted.of[i] = expected.of[i] * weight;
-        total_.of[i] += weighted.of[i];
+        weighted[i] = expected[i] * weight;
+        total_[i] += weighted[i];
     }
 }
 
-void LineCandidates::choose(const LaneFloats& steps, const LaneFloats& starts, LineChoices& choices) const {
+void LineCandidates::choose(const Lanes& steps, const Lanes& starts, LineChoices& choices) const {
     constexpr int lanes = ReceiverLanes::width;
-    LaneFloats next;  // how far it is to the next step
+    Lanes next;  // how far it is to the next step
     for (int i = 0; i < lanes; ++i) {
         choices[std::size_t(i)].clear();
-        next.of[i] = starts.of[i] < 1.0f ? starts.of[i] * steps.of[i] : infinity;
+        next[i] = starts[i] < 1.0f ? starts[i] * steps[i] : infinity;
     }
     for (std::size_t k = 0; k < lights_.size(); ++k) {
-        const LaneFloats& expected = expected_[k];
+        const Lanes& expected = expected_[k];
         // Few lanes connect to a light: whether any does is tested for all at once.
         int reached = 0;
-        for (int i = 0; i < lanes; ++i) reached += next.of[i] < expected.of[i] ? 1 : 0;
+        for (int i = 0; i < lanes; ++i) reached += next[i] < expected[i] ? 1 : 0;
         for (int i = 0; i < lanes && reached > 0; ++i)
-            if (next.of[i] < expected.of[i]) {
+            if (next[i] < expected[i]) {
                 --reached;
-                next.of[i] = connect_by_steps(lights_[k], expected.of[i], steps.of[i], next.of[i],
-                                              choices[std::size_t(i)]);
+                next[i] =
+                    connect_by_steps(lights_[k], expected[i], steps[i], next[i], choices[std::size_t(i)]);
             }
-        for (int i = 0; i < lanes; ++i) next.of[i] -= expected.of[i];
+        for (int i = 0; i < lanes; ++i) next[i] -= expected[i];
     }
 }
 

@@ -29,17 +29,17 @@ class LineCandidates {
     /// Removes all candidates.
     void clear() { lights_.clear(), expected_.clear(), total_ = {}; }
     /// Appends a light of this weight, with its importance for each lane.
-    void add(std::uint32_t light, bool ray, float weight, const LaneFloats& expected);
+    void add(std::uint32_t light, bool ray, float weight, const core::Lanes& expected);
     /// Sum of all importances, by lane.
-    const LaneFloats& total() const { return total_; }
+    const core::Lanes& total() const { return total_; }
     /// Lights that lanes connect to, each with steps of `steps` from a start within the first one; a step of
     /// 0: to all that send any light, once. Of lanes with a start of 1 or more, to nothing.
-    void choose(const LaneFloats& steps, const LaneFloats& starts, LineChoices& choices) const;
+    void choose(const core::Lanes& steps, const core::Lanes& starts, LineChoices& choices) const;
 
   private:
     std::vector<LineChoice> lights_;
-    std::vector<LaneFloats> expected_;
-    LaneFloats total_;
+    std::vector<core::Lanes> expected_;
+    core::Lanes total_;
 };
 
 }  // namespace mote::lights

@@ -21,7 +21,7 @@ Vec2 spread(const Vec2& start, std::size_t n) {
 }
 
 void set_lane(ShadowPacket& packet, LaneLight& light, int i, const LineConnection& c, float weight) {
-    set_shadow_ray(packet, i, c.from, c.to);
+    packet.set(i, c.from, c.to - c.from, shadow_fraction);
     light.r[i] = weight * c.value.x, light.g[i] = weight * c.value.y, light.b[i] = weight * c.value.z;
 }
 
@@ -47,7 +47,7 @@ void LineGather::sample_candidates(Rng& rng, int receivers) {
 
 template <typename Receivers>
 void LineGather::evaluate_at(const Receivers& receivers, LineCandidates& candidates) const {
-    LaneFloats expected;
+    Lanes expected;
     for (const WeightedVpl& light : candidate_rays_) {
         importance(set_.rays[light.index], receivers, expected);
         candidates.add(std::uint32_t(light.index), true, light.weight, expected);
@@ -67,10 +67,10 @@ void LineGather::evaluate(const PointReceivers& points, LineCandidates& candidat
 }
 
 template <typename Active>
-void LineGather::choose(const LineCandidates& candidates, const LaneFloats& steps, ReceiverTile& tile,
+void LineGather::choose(const LineCandidates& candidates, const Lanes& steps, ReceiverTile& tile,
                         const Active& active) {
-    LaneFloats starts;
-    for (int i = 0; i < width; ++i) starts.of[i] = active(i) ? tile.rng[i].next_float() : 1.0f;
+    Lanes starts;
+    for (int i = 0; i < width; ++i) starts[i] = active(i) ? tile.rng[i].next_float() : 1.0f;
     candidates.choose(steps, starts, choices_);
 }
 
@@ -114,7 +114,7 @@ TileLight LineGather::gather(ReceiverTile& tile, const Connect& connect_lane) {
     return sum.value();
 }
 
-TileLight LineGather::to_eyes(const EyeLines& eyes, const LineCandidates& candidates, const LaneFloats& steps,
+TileLight LineGather::to_eyes(const EyeLines& eyes, const LineCandidates& candidates, const Lanes& steps,
                               ReceiverTile& tile) {
     for (int i = 0; i < width; ++i) {
         tile.directional[i] = nullptr;
@@ -129,7 +129,7 @@ TileLight LineGather::to_eyes(const EyeLines& eyes, const LineCandidates& candid
     });
 }
 
-TileLight LineGather::to_points(const LineCandidates& candidates, const LaneFloats& steps, float bound,
+TileLight LineGather::to_points(const LineCandidates& candidates, const Lanes& steps, float bound,
                                 ReceiverTile& tile) {
     choose(candidates, steps, tile, [&](int i) { return tile.max_vpl_depth[i] > 0; });
     return gather(tile, [&](int i, const LineChoice& pick, const Vec2& u) -> Found {

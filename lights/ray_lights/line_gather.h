@@ -34,10 +34,10 @@ class LineGather {
 
     /// By lane: along eye rays, connected by steps of so much light. `tile` is written to: its states and
     /// generators are those of the lanes; generators it has must be the lanes' own.
-    TileLight to_eyes(const EyeLines& eyes, const LineCandidates& candidates, const LaneFloats& steps,
+    TileLight to_eyes(const EyeLines& eyes, const LineCandidates& candidates, const core::Lanes& steps,
                       ReceiverTile& tile);
     /// Light at points, with min(G*, bound) [1/m^2].
-    TileLight to_points(const LineCandidates& candidates, const LaneFloats& steps, float bound,
+    TileLight to_points(const LineCandidates& candidates, const core::Lanes& steps, float bound,
                         ReceiverTile& tile);
     const LineCounters& counters() const { return counters_; }
 
@@ -46,7 +46,7 @@ class LineGather {
     template <typename Receivers>
     void evaluate_at(const Receivers& receivers, LineCandidates& candidates) const;
     template <typename Active>
-    void choose(const LineCandidates& candidates, const LaneFloats& steps, ReceiverTile& tile,
+    void choose(const LineCandidates& candidates, const core::Lanes& steps, ReceiverTile& tile,
                 const Active& active);
     template <typename Connect>
     TileLight gather(ReceiverTile& tile, const Connect& connect_lane);

@@ -71,7 +71,7 @@ struct LitPoint {
 
 /// Adds what scatters along the eye rays.
 template <bool Directional, bool Surface>
-void add_point(const LitPoint& point, std::int32_t depth, const EyeReceivers& eyes, LaneFloats& out) {
+void add_point(const LitPoint& point, std::int32_t depth, const EyeReceivers& eyes, Lanes& out) {
     const float px = point.at.x, py = point.at.y, pz = point.at.z, near_light = point.near_squared;
     const float nx = point.normal.x, ny = point.normal.y, nz = point.normal.z;
     const float wx = point.way.x, wy = point.way.y, wz = point.way.z, g = point.asymmetry;
@@ -79,16 +79,15 @@ void add_point(const LitPoint& point, std::int32_t depth, const EyeReceivers& ey
     MOTE_INDEPENDENT_LANES
     for (int i = 0; i < lane_count; ++i) {
         float sum = 0.0f;
-        const float near_squared = near_light + eyes.near_squared.of[i];
-        float ax = eyes.x[0].of[i] - px, ay = eyes.y[0].of[i] - py, az = eyes.z[0].of[i] - pz;
+        const float near_squared = near_light + eyes.near_squared[i];
+        float ax = eyes.x[0][i] - px, ay = eyes.y[0][i] - py, az = eyes.z[0][i] - pz;
         float a = std::sqrt(ax * ax + ay * ay + az * az + near_squared);
         float height = ax * nx + ay * ny + az * nz, highest = height;
         for (int k = 0; k < segments; ++k) {
-            const float bx = eyes.x[k + 1].of[i] - px, by = eyes.y[k + 1].of[i] - py,
-                        bz = eyes.z[k + 1].of[i] - pz;
+            const float bx = eyes.x[k + 1][i] - px, by = eyes.y[k + 1][i] - py, bz = eyes.z[k + 1][i] - pz;
             const float b = std::sqrt(bx * bx + by * by + bz * bz + near_squared);
-            float value = eyes.weight[k].of[i] * falls(a * b, ax * bx + ay * by + az * bz + near_squared,
-                                                       0.5f * eyes.extinction.of[i] * (a + b), 1.0f);
+            float value = eyes.weight[k][i] * falls(a * b, ax * bx + ay * by + az * bz + near_squared,
+                                                    0.5f * eyes.extinction[i] * (a + b), 1.0f);
             if constexpr (Surface || Directional) {
                 const float mx = ax + bx, my = ay + by, mz = az + bz;
                 const float inverse = 1.0f / std::sqrt(mx * mx + my * my + mz * mz + near_squared);
@@ -98,9 +97,9 @@ void add_point(const LitPoint& point, std::int32_t depth, const EyeReceivers& ey
                     height = next, highest = max_of(highest, next);
                 }
                 if constexpr (Directional) {
-                    const float to_eye = mx * eyes.direction_x.of[i] + my * eyes.direction_y.of[i] +
-                                         mz * eyes.direction_z.of[i];
-                    value *= lobe(eyes.asymmetry.of[i], -to_eye * inverse);
+                    const float to_eye =
+                        mx * eyes.direction_x[i] + my * eyes.direction_y[i] + mz * eyes.direction_z[i];
+                    value *= lobe(eyes.asymmetry[i], -to_eye * inverse);
                     if constexpr (!Surface) value *= lobe(g, (mx * wx + my * wy + mz * wz) * inverse);
                 }
             }
@@ -108,7 +107,7 @@ void add_point(const LitPoint& point, std::int32_t depth, const EyeReceivers& ey
             ax = bx, ay = by, az = bz, a = b;
         }
         const float open = Surface ? (highest > 0.0f ? strength : 0.0f) : strength;
-        out.of[i] += depth <= eyes.max_depth[i] ? open * sum : 0.0f;
+        out[i] += depth <= eyes.max_depth[i] ? open * sum : 0.0f;
     }
 }
 
@@ -118,26 +117,26 @@ EyeReceivers::EyeReceivers(const EyeLines& eyes) {
     for (int i = 0; i < lane_count; ++i) {
         const EyeLine* eye = eyes.of[std::size_t(i)];
         if (!eye) {
-            for (int k = 0; k <= segments; ++k) x[k].of[i] = float(k);  // anywhere, apart
+            for (int k = 0; k <= segments; ++k) x[k][i] = float(k);  // anywhere, apart
             continue;
         }
         const MediumLine& line = eye->line;
         const LineSegments parts(line);
         const float rest = min_weight * parts.mean(), through = average(eye->throughput);
         for (int k = 0; k <= segments; ++k)
-            x[k].of[i] = parts.end[k].x, y[k].of[i] = parts.end[k].y, z[k].of[i] = parts.end[k].z;
+            x[k][i] = parts.end[k].x, y[k][i] = parts.end[k].y, z[k][i] = parts.end[k].z;
         for (int k = 0; k < segments; ++k)
-            weight[k].of[i] = through * parts.length * (parts.weight[k] + rest) * inv_four_pi;
-        direction_x.of[i] = line.direction.x, direction_y.of[i] = line.direction.y;
-        direction_z.of[i] = line.direction.z;
-        near_squared.of[i] = near_on_line * sqr(parts.length);
-        extinction.of[i] = average(line.sigma_t), asymmetry.of[i] = lights::asymmetry(line);
+            weight[k][i] = through * parts.length * (parts.weight[k] + rest) * inv_four_pi;
+        direction_x[i] = line.direction.x, direction_y[i] = line.direction.y;
+        direction_z[i] = line.direction.z;
+        near_squared[i] = near_on_line * sqr(parts.length);
+        extinction[i] = average(line.sigma_t), asymmetry[i] = lights::asymmetry(line);
         max_depth[i] = eye->max_depth;
         directional |= !line.isotropic;
     }
 }
 
-void importance(const RayLight& light, const EyeReceivers& eyes, LaneFloats& out) {
+void importance(const RayLight& light, const EyeReceivers& eyes, Lanes& out) {
     const LineSegments parts(light.line);
     const float power = average(light.power) * parts.length * inv_four_pi;
     out = {};
@@ -155,7 +154,7 @@ void importance(const RayLight& light, const EyeReceivers& eyes, LaneFloats& out
     }
 }
 
-void importance(const VirtualPointLight& vpl, const EyeReceivers& eyes, LaneFloats& out) {
+void importance(const VirtualPointLight& vpl, const EyeReceivers& eyes, Lanes& out) {
     const bool surface = vpl.detail == VirtualPointLight::no_detail;
     LitPoint point{vpl.position, average(vpl.intensity) * (surface ? 1.0f : inv_pi), min_distance_squared};
     const auto depth = std::int32_t(vpl.depth);
@@ -171,17 +170,17 @@ void importance(const VirtualPointLight& vpl, const EyeReceivers& eyes, LaneFloa
         add_point<false, false>(point, depth, eyes, out);
 }
 
-PointReceivers::PointReceivers(const ReceiverLanes& points, const LaneFloats& around, float b)
+PointReceivers::PointReceivers(const ReceiverLanes& points, const Lanes& around, float b)
     : lanes(points), extinction(around), bound(b) {
     for (int i = 0; i < lane_count; ++i) {
         const bool directional = lanes.directional[i] != nullptr;
-        weight.of[i] = average(Rgb(lanes.weight_r[i], lanes.weight_g[i], lanes.weight_b[i])) *
-                       (directional ? inv_pi : 1.0f);
-        all_around.of[i] = directional || lanes.in_medium[i] > 0.0f ? 1.0f : 0.0f;
+        weight[i] = average(Rgb(lanes.weight_r[i], lanes.weight_g[i], lanes.weight_b[i])) *
+                    (directional ? inv_pi : 1.0f);
+        all_around[i] = directional || lanes.in_medium[i] > 0.0f ? 1.0f : 0.0f;
     }
 }
 
-void importance(const RayLight& light, const PointReceivers& points, LaneFloats& out) {
+void importance(const RayLight& light, const PointReceivers& points, Lanes& out) {
     const LineSegments parts(light.line);
     const float power = average(light.power) * parts.length * inv_four_pi;
     const float near_squared = std::fmax(near_on_line * sqr(parts.length), min_distance_squared);
@@ -203,19 +202,19 @@ void importance(const RayLight& light, const PointReceivers& points, LaneFloats&
             const float height =
                 max_of(mx * r.shading_x[i] + my * r.shading_y[i] + mz * r.shading_z[i], min_cosine * (a + b));
             const float seen = falls(a * b, ax * bx + ay * by + az * bz + near_squared,
-                                     0.5f * points.extinction.of[i] * (a + b), mm);
-            const float all = points.all_around.of[i];
+                                     0.5f * points.extinction[i] * (a + b), mm);
+            const float all = points.all_around[i];
             sum += parts.weight[k] * min_of(max_of(height, all * std::sqrt(mm)) * seen, bound);
             highest = max_of(highest, bx * gx + by * gy + bz * gz);
             ax = bx, ay = by, az = bz, a = b;
         }
-        const float weight = points.weight.of[i] * power;
-        const float open = max_of(highest, points.all_around.of[i]) > 0.0f ? weight : 0.0f;
-        out.of[i] = depth <= r.max_vpl_depth[i] ? open * sum : 0.0f;
+        const float weight = points.weight[i] * power;
+        const float open = max_of(highest, points.all_around[i]) > 0.0f ? weight : 0.0f;
+        out[i] = depth <= r.max_vpl_depth[i] ? open * sum : 0.0f;
     }
 }
 
-void importance(const VirtualPointLight& vpl, const PointReceivers& points, LaneFloats& out) {
+void importance(const VirtualPointLight& vpl, const PointReceivers& points, Lanes& out) {
     const bool plain = vpl.detail == VirtualPointLight::no_detail;
     const float px = vpl.position.x, py = vpl.position.y, pz = vpl.position.z;
     const float nx = vpl.normal.x, ny = vpl.normal.y, nz = vpl.normal.z;
@@ -231,12 +230,12 @@ void importance(const VirtualPointLight& vpl, const PointReceivers& points, Lane
         const float inverse = 1.0f / std::sqrt(d2);
         const float cos_x =
             max_of((dx * r.shading_x[i] + dy * r.shading_y[i] + dz * r.shading_z[i]) * inverse,
-                   points.all_around.of[i]);
+                   points.all_around[i]);
         const float cos_y = max_of(-(dx * nx + dy * ny + dz * nz) * inverse, all_around);
         const float geometry = min_of(max_of(cos_x, 0.0f) * cos_y * (inverse * inverse), bound);
-        const float weight = points.weight.of[i] * intensity;
-        const float value = weight * geometry / grows(points.extinction.of[i] * d2 * inverse);
-        out.of[i] = depth <= r.max_vpl_depth[i] ? max_of(value, 0.0f) : 0.0f;
+        const float weight = points.weight[i] * intensity;
+        const float value = weight * geometry / grows(points.extinction[i] * d2 * inverse);
+        out[i] = depth <= r.max_vpl_depth[i] ? max_of(value, 0.0f) : 0.0f;
     }
 }
 

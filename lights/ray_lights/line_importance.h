@@ -9,6 +9,7 @@
 // arrive at all.
 #pragma once
 
+#include "core/math/lanes.h"
 #include "lights/ray_lights/line_connections.h"
 
 namespace mote::lights {
@@ -18,22 +19,17 @@ struct EyeLines {
     std::array<const EyeLine*, ReceiverLanes::width> of{};
 };
 
-/// A number for each lane.
-struct alignas(64) LaneFloats {
-    float of[ReceiverLanes::width] = {};
-};
-
 /// LineSegments that lines are cut into here.
 inline constexpr int line_segments = 3;
 
 /// Sixteen eye rays.
 struct EyeReceivers {
-    LaneFloats x[line_segments + 1], y[line_segments + 1], z[line_segments + 1];  ///< ends of segments [m]
-    LaneFloats
+    core::Lanes x[line_segments + 1], y[line_segments + 1], z[line_segments + 1];  ///< ends of segments [m]
+    core::Lanes
         weight[line_segments];  ///< throughput times what scatters in the middle, times the piece's length
-    LaneFloats direction_x, direction_y, direction_z;
-    LaneFloats near_squared;           ///< softening of 1/w^2 [m^2]
-    LaneFloats extinction, asymmetry;  ///< between the ray and lights [1/m]; g of the phase function
+    core::Lanes direction_x, direction_y, direction_z;
+    core::Lanes near_squared;           ///< softening of 1/w^2 [m^2]
+    core::Lanes extinction, asymmetry;  ///< between the ray and lights [1/m]; g of the phase function
     std::int32_t max_depth[ReceiverLanes::width] = {};  ///< of lights; 0: idle
     bool directional = false;                           ///< does a phase function depend on direction?
 
@@ -43,18 +39,18 @@ struct EyeReceivers {
 /// Sixteen points.
 struct PointReceivers {
     const ReceiverLanes& lanes;
-    LaneFloats extinction;          ///< around them [1/m]
-    float bound;                    ///< of the geometry term [1/m^2]
-    LaneFloats weight, all_around;  ///< mean of the channels; 1 where light may come from everywhere, else 0
+    core::Lanes extinction;          ///< around them [1/m]
+    float bound;                     ///< of the geometry term [1/m^2]
+    core::Lanes weight, all_around;  ///< mean of the channels; 1 where light may come from everywhere, else 0
 
-    PointReceivers(const ReceiverLanes& points, const LaneFloats& extinction, float bound);
+    PointReceivers(const ReceiverLanes& points, const core::Lanes& extinction, float bound);
 };
 
 /// A ray light.
-void importance(const RayLight& light, const EyeReceivers& eyes, LaneFloats& out);
-void importance(const RayLight& light, const PointReceivers& points, LaneFloats& out);
+void importance(const RayLight& light, const EyeReceivers& eyes, core::Lanes& out);
+void importance(const RayLight& light, const PointReceivers& points, core::Lanes& out);
 /// A VPL on a surface.
-void importance(const VirtualPointLight& vpl, const EyeReceivers& eyes, LaneFloats& out);
-void importance(const VirtualPointLight& vpl, const PointReceivers& points, LaneFloats& out);
+void importance(const VirtualPointLight& vpl, const EyeReceivers& eyes, core::Lanes& out);
+void importance(const VirtualPointLight& vpl, const PointReceivers& points, core::Lanes& out);
 
 }  // namespace mote::lights

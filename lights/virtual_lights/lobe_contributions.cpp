@@ -68,10 +68,8 @@ bool contributions(const ReceiverLanes& x, const ReceiverLobes& lobes, const Vir
         const float g = x.weight_g[i] * ig * weighted;
         const float b = x.weight_b[i] * ib * weighted;
         out.r[i] = r, out.g[i] = g, out.b[i] = b;
-        packet.origin_x[i] = x.x[i], packet.origin_y[i] = x.y[i], packet.origin_z[i] = x.z[i];
-        packet.direction_x[i] = dx, packet.direction_y[i] = dy, packet.direction_z[i] = dz;
-        packet.t_min[i] = 0.0f;
-        packet.t_max[i] = max_of(r, max_of(g, b)) > 0.0f ? shadow_t_max : -1.0f;
+        const bool lit = max_of(r, max_of(g, b)) > 0.0f;
+        packet.set(i, x.position(i), {dx, dy, dz}, lit ? shadow_fraction : -1.0f);
     }
     for (int i = 0; i < lobe_lanes; ++i) brightest = max_of(brightest, packet.t_max[i]);
     return brightest > 0.0f;

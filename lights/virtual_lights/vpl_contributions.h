@@ -22,19 +22,8 @@ struct alignas(64) LaneLight {
     std::size_t vpl;  ///< its index
 };
 
-/// Shadow rays stop this much short of the VPL, so that rounding of the direction cannot hit the VPL's own
-/// surface.
-inline constexpr float shadow_t_max = core::shadow_fraction;
 /// A receiver exactly on a VPL: keeps 1/d^2 finite. Far below any distance that single precision resolves.
 inline constexpr float min_distance_squared = 1e-30f;
-
-/// The shadow ray of a lane from a receiver towards a VPL.
-inline void set_shadow_ray(core::ShadowPacket& packet, int i, const core::Vec3& from, const core::Vec3& to) {
-    packet.origin_x[i] = from.x, packet.origin_y[i] = from.y, packet.origin_z[i] = from.z;
-    packet.direction_x[i] = to.x - from.x, packet.direction_y[i] = to.y - from.y;
-    packet.direction_z[i] = to.z - from.z;
-    packet.t_min[i] = 0.0f, packet.t_max[i] = shadow_t_max;
-}
 
 /// Receivers of constant f* and a plain VPL. Returns whether any lane receives light.
 template <typename Weight>
@@ -71,10 +60,7 @@ bool plain_contributions(const ReceiverLanes& x, const VirtualPointLight& y, flo
         const float b = x.weight_b[i] * ib * weighted;
         out.r[i] = r, out.g[i] = gr, out.b[i] = b;
         const float lit = core::max_of(r, core::max_of(gr, b));
-        packet.origin_x[i] = x.x[i], packet.origin_y[i] = x.y[i], packet.origin_z[i] = x.z[i];
-        packet.direction_x[i] = dx, packet.direction_y[i] = dy, packet.direction_z[i] = dz;
-        packet.t_min[i] = 0.0f;
-        packet.t_max[i] = lit > 0.0f ? shadow_t_max : -1.0f;
+        packet.set(i, x.position(i), {dx, dy, dz}, lit > 0.0f ? core::shadow_fraction : -1.0f);
     }
     for (int i = 0; i < ReceiverLanes::width; ++i) brightest = core::max_of(brightest, packet.t_max[i]);
     return brightest > 0.0f;
@@ -105,7 +91,7 @@ bool general_contributions(const ReceiverLanes& x, const VplSet& vpls, const Vir
         const core::Rgb value = c.value * weigh(weight, g, c.distance_squared, c.cos_x, c.cos_y, i);
         if (!(core::max_component(value) > 0.0f)) continue;
         out.r[i] = value.x, out.g[i] = value.y, out.b[i] = value.z;
-        set_shadow_ray(packet, i, c.origin, c.target);
+        packet.set(i, c.origin, c.target - c.origin, core::shadow_fraction);
         any = true;
     }
     return any;

@@ -21,8 +21,8 @@ void attenuate(const GatherContext& context, ReceiverTile& tile, const ShadowPac
 }  // namespace
 
 Rgb lane_transmittance(const GatherContext& context, ReceiverTile& tile, int i, const ShadowPacket& packet) {
-    const Vec3 from(packet.origin_x[i], packet.origin_y[i], packet.origin_z[i]);
-    const Vec3 to = from + Vec3(packet.direction_x[i], packet.direction_y[i], packet.direction_z[i]);
+    const Vec3 from = packet.origin(i);
+    const Vec3 to = from + packet.direction(i);
     const ScatteringVertex* v = tile.directional[i];
     const MediumState state = v ? v->state_towards(tile.state[i], to - from) : tile.state[i];
     return context.scene.transmittance(from, to, state, tile.rng[i], context.tracking);

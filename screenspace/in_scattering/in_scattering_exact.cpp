@@ -50,10 +50,7 @@ void InScattering::trace_steps(const Ray& ray, const StepRule& rule, MarchScratc
         if (lane == 0) p.clear();
         const Vec3 x = ray.at(scratch.distances[std::min(i, steps - 1)]), to_light = position_ - x;
         const float distance = glm::length(to_light);
-        p.origin_x[lane] = x.x, p.origin_y[lane] = x.y, p.origin_z[lane] = x.z;
-        p.direction_x[lane] = to_light.x / distance, p.direction_y[lane] = to_light.y / distance,
-        p.direction_z[lane] = to_light.z / distance;
-        p.t_min[lane] = 0.0f, p.t_max[lane] = i < steps ? distance : -1.0f;
+        p.set(lane, x, to_light / distance, i < steps ? distance : -1.0f);
     }
     scene_.find_occluded(scratch.packets);
     for (std::size_t i = 0; i < steps; ++i)

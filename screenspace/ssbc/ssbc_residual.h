@@ -9,17 +9,16 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
+#include "core/math/lanes.h"
 #include "core/math/vectorize.h"
 #include "screenspace/ssbc/mip_pyramid.h"
 
 namespace mote::screenspace {
 
 /// Neighbours share almost all nodes, so a wide packet costs few lanes that compute for nothing.
-inline constexpr std::size_t packet_size = 16;
-using Lanes = std::array<float, packet_size>;
+inline constexpr std::size_t packet_size = core::Lanes::width;
 
 /// A point that light is gathered at.
 struct SsbcReceiver {
@@ -29,7 +28,7 @@ struct SsbcReceiver {
 
 /// Receivers side by side, so that the compiler makes vector instructions of loops over them.
 struct ReceiverPacket {
-    alignas(32) Lanes px, py, pz, nx, ny, nz, size;
+    core::Lanes px, py, pz, nx, ny, nz, size;
     core::Bounds3 bounds;
     void set(std::size_t lane, const SsbcReceiver& r) {
         px[lane] = r.position.x, py[lane] = r.position.y, pz[lane] = r.position.z;
@@ -40,7 +39,8 @@ struct ReceiverPacket {
 };
 
 /// G_r = max(G - b, 0) of Eq. 11.5, its mean over a patch [1/m^2].
-inline void residual_of(const ReceiverPacket& r, const SurfaceNode& node, float bound, Lanes& residual) {
+inline void residual_of(const ReceiverPacket& r, const SurfaceNode& node, float bound,
+                        core::Lanes& residual) {
     const core::Vec3 p = node.position, n = node.normal;
     const float disc = node.area * core::inv_pi;
     MOTE_INDEPENDENT_LANES
@@ -56,7 +56,7 @@ inline void residual_of(const ReceiverPacket& r, const SurfaceNode& node, float 
 
 /// Upper bound of G between the receivers and any pixel of a node [1/m^2].
 inline void largest_geometry_term(const ReceiverPacket& r, const SurfaceNode& node, bool discontinuity,
-                                  Lanes& largest) {
+                                  core::Lanes& largest) {
     const core::Vec3 p = node.position, n = node.normal;
     const float radius = node.radius, thickness = node.thickness;
     const float spread = discontinuity ? 1.0f : node.spread;

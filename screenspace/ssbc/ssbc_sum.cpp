@@ -101,7 +101,7 @@ class PatchSum {
     const ResidualSum& sum_;
     const RefinementRules& rules_;
     const ReceiverPacket& packet_;
-    alignas(32) Lanes lanes_;
+    Lanes lanes_;
 };
 
 struct NodeReference {
@@ -177,7 +177,7 @@ class Traversal {
     const float bound_, radius_squared_;
     std::array<NodeReference, 3 * 32 + 1> stack_;  // three nodes wait on each of at most 32 levels
     std::size_t size_ = 0;
-    alignas(32) Lanes lanes_;
+    Lanes lanes_;
     PatchSum<float> patches_;
 };
 

@@ -12,7 +12,7 @@
 #include "gathering/ray_bundles/triangle_list.h"
 #include "lights/emitters/emitters.h"
 #include "lights/imperfect_shadow_maps/imperfect_visibility.h"
-#include "lights/imperfect_shadow_maps/surface_points.h"
+#include "lights/imperfect_shadow_maps/surface_samples.h"
 #include "screenspace/denoising/block_regression.h"
 #include "screenspace/in_scattering/airlight.h"
 #include "screenspace/in_scattering/in_scattering_rays.h"
@@ -53,7 +53,7 @@ void gather_light() {
     const double error = double(FloorUnderLight::largest_error(formulas, light));
     expect(error < 1e-5, "light by rays over callbacks, largest relative error", error);
 
-    const auto points = lights::sample_surface_points(scene, 65536, 1);
+    const auto points = lights::sample_surfaces(scene, 65536, 1);
     lights::ImperfectShadowMaps maps;
     maps.build(points, at.vpls, {.size = 64, .points = 65536}, 1);
     lights::ImperfectVisibility visibility(context, at.tile, maps);

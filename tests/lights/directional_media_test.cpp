@@ -102,9 +102,9 @@ TEST_CASE("what is expected of ray lights knows where media scatter to", "[ray_l
         eye.line = short_line({2, 0, 0}, way_of_eye), eye.throughput = Rgb(1.0f), eye.max_depth = 10;
         EyeLines eyes;
         eyes.of[2] = &eye;
-        LaneFloats found;
+        core::Lanes found;
         importance(light, EyeReceivers(eyes), found);
-        return double(found.of[2]);
+        return double(found[2]);
     };
     const double least = expected({-1, 0.1f, 0}, {1, 0.1f, 0});
     CHECK(expected({1, 0.1f, 0}, {1, 0.1f, 0}) > 10.0 * least);

@@ -60,7 +60,7 @@ struct Wrong {
 Wrong wrong_answers(const Scene& scene, const ImperfectMapSettings& settings) {
     const VplSet vpls = trace_light_paths(scene, {.paths = 60, .max_vertices = 2}, 3, 0, SamplerKind::sobol);
     ImperfectShadowMaps maps;
-    maps.build(sample_surface_points(scene, std::size_t(settings.all_points), 1), vpls, settings, 7);
+    maps.build(sample_surfaces(scene, std::size_t(settings.all_points), 1), vpls, settings, 7);
     double near_pairs = 0.0, far_pairs = 0.0, wrong_lit = 0.0;
     Wrong wrong;
     for (const SurfaceHit& hit : receivers(scene, 400))
@@ -94,7 +94,7 @@ double leak(const ImperfectMapSettings& settings) {
         vpls.lights.push_back(vpl);
     }
     ImperfectShadowMaps maps;
-    maps.build(sample_surface_points(*scene, std::size_t(settings.all_points), 1), vpls, settings, 7);
+    maps.build(sample_surfaces(*scene, std::size_t(settings.all_points), 1), vpls, settings, 7);
     double reached = 0.0, pairs = 0.0;
     for (const SurfaceHit& hit : receivers(*scene, 400)) {
         if (max_component(glm::abs(hit.position)) < 1.99f) continue;
@@ -108,14 +108,14 @@ double leak(const ImperfectMapSettings& settings) {
 
 TEST_CASE("Points lie on surfaces, evenly by area", "[imperfect_shadow_maps]") {
     const auto scene = room(R"(<shape type="sphere"><float name="radius" value="0.7"/>)" + grey + "</shape>");
-    const SurfacePoints points = sample_surface_points(*scene, 40000, 3);
+    const SurfaceSamples points = sample_surfaces(*scene, 40000, 3);
     REQUIRE(points.points.size() == 40000);
     const double ball = 4.0 * pi * 0.49, area = ball + 96.0;
     CHECK(points.density == Approx(40000.0 / area).epsilon(0.02));
     CHECK(points.radius(10000, 3.0f) == Approx(std::sqrt(3.0 * area / (pi * 10000.0))).epsilon(0.01));
     double on_ball = 0.0, wall = 0.0, first = 0.0;
     for (std::size_t i = 0; i < points.points.size(); ++i) {
-        const SurfacePoint& p = points.points[i];
+        const SurfaceSample& p = points.points[i];
         const bool round = glm::length(p.position) < 1.0f;
         CHECK(std::fabs(round ? glm::length(p.position) - 0.7f : max_component(glm::abs(p.position)) - 2.0f) <
               1e-4f);
@@ -154,7 +154,7 @@ TEST_CASE("A wall of points is found where it is, at any slant", "[imperfect_sha
     // lit.
     Rng rng(3);
     const Vec3 n = glm::normalize(Vec3(0.6f, 0.5f, -1.0f));
-    SurfacePoints wall;
+    SurfaceSamples wall;
     const Frame frame(n);
     for (int i = 0; i < 40000; ++i) {
         const Vec2 at = 8.0f * rng.next_vec2() - 4.0f;
@@ -211,10 +211,10 @@ TEST_CASE("Maps without points, lights or texels to spare are right, and the sam
     ImperfectShadowMaps maps;
     maps.build({}, vpls, {}, 1);
     CHECK(maps.visible(0, Vec3(1.0f)));
-    maps.build(sample_surface_points(*scene, 100, 1), {}, {}, 1);
+    maps.build(sample_surfaces(*scene, 100, 1), {}, {}, 1);
     CHECK(maps.count() == 0);
-    CHECK(sample_surface_points(*scene, 0, 1).points.empty());
-    const SurfacePoints points = sample_surface_points(*scene, 3000, 1);
+    CHECK(sample_surfaces(*scene, 0, 1).points.empty());
+    const SurfaceSamples points = sample_surfaces(*scene, 3000, 1);
     const ImperfectMapSettings small{.size = 1, .points = 3000};
     maps.build(points, vpls, small, 1);
     CHECK(maps.count() == vpls.lights.size());
@@ -222,7 +222,7 @@ TEST_CASE("Maps without points, lights or texels to spare are right, and the sam
     std::vector<bool> answers;
     for (const int threads : {1, 2, 5}) {
         const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
-        const SurfacePoints again = sample_surface_points(*scene, 3000, 1);
+        const SurfaceSamples again = sample_surfaces(*scene, 3000, 1);
         maps.build(again, vpls, {.points = 1000}, 1);
         std::vector<bool> now;
         for (const SurfaceHit& hit : receivers(*scene, 100))

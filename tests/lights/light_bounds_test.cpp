@@ -33,8 +33,8 @@ void compare(bool glossy, const lights::VplSet& set, const lights::LightHierarch
     }
     LightNode node = tree.node(c);
     if (change) change(node);
-    const lights::LaneValues most = lights::upper_bound(node, bounds, bound);
-    const lights::LaneValues expected = lights::importance(node, bounds, bound);
+    const core::Lanes most = lights::upper_bound(node, bounds, bound);
+    const core::Lanes expected = lights::importance(node, bounds, bound);
     for (std::size_t i = 0; i < 16; ++i) {
         if (!(sum[i] > 1e-30)) continue;
         ++tally.pairs;

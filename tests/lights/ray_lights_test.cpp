@@ -191,17 +191,17 @@ TEST_CASE("connections by steps count every light once", "[ray_lights]") {
     const std::array<float, 5> expected{0.5f, 4.0f, 0.0f, 0.01f, 1.0f}, weight{1.0f, 1.0f, 1.0f, 1.0f, 3.0f};
     LineCandidates candidates;
     for (std::uint32_t k = 0; k < 5; ++k) {
-        LaneFloats lanes;
-        lanes.of[2] = expected[k], lanes.of[3] = 2.0f * expected[k];
+        core::Lanes lanes;
+        lanes[2] = expected[k], lanes[3] = 2.0f * expected[k];
         candidates.add(k, k % 2 == 0, weight[k], lanes);
     }
-    CHECK(candidates.total().of[0] == 0.0f);
-    CHECK(candidates.total().of[2] == Approx(7.51f));
+    CHECK(candidates.total()[0] == 0.0f);
+    CHECK(candidates.total()[2] == Approx(7.51f));
     LineChoices choices;
     const auto pick = [&](int lane, float step, float start) -> const std::vector<LineChoice>& {
-        LaneFloats steps, starts;
-        for (int i = 0; i < ReceiverLanes::width; ++i) starts.of[i] = i == lane ? start : 1.0f;
-        steps.of[lane] = step;
+        core::Lanes steps, starts;
+        for (int i = 0; i < ReceiverLanes::width; ++i) starts[i] = i == lane ? start : 1.0f;
+        steps[lane] = step;
         candidates.choose(steps, starts, choices);
         return choices[std::size_t(lane)];
     };
@@ -268,7 +268,7 @@ TEST_CASE("expected light is about what arrives, and nowhere 0 where any does", 
         eyes.of[5] = &eye;
         const EyeReceivers along(eyes);
         const PointReceivers points(lanes, {}, 50.0f);
-        LaneFloats expected[3];
+        core::Lanes expected[3];
         importance(light, along, expected[0]);
         importance(vpl, along, expected[1]);
         importance(light, points, expected[2]);
@@ -283,8 +283,8 @@ TEST_CASE("expected light is about what arrives, and nowhere 0 where any does", 
                 if (const auto c = connect(lanes, 5, light, u.x, 50.0f, context))
                     mean[2] += double(c->value.x) / (n * n);
             }
-        for (std::size_t kind = 0; kind < 3; ++kind) seen[kind].add(mean[kind], expected[kind].of[5]);
-        CHECK(expected[0].of[4] == 0.0f);  // an idle lane
+        for (std::size_t kind = 0; kind < 3; ++kind) seen[kind].add(mean[kind], expected[kind][5]);
+        CHECK(expected[0][4] == 0.0f);  // an idle lane
     }
     for (std::size_t kind = 0; kind < 3; ++kind) {
         INFO("kind " << kind << ": far off " << seen[kind].far_off << " of " << seen[kind].arrive);

@@ -2,8 +2,8 @@
 
 #include "core/math/vectorize.h"
 #include "lights/selection/hierarchy/cluster_cosines.h"
+#include "lights/selection/hierarchy/difference_box.h"
 #include "lights/selection/hierarchy/vertex_bounds.h"
-#include "lights/virtual_lights/vpl_contributions.h"
 
 namespace mote::lights {
 
@@ -16,11 +16,11 @@ constexpr int width = ReceiverLanes::width;
 constexpr float slack = 1.0f + 1e-4f;
 
 /// Bsdf::eval_bound() of glossy lanes, with the cone of the directions in which the group is seen.
-void apply_glossy(const LightNode& node, const ReceiverBounds& x, LaneValues& out) {
+void apply_glossy(const LightNode& node, const ReceiverBounds& x, Lanes& out) {
     const Vec3 middle = 0.5f * node.lower + 0.5f * node.upper;
     const float radius = 0.5f * std::sqrt(node.diagonal2());
     for (int i = 0; i < width; ++i) {
-        if (!x.glossy[i] || !(out.value[std::size_t(i)] > 0.0f)) continue;
+        if (!x.glossy[i] || !(out[i] > 0.0f)) continue;
         const Vec3 d = middle - Vec3(x.lower_x[i], x.lower_y[i], x.lower_z[i]);
         const float length = glm::length(d);
         const bool outside = length > 1.0001f * radius;
@@ -29,28 +29,25 @@ void apply_glossy(const LightNode& node, const ReceiverBounds& x, LaneValues& ou
                     : DirectionCone::all();
         const Rgb most = eval_bound(*x.glossy[i], cone);
         // weight.energy is what the lanes have by now; channels of f* are joined by the largest.
-        out.value[std::size_t(i)] *= max_component(most);
+        out[i] *= max_component(most);
     }
 }
 
 /// Times the largest values of the lobes of both ends, where there are any.
 void apply_lobes(const LightNode& node, const ReceiverBounds& x, const float* cosine_x, const float* cosine_y,
-                 LaneValues& out) {
+                 Lanes& out) {
     const float g_low = float(node.g_low) * (1.0f / 65535.0f),
                 g_high = float(node.g_high) * (1.0f / 65535.0f);
     if (node.kind == LightKind::volume && node.g_high > 0)
-        for (int i = 0; i < width; ++i)
-            out.value[std::size_t(i)] *= slack * largest_lobe(g_low, g_high, cosine_y[i]);
+        for (int i = 0; i < width; ++i) out[i] *= slack * largest_lobe(g_low, g_high, cosine_y[i]);
     if (x.any_lobe)
         for (int i = 0; i < width; ++i)
-            out.value[std::size_t(i)] *=
-                x.g_high[i] > 0.0f ? slack * largest_lobe(x.g_low[i], x.g_high[i], cosine_x[i]) : 1.0f;
+            out[i] *= x.g_high[i] > 0.0f ? slack * largest_lobe(x.g_low[i], x.g_high[i], cosine_x[i]) : 1.0f;
 }
 
 /// At most, about, or both, which have nearly everything in common.
 template <bool Most, bool About>
-void light_of(const LightNode& node, const ReceiverBounds& x, float bound, LaneValues& most,
-              LaneValues& about) {
+void light_of(const LightNode& node, const ReceiverBounds& x, float bound, Lanes& most, Lanes& about) {
     const Vec3 axis = node.axis();
     const float ax = axis.x, ay = axis.y, az = axis.z, cos_y_cone = node.cos_angle;
     const float sin_y_cone = safe_sqrt(1.0f - sqr(cos_y_cone));
@@ -69,20 +66,12 @@ void light_of(const LightNode& node, const ReceiverBounds& x, float bound, LaneV
     float cosine_x[width], cosine_y[width];
     MOTE_INDEPENDENT_LANES
     for (int i = 0; i < width; ++i) {
-        // The box of y - x.
-        const float x0 = lx - x.upper_x[i], y0 = ly - x.upper_y[i], z0 = lz - x.upper_z[i];
-        const float x1 = ux - x.lower_x[i], y1 = uy - x.lower_y[i], z1 = uz - x.lower_z[i];
-        const float nx = max_of(max_of(x0, -x1), 0.0f), ny = max_of(max_of(y0, -y1), 0.0f);
-        const float nz = max_of(max_of(z0, -z1), 0.0f);
-        const float fx = max_of(-x0, x1), fy = max_of(-y0, y1), fz = max_of(-z0, z1);
-        const float near2 = max_of(nx * nx + ny * ny + nz * nz, min_distance_squared);
-        const float far2 = max_of(fx * fx + fy * fy + fz * fz, min_distance_squared);
-        const float inv_near = 1.0f / std::sqrt(near2), inv_far = 1.0f / std::sqrt(far2);
-        const float to_light = max_of(x.axis_x[i] * x0, x.axis_x[i] * x1) +
-                               max_of(x.axis_y[i] * y0, x.axis_y[i] * y1) +
-                               max_of(x.axis_z[i] * z0, x.axis_z[i] * z1);
-        const float to_receiver =
-            max_of(-ax * x0, -ax * x1) + max_of(-ay * y0, -ay * y1) + max_of(-az * z0, -az * z1);
+        const DifferenceBox d{lx - x.upper_x[i], ly - x.upper_y[i], lz - x.upper_z[i],
+                              ux - x.lower_x[i], uy - x.lower_y[i], uz - x.lower_z[i]};
+        const float near2 = d.near_squared();
+        const float inv_near = 1.0f / std::sqrt(near2), inv_far = 1.0f / std::sqrt(d.far_squared());
+        const float to_light = d.largest_along(x.axis_x[i], x.axis_y[i], x.axis_z[i]);
+        const float to_receiver = d.largest_along(-ax, -ay, -az);
         const float cx = largest_cosine(to_light, inv_near, inv_far, x.cos_angle[i], x.sin_angle[i]);
         const float cy = largest_cosine(to_receiver, inv_near, inv_far, cos_y_cone, sin_y_cone);
         const float c_x = max_of(max_of(cx, 0.0f), 1.0f - x.has_cosine[i]);
@@ -94,14 +83,12 @@ void light_of(const LightNode& node, const ReceiverBounds& x, float bound, LaneV
             const float y_end = max_of(in_front * y_is_glossy, c_y * (1.0f - y_is_glossy));
             const float g = min_of(c_x * y_end / near2, own_bound);
             const float sent = min_of(light * reached, g) > 0.0f ? light * g : 0.0f;
-            most.value[std::size_t(i)] = sent;
+            most[i] = sent;
         }
         if constexpr (About) {
-            const float mx = 0.5f * (x0 + x1), my = 0.5f * (y0 + y1), mz = 0.5f * (z0 + z1);
-            const float d2 = max_of(mx * mx + my * my + mz * mz, least_d2);
-            const float g = min_of(c_x * c_y / d2, own_bound);
+            const float g = min_of(c_x * c_y / d.middle_squared(least_d2), own_bound);
             const float sent = min_of(light * reached, g) > 0.0f ? light * g : 0.0f;
-            about.value[std::size_t(i)] = sent;
+            about[i] = sent;
         }
         cosine_x[i] = cx, cosine_y[i] = cy;
     }
@@ -118,20 +105,20 @@ void light_of(const LightNode& node, const ReceiverBounds& x, float bound, LaneV
 
 }  // namespace
 
-LaneValues upper_bound(const LightNode& node, const ReceiverBounds& receivers, float bound) {
-    LaneValues most, about;
+Lanes upper_bound(const LightNode& node, const ReceiverBounds& receivers, float bound) {
+    Lanes most, about;
     light_of<true, false>(node, receivers, bound, most, about);
     return most;
 }
 
-LaneValues importance(const LightNode& node, const ReceiverBounds& receivers, float bound) {
-    LaneValues most, about;
+Lanes importance(const LightNode& node, const ReceiverBounds& receivers, float bound) {
+    Lanes most, about;
     light_of<false, true>(node, receivers, bound, most, about);
     return about;
 }
 
-void bound_and_importance(const LightNode& node, const ReceiverBounds& receivers, float bound,
-                          LaneValues& most, LaneValues& expected) {
+void bound_and_importance(const LightNode& node, const ReceiverBounds& receivers, float bound, Lanes& most,
+                          Lanes& expected) {
     light_of<true, true>(node, receivers, bound, most, expected);
 }
 

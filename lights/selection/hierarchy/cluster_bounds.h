@@ -8,34 +8,23 @@
 //   f* is constant, or Henyey-Greenstein's function at such a cosine, or Bsdf::eval_bound().
 #pragma once
 
-#include <array>
-
+#include "core/math/lanes.h"
 #include "lights/selection/hierarchy/light_node.h"
 #include "lights/selection/hierarchy/receiver_bounds.h"
 
 namespace mote::lights {
 
-/// Values by lane, averages over the channels.
-struct alignas(64) LaneValues {
-    std::array<float, ReceiverLanes::width> value{};
-    float sum() const {
-        float s = 0.0f;
-        for (const float v : value) s += v;
-        return s;
-    }
-};
-
 /// At least the sum over the VPLs j of the cluster of  f*(x) min(G*(x,y_j), b) I_j  for every receiver x of a
 /// lane: a third of any channel, and the average of the channels, are below this. `bound`: b [1/m^2],
 /// infinity for none. Infinite where no bound is known.
-LaneValues upper_bound(const LightNode& node, const ReceiverBounds& receivers, float bound);
+core::Lanes upper_bound(const LightNode& node, const ReceiverBounds& receivers, float bound);
 
 /// Estimate of its light, for choosing among clusters: 0 only where no light can arrive, and finite. The
 /// distance is that of the middles, and at least half the diagonal of the cluster.
-LaneValues importance(const LightNode& node, const ReceiverBounds& receivers, float bound);
+core::Lanes importance(const LightNode& node, const ReceiverBounds& receivers, float bound);
 
 /// upper_bound() and importance() at once.
 void bound_and_importance(const LightNode& node, const ReceiverBounds& receivers, float bound,
-                          LaneValues& most, LaneValues& about);
+                          core::Lanes& most, core::Lanes& about);
 
 }  // namespace mote::lights

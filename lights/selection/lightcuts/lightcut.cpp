@@ -192,9 +192,9 @@ void Lightcut::find_worst(std::size_t limit, bool estimated, std::size_t& count)
     for (std::size_t p = 0; p < pairs_.size(); ++p) {
         float error = 0.0f, squares = 0.0f, urgency = 0.0f;
         for (int i = 0; i < width; ++i) {
-            const float bound = errors_[p].value[std::size_t(i)];
+            const float bound = errors_[p][i];
             error = core::max_of(error, bound * inverse[i]);
-            const float share = expected_[p].value[std::size_t(i)] * per_total[i];
+            const float share = expected_[p][i] * per_total[i];
             squares += share * share;
             urgency += share * core::min_of(bound * per_total[i], max_above * share);
         }

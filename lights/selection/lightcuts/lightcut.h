@@ -88,7 +88,7 @@ class Lightcut {
 
     // The cut, by pair.
     std::vector<Pair> pairs_;
-    std::vector<LaneValues> errors_, expected_;  ///< upper_bound() and importance()
+    std::vector<core::Lanes> errors_, expected_;  ///< upper_bound() and importance()
     std::vector<Estimate> estimates_;
     std::vector<std::uint32_t> waiting_;  ///< pairs without an estimate
     std::array<std::uint32_t, GatherScratch::batch> batch_{};

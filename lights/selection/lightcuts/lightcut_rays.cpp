@@ -51,10 +51,7 @@ void Lightcut::trace(const GatherContext& context) {
         if (r >= rays_.size()) continue;
         const ShadowPacket& from = context.scratch.packets[rays_[r].in_batch];
         const std::size_t i = rays_[r].lane;
-        to.origin_x[at] = from.origin_x[i], to.origin_y[at] = from.origin_y[i];
-        to.origin_z[at] = from.origin_z[i], to.direction_x[at] = from.direction_x[i];
-        to.direction_y[at] = from.direction_y[i], to.direction_z[at] = from.direction_z[i];
-        to.t_max[at] = from.t_max[i];
+        to.set(at, from.origin(i), from.direction(i), from.t_max[i]);
     }
     context.rays.occlusion += rays_.size();
     context.scene.find_occluded(std::span(packed_).first(count));
@@ -69,8 +66,8 @@ void Lightcut::attenuate(const GatherContext& context, GatherPoints& points) {
         if (packet.occluded(at)) continue;
         rays_[r].transmittance = Rgb(1.0f);
         if (!attenuates) continue;
-        const Vec3 from(packet.origin_x[at], packet.origin_y[at], packet.origin_z[at]);
-        const Vec3 to = from + Vec3(packet.direction_x[at], packet.direction_y[at], packet.direction_z[at]);
+        const Vec3 from = packet.origin(at);
+        const Vec3 to = from + packet.direction(at);
         ReceiverTile& tile = points.node(pairs_[batch_[rays_[r].in_batch]].points).representative;
         const std::size_t i = rays_[r].lane;
         const ScatteringVertex* v = tile.directional[i];

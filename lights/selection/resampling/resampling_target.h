@@ -10,6 +10,7 @@
 // surfaces lane by lane.
 #pragma once
 
+#include "core/math/lanes.h"
 #include "lights/virtual_lights/lobe_contributions.h"
 #include "lights/virtual_lights/vpl_gather.h"
 
@@ -19,14 +20,13 @@ namespace mote::lights {
 class ResamplingTarget {
   public:
     static constexpr int width = ReceiverLanes::width;
-    using Lanes = std::array<float, width>;
 
     /// Keeps references to both. `bound`: b [1/m^2], infinity for none. `attenuates`: the scene has media.
     ResamplingTarget(const VplSet& vpls, const ReceiverTile& tile, float bound, bool attenuates);
 
     /// Target times the weight of the VPL, by lane, where `extinction` is that at the VPL (0 without
     /// medium()). Returns false, and nothing counts, where it is 0 at every lane.
-    bool of_light(const WeightedVpl& light, float extinction, GatherScratch& scratch, Lanes& out) const;
+    bool of_light(const WeightedVpl& light, float extinction, GatherScratch& scratch, core::Lanes& out) const;
     const core::Medium* medium() const { return medium_; }  ///< medium with the extinction at VPLs, or null
     float extinction_at(const core::Vec3& light) const;
     /// One lane's unoccluded light, with its shadow ray; the value is its luminance.
@@ -44,8 +44,8 @@ class ResamplingTarget {
     const core::Medium* medium_ = nullptr;  ///< of the first lane in one
     ReceiverLobes lobes_;                   ///< of the tile
     float fast_ = 0.0f;                     ///< 1: the guess of the transmittance falls like e^-t
-    Lanes own_half_{};    ///< half of the extinction at a receiver; where `medium_` is not its medium, all
-    Lanes other_half_{};  ///< 1/2 where that at the VPL counts, else 0
+    core::Lanes own_half_;  ///< half of the extinction at a receiver; where `medium_` is not its medium, all
+    core::Lanes other_half_;  ///< 1/2 where that at the VPL counts, else 0
 };
 
 }  // namespace mote::lights

@@ -4,7 +4,7 @@
 
 #include "core/math/vectorize.h"
 #include "lights/selection/hierarchy/cluster_cosines.h"
-#include "lights/virtual_lights/vpl_contributions.h"
+#include "lights/selection/hierarchy/difference_box.h"
 
 namespace mote::lights {
 
@@ -135,32 +135,22 @@ std::array<float, max_children> importance(const LightChildren& y, const Receive
         alignas(32) float light[max_children], cosine_x[max_children], cosine_y[max_children];
         MOTE_INDEPENDENT_LANES
         for (int i = 0; i < max_children; ++i) {
-            // The box of y - x.
-            const float x0 = y.lower_x[i] - x_upper.x, x1 = y.upper_x[i] - x_lower.x;
-            const float y0 = y.lower_y[i] - x_upper.y, y1 = y.upper_y[i] - x_lower.y;
-            const float z0 = y.lower_z[i] - x_upper.z, z1 = y.upper_z[i] - x_lower.z;
-            const float nx = max_of(max_of(x0, -x1), 0.0f), ny = max_of(max_of(y0, -y1), 0.0f);
-            const float nz = max_of(max_of(z0, -z1), 0.0f);
-            const float fx = max_of(-x0, x1), fy = max_of(-y0, y1), fz = max_of(-z0, z1);
-            const float near2 = max_of(nx * nx + ny * ny + nz * nz, min_distance_squared);
-            const float far2 = max_of(fx * fx + fy * fy + fz * fz, min_distance_squared);
-            const float inv_near = 1.0f / std::sqrt(near2), inv_far = 1.0f / std::sqrt(far2);
-            const float to_light = max_of(x_axis.x * x0, x_axis.x * x1) +
-                                   max_of(x_axis.y * y0, x_axis.y * y1) +
-                                   max_of(x_axis.z * z0, x_axis.z * z1);
-            const float to_receiver = max_of(-y.axis_x[i] * x0, -y.axis_x[i] * x1) +
-                                      max_of(-y.axis_y[i] * y0, -y.axis_y[i] * y1) +
-                                      max_of(-y.axis_z[i] * z0, -y.axis_z[i] * z1);
+            const DifferenceBox d{y.lower_x[i] - x_upper.x, y.lower_y[i] - x_upper.y,
+                                  y.lower_z[i] - x_upper.z, y.upper_x[i] - x_lower.x,
+                                  y.upper_y[i] - x_lower.y, y.upper_z[i] - x_lower.z};
+            const float inv_near = 1.0f / std::sqrt(d.near_squared()),
+                        inv_far = 1.0f / std::sqrt(d.far_squared());
+            const float to_light = d.largest_along(x_axis.x, x_axis.y, x_axis.z);
+            const float to_receiver = d.largest_along(-y.axis_x[i], -y.axis_y[i], -y.axis_z[i]);
             const float cx = largest_cosine(to_light, inv_near, inv_far, x_cos, x_sin);
             const float cy = largest_cosine(to_receiver, inv_near, inv_far, y.cos_angle[i], y.sin_angle[i]);
             const float c_x = max_of(cx, no_cosine), c_y = max_of(cy, 1.0f - y.has_cosine[i]);
-            const float mx = 0.5f * (x0 + x1), my = 0.5f * (y0 + y1), mz = 0.5f * (z0 + z1);
             const float dx = y.upper_x[i] - y.lower_x[i], dy = y.upper_y[i] - y.lower_y[i],
                         dz = y.upper_z[i] - y.lower_z[i];
             const float least =
                 max_of(0.25f * (dx * dx + dy * dy + dz * dz + x_diagonal2), min_distance_squared);
-            const float d2 = max_of(mx * mx + my * my + mz * mz, least);
-            const float g = min_of(max_of(c_x, 0.0f) * max_of(c_y, 0.0f) / d2, own_bound);
+            const float g =
+                min_of(max_of(c_x, 0.0f) * max_of(c_y, 0.0f) / d.middle_squared(least), own_bound);
             light[i] = y.min_depth[i] <= depth ? y.share[i] * g * weight : 0.0f;
             cosine_x[i] = cx, cosine_y[i] = cy;
         }

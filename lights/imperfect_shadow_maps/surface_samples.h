@@ -11,14 +11,14 @@
 
 namespace mote::lights {
 
-struct SurfacePoint {
+struct SurfaceSample {
     core::Vec3 position, normal;  ///< geometric, to either side
 };
 
 /// A sample of all surfaces.
-struct SurfacePoints {
-    std::vector<SurfacePoint> points;  ///< in random order: any range of them is a sample of all
-    float density = 0.0f;              ///< points per area [1/m^2]; 0: there are no surfaces
+struct SurfaceSamples {
+    std::vector<SurfaceSample> points;  ///< in random order: any range of them is a sample of all
+    float density = 0.0f;               ///< points per area [1/m^2]; 0: there are no surfaces
 
     /// The radius of discs that cover a surface `coverage` times in the mean, of `count` of the points [m].
     float radius(std::size_t count, float coverage) const;
@@ -26,6 +26,6 @@ struct SurfacePoints {
 
 /// `count` points, or fewer where 64 lines a point do not find as many. On the threads of TBB; the same for
 /// any number of them.
-SurfacePoints sample_surface_points(const core::RayQueries& scene, std::size_t count, std::uint64_t seed);
+SurfaceSamples sample_surfaces(const core::RayQueries& scene, std::size_t count, std::uint64_t seed);
 
 }  // namespace mote::lights

@@ -1,4 +1,4 @@
-#include "lights/imperfect_shadow_maps/surface_points.h"
+#include "lights/imperfect_shadow_maps/surface_samples.h"
 
 #include <tbb/parallel_for.h>
 
@@ -18,7 +18,7 @@ constexpr int most_surfaces = 64;                // on one line
 constexpr std::uint64_t stream = 0x737572666163ull;
 
 void follow_line(const RayQueries& scene, const Vec3& centre, float radius, Rng rng,
-                 std::vector<SurfacePoint>& points) {
+                 std::vector<SurfaceSample>& points) {
     const Vec3 direction = square_to_sphere(rng.next_vec2());
     const Frame frame(direction);
     const Vec2 at = radius * square_to_disk(rng.next_vec2());
@@ -33,19 +33,19 @@ void follow_line(const RayQueries& scene, const Vec3& centre, float radius, Rng 
 
 }  // namespace
 
-float SurfacePoints::radius(std::size_t count, float coverage) const {
+float SurfaceSamples::radius(std::size_t count, float coverage) const {
     if (points.empty() || count == 0) return 0.0f;
     const float of_these = density * float(count) / float(points.size());
     return std::sqrt(coverage / (pi * of_these));
 }
 
-SurfacePoints sample_surface_points(const RayQueries& scene, std::size_t count, std::uint64_t seed) {
-    SurfacePoints result;
+SurfaceSamples sample_surfaces(const RayQueries& scene, std::size_t count, std::uint64_t seed) {
+    SurfaceSamples result;
     const Bounds3 bounds = scene.bounds();
     const float radius = 1.001f * bounds.radius();
     if (!(radius > 0.0f) || !std::isfinite(radius)) return result;
     std::size_t lines = 0;
-    std::vector<std::vector<SurfacePoint>> found(batch / chunk);
+    std::vector<std::vector<SurfaceSample>> found(batch / chunk);
     while (result.points.size() < count && lines < std::max(64 * count, batch)) {
         tbb::parallel_for(std::size_t(0), found.size(), [&](std::size_t c) {
             found[c].clear();
