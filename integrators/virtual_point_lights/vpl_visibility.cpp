@@ -116,7 +116,7 @@ void plan_visibility(Plan& plan, const Scene& scene, const VisibilitySettings& s
                  "asked for; traced is exact");
         plan.run("memory of shadow maps",
                  fmt::format("{} for 1000 VPLs, {} of points", megabytes(1000 * map.bytes()),
-                             megabytes(std::size_t(map.all_points) * sizeof(lights::SurfacePoint))),
+                             megabytes(std::size_t(map.all_points) * sizeof(lights::SurfaceSample))),
                  "all maps of a pass are kept");
         plan.miss("detail of shadows", "finer than a texel or a disc around a point",
                   "maps are made of points: what is smaller casts no shadow, and edges are swollen");

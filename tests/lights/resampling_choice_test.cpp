@@ -13,8 +13,8 @@ using namespace mote::tests;
 
 namespace {
 
-using Weights = lights::CandidateWeights<16>;
-using Choice = lights::SystematicChoice<16>;
+using Weights = core::Lanes;
+using Choice = lights::SystematicChoice;
 
 /// The mean of visit(choice) over u in [0, 1), exactly: what lane 0 chooses changes where a step falls on
 /// the border of a candidate.
@@ -32,8 +32,8 @@ void for_each_choice(std::span<const Weights> weights, std::uint32_t n, const Vi
     Choice choice;
     for (std::size_t b = 0; b + 1 < borders.size(); ++b) {
         if (borders[b + 1] - borders[b] < 1e-9) continue;
-        std::array<float, 16> u;
-        u.fill(float(0.5 * (borders[b] + borders[b + 1])));
+        core::Lanes u;
+        for (float& number : u) number = float(0.5 * (borders[b] + borders[b + 1]));
         choice.choose(weights, n, u);
         visit(choice, borders[b + 1] - borders[b]);
     }
@@ -89,7 +89,7 @@ TEST_CASE("Resampling over three lights, by enumeration", "[light_selection][res
                 for (int k = 0, rest = tuple; k < candidates; ++k, rest /= 3) {
                     const auto j = std::size_t(rest % 3);
                     chance *= p[j], drawn.push_back(j);
-                    lights::ResamplingTarget::Lanes values{};
+                    core::Lanes values{};
                     Weights& own = weights.emplace_back();
                     own = {};
                     if (target.of_light({j, float(1.0 / (candidates * p[j]))}, 0.0f, *scratch, values))

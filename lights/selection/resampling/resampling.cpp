@@ -18,7 +18,7 @@ void Resampling::evaluate(const GatherContext& context, std::span<const Weighted
                 extinctions_.push_back(target.extinction_at(vpls_.lights[light.index].position));
         }
         for (std::size_t c = 0; c < candidates.size(); ++c) {
-            Weights& weights = weights_.emplace_back();
+            Lanes& weights = weights_.emplace_back();
             if (!target.of_light(candidates[c], extinctions_[c], context.scratch, weights)) {
                 weights_.pop_back();
                 continue;
@@ -61,7 +61,7 @@ void Resampling::fill(std::size_t round, ShadowPacket& packet, Samples& samples)
 
 TileLight Resampling::connect(const GatherContext& context, std::span<RecordedReceivers* const> points,
                               Rng& rng) {
-    std::array<float, width> u;
+    Lanes u;
     for (float& number : u) number = rng.next_float();
     choice_.choose(weights_, samples_, u);
     std::size_t rounds = 0;

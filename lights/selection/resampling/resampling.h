@@ -45,7 +45,6 @@ class Resampling {
     const ResamplingCounters& counters() const { return counters_; }
 
   private:
-    using Weights = CandidateWeights<width>;
     struct Pair {
         std::uint32_t light, point, candidate;
         float weight;  ///< of the candidate
@@ -76,8 +75,8 @@ class Resampling {
     std::span<const float> visibilities_;
     std::vector<float> extinctions_;                    ///< at candidates
     std::vector<std::array<core::Vec3d, width>> sums_;  ///< by point
-    std::vector<Weights> weights_;                      ///< by pair
-    SystematicChoice<width> choice_;
+    std::vector<core::Lanes> weights_;                  ///< by pair
+    SystematicChoice choice_;
     std::array<Samples, GatherScratch::batch> batch_;
 };
 

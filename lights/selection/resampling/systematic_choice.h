@@ -16,6 +16,8 @@
 #include <span>
 #include <vector>
 
+#include "core/math/lanes.h"
+
 namespace mote::lights {
 
 /// A candidate, and how many of the n choices fell on it.
@@ -23,35 +25,30 @@ struct ChosenCandidate {
     std::uint32_t candidate, count;
 };
 
-/// v_c of sixteen receivers.
-template <int Width>
-using CandidateWeights = std::array<float, Width>;
-
 /// For every lane its choices, in the order of the candidates, and S. Lanes whose weights are all 0 choose
 /// nothing. u in [0, 1). Weights are finite and not negative.
-template <int Width>
 struct SystematicChoice {
-    std::array<std::vector<ChosenCandidate>, Width> chosen;
-    std::array<double, Width> sum{};
+    static constexpr std::size_t width = core::Lanes::width;
+    std::array<std::vector<ChosenCandidate>, width> chosen;
+    std::array<double, width> sum{};
 
-    void choose(std::span<const CandidateWeights<Width>> weights, std::uint32_t n,
-                const std::array<float, Width>& u) {
+    void choose(std::span<const core::Lanes> weights, std::uint32_t n, const core::Lanes& u) {
         for (auto& lane : chosen) lane.clear();
         sum = {};
         for (const auto& w : weights)
-            for (std::size_t i = 0; i < Width; ++i) sum[i] += double(w[i]);
-        std::array<double, Width> reached{}, next, step;
-        std::array<std::uint32_t, Width> taken{};
-        for (std::size_t i = 0; i < Width; ++i)
+            for (std::size_t i = 0; i < width; ++i) sum[i] += double(w[i]);
+        std::array<double, width> reached{}, next, step;
+        std::array<std::uint32_t, width> taken{};
+        for (std::size_t i = 0; i < width; ++i)
             step[i] = sum[i] / double(n), next[i] = double(u[i]) * step[i];
         for (std::size_t c = 0; c < weights.size(); ++c) {
             bool any = false;
-            for (std::size_t i = 0; i < Width; ++i) {
+            for (std::size_t i = 0; i < width; ++i) {
                 reached[i] += double(weights[c][i]);
                 any |= reached[i] > next[i];
             }
             if (!any) continue;
-            for (std::size_t i = 0; i < Width; ++i) {
+            for (std::size_t i = 0; i < width; ++i) {
                 const std::uint32_t before = taken[i];
                 while (taken[i] < n && reached[i] > next[i])
                     next[i] = (double(++taken[i]) + double(u[i])) * step[i];
