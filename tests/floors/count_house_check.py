@@ -24,8 +24,8 @@ PAGE = """## Shapes
 """
 CUT = "std::pop_heap(cut_.begin(), cut_.end());\n"
 BOX = "const float near2 = max_of(nx * nx + ny * ny, 0.0f);\n"
-DRAWN = "lanes.t_max[i] = shadow_t_max;\n"
-SAMPLER = "SurfacePoints sample_surface_points(const Scene& scene) {}\n"
+DRAWN = "lanes.origin_x[i] = x;\n"
+SAMPLER = "SurfaceSamples sample_surfaces(const Scene& scene) {}\n"
 
 # (file, content, what of count() it raises to how much)
 CASES = [
