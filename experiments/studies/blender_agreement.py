@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A scene of Blender rendered by Cycles and by mote: means with standard errors, and processor time to equal error.
 
-    python3 experiments/studies/blender_agreement.py MOTE [SAMPLES [SEEDS [BPY_PYTHON]]]
+    python3 experiments/studies/blender_agreement.py MOTE [SAMPLES [SEEDS [BPY_PYTHON]]] [--quick]
 
 Each engine renders SEEDS pictures of SAMPLES samples a pixel. The standard error is that of the mean over seeds. Time
 to equal error: variance of a pixel between seeds, averaged over the picture, times processor seconds a picture (export and
@@ -20,7 +20,9 @@ WIDTH = 64
 
 
 def main():
-    mote, samples, seeds, python = [*sys.argv[1:], *("64", "8", "")[len(sys.argv) - 2:]]
+    given = [argument for argument in sys.argv[1:] if argument != "--quick"]
+    usual = ("4", "2", "") if len(given) < len(sys.argv) - 1 else ("64", "8", "")
+    mote, samples, seeds, python = [*given, *usual[len(given) - 1:]]
     with tempfile.TemporaryDirectory() as name:
         found = run(blender(python), mote, Path(name), WIDTH, samples, seeds)
     print("| scene | Cycles | mote | difference | standard error | processor s | time to equal error |\n" + "|---" * 7 + "|")

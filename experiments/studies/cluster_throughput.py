@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Passes a second by one process on all cores, and by as many workers of a cluster with one thread each.
 
-Usage: cluster_throughput.py MOTE [--scene scenes/cornell_box.xml] [--passes N] [--block B] [--workers W] [--repeat R]
+Usage: cluster_throughput.py MOTE [--scene scenes/cornell_box.xml] [--passes N] [--block B] [--workers W] [--repeat R] [--quick]
 With a Python that has `distributed` (tests/cluster/run makes one: build/release/python_cluster/bin/python). Times are of
 the wall and of processors, from the first pass asked for to the picture; both turns alternate, medians count. On a machine
 that others use too, only processor seconds can be compared: workers, merging and what Dask itself does are in them.
@@ -35,7 +35,10 @@ def main():
     p.add_argument("--block", type=int, default=64)
     p.add_argument("--workers", type=int, default=os.cpu_count())
     p.add_argument("--repeat", type=int, default=3)
+    p.add_argument("--quick", action="store_true", help="tiny: numbers without a meaning")
     a = p.parse_args()
+    if a.quick:
+        a.passes, a.block, a.repeat = 8, 2, 1
     mote = str(Path(a.mote).resolve())
     options = ["--integrator", a.integrator]
     alone, together, processors = [], [], []

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Virtual point lights in image space (mote_vpl): interleaving, the filter, and upsampling: error against counted work, and bias.
 
-Usage: interleaving.py [--mote build/release/bin/mote] [--seeds N] [--reference PASSES] [--scale N]
+Usage: interleaving.py [--mote build/release/bin/mote] [--seeds N] [--reference PASSES] [--scale N] [--quick]
 For the smoke room and the Cornell box, with the same bounded lights throughout: squared relative RMSE (measure.py) against a
 long render without either, whose own noise is taken off, counted work of a pixel
 (core/render/counted_work.h) and processor seconds of a picture, their products, and the signed bias of the mean over seeds.
@@ -65,10 +65,13 @@ def main():
     parser.add_argument("--seeds", type=int, default=3)
     parser.add_argument("--reference", type=int, default=200)
     parser.add_argument("--scale", type=int, default=1, help="pictures so many times as wide and high")
+    parser.add_argument("--quick", action="store_true", help="tiny: numbers without a meaning")
     args = parser.parse_args()
+    if args.quick:
+        args.seeds, args.reference = 2, 4
     measure.use(Path(args.mote).parent)
     with tempfile.TemporaryDirectory() as folder:
-        for scene in SCENES:
+        for scene in list(SCENES)[-1 if args.quick else 0 :]:
             study(args, scene, Path(folder))
 
 

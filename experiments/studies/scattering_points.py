@@ -2,6 +2,7 @@
 """Eye rays through media: one distance by chance, or scattering points and the surface behind them (mote_vpl).
 
 Usage: scattering_points.py [--mote build/release/bin/mote] [--seeds N] [--passes N] [--size 96x60] [--points 0,1,2,4,8]
+                            [--quick]
 For the smoke room and the fog behind a grille: the variance of one pass, the square of the noise of
 docs/testing.md, Eq. 4, relative to the beauty, layer by layer, times the counted work of a
 pass and pixel (core/render/counted_work.h): less is better, and all settings have the same mean. Variances are those
@@ -62,7 +63,10 @@ def main():
     parser.add_argument("--paths", type=int, default=64)
     parser.add_argument("--size", default="96x60")
     parser.add_argument("--points", default="0,1,2,4,8")
+    parser.add_argument("--quick", action="store_true", help="tiny: numbers without a meaning")
     args = parser.parse_args()
+    if args.quick:
+        args.seeds, args.passes, args.paths, args.size, args.points = 2, 1, 8, "24x15", "0,1"
     use(Path(args.mote).parent)
     print("scene, points: variance of a pass by layer; work, seconds; variance x work, variance x seconds")
     with tempfile.TemporaryDirectory() as folder:

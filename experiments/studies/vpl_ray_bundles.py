@@ -2,7 +2,7 @@
 """Virtual point lights, bundles from the eye, and both weighed against each other: processor time to an error of 2 %.
 
 Usage: vpl_ray_bundles.py [--mote build/release/bin/mote] [--scenes cornell_box,atrium] [--width 640] [--height 400]
-                          [--passes N] [--seeds N] [--reference PASSES] [--folder FOLDER] [--methods "combined;bundles;vpls"]
+                          [--passes N] [--seeds N] [--reference PASSES] [--folder FOLDER] [--methods "combined;bundles;vpls"] [--quick]
 Each technique is rendered with a few passes and several seeds, and its error found against two pictures of `path`
 (`mote compare --second`, free of the noise of both). The time to 2 % is extrapolated: the square of the error falls as one
 over the number of passes. That flatters techniques alone, whose squares have no mean: a few passes seldom meet
@@ -74,7 +74,10 @@ def main():
     parser.add_argument("--reference", type=int, default=48, help="passes of each of the two")
     parser.add_argument("--methods", help="all, unless named here, separated by ';'")
     parser.add_argument("--folder", type=Path, help="keeps pictures, and takes references that are there")
+    parser.add_argument("--quick", action="store_true", help="tiny: numbers without a meaning")
     args = parser.parse_args()
+    if args.quick:
+        args.scenes, args.width, args.height, args.passes, args.reference = "cornell_box", 32, 20, 2, 4
     chosen = args.methods.split(";") if args.methods else list(METHODS)
     if unknown := set(chosen) - set(METHODS):
         parser.error(f"no method {', '.join(sorted(unknown))}; there are {', '.join(METHODS)}")
