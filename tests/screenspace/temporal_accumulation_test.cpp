@@ -198,10 +198,11 @@ TEST_CASE("What is not finite adds nothing, and the sky has a history", "[denois
         REQUIRE(result[p] == Rgb(3.0f));
         REQUIRE(accumulated.accumulation.length()[p] == (p % 7 ? 3.0f : 1.0f));
     }
-    // No history for sky that was a wall before.
+    // No history for a wall that was sky before, nor the other way.
     Frame wall;
     const auto history = reproject(wall.features(), sky.features());
     CHECK_FALSE(history[0].any());
+    CHECK_FALSE(reproject(sky.features(), wall.features())[0].any());
     CHECK(history[pixels - 1].any());
     Frame other(0.0f, 0.0f);
     other.normal.assign(pixels, Vec3(1, 0, 0));
