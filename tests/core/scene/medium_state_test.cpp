@@ -1,11 +1,16 @@
 // Which media surround a point: nested, overlapping, open and inward-facing shapes; paths and their reverse.
 #include "core/scene/medium_state.h"
 
+#include <fmt/format.h>
+
+#include <fstream>
+
 #include "core/geometry/analytic_shapes.h"
 #include "core/geometry/shape.h"
 #include "core/math/warp.h"
 #include "core/scene/requirements.h"
 #include "tests/core/scene/scene_fixture.h"
+#include "tests/support/temporary_folder.h"
 
 using namespace mote::core;
 using namespace mote::tests;
@@ -214,6 +219,33 @@ TEST_CASE("Open walls that declare an exterior make a room of fog", "[scene][med
     // In and out through the window, wherever one starts.
     CHECK(transmittance(*scene, {0, 0, 0}, {0, 0, -9}) == Approx(std::exp(-5.0)));
     CHECK(transmittance(*scene, {0, 0, -9}, {0, 0, 0}) == Approx(std::exp(-5.0)));
+}
+
+// Two boxes that overlap, in one mesh: a ray from where they do leaves it twice.
+TEST_CASE("The inside of a closed mesh is not what lies around it", "[scene][media]") {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("boxes.obj");
+    std::ofstream file(path);
+    for (const double x : {0.0, 1.5})
+        for (int corner = 0; corner < 8; ++corner)
+            file << fmt::format("v {} {} {}\n", x + (corner & 1 ? 1 : -1), corner & 2 ? 1 : -1,
+                                corner & 4 ? 1 : -1);
+    for (const int first : {1, 9})
+        for (const auto& [a, b, c, d] :
+             {std::array{0, 2, 3, 1}, std::array{4, 5, 7, 6}, std::array{0, 1, 5, 4}, std::array{2, 6, 7, 3},
+              std::array{0, 4, 6, 2}, std::array{1, 3, 7, 5}})
+            file << fmt::format("f {} {} {} {}\n", first + a, first + b, first + c, first + d);
+    file.close();
+    const auto scene =
+        scene_with_media("<shape type='obj'><string name='filename' value='" + path +
+                         "'/><bsdf type='null'/>" + inside("a") + outside("c") +
+                         "</shape><shape type='rectangle'><transform name='to_world'><translate z='-1'/>"
+                         "<scale value='5'/></transform><bsdf type='null'/>" +
+                         outside("b") + "</shape>");
+    MediumState state = scene->medium_state_at({0.75f, 0.1f, 0.2f}, nullptr);
+    CHECK(sigma(state) == 1);
+    state.leave(*scene->shapes()[0]);
+    CHECK(sigma(state) == 2);
 }
 
 TEST_CASE("A closed room with its normals inwards", "[scene][media]") {
