@@ -10,12 +10,22 @@
 
 namespace mote::core {
 
-inline constexpr int long_eye_path = 10000;  ///< vertices: diffusion through optical depth 30 takes hundreds
-inline constexpr int long_light_path = 500;  ///< vertices: each of them is kept in memory
+/// When paths that lose nothing are made to end.
+struct LongPath {
+    int vertices;    ///< up to which they continue untouched
+    float survival;  ///< at each vertex beyond; weights grow by its inverse
+};
+
+/// Diffusion through optical depth 30 takes hundreds of vertices.
+inline constexpr LongPath long_eye_path{10000, 0.95f};
+/// Each vertex is kept in memory. A path that ends at a light after n vertices on average needs a survival
+/// above 1 - 1 / n: below, weights grow faster than paths end, and what lies beyond is in no image (a white
+/// room whose lamp is met every 500 vertices lost a third of its light at 0.95).
+inline constexpr LongPath long_light_path{500, 0.999f};
 
 /// Survival probability at vertex number `depth` when `remaining` of the path's first throughput is left.
-inline float survival_chance(float remaining, int depth, int long_path) {
-    return std::min(remaining, depth < long_path ? 1.0f : 0.95f);
+inline float survival_chance(float remaining, int depth, const LongPath& path) {
+    return std::min(remaining, depth < path.vertices ? 1.0f : path.survival);
 }
 
 }  // namespace mote::core

@@ -11,6 +11,7 @@
 #include "gathering/photon_maps/progressive_radius.h"
 #include "integrators/eye_path/counters.h"
 #include "integrators/eye_path/eye_path_parameters.h"
+#include "integrators/eye_path/plan_narrow_phases.h"
 #include "integrators/photon_map/photon_eye_path.h"
 #include "integrators/register_parts.h"
 
@@ -139,6 +140,7 @@ Plan MotePhotonMap::plan(const Scene& scene, const Requirements& r) const {
     plan.run("surfaces", fmt::format("radiance estimate from the {} nearest photons", settings_.neighbours),
              "at the first vertex that is no mirror and no glass");
     plan_media(plan, r);
+    plan_narrow_phases(plan, scene);
     if (r.media_scattering) {
         plan.run("multiple scattering", "beam radiance estimate: photons as discs that face the eye ray",
                  "one walk of the transmittance serves all photons of a ray");

@@ -11,6 +11,7 @@
 // variance is infinite. Paths that cross a delta surface between the VPL and the receiver cannot be connected
 // and are missing.
 #include "integrators/eye_path/eye_path_parameters.h"
+#include "integrators/eye_path/plan_narrow_phases.h"
 #include "integrators/eye_path/transport_layers.h"
 #include "integrators/register_parts.h"
 #include "integrators/virtual_point_lights/plan_compensation.h"
@@ -216,6 +217,7 @@ Plan MoteVpl::plan(const Scene& scene, const Requirements& r) const {
     plan_visibility(plan, scene, settings_.visibility, pixels * settings_.eye_samples);
     plan_choice_of_vpls(plan, scene, r);
     plan_media(plan, r);
+    plan_narrow_phases(plan, scene);
     if (r.any_media() && settings_.scattering_points == 0)
         plan.run("eye rays", "one distance by tracking per pixel and pass", "Engelhardt 2013, Eq. 10.9");
     if (r.any_media() && settings_.scattering_points > 0)
