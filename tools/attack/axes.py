@@ -42,7 +42,7 @@ class Axes:
 
     def facts(self):
         """The axes as JSON has them; conditions of known findings refer to these names."""
-        return asdict(self)
+        return {**asdict(self), "film": "x".join(map(str, self.film))}
 
 
 MEDIA = ("none", "none", "none", "box", "box", "sphere", "room", "nested", "overlapping", "coincident", "flat", "sensor")

@@ -57,8 +57,8 @@ def quick(options, campaign):
     """0 where the attack finds what is planted, and nothing else."""
     with tempfile.TemporaryDirectory() as folder:
         wrong = levels() + planted_faults(options.bin.resolve().parent / "python", Path(folder))
-        options.folder, options.scenes = Path(folder), SCENES
-        records = campaign(options, verdict.STAGES[:2])
+        options.folder, options.scenes, options.seeds = Path(folder), SCENES, verdict.STAGES[1]
+        records = campaign(options)
     wrong += [f"{f['integrator']}: {f['what']} in scene {f['scene']}" for r in records for f in r["findings"] if not f["known"]]
     compared = sum(len(r["compared"]) for r in records)
     if compared < 5 * SCENES:

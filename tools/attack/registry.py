@@ -6,6 +6,9 @@ import random
 BUDGET = 4096  # integers of integrators beyond this are amounts of work: their upper end takes hours
 
 
+BEYOND = 0.2  # probability of a value outside of the range, which every integrator must refuse
+
+
 class Registry:
     def __init__(self):
         self.pages = importlib.import_module("mote._manual").manuals()
@@ -34,14 +37,17 @@ def ends(parameter, is_integrator, rng):
         return rng.choice(("true", "false"))
     lower, upper = bound(parameter["lower"], -math.inf), bound(parameter["upper"], math.inf)
     if parameter["type"] == "integer":
-        values = [v for v in (lower, lower + 1, lower - 1, upper, upper + 1) if math.isfinite(v)]
+        inside = (lower, lower, lower + 1, upper, upper, upper - 1)
+        chosen = (lower - 1, upper + 1) if rng.random() < BEYOND else inside
+        values = [v for v in chosen if math.isfinite(v)]
         values = [str(int(v)) for v in values if not is_integrator or v <= BUDGET]
         return rng.choice(values or ["-2147483648", "2147483647"][:1 if is_integrator else 2])
     if parameter["type"] not in ("float", "rgb", "texture"):
         return None
-    low = [lower, math.nextafter(lower, math.inf), lower - 1.0] if math.isfinite(lower) else [-1e30, -3e38]
-    high = [upper, math.nextafter(upper, -math.inf), 2.0 * upper] if math.isfinite(upper) else [1e30, 3e38]
-    return f"{rng.choice(low + high + [0.0, 1e-30]):.9g}"
+    low = [lower, math.nextafter(lower, math.inf)] if math.isfinite(lower) else [-1e30, -3e38]
+    high = [upper, math.nextafter(upper, -math.inf)] if math.isfinite(upper) else [1e30, 3e38]
+    beyond = [v for v in (lower - 1.0, 2.0 * upper) if math.isfinite(v)] if rng.random() < BEYOND else []
+    return f"{rng.choice(beyond or low + high + [max(lower, 1e-30)]):.9g}"
 
 
 def bound(value, otherwise):

@@ -21,9 +21,10 @@ FAULT = re.compile(r"internal|bad_alloc|std::|assert|terminate called|Traceback|
 
 @dataclass
 class Outcome:
-    """How a request ended: "rendered", "refused", or what was found: "signal", "time", "fault", "memory", "not_finite", "negative"."""
+    """How a request ended: "rendered", "refused", "signal", "time" or "fault"; and what was wrong with pictures."""
     kind: str = "rendered"
     text: str = ""
+    wrong: dict = field(default_factory=dict)     # "memory", "not_finite", "negative": a text
     pictures: list = field(default_factory=list)  # paths
     noises: list = field(default_factory=list)    # stated ones; None where not known
     seconds: float = 0.0                          # the longest
@@ -126,9 +127,9 @@ def take(answer, outcome):
     outcome.seconds, outcome.memory = max(outcome.seconds, answer["seconds"]), max(outcome.memory, answer["memory"])
     for kind, count in answer["wrong"].items():
         if count:
-            outcome.kind, outcome.text = kind, f"{count} values"
+            outcome.wrong[kind] = f"{count} values"
     if outcome.memory > MEMORY:
-        outcome.kind, outcome.text = "memory", f"{outcome.memory >> 20} MB"
+        outcome.wrong["memory"] = f"{outcome.memory >> 20} MB"
 
 
 def signal_name(code):

@@ -98,10 +98,11 @@ def write_scene(seed, n, folder, methods, registry):
     lines = [*integrators(methods, registry, axes.max_depth, end), sensor(axes, place, media, end), *shapes.all(),
              *media.all(), *lights.all(), *things_at_ends(end, place)]
     path = folder / "scene.xml"
-    path.write_text('<scene version="3.0.0">\n' + "\n".join(line for line in lines if line) + "\n</scene>\n")
+    text = '<scene version="3.0.0">\n' + "\n".join(line for line in lines if line) + "\n</scene>\n"
+    path.write_text(text)
     watched = {"integrator": (end[1],), "selection": ("mote_vpl",), "compensation": ("mote_vpl",),
                "visibility": ("mote_vpl",)}.get(end[0], ()) if end else ()
-    return Scene(str(n), path, {**axes.facts(), "end": " ".join(end) if end else ""}, watched=watched)
+    return Scene(str(n), path, {**axes.facts(), "end": " ".join(end) if end else "", **grids(text)}, watched=watched)
 
 
 def hostile_scene(source, folder, methods, registry):
@@ -112,4 +113,9 @@ def hostile_scene(source, folder, methods, registry):
     blocks = "\n".join([f'<path value="{source.parent.resolve()}"/>', *integrators(methods, registry, -1)])
     path = folder / "scene.xml"
     path.write_text(re.sub(r"(<scene[^>]*>)", lambda m: m[1] + "\n" + blocks, text, count=1))
-    return Scene(source.stem, path, {"file": source.name})
+    return Scene(source.stem, path, {"file": source.stem, **grids(text)})
+
+
+def grids(text):
+    """A fact of scenes with media that vary."""
+    return {"grids": "yes" if 'type="heterogeneous"' in text else "no"}
