@@ -30,7 +30,7 @@ std::shared_ptr<const core::Integrator> make_path(const EyePathLimits& limits);
 std::shared_ptr<const core::Integrator> make_volpath(const EyePathLimits& limits, bool equiangular);
 /// Virtual point lights by the ten thousand, resampled for pixels that do not lie side by side, as an image
 /// filter wants them. What their bound takes is missing.
-std::shared_ptr<const core::Integrator> make_drawn_vpls(const EyePathLimits& limits);
+std::shared_ptr<const core::Integrator> make_sampled_vpls(const EyePathLimits& limits);
 /// Light of lights with a position, scattered once in media; light of all others, with all else that scatters
 /// at most once (lights = positional, other).
 std::shared_ptr<const core::Integrator> make_epipolar(const EyePathLimits& limits, int lines, int samples);

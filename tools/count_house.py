@@ -19,9 +19,11 @@ CPP = {".h", ".cpp", ".c"}
 GOAL_LINES, GOAL_PARAMETERS = 76000, 12
 
 GETTER = re.compile(r"(?:\.|->)(?:get|require)_(?:bool|int|int_in|float|float_in|string|rgb|rgb_in|vec3|transform|choice|file)\(")
-# A row of a manual page with its default written out as text: a second statement of what a getter holds.
-ROW = re.compile(r'\{\s*"[a-z_0-9]+",\s*"(?:boolean|integer|float|string|rgb|point|vector|transform|texture|volume|bsdf|shape|'
-                 r'emitter|medium|phase|rfilter|sampler|film|integrator|compensation|visibility|selection)",')
+# A row of a manual page with its default written out as text: a second statement of what a getter holds. Behind name, type
+# and default stands a sentence or an expression; a list of names ends there or has another type.
+TYPE = (r'"(?:boolean|integer|float|string|rgb|point|vector|transform|texture|volume|bsdf|shape|emitter|medium|phase|rfilter|'
+        r'sampler|film|integrator|compensation|visibility|selection)"')
+ROW = re.compile(rf'\{{\s*"[a-z_0-9]+",\s*{TYPE},\s*(?:"[^"\n]*"|[^",{{}}]+),(?!\s*{TYPE})')
 COMMENT = re.compile(r"(?P<code>.*?)(?P<mark>//[/!]?<?)\s*(?P<text>.*)")
 OPENING = re.compile(r"(?:Of|Whether|The same|What|Who|Whose|Whoever)\b")
 

@@ -21,7 +21,7 @@ struct Method {
     nlohmann::json settings = nlohmann::json::object();
     std::shared_ptr<const core::Integrator> integrator;
 
-    /// "bounded=true paths=256"
+    /// "bound=2 paths=256"
     std::string settings_text() const;
     /// "-D integrator.paths=256" for `mote render`, which gives the same picture.
     std::vector<std::string> render_options() const;

@@ -13,7 +13,7 @@ inline constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 /// One row of trade.csv; the columns have these names, with units: wall_s, cpu_s, build_s, peak_memory_mb.
 struct Record {
-    std::string method, integrator, settings;  ///< settings: "bounded=true paths=256"
+    std::string method, integrator, settings;  ///< settings: "bound=2 paths=256"
     std::uint64_t seed = 0;
     std::uint32_t passes = 0;
     double wall = 0.0;          ///< seconds for build, passes and one finish

@@ -1,8 +1,7 @@
-// One element of a scene file as its factory sees it: typed values by name, nested objects, and where it
-// stands.
+// One element of a scene file as its factory receives it: values by name, nested objects, and its place in
+// the file. Declared rows (core/parameters) read and check the values.
 //
-// The loader has checked already that every name is in the type's manual page. A getter that finds a value of
-// another kind, or a number that is not finite, throws InputError with file and line.
+// The loader has checked already that every name is in the type's manual page.
 #pragma once
 
 #include <map>
@@ -48,22 +47,6 @@ class Properties {
     std::vector<Child> children;
 
     bool has(const std::string& name) const;
-    bool get_bool(const std::string& name, bool default_value) const;
-    std::int64_t get_int(const std::string& name, std::int64_t default_value) const;
-    double get_float(const std::string& name, double default_value) const;
-    /// Required: throws InputError naming the missing parameter.
-    double require_float(const std::string& name) const;
-    std::string get_string(const std::string& name, const std::string& default_value) const;
-    std::string require_string(const std::string& name) const;
-    /// One of a fixed set of words; an unknown word is an error with the nearest one.
-    std::string get_choice(const std::string& name, const std::string& default_value,
-                           const std::vector<std::string>& choices) const;
-    /// Like get_float, and throws InputError when the value lies outside [lower, upper].
-    double get_float_in(const std::string& name, double default_value, double lower, double upper) const;
-    /// Like get_int, and throws InputError when the value lies outside [lower, upper].
-    std::int64_t get_int_in(const std::string& name, std::int64_t default_value, std::int64_t lower,
-                            std::int64_t upper) const;
-
     /// The file's full path: relative names are looked up in search_paths. Throws InputError when it is not
     /// there.
     std::string find_file(const std::string& name) const;
@@ -72,32 +55,15 @@ class Properties {
     /// kind.
     template <typename T>
     std::shared_ptr<T> child(const std::string& name) const {
-        for (const Child& c : children)
-            if (c.name == name) return checked<T>(c);
-        return nullptr;
-    }
-    /// The nested object of category c whatever its name, or null; throws InputError when there are several.
-    template <typename T>
-    std::shared_ptr<T> child_of(Category c) const {
-        std::shared_ptr<T> found;
-        for (const Child& candidate : children) {
-            if (candidate.category != c) continue;
-            if (found) throw InputError("more than one nested " + kind_of(c), candidate.where);
-            found = checked<T>(candidate);
+        for (const Child& c : children) {
+            if (c.name != name) continue;
+            if (auto typed = std::dynamic_pointer_cast<T>(c.object)) return typed;
+            throw InputError("'" + name + "' is an object of the wrong kind", c.where);
         }
-        return found;
+        return nullptr;
     }
     SourceLocation where_of(const std::string& name) const;
     void warn(const std::string& message) const;
-
-  private:
-    template <typename T>
-    std::shared_ptr<T> checked(const Child& c) const {
-        auto typed = std::dynamic_pointer_cast<T>(c.object);
-        if (!typed) throw InputError("'" + c.name + "' is an object of the wrong kind", c.where);
-        return typed;
-    }
-    static std::string kind_of(Category c);
 };
 
 }  // namespace mote::core

@@ -26,7 +26,7 @@ def figure(mote, quick, output):
     fine = dict(points=points, micro_buffer=buffer)
     reference_passes = 200
     view = IndirectView(mote, CORNELL, size, reference_passes, "all", depth=DEPTH)
-    pairs = {"virtual point lights": (view.render("vpls", {"integrator": "mote_vpl"} | with_options(paths=paths, bounded=False), 1),
+    pairs = {"virtual point lights": (view.render("vpls", {"integrator": "mote_vpl"} | with_options(paths=paths, bound=-1), 1),
                                       view.render("gathered_vpls", micro(light="vpls", paths=paths, bound=0, **fine), 1)),
              "photons": (view.render("photons", {"integrator": "mote_photon_map"} | with_options(photon_paths=photons), 1),
                          view.render("gathered_photons", micro(light="photons", paths=photons, **fine), 1))}

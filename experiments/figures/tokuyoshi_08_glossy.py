@@ -22,10 +22,10 @@ ROUGH = with_options(roughness_clamping=True)
 
 def box_methods(paths):
     shared = with_options(paths=paths)
-    return {"none": VPL | shared | with_options(bounded=False),
+    return {"none": VPL | shared | with_options(bound=-1),
             "clamping": VPL | shared | with_options(bound=1.0),
             "spherical lights": {"integrator": "mote_vsl"} | shared,
-            "roughness clamping": VPL | shared | with_options(bounded=False) | ROUGH,
+            "roughness clamping": VPL | shared | with_options(bound=-1) | ROUGH,
             "with bundles": BUNDLES | shared | with_options(directions=paths // 4, glossy="lines"),
             "with bundles and roughness clamping": BUNDLES | shared | with_options(directions=paths // 4, glossy="clamping"),
             "with bundles and own rays": BUNDLES | shared | with_options(directions=paths // 4)}

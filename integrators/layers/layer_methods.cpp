@@ -37,7 +37,7 @@ std::vector<LayerMethod> choose_layer_methods(const Scene& scene, const Requirem
             : "paths of pixels err independently of each other, which the filter takes";
     const bool equiangular = r.media_scattering && lamps_in_media(scene);
     const auto far = [&] {
-        if (by_lights) return make_drawn_vpls(limits);
+        if (by_lights) return make_sampled_vpls(limits);
         return r.any_media() ? make_volpath(limits, equiangular) : make_path(limits);
     };
     constexpr TransportSet near = Transport::emission | Transport::direct,

@@ -23,47 +23,107 @@
 namespace mote::integrators {
 
 using namespace core;
+
+VplSettings::VplSettings() : selection(lights::all_vpls()) {}
+
 namespace {
+
+/// Settings with what only scene files give.
+struct VplFile : VplSettings {
+    std::shared_ptr<Object> restored;       ///< <compensation>; null: none
+    VplFile() { eye.max_scatterings = 1; }  // from then on virtual lights take over
+};
+
+const ParameterList<VplFile>& vpl_rows() {
+    using S = VplFile;
+    static const ParameterList<S> list{
+        within(&S::eye, eye_path_rows()),
+        row("paths", &S::paths, between(0, 1 << 26),
+            "Light paths traced in every pass, some three VPLs each: time without a selection is in "
+            "proportion, and the automatic bound removes less energy."),
+        row("reflective_shadow_maps", &S::reflective_maps, between(0, 2048),
+            "Texels along an edge of the map of each point, spot and directional light: each begins a light "
+            "path, spread more evenly than sampled ones, and `paths` are those of other lights; 0: all "
+            "lights sample their paths."),
+        row("bound", &S::bound, above(0, "1/m^2").or_else(no_bound, "no bound"),
+            "Bound b on the geometry term; lower: less noise, and more energy is removed. automatic: light "
+            "paths / R^2 with the radius R of all shapes. Without a bound the mean is right, with infinite "
+            "variance near VPLs."),
+        nested("compensation", &S::restored, Category::compensation, "none",
+               "Method that restores the energy that the bound removes."),
+        nested("visibility", &S::visibility, Category::visibility, "traced",
+               "Visibility between VPLs and receivers: traced, shadow_map, imperfect_shadow_map."),
+        nested("selection", &S::selection, Category::selection, "all",
+               "VPLs that light each receiver: all, lightcuts, multidimensional_lightcuts, "
+               "stochastic_lightcuts, light_tree, resampling, matrix."),
+        row("scattering_points", &S::scattering_points, between(0, 64),
+            "Points in media where the light of each eye ray is gathered, besides the surface behind them: "
+            "less noise of single scattering for more shadow rays; 0: one collision or the surface, by "
+            "chance."),
+        within(&S::clamping, row("roughness_clamping", &compensation::RoughnessClamping::enabled,
+                                 "Widens glossy lobes to the density of the VPLs: biased, removes spikes of "
+                                 "glossy surfaces.")),
+        row("interleaving", &S::interleaving, between(1, 8),
+            "n: a pixel of n x n gathers every n^2-th VPL, which counts n^2 times, in 1 / n^2 of the time; "
+            "with a selection the pixels that share VPLs lie n apart."),
+        row("upsampling", &S::upsampling, between(1, 8),
+            "n: VPLs are gathered at one pixel of n x n, others interpolate pixels of like surfaces or "
+            "gather their own: biased between them; not together with interleaving, eye_samples or shadow "
+            "maps."),
+        row("filter", &S::filters,
+            "Denoises the light of VPLs in image space, as far as noise that differs from pixel to pixel "
+            "explains its detail: for interleaving."),
+        row("eye_samples", &S::eye_samples, between(1, 4096),
+            "Eye paths a pixel and pass; VPLs are shared out among them, except with compensation that joins "
+            "every receiver to all.")
+            .when_absent("4 for 1-to-1 compensation, else 1")};
+    return list;
+}
+
+void read_compensation(VplFile& file) {
+    if (const auto* passes = dynamic_cast<const compensation::Compensation*>(file.restored.get()))
+        file.compensation = passes->settings();
+    if (const auto* after = dynamic_cast<const ScreenSpaceCompensation*>(file.restored.get()))
+        file.screen_space = after->settings(), file.compensation = after->media();
+}
+
+void check_compensation(const VplSettings& s, const Properties& properties) {
+    if (s.compensates() && !s.bounded())
+        throw InputError("compensation brings back what a bound takes: bound must not be -1 (no bound)",
+                         properties.where_of("bound"));
+}
+
+void check_upsampling(const VplSettings& s, const Properties& properties) {
+    if (s.upsampling == 1) return;
+    const char* against = s.interleaving > 1         ? "interleaving"
+                          : s.eye_paths() > 1        ? "eye_samples above 1"
+                          : s.visibility.shadow_maps ? "shadow maps"
+                                                     : nullptr;
+    if (against)
+        throw InputError(std::string("upsampling does not go together with ") + against,
+                         properties.where_of("upsampling"));
+}
+
+void check_selection(const VplSettings& settings) {
+    const lights::Selection& s = *settings.selection;
+    if (s.takes_all()) return;
+    const char* against = settings.interleaving > 1 && !s.interleaves() ? "interleaving"
+                          : settings.compensates()                      ? "compensation"
+                          : settings.clamping.enabled                   ? "roughness_clamping"
+                          : settings.visibility.shadow_maps             ? "shadow maps"
+                          : settings.visibility.imperfect && s.traces() ? "imperfect shadow maps"
+                                                                        : nullptr;
+    if (against)
+        throw InputError(std::string("a selection of VPLs does not go together with ") + against, s.where);
+}
 
 class MoteVpl final : public Integrator {
   public:
     explicit MoteVpl(const VplSettings& settings) : settings_(settings) {}
-    explicit MoteVpl(const Properties& properties) {
-        settings_.eye = eye_path_rows().read(properties);
-        settings_.eye.max_scatterings = 1;  // from then on virtual lights take over
-        const auto paths = properties.get_int("paths", 256);
-        if (paths < 0 || paths > (std::int64_t(1) << 26))
-            throw InputError("paths must lie between 0 and 2^26", properties.where_of("paths"));
-        settings_.paths = std::uint32_t(paths);
-        settings_.bounded = properties.get_bool("bounded", true);
-        if (properties.has("bound")) {
-            const double bound = properties.require_float("bound");
-            if (!(bound > 0.0) || !std::isfinite(float(bound)))
-                throw InputError("bound must be positive and finite; bounded=false renders without a bound",
-                                 properties.where_of("bound"));
-            settings_.bound = float(bound);
-            if (!settings_.bounded) properties.warn("bound has no effect: bounded is false");
-        }
-        read_compensation(properties);
-        settings_.scattering_points =
-            int(properties.get_int_in("scattering_points", settings_.scattering_points, 0, 64));
-        settings_.reflective_maps = int(properties.get_int_in("reflective_shadow_maps", 0, 0, 2048));
-        settings_.interleaving = int(properties.get_int_in("interleaving", 1, 1, 8));
-        settings_.upsampling = int(properties.get_int_in("upsampling", 1, 1, 8));
-        settings_.clamping.enabled = properties.get_bool("roughness_clamping", false);
-        settings_.filters = properties.get_bool("filter", false);
-        if (const auto nested = properties.child_of<Visibility>(Category::visibility))
-            settings_.visibility = nested->settings();
-        if (const auto nested = properties.child_of<lights::Selection>(Category::selection))
-            settings_.selection = nested;
-        check_selection();
-        if (settings_.upsampling > 1) check_upsampling(properties);
-    }
-
     std::string type() const override { return "mote_vpl"; }
     bool works_on_mean() const override { return settings_.screen_space.has_value() || settings_.filters; }
     std::vector<Layer> layers(const Scene& scene) const override {
-        auto layers = transport_layers(scene.has_media(), settings_.bounded ? "_bounded" : "");
+        auto layers = transport_layers(scene.has_media(), settings_.bounded() ? "_bounded" : "");
         if (settings_.compensates()) add_compensation_layers(scene, layers);
         for (Layer& layer : layers)
             layer.squares = settings_.filters && (layer.transport == Transport::indirect ||
@@ -88,51 +148,12 @@ class MoteVpl final : public Integrator {
         if (settings_.screen_space)
             for (Layer& layer : settings_.screen_space->film_layers()) layers.push_back(std::move(layer));
     }
-    void read_compensation(const Properties& properties);
-    void check_upsampling(const Properties& properties) const;
-    void check_selection() const;
     void plan_choice_of_vpls(Plan& plan, const Scene& scene, const Requirements& r) const;
     void plan_bound(Plan& plan, const Bounds3& surfaces) const;
     void plan_light_paths(Plan& plan, const Scene& scene) const;
     void plan_image_space(Plan& plan) const;
     VplSettings settings_;
 };
-
-void MoteVpl::read_compensation(const Properties& properties) {
-    const auto nested = properties.child_of<Object>(Category::compensation);
-    if (const auto inside = std::dynamic_pointer_cast<compensation::Compensation>(nested))
-        settings_.compensation = inside->settings();
-    if (const auto after = std::dynamic_pointer_cast<ScreenSpaceCompensation>(nested))
-        settings_.screen_space = after->settings(), settings_.compensation = after->media();
-    if (settings_.compensates() && !settings_.bounded)
-        throw InputError("compensation brings back what a bound takes: it needs bounded=true",
-                         properties.where_of("bounded"));
-    const bool one_to_one = settings_.compensation.enabled && settings_.vpls_shared_out();
-    settings_.eye_samples = int(properties.get_int_in("eye_samples", one_to_one ? 4 : 1, 1, 4096));
-}
-
-void MoteVpl::check_upsampling(const Properties& properties) const {
-    const char* against = settings_.interleaving > 1         ? "interleaving"
-                          : settings_.eye_samples > 1        ? "eye_samples above 1"
-                          : settings_.visibility.shadow_maps ? "shadow maps"
-                                                             : nullptr;
-    if (against)
-        throw InputError(std::string("upsampling does not go together with ") + against,
-                         properties.where_of("upsampling"));
-}
-
-void MoteVpl::check_selection() const {
-    const lights::Selection& s = *settings_.selection;
-    if (s.takes_all()) return;
-    const char* against = settings_.interleaving > 1 && !s.interleaves() ? "interleaving"
-                          : settings_.compensates()                      ? "compensation"
-                          : settings_.clamping.enabled                   ? "roughness_clamping"
-                          : settings_.visibility.shadow_maps             ? "shadow maps"
-                          : settings_.visibility.imperfect && s.traces() ? "imperfect shadow maps"
-                                                                         : nullptr;
-    if (against)
-        throw InputError(std::string("a selection of VPLs does not go together with ") + against, s.where);
-}
 
 /// A light path leaves some three VPLs.
 void MoteVpl::plan_choice_of_vpls(Plan& plan, const Scene& scene, const Requirements& r) const {
@@ -142,7 +163,7 @@ void MoteVpl::plan_choice_of_vpls(Plan& plan, const Scene& scene, const Requirem
                            ? 1 + std::min(settings_.scattering_points, 2)
                            : 1;
     const GatherSize size{3.0 * double(settings_.paths),
-                          pixels * settings_.eye_samples / lattice,
+                          pixels * settings_.eye_paths() / lattice,
                           points,
                           settings_.filters,
                           depth_of_media(scene),
@@ -165,8 +186,8 @@ void MoteVpl::plan_light_paths(Plan& plan, const Scene& scene) const {
 }
 
 void MoteVpl::plan_bound(Plan& plan, const Bounds3& surfaces) const {
-    if (!settings_.bounded) {
-        plan.run("bound", "none", "bounded is false: right in the mean, with splotches around VPLs");
+    if (!settings_.bounded()) {
+        plan.run("bound", "none", "bound is -1: right in the mean, with splotches around VPLs");
         return;
     }
     const float bound = settings_.bound_for(surfaces);
@@ -214,7 +235,7 @@ Plan MoteVpl::plan(const Scene& scene, const Requirements& r) const {
         plan.run("light per VPL", "64 bytes, one colour",
                  "every surface is diffuse and every medium isotropic");
     const double pixels = double(scene.film().width) * double(scene.film().height);
-    plan_visibility(plan, scene, settings_.visibility, pixels * settings_.eye_samples);
+    plan_visibility(plan, scene, settings_.visibility, pixels * settings_.eye_paths());
     plan_choice_of_vpls(plan, scene, r);
     plan_media(plan, r);
     plan_narrow_phases(plan, scene);
@@ -225,16 +246,16 @@ Plan MoteVpl::plan(const Scene& scene, const Requirements& r) const {
             "eye rays",
             std::to_string(settings_.scattering_points) + " scattering points, and the surface behind them",
             "one walk a pixel and pass; VPLs are shared out among the points");
-    if (settings_.bounded && !settings_.compensates())
+    if (settings_.bounded() && !settings_.compensates())
         plan.miss("short distances", "light between points closer than the bound's radius is darkened",
                   "the bound removes it; <compensation> brings it back");
     if (settings_.screen_space) plan_screen_space(plan, r, *settings_.screen_space);
     if (settings_.compensation.enabled)
         plan_compensation(plan, scene, r, settings_.compensation, settings_.bound_for(scene.rays().bounds()));
-    if (settings_.bounded)
+    if (settings_.bounded())
         plan_expected_loss(plan, scene, settings_.compensation, settings_.bound_for(scene.rays().bounds()));
-    if (settings_.eye_samples > 1)
-        plan.run("eye paths", std::to_string(settings_.eye_samples) + " a pixel and pass",
+    if (settings_.eye_paths() > 1)
+        plan.run("eye paths", std::to_string(settings_.eye_paths()) + " a pixel and pass",
                  settings_.vpls_shared_out() ? "VPLs are shared out among them" : "each meets all VPLs");
     plan_image_space(plan);
     if (settings_.clamping.enabled)
@@ -250,7 +271,7 @@ Plan MoteVpl::plan(const Scene& scene, const Requirements& r) const {
 
 }  // namespace
 
-std::shared_ptr<const Integrator> make_drawn_vpls(const EyePathLimits& limits) {
+std::shared_ptr<const Integrator> make_sampled_vpls(const EyePathLimits& limits) {
     VplSettings s;
     s.eye = limits, s.eye.max_scatterings = 1;
     s.paths = 20000, s.scattering_points = 1, s.interleaving = 4;
@@ -259,58 +280,16 @@ std::shared_ptr<const Integrator> make_drawn_vpls(const EyePathLimits& limits) {
 }
 
 void register_mote_vpl(Registry& registry) {
-    auto parameters = eye_path_rows().parameters();
-    parameters.push_back(
-        {"paths", "integer", "256",
-         "light paths traced in every pass, some three VPLs each: time without a selection is in "
-         "proportion, and the automatic bound removes less energy"});
-    parameters.push_back(
-        {"reflective_shadow_maps", "integer", "0",
-         "texels along an edge of the map of each point, spot and directional light, up to 2048: each "
-         "begins a light path, spread more evenly than sampled ones, and `paths` are those of other "
-         "lights; 0: all lights sample their paths"});
-    parameters.push_back(
-        {"bound", "float", "automatic",
-         "bound b [1/m^2] on the geometry term; lower: less noise, and more energy is removed; "
-         "automatic: light paths / R^2 with the radius R of all shapes"});
-    parameters.push_back({"bounded", "boolean", "true",
-                          "false: no bound on the geometry term, unbiased with infinite variance near VPLs"});
-    parameters.push_back(
-        {"compensation", "compensation", "none", "method that restores the energy that the bound removes"});
-    parameters.push_back({"visibility", "visibility", "traced",
-                          "visibility between VPLs and receivers: traced, shadow_map, imperfect_shadow_map"});
-    parameters.push_back({"selection", "selection", "all",
-                          "VPLs that light each receiver: all, lightcuts, multidimensional_lightcuts, "
-                          "stochastic_lightcuts, light_tree, resampling, matrix"});
-    parameters.push_back(
-        {"scattering_points", "integer", "8",
-         "points in media where the light of each eye ray is gathered, besides the surface behind them, up "
-         "to 64: less noise of single scattering for more shadow rays; 0: one collision or the surface, by "
-         "chance"});
-    parameters.push_back(
-        {"roughness_clamping", "boolean", "false",
-         "widen glossy lobes to the density of the VPLs: biased, removes spikes of glossy surfaces"});
-    parameters.push_back(
-        {"interleaving", "integer", "1",
-         "n, up to 8: a pixel of n x n gathers every n^2-th VPL, which counts n^2 times, in 1 / n^2 of the "
-         "time; with a selection the pixels that share VPLs lie n apart"});
-    parameters.push_back(
-        {"upsampling", "integer", "1",
-         "n, up to 8: VPLs are gathered at one pixel of n x n, others interpolate pixels of like surfaces "
-         "or gather their own: biased between them; not together with interleaving, eye_samples or shadow "
-         "maps"});
-    parameters.push_back(
-        {"filter", "boolean", "false",
-         "denoise the light of VPLs in image space, as far as noise that differs from pixel to pixel "
-         "explains its detail: for interleaving"});
-    parameters.push_back(
-        {"eye_samples", "integer", "4 for 1-to-1 compensation, else 1",
-         "eye paths a pixel and pass; VPLs are shared out among them, except with compensation that joins "
-         "every receiver to all"});
-    registry.add({Category::integrator, "mote_vpl",
-                  "Virtual point lights on surfaces and in media, with a bounded geometry term.", parameters,
-                  R"(<integrator type="mote_vpl"><integer name="paths" value="512"/></integrator>)"},
-                 [](const Properties& p) { return std::make_shared<MoteVpl>(p); });
+    add_type(registry, Category::integrator, "mote_vpl",
+             "Virtual point lights on surfaces and in media, with a bounded geometry term.", vpl_rows(),
+             R"(<integrator type="mote_vpl"><integer name="paths" value="512"/></integrator>)",
+             [](VplFile file, const Properties& properties) {
+                 read_compensation(file);
+                 check_compensation(file, properties);
+                 check_selection(file);
+                 check_upsampling(file, properties);
+                 return std::make_shared<MoteVpl>(file);
+             });
 }
 
 }  // namespace mote::integrators

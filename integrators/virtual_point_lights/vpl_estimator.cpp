@@ -59,7 +59,7 @@ class VplEstimator final : public Estimator {
             compensation::clamp_roughness(
                 vpls, settings_.clamping,
                 1.0f / float(settings_.interleaving * settings_.interleaving *
-                             (settings_.vpls_shared_out() ? settings_.eye_samples : 1)));
+                             (settings_.vpls_shared_out() ? settings_.eye_paths() : 1)));
         counters_.add(vpls.rays, vpls.tracking);
         vpls_ += vpls.lights.size(), paths_ += vpls.paths;
         bytes_ = std::max(bytes_, vpls.memory_bytes());
@@ -264,7 +264,7 @@ class VplEstimator final : public Estimator {
         const std::size_t shares = settings_.selection->takes_all() ? std::size_t(n) * std::size_t(n) : 1;
         const std::size_t share = first.x < 0 ? 0 : share_of(context, first.x, first.y);
         std::array<VplPixel, lane_count> sums;
-        const auto samples = std::uint32_t(settings_.eye_samples);
+        const auto samples = std::uint32_t(settings_.eye_paths());
         tile.place(first.x, first.y, n, 1.0f / float(samples));
         for (std::uint32_t sample = 0; sample < samples; ++sample) {
             const PassContext eye{context.index * samples + sample, context.filter, context.cancelled};

@@ -14,16 +14,21 @@
 
 namespace mote::integrators {
 
+/// Value of VplSettings::bound: the geometry term is not bounded.
+inline constexpr float no_bound = -1.0f;
+
 struct VplSettings {
+    /// All VPLs are gathered. Not inline: GCC 12 would warn of members that it takes for unset.
+    VplSettings();
+
     EyePathLimits eye;  ///< max_depth counts the whole path from light to eye
     std::uint32_t paths = 256;
-    bool bounded = true;
-    std::optional<float> bound;                       ///< b [1/m^2]; nothing: automatic
+    std::optional<float> bound;                       ///< b [1/m^2] or no_bound; nothing: automatic
     compensation::CompensationSettings compensation;  ///< in the passes
     std::optional<ScreenSpaceSettings> screen_space;  ///< after the last pass, on surfaces
-    int eye_samples = 1;                              ///< eye paths a pixel and pass
+    std::optional<int> eye_samples;                   ///< eye paths a pixel and pass; see eye_paths()
     VisibilitySettings visibility;
-    std::shared_ptr<const lights::Selection> selection = lights::all_vpls();
+    std::shared_ptr<const lights::Selection> selection;
     compensation::RoughnessClamping clamping;
     /// Points in media where the light along an eye ray is gathered, besides the surface behind them; 0: one
     /// collision or the surface, by chance.
@@ -39,17 +44,20 @@ struct VplSettings {
     bool filters = false;  ///< light of VPLs is smoothed in image space after the last pass
     LayerFilterParameters filter;
 
+    bool bounded() const { return bound != no_bound; }
     bool compensates() const { return compensation.enabled || screen_space.has_value(); }
     /// VPLs are shared out among the eye paths of a pixel, instead of all of them meeting every one.
     bool vpls_shared_out() const {
         if (!selection->takes_all()) return false;
         return !compensation.enabled || compensation.strategy == compensation::Strategy::one_to_one;
     }
+    /// Eye paths a pixel and pass: 1-to-1 compensation needs several receivers.
+    int eye_paths() const { return eye_samples.value_or(compensation.enabled && vpls_shared_out() ? 4 : 1); }
 
     /// b from the size of the shapes and the number of light paths: inside r = b^(-1/2) a VPL represents the
     /// light of the paths around it, and N paths spread over a scene of radius R are about R / sqrt(N) apart.
     float bound_for(const core::Bounds3& bounds) const {
-        if (!bounded) return core::infinity;
+        if (!bounded()) return core::infinity;
         if (bound) return *bound;
         const float radius = bounds.radius();
         return radius > 0.0f ? float(paths) / core::sqr(radius) : core::infinity;

@@ -27,8 +27,7 @@ const ParameterList<ShadowMapFile>& shadow_map_rows() {
         row("size", &S::size, between(4, 8192), "Texels along an edge of a VPL's map."),
         row("light_size", &S::light_size, between(0, 8192),
             "Texels along an edge of the maps of point, spot and directional lights, at vertices in media; "
-            "0: "
-            "traced."),
+            "0: traced."),
         within(&S::map, row("intervals", &Map::intervals, between(1, 4096), "Intervals along a ray."),
                row("step", &Map::step, between(1e-3, 1e3, "voxels"), "Step of ray marching.")),
         row("max_megabytes", &S::max_megabytes, between(1e-6, 1e6, "MB"),
@@ -145,8 +144,7 @@ void plan_visibility(Plan& plan, const Scene& scene, const VisibilitySettings& s
              fmt::format("{:.0f} receivers a pass against {:.0f} texels a map", receivers, texels),
              receivers > even
                  ? fmt::format("they pay from about {:.0f} receivers on", even)
-                 : fmt::format("tracing is cheaper here: they pay from about {:.0f} receivers on, "
-                               "or at {}^2",
+                 : fmt::format("tracing is cheaper here: they pay from about {:.0f} receivers on, or at {}^2",
                                even, int(std::sqrt(receivers / receivers_per_texel))));
     plan_lights(plan, scene, s, chromatic);
     plan.miss("detail of shadows", "finer than the texels of shadow maps",

@@ -116,7 +116,7 @@ TEST_CASE("roughness clamping takes spikes and goes away with more lights", "[ro
     const auto render = [&](int paths, const std::string& settings) {
         const auto integrator = integrator_from(fmt::format(
             R"(<integrator type="mote_vpl"><integer name="paths" value="{}"/><integer name="max_depth" value="3"/>
-            <boolean name="bounded" value="false"/>{}</integrator>)",
+            <float name="bound" value="-1"/>{}</integrator>)",
             paths, settings));
         const auto found =
             render_statistics(*scene, *integrator, {.block = 8, .passes = std::uint32_t(4000 / paths)});

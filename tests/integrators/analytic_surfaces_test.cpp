@@ -10,7 +10,7 @@ namespace {
 
 const std::string surface_integrators[] = {
     R"(<integrator type="path"/>)", R"(<integrator type="volpath"/>)",
-    R"(<integrator type="mote_vpl"><integer name="paths" value="128"/><boolean name="bounded" value="false"/></integrator>)"};
+    R"(<integrator type="mote_vpl"><integer name="paths" value="128"/><float name="bound" value="-1"/></integrator>)"};
 
 }  // namespace
 

@@ -197,8 +197,8 @@ TEST_CASE("compensation that cannot be is refused by name", "[compensation][inpu
     CHECK_THAT(
         refused(R"(<compensation type="approximate"><integer name="depth" value="-2"/></compensation>)"),
         ContainsSubstring("depth"));
-    CHECK_THAT(refused(R"(<boolean name="bounded" value="false"/><compensation type="exact"/>)"),
-               ContainsSubstring("bounded"));
+    CHECK_THAT(refused(R"(<float name="bound" value="-1"/><compensation type="exact"/>)"),
+               ContainsSubstring("no bound"));
     CHECK_THAT(refused(R"(<integer name="eye_samples" value="0"/>)"), ContainsSubstring("eye_samples"));
     for (const char* bound : {"0", "-3"})
         CHECK_THAT(

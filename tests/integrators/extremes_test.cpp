@@ -23,7 +23,7 @@ const std::string equiangular =
     R"(<integrator type="volpath"><boolean name="equiangular" value="true"/></integrator>)";
 const std::string vpl = R"(<integrator type="mote_vpl"><integer name="paths" value="16"/></integrator>)";
 const std::string unbounded_vpl =
-    R"(<integrator type="mote_vpl"><integer name="paths" value="16"/><boolean name="bounded" value="false"/></integrator>)";
+    R"(<integrator type="mote_vpl"><integer name="paths" value="16"/><float name="bound" value="-1"/></integrator>)";
 const std::string photons =
     R"(<integrator type="mote_photon_map"><integer name="photon_paths" value="500"/></integrator>)";
 

@@ -99,9 +99,9 @@ std::string corner_with_board() {
     return xml;
 }
 
-std::string refusal(const std::string& compensation) {
+std::string refusal(const std::string& compensation, double bound = 3.0) {
     try {
-        integrator_from(vpl(compensation));
+        integrator_from(vpl(compensation, bound));
     } catch (const core::InputError& error) {
         return error.what();
     }
@@ -371,8 +371,7 @@ TEST_CASE("screen-space compensation of media is refused by name", "[compensatio
         refusal(R"(<compensation type="screen_space"><integer name="steps" value="0"/></compensation>)"),
         ContainsSubstring("steps"));
     CHECK_THAT(refusal(screen_space(2, 0)), ContainsSubstring("layers"));
-    CHECK_THAT(refusal(R"(<boolean name="bounded" value="false"/><compensation type="screen_space"/>)"),
-               ContainsSubstring("bounded"));
+    CHECK_THAT(refusal(R"(<compensation type="screen_space"/>)", -1.0), ContainsSubstring("no bound"));
     CHECK(refusal(R"(<compensation type="screen_space"/>)") == "accepted");
 }
 

@@ -152,12 +152,12 @@ TEST_CASE("unbounded VPLs equal paths where VPLs cannot come near", "[vpl][equal
         <emitter type="point"><point name="position" x="0.3" y="0.1" z="0.5"/><rgb name="intensity" value="2"/></emitter>
         <sensor type="orthographic"><transform name="to_world"><scale value="0.9"/>
             <lookat origin="0, 0, 0.4" target="0, 0, 0" up="0, 1, 0"/></transform></sensor></scene>)";
-    check_layers(xml, "", R"(<boolean name="bounded" value="false"/>)", {"direct", "indirect", "beauty"});
+    check_layers(xml, "", R"(<float name="bound" value="-1"/>)", {"direct", "indirect", "beauty"});
     // Equality in an absorbing medium: transmittance along eye rays, connections and light paths.
     std::string foggy = xml;
     foggy.insert(foggy.find("<emitter"),
                  R"(<shape type="cube"><transform name="to_world"><scale x="3" y="3" z="3"/></transform>
         <bsdf type="null"/><medium type="homogeneous" name="interior"><rgb name="sigma_t" value="0.3, 0.6, 1.2"/>
         <rgb name="albedo" value="0"/></medium></shape>)");
-    check_layers(foggy, "", R"(<boolean name="bounded" value="false"/>)", {"direct", "indirect", "beauty"});
+    check_layers(foggy, "", R"(<float name="bound" value="-1"/>)", {"direct", "indirect", "beauty"});
 }

@@ -122,8 +122,8 @@ TEST_CASE("spherical lights have less error than points on glossy surfaces", "[v
         const Difference points = difference(
             render_statistics(
                 *scene,
-                *integrator_from(R"(<integrator type="mote_vpl"><boolean name="bounded" value="false"/>)" +
-                                 paths + "</integrator>"),
+                *integrator_from(R"(<integrator type="mote_vpl"><float name="bound" value="-1"/>)" + paths +
+                                 "</integrator>"),
                 spec),
             "indirect", reference);
         const Difference spheres =

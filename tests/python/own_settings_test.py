@@ -11,18 +11,18 @@ from own_settings import OwnSettings  # noqa: E402
 
 class OwnSettingsTest(unittest.TestCase):
     def test_places(self):
-        own = OwnSettings(["--bound", "5", "--resx=32", "--film.height", "8", "--bounded"], MOTE)
+        own = OwnSettings(["--bound", "5", "--resx=32", "--film.height", "8", "--filter"], MOTE)
         with tempfile.TemporaryDirectory() as folder:
             scene = Path(folder) / "scene.xml"
             scene.write_text('<scene><integrator type="mote_vpl"/><integer name="width" value="$resx"/></scene>')
             self.assertEqual(own.added_to(scene, {"integrator": "path", "a": 1}),
                              {"integrator": "path", "a": 1, "resx": "32", "film.height": "8"})
-            with self.assertRaisesRegex(ValueError, "--bound, --bounded"):
+            with self.assertRaisesRegex(ValueError, "--bound, --filter"):
                 own.check()
             self.assertEqual(own.added_to(scene, {"integrator.bound": 9}),
-                             {"integrator.bound": "5", "resx": "32", "film.height": "8", "integrator.bounded": "true"})
+                             {"integrator.bound": "5", "resx": "32", "film.height": "8", "integrator.filter": "true"})
             own.check()
-        self.assertEqual(own.suffix(), "_bound=5_resx=32_film.height=8_bounded=true")
+        self.assertEqual(own.suffix(), "_bound=5_resx=32_film.height=8_filter=true")
 
     def test_words(self):
         self.assertFalse(OwnSettings([], MOTE))

@@ -53,7 +53,7 @@ const char* const methods = R"({
   "methods": [
     {"name": "path", "integrator": "path"},
     {"name": "VPL bounded", "integrator": "mote_vpl", "settings": {"paths": 16, "bound": 0.02}},
-    {"name": "VPL unbounded", "integrator": "mote_vpl", "settings": {"paths": 16, "bounded": false}}
+    {"name": "VPL unbounded", "integrator": "mote_vpl", "settings": {"paths": 16, "bound": -1}}
   ]
 })";
 
@@ -336,13 +336,12 @@ TEST_CASE("A methods file that is wrong is refused before anything is rendered",
     refused("\"integrator\": \"path\"", "\"integrator\": \"paht\"",
             "methods.json:4: unknown integrator type 'paht' (did you mean 'path'?)");
     refused_by_command("methods.json:4: unknown integrator");
-    refused("\"bounded\": false", "\"boundet\": false",
-            "methods.json:6: integrator 'mote_vpl' has no parameter");
-    refused("\"bounded\": false", "\"boundet\": false", "(method 'VPL unbounded')");
-    refused_by_command("did you mean 'bounded'");
-    refused("\"bounded\": false", "\"bounded\": 3", "'bounded'");
-    refused("\"bounded\": false", "\"bounded\": [1]", "'bounded'");
-    refused("\"bound\": 0.02", "\"bound\": -1", "bound");
+    refused("\"bound\": -1", "\"bount\": -1", "methods.json:6: integrator 'mote_vpl' has no parameter");
+    refused("\"bound\": -1", "\"bount\": -1", "(method 'VPL unbounded')");
+    refused_by_command("did you mean 'bound'");
+    refused("\"bound\": -1", "\"bound\": true", "'bound'");
+    refused("\"bound\": -1", "\"bound\": [1]", "'bound'");
+    refused("\"bound\": 0.02", "\"bound\": -2", "bound");
     refused("VPL unbounded", "VPL bounded", "two methods 'VPL bounded'");
     refused("VPL unbounded", "vpl-BOUNDED", "vpl-bounded.exr");
     refused("VPL unbounded", "Reference", "reference.exr");
