@@ -1,5 +1,5 @@
-// mote render: from a scene file to a layered EXR, a PNG preview and statistics. Options, signals and files;
-// the render itself is session::render().
+// mote render: from a scene file to a layered EXR, a PNG preview and statistics. The steps; the render itself
+// is session::render(), signals and progress are in command_observer.h, files in render_files.h.
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
@@ -10,17 +10,13 @@
 #include <optional>
 
 #include "apps/command.h"
-#include "apps/interruption.h"
+#include "apps/command_observer.h"
 #include "apps/partial_render.h"
-#include "apps/progress_line.h"
-#include "apps/render_files.h"
 #include "apps/render_messages.h"
 #include "apps/sequence.h"
 #include "apps/subcommands.h"
-#include "apps/tev_viewer.h"
 #include "core/objects/error.h"
 #include "core/objects/memory_error.h"
-#include "session/preview.h"
 #include "session/reference_metadata.h"
 #include "session/usable_threads.h"
 
@@ -50,62 +46,6 @@ class Threads {
   private:
     int wanted_, count_;
     tbb::global_control limit_;
-};
-
-/// True where an output is a pipe, which waits for its reader.
-bool waits_for_reader(const RenderFiles& files) {
-    std::error_code ignored;
-    return std::filesystem::is_fifo(files.picture, ignored) ||
-           std::filesystem::is_fifo(files.preview, ignored);
-}
-
-/// Progress, signals, preview and viewer.
-class CommandObserver : public RenderObserver {
-  public:
-    CommandObserver(const RenderArguments& arguments, const RenderFiles& files, const LoadedScene& scene,
-                    int threads, Interruption& interruption)
-        : arguments_(arguments),
-          preview_file_(waits_for_reader(files) ? "" : files.preview),
-          interruption_(interruption),
-          line_(fmt::format("mote: {}: {}, {} x {} pixels, {} thread{}", scene.scene().parts().file,
-                            scene.integrator().type(), scene.scene().film().width,
-                            scene.scene().film().height, threads, threads == 1 ? "" : "s"),
-                arguments.quiet) {
-        if (!arguments.tev.empty())
-            viewer_.emplace(arguments.tev, files.picture, scene.scene().film().width,
-                            scene.scene().film().height);
-    }
-    ~CommandObserver() override { line_.end(); }
-
-    void progress(const core::RenderProgress& p) override { line_.update(p); }
-    bool cancelled() override { return interruption_.signal_number() != 0; }
-    bool wants_previews() const override { return !preview_file_.empty() || viewer_; }
-    void preview(const core::ImageChannels& image) override {
-        if (!preview_file_.empty()) write_preview(preview_file_, image, arguments_.exposure);
-        show(image.rgb(""));
-    }
-    void warning(const std::string& text) override {
-        if (!arguments_.quiet) note("warning: " + text);
-    }
-    void building_is_over() override {
-        interruption_.set_alarm(std::nullopt);
-        interruption_.end_at_once_while(nullptr);
-    }
-    /// The last line of progress ends, and the viewer gets the picture of the end.
-    void end(const Rendered& rendered) {
-        line_.end();
-        show(rendered.film ? rendered.film->beauty() : rendered.image.rgb(""));
-    }
-
-  private:
-    void show(std::vector<core::Rgb> picture) {
-        if (viewer_ && !picture.empty()) viewer_->show(std::move(picture));
-    }
-    const RenderArguments& arguments_;
-    const std::string preview_file_;
-    Interruption& interruption_;
-    ProgressLine line_;
-    std::optional<TevViewer> viewer_;
 };
 
 RenderSettings settings_of(const RenderArguments& a, const RenderFiles& files,
@@ -150,6 +90,26 @@ void write_outputs(const RenderArguments& a, const RenderFiles& files,
     if (!a.stats.empty()) write_statistics(a.stats, rendered, rendered.counts.seconds["write"]);
 }
 
+/// Writes the outputs and reports them. Returns the exit code.
+int finish(const RenderArguments& a, const RenderFiles& files, const std::optional<core::PassRange>& range,
+           const LoadedScene& scene, Rendered& rendered, Interruption& interruption) {
+    if (waits_for_reader(files)) {  // perhaps forever
+        interruption.end_at_once_while("writing into a pipe", "its reader lacks a part");
+        if (rendered.interrupted) {
+            note("interrupted: nothing is written into a pipe");
+            return 128 + interruption.signal_number();
+        }
+    }
+    if (rendered.film || !rendered.image.names.empty()) write_outputs(a, files, range, scene, rendered);
+    report_render(a, rendered);
+    if (rendered.interrupted) return report_interruption(a, files, rendered, interruption.signal_number());
+    if (!rendered.finished_pixels.empty())
+        note("--time is over in the first pass: " + finished_text(files, rendered));
+    if (!a.quiet)
+        std::fputs(fmt::format("{}\n{}{}", files.picture, files.preview, range ? "" : "\n").c_str(), stdout);
+    return exit_ok;
+}
+
 }  // namespace
 
 int render_command(const RenderArguments& arguments) {
@@ -177,24 +137,9 @@ int render_command(const RenderArguments& arguments) {
     settings.seconds_before = seconds_since(start);
     Rendered rendered = session::render(scene, settings, observer);
     observer.end(rendered);
-    if (waits_for_reader(files)) {  // perhaps forever
-        interruption.end_at_once_while("writing into a pipe", "its reader lacks a part");
-        if (rendered.interrupted) {
-            note("interrupted: nothing is written into a pipe");
-            return 128 + interruption.signal_number();
-        }
-    }
-    if (rendered.film || !rendered.image.names.empty())
-        write_outputs(arguments, files, range, scene, rendered);
-    report_render(arguments, rendered);
-    if (rendered.interrupted)
-        return report_interruption(arguments, files, rendered, interruption.signal_number());
-    if (!rendered.finished_pixels.empty())
-        note("--time is over in the first pass: " + finished_text(files, rendered));
-    if (!arguments.quiet)
-        std::fputs(fmt::format("{}\n{}{}", files.picture, files.preview, range ? "" : "\n").c_str(), stdout);
-    if (arguments.sequence) arguments.sequence->rendered = std::move(scene);
-    return exit_ok;
+    const int code = finish(arguments, files, range, scene, rendered, interruption);
+    if (code == exit_ok && arguments.sequence) arguments.sequence->rendered = std::move(scene);
+    return code;
 }
 
 }  // namespace mote::apps

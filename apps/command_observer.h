@@ -1,0 +1,43 @@
+// What `mote render` shows while it renders, and what ends it: progress, signals, preview file and viewer.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "apps/interruption.h"
+#include "apps/progress_line.h"
+#include "apps/render_files.h"
+#include "apps/tev_viewer.h"
+
+namespace mote::apps {
+
+/// True where an output is a pipe, which waits for its reader.
+bool waits_for_reader(const RenderFiles& files);
+
+/// Observer of a render by the command line. Its references outlive it.
+class CommandObserver : public RenderObserver {
+  public:
+    CommandObserver(const RenderArguments& arguments, const RenderFiles& files, const LoadedScene& scene,
+                    int threads, Interruption& interruption);
+    ~CommandObserver() override { line_.end(); }
+
+    void progress(const core::RenderProgress& p) override { line_.update(p); }
+    bool cancelled() override { return interruption_.signal_number() != 0; }
+    bool wants_previews() const override { return !preview_file_.empty() || viewer_; }
+    void preview(const core::ImageChannels& image) override;
+    void warning(const std::string& text) override;
+    void building_is_over() override;
+    /// The last line of progress ends, and the viewer receives the final picture.
+    void end(const Rendered& rendered);
+
+  private:
+    void show(std::vector<core::Rgb> picture);
+
+    const RenderArguments& arguments_;
+    const std::string preview_file_;
+    Interruption& interruption_;
+    ProgressLine line_;
+    std::optional<TevViewer> viewer_;
+};
+
+}  // namespace mote::apps
