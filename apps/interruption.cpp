@@ -107,11 +107,6 @@ void Interruption::set_alarm(std::optional<double> seconds) {
     ::setitimer(ITIMER_REAL, &timer, nullptr);
 }
 
-void Interruption::forget_time() {
-    set_alarm(std::nullopt);
-    stop = first_signal != 0;
-}
-
 const std::atomic<bool>& Interruption::flag() const { return stop; }
 const std::atomic<bool>& Interruption::time_is_over() const { return time_over; }
 int Interruption::signal_number() const { return first_signal; }

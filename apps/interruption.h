@@ -24,9 +24,6 @@ class Interruption {
     /// The end of the time, from now [s]; nothing: no more.
     void set_alarm(std::optional<double> seconds);
 
-    /// Passes are over: no alarm any more, and flag() is set only if there was a signal.
-    void forget_time();
-
     const std::atomic<bool>& flag() const;
     const std::atomic<bool>& time_is_over() const;
     int signal_number() const;  ///< 0 while there was none

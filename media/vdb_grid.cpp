@@ -94,7 +94,6 @@ std::uint64_t VdbGrid::active_voxels() const { return data_->active_voxels; }
 std::uint64_t VdbGrid::bytes() const { return data_->buffer.size() + data_->table.bytes(); }
 std::uint64_t VdbGrid::clamped_voxels() const { return data_->clamped; }
 const std::vector<std::string>& VdbGrid::warnings() const { return data_->warnings; }
-const void* VdbGrid::nanovdb_grid() const { return data_->grid; }
 
 std::shared_ptr<const VdbGrid> load_vdb_grid(const std::string& path, const std::string& grid_name,
                                              const VdbLoadOptions& options) {

@@ -58,8 +58,6 @@ class VdbGrid {
     /// Warnings for the user: several grids of that name, clamped values, odd metadata.
     const std::vector<std::string>& warnings() const;
 
-    /// The NanoVDB grid: a `const nanovdb::FloatGrid*` for those who include NanoVDB.
-    const void* nanovdb_grid() const;
     const Data& data() const { return *data_; }
 
   private:

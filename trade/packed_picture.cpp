@@ -46,19 +46,6 @@ std::vector<std::uint8_t> pack_rgbe(const Picture& picture) {
     return bytes;
 }
 
-Picture unpack_rgbe(std::span<const std::uint8_t> bytes, int width, int height) {
-    Picture picture{width, height, {}};
-    const std::size_t n = std::size_t(width) * std::size_t(height);
-    for (std::size_t p = 0; p < n; ++p) {
-        Rgb c(0.0f);
-        const int exponent = bytes[3 * (n + p)];
-        for (int i = 0; i < 3 && exponent > 0; ++i)
-            c[i] = float(std::ldexp(bytes[3 * p + std::size_t(i)] + 0.5, exponent - 136));
-        picture.pixels.push_back(c);
-    }
-    return picture;
-}
-
 std::string base64(std::span<const std::byte> bytes) {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::string text;

@@ -23,8 +23,6 @@ Picture shrunk(const Picture& picture, int width);
 /// Mantissas of red, green and blue in the upper half, the exponent in the lower (Ward 1991): a value is
 /// (mantissa + 0.5) * 2^(exponent - 136), and 0 where the exponent is 0. Negative and not finite values: 0.
 std::vector<std::uint8_t> pack_rgbe(const Picture& picture);
-/// The other way: `bytes` of twice the height.
-Picture unpack_rgbe(std::span<const std::uint8_t> bytes, int width, int height);
 
 /// "data:image/png;base64,..." of the packed picture.
 std::string data_url(const Picture& picture);

@@ -15,12 +15,4 @@ inline float solid_angle_to_area(float pdf_solid_angle, float distance_squared, 
     return pdf_solid_angle * std::fabs(cosine) / distance_squared;
 }
 
-/// The weight of one of two sampling techniques (Veach 1997, Eq. 9.8; balance heuristic, one sample each).
-inline float balance_heuristic(float pdf_this, float pdf_other) {
-    const float sum = pdf_this + pdf_other;
-    if (!(sum > 0.0f)) return 0.0f;
-    if (std::isinf(pdf_this)) return 1.0f;
-    return pdf_this / sum;
-}
-
 }  // namespace mote::core

@@ -70,13 +70,4 @@ PixelRectangle ExactCounts::bounds(std::uint32_t item) const {
     return r;
 }
 
-std::vector<std::uint32_t> count_visible(const IdPicture& picture, std::uint32_t items,
-                                         std::span<const VisibilityQuery> queries) {
-    const ExactCounts counts(picture, items);
-    std::vector<std::uint32_t> pixels(queries.size());
-    tbb::parallel_for(std::size_t(0), queries.size(),
-                      [&](std::size_t i) { pixels[i] = counts.pixels(queries[i]); });
-    return pixels;
-}
-
 }  // namespace mote::screenspace

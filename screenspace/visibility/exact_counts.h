@@ -38,8 +38,4 @@ class ExactCounts {
     std::vector<std::uint32_t> pixels_;
 };
 
-/// The counts of many queries, in their order.
-std::vector<std::uint32_t> count_visible(const IdPicture& picture, std::uint32_t items,
-                                         std::span<const VisibilityQuery> queries);
-
 }  // namespace mote::screenspace

@@ -11,8 +11,7 @@ int first_at_or_above(float v) { return int(std::ceil(std::clamp(v, -1e9f, 1e9f)
 int last_at_or_below(float v) { return int(std::floor(std::clamp(v, -1e9f, 1e9f))); }
 
 struct Reach {
-    float low = std::numeric_limits<float>::infinity(), high = -low;
-    void extend(float v) { low = std::min(low, v), high = std::max(high, v); }
+    float low, high;
 };
 
 ItemBounds octagon(const Reach& x, const Reach& y, const Reach& sum, const Reach& difference) {
@@ -33,13 +32,6 @@ ItemBounds bounds_of_outline(float x, float y, float reach_x, float reach_y, flo
     const auto around = [](float middle, float r) { return Reach{middle - r - 1e-3f, middle + r + 1e-3f}; };
     return octagon(around(x, reach_x), around(y, reach_y), around(x + y, reach_sum),
                    around(x - y, reach_difference));
-}
-
-ItemBounds bounds_of_points(std::span<const ScreenPoint> points) {
-    Reach x, y, sum, difference;
-    for (const ScreenPoint& p : points)
-        x.extend(p.x), y.extend(p.y), sum.extend(p.x + p.y), difference.extend(p.x - p.y);
-    return octagon(x, y, sum, difference);
 }
 
 }  // namespace mote::screenspace

@@ -27,10 +27,5 @@ struct ItemBounds {
 /// pixels count by their middles.
 ItemBounds bounds_of_outline(float x, float y, float reach_x, float reach_y, float reach_sum,
                              float reach_difference);
-/// Bounds of a convex outline through these points, or of anything within it.
-struct ScreenPoint {
-    float x, y;
-};
-ItemBounds bounds_of_points(std::span<const ScreenPoint> points);
 
 }  // namespace mote::screenspace

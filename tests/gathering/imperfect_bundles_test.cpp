@@ -2,8 +2,8 @@
 // bundle as there are more of them.
 #include <tbb/global_control.h>
 
+#include "experiments/studies/ray_bundles/link_comparison.h"
 #include "gathering/ray_bundles/imperfect_bundles.h"
-#include "gathering/ray_bundles/link_comparison.h"
 #include "tests/gathering/form_factors.h"
 #include "tests/support/catch.h"
 

@@ -173,12 +173,14 @@ TEST_CASE("Exact counts are those of looking at every pixel", "[visibility]") {
         for (int i = 0; i < 200; ++i)
             queries.push_back(
                 {std::uint32_t(draw(rng, 12)), random_rectangle(rng, picture.width, picture.height)});
-        const auto counts = count_visible(picture.view(), 12, queries);
-        int wrong = 0;
-        for (std::size_t i = 0; i < queries.size(); ++i)
-            wrong += counts[i] != picture.brute_force(queries[i].item, queries[i].rectangle);
-        CHECK(wrong == 0);
-        with_threads(1, [&] { CHECK(count_visible(picture.view(), 12, queries) == counts); });
+        const auto wrong = [&] {
+            const ExactCounts counts(picture.view(), 12);
+            return std::count_if(queries.begin(), queries.end(), [&](const VisibilityQuery& q) {
+                return counts.pixels(q) != picture.brute_force(q.item, q.rectangle);
+            });
+        };
+        CHECK(wrong() == 0);
+        with_threads(1, [&] { CHECK(wrong() == 0); });
     }
 }
 
@@ -263,7 +265,7 @@ TEST_CASE("Pictures and rectangles at the extremes are counted right or refused"
     CHECK(RegionQueries(nothing, three).pixels(1) == 0);
     CHECK(RegionQueries(nothing, {}).sets().regions() == 0);
     CHECK(ItemHistogram(nothing, ItemLayout::of_objects(0, 0)).level(0).empty());
-    CHECK(count_visible(nothing, 0, {}).empty());
+    CHECK(ExactCounts(nothing, 0).items() == 0);
     // No columns, but rows.
     CHECK(ExactCounts({0, 7, {}}, 1).pixels(0) == 0);
     CHECK(RegionQueries({0, 7, {}}, three).pixels(1) == 0);

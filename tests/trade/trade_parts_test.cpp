@@ -41,6 +41,20 @@ Curve curve_of(const std::vector<Record>& records, double floor = 0.0) {
     return make_curves(records, floor).at(0);
 }
 
+/// Pixels that pack_rgbe() packed, as the page decodes them.
+Picture unpack_rgbe(std::span<const std::uint8_t> bytes, int width, int height) {
+    Picture picture{width, height, {}};
+    const std::size_t n = std::size_t(width) * std::size_t(height);
+    for (std::size_t p = 0; p < n; ++p) {
+        Rgb c(0.0f);
+        const int exponent = bytes[3 * (n + p)];
+        for (int i = 0; i < 3 && exponent > 0; ++i)
+            c[i] = float(std::ldexp(bytes[3 * p + std::size_t(i)] + 0.5, exponent - 136));
+        picture.pixels.push_back(c);
+    }
+    return picture;
+}
+
 }  // namespace
 
 TEST_CASE("A curve is the mean over seeds, with their range", "[trade]") {
@@ -175,7 +189,7 @@ TEST_CASE("Turns keep the methods side by side in time", "[trade]") {
 
 TEST_CASE("Records survive CSV bit by bit", "[trade]") {
     std::vector<Record> records = {record("a, \"b\"\nc", 3, 17, 1.0 / 3.0, 0.1 + 0.2)};
-    records[0].bias_se = unknown, records[0].final = true, records[0].settings = "bounded=true paths=4";
+    records[0].bias_se = unknown, records[0].final = true, records[0].settings = "bound=2 paths=4";
     const std::string text = to_csv(records);
     const auto back = records_from_csv(text, "x.csv");
     REQUIRE(back.size() == 1);

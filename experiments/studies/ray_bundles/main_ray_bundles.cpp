@@ -9,10 +9,10 @@
 #include <iostream>
 
 #include "core/formats/xml/scene_loader.h"
+#include "experiments/studies/ray_bundles/link_comparison.h"
 #include "gathering/ray_bundles/bundle_directions.h"
 #include "gathering/ray_bundles/bundle_tracer.h"
 #include "gathering/ray_bundles/imperfect_bundles.h"
-#include "gathering/ray_bundles/link_comparison.h"
 #include "integrators/register_integrators.h"
 #include "lights/register_lights.h"
 #include "media/register_media.h"

@@ -75,7 +75,4 @@ TEST_CASE("densities convert between area and solid angle", "[math][pdf]") {
     CHECK(area_to_solid_angle(2.0f, 9.0f, -0.5f) == Approx(36.0));
     CHECK(solid_angle_to_area(36.0f, 9.0f, 0.5f) == Approx(2.0));
     CHECK(area_to_solid_angle(2.0f, 9.0f, 0.0f) == 0.0f);
-    CHECK(balance_heuristic(1.0f, 3.0f) == Approx(0.25));
-    CHECK(balance_heuristic(0.0f, 0.0f) == 0.0f);
-    CHECK(balance_heuristic(infinity, 1.0f) == 1.0f);
 }
