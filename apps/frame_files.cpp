@@ -12,40 +12,19 @@ namespace mote::apps {
 namespace fs = std::filesystem;
 using core::InputError;
 
-namespace {
-
-/// The name before the number, how many digits it has at least, and the name behind it.
-struct Pattern {
-    std::string before, after;
-    std::size_t digits = 0;
-
-    explicit Pattern(const std::string& name) {
-        // Two numbers of as many digits as there are # differ in nothing but these.
-        const std::string zeros = *core::with_frame_number(name, 0);
-        std::size_t first = 0;
-        while (first < name.size() && name[first] == zeros[first]) ++first;
-        digits = name.find_first_not_of('#', first) == std::string::npos
-                     ? name.size() - first
-                     : name.find_first_not_of('#', first) - first;
-        before = name.substr(0, first), after = name.substr(first + digits);
-    }
-};
-
-}  // namespace
-
 bool names_frames(const std::string& pattern) {
-    return core::with_frame_number(fs::path(pattern).filename().string(), 0).has_value();
+    return core::frame_placeholder(fs::path(pattern).filename().string()).has_value();
 }
 
 std::string frame_name(const std::string& pattern, long number) {
     const fs::path path(pattern);
-    const auto name = core::with_frame_number(path.filename().string(), int(number));
-    return name ? (path.parent_path() / *name).string() : pattern;
+    const auto name = core::frame_placeholder(path.filename().string());
+    return name ? (path.parent_path() / name->with(number)).string() : pattern;
 }
 
 std::vector<FrameFile> find_frames(const std::string& pattern) {
     const fs::path folder = fs::path(pattern).parent_path();
-    const Pattern p(fs::path(pattern).filename().string());
+    const core::FramePlaceholder p = core::frame_placeholder(fs::path(pattern).filename().string()).value();
     std::vector<FrameFile> frames;
     std::error_code ignored;
     for (const auto& entry : fs::directory_iterator(folder.empty() ? "." : folder, ignored)) {

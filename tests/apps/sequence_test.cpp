@@ -68,9 +68,9 @@ TEST_CASE("ranges and lists of numbers run, one of them", "[sequence]") {
 }
 
 TEST_CASE("the number stands where the # are", "[sequence]") {
-    CHECK(core::with_frame_number("a/####.exr", 7) == "a/0007.exr");
-    CHECK(core::with_frame_number("s#1/smoke.##.vdb", 123) == "s#1/smoke.123.vdb");
-    CHECK_FALSE(core::with_frame_number("take#1.exr", 3));
+    CHECK(core::frame_placeholder("a/####.exr")->with(7) == "a/0007.exr");
+    CHECK(core::frame_placeholder("s#1/smoke.##.vdb")->with(123) == "s#1/smoke.123.vdb");
+    CHECK_FALSE(core::frame_placeholder("take#1.exr"));
 }
 
 TEST_CASE("a frame of a sequence has the bits that it has alone, and noise of its own", "[sequence]") {
