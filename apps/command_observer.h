@@ -1,4 +1,4 @@
-// What `mote render` shows while it renders, and what ends it: progress, signals, preview file and viewer.
+// Observer of a render by the command line: progress, signals, preview file and viewer.
 #pragma once
 
 #include <optional>
@@ -14,7 +14,7 @@ namespace mote::apps {
 /// True where an output is a pipe, which waits for its reader.
 bool waits_for_reader(const RenderFiles& files);
 
-/// Observer of a render by the command line. Its references outlive it.
+/// All references must outlive it.
 class CommandObserver : public RenderObserver {
   public:
     CommandObserver(const RenderArguments& arguments, const RenderFiles& files, const LoadedScene& scene,

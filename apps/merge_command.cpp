@@ -51,8 +51,8 @@ int merge_command(const MergeArguments& arguments) {
     }
     if (merged.first > 0)
         throw core::InputError(
-            fmt::format("a picture begins with pass 0, and '{}' with pass {}: give the parts "
-                        "before it too, or write a .film",
+            fmt::format("a picture begins with pass 0, and '{}' with pass {}: give the parts before it too, "
+                        "or write a .film",
                         core::printable(arguments.parts.front(), 300), merged.first));
     RenderArguments render = merged.render;
     if (!arguments.scene.empty()) render.scene.scene = arguments.scene;

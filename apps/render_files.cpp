@@ -80,8 +80,8 @@ std::string write_pictures(const RenderFiles& files, const Rendered& rendered,
     const std::uint64_t clamped = core::write_exr(files.picture, image, arguments.half || half);
     if (const std::uint64_t infinite = core::infinite_variances(image))
         warnings.push_back(
-            fmt::format("the variance of {} pixels is too large for a float and written as "
-                        "infinity: lights in larger units would keep it",
+            fmt::format("the variance of {} pixels is too large for a float and written as infinity: lights "
+                        "in larger units would keep it",
                         infinite));
     if (clamped > 0) warnings.push_back(clamped_text(clamped));
     return write_preview(files.preview,

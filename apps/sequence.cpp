@@ -50,9 +50,9 @@ std::vector<double> range(const std::vector<double>& ends, const std::string& de
     const double first = ends.front(), last = ends.back();
     const double step = ends.size() == 3 ? ends[1] : last < first ? -1.0 : 1.0;
     if (ends.size() > 3 || step == 0.0 || (last - first) / step < 0.0)
-        throw UsageError("-D " + core::printable(define) +
-                         ": expected name=FIRST:LAST or name=FIRST:STEP:LAST, "
-                         "with a step that leads to the end");
+        throw UsageError(
+            "-D " + core::printable(define) +
+            ": expected name=FIRST:LAST or name=FIRST:STEP:LAST, with a step that leads to the end");
     // A last value that rounding keeps from being met belongs to it.
     const double steps = std::floor((last - first) / step + 1e-9);
     if (steps + 1.0 > most_frames)

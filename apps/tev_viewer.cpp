@@ -180,7 +180,7 @@ TevViewer::TevViewer(const std::string& address, std::string name, int width, in
 
 TevViewer::~TevViewer() {
     std::unique_lock lock(shared_->mutex);
-    shared_->changed.wait_for(lock, std::chrono::duration<double>(most_seconds_at_end),
+    shared_->changed.wait_for(lock, std::chrono::duration<double>(max_seconds_at_end),
                               [&] { return shared_->ends || (shared_->idle && !shared_->next); });
     shared_->ends = shared_->abandoned = true;
     shared_->next.reset();

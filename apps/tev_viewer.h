@@ -21,12 +21,12 @@ class TevViewer {
     static constexpr const char* default_address = "127.0.0.1:14158";
     static constexpr int tile = 128;  ///< edge of what one UpdateImage holds [pixels]
     /// Time for the last picture when all is done [s]; a viewer that takes longer does not get it.
-    static constexpr double most_seconds_at_end = 1.0;
+    static constexpr double max_seconds_at_end = 1.0;
 
     /// `address`: HOST:PORT, HOST or :PORT. Throws InputError where it is none of these. `name`: of the
     /// picture.
     TevViewer(const std::string& address, std::string name, int width, int height);
-    ~TevViewer();  ///< waits for the last picture at most most_seconds_at_end
+    ~TevViewer();  ///< waits for the last picture at most max_seconds_at_end
     TevViewer(const TevViewer&) = delete;
     TevViewer& operator=(const TevViewer&) = delete;
 

@@ -186,10 +186,9 @@ std::string grid_reader_path() {
 #endif
     for (const fs::path& folder : folders)
         if (fs::is_regular_file(folder / helper_name, error)) return (folder / helper_name).string();
-    throw core::InputError(
-        fmt::format("'{}', which reads VDB files, was not found beside this program; set "
-                    "MOTE_GRID_READER to its path",
-                    helper_name));
+    throw core::InputError(fmt::format(
+        "'{}', which reads VDB files, was not found beside this program; set MOTE_GRID_READER to its path",
+        helper_name));
 }
 
 GridReaderAnswer run_grid_reader(const std::string& mode, const std::string& path,

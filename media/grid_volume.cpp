@@ -105,8 +105,8 @@ void register_grid_volume(core::Registry& registry) {
         registry, core::Category::volume, "gridvolume",
         "A dense grid from a .vol file: cell-centred, trilinear. As an extinction it ends at its box, as in "
         "Mitsuba 3: the smallest one along the world's axes around the transformed unit cube (or file's "
-        "box), "
-        "with vacuum outside. `wrap_mode` says what lies in the corners between the two where the transform "
+        "box), with vacuum outside. `wrap_mode` says what lies in the corners between the two where the "
+        "transform "
         "rotates or shears, what the half voxel between the last centre and the box's face is interpolated "
         "with, and how an albedo or an emission goes on outside.",
         grid_file_rows(), R"(<volume type="gridvolume"><string name="filename" value="smoke.vol"/></volume>)",

@@ -63,8 +63,7 @@ class RenderWork {
         if (settings.begin_with && settings.begin_with->scene_hash != hash_)
             throw core::InputError(
                 "the passes that this render begins with are of another one: the scene, a file that it "
-                "names, "
-                "or the version of mote has changed since");
+                "names, or the version of mote has changed since");
     }
 
     Rendered run() {
@@ -138,7 +137,7 @@ class RenderWork {
                             *settings_.stop.seconds, result.film.pass_count(),
                             result.film.pass_count() == 1 ? "" : "es", seconds));
     }
-    static constexpr double max_seconds_late_of_passes = core::most_seconds_late + 1.0;
+    static constexpr double max_seconds_late_of_passes = core::max_seconds_late + 1.0;
 
     /// A whole picture only; one that cannot be denoised is worth more than none.
     void denoise(core::ImageChannels& image, core::RenderResult& result) const {

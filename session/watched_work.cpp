@@ -107,8 +107,7 @@ void WatchedWork::begin_passes() {
     if (!seconds_) return;
     const std::lock_guard lock(mutex_);
     // A pass may end a second late (stop_clock.h); what takes longer is cut off.
-    deadline_ =
-        std::max(Clock::now() + duration(0.5), start_ + duration(*seconds_ + core::most_seconds_late));
+    deadline_ = std::max(Clock::now() + duration(0.5), start_ + duration(*seconds_ + core::max_seconds_late));
 }
 
 void WatchedWork::end_passes() {

@@ -68,8 +68,8 @@ std::string row(const Results& results, std::size_t index) {
 std::string table(const Results& results) {
     std::string html =
         "<div class=\"scroll\"><table>\n<tr><th>method</th><th class=\"text\">settings</th><th>passes</th>"
-        "<th>wall s</th><th>CPU s</th><th>of it<br>build s</th><th>error<br>(range)</th>"
-        "<th>bias &plusmn; standard<br>error</th>";
+        "<th>wall s</th><th>CPU s</th><th>of it<br>build s</th><th>error<br>(range)</th><th>bias &plusmn; "
+        "standard<br>error</th>";
     for (const double e : errors_of_interest) html += fmt::format("<th>time to<br>{:g} %</th>", 100.0 * e);
     html +=
         "<th>on the<br>front</th><th>error&sup2;<br>&times; "
@@ -137,19 +137,16 @@ std::string flip_book(const Results& results, const Folder& folder, int page_wid
     if (book.data().at("pictures").empty()) return "";
     return "<h2>Flip book</h2>\n<p>Keys 1 to 9 or the arrow keys flip, <b>+</b> and <b>-</b> zoom, <b>d</b> "
            "shows or hides the difference to the reference beside the picture. Pictures of the first seed at "
-           "its "
-           "end" +
+           "its end" +
            fmt::format(", here {} x {} pixels.</p>\n", book.data().at("width").get<int>(),
                        book.data().at("height").get<int>()) +
            "<div id=\"book\"><div id=\"buttons\"></div>\n<div><label>exposure <input id=\"exposure\" "
-           "type=\"range\" "
-           "min=\"-12\" max=\"12\" step=\"0.25\"></label> <span id=\"stops\"></span> "
+           "type=\"range\" min=\"-12\" max=\"12\" step=\"0.25\"></label> <span id=\"stops\"></span> "
            "<label>difference &times; <input id=\"gain\" type=\"range\" min=\"0\" max=\"8\" step=\"1\" "
            "value=\"2\"></label> <span id=\"factor\"></span> <button id=\"closer\">+</button><button "
            "id=\"farther\">-</button> <button id=\"beside\">d difference</button></div>\n<div "
            "id=\"caption\"></div>\n<div id=\"pair\"><canvas id=\"view\"></canvas><canvas "
-           "id=\"difference\"></canvas></div></div>\n<script>\nconst "
-           "book = " +
+           "id=\"difference\"></canvas></div></div>\n<script>\nconst book = " +
            script_json(book.data()) + ";\n" + page_script + "</script>\n";
 }
 
@@ -192,18 +189,17 @@ std::string introduction(const Results& results) {
     const json& f = results.facts;
     std::string text = fmt::format(
         "<p>{}, {} x {} pixels, {} thread{}, {} seed{} a method. Methods took turns pass by pass, so that "
-        "all of them "
-        "saw the same machine. Lower and further left is better; a straight fall by half for four times the "
-        "time is "
-        "noise, a line that flattens out has reached its bias.</p>\n",
+        "all of them saw the same machine. Lower and further left is better; a straight fall by half for "
+        "four times the "
+        "time is noise, a line that flattens out has reached its bias.</p>\n",
         escaped(f.value("scene", std::string())), f.value("width", 0), f.value("height", 0),
         f.value("threads", 0), f.value("threads", 0) == 1 ? "" : "s", f.at("seeds").size(),
         f.at("seeds").size() == 1 ? "" : "s");
     if (results.judge.floor > 0.0)
         text += fmt::format(
             "<p>The reference ({}) has a noise of {:.2g} %, which is subtracted from the errors pixel by "
-            "pixel; "
-            "what remains judges errors down to {:.2g} %. The standard error after &plusmn; is that of the "
+            "pixel; what remains judges errors down to {:.2g} %. The standard error after &plusmn; is that "
+            "of the "
             "subtraction.</p>\n",
             escaped(f.at("reference").value("integrator", std::string("unknown origin"))),
             100.0 * f.at("reference").value("noise", 0.0), 100.0 * results.judge.floor);
@@ -225,8 +221,7 @@ std::string page_html(const Results& results, const Folder& folder, int page_wid
            escaped(results.title()) + "</h1>\n" + introduction(results) + plot + "<h2>Table</h2>\n" +
            table(results) +
            "<p>Means over seeds at the end of each. A bias in bold is more than three standard errors from "
-           "zero. "
-           "Times in italics were not measured.</p>\n" +
+           "zero. Times in italics were not measured.</p>\n" +
            flip_book(results, folder, page_width) + definitions(results) + commands(results, folder) +
            "</body>\n</html>\n";
 }

@@ -126,11 +126,11 @@ class Plot {
             left, top, right - left, bottom - top);
         put("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">wall time</text>\n", 0.5 * (left + right),
             bottom + 40.0);
-        put("<text x=\"18\" y=\"{0}\" text-anchor=\"middle\" transform=\"rotate(-90 18 {0})\">relative RMSE</text>\n",
+        put("<text x=\"18\" y=\"{0}\" text-anchor=\"middle\" transform=\"rotate(-90 18 {0})\">relative "
+            "RMSE</text>\n",
             0.5 * (top + bottom));
         put("<text x=\"{}\" y=\"{}\" font-size=\"12\" fill=\"#444444\">Lines: mean over seeds; bands: their "
-            "range. "
-            "Thick grey: the Pareto front, which no method beats in both time and error.</text>\n",
+            "range. Thick grey: the Pareto front, which no method beats in both time and error.</text>\n",
             left, bottom + 60.0);
     }
     void reference_floor() {
@@ -141,8 +141,7 @@ class Plot {
         put("<path d=\"M{} {:.1f}H{}\" stroke=\"#666666\" stroke-dasharray=\"6 4\"/>\n", left, y, right);
         // Above the line where there is no room below it.
         put("<text x=\"{}\" y=\"{:.1f}\" font-size=\"12\" fill=\"#555555\">the reference judges down to "
-            "{:.2g} "
-            "%</text>\n",
+            "{:.2g} %</text>\n",
             left + 6.0, y + 15.0 < bottom ? y + 15.0 : y - 5.0, 100.0 * floor_);
     }
     void band(std::size_t index) {

@@ -116,8 +116,7 @@ class Check {
         if (reference_.floor() <= rules_.resolve * (1.0 + 1e-6)) return;
         refuse(
             fmt::format("it is too noisy: with a noise of {:.3g} % it judges errors down to {:.3g} %, not "
-                        "{:.3g} %; render "
-                        "it on with --make-reference, or ask for less with --resolve {:.3g}",
+                        "{:.3g} %; render it on with --make-reference, or ask for less with --resolve {:.3g}",
                         100.0 * *reference_.noise, 100.0 * reference_.floor(), 100.0 * rules_.resolve,
                         reference_.floor() * 1.01));
     }

@@ -136,8 +136,8 @@ json summary_json(const Results& results) {
           {"relmse_trimmed", "relMSE without the 0.1 % of pixels where it is largest"},
           {"bias", "sum w <r, d> / sum w |r|^2, signed; mean over seeds; never more than error"},
           {"bias_se",
-           "standard error of bias from the spread of the passes' biases; with four "
-           "seeds or more at least that from the spread of the seeds"},
+           "standard error of bias from the spread of the passes' biases; with four seeds or more at least "
+           "that from the spread of the seeds"},
           {"bias_significant", "more than three standard errors, the reference's own among them"},
           {"wall_s", "seconds of build, passes and one finish"},
           {"cpu_s", "the same as seconds of all processors together"},
@@ -145,8 +145,8 @@ json summary_json(const Results& results) {
           {"inefficiency", "error squared times wall seconds"},
           {"peak_memory_mb", "of the process so far, with all methods alive"},
           {"time_to_reach",
-           "measured: where the curve falls below for good; extrapolated: error falls like "
-           "time^-1/2 from the last points; never: the bias stays"}}},
+           "measured: where the curve falls below for good; extrapolated: error falls like time^-1/2 from "
+           "the last points; never: the bias stays"}}},
         {"methods", methods}};
 }
 

@@ -30,7 +30,7 @@ void pack(std::span<const T> numbers, const Packing& packing, std::byte* to);
 
 /// Lower bound of the packed size of `count` numbers of any size [B]; unpacked they have at most 2048 times
 /// as many bytes.
-constexpr std::uint64_t least_packed_size(std::uint64_t count) { return (count + 255) / 256; }
+constexpr std::uint64_t min_packed_size(std::uint64_t count) { return (count + 255) / 256; }
 /// Packing of `count` numbers of `number_size` bytes, from the heads that `from` begins with; nothing where
 /// the heads are invalid or `from` is too short.
 std::optional<Packing> read_packing(std::span<const std::byte> from, std::size_t count,

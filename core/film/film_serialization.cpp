@@ -132,7 +132,7 @@ void Film::deserialize(std::span<const std::byte> bytes) {
     // sums follows from the numbers of passes, which the length must allow before memory is allocated.
     std::uint64_t least = 0;
     const auto expect = [&](std::uint64_t numbers) {
-        least += least_packed_size(numbers);
+        least += min_packed_size(numbers);
         if (least > content.size()) throw InputError("the film is damaged: its length is wrong");
     };
     Film read(width_, height_, layers_, all_squares_);

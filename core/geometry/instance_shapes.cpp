@@ -65,8 +65,7 @@ void register_instances(Registry& registry) {
         shape_group);
     add_type<InstanceSettings>(registry, Category::shape, "instance",
                                "A shapegroup placed in the scene. Its meshes are in memory once, however "
-                               "many instances there are. It "
-                               "takes no BSDF, light or medium of its own.",
+                               "many instances there are. It takes no BSDF, light or medium of its own.",
                                {nested("shapegroup", &InstanceSettings::groups, Category::shape, "required",
                                        "The group, mostly a <ref>."),
                                 row("to_world", &InstanceSettings::to_world,

@@ -143,8 +143,8 @@ void register_mask(Registry& registry) {
     add_type<Settings>(
         registry, Category::bsdf, "mask",
         "Holes in a surface: a share of the light passes straight on as if nothing were there, the rest "
-        "meets "
-        "the nested BSDF. What passes is no scattering and counts no depth, in all integrators, as through "
+        "meets the nested BSDF. What passes is no scattering and counts no depth, in all integrators, as "
+        "through "
         "'thindielectric' (Mitsuba's volpath does the same; its path counts it). Such a surface is no area "
         "light.",
         {row("opacity", &Settings::opacity,

@@ -66,8 +66,7 @@ void register_normal_map(Registry& registry) {
     add_type<Settings>(
         registry, Category::bsdf, "normalmap",
         "Bends the normal of the nested BSDF. Colours 0 to 1 are components -1 to 1 along dp/du, across it, "
-        "and "
-        "along the normal: (0.5, 0.5, 1) changes nothing. Pictures of normals want raw.",
+        "and along the normal: (0.5, 0.5, 1) changes nothing. Pictures of normals want raw.",
         {row("normalmap", &Settings::normals, "The normals.").required(),
          nested("bsdf", &Settings::nested, Category::bsdf, "required", "The nested one (any name)."),
          bent_normal_rows<Settings>()},

@@ -67,8 +67,7 @@ void require_own_checkpoint(const std::string& path, const std::string& content_
     if (*content != content_hash)
         throw InputError(
             "is a checkpoint of another render (the scene, a file that it names, or an option differs), and "
-            "is "
-            "not replaced: move it, remove it, or choose another name",
+            "is not replaced: move it, remove it, or choose another name",
             {path, 0});
 }
 

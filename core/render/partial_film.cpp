@@ -35,7 +35,7 @@ PartialFilm read_from(std::span<const std::byte> bytes) {
     }
     // Three channels a layer, three arrays of a sum: tested before memory is allocated that the file cannot
     // fill.
-    if (9 * std::uint64_t(count) * least_packed_size(std::uint64_t(width) * height) > file.film.size())
+    if (9 * std::uint64_t(count) * min_packed_size(std::uint64_t(width) * height) > file.film.size())
         throw InputError("damaged (its length is wrong)");
     try {
         PartialFilm partial{std::move(about), Film(int(width), int(height), std::move(layers), all_squares)};

@@ -20,7 +20,7 @@ struct RenderState {
 
 inline constexpr std::uint32_t noise_rule_from = 8;  ///< fewer passes say too little about their spread
 
-inline constexpr double most_seconds_late = 1.0;  ///< upper bound of the time after the wanted end [s]
+inline constexpr double max_seconds_late = 1.0;  ///< upper bound of the time after the wanted end [s]
 /// If true, the noise rule is tested after this pass: after every pass at first, later after every 16th of a
 /// power of two, since estimates take time and noise falls slowly. It depends on nothing but the number of
 /// passes, or an interruption would change the picture.
@@ -37,7 +37,7 @@ inline bool filtered_noise_is_due(std::uint32_t passes) {
 inline bool must_stop(const StopRule& rule, const RenderState& state) {
     if (rule.passes && state.passes >= *rule.passes) return true;
     // One more pass would end farther from the wanted time than none, or more than a second behind it.
-    const double pass = state.seconds_per_pass(), late = std::min(0.5 * pass, most_seconds_late);
+    const double pass = state.seconds_per_pass(), late = std::min(0.5 * pass, max_seconds_late);
     if (rule.seconds && state.passes_of_this_run > 0 &&
         state.seconds_before + state.seconds + pass - late >= *rule.seconds)
         return true;

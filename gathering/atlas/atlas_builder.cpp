@@ -44,8 +44,8 @@ void AtlasBuilder::check_budget() const {
     const std::size_t least = cells_at(0.0f);
     if (least > settings_.texel_budget)
         throw InputError(
-            fmt::format("the surfaces fall into so many pieces that an atlas needs {} texels at "
-                        "least; texel_budget is {}",
+            fmt::format("the surfaces fall into so many pieces that an atlas needs {} texels at least; "
+                        "texel_budget is {}",
                         least, settings_.texel_budget));
     if (settings_.texels_per_metre > 0.0f && cells_at(settings_.texels_per_metre) > settings_.texel_budget)
         throw InputError(

@@ -68,7 +68,7 @@ void EyeBundles::light_found_points(std::span<const BundleDirection> lines, std:
                                     TileLight& indirect) {
     if (!any_of(found_)) return;
     light_points(indirect);
-    if (pass_.bounces > 1) go_on(lines, index, indirect);
+    if (pass_.bounces > 1) continue_paths(lines, index, indirect);
     while (continue_paths()) light_points(indirect);
 }
 
@@ -108,7 +108,8 @@ bool EyeBundles::continue_path(Found& y) {
 /// Follows paths from the points that line `first` found, along lines of the same pass chosen at random. A
 /// line that a path has not had yet is as good as a new one, because lines are independent of each other; one
 /// that it had leads straight back, and would bias the light by 0.6 over the number of lines.
-void EyeBundles::go_on(std::span<const BundleDirection> lines, std::size_t first, TileLight& indirect) {
+void EyeBundles::continue_paths(std::span<const BundleDirection> lines, std::size_t first,
+                                TileLight& indirect) {
     std::array<std::vector<std::size_t>, width> unused;
     for (auto& left : unused)
         for (std::size_t m = 0; m < lines.size(); ++m)

@@ -86,7 +86,8 @@ class EyeBundles {
                core::Rgb& direct);
     core::WalkEvent look(const core::ScatteringVertex& x, const core::Ray& ray, const RayBundle* kept,
                          core::Rgb& throughput);
-    void go_on(std::span<const BundleDirection> lines, std::size_t first, lights::TileLight& indirect);
+    void continue_paths(std::span<const BundleDirection> lines, std::size_t first,
+                        lights::TileLight& indirect);
     void light_points(lights::TileLight& indirect);
     bool continue_paths();
     bool continue_path(Found& y);

@@ -8,7 +8,7 @@ namespace mote::gathering {
 namespace {
 
 /// Hits that rounding may have exchanged take turns: a front after a back, and first of all.
-void take_turns(std::span<HitKey> run, bool front_next) {
+void alternate(std::span<HitKey> run, bool front_next) {
     std::vector<HitKey> fronts, backs;
     for (const HitKey& hit : run) (hit.from_behind() ? backs : fronts).push_back(hit);
     auto front = fronts.begin(), back = backs.begin();
@@ -30,11 +30,11 @@ struct Coincident {
     }
 };
 
-void take_turns_from_the_start(std::span<HitKey> hits, float tolerance) {
+void alternate_from_the_start(std::span<HitKey> hits, float tolerance) {
     bool front_next = true;
     for (std::size_t begin = 0; begin < hits.size();) {
         const auto [end, both] = Coincident(hits, begin, tolerance);
-        if (both) take_turns(hits.subspan(begin, end - begin), front_next);
+        if (both) alternate(hits.subspan(begin, end - begin), front_next);
         front_next = hits[end - 1].from_behind();
         begin = end;
     }
@@ -51,12 +51,12 @@ void order_coincident(std::span<HitKey> hits, float tolerance) {
     const bool mixed_first = Coincident(hits, 0, tolerance).both;
     if (mixed_first) reverse(hits);
     if (mixed_first && !Coincident(hits, 0, tolerance).both) {
-        take_turns_from_the_start(hits, tolerance);
+        alternate_from_the_start(hits, tolerance);
         reverse(hits);
         return;
     }
     if (mixed_first) reverse(hits);
-    take_turns_from_the_start(hits, tolerance);
+    alternate_from_the_start(hits, tolerance);
 }
 
 }  // namespace mote::gathering

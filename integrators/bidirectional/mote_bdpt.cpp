@@ -73,8 +73,8 @@ void register_mote_bdpt(Registry& registry) {
              "Test every connection of an eye vertex with the light path; false: one, sampled by its "
              "unoccluded contribution."),
          row("strategies", &S::strategies, between(0, 8),
-             "A layer s<vertices from a light>_t<vertices from the camera> for every technique of "
-             "paths of up to so many edges.")},
+             "A layer s<vertices from a light>_t<vertices from the camera> for every technique of paths of "
+             "up to so many edges.")},
         R"(<integrator type="mote_bdpt"><integer name="max_depth" value="-1"/></integrator>)",
         [](const S& s) { return std::make_shared<MoteBdpt>(s); });
 }

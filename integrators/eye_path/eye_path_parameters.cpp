@@ -8,8 +8,7 @@ const ParameterList<EyePathLimits>& eye_path_rows() {
     static const ParameterList<EyePathLimits> list{
         row("max_depth", &EyePathLimits::max_depth, at_least(1).or_else(-1, "no limit"),
             "Longest path in edges: 1 is emission only, 2 direct light. A scattering in a medium counts, a "
-            "null "
-            "collision does not."),
+            "null collision does not."),
         row("rr_depth", &EyePathLimits::rr_depth, at_least(1),
             "Depth from which Russian roulette may end a path."),
         row("hide_emitters", &EyePathLimits::hide_emitters,

@@ -29,10 +29,9 @@ constexpr double left_by_filter = 1.0 / 50.0;
 std::string shares_wanted(std::size_t parts) {
     return fmt::format(
         "mote_layers gives its {0} methods passes by the noise that it has seen, so it is not known "
-        "beforehand "
-        "which method has which pass: integrator.shares with {0} numbers, passes of each in a round, makes "
-        "it "
-        "known ('parts' of --stats of a short render say how many each wants)",
+        "beforehand which method has which pass: integrator.shares with {0} numbers, passes of each in a "
+        "round, makes "
+        "it known ('parts' of --stats of a short render say how many each wants)",
         parts);
 }
 

@@ -48,10 +48,10 @@ class MoteLayers final : public Integrator {
         read_shares(s.shares);
         for (const auto& [name, integrator, where] : s.integrators) {
             if (integrator->works_on_mean())
-                throw InputError(integrator->type() +
-                                     " works on the mean of its whole picture here, and cannot "
-                                     "fill a part of another",
-                                 where);
+                throw InputError(
+                    integrator->type() +
+                        " works on the mean of its whole picture here, and cannot fill a part of another",
+                    where);
             const bool named = name != "integrator";  // the name of the parameter is as good as none
             nested_.push_back({integrator, read_transport(named ? name : "", where), "asked for", where});
         }
@@ -156,12 +156,10 @@ void register_mote_layers(Registry& registry) {
          within(&S::filter, layer_filter_rows()),
          row("far_light", &S::far_light, {{"paths", FarLight::paths}, {"lights", FarLight::lights}},
              "Indirect light and multiple scattering where the scene chooses: by paths, unbiased, or by "
-             "virtual "
-             "point lights, resampled, with less noise and without what their bound takes."),
+             "virtual point lights, resampled, with less noise and without what their bound takes."),
          row("shares", &S::shares,
              "Passes of each method in a round, such as '3, 1' (docs/cluster.md): passes are known "
-             "beforehand, "
-             "which several machines need.")
+             "beforehand, which several machines need.")
              .when_absent("as many as reduce the error fastest"),
          nested("integrator", &S::integrators, Category::integrator, "chosen by the scene",
                 "Any number: each fills the cells that its name lists, of emission, direct, indirect, "

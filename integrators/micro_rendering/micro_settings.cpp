@@ -35,8 +35,7 @@ void MicroSettings::check(bool media) const {
     if (media)
         throw InputError(
             "mote_micro_rendering renders surfaces only, and the scene has media; volpath and mote_vpl "
-            "render "
-            "them");
+            "render them");
     gathering::LitPoints::check_memory(points);
 }
 
@@ -68,8 +67,7 @@ const ParameterList<MicroSettings>& micro_parameters() {
                     "larger is faster, and brighter at edges."),
                 row("ray_casting", &Buffers::cast_leaves,
                     "Points that are larger than a texel fill all texels whose rays meet them; if false, the "
-                    "one "
-                    "that they fall on: a little faster, with holes that darken edges.")),
+                    "one that they fall on: a little faster, with holes that darken edges.")),
          row("paths", &S::paths, between(1, 1 << 26), "Light paths a pass of vpls and photons.")
              .when_absent("256 of vpls, 100000 of photons"),
          row("bound", &S::bound, between(0, 1e30, "1/m^2"),
@@ -78,8 +76,7 @@ const ParameterList<MicroSettings>& micro_parameters() {
              .when_absent("paths / (radius of the scene)^2"),
          row("upsampling", &S::upsampling, between(1, 16),
              "n: receivers at one pixel of n x n, whose light is shared by neighbours on the same surface; "
-             "others "
-             "are rendered again. Up to n^2 times as fast."),
+             "others are rendered again. Up to n^2 times as fast."),
          row("glossy_upsampling", &S::glossy_upsampling,
              "Glossy surfaces share their light, too, as in the thesis: faster, with more error.")});
     return list;

@@ -90,8 +90,8 @@ void register_volpath(Registry& registry) {
          row("vpl_bound", &S::vpl_bound, at_least(0, "1/m^2"),
              "Bound b on the geometry term of the edge where VPLs connect; 0: none."),
          row("equiangular", &S::equiangular,
-             "Light of point and spot lights in media by equi-angular sampling along every ray, "
-             "instead of at collisions.")},
+             "Light of point and spot lights in media by equi-angular sampling along every ray, instead of "
+             "at collisions.")},
         R"(<integrator type="volpath"><integer name="max_depth" value="-1"/></integrator>)",
         [](const S& s, const Properties& p) {
             if (s.equiangular && s.vpl_bound > 0.0f)

@@ -135,8 +135,7 @@ Plan MotePhotonMap::plan(const Scene& scene, const Requirements& r) const {
         "photons",
         fmt::format("{} bytes each, at most about {} kept", sizeof(gathering::Photon), settings_.max_photons),
         "and 13 bytes of kd-tree on surfaces, 16 bytes of disc and Embree's tree in media; what would be "
-        "more "
-        "is thinned out at random");
+        "more is thinned out at random");
     plan.run("surfaces", fmt::format("radiance estimate from the {} nearest photons", settings_.neighbours),
              "at the first vertex that is no mirror and no glass");
     plan_media(plan, r);

@@ -28,8 +28,7 @@ const ParameterList<RayBundleSettings>& ray_bundle_parameters() {
                 "pixels, which small lights need. Lights with a position are sampled in either case."),
             row("glossy_transfer", &Exchange::glossy,
                 "Surfaces that are not diffuse reflect light to others (interleaved alone); if false, "
-                "towards "
-                "the eye alone: faster and darker."),
+                "towards the eye alone: faster and darker."),
             row("rays_per_texel", &Exchange::rays_per_texel, inside(0, 1e6),
                 "Rays of a bundle that meet a texel seen at right angles: less noise of texels, more time.")),
         within(

@@ -173,20 +173,16 @@ void register_mote_ray_lights(Registry& registry) {
          row("paths", &S::paths, between(0, 1 << 26), "Light paths traced in every pass."),
          row("connections", &S::connections, between(0, 1 << 26),
              "Connections of a segment of an eye path to ray lights and VPLs, sampled by importance: more "
-             "take time "
-             "in proportion, and lower the noise that is not of light paths; 0: to all."),
+             "take time in proportion, and lower the noise that is not of light paths; 0: to all."),
          row("candidates", &S::candidates, between(0, 1 << 26),
              "Ray lights, and as many VPLs, whose importance a tile of 4 x 4 pixels evaluates, sampled by "
-             "power; "
-             "0: all of them."),
+             "power; 0: all of them."),
          row("bound", &S::bound, between(0, 1e30, "1/m^2"),
              "Bound b on the geometry term from surface to surface; eye paths that continue find what is "
-             "above "
-             "it. automatic: light paths that a receiver is connected to, at least 16, over R^2."),
+             "above it. automatic: light paths that a receiver is connected to, at least 16, over R^2."),
          row("scattering_points", &S::scattering_points, between(1, 64),
              "Points in media where each eye ray samples lights: less noise of single scattering for more "
-             "shadow "
-             "rays.")},
+             "shadow rays.")},
         R"(<integrator type="mote_ray_lights"><integer name="paths" value="128"/></integrator>)",
         [](const S& s) { return std::make_shared<MoteRayLights>(s); });
 }

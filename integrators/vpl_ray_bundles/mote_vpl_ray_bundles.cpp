@@ -44,8 +44,7 @@ const ParameterList<VplBundleSettings>& vpl_bundle_parameters() {
              "pass; time grows with their bounces."),
          row("bound", &S::bound, above(0, "1/m^2"),
              "Bound on the geometry term of paths of two bounces and more, which are left to bundles then, "
-             "as in "
-             "the paper: darker. Without it they have MIS weights, and nothing is lost.")
+             "as in the paper: darker. Without it they have MIS weights, and nothing is lost.")
              .when_absent("none"),
          row("sky", &S::sky,
              "Direct light of the sky by bundles too, half of whose directions are sampled by it."),
@@ -54,22 +53,18 @@ const ParameterList<VplBundleSettings>& vpl_bundle_parameters() {
               {"lines", GlossyTreatment::lines},
               {"clamping", GlossyTreatment::clamping}},
              "own_rays: a glossy surface also sends one ray by its BSDF, with MIS weights. lines: lines "
-             "alone, as "
-             "in the paper, with nearly twice the error. clamping: lobes widened to the density of the "
-             "lights, "
-             "biased."),
+             "alone, as in the paper, with nearly twice the error. clamping: lobes widened to the density of "
+             "the "
+             "lights, biased."),
          row("links", &S::imperfect_links, {{"rays", false}, {"imperfect", true}},
              "rays: a ray of each point finds what a line meets, exact. imperfect: looked up in bundles of "
-             "discs "
-             "around points, which lose light through holes."),
+             "discs around points, which lose light through holes."),
          row("interleaving", &S::interleaving, between(1, 8),
              "n: a pixel of n x n has directions of its own, and every n^2-th VPL, which counts n^2 times: "
-             "less "
-             "work a pass, and more noise."),
+             "less work a pass, and more noise."),
          row("filter", &S::filters,
              "Smooths indirect light in image space, as far as noise that differs from pixel to pixel "
-             "explains "
-             "its detail: for interleaving.")});
+             "explains its detail: for interleaving.")});
     return list;
 }
 
@@ -88,8 +83,8 @@ class MoteVplRayBundles final : public Integrator {
     std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
         if (scene.has_media())
             throw InputError(
-                "mote_vpl_ray_bundles renders surfaces only, and the scene has media; volpath and "
-                "mote_vpl render them");
+                "mote_vpl_ray_bundles renders surfaces only, and the scene has media; volpath and mote_vpl "
+                "render them");
         if (settings_.imperfect_links && scene.has_panes())
             throw InputError(
                 "imperfect bundles have no panes or masks, and the scene has some: links=\"rays\"");

@@ -38,8 +38,8 @@ glm::mat3 checked_rotation(const Transform& to_world, const SourceLocation& wher
         for (int row = 0; row < 3; ++row)
             if (!(std::fabs(gram[column][row] - (row == column ? 1.0 : 0.0)) < 1e-4))
                 throw InputError(
-                    "the light's to_world stretches or shears; it may only rotate, mirror, "
-                    "move and scale evenly",
+                    "the light's to_world stretches or shears; it may only rotate, mirror, move and scale "
+                    "evenly",
                     where);
     return glm::mat3(rotation);
 }

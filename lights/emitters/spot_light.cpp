@@ -124,8 +124,7 @@ std::shared_ptr<Emitter> checked_spot(const SpotSettings& s, const SourceLocatio
     const double limit = (s.texture ? 89.9 : 180.0) * degrees;
     if (!(s.cutoff_angle >= 1e-6 && s.cutoff_angle <= limit * (1.0 + 1e-12)))
         throw InputError(
-            "a spot's 'cutoff_angle' must be above 0 and at most 180 degrees, below 90 with a "
-            "texture",
+            "a spot's 'cutoff_angle' must be above 0 and at most 180 degrees, below 90 with a texture",
             where);
     if (!(s.beam_width >= 0.0 && s.beam_width <= s.cutoff_angle * (1.0 + 1e-12)))
         throw InputError("a spot's 'beam_width' must lie between 0 and 'cutoff_angle'", where);

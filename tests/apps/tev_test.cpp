@@ -157,7 +157,7 @@ TEST_CASE("a viewer that takes nothing delays nobody, and the next picture repla
     });
     // The second at the end, and time for a busy machine.
     CHECK(showing < 0.5);
-    CHECK(all < TevViewer::most_seconds_at_end + 5.0);
+    CHECK(all < TevViewer::max_seconds_at_end + 5.0);
 }
 
 TEST_CASE("the last picture is sent before the end", "[tev]") {

@@ -101,8 +101,7 @@ void add_curves(Registry& registry, const std::string& type, const std::string& 
 void register_curve_files(Registry& registry) {
     add_curves<CurveBasis::b_spline>(
         registry, "bsplinecurve",
-        "Round tubes along uniform cubic B-splines, at least four control points "
-        "each, cut off at the ends.");
+        "Round tubes along uniform cubic B-splines, at least four control points each, cut off at the ends.");
     add_curves<CurveBasis::linear>(
         registry, "linearcurve",
         "Round tubes along straight pieces, at least two control points, with round joints and ends. Pieces "

@@ -79,31 +79,28 @@ void register_mesh_files(Registry& registry) {
     };
     add("obj", "obj",
         "Triangle mesh from a Wavefront OBJ file. Polygons are triangulated; smooth normals are computed "
-        "when "
-        "the file has none. Materials in the file are not read.",
+        "when the file has none. Materials in the file are not read.",
         mesh_rows(flip_row, true), R"(<shape type="obj">
     <string name="filename" value="meshes/cube.obj"/>
     <boolean name="face_normals" value="true"/>
 </shape>)");
     add("ply", "ply",
         "Triangle mesh from a Stanford PLY file, ASCII or binary. Polygons are triangulated; smooth normals "
-        "are "
-        "computed when the file has none.",
+        "are computed when the file has none.",
         mesh_rows(flip_row), R"(<shape type="ply">
     <string name="filename" value="meshes/cube.ply"/>
 </shape>)");
     add("serialized", "serialized",
         "Triangle mesh from a file in Mitsuba's compressed format, version 3 or 4; smooth normals are "
-        "computed "
-        "when it has none. Colours of vertices are its attribute 'vertex_color' (Mitsuba 3 skips them).",
+        "computed when it has none. Colours of vertices are its attribute 'vertex_color' (Mitsuba 3 skips "
+        "them).",
         mesh_rows(index_row), R"(<shape type="serialized">
     <string name="filename" value="meshes/cubes.serialized"/>
     <integer name="shape_index" value="1"/>
 </shape>)");
     add("mesh", "",
         "Triangle mesh from any file that assimp reads (3ds, stl, off, gltf, ...), all its parts in one "
-        "shape. "
-        "Mitsuba does not know this type.",
+        "shape. Mitsuba does not know this type.",
         mesh_rows(flip_row), R"(<shape type="mesh">
     <string name="filename" value="meshes/cube.off"/>
 </shape>)");

@@ -19,8 +19,8 @@ const std::vector<ForeignIntegrator>& foreign_integrators() {
         {"direct", "path", "paths of depth 2; samples of lights and of the BSDF are one each", 2},
         {"volpathmis", "volpath", "the same picture; ours always weighs the channels against each other"},
         {"ptracer", "path",
-         "the same picture from the eye's side, but for caustics of point lights, which "
-         "'mote_photon_map' sees"},
+         "the same picture from the eye's side, but for caustics of point lights, which 'mote_photon_map' "
+         "sees"},
         {"prb", "path", "the same picture, without derivatives"},
         {"prb_basic", "path", "the same picture, without derivatives"},
         {"prb_projective", "path", "the same picture, without derivatives"},

@@ -18,8 +18,8 @@ struct Plugins {
 constexpr Plugins plugins[] = {
     {Category::bsdf,
      "blendbsdf bumpmap circular conductor dielectric diffuse hair mask measured measured_polarized "
-     "normalmap "
-     "null plastic polarizer pplastic principled principledthin retarder roughconductor roughdielectric "
+     "normalmap null plastic polarizer pplastic principled principledthin retarder roughconductor "
+     "roughdielectric "
      "roughplastic thindielectric twosided"},
     {Category::texture,
      "bitmap blackbody checkerboard d65 irregular mesh_attribute rawconstant regular srgb uniform volume"},
@@ -88,8 +88,8 @@ std::vector<MitsubaFeature> mitsuba_features(const Registry& registry) {
 std::string mitsuba_features_markdown(const Registry& registry) {
     std::string text =
         "\n## Mitsuba's plugins\n\nAll that Mitsuba 3.9.1 has, and what becomes of it here. What is refused "
-        "is an "
-        "error; with\n`--lenient` an unknown BSDF is a grey diffuse, and everything else unknown is left "
+        "is an error; with\n`--lenient` an unknown BSDF is a grey diffuse, and everything else unknown is "
+        "left "
         "out.\n\n"
         "| category | plugin | state | by what, or why not |\n|---|---|---|---|\n";
     for (const MitsubaFeature& f : mitsuba_features(registry))

@@ -78,8 +78,7 @@ class LightcutsSelector final : public VplSelector {
 const ParameterList<LightcutSettings> parameters{
     row("threshold", &LightcutSettings::threshold, between(0, 1),
         "Upper bound of the error of one cluster, relative to a pixel's light. Lower: less error, for time "
-        "about in "
-        "proportion to the clusters. 0: all VPLs."),
+        "about in proportion to the clusters. 0: all VPLs."),
     row("max_cut", &LightcutSettings::max_cut, between(1, 1 << 28),
         "Largest number of clusters that light a tile of 4 x 4 pixels: bounds the time."),
     row("error", &LightcutSettings::error, between(0, 1),
@@ -87,8 +86,7 @@ const ParameterList<LightcutSettings> parameters{
         "alone."),
     row("shared_angle", &LightcutSettings::shared_angle, between(0, 10, "rad"),
         "Points on a face, or beside each other in a medium, that a VPL sees within such an angle share a "
-        "shadow ray: 0.2 "
-        "halves the time and adds a tenth of the error. 0: none do."),
+        "shadow ray: 0.2 halves the time and adds a tenth of the error. 0: none do."),
 };
 
 }  // namespace
@@ -123,13 +121,11 @@ void register_lightcuts(Registry& registry) {
     };
     add("lightcuts",
         "Lightcuts (Walter et al. 2005): clusters of VPLs, each by its representative, refined until their "
-        "largest error "
-        "bound is below a threshold.",
+        "largest error bound is below a threshold.",
         false);
     add("multidimensional_lightcuts",
         "Lightcuts over all points of a pixel at once (Walter et al. 2006): along its eye rays through "
-        "media, on the "
-        "surface behind them, and of all its eye paths.",
+        "media, on the surface behind them, and of all its eye paths.",
         true);
 }
 

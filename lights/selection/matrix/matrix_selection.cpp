@@ -62,17 +62,16 @@ using RowKind = RowVisibilitySettings::Kind;
 const ParameterList<MatrixSettings> parameters{
     row("rows", &MatrixSettings::rows, between(1, 1 << 16),
         "Receivers that all VPLs are evaluated at, of all slices, rounded up to 16 for each: better "
-        "clusters, for time in "
-        "proportion to the VPLs."),
+        "clusters, for time in proportion to the VPLs."),
     row("columns", &MatrixSettings::columns, between(1, 1 << 20),
         "Clusters of a slice; one VPL of each lights a tile of 4 x 4 pixels: time is in proportion to it."),
     row("slices", &MatrixSettings::slices, between(1, 1 << 12),
         "Clusters of receivers of like position and normal, each with its own rows and columns."),
-    within(&MatrixSettings::visibility, row("row_visibility", &RowVisibilitySettings::kind,
-                                            {{"shadow_map", RowKind::shadow_maps}, {"rays", RowKind::rays}},
-                                            "Between rows and VPLs, volumetric shadow maps of a receiver's "
-                                            "view, faster in media, or rays: only the "
-                                            "probabilities of VPLs depend on it.")),
+    within(&MatrixSettings::visibility,
+           row("row_visibility", &RowVisibilitySettings::kind,
+               {{"shadow_map", RowKind::shadow_maps}, {"rays", RowKind::rays}},
+               "Between rows and VPLs, volumetric shadow maps of a receiver's "
+               "view, faster in media, or rays: only the probabilities of VPLs depend on it.")),
 };
 
 }  // namespace
@@ -100,8 +99,7 @@ void MatrixSelection::plan(Plan& plan, const SelectionSize& size) const {
 void register_matrix_selection(Registry& registry) {
     add_type(registry, Category::selection, "matrix",
              "Matrix row-column sampling (Hasan et al. 2007): clusters of VPLs that send alike to a few "
-             "receivers, for each "
-             "slice of the image, and one VPL sampled from each for each tile: unbiased.",
+             "receivers, for each slice of the image, and one VPL sampled from each for each tile: unbiased.",
              parameters, R"(<selection type="matrix"/>)",
              [](const MatrixSettings& settings, const Properties& properties) {
                  const auto selection = std::make_shared<MatrixSelection>(settings);

@@ -143,8 +143,7 @@ struct ResamplingSettings {
 const ParameterList<ResamplingSettings> parameters{
     row("candidates", &ResamplingSettings::candidates, between(1, 1 << 20),
         "VPLs that a tile of 4 x 4 pixels evaluates without shadow rays, on surfaces and along eye rays "
-        "through media: "
-        "more lower the variance of the choice, four to sixteen a sample pay."),
+        "through media: more lower the variance of the choice, four to sixteen a sample pay."),
     row("samples", &ResamplingSettings::samples, between(1, 1 << 16),
         "VPLs of them that each pixel chooses: shadow rays, and most of the time."),
 };
@@ -169,8 +168,7 @@ void ResamplingSelection::plan(Plan& plan, const SelectionSize& size) const {
 void register_resampling_selection(Registry& registry) {
     add_type(registry, Category::selection, "resampling",
              "Resampled importance sampling (Talbot et al. 2005): a few VPLs for each pixel, chosen among "
-             "many candidates "
-             "from a cut by their unoccluded light: unbiased.",
+             "many candidates from a cut by their unoccluded light: unbiased.",
              parameters, R"(<selection type="resampling"/>)",
              [](const ResamplingSettings& settings, const Properties& properties) {
                  const auto selection =
