@@ -19,7 +19,14 @@ bool is_boundary(const Shape& shape) { return shape.bsdf && shape.bsdf->traits()
 
 }  // namespace
 
-ShapeScenes::ShapeScenes() : device_(rtcNewDevice(nullptr)) {
+TracingUnit unit_for(std::span<const std::shared_ptr<Shape>> shapes) {
+    Bounds3 box;
+    for (const auto& shape : shapes) box.extend(shape->bounds());
+    return TracingUnit::of(max_component(glm::max(-box.lower, box.upper)));
+}
+
+ShapeScenes::ShapeScenes(TracingUnit unit)
+    : device_(rtcNewDevice(nullptr)), unit_(unit), max_ray_origin_(largest_coordinate / unit.per_metre) {
     if (!device_) throw std::runtime_error("Embree: no device");
     rtcSetDeviceMemoryMonitorFunction(device_.get(), count_memory, &memory_);
     for (auto& s : scenes_) s = new_scene();
@@ -48,7 +55,7 @@ void ShapeScenes::attach(const Shape& shape) {
         attach_instanced(*instanced);
         return;
     }
-    Entry entry{TracedShape(shape), nullptr, {}};
+    Entry entry{TracedShape(shape, unit_), nullptr, {}};
     attach_geometry(scenes_[is_boundary(shape)].get(), *entry.shape, entries_.size());
     entries_.push_back(std::move(entry));
 }
@@ -71,17 +78,28 @@ void ShapeScenes::attach_instanced(const InstancedShape& shape) {
     if (fresh) {
         const SharedScenes& group = shared_scenes(placement.group());
         for (std::size_t i = 0; i < 2; ++i)
-            if (group.members[i] > 0) attach_instance(scenes_[i].get(), group.scenes[i].get(), placement);
+            if (group.members[i] > 0) attach_instance(scenes_[i].get(), group, i, placement);
+        const double limit = placement.max_ray_origin() / double(group.unit.per_metre);
+        if (!(limit > 1.0))  // directions, too, must stay within what Embree traces
+            throw InputError("the transform of an instance is too small for its shapegroup",
+                             placement.where());
+        max_ray_origin_ = std::fmin(max_ray_origin_, float(limit / std::sqrt(3.0)));
         entries_.push_back({std::nullopt, &group, {}});
         entries_.back().placed.resize(group.shapes.size());
     }
     entries_[at->second].placed[shape.member()] = &shape;
 }
 
-void ShapeScenes::attach_instance(RTCScene to, RTCScene instanced, const Placement& placement) const {
+void ShapeScenes::attach_instance(RTCScene to, const SharedScenes& group, std::size_t which,
+                                  const Placement& placement) const {
     const Geometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE));
-    const glm::mat4 matrix(placement.to_world().matrix);
-    rtcSetGeometryInstancedScene(geometry.get(), instanced);
+    // From the group's unit of length to that of the world.
+    const double unit = double(unit_.per_metre), scale = unit / double(group.unit.per_metre);
+    glm::dmat4 to_world = placement.to_world().matrix;
+    for (int c = 0; c < 4; ++c)
+        for (int r = 0; r < 3; ++r) to_world[c][r] *= c < 3 ? scale : unit;
+    const glm::mat4 matrix(to_world);
+    rtcSetGeometryInstancedScene(geometry.get(), group.scenes[which].get());
     rtcSetGeometryTransform(geometry.get(), 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &matrix[0][0]);
     rtcCommitGeometry(geometry.get());
     rtcAttachGeometryByID(to, geometry.get(), unsigned(entries_.size()));
@@ -92,9 +110,10 @@ const ShapeScenes::SharedScenes& ShapeScenes::shared_scenes(const ShapeGroup& gr
     SharedScenes& result = at->second;
     if (!fresh) return result;
     for (auto& s : result.scenes) s = new_scene();
+    if (unit_.per_metre != 1.0f) result.unit = unit_for(group.shapes);
     for (const auto& shape : group.shapes) {
         const std::size_t i = is_boundary(*shape);
-        result.shapes.emplace_back(*shape);
+        result.shapes.emplace_back(*shape, result.unit);
         attach_geometry(result.scenes[i].get(), result.shapes.back(), result.shapes.size() - 1);
         ++result.members[i];
     }

@@ -7,12 +7,16 @@
 
 #include "core/geometry/embree_shapes.h"
 #include "core/geometry/instances.h"
+#include "core/geometry/mesh_checks.h"
 
 namespace mote::core::embree {
 
+/// The unit for a scene of these shapes.
+TracingUnit unit_for(std::span<const std::shared_ptr<Shape>> shapes);
+
 class ShapeScenes {
   public:
-    ShapeScenes();
+    explicit ShapeScenes(TracingUnit unit);
     ShapeScenes(const ShapeScenes&) = delete;
     ShapeScenes& operator=(const ShapeScenes&) = delete;
 
@@ -28,6 +32,10 @@ class ShapeScenes {
     std::size_t surface_primitives() const { return surface_primitives_; }
     std::size_t memory_bytes() const { return std::size_t(std::max<std::int64_t>(0, memory_)); }
     Bounds3 bounds() const { return bounds_; }
+    TracingUnit unit() const { return unit_; }  ///< of rays
+    /// Bound of the coordinates of a ray's origin, in the world [m], that Embree can trace through all
+    /// instances.
+    float max_ray_origin() const { return max_ray_origin_; }
 
     /// The shape that was hit, as Embree traces it: of an instanced shape the original.
     const TracedShape& shape_of(const RawHit& raw) const {
@@ -42,6 +50,7 @@ class ShapeScenes {
         Scene scenes[2];
         std::size_t members[2] = {0, 0};
         std::vector<TracedShape> shapes;
+        TracingUnit unit;  // of the group's space
     };
     /// A geometry at the top: a shape, or an instance of shapes.
     struct Entry {
@@ -53,7 +62,8 @@ class ShapeScenes {
     Scene new_scene() const;
     void attach_geometry(RTCScene to, const TracedShape& shape, std::size_t number) const;
     void attach_instanced(const InstancedShape& shape);
-    void attach_instance(RTCScene to, RTCScene instanced, const Placement& placement) const;
+    void attach_instance(RTCScene to, const SharedScenes& group, std::size_t which,
+                         const Placement& placement) const;
     const SharedScenes& shared_scenes(const ShapeGroup& group);
     void check(const char* step) const;
 
@@ -65,6 +75,8 @@ class ShapeScenes {
     std::map<const Placement*, std::size_t> instances_;  // their entries
     std::size_t boundaries_ = 0, panes_ = 0, surface_primitives_ = 0;
     Bounds3 bounds_;
+    TracingUnit unit_;
+    float max_ray_origin_;
 };
 
 }  // namespace mote::core::embree

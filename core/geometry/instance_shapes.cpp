@@ -40,11 +40,7 @@ std::shared_ptr<Object> instance(const InstanceSettings& settings, const Propert
         throw InputError("only a shapegroup can be instanced: put the shape into one",
                          settings.groups[0].where);
     auto result = std::make_shared<Instance>();
-    try {
-        result->shapes = place_group(std::move(group), settings.to_world);
-    } catch (const InputError& error) {
-        throw InputError(error.what(), p.where_of("to_world"));
-    }
+    result->shapes = place_group(std::move(group), settings.to_world, p.where_of("to_world"));
     return result;
 }
 
@@ -69,7 +65,8 @@ void register_instances(Registry& registry) {
                                {nested("shapegroup", &InstanceSettings::groups, Category::shape, "required",
                                        "The group, mostly a <ref>."),
                                 row("to_world", &InstanceSettings::to_world,
-                                    "Any affine transform that can be inverted; the outside stays outside.")},
+                                    "Any affine transform that can be inverted in single precision; the "
+                                    "outside stays outside.")},
                                R"(<shape type="instance">
     <shape type="shapegroup">
         <shape type="cube"/>

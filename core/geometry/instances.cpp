@@ -31,12 +31,38 @@ glm::dmat3 inversion_error(const glm::dmat3& m, const glm::dmat3& inverse) {
 
 Transform rounded(const Transform& t) { return Transform(glm::dmat4(glm::mat4(t.matrix))); }
 
+/// Zero for numbers that single precision loses, as renders do with denormal ones.
+float normal_or_zero(float x) { return std::isnormal(x) ? x : 0.0f; }
+
+/// True if the inverse that Embree computes in single precision, by cofactors over the determinant, belongs
+/// to this matrix. Otherwise Embree would trace something else, or abort on numbers that are not finite.
+bool invertible_in_single_precision(const glm::dmat3& m) {
+    constexpr double tolerance = 1e-3;
+    const glm::mat3 a(m);
+    glm::dmat3 inverse;
+    for (int c = 0; c < 3; ++c) {
+        const Vec3 cofactors = glm::cross(a[(c + 1) % 3], a[(c + 2) % 3]);
+        const float determinant = normal_or_zero(glm::determinant(a));
+        for (int r = 0; r < 3; ++r) inverse[r][c] = double(normal_or_zero(cofactors[r]) / determinant);
+    }
+    const glm::dmat3 traced = glm::inverse(inverse);
+    for (int c = 0; c < 3; ++c)
+        if (!(glm::length(traced[c] - m[c]) <= tolerance * glm::length(m[c]))) return false;
+    return true;
+}
+
 }  // namespace
 
-Placement::Placement(std::shared_ptr<const ShapeGroup> group, const Transform& to_world)
-    : group_(std::move(group)), to_world_(rounded(to_world)) {
+Placement::Placement(std::shared_ptr<const ShapeGroup> group, const Transform& to_world,
+                     const SourceLocation& where)
+    : group_(std::move(group)), where_(where), to_world_(rounded(to_world)) {
     if (!to_world.valid() || !to_world_.valid())
-        throw InputError("the transform of an instance is singular or not finite");
+        throw InputError("the transform of an instance is singular or not finite", where);
+    if (!invertible_in_single_precision(glm::dmat3(to_world_.matrix)))
+        throw InputError(
+            "the transform of an instance is singular in single precision: it is too small, too large or too "
+            "uneven",
+            where);
     to_local_ = to_world_.inverse();
     const glm::dmat3 linear(to_world_.matrix), inverse(to_local_.matrix);
     normals_ = glm::transpose(inverse);
@@ -54,10 +80,20 @@ float Placement::error(const Vec3& position, const Vec3& normal, float local_err
     return quantization_error(position, normal) + float(scale * (double(local_error) + moved));
 }
 
+double Placement::max_ray_origin() const {
+    const glm::dmat3 inverse(to_local_.matrix);
+    const double stretch = std::sqrt(glm::dot(inverse[0], inverse[0]) + glm::dot(inverse[1], inverse[1]) +
+                                     glm::dot(inverse[2], inverse[2]));
+    const double limit = double(largest_coordinate);
+    return stretch < limit ? limit / stretch - glm::length(Vec3d(to_world_.matrix[3])) : -1.0;
+}
+
 InstancedShape::InstancedShape(std::shared_ptr<const Placement> placement, std::size_t member)
     : placement_(std::move(placement)), member_(member) {
     const Shape& shape = original();
-    if (shape.emitter) throw InputError("a light cannot be instanced: its shape must stand in the scene");
+    if (shape.emitter)
+        throw InputError("a light cannot be instanced: its shape must stand in the scene",
+                         placement_->where());
     id = shape.id;
     bsdf = shape.bsdf, interior = shape.interior, exterior = shape.exterior;
     exterior_where = shape.exterior_where;
@@ -68,7 +104,7 @@ InstancedShape::InstancedShape(std::shared_ptr<const Placement> placement, std::
     bounds_ = outward_bounds(placement_->to_world().point(center), spread * half);
     if (!(max_component(glm::abs(bounds_.lower)) < largest_coordinate &&
           max_component(glm::abs(bounds_.upper)) < largest_coordinate))
-        throw InputError("an instance reaches beyond 1e18");
+        throw InputError("an instance reaches beyond 1e18", placement_->where());
 }
 
 void InstancedShape::to_world(SurfaceHit& hit) const {
@@ -129,9 +165,9 @@ float InstancedShape::pdf_visible(const Vec3& p, const Vec3& wi, const SurfaceHi
 }
 
 std::vector<std::shared_ptr<Shape>> place_group(std::shared_ptr<const ShapeGroup> group,
-                                                const Transform& to_world) {
+                                                const Transform& to_world, const SourceLocation& where) {
     const std::size_t count = group->shapes.size();
-    const auto placement = std::make_shared<const Placement>(std::move(group), to_world);
+    const auto placement = std::make_shared<const Placement>(std::move(group), to_world, where);
     std::vector<std::shared_ptr<Shape>> placed;
     for (std::size_t i = 0; i < count; ++i) placed.push_back(std::make_shared<InstancedShape>(placement, i));
     return placed;

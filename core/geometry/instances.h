@@ -18,9 +18,10 @@ class ShapeGroup final : public Object {
 /// Where an instance puts its group: any affine map that can be inverted, mirrored and non-uniform ones too.
 class Placement {
   public:
-    /// Throws InputError when the transform is singular, not finite or beyond 1e18. Entries are rounded to
-    /// single precision, which is what Embree traces.
-    Placement(std::shared_ptr<const ShapeGroup> group, const Transform& to_world);
+    /// Throws InputError when the transform is singular or not finite, or so in single precision, to which
+    /// entries are rounded: Embree inverts and traces that. `where`: in the scene file.
+    Placement(std::shared_ptr<const ShapeGroup> group, const Transform& to_world,
+              const SourceLocation& where = {});
 
     const ShapeGroup& group() const { return *group_; }
     const Transform& to_world() const { return to_world_; }
@@ -35,9 +36,14 @@ class Placement {
     /// Bound of the distance along its normal of a point in the world from the surface that Embree traces
     /// [m], given the same in the group's space.
     float error(const Vec3& position, const Vec3& normal, float local_error) const;
+    /// Distance from the world's origin [m] within which a ray may start so that all its numbers stay below
+    /// 1e18 in the group's space; negative where no ray may.
+    double max_ray_origin() const;
+    const SourceLocation& where() const { return where_; }  ///< of the transform in the scene file
 
   private:
     std::shared_ptr<const ShapeGroup> group_;
+    SourceLocation where_;
     Transform to_world_, to_local_;
     glm::dmat3 normals_;          ///< inverse transpose of the linear part
     double determinant_;          ///< its absolute value
@@ -74,7 +80,7 @@ class InstancedShape final : public Shape {
 
 /// All shapes of the group as placed by `to_world`. Throws InputError, see Placement and InstancedShape.
 std::vector<std::shared_ptr<Shape>> place_group(std::shared_ptr<const ShapeGroup> group,
-                                                const Transform& to_world);
+                                                const Transform& to_world, const SourceLocation& where = {});
 
 /// Result of <shape type="instance">: the loader puts its shapes into the scene.
 class Instance final : public Object {

@@ -20,10 +20,11 @@ static_assert(offsetof(ShadowPacket, origin_x) == offsetof(RTCRay16, org_x) &&
               offsetof(ShadowPacket, id) == offsetof(RTCRay16, id) &&
               offsetof(ShadowPacket, flags) == offsetof(RTCRay16, flags));
 
-RTCRay embree_ray(const Ray& ray) {
+RTCRay embree_ray(const Ray& ray, embree::TracingUnit unit) {
+    const Vec3 origin = unit.per_metre * ray.origin, direction = unit.per_metre * ray.direction;
     RTCRay r{};
-    r.org_x = ray.origin.x, r.org_y = ray.origin.y, r.org_z = ray.origin.z, r.tnear = ray.t_min;
-    r.dir_x = ray.direction.x, r.dir_y = ray.direction.y, r.dir_z = ray.direction.z, r.tfar = ray.t_max;
+    r.org_x = origin.x, r.org_y = origin.y, r.org_z = origin.z, r.tnear = ray.t_min;
+    r.dir_x = direction.x, r.dir_y = direction.y, r.dir_z = direction.z, r.tfar = ray.t_max;
     r.mask = 0xffffffffu;
     return r;
 }
@@ -36,22 +37,28 @@ RTCRay embree_ray(const ShadowPacket& p, int i) {
     return r;
 }
 
-/// Some builds of Embree (Debian's) abort on rays that are not finite or reach beyond what it can trace:
-/// those hit nothing.
-bool traceable(const Vec3& origin, const Vec3& direction, float t_min, float t_max) {
-    constexpr float limit = 1e18f;
-    return (std::fabs(origin.x) < limit) && (std::fabs(origin.y) < limit) && (std::fabs(origin.z) < limit) &&
-           (std::fabs(direction.x) < limit) && (std::fabs(direction.y) < limit) &&
-           (std::fabs(direction.z) < limit) && (std::fabs(t_min) < infinity) && (t_max >= t_min);
-}
-bool traceable(const Ray& r) { return traceable(r.origin, r.direction, r.t_min, r.t_max); }
-bool traceable(const ShadowPacket& p, int i) {
-    return traceable(p.origin(i), p.direction(i), p.t_min[i], p.t_max[i]);
+void scale(ShadowPacket& p, embree::TracingUnit unit) {
+    for (float* numbers : {p.origin_x, p.origin_y, p.origin_z, p.direction_x, p.direction_y, p.direction_z})
+        for (int lane = 0; lane < ShadowPacket::width; ++lane) numbers[lane] *= unit.per_metre;
 }
 
-RTCRayHit embree_ray_hit(const Ray& ray) {
+/// Some builds of Embree (Debian's) abort on rays that are not finite or start beyond what it can trace, in
+/// the space of an instance too (ShapeScenes::max_ray_origin): those hit nothing.
+bool traceable(const Vec3& origin, const Vec3& direction, float t_min, float t_max, float max_origin) {
+    return glm::all(glm::lessThan(glm::abs(origin), Vec3(max_origin))) &&
+           glm::all(glm::lessThan(glm::abs(direction), Vec3(largest_coordinate))) &&
+           (std::fabs(t_min) < infinity) && (t_max >= t_min);
+}
+bool traceable(const Ray& r, float max_origin) {
+    return traceable(r.origin, r.direction, r.t_min, r.t_max, max_origin);
+}
+bool traceable(const ShadowPacket& p, int i, float max_origin) {
+    return traceable(p.origin(i), p.direction(i), p.t_min[i], p.t_max[i], max_origin);
+}
+
+RTCRayHit embree_ray_hit(const Ray& ray, embree::TracingUnit unit) {
     RTCRayHit query{};
-    query.ray = embree_ray(ray);
+    query.ray = embree_ray(ray, unit);
     query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     return query;
 }
@@ -59,6 +66,7 @@ RTCRayHit embree_ray_hit(const Ray& ray) {
 }  // namespace
 
 struct RayTracer::Implementation {
+    explicit Implementation(embree::TracingUnit unit) : scenes(unit) {}
     embree::ShapeScenes scenes;
     bool use_streams = false;
     RTCScene scene(Group group) const {
@@ -67,7 +75,7 @@ struct RayTracer::Implementation {
 };
 
 RayTracer::RayTracer(std::span<const std::shared_ptr<Shape>> shapes)
-    : impl_(std::make_unique<Implementation>()) {
+    : impl_(std::make_unique<Implementation>(embree::unit_for(shapes))) {
     for (const auto& shape : shapes) impl_->scenes.attach(*shape);
     impl_->scenes.build();
     impl_->use_streams = embree::has_streams && impl_->scenes.surface_primitives() > 8000;
@@ -81,9 +89,9 @@ Bounds3 RayTracer::bounds() const { return impl_->scenes.bounds(); }
 std::size_t RayTracer::memory_bytes() const { return impl_->scenes.memory_bytes(); }
 
 std::optional<SurfaceHit> RayTracer::closest(const Ray& ray, Group group) const {
-    if (!traceable(ray)) return std::nullopt;
+    if (!traceable(ray, impl_->scenes.max_ray_origin())) return std::nullopt;
     embree::Query query;
-    RTCRayHit r = embree_ray_hit(ray);
+    RTCRayHit r = embree_ray_hit(ray, impl_->scenes.unit());
     embree::intersect(impl_->scene(group), query, r);
     if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
     return impl_->scenes.hit(ray,
@@ -91,9 +99,9 @@ std::optional<SurfaceHit> RayTracer::closest(const Ray& ray, Group group) const 
 }
 
 bool RayTracer::occluded(const Ray& ray) const {
-    if (!traceable(ray)) return false;
+    if (!traceable(ray, impl_->scenes.max_ray_origin())) return false;
     embree::Query query;
-    RTCRay r = embree_ray(ray);
+    RTCRay r = embree_ray(ray, impl_->scenes.unit());
     embree::occluded(impl_->scene(Group::surfaces), query, r);
     return r.tfar < 0.0f;
 }
@@ -101,8 +109,19 @@ bool RayTracer::occluded(const Ray& ray) const {
 void RayTracer::occluded(ShadowPacket& packet) const {
     embree::Query query;
     alignas(64) int valid[ShadowPacket::width];
-    for (int lane = 0; lane < ShadowPacket::width; ++lane) valid[lane] = -int(traceable(packet, lane));
-    embree::occluded(valid, impl_->scene(Group::surfaces), query, reinterpret_cast<RTCRay16&>(packet));
+    for (int lane = 0; lane < ShadowPacket::width; ++lane)
+        valid[lane] = -int(traceable(packet, lane, impl_->scenes.max_ray_origin()));
+    const auto trace = [&](ShadowPacket& p) {
+        embree::occluded(valid, impl_->scene(Group::surfaces), query, reinterpret_cast<RTCRay16&>(p));
+    };
+    if (impl_->scenes.unit().per_metre == 1.0f) {
+        trace(packet);
+        return;
+    }
+    ShadowPacket scaled = packet;
+    scale(scaled, impl_->scenes.unit());
+    trace(scaled);
+    std::copy_n(scaled.t_max, ShadowPacket::width, packet.t_max);
 }
 
 // Measured with rays from tiles of 4 x 4 receivers to one point, in ns a ray as packets of 16 and as a stream
@@ -111,7 +130,7 @@ void RayTracer::occluded(ShadowPacket& packet) const {
 // 109 for 80,000, 263 and 176 for 500,000. Taking the packets apart costs a few ns.
 void RayTracer::occluded(std::span<ShadowPacket> packets) const {
     constexpr std::size_t chunk = 64;
-    if (!impl_->use_streams || packets.size() < 2) {
+    if (!impl_->use_streams || packets.size() < 2 || impl_->scenes.unit().per_metre != 1.0f) {
         for (ShadowPacket& packet : packets) occluded(packet);
         return;
     }
@@ -123,7 +142,7 @@ void RayTracer::occluded(std::span<ShadowPacket> packets) const {
         unsigned count = 0;
         for (ShadowPacket& packet : part)
             for (int lane = 0; lane < ShadowPacket::width; ++lane)
-                if (traceable(packet, lane)) {
+                if (traceable(packet, lane, impl_->scenes.max_ray_origin())) {
                     t_max[count] = &packet.t_max[lane];
                     rays[count++] = embree_ray(packet, lane);
                 }
@@ -142,11 +161,11 @@ void RayTracer::all_hits(const Ray& ray, Group group, std::vector<SurfaceHit>& h
 }
 
 void RayTracer::visit_hits(const Ray& ray, Group group, Visitor visitor, const void* visit) const {
-    if (!traceable(ray)) return;
+    if (!traceable(ray, impl_->scenes.max_ray_origin())) return;
     embree::RawHits found;
     embree::Query query;
     query.collected = &found;
-    RTCRayHit r = embree_ray_hit(ray);
+    RTCRayHit r = embree_ray_hit(ray, impl_->scenes.unit());
     embree::intersect_filtered(impl_->scene(group), query, r, embree::collect_hits);
 
     // Embree may report a triangle more than once; a quadric's two hits differ in t.

@@ -1,8 +1,11 @@
 // A complete scene: checks and bounds. Media are in scene_media.cpp, lights in scene_lights.cpp.
 #include "core/scene/scene.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
+#include "core/geometry/instances.h"
 #include "core/objects/error.h"
 #include "core/scene/light_tree.h"
 
@@ -11,6 +14,18 @@ namespace {
 
 bool any_emissive(const std::vector<std::shared_ptr<Medium>>& media) {
     return std::any_of(media.begin(), media.end(), [](const auto& m) { return m->traits().emissive; });
+}
+
+/// Cubes of lengths, and squares of densities per area, must stay within single precision.
+void check_extent(const Bounds3& bounds, const std::string& file) {
+    constexpr float min_reach = 1e-10f, max_reach = 1e13f;
+    const float reach = max_component(glm::max(-bounds.lower, bounds.upper));
+    if (!(reach > 0.0f) || (reach >= min_reach && reach <= max_reach)) return;
+    throw InputError(
+        fmt::format("the scene reaches {:.3g} m from its origin, which must lie between {:g} and {:g} m: use "
+                    "another unit of length",
+                    reach, min_reach, max_reach),
+        {file, 0});
 }
 
 }  // namespace
@@ -27,6 +42,8 @@ Scene::Scene(Parts parts) : parts_(std::move(parts)) {
     }
     rays_ = std::make_unique<RayTracer>(parts_.shapes);
     find_bounds();
+    check_extent(bounds_, parts_.file);
+    check_instances();
     find_boundaries();
     find_outermost_medium();
     add_medium_lights();
@@ -70,6 +87,23 @@ void Scene::find_bounds() {
     const float radius = bounds_.radius();
     for (const auto& emitter : parts_.emitters)
         emitter->set_scene_bounds(bounds_.center(), radius > 0.0f ? radius : 1.0f);
+}
+
+/// Rays start within the scene, in front of lights at infinity, or in a medium without end; at a thousand
+/// times the scene's reach it covers some 1e-6 sr.
+void Scene::check_instances() const {
+    constexpr double margin = 1000.0;
+    const Vec3d reach(glm::max(glm::abs(bounds_.lower), glm::abs(bounds_.upper)));
+    for (const auto& shape : parts_.shapes) {
+        const auto* placed = dynamic_cast<const InstancedShape*>(shape.get());
+        // The ray tracer enlarges smaller scenes to this size.
+        if (placed && !(placed->placement().max_ray_origin() > margin * std::max(glm::length(reach), 4.0)))
+            throw InputError(
+                "the transform of an instance is too small for this scene: single precision does not hold "
+                "its "
+                "extent in the shapegroup",
+                placed->placement().where());
+    }
 }
 
 std::optional<SurfaceHit> Scene::first_hit(const Ray& ray) const { return rays_->closest(ray); }

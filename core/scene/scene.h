@@ -110,6 +110,7 @@ class Scene final : public LitScene {
     void check() const;
     void collect_media();
     void find_bounds();
+    void check_instances() const;
     void add_medium_lights();
     void build_light_tables();
     float probability_of(std::size_t light, const LightReceiver& receiver) const;
@@ -121,6 +122,7 @@ class Scene final : public LitScene {
     Vec3 eye_start() const;
     void find_eye_states();
     void find_emitter_states();
+    void check_light_from_infinity(const Emitter& emitter, const Medium* around) const;
     bool any_boundary_in(const Bounds3& box, const Shape* except) const;
     MediumState medium_state_near(const Vec3& p, const Medium* declared, const Shape* excluded) const;
     MediumState area_light_state(const Emitter& emitter, const Shape& shape, const Vec3& p,
@@ -141,6 +143,7 @@ class Scene final : public LitScene {
     std::vector<std::uint32_t> tree_lights_, tree_index_;  ///< light of the hierarchy to emitter, and back
     std::unordered_map<const Emitter*, std::size_t> emitter_index_;
     const Medium* outermost_ = nullptr;
+    SourceLocation outermost_where_;  ///< where the scene file names it
     MediumState camera_state_;
     bool eyes_differ_ = false;  ///< a boundary passes through where eye rays begin
     /// Shapes with a medium on either side; a closed one whose normals point inwards (a room) is `inward`.

@@ -272,4 +272,37 @@ TEST_CASE("instances that cannot be are refused", "[geometry][instances]") {
     CHECK_THROWS_WITH(place_group(group, scaling(1, 0, 1)), ContainsSubstring("singular"));
     CHECK_THROWS_WITH(place_group(group, scaling(1, std::nan(""), 1)), ContainsSubstring("not finite"));
     CHECK_THROWS_WITH(place_group(group, translation(1e19, 0, 0)), ContainsSubstring("1e18"));
+    // Determinants that single precision does not hold, and rows that it cannot tell apart.
+    const auto singular = ContainsSubstring("singular in single precision");
+    for (const double s : {1e-20, 1e-13, 1e13, 1e17})
+        CHECK_THROWS_WITH(place_group(group, scaling(s, s, s)), singular);
+    glm::dmat4 sheared(1.0);
+    sheared[0] = {1.0, 1.0, 0.0, 0.0}, sheared[1] = {1.0, 1.0 + 1e-7, 0.0, 0.0};
+    CHECK_THROWS_WITH(place_group(group, rotation(40, {1, 2, 3}) * Transform(sheared)), singular);
+    // Those that it does hold stay, turned and uneven ones too.
+    for (const double s : {1e-12, 1e-6, 1e6, 1e12}) CHECK_NOTHROW(place_group(group, scaling(s, s, s)));
+    CHECK_NOTHROW(place_group(group, rotation(40, {1, 2, 3}) * scaling(1e11, 1, 1)));
+    CHECK_NOTHROW(place_group(group, scaling(1e-11, 1, 1) * rotation(40, {1, 2, 3})));
+}
+
+TEST_CASE("rays that an instance's space cannot hold meet nothing, and do not end the program",
+          "[geometry][instances]") {
+    const auto cubes = group_of({mesh(make_cube())});
+    CHECK_THROWS_WITH(RayTracer(place_group(cubes, scaling(1e-20, 1, 1))),
+                      ContainsSubstring("too small for its shapegroup"));
+    const auto thin = place_group(cubes, scaling(1e-10, 1, 1));
+    const RayTracer tracer(thin);
+    CHECK(tracer.closest(ray({0, 0.2f, 5}, {0, 0, -1})));
+    CHECK_FALSE(tracer.closest(ray({0, 0.2f, 1e15f}, {0, 0, -1})));
+}
+
+TEST_CASE("instances are hit in scenes of any size", "[geometry][instances]") {
+    for (const double s : {0x1p-33, 0x1p-20, 0x1p20, 0x1p33}) {
+        const auto placed = place_group(group_of({mesh(make_cube())}), scaling(s, s, s));
+        const RayTracer tracer(placed);
+        const auto hit = tracer.closest(ray({0, 0.2f * float(s), 5.0f * float(s)}, {0, 0, -1}));
+        REQUIRE(hit);
+        CHECK(double(hit->t) == Approx(4.0 * s));
+        CHECK(double(hit->position.y) == Approx(0.2 * s));
+    }
 }

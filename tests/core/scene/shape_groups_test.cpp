@@ -89,6 +89,12 @@ TEST_CASE("groups and instances that cannot be are refused where they stand", "[
     refused("<shape type='instance'/>", "one shapegroup");
     refused("<shape type='cube' id='c'/>" + instance("c"), "only a shapegroup");
     refused(group("<shape type='cube'/>") + instance("g", "<scale x='0'/>"), "singular");
+    refused(group("<shape type='cube'/>") + instance("g", "<scale value='1e-20'/>"),
+            "test.xml:3: the transform of an instance is singular in single precision");
+    refused(group("<shape type='cube'/>") + instance("g", "<scale x='1e-20'/>"),
+            "test.xml:3: the transform of an instance is too small");
+    refused(group("<shape type='cube'/>") + instance("g", "<scale x='1e-16'/>"),
+            "test.xml:3: the transform of an instance is too small for this scene");
 }
 
 TEST_CASE("curves from files", "[scene][curves]") {
