@@ -115,7 +115,7 @@ void Scene::find_boundaries() {
             // From outside of its bounds, the first hit enters the shape unless its normals point inwards.
             const Bounds3 box = shape->bounds();
             const Vec3 target = shape->sample_area({0.37f, 0.61f}).position;
-            const Vec3 origin = box.center() + probe_directions()[0] * (2.0f * box.radius() + 1e-3f);
+            const Vec3 origin = box.center() + probe_directions()[0] * (2.1f * box.radius());
             const float distance = glm::length(target - origin);
             Ray ray{origin, (target - origin) / distance, 0.0f, 1.01f * distance};
             const auto hits = hits_along(*rays_, ray);

@@ -46,12 +46,12 @@ std::vector<Cell> fill_cells(const SurfaceTriangles& surfaces, std::span<const s
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         const std::uint32_t t = triangles[i];
         const auto& p = surfaces.corners[t];
-        const Vec3 cross = glm::cross(p[1] - p[0], p[2] - p[0]);
+        const Vec3d cross = glm::cross(Vec3d(p[1] - p[0]), Vec3d(p[2] - p[0]));
         const Vec2 a = corners[i][1] - corners[i][0], b = corners[i][2] - corners[i][0];
         const double in_cells = 0.5 * std::fabs(double(a.x) * b.y - double(a.y) * b.x);
         if (!(in_cells > 0.0)) continue;
-        const double metres = 0.5 * double(glm::length(cross)) / in_cells;  // a cell's area on this triangle
-        const Vec3d normal = glm::normalize(Vec3d(cross));
+        const double metres = 0.5 * glm::length(cross) / in_cells;  // a cell's area on this triangle
+        const Vec3d normal = glm::normalize(cross);
         for_each_piece(
             corners[i], columns, rows, [&](std::uint32_t x, std::uint32_t y, double area, const Vec2& at) {
                 Cell piece;

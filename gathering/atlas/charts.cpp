@@ -65,7 +65,10 @@ class Neighbours {
     std::vector<std::uint32_t> by_key_, place_;
 };
 
-Vec3 area_vector(const std::array<Vec3, 3>& c) { return 0.5f * glm::cross(c[1] - c[0], c[2] - c[0]); }
+/// In double precision, as the square of an area leaves single precision in small scenes.
+Vec3d area_vector(const std::array<Vec3, 3>& c) {
+    return 0.5 * glm::cross(Vec3d(c[1] - c[0]), Vec3d(c[2] - c[0]));
+}
 
 /// Turns the chart so that its rectangle is as small as an edge's direction makes it, and places it.
 void fit_rectangle(Chart& chart, const SurfaceTriangles& surfaces, std::span<const std::uint32_t> triangles) {
@@ -98,7 +101,7 @@ void fit_rectangle(Chart& chart, const SurfaceTriangles& surfaces, std::span<con
 Charts make_charts(const SurfaceTriangles& surfaces, float least_cosine) {
     const Neighbours neighbours(surfaces);
     const std::size_t n = surfaces.size();
-    std::vector<Vec3> areas(n);
+    std::vector<Vec3d> areas(n);
     for (std::size_t t = 0; t < n; ++t) areas[t] = area_vector(surfaces.corners[t]);
     const auto area = [&](std::uint32_t t) { return glm::length(areas[t]); };
     std::vector<std::uint32_t> largest_first(n);
@@ -108,16 +111,16 @@ Charts make_charts(const SurfaceTriangles& surfaces, float least_cosine) {
     Charts result;
     result.chart_of.assign(n, Charts::none);
     for (const std::uint32_t seed : largest_first) {
-        if (result.chart_of[seed] != Charts::none || !(area(seed) > 0.0f)) continue;
+        if (result.chart_of[seed] != Charts::none || !(area(seed) > 0.0)) continue;
         const auto number = std::uint32_t(result.charts.size());
         Chart chart;
-        chart.n = glm::normalize(areas[seed]), chart.shape = surfaces.shape[seed];
+        chart.n = Vec3(glm::normalize(areas[seed])), chart.shape = surfaces.shape[seed];
         chart.first = std::uint32_t(result.triangles.size());
         result.triangles.push_back(seed), result.chart_of[seed] = number;
         for (std::size_t i = chart.first; i < result.triangles.size(); ++i)
             neighbours.for_each(result.triangles[i], [&](std::uint32_t t) {
-                if (result.chart_of[t] != Charts::none || !(area(t) > 0.0f)) return;
-                if (!(glm::dot(areas[t], chart.n) >= least_cosine * area(t))) return;
+                if (result.chart_of[t] != Charts::none || !(area(t) > 0.0)) return;
+                if (!(glm::dot(areas[t], Vec3d(chart.n)) >= double(least_cosine) * area(t))) return;
                 result.triangles.push_back(t), result.chart_of[t] = number;
             });
         chart.count = std::uint32_t(result.triangles.size()) - chart.first;

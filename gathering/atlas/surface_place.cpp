@@ -27,7 +27,8 @@ SurfaceHit surface_place(const SurfaceTriangles& surfaces, ShapeSpan shapes, std
     const auto& corners = surfaces.corners[triangle];
     SurfaceHit hit;
     hit.position = interpolate(corners, barycentric);
-    hit.geometric_normal = glm::normalize(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
+    hit.geometric_normal =
+        Vec3(glm::normalize(glm::cross(Vec3d(corners[1] - corners[0]), Vec3d(corners[2] - corners[0]))));
     hit.shape = shapes[surfaces.shape[triangle]].get();
     hit.primitive = surfaces.primitive[triangle];
     hit.uv = interpolate(surfaces.uvs[triangle], barycentric);

@@ -30,6 +30,8 @@ class GroupWalk {
         const float side = float(settings.side);
         // A ball looks small below this r^2 / d^2 times d / z.
         threshold_ = settings.cut / (side * side);
+        const float extent = hierarchy.nodes()[hierarchy.node_index(hierarchy.root())].radius;
+        unit_ = extent > 0.0f ? std::ldexp(1.0f, -std::ilogb(extent)) : 1.0f;
     }
 
     void run(std::size_t stride, float* distances, std::uint32_t* hits) {
@@ -53,14 +55,14 @@ class GroupWalk {
         const std::uint32_t begin = place.index << place.level, end = begin + (1u << place.level);
         const bool leaf = place.level == 0;
         const bool whole = node.cone_cos >= flat_cosine;
-        const float r = node.radius, r2 = r * r, four_r2 = leaf ? 0.0f : 4.0f * r2;
+        const float unit = unit_, r = node.radius * unit, r2 = r * r, four_r2 = leaf ? 0.0f : 4.0f * r2;
         const float cone_sin = cone_sine(node);
         const float threshold = threshold_;
         std::int32_t any_enter = 0, any_taken = 0;
         MOTE_INDEPENDENT_LANES
         for (std::uint32_t i = 0; i < width; ++i) {
-            const float x = node.center.x - lanes_.x[i], y = node.center.y - lanes_.y[i],
-                        z = node.center.z - lanes_.z[i];
+            const float x = (node.center.x - lanes_.x[i]) * unit, y = (node.center.y - lanes_.y[i]) * unit,
+                        z = (node.center.z - lanes_.z[i]) * unit;
             const float d2 = fused_dot(x, y, z, x, y, z), d = std::sqrt(d2);
             const float up = fused_dot(x, y, z, lanes_.n[0][i], lanes_.n[1][i], lanes_.n[2][i]) + r;
             const float away = fused_dot(x, y, z, node.axis.x, node.axis.y, node.axis.z);
@@ -139,6 +141,7 @@ class GroupWalk {
     const RayDirections& rays_;
     std::uint32_t used_;
     float threshold_;
+    float unit_;  ///< power of two that brings lengths near 1, since fourth powers of them are compared
     ReceiverLanes lanes_;
     bool any_taken_ = false;
     alignas(64) std::int32_t taken_[width];

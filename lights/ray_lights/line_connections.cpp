@@ -149,7 +149,7 @@ std::optional<LineConnection> connect(const EyeLine& eye, const RayLight& light,
     const double density = on_light->pdf_distance * on_eye->pdf_distance;
     const Rgb value = eye.throughput * at_eye * eye.line.phase(towards.direction) * light.power * at_light *
                       light.line.phase(-towards.direction) *
-                      float(double(inverse_square(towards.distance_squared)) / density);
+                      float(1.0 / (towards.distance_squared * density));
     if (!(max_component(value) > 0.0f)) return std::nullopt;
     return LineConnection{value, Vec3(x), Vec3(y)};
 }

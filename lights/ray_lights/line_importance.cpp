@@ -24,11 +24,12 @@ constexpr float near_on_light = 0.06f, near_on_line = 1e-4f;
 
 /// Grows like exp(x), about.
 inline float grows(float x) { return 1.0f + x * (1.0f + x * (0.5f + x * (1.0f / 6.0f))); }
-/// Root of the mean of 1/w^2 over a segment, and of the transmittance on the way: from the product of the
-/// distances of its ends, that of the vectors there, and an optical depth. `more` is divided by as well.
-inline float falls(float distances, float vectors, float depth, float more) {
-    const float f = grows(depth);
-    return std::sqrt(2.0f / (distances * max_of(distances + vectors, 1e-6f * distances) * (f * f) * more));
+/// Mean of 1/w^2 over a segment, and of the transmittance on the way [1/m^2]: from the product of the
+/// distances of its ends, that of the vectors there, and an optical depth. Fourth powers of lengths would
+/// leave single precision in scenes of a nanometre.
+inline float falls(float distances, float vectors, float depth) {
+    const float opening = 2.0f * distances / max_of(distances + vectors, 1e-6f * distances);
+    return std::sqrt(opening) / (distances * grows(depth));
 }
 /// Henyey & Greenstein's function times 4 pi, of the cosine between the ways before and after.
 inline float lobe(float g, float cosine) {
@@ -87,7 +88,7 @@ void add_point(const LitPoint& point, std::int32_t depth, const EyeReceivers& ey
             const float bx = eyes.x[k + 1][i] - px, by = eyes.y[k + 1][i] - py, bz = eyes.z[k + 1][i] - pz;
             const float b = std::sqrt(bx * bx + by * by + bz * bz + near_squared);
             float value = eyes.weight[k][i] * falls(a * b, ax * bx + ay * by + az * bz + near_squared,
-                                                    0.5f * eyes.extinction[i] * (a + b), 1.0f);
+                                                    0.5f * eyes.extinction[i] * (a + b));
             if constexpr (Surface || Directional) {
                 const float mx = ax + bx, my = ay + by, mz = az + bz;
                 const float inverse = 1.0f / std::sqrt(mx * mx + my * my + mz * mz + near_squared);
@@ -129,7 +130,7 @@ EyeReceivers::EyeReceivers(const EyeLines& eyes) {
             weight[k][i] = through * parts.length * (parts.weight[k] + rest) * inv_four_pi;
         direction_x[i] = line.direction.x, direction_y[i] = line.direction.y;
         direction_z[i] = line.direction.z;
-        near_squared[i] = near_on_line * sqr(parts.length);
+        near_squared[i] = std::fmax(near_on_line * sqr(parts.length), 1e-36f);  // a normal number
         extinction[i] = average(line.sigma_t), asymmetry[i] = lights::asymmetry(line);
         max_depth[i] = eye->max_depth;
         directional |= !line.isotropic;
@@ -143,7 +144,6 @@ void importance(const RayLight& light, const EyeReceivers& eyes, Lanes& out) {
     for (int k = 0; k < segments; ++k) {
         LitPoint point{0.5f * (parts.end[k] + parts.end[k + 1]), power * parts.weight[k],
                        near_on_light * sqr(parts.length), light.line.direction};
-        point.near_squared = std::fmax(point.near_squared, min_distance_squared);
         const auto depth = std::int32_t(light.depth);
         if (eyes.directional) {
             point.asymmetry = asymmetry(light.line);
@@ -156,7 +156,7 @@ void importance(const RayLight& light, const EyeReceivers& eyes, Lanes& out) {
 
 void importance(const VirtualPointLight& vpl, const EyeReceivers& eyes, Lanes& out) {
     const bool surface = vpl.detail == VirtualPointLight::no_detail;
-    LitPoint point{vpl.position, average(vpl.intensity) * (surface ? 1.0f : inv_pi), min_distance_squared};
+    LitPoint point{vpl.position, average(vpl.intensity) * (surface ? 1.0f : inv_pi), 0.0f};
     const auto depth = std::int32_t(vpl.depth);
     out = {};
     if (surface) point.normal = vpl.normal;
@@ -198,13 +198,12 @@ void importance(const RayLight& light, const PointReceivers& points, Lanes& out)
                         bz = parts.end[k + 1].z - r.z[i];
             const float b = std::sqrt(bx * bx + by * by + bz * bz + near_squared);
             const float mx = ax + bx, my = ay + by, mz = az + bz;
-            const float mm = mx * mx + my * my + mz * mz + near_squared;
+            const float m = std::sqrt(mx * mx + my * my + mz * mz + near_squared);
             const float height =
                 max_of(mx * r.shading_x[i] + my * r.shading_y[i] + mz * r.shading_z[i], min_cosine * (a + b));
             const float seen = falls(a * b, ax * bx + ay * by + az * bz + near_squared,
-                                     0.5f * points.extinction[i] * (a + b), mm);
-            const float all = points.all_around[i];
-            sum += parts.weight[k] * min_of(max_of(height, all * std::sqrt(mm)) * seen, bound);
+                                     0.5f * points.extinction[i] * (a + b));
+            sum += parts.weight[k] * min_of(max_of(height / m, points.all_around[i]) * seen, bound);
             highest = max_of(highest, bx * gx + by * gy + bz * gz);
             ax = bx, ay = by, az = bz, a = b;
         }

@@ -84,7 +84,7 @@ std::optional<MediumLine> varying_line(MediumLine line, float voxel, Rng& rng, T
         sum += line.weights[i], rest += there;
     }
     // Between the samples there may be more scattering.
-    const float floor = sum > 0.0f ? defensive_share * sum / rest : 1.0f;
+    const float floor = sum > 0.0f ? defensive_share * sum / rest : 1.0f / line.length;
     for (std::uint32_t i = 0; i < line.cells; ++i)
         line.weights[i] += floor * std::fabs(average(line.transmittance[i]));
     return line;

@@ -1,6 +1,7 @@
 #include "lights/reflective_shadow_maps/reflective_shadow_maps.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 namespace mote::lights {
@@ -10,6 +11,8 @@ using namespace core;
 ReflectiveShadowMaps::ReflectiveShadowMaps(const LitScene& scene, int size, std::uint32_t other_paths)
     : scene_(scene), texels_(std::uint32_t(size) * std::uint32_t(size)), other_paths_(0) {
     if (size <= 0) throw std::invalid_argument("a reflective shadow map has texels");
+    if (const float radius = scene.bounds().radius(); radius > 0.0f)
+        distance_ = std::ldexp(1.0f, std::ilogb(radius));
     for (const auto& emitter : scene.emitters())
         if (const auto view = shadow_map_view_of(scene, *emitter, size))
             maps_.push_back({emitter.get(), *view});
@@ -23,13 +26,14 @@ std::optional<LightPathStart> ReflectiveShadowMaps::start(std::uint32_t path, Sa
     const int texel = int(path % texels_), size = map.view.size;
     const Vec2 place = (Vec2(float(texel % size), float(texel / size)) + sampler.next_2d()) / float(size);
     const Ray ray = map.view.ray_at(place);
-    // One metre away the intensity is what arrives; of parallel light that is the irradiance, anywhere.
-    const auto light = map.emitter->sample_direct(ray.at(1.0f), Vec2(0.5f));
+    // The intensity is what arrives times the squared distance; of parallel light it is the irradiance.
+    const auto light = map.emitter->sample_direct(ray.at(distance_), Vec2(0.5f));
     if (!light) return std::nullopt;
+    const float per_solid_angle = map.emitter->traits().infinite ? 1.0f : sqr(distance_);
     EmissionSample emission{};
     emission.origin = ray.origin, emission.direction = ray.direction;
     emission.pdf_area = emission.pdf_solid_angle = 1.0f;
-    emission.weight = light->weight * map.view.measure(place);
+    emission.weight = light->weight * per_solid_angle * map.view.measure(place);
     if (is_black(emission.weight)) return std::nullopt;
     return LightPathStart{map.emitter, emission, emission.weight / float(texels_)};
 }

@@ -35,7 +35,8 @@ class ReflectiveShadowMaps final : public LightPathStarts {
     std::optional<LightPathStart> of_other_light(core::Sampler& sampler) const;
 
     const core::LitScene& scene_;
-    std::uint32_t texels_;  ///< of one map
+    std::uint32_t texels_;   ///< of one map
+    float distance_ = 1.0f;  ///< at which intensities are taken [m]
     std::uint32_t other_paths_;
     std::vector<Map> maps_;
 };

@@ -5,7 +5,10 @@
 
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <string>
+
+#include "tests/support/render_statistics.h"
 
 namespace mote::tests {
 
@@ -104,6 +107,19 @@ inline std::string smoke_medium(const std::string& path) {
         <transform name="to_world"><translate x="-0.5" y="-0.5" z="-0.5"/><scale value="2"/></transform></volume>
         <volume name="albedo" type="constvolume"><rgb name="value" value="0.9, 0.8, 0.7"/></volume></medium>)",
                        path);
+}
+
+/// Numbers that keep pictures quick, where an integrator has them.
+inline std::string quick_settings(const std::string& type) {
+    const std::map<std::string, int> numbers = {
+        {"paths", 40},       {"photon_paths", 200}, {"directions", 32}, {"texel_budget", 400},
+        {"lines", 24},       {"points", 120},       {"size", 6},        {"light_size", 8},
+        {"micro_buffer", 3}, {"steps", 4},          {"candidates", 24}};
+    std::string xml;
+    for (const core::Parameter& p : registry().find(core::Category::integrator, type)->parameters)
+        if (const auto it = numbers.find(p.name); it != numbers.end())
+            xml += fmt::format(R"(<integer name="{}" value="{}"/>)", p.name, it->second);
+    return xml;
 }
 
 }  // namespace mote::tests
