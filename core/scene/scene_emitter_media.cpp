@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "core/geometry/triangle_mesh.h"
+#include "core/objects/error.h"
 #include "core/scene/scene.h"
 
 namespace mote::core {
@@ -9,8 +10,10 @@ namespace mote::core {
 /// The state at a point of an area light, on the side that its normal points to.
 MediumState Scene::area_light_state(const Emitter& emitter, const Shape& shape, const Vec3& p,
                                     const Vec3& normal) const {
-    const ShapeSample anywhere = shape.sample_area({0.5f, 0.5f});
-    const Vec3 start = offset_origin(p, normal, anywhere.error, normal);
+    // Before a boundary that coincides with the light, as scene_boundaries.cpp has it.
+    const float beyond_rounding = 1e-6f * max_component(glm::abs(p));
+    const Vec3 start =
+        offset_origin(p, normal, std::fmax(shape.sample_area({0.5f, 0.5f}).error, beyond_rounding), normal);
     const Medium* declared = emitter.medium ? emitter.medium : shape.exterior.get();
     return medium_state_near(start, declared, &shape);
 }
@@ -35,7 +38,24 @@ bool may_cross(const Shape& boundary, const Bounds3& box) {
     });
 }
 
+/// True if no light comes through the medium from infinity.
+bool blocks_infinity(const Medium& medium) {
+    const Bounds3 box = medium.bounds();
+    return medium.majorant() > 0.0f && !(is_finite(box.lower) && is_finite(box.upper));
+}
+
 }  // namespace
+
+/// Transmittance over an infinite distance is zero: paths from the eye would find nothing of a light at
+/// infinity, and particles, which start at the scene's bounds, would find something. Open walls may have
+/// something else behind them.
+void Scene::check_light_from_infinity(const Emitter& emitter, const Medium* around) const {
+    if (!emitter.traits().infinite || outside_is_parted_ || !around || !blocks_infinity(*around)) return;
+    throw InputError(
+        "no light from infinity comes through the medium around the scene, which has no end: make it the "
+        "interior of a shape, or use lights inside the scene",
+        outermost_where_);
+}
 
 bool Scene::any_boundary_in(const Bounds3& box, const Shape* except) const {
     return std::any_of(boundaries_.begin(), boundaries_.end(),
@@ -55,6 +75,7 @@ void Scene::find_emitter_states() {
         if (traits.kind == EmitterKind::area) continue;
         MediumState state;
         state.set_outside(outside_is_parted_ && emitter->medium ? emitter->medium : outermost_);
+        check_light_from_infinity(*emitter, state.current());
         if (!traits.infinite) {
             const auto position = light_position(*emitter);
             if (!position) continue;

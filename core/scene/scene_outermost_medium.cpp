@@ -89,7 +89,7 @@ void Scene::find_outermost_medium() {
     const auto other =
         std::find_if(names.begin(), names.end(), [&](const Naming& n) { return n.medium != first.medium; });
     if (other == names.end()) {
-        outermost_ = first.medium;
+        outermost_ = first.medium, outermost_where_ = first.where;
     } else if (!outside_is_parted_) {
         throw InputError("a scene has one outermost medium, and here it has two: " + name_of(*other->medium) +
                              ", named by " + other->who + ", and " + name_of(*first.medium) + ", named by " +

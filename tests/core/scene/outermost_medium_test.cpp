@@ -116,3 +116,27 @@ TEST_CASE("Every eye ray begins in the medium of its own origin", "[scene][media
     const auto far = scene_with("<sensor type='perspective'/>" + sphere("9", in_a + null_bsdf));
     CHECK(sigma(far->eye_medium_state(far->camera().sample_ray({0, 0}, {0, 0}))) == 0);
 }
+
+TEST_CASE("Light from infinity is refused in a medium without end", "[scene][media][input]") {
+    const std::string sky = "<emitter type='constant'/>\n";
+    const auto error = [](const std::string& body) {
+        try {
+            scene_with(body);
+        } catch (const InputError& e) {
+            return std::string(e.what());
+        }
+        return std::string();
+    };
+    // Media take two lines after the one that load_body() begins with.
+    for (const std::string& naming : {sensor_in_a, light_in_a, sphere("20", out_a)}) {
+        INFO(naming);
+        contains(error(naming + sky), "test.xml:4: no light from infinity comes through the medium");
+    }
+    // Media that end, or that extinguish nothing, and lights that do not come from infinity.
+    CHECK(error(sphere("0", in_a + null_bsdf) + sky).empty());
+    CHECK(error(sensor_in_a + light_in_a).empty());
+    CHECK_NOTHROW(
+        load_body("<sensor type='perspective'><medium type='homogeneous'><float name='sigma_t' value='0'/>"
+                  "</medium></sensor>" +
+                  sky));
+}

@@ -98,7 +98,10 @@ const Registry& test_registry() {
 std::string scene_xml(const std::string& body, const std::string& version) {
     std::string xml = "<scene version=\"" + version + "\">\n" + body;
     if (body.find("<sensor") == std::string::npos) xml += "\n<sensor type=\"perspective\"/>";
-    if (body.find("<emitter") == std::string::npos) xml += "\n<emitter type=\"constant\"/>";
+    // A medium around the sensor or a shape may have no end, and nothing comes through it from infinity.
+    const auto holds = [&](const char* tag) { return body.find(tag) != std::string::npos; };
+    const bool inside = holds("<medium") && (holds("<sensor") || holds("<shape"));
+    if (!holds("<emitter")) xml += inside ? "\n<emitter type=\"point\"/>" : "\n<emitter type=\"constant\"/>";
     return xml + "\n</scene>\n";
 }
 
