@@ -5,6 +5,11 @@
 // it again, or meet both in the wrong order: it would stay in the medium for ever. So where rounding has
 // decided, at edges and where a ray grazes a round shape, a hit counts only if it agrees with what comes
 // after it on the same line: one is inside exactly where the next crossing leaves.
+//
+// A boundary may coincide with a surface, such as a box of fog with the walls of its room, and rounding would
+// decide which of them a ray meets first. Everywhere the surface does: a ray that ends within rounding of a
+// boundary does not cross it, from whichever side it comes, so that fog reaches up to the wall on the side
+// where it is.
 #include <algorithm>
 
 #include "core/geometry/instances.h"
@@ -75,11 +80,18 @@ bool agrees_with_next(const RayTracer& rays, const Ray& ray, const SurfaceHit& h
     return inside != leaves(hit, ray.direction);
 }
 
+/// True if the ray ends on the boundary, but for rounding.
+bool ends_there(const Ray& ray, const SurfaceHit& hit) {
+    return double(ray.t_max) - double(hit.t) <= rounding_at(hit, ray.direction, largest(Vec3d(hit.position)));
+}
+
 }  // namespace
 
 void Scene::visit_boundaries(const Ray& ray, BoundaryVisitor visitor, const void* visit) const {
     const auto counts = [&](const SurfaceHit& hit) {
-        if (!hit.shape->has_medium_boundary || !hit.shape->closed()) return true;
+        if (!hit.shape->has_medium_boundary) return true;
+        if (!hit.shape->bsdf->traits().pane && ends_there(ray, hit)) return false;
+        if (!hit.shape->closed()) return true;
         if (!rounding_decides(hit, ray.direction)) return true;
         const auto boundary = std::find_if(boundaries_.begin(), boundaries_.end(),
                                            [&](const Boundary& b) { return b.shape == hit.shape; });
