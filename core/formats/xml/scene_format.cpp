@@ -57,7 +57,8 @@ take their parameters from the scene's integrator of that type, else from its fi
 Numbers are split by spaces or commas. NaN, infinity and numbers beyond single precision are refused.
 
 Lengths are metres, angles degrees, times seconds. Radiance is in W/(m² sr), radiant intensity in W/sr, irradiance
-in W/m², coefficients of media in 1/m, all per RGB channel.
+in W/m², coefficients of media in 1/m, all per RGB channel. Any unit of length gives the same image where the
+largest coordinate of shapes, lights and camera lies between 1e-10 and 1e13; other scenes are refused.
 
 ## Transforms
 
