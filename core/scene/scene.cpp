@@ -18,7 +18,7 @@ bool any_emissive(const std::vector<std::shared_ptr<Medium>>& media) {
 
 /// Cubes of lengths, and squares of densities per area, must stay within single precision.
 void check_extent(const Bounds3& bounds, const std::string& file) {
-    constexpr float min_reach = 1e-10f, max_reach = 1e13f;
+    constexpr float min_reach = 1e-10f, max_reach = 1e12f;
     const float reach = max_component(glm::max(-bounds.lower, bounds.upper));
     if (!(reach > 0.0f) || (reach >= min_reach && reach <= max_reach)) return;
     throw InputError(

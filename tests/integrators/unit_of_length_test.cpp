@@ -201,3 +201,9 @@ TEST_CASE("no picture of any integrator depends on the unit of length", "[scale]
             }
         }
 }
+
+TEST_CASE("scenes that leave single precision are refused", "[scale]") {
+    for (const double s : {1e-12, 1e13})
+        CHECK(rendered(scenes[0], s, R"(<integrator type="path"/>)", "")
+                  .refused.find("another unit of length") != std::string::npos);
+}

@@ -58,7 +58,7 @@ Numbers are split by spaces or commas. NaN, infinity and numbers beyond single p
 
 Lengths are metres, angles degrees, times seconds. Radiance is in W/(m² sr), radiant intensity in W/sr, irradiance
 in W/m², coefficients of media in 1/m, all per RGB channel. Any unit of length gives the same image where the
-largest coordinate of shapes, lights and camera lies between 1e-10 and 1e13; other scenes are refused.
+largest coordinate of shapes, lights and camera lies between 1e-10 and 1e12; other scenes are refused.
 
 ## Transforms
 
