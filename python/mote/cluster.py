@@ -181,6 +181,19 @@ class Cluster:
                 say(f"pass {self.film.passes}" + ("" if self.options.noise else f"/{self.options.passes}") + noise +
                     f", {len(self.workers())} workers")
 
+    def wait_for_workers(self, scheduler):
+        """Raises ClusterError where none joins in time."""
+        if self.workers():
+            return
+        start = f"'dask worker {scheduler}' on each machine starts one"
+        if not self.options.quiet:
+            say(f"no worker has joined yet: {start}; waiting {self.options.wait:g} s")
+        try:
+            self.client.wait_for_workers(1, timeout=self.options.wait)
+        except TimeoutError:
+            raise ClusterError(f"no worker has joined the scheduler at {scheduler} within {self.options.wait:g} s: "
+                               f"{start}, and --wait gives it longer") from None
+
     def run(self):
         from distributed import as_completed
         o = self.options
@@ -212,14 +225,14 @@ class Cluster:
 
 
 def render(scene, output, scheduler, *, passes=None, noise=None, block=USUAL_BLOCK, threads=1, options=(), defines=(),
-           mote=None, worker_mote=None, resume=False, retries=3, most_passes=65536, quiet=False, client=None):
+           mote=None, worker_mote=None, resume=False, retries=3, most_passes=65536, quiet=False, client=None, wait=60.0):
     """Renders `scene` (a path) by the workers of a Dask cluster, into `output` (.exr or .png).
 
     scheduler: its address, or a distributed.Client as `client`. passes: how many; or noise: until it is that
     (of the passes, before filters of the whole picture), looked at after every `block` passes, so the number of
     workers changes no bit. threads: of each task, 0 for all cores. options: further ones of `mote render`
-    ("--seed", "7"). defines: those of -D. mote, worker_mote: the command here and there. Returns the number of
-    passes. Raises ClusterError.
+    ("--seed", "7"). defines: those of -D. mote, worker_mote: the command here and there. wait: seconds until a first
+    worker has joined. Returns the number of passes. Raises ClusterError.
     """
     from distributed import Client
     command = mote or os.environ.get("MOTE_COMMAND") or "mote"
@@ -248,7 +261,8 @@ def render(scene, output, scheduler, *, passes=None, noise=None, block=USUAL_BLO
             film.path.unlink()
     job = {"id": f"{ours['content']}-{os.getpid()}-{os.urandom(4).hex()}", "mote": worker_mote, "render": arguments,
            "identity": ours, "threads": threads}
-    settings = argparse.Namespace(passes=passes or most_passes, noise=noise, block=block, retries=retries, quiet=quiet)
+    settings = argparse.Namespace(passes=passes or most_passes, noise=noise, block=block, retries=retries, quiet=quiet,
+                                  wait=wait)
     own = None
     if client is None:
         try:
@@ -257,7 +271,9 @@ def render(scene, output, scheduler, *, passes=None, noise=None, block=USUAL_BLO
             raise ClusterError(f"there is no scheduler at '{scheduler}': {error}") from None
     interrupted = False
     try:
-        Cluster(client, job, film, settings).run()
+        cluster = Cluster(client, job, film, settings)
+        cluster.wait_for_workers(client.scheduler.address)
+        cluster.run()
     except KeyboardInterrupt:
         interrupted = True
     finally:
@@ -290,6 +306,7 @@ def parser():
     p.add_argument("--mote", help="the command here (default: MOTE_COMMAND of the environment, or mote)")
     p.add_argument("--worker-mote", help="the command where the workers run (default: the same of theirs)")
     p.add_argument("--retries", type=int, default=3, help="of a task that failed (default: 3)")
+    p.add_argument("--wait", type=float, default=60.0, help="seconds until a first worker has joined (default: 60)")
     p.add_argument("--resume", action="store_true", help="go on with what an interrupted render has left")
     p.add_argument("--quiet", action="store_true")
     return p
@@ -312,7 +329,7 @@ def main(arguments=None):
     try:
         render(a.scene, a.output, a.scheduler, passes=a.passes, noise=a.noise, block=a.block, threads=a.threads,
                options=options, defines=a.define, mote=a.mote, worker_mote=a.worker_mote, resume=a.resume,
-               retries=a.retries, most_passes=a.most_passes, quiet=a.quiet)
+               retries=a.retries, most_passes=a.most_passes, quiet=a.quiet, wait=a.wait)
     except ClusterError as error:
         for line in str(error).splitlines():
             say(line.removeprefix("mote: "))

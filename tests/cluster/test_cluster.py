@@ -159,6 +159,19 @@ class Pictures(unittest.TestCase):
         with self.assertRaisesRegex(cluster.ClusterError, "no worker is left"):
             self.render("x.exr", passes=4, worker_mote=nobody)
 
+    def test_without_workers_it_says_how_to_start_one_and_ends(self):
+        with LocalCluster(n_workers=0, dashboard_address=None, silence_logs=50) as empty:
+            begin = time.monotonic()
+            done = subprocess.run([sys.executable, "-m", "mote.cluster", "scene.xml", "--scheduler",
+                                   empty.scheduler_address, "-o", "none.exr", "--passes", "8", "--wait", "1",
+                                   "--integrator", "path"], cwd=folder, capture_output=True, text=True, timeout=60,
+                                  env={**os.environ, "PYTHONPATH": str(SOURCE / "python")})
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn(f"'dask worker {empty.scheduler_address}'", done.stderr)
+        self.assertIn("within 1 s", done.stderr)
+        self.assertGreater(time.monotonic() - begin, 1.0)
+        self.assertFalse((folder / "none.exr").exists())
+
     def test_the_command_line(self):
         done = subprocess.run([sys.executable, "-m", "mote.cluster", "scene.xml", "--scheduler",
                                local.scheduler_address, "-o", "command.exr", "--passes", "8", "--block", "4"],
