@@ -57,7 +57,9 @@ class RenderWork {
           wants_previews_(wants_previews),
           threads_(
               usable_threads(settings.threads > 0 ? settings.threads : tbb::info::default_concurrency())),
-          denoiser_(settings.denoise.empty() ? Denoiser() : make_denoiser(settings.denoise, threads_)),
+          denoiser_(settings.denoise.empty()
+                        ? Denoiser()
+                        : make_denoiser(settings.denoise, threads_, false, settings.oidn_package)),
           plan_(scene.plan()),
           hash_(render_hash(scene, settings)) {
         if (settings.begin_with && settings.begin_with->scene_hash != hash_)

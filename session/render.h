@@ -66,6 +66,7 @@ struct RenderSettings {
     bool auxiliary = false;  ///< also what is seen: positions, normals, depth, albedo, with variances
     std::optional<FrameBefore> frame_before;  ///< with `auxiliary`: for motion vectors
     std::string denoise;                      ///< "oidn" or "bmfr": adds the layer `denoised`
+    std::string oidn_package;                 ///< folder of Python's package pyoidn, as OidnLibrary takes it
     std::vector<std::string> command_line;    ///< for the metadata
 };
 

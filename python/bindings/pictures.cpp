@@ -185,12 +185,12 @@ void bind_pictures(nb::module_& m) {
              nb::arg("half_resolution"), nb::arg("blur"), nb::arg("replace"))
         .def(
             "denoise",
-            [](Picture& p, const std::string& method, int threads) {
+            [](Picture& p, const std::string& method, int threads, const std::string& oidn_package) {
                 const nb::gil_scoped_release others_go_on;
                 session::BorrowedArena(threads).execute(
-                    [&] { session::make_denoiser(method, threads)(p.rendered.image); });
+                    [&] { session::make_denoiser(method, threads, false, oidn_package)(p.rendered.image); });
             },
-            nb::arg("method"), nb::arg("threads"));
+            nb::arg("method"), nb::arg("threads"), nb::arg("oidn_package"));
     nb::class_<Sequence>(m, "Sequence", "Frames that are denoised in their order.")
         .def(nb::init<>())
         .def(

@@ -1,5 +1,5 @@
-// Rendering: Python's other threads run, its signals are handled, and its exceptions are kept until the picture
-// is safe.
+// Rendering: Python's other threads run, its signals are handled, and its exceptions are kept until the
+// picture is safe.
 #include "python/bindings/bindings.h"
 
 namespace mote::python {
@@ -67,13 +67,14 @@ class PythonObserver : public session::RenderObserver {
 nb::tuple render(const session::LoadedScene& scene, std::optional<std::uint32_t> passes,
                  std::optional<double> seconds, std::optional<double> noise, std::uint64_t seed, int threads,
                  const std::string& checkpoint, double checkpoint_every, bool resume, bool auxiliary,
-                 const std::string& denoise, const std::vector<std::string>& command_line,
-                 nb::object progress, nb::object preview) {
+                 const std::string& denoise, const std::string& oidn_package,
+                 const std::vector<std::string>& command_line, nb::object progress, nb::object preview) {
     session::RenderSettings settings;
     settings.stop = {passes, seconds, noise};
     settings.seed = seed, settings.threads = threads;
     settings.checkpoint = checkpoint, settings.checkpoint_every = checkpoint_every, settings.resume = resume;
-    settings.auxiliary = auxiliary, settings.denoise = denoise, settings.command_line = command_line;
+    settings.auxiliary = auxiliary, settings.denoise = denoise, settings.oidn_package = oidn_package,
+    settings.command_line = command_line;
     PythonObserver observer(std::move(progress), std::move(preview));
     Picture picture;
     {
@@ -89,7 +90,8 @@ void bind_rendering(nb::module_& m) {
     m.def("render", &render, nb::arg("scene"), nb::arg("passes").none(), nb::arg("seconds").none(),
           nb::arg("noise").none(), nb::arg("seed"), nb::arg("threads"), nb::arg("checkpoint"),
           nb::arg("checkpoint_every"), nb::arg("resume"), nb::arg("auxiliary"), nb::arg("denoise"),
-          nb::arg("command_line"), nb::arg("progress").none(), nb::arg("preview").none());
+          nb::arg("oidn_package"), nb::arg("command_line"), nb::arg("progress").none(),
+          nb::arg("preview").none());
 }
 
 }  // namespace mote::python

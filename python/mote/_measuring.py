@@ -6,6 +6,7 @@ from typing import Any, Dict, Iterable, Iterator, Mapping, Optional, Sequence, U
 import numpy as np
 
 from . import _mote
+from ._paths import oidn_package
 from ._picture import Picture
 
 Image = Union[Picture, np.ndarray]
@@ -119,7 +120,7 @@ def denoise(picture: Image, method: str = "bmfr", *, features: Optional[Mapping[
     Raises mote.Error.
     """
     result = _with_features(picture, features)
-    result._picture.denoise(method, threads)
+    result._picture.denoise(method, threads, oidn_package(method))
     return result
 
 

@@ -1,6 +1,7 @@
 """Paths as the compiled module takes them."""
 from __future__ import annotations
 
+import importlib.util
 import os
 from pathlib import Path
 from typing import Union
@@ -12,3 +13,9 @@ def path_text(path: Union[str, Path]) -> str:
     if "\0" in text:
         raise ValueError(f"a path holds no NUL character: {text!r}")
     return text
+
+
+def oidn_package(method: str) -> str:
+    """Folder of the package pyoidn in this interpreter's environment; "" where it has none, or none is needed."""
+    spec = importlib.util.find_spec("pyoidn") if method == "oidn" else None
+    return next(iter(spec.submodule_search_locations or ()), "") if spec else ""

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, Callable, Dict, Optional, Union
 
 from . import _mote
-from ._paths import path_text
+from ._paths import oidn_package, path_text
 from ._picture import Picture
 from ._scene import Scene, load
 
@@ -64,7 +64,7 @@ def render(scene: Union[Scene, str, Path], *, passes: Optional[int] = None, seco
     words += [f"{name}={value}" for name, value in
               (("passes", passes), ("seconds", seconds), ("noise", noise), ("seed", seed)) if value is not None]
     inner, raised = _mote.render(scene._scene, passes, seconds, noise, seed, threads, path_text(checkpoint or ""),
-                                 checkpoint_every, resume, auxiliary, denoise, words, told, preview)
+                                 checkpoint_every, resume, auxiliary, denoise, oidn_package(denoise), words, told, preview)
     picture = Picture._of(inner)
     if progress is True:
         print(file=sys.stderr)

@@ -1,6 +1,5 @@
 #include "session/denoise/denoised_layer.h"
 
-
 #include "core/objects/error.h"
 #include "session/denoise/beauty_layers.h"
 #include "session/denoise/bmfr_sequence.h"
@@ -41,9 +40,9 @@ void add_denoised_layer(ImageChannels& image, const OidnLibrary& library) {
         (albedo.empty() || normal.empty() ? "" : " and Ns") + "; all other layers are as they were measured";
 }
 
-Denoiser make_denoiser(const std::string& method, int threads, bool sequence) {
+Denoiser make_denoiser(const std::string& method, int threads, bool sequence, const std::string& package) {
     if (method == "oidn")
-        return [library = std::make_shared<OidnLibrary>(threads)](ImageChannels& image) {
+        return [library = std::make_shared<OidnLibrary>(threads, package)](ImageChannels& image) {
             add_denoised_layer(image, *library);
         };
     if (method == "bmfr")

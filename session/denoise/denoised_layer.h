@@ -23,9 +23,10 @@ void add_denoised_layer(core::ImageChannels& image, const OidnLibrary& library);
 /// Adds the layer to one picture after the other.
 using Denoiser = std::function<void(core::ImageChannels&)>;
 /// The method "oidn" or "bmfr" (bmfr_sequence.h). `threads` 0: as many as there are cores. `sequence`: the
-/// pictures are frames of one, in their order. Throws InputError for another name, and where the library is
-/// not installed.
-Denoiser make_denoiser(const std::string& method, int threads, bool sequence = false);
+/// pictures are frames of one, in their order. `package`: as OidnLibrary takes it. Throws InputError for
+/// another name, and where the library is not installed.
+Denoiser make_denoiser(const std::string& method, int threads, bool sequence = false,
+                       const std::string& package = "");
 
 /// The denoised layer with its metadata, as a picture of its own.
 core::ImageChannels denoised_picture(const core::ImageChannels& image);

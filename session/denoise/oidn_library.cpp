@@ -24,12 +24,15 @@ static_assert(sizeof(Rgb) == 3 * sizeof(float), "pixels are handed over as they 
 
 const char* const file_name = "libOpenImageDenoise.so.2";
 const char* const how_to_install =
-    "'pip install pyoidn' brings it, or MOTE_OIDN names the file libOpenImageDenoise.so.2";
+    "'pip install pyoidn' brings it (for the Python of MOTE_PYTHON, of the active environment, or python3), "
+    "or "
+    "MOTE_OIDN names the file libOpenImageDenoise.so.2";
 
-/// Where Python would find the package, without importing it; "" where there is no Python, or no package.
+/// Where Python would find the package, without importing it; "" where there is no Python, or no package. The
+/// Python of a virtual environment may be active without being the first on the path.
 std::string python_package() {
     FILE* python = ::popen(
-        "python3 -c 'import importlib.util as u; "
+        "\"${MOTE_PYTHON:-${VIRTUAL_ENV:+$VIRTUAL_ENV/bin/}python3}\" -c 'import importlib.util as u; "
         "print(u.find_spec(\"pyoidn\").submodule_search_locations[0])' "
         "2>/dev/null",
         "r");
@@ -121,8 +124,8 @@ struct OidnLibrary::Functions {
     };
 };
 
-OidnLibrary::OidnLibrary(int threads) {
-    look_everywhere();
+OidnLibrary::OidnLibrary(int threads, const std::string& package) {
+    look_everywhere(package);
     try {
         functions_ = std::make_unique<Functions>(library_);
         make_device(threads);
@@ -138,7 +141,7 @@ OidnLibrary::~OidnLibrary() {
     functions_->release_device(device_);
 }
 
-void OidnLibrary::look_everywhere() {
+void OidnLibrary::look_everywhere(std::string package) {
     if (const char* named = std::getenv("MOTE_OIDN"); named && *named) {
         std::filesystem::path path = named;
         std::error_code ignored;
@@ -151,7 +154,7 @@ void OidnLibrary::look_everywhere() {
     }
     library_ = ::dlopen(file_name, RTLD_NOW | RTLD_LOCAL);
     if (library_) return;
-    const std::string package = python_package();
+    if (package.empty()) package = python_package();
     if (!package.empty()) {
         library_ = ::dlopen((package + "/oidn/lib/" + file_name).c_str(), RTLD_NOW | RTLD_LOCAL);
         if (!library_)

@@ -14,9 +14,10 @@ namespace mote::session {
 class OidnLibrary {
   public:
     /// Where MOTE_OIDN is set it names the library's file, or the folder that holds it, and nothing else is
-    /// tried; else the loader's own path, then Python's package pyoidn. `threads` 0: as many as it likes.
-    /// Throws InputError, which says how to install it.
-    explicit OidnLibrary(int threads = 0);
+    /// tried; else the loader's own path, then Python's package pyoidn in the folder `package`, or "": where
+    /// the Python of MOTE_PYTHON, of the active environment (VIRTUAL_ENV), or else `python3` has it.
+    /// `threads` 0: as many as it likes. Throws InputError, which says how to install it.
+    explicit OidnLibrary(int threads = 0, const std::string& package = "");
     ~OidnLibrary();
     OidnLibrary(const OidnLibrary&) = delete;
     OidnLibrary& operator=(const OidnLibrary&) = delete;
@@ -37,7 +38,7 @@ class OidnLibrary {
 
   private:
     struct Functions;
-    void look_everywhere();
+    void look_everywhere(std::string package);
     void make_device(int threads);
     void check(const std::string& what) const;
 

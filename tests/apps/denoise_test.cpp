@@ -151,6 +151,34 @@ TEST_CASE("what is missing is said before the render, in one line", "[command][d
           std::string::npos);
 }
 
+TEST_CASE("pyoidn is found by the Python that is named, then by that of the active environment",
+          "[command][denoise]") {
+    const Folder folder;
+    const std::string package = folder.file("site/pyoidn"), library = "/libOpenImageDenoise.so.2";
+    std::filesystem::create_directories(package + "/oidn/lib");
+    std::filesystem::copy_file(stand_in + library, package + "/oidn/lib" + library);
+    std::filesystem::create_directories(folder.file("env/bin"));
+    const auto python = [&](const std::string& path, const std::string& says) {  // with a space in its name
+        write_file(path, "#!/bin/sh\necho '" + says + "'\n");
+        std::filesystem::permissions(path, std::filesystem::perms::owner_all);
+        return path;
+    };
+    const std::string named = python(folder.file("my python"), package);
+    python(folder.file("env/bin/python3"), package);
+    REQUIRE(folder.render("plain.exr", {}).exit_code == 0);
+    for (const bool environment : {false, true}) {
+        const RunResult r = run_mote(folder, {"denoise", "plain.exr", "-o", "a.exr"}, [&] {
+            ::unsetenv("MOTE_OIDN"), ::unsetenv("MOTE_PYTHON");
+            ::setenv("VIRTUAL_ENV", folder.file(environment ? "env" : "nowhere").c_str(), 1);
+            if (!environment) ::setenv("MOTE_PYTHON", named.c_str(), 1);
+        });
+        INFO(r.err);
+        REQUIRE(r.exit_code == 0);
+        if (folder.read("a.exr").metadata.at("denoised").find("9.8.7") == std::string::npos)
+            WARN("the loader finds a library of its own: not tested");
+    }
+}
+
 TEST_CASE("where the library fails the picture is written all the same", "[command][denoise]") {
     const Folder folder;
     const RunResult r = folder.render("a.exr", {"--denoise"}, stand_in, "not today");
