@@ -62,7 +62,9 @@ std::uint64_t memory_limit(const std::string& path, const VdbLoadOptions& option
     if (options.memory_limit > 0) return options.memory_limit;
     std::error_code error;
     const std::uint64_t size = fs::file_size(path, error);
-    return (std::uint64_t(2) << 30) + 64 * (error ? 0 : size);
+    const std::uint64_t usual = (std::uint64_t(2) << 30) + 64 * (error ? 0 : size);
+    // The least that the helper starts with; what it then lacks it says itself.
+    return std::max(options.memory.at_most(usual), std::size_t(1) << 28);
 }
 
 /// File actions and attributes of one spawn: quiet, no inherited signal settings, and the memory file in
@@ -137,7 +139,8 @@ bool read_at(int fd, void* to, std::size_t size, std::uint64_t offset) {
 }
 
 /// Nothing when the helper left no complete answer.
-std::optional<GridReaderAnswer> read_answer(int fd) {
+std::optional<GridReaderAnswer> read_answer(int fd, const std::string& path,
+                                            const core::MemoryBudget& memory) {
     struct stat info {};
     GridReaderHeader h;
     if (::fstat(fd, &info) != 0 || !read_at(fd, &h, sizeof h, 0)) return std::nullopt;
@@ -150,6 +153,7 @@ std::optional<GridReaderAnswer> read_answer(int fd) {
     answer.text.resize(h.text_size);
     if (!read_at(fd, answer.text.data(), h.text_size, sizeof h)) return std::nullopt;
     if (h.grid_size > 0) {
+        memory.require(double(h.grid_size), "the grid of '" + core::printable(path, 300) + "'");
         answer.buffer = AlignedBuffer(h.grid_size);
         if (!read_at(fd, answer.buffer.data(), h.grid_size, h.grid_offset)) return std::nullopt;
     }
@@ -208,7 +212,7 @@ GridReaderAnswer run_grid_reader(const std::string& mode, const std::string& pat
     const std::optional<int> status = wait_for(pid, seconds);
     if (!status)
         refuse(path, fmt::format("cannot be read within {:.3g} seconds; the file may be damaged", seconds));
-    auto answer = read_answer(memory.get());
+    auto answer = read_answer(memory.get(), path, options.memory);
     if (!WIFEXITED(*status) || WEXITSTATUS(*status) != 0 || !answer)
         refuse(path, describe_death(*status) + "; the file is damaged or too large");
     return std::move(*answer);

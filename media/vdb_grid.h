@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/math/transform.h"
+#include "core/objects/memory_budget.h"
 #include "media/majorant_grid.h"
 
 namespace mote::media {
@@ -20,6 +21,7 @@ struct VdbLoadOptions {
     bool clamp_negative = false;     ///< raise negative values to 0 (counted) instead of refusing them
     double time_limit = 120.0;       ///< wall-clock seconds for the helper, and one more per 10 MB
     std::uint64_t memory_limit = 0;  ///< bytes for the helper; 0: 2 GB plus 64 times the file's size
+    core::MemoryBudget memory = {};  ///< of the grid, and of the helper while it reads
 };
 
 /// One grid of a file, for `mote info`.

@@ -74,7 +74,7 @@ void check_values(VolFile& file, const std::string& path, bool clamp_negative) {
 
 }  // namespace
 
-VolFile read_vol_file(const std::string& path, bool clamp_negative) {
+VolFile read_vol_file(const std::string& path, bool clamp_negative, const core::MemoryBudget& memory) {
     std::error_code error;
     const auto size = std::filesystem::file_size(path, error);
     std::ifstream in(path, std::ios::binary);
@@ -94,6 +94,8 @@ VolFile read_vol_file(const std::string& path, bool clamp_negative) {
     file.channels = h.channels;
     file.bounds.lower = {h.bounds[0], h.bounds[1], h.bounds[2]};
     file.bounds.upper = {h.bounds[3], h.bounds[4], h.bounds[5]};
+    memory.require(double(count) * sizeof(float),
+                   fmt::format("{} x {} x {} voxels of '{}'", h.nx, h.ny, h.nz, core::printable(path, 300)));
     file.values.resize(count);
     if (!in.read(reinterpret_cast<char*>(file.values.data()), std::streamsize(count * sizeof(float))))
         refuse(path, "ends before its last voxel");

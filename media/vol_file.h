@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/math/bounds.h"
+#include "core/objects/memory_budget.h"
 
 namespace mote::media {
 
@@ -22,7 +23,7 @@ struct VolFile {
 
 /// Throws InputError naming the file when it is not a complete .vol file of a supported kind, when its size
 /// does not match its header, or when it holds NaN, infinite or (unless `clamp_negative`) negative voxels.
-VolFile read_vol_file(const std::string& path, bool clamp_negative);
+VolFile read_vol_file(const std::string& path, bool clamp_negative, const core::MemoryBudget& memory = {});
 
 /// For tests and exports. `values` as in VolFile. Throws InputError when the file cannot be written.
 void write_vol_file(const std::string& path, const VolFile& file);

@@ -81,6 +81,11 @@ class RenderWork {
         if (settings_.begin_with) r.begin_with = settings_.begin_with->film.get();
         r.checkpoint_path = settings_.checkpoint, r.checkpoint_every_seconds = settings_.checkpoint_every;
         r.checkpoint_at_end = settings_.keep_checkpoint, r.resume = settings_.resume;
+        // Channels at pixel centres and the numbers of objects, with what they are made of.
+        constexpr double center_bytes = 200.0;
+        const core::FilmSettings& size = scene_.scene().film();
+        r.memory = settings_.memory.without(
+            settings_.auxiliary ? center_bytes * double(size.width) * double(size.height) : 0.0);
         r.content_hash = hash_, r.features = features_of(scene_, settings_);
         r.interrupted = &watched_.stop(), r.time_is_over = &watched_.time_is_over();
         r.keep_part_of_first_pass = !settings_.range;

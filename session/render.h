@@ -68,6 +68,7 @@ struct RenderSettings {
     std::string denoise;                      ///< "oidn" or "bmfr": adds the layer `denoised`
     std::string oidn_package;                 ///< folder of Python's package pyoidn, as OidnLibrary takes it
     std::vector<std::string> command_line;    ///< for the metadata
+    core::MemoryBudget memory;                ///< of the film, the picture, and what the integrator builds
 };
 
 /// Result of a render: the picture, its statistics and warnings.

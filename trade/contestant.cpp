@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "core/film/film_memory.h"
 #include "core/metrics/metrics.h"
 #include "core/metrics/relative_error.h"
 #include "core/objects/error.h"
@@ -87,6 +88,14 @@ double projection(const core::PassImage& image, const core::Film& film, std::siz
     return total / reference.weights.norm;
 }
 
+/// Throws core::OutOfMemory where its passes and the picture have no room.
+core::Film make_film(const core::Scene& scene, const core::Integrator& integrator) {
+    const core::FilmSettings& film = scene.film();
+    std::vector<core::Layer> layers = integrator.layers(scene);
+    core::FilmMemory(film.width, film.height, layers).require({});
+    return {film.width, film.height, std::move(layers)};
+}
+
 }  // namespace
 
 Contestant::Contestant(const core::Scene& scene, const Method& method, std::uint64_t seed,
@@ -96,7 +105,7 @@ Contestant::Contestant(const core::Scene& scene, const Method& method, std::uint
       seed_(seed),
       checkpoint_(std::move(checkpoint)),
       key_{content_hash + " " + method.type + " " + method.settings_text(), seed},
-      film_(scene.film().width, scene.film().height, method.integrator->layers(scene)),
+      film_(make_film(scene, *method.integrator)),
       floor_(reference.floor()) {
     restore();
     const Clocks clocks;

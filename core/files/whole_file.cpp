@@ -18,12 +18,13 @@ void require_file(const std::string& path) {
         throw InputError("is a pipe or a device, not a file");
 }
 
-std::vector<std::byte> read_whole_file(const std::string& path) {
+std::vector<std::byte> read_whole_file(const std::string& path, const MemoryBudget& memory) {
     require_file(path);
     std::ifstream file(path, std::ios::binary | std::ios::ate);
     if (!file) throw InputError(std::string("cannot be opened: ") + std::strerror(errno));
     const std::streamoff size = file.tellg();
     if (size < 0) throw InputError("cannot be read");
+    memory.require(2.0 * double(size), "the file '" + printable(path, 300) + "' and what is made of it");
     std::vector<std::byte> bytes(std::size_t(size), std::byte(0));
     file.seekg(0);
     file.read(reinterpret_cast<char*>(bytes.data()), size);

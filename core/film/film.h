@@ -17,6 +17,7 @@
 
 #include "core/film/exact_sums.h"
 #include "core/film/pass_image.h"
+#include "core/objects/memory_budget.h"
 
 namespace mote::core {
 
@@ -103,8 +104,9 @@ class Film {
     };
     GainAndNoise gain_and_noise() const;  ///< noise() and what it is computed with
 
-    /// The bits of the film, for checkpoints: sums, counts, open blocks, and a checksum.
-    std::vector<std::byte> serialize() const;
+    /// The bits of the film, for checkpoints: sums, counts, open blocks, and a checksum. Throws OutOfMemory
+    /// where the budget has no room for them.
+    std::vector<std::byte> serialize(const MemoryBudget& memory = {}) const;
     /// Throws InputError when the bytes are damaged or do not fit this film's size and layers; the film is
     /// unchanged then.
     void deserialize(std::span<const std::byte> bytes);

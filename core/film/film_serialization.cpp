@@ -68,7 +68,7 @@ void Film::for_each_array(AnyFilm& film, const Body& body) {
     }
 }
 
-std::vector<std::byte> Film::serialize() const {
+std::vector<std::byte> Film::serialize(const MemoryBudget& memory) const {
     Header header;
     header.width = std::uint32_t(width_), header.height = std::uint32_t(height_);
     header.layers = std::uint32_t(layers_.size()), header.all_squares = all_squares_ ? 1 : 0;
@@ -83,6 +83,7 @@ std::vector<std::byte> Film::serialize() const {
         packings.push_back(packing_of(std::span(numbers)));
         size += packings.back().size;
     });
+    memory.require(double(size), "the bytes of a film");
     std::vector<std::byte> bytes(size);
     std::memcpy(bytes.data(), &header, sizeof(header));
     std::memcpy(bytes.data() + sizeof(header), heads.data(), head_bytes);

@@ -5,14 +5,10 @@
 #include <stdexcept>
 
 #include "core/materials/bsdf.h"
+#include "core/objects/memory_error.h"
 
 namespace mote::core::embree {
 namespace {
-
-bool count_memory(void* user_pointer, ssize_t bytes, bool) {
-    static_cast<std::atomic<std::int64_t>*>(user_pointer)->fetch_add(bytes, std::memory_order_relaxed);
-    return true;
-}
 
 bool is_pane(const Shape& shape) { return shape.bsdf && shape.bsdf->traits().pane; }
 bool is_boundary(const Shape& shape) { return shape.bsdf && shape.bsdf->traits().passes_straight(); }
@@ -25,8 +21,20 @@ TracingUnit unit_for(std::span<const std::shared_ptr<Shape>> shapes) {
     return TracingUnit::of(max_component(glm::max(-box.lower, box.upper)));
 }
 
-ShapeScenes::ShapeScenes(TracingUnit unit)
-    : device_(rtcNewDevice(nullptr)), unit_(unit), max_ray_origin_(largest_coordinate / unit.per_metre) {
+/// Embree asks before each block, and ends the build where the answer is false.
+bool ShapeScenes::count_memory(void* memory, ssize_t bytes, bool done) {
+    auto& [used, budget] = *static_cast<Memory*>(memory);
+    constexpr ssize_t small = 1 << 20;
+    if (bytes >= small && !done && double(bytes) > budget.available()) return false;
+    used.fetch_add(bytes, std::memory_order_relaxed);
+    return true;
+}
+
+ShapeScenes::ShapeScenes(TracingUnit unit, const MemoryBudget& memory)
+    : memory_{{}, memory},
+      device_(rtcNewDevice(nullptr)),
+      unit_(unit),
+      max_ray_origin_(largest_coordinate / unit.per_metre) {
     if (!device_) throw std::runtime_error("Embree: no device");
     rtcSetDeviceMemoryMonitorFunction(device_.get(), count_memory, &memory_);
     for (auto& s : scenes_) s = new_scene();
@@ -35,7 +43,10 @@ ShapeScenes::ShapeScenes(TracingUnit unit)
 
 void ShapeScenes::check(const char* step) const {
     const RTCError error = rtcGetDeviceError(device_.get());
-    if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+    if (error == RTC_ERROR_OUT_OF_MEMORY)
+        throw OutOfMemory("Embree's trees of " + std::to_string(surface_primitives_) +
+                          " triangles and other primitives, of which it has built" +
+                          memory_text(double(memory_bytes())));
     if (error != RTC_ERROR_NONE)
         throw std::runtime_error(std::string("Embree: ") + step + " failed with error " +
                                  std::to_string(int(error)));

@@ -8,6 +8,7 @@
 #include "core/geometry/embree_shapes.h"
 #include "core/geometry/instances.h"
 #include "core/geometry/mesh_checks.h"
+#include "core/objects/memory_budget.h"
 
 namespace mote::core::embree {
 
@@ -16,13 +17,14 @@ TracingUnit unit_for(std::span<const std::shared_ptr<Shape>> shapes);
 
 class ShapeScenes {
   public:
-    explicit ShapeScenes(TracingUnit unit);
+    explicit ShapeScenes(TracingUnit unit, const MemoryBudget& memory = {});
     ShapeScenes(const ShapeScenes&) = delete;
     ShapeScenes& operator=(const ShapeScenes&) = delete;
 
     /// Keeps a pointer to the shape, which must outlive this.
     void attach(const Shape& shape);
-    /// After the last shape. Throws std::logic_error when shapes of an instance are missing.
+    /// After the last shape. Throws std::logic_error when shapes of an instance are missing, OutOfMemory
+    /// where Embree's trees exceed the budget.
     void build();
 
     RTCScene surfaces() const { return scenes_[0].get(); }
@@ -30,7 +32,7 @@ class ShapeScenes {
     std::size_t boundary_count() const { return boundaries_; }
     std::size_t pane_count() const { return panes_; }  ///< among the boundaries
     std::size_t surface_primitives() const { return surface_primitives_; }
-    std::size_t memory_bytes() const { return std::size_t(std::max<std::int64_t>(0, memory_)); }
+    std::size_t memory_bytes() const { return std::size_t(std::max<std::int64_t>(0, memory_.used)); }
     Bounds3 bounds() const { return bounds_; }
     TracingUnit unit() const { return unit_; }  ///< of rays
     /// Bound of the coordinates of a ray's origin, in the world [m], that Embree can trace through all
@@ -67,7 +69,13 @@ class ShapeScenes {
     const SharedScenes& shared_scenes(const ShapeGroup& group);
     void check(const char* step) const;
 
-    std::atomic<std::int64_t> memory_{0};  // outlives the device
+    /// Memory of Embree [B], and what it may take.
+    struct Memory {
+        std::atomic<std::int64_t> used{0};
+        MemoryBudget budget;
+    };
+    static bool count_memory(void* memory, ssize_t bytes, bool done);
+    Memory memory_;  // outlives the device
     Device device_;
     Scene scenes_[2];
     std::vector<Entry> entries_;  // by Embree's geometry number at the top

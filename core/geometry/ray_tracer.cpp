@@ -66,7 +66,7 @@ RTCRayHit embree_ray_hit(const Ray& ray, embree::TracingUnit unit) {
 }  // namespace
 
 struct RayTracer::Implementation {
-    explicit Implementation(embree::TracingUnit unit) : scenes(unit) {}
+    Implementation(embree::TracingUnit unit, const MemoryBudget& memory) : scenes(unit, memory) {}
     embree::ShapeScenes scenes;
     bool use_streams = false;
     RTCScene scene(Group group) const {
@@ -74,8 +74,8 @@ struct RayTracer::Implementation {
     }
 };
 
-RayTracer::RayTracer(std::span<const std::shared_ptr<Shape>> shapes)
-    : impl_(std::make_unique<Implementation>(embree::unit_for(shapes))) {
+RayTracer::RayTracer(std::span<const std::shared_ptr<Shape>> shapes, const MemoryBudget& memory)
+    : impl_(std::make_unique<Implementation>(embree::unit_for(shapes), memory)) {
     for (const auto& shape : shapes) impl_->scenes.attach(*shape);
     impl_->scenes.build();
     impl_->use_streams = embree::has_streams && impl_->scenes.surface_primitives() > 8000;

@@ -13,6 +13,7 @@
 #include "core/geometry/shadow_packet.h"
 #include "core/geometry/shape.h"
 #include "core/math/ray.h"
+#include "core/objects/memory_budget.h"
 
 namespace mote::core {
 
@@ -21,7 +22,8 @@ class RayTracer {
     enum class Group { surfaces, boundaries };
 
     /// Keeps pointers to the shapes, which must outlive it. Boundaries are null BSDFs and panes.
-    explicit RayTracer(std::span<const std::shared_ptr<Shape>> shapes);
+    /// Throws OutOfMemory where Embree needs more than the budget.
+    explicit RayTracer(std::span<const std::shared_ptr<Shape>> shapes, const MemoryBudget& memory = {});
     ~RayTracer();
     RayTracer(const RayTracer&) = delete;
     RayTracer& operator=(const RayTracer&) = delete;

@@ -81,7 +81,8 @@ void remove_checkpoint(const std::string& path, const std::string& content_hash)
     std::filesystem::remove(path, ignored);
 }
 
-void write_checkpoint(const std::string& path, const CheckpointKey& key, const Film& film) {
+void write_checkpoint(const std::string& path, const CheckpointKey& key, const Film& film,
+                      const MemoryBudget& memory) {
     require_own_checkpoint(path, key.content_hash);
     ByteWriter head;
     head.number(key.seed);
@@ -90,7 +91,7 @@ void write_checkpoint(const std::string& path, const CheckpointKey& key, const F
     head.number(std::uint32_t(film.layers().size()));
     for (const Layer& layer : film.layers()) head.text(layer.name);
     head.text(key.content_hash);
-    write_headed_file(path, checkpoint_file, head, film.serialize());
+    write_headed_file(path, checkpoint_file, head, film.serialize(memory));
 }
 
 bool read_checkpoint(const std::string& path, const CheckpointKey& key, Film& film) {

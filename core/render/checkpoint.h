@@ -24,7 +24,8 @@ void remove_checkpoint(const std::string& path, const std::string& content_hash)
 
 /// Writes the file atomically. Throws InputError with the system's reason, and where
 /// require_own_checkpoint() does; what stood there stays as it was.
-void write_checkpoint(const std::string& path, const CheckpointKey& key, const Film& film);
+void write_checkpoint(const std::string& path, const CheckpointKey& key, const Film& film,
+                      const MemoryBudget& memory = {});
 
 /// Fills `film`. Returns false when there is no such file. Throws InputError when the file is damaged or
 /// belongs to another render; the film is unchanged then.

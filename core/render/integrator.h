@@ -21,6 +21,7 @@
 #include "core/math/sampler.h"
 #include "core/math/vec.h"
 #include "core/objects/cancellation.h"
+#include "core/objects/memory_budget.h"
 #include "core/objects/object.h"
 #include "core/render/plan.h"
 #include "core/render/statistics.h"
@@ -39,6 +40,7 @@ struct RenderOptions {
     /// Wanted cells (Layer::transport). The layers of the others may hold anything, and nothing should be
     /// spent on them.
     TransportSet cells = TransportSet::all();
+    MemoryBudget memory = {};  ///< what maps, trees, points and lights may take
 };
 
 /// Where within pixel (x, y) a sample falls so that its plain mean is the filtered picture (filter importance

@@ -31,10 +31,10 @@ RenderOptions render_options(const Scene& scene, std::uint64_t seed, CancelToken
     return {seed, film.width, film.height, sampler_kind(film.sampler), cancelled};
 }
 
-std::unique_ptr<Estimator> timed_prepare(const Scene& scene, const Integrator& integrator, std::uint64_t seed,
-                                         CancelToken cancelled, double& seconds) {
+std::unique_ptr<Estimator> timed_prepare(const Scene& scene, const Integrator& integrator,
+                                         const RenderOptions& options, double& seconds) {
     const auto start = std::chrono::steady_clock::now();
-    auto estimator = integrator.prepare(scene, render_options(scene, seed, cancelled));
+    auto estimator = integrator.prepare(scene, options);
     seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return estimator;
 }
@@ -49,10 +49,11 @@ std::vector<Layer> film_layers(const Scene& scene, const Integrator& integrator,
 }
 
 PassRunner::PassRunner(const Scene& scene, const Integrator& integrator, std::uint64_t seed, Film& film,
-                       std::vector<HitFeature> features, CancelToken cancelled)
-    : film_(film),
-      filter_(filter_of(scene.film())),
-      estimator_(timed_prepare(scene, integrator, seed, cancelled, build_seconds_)) {
+                       std::vector<HitFeature> features, CancelToken cancelled, const MemoryBudget& memory)
+    : film_(film), filter_(filter_of(scene.film())) {
+    RenderOptions options = render_options(scene, seed, cancelled);
+    options.memory = memory;
+    estimator_ = timed_prepare(scene, integrator, options, build_seconds_);
     for (std::size_t part = 0; part < film.parts(); ++part)
         images_.emplace_back(film.width(), film.height(), film.layers_of(part).size());
     if (features.size() > images_.front().layers())

@@ -19,11 +19,12 @@ std::vector<Layer> film_layers(const Scene& scene, const Integrator& integrator,
 
 class PassRunner {
   public:
-    /// Calls Integrator::prepare(). `film` has the size of the scene's film and the layers of film_layers();
-    /// it may hold the first passes already. Scene and film must outlive the runner. Throws InputError for an
-    /// unknown filter or sampler, and Cancelled.
+    /// Calls Integrator::prepare(), which has `memory`. `film` has the size of the scene's film and the
+    /// layers of film_layers(); it may hold the first passes already. Scene and film must outlive the runner.
+    /// Throws InputError for an unknown filter or sampler, and Cancelled.
     PassRunner(const Scene& scene, const Integrator& integrator, std::uint64_t seed, Film& film,
-               std::vector<HitFeature> features = {}, CancelToken cancelled = {});
+               std::vector<HitFeature> features = {}, CancelToken cancelled = {},
+               const MemoryBudget& memory = {});
 
     /// Adds the film's next pass, of the part that the estimator wants. Returns false, with the film
     /// unchanged, when it was cancelled.

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "core/film/film_memory.h"
 #include "core/objects/error.h"
 #include "core/objects/memory_error.h"
 #include "core/render/checkpoint.h"
@@ -90,7 +91,8 @@ class PassLoop {
         const Clock::time_point begin = Clock::now();
         checkpoint_time_ = begin;
         try {
-            write_checkpoint(request_.checkpoint_path, {request_.content_hash, request_.seed}, result_.film);
+            write_checkpoint(request_.checkpoint_path, {request_.content_hash, request_.seed}, result_.film,
+                             request_.memory);
             result_.checkpoint_problem.clear();
         } catch (const InputError& error) {  // a full disk may have room again in a minute
             result_.checkpoint_problem = std::string("no checkpoint: ") + error.what();
@@ -227,15 +229,6 @@ class PassLoop {
     Clock::time_point noise_time_ = start_, checkpoint_time_ = start_;
 };
 
-/// Exact sums; blocks of up to 2^10 passes and what their halves differ by; the pass, in single precision.
-double film_bytes(const FilmSettings& film, std::span<const Layer> layers, bool all_squares) {
-    double planes = 1.0;  // of the beauty's squares
-    for (const Layer& layer : layers) planes += all_squares || layer.squares ? 2.0 : 1.0;
-    const double pixels = double(film.width) * double(film.height);
-    const double sum = 2.0 * sizeof(std::int64_t) + 1.0;
-    return pixels * (planes * 3.0 * sum + 10.0 * (sum + sizeof(float)) + double(layers.size()) * sizeof(Rgb));
-}
-
 void resume(const RenderRequest& request, RenderResult& result) {
     if (request.checkpoint_path.empty()) throw std::logic_error("resuming needs the path of a checkpoint");
     if (read_checkpoint(request.checkpoint_path, {request.content_hash, request.seed}, result.film))
@@ -284,11 +277,9 @@ RenderResult render(const Scene& scene, const Integrator& integrator, const Rend
         stop.passes = std::uint32_t(settings.sample_count);
     if (request.range) stop = {request.range->end - request.range->first, {}, {}};
     const std::vector<Layer> layers = film_layers(scene, integrator, request.features);
-    const double bytes = film_bytes(settings, layers, request.all_squares);
-    const std::string film_of = "a film of " + std::to_string(settings.width) + " x " +
-                                std::to_string(settings.height) + " pixels and " +
-                                std::to_string(layers.size()) + " layers" + memory_text(bytes);
-    RenderResult result = with_memory_for(film_of, [&] {
+    const FilmMemory needed(settings.width, settings.height, layers, request.all_squares, stop.passes);
+    needed.require(request.memory, request.resume ? needed.sums() : 0.0);  // a checkpoint is read beside it
+    RenderResult result = with_memory_for(needed.purpose() + memory_text(needed.peak()), [&] {
         return RenderResult{Film(settings.width, settings.height, layers, request.all_squares), {}, false, 0};
     });
     if (request.begin_with) begin_with(*request.begin_with, result.film);
@@ -301,7 +292,8 @@ RenderResult render(const Scene& scene, const Integrator& integrator, const Rend
     std::optional<PassRunner> runner;
     try {
         with_memory_for("what '" + integrator.type() + "' builds before its passes", [&] {
-            runner.emplace(scene, integrator, request.seed, result.film, request.features, token);
+            runner.emplace(scene, integrator, request.seed, result.film, request.features, token,
+                           request.memory.without(needed.peak() - needed.begin()));
         });
     } catch (const Cancelled&) {
         result.interrupted = true;

@@ -52,6 +52,7 @@ struct RenderRequest {
     std::string content_hash;          ///< of the scene, its files and the options that change the picture
     bool all_squares = false;          ///< the film keeps variances of all layers
     std::vector<HitFeature> features;  ///< become layers of the film, behind those of the integrator
+    MemoryBudget memory;               ///< of the film, and of what the integrator builds
     std::function<bool(const Film&)> enough;  ///< a rule of the caller's, tested with the noise rule
     std::function<void(const RenderProgress&)> progress;  ///< called after every pass; may be empty
     /// Shown the picture so far, as Estimator::finish() leaves it, as soon as every part has a pass, after
@@ -89,8 +90,8 @@ inline constexpr double most_finish_seconds = 1.0;
 /// Renders until a stop rule holds. When interrupted, the running pass is dropped and everything before it
 /// kept. Throws InputError when a range of passes is requested and the integrator cannot tell which those
 /// are, when a checkpoint does not belong to this render or is damaged, and when something else stands where
-/// it is to be written. One that cannot be written is a warning and another try later: the one before it
-/// stays intact.
+/// it is to be written; OutOfMemory when the film does not fit into the budget. One that cannot be written is
+/// a warning and another try later: the one before it stays intact.
 RenderResult render(const Scene& scene, const Integrator& integrator, const RenderRequest& request);
 
 /// The filter of a film as a distribution of offsets. Throws InputError for an unknown name.

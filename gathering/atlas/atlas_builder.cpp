@@ -59,6 +59,10 @@ void AtlasBuilder::build() {
     check_budget();
     density_ =
         settings_.texels_per_metre > 0.0f ? settings_.texels_per_metre : density_for(settings_.texel_budget);
+    const std::size_t cells = cells_at(density_);
+    settings_.memory.require(
+        double(cells) * double(sizeof(AtlasTexel) + sizeof(std::uint32_t) + settings_.bytes_per_texel),
+        fmt::format("an atlas of {} texels and the light that they receive", cells));
     atlas_.texels_per_metre_ = density_, atlas_.charts_ = charts_.charts.size();
     atlas_.cells_of_.resize(atlas_.surfaces().size());
     for (const Chart& chart : charts_.charts)

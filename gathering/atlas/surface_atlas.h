@@ -8,6 +8,7 @@
 
 #include <optional>
 
+#include "core/objects/memory_budget.h"
 #include "gathering/atlas/charts.h"
 #include "gathering/atlas/surface_place.h"
 
@@ -20,7 +21,9 @@ struct AtlasSettings {
     float texels_per_metre = 0.0f;  ///< 0: as many as `texel_budget` allows
     /// Budget of the texels of all sides together; more are refused.
     std::size_t texel_budget = std::size_t(1) << 17;
-    float chart_cosine = 0.8f;  ///< of make_charts()
+    float chart_cosine = 0.8f;        ///< of make_charts()
+    core::MemoryBudget memory = {};   ///< of texels, and of what is kept for them
+    std::size_t bytes_per_texel = 0;  ///< of the latter [B]
 };
 
 /// A piece of one side of a surface.
@@ -41,7 +44,8 @@ class SurfaceAtlas {
     static constexpr std::uint32_t none = Charts::none;  ///< index of no texel
 
     /// Throws InputError where the density or the number of charts takes more texels than the budget, and
-    /// says which density fits. `surfaces` and `shapes` must outlive the atlas.
+    /// says which density fits, and OutOfMemory where they exceed `memory`. `surfaces` and `shapes` must
+    /// outlive the atlas.
     SurfaceAtlas(const SurfaceTriangles& surfaces, ShapeSpan shapes, const AtlasSettings& settings);
 
     std::span<const AtlasTexel> texels() const { return texels_; }  ///< chart by chart

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <string>
 
 namespace mote::gathering {
 
@@ -126,6 +127,14 @@ PhotonSet trace_photons(const LitScene& scene, const PhotonSettings& settings, s
             chunks[c] = scene.has_media() ? tracer.trace<true>(begin, end, seed, pass, sampler)
                                           : tracer.trace<false>(begin, end, seed, pass, sampler);
         });
+        if (first == 0) {
+            std::size_t met_first = 0;
+            for (const Chunk& chunk : chunks) met_first += chunk.kept.size();
+            const double expected = double(met_first) * double(paths) / double(last);
+            settings.paths.memory.require(
+                std::min(expected, double(settings.max_photons)) * (sizeof(Candidate) + sizeof(Photon)),
+                "the photons of " + std::to_string(paths) + " light paths");
+        }
         for (Chunk& chunk : chunks) {
             kept.insert(kept.end(), chunk.kept.begin(), chunk.kept.end());
             met += chunk.met;

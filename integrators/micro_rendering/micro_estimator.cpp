@@ -17,9 +17,12 @@ class MicroEstimator final : public Estimator {
         : scene_(scene),
           options_(options),
           settings_(settings),
-          surfaces_(gathering::surface_triangles(scene.shapes())) {
+          surfaces_(gathering::surface_triangles(
+              scene.shapes(), {.memory_budget = options.memory.at_most(std::size_t(4) << 30)})) {
         settings_.eye.wanted = options.cells;
         settings_.points.bound = bound();
+        settings_.points.memory_budget = options.memory.at_most(settings_.points.memory_budget);
+        settings_.points.paths.memory = options.memory;
     }
 
     bool pass(const PassContext& context, PassImage& image) override {

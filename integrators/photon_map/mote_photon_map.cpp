@@ -28,9 +28,9 @@ struct PhotonMapSettings {
     double alpha = 2.0 / 3.0;
     bool single_scattering = false;
 
-    gathering::PhotonSettings photons() const {
+    gathering::PhotonSettings photons(const MemoryBudget& memory) const {
         gathering::PhotonSettings s;
-        s.paths.paths = paths, s.paths.rr_depth = eye.rr_depth;
+        s.paths.memory = memory, s.paths.paths = paths, s.paths.rr_depth = eye.rr_depth;
         s.paths.max_vertices = eye.max_depth < 0 ? -1 : std::max(0, eye.max_depth - 1);
         s.first_in_medium = single_scattering ? 1 : 2;
         s.max_photons = max_photons;
@@ -80,8 +80,8 @@ class PhotonMapEstimator final : public Estimator {
     static constexpr int tile_size = 16;
 
     PhotonMaps make_maps(std::uint32_t pass, CancelToken cancelled) {
-        gathering::PhotonSet set = gathering::trace_photons(scene_, settings_.photons(), options_.seed, pass,
-                                                            options_.sampler, cancelled);
+        gathering::PhotonSet set = gathering::trace_photons(scene_, settings_.photons(options_.memory),
+                                                            options_.seed, pass, options_.sampler, cancelled);
         counters_.add(set.rays, set.tracking);
         paths_ += settings_.paths, met_ += set.met;
         on_surfaces_ += set.surface.size(), in_media_ += set.volume.size();

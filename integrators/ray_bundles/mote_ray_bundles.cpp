@@ -30,14 +30,24 @@ std::vector<const Emitter*> lights_of_bundles(const Scene& scene) {
     return result;
 }
 
+/// An exchange keeps, besides texels, received light of every direction of a batch.
+gathering::AtlasSettings atlas_settings(const RayBundleSettings& settings, const MemoryBudget& memory) {
+    gathering::AtlasSettings atlas = settings.atlas;
+    atlas.memory = memory;
+    atlas.bytes_per_texel =
+        std::size_t(settings.exchange.batch) * sizeof(gathering::Rgb4) * (settings.exchange.lights ? 2 : 1);
+    return atlas;
+}
+
 class RayBundleEstimator final : public Estimator {
   public:
     RayBundleEstimator(const Scene& scene, const RenderOptions& options, const RayBundleSettings& settings)
         : scene_(scene),
           options_(options),
           settings_(settings),
-          surfaces_(gathering::surface_triangles(scene.shapes())),
-          atlas_(surfaces_, scene.shapes(), settings.atlas),
+          surfaces_(gathering::surface_triangles(
+              scene.shapes(), {.memory_budget = options.memory.at_most(std::size_t(4) << 30)})),
+          atlas_(surfaces_, scene.shapes(), atlas_settings(settings, options.memory)),
           materials_(gathering::texel_materials(atlas_)),
           locator_(surfaces_),
           tracer_(surfaces_),

@@ -34,8 +34,8 @@ class RayLightEstimator final : public Estimator {
     bool pass(const PassContext& context, PassImage& image) override {
         if (context.cancelled) return false;
         const lights::RayLightSet set =
-            lights::trace_ray_lights(scene_, media_, settings_.light_paths(), options_.seed, context.index,
-                                     options_.sampler, context.cancelled);
+            lights::trace_ray_lights(scene_, media_, settings_.light_paths(options_.memory), options_.seed,
+                                     context.index, options_.sampler, context.cancelled);
         counters_.add(set.surface.rays, set.surface.tracking);
         rays_ += set.rays.size(), vpls_ += set.surface.lights.size(), paths_ += settings_.paths;
         bytes_ = std::max(bytes_, set.memory_bytes());

@@ -30,9 +30,9 @@ struct RayLightSettings {
         return radius > 0.0f ? float(std::max(seen, 16.0)) / core::sqr(radius) : core::infinity;
     }
     std::size_t candidate_count() const { return connections == 0 ? 0 : candidates; }
-    lights::LightPathSettings light_paths() const {
+    lights::LightPathSettings light_paths(const core::MemoryBudget& memory = {}) const {
         lights::LightPathSettings s;
-        s.paths = paths, s.rr_depth = eye.rr_depth;
+        s.memory = memory, s.paths = paths, s.rr_depth = eye.rr_depth;
         s.max_vertices = eye.max_depth < 0 ? -1 : std::max(0, eye.max_depth - 2);
         return s;
     }

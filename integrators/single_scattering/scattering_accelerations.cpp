@@ -93,12 +93,13 @@ void plan_maps(Plan& plan, const Scene& scene, const VisibilitySettings& s, int 
 
 }  // namespace
 
-ScatteringAccelerations::ScatteringAccelerations(const Scene& scene, const AccelerationSettings& settings) {
+ScatteringAccelerations::ScatteringAccelerations(const Scene& scene, const AccelerationSettings& settings,
+                                                 const MemoryBudget& memory) {
     if (settings.exact && AnalyticCounts(scene).any()) space_.emplace(scene.shapes());
     const VisibilitySettings& visibility = settings.visibility;
     if (!visibility.used_in(scene) || visibility.light_size == 0) return;
     visibility.check(scene);
-    maps_.emplace(scene, visibility.light_size, visibility.map);
+    maps_.emplace(scene, visibility.light_size, visibility.map, memory);
 }
 
 void ScatteringAccelerations::add_statistics(Statistics& statistics) const {

@@ -19,7 +19,8 @@ struct AccelerationSettings {
 class ScatteringAccelerations {
   public:
     /// Makes only what the scene has a use for. Throws InputError when a map would be larger than its limit.
-    ScatteringAccelerations(const core::Scene& scene, const AccelerationSettings& settings);
+    ScatteringAccelerations(const core::Scene& scene, const AccelerationSettings& settings,
+                            const core::MemoryBudget& memory);
 
     screenspace::MarchAccelerations of(const core::Emitter& light) const {
         return {space_ ? &*space_ : nullptr, maps_ ? maps_->of(light) : nullptr};

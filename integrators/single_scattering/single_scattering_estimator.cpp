@@ -28,7 +28,7 @@ class SingleScatteringEstimator final : public Estimator {
             settings_.eye.connected = positional_, settings_.eye.others = &*others_;
         }
         if (!Media) return;
-        accelerations_.emplace(scene, settings.accelerations());
+        accelerations_.emplace(scene, settings.accelerations(), options.memory);
         settings_.eye.maps = accelerations_->maps();
         settings_.eye.voxels = settings.march.voxels;
         settings_.eye.other_lights =

@@ -24,9 +24,9 @@ struct VslSettings {
     std::uint32_t paths = 256;
     compensation::SphericalGather gather;
 
-    lights::LightPathSettings light_paths() const {
+    lights::LightPathSettings light_paths(const MemoryBudget& memory = {}) const {
         lights::LightPathSettings s;
-        s.paths = paths, s.rr_depth = eye.rr_depth;
+        s.memory = memory, s.paths = paths, s.rr_depth = eye.rr_depth;
         s.max_vertices = eye.max_depth < 0 ? -1 : std::max(0, eye.max_depth - 2);
         return s;
     }
@@ -39,8 +39,8 @@ struct SphereSet {
 
     SphereSet(const Scene& scene, const VslSettings& settings, const RenderOptions& options,
               std::uint32_t pass, CancelToken cancelled)
-        : vpls(lights::trace_light_paths(scene, settings.light_paths(), options.seed, pass, options.sampler,
-                                         cancelled)),
+        : vpls(lights::trace_light_paths(scene, settings.light_paths(options.memory), options.seed, pass,
+                                         options.sampler, cancelled)),
           radii(compensation::sphere_radii(vpls, settings.gather.neighbours, settings.gather.radius_scale)) {}
     std::size_t memory_bytes() const { return vpls.memory_bytes() + radii.size() * sizeof(float); }
 };

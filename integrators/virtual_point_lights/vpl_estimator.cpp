@@ -32,7 +32,8 @@ class VplEstimator final : public Estimator {
             transport_.emplace(scene, bound_, settings_.compensation);
         if (settings_.screen_space && settings_.screen_space->layers > 1 && std::isfinite(bound_))
             hidden_.emplace(scene, options, *settings.screen_space, settings.eye.max_depth, bound_);
-        if (settings_.visibility.used_in(scene)) maps_.emplace(scene, settings_.visibility);
+        if (settings_.visibility.used_in(scene)) maps_.emplace(scene, settings_.visibility, options.memory);
+        settings_.visibility.imperfect_map.memory = options.memory;
         if (settings_.visibility.imperfect)
             points_ = lights::sample_surfaces(
                 scene, std::size_t(settings.visibility.imperfect_map.all_points), options.seed);
@@ -126,7 +127,7 @@ class VplEstimator final : public Estimator {
     static constexpr std::size_t first_hidden_layer = first_compensation_layer + (Media ? 2 : 1);
 
     lights::VplSet trace_lights(const PassContext& context) const {
-        lights::LightPathSettings paths = settings_.light_paths();
+        lights::LightPathSettings paths = settings_.light_paths(options_.memory);
         if (reflective_) paths.paths = reflective_->paths();
         return lights::trace_light_paths(scene_, paths, options_.seed, context.index, options_.sampler,
                                          context.cancelled, reflective_ ? &*reflective_ : nullptr);
@@ -145,6 +146,7 @@ class VplEstimator final : public Estimator {
         const std::uint64_t key = hash_keys(options_.seed, context.index, selection_stream);
         lights::SelectionPass pass{
             scene_, vpls, bound_, key, rays, tracking, selection_statistics_, context.cancelled, {}};
+        pass.memory = options_.memory;
         selector_ = lights::all_vpls()->prepare(pass);  // while receivers are sampled
         pass.sample_receivers = [&](std::size_t paths) {
             const auto pixels = spread_pixels(options_.width, options_.height, paths, key);

@@ -62,9 +62,9 @@ struct VplSettings {
         const float radius = bounds.radius();
         return radius > 0.0f ? float(paths) / core::sqr(radius) : core::infinity;
     }
-    lights::LightPathSettings light_paths() const {
+    lights::LightPathSettings light_paths(const core::MemoryBudget& memory = {}) const {
         lights::LightPathSettings s;
-        s.paths = paths, s.rr_depth = eye.rr_depth;
+        s.memory = memory, s.paths = paths, s.rr_depth = eye.rr_depth;
         s.keep_states = selection->takes_all();  // else rays begin at receivers
         s.max_vertices = eye.max_depth < 0 ? -1 : std::max(0, eye.max_depth - 2);
         return s;

@@ -26,12 +26,15 @@ class Stopwatch {
 
 }  // namespace
 
-VplShadowMaps::VplShadowMaps(const Scene& scene, const VisibilitySettings& settings)
+VplShadowMaps::VplShadowMaps(const Scene& scene, const VisibilitySettings& settings,
+                             const MemoryBudget& memory)
     : scene_(scene), settings_(settings), maps_(std::size_t(settings.maps)) {
     settings.check(scene);
+    lights::require_shadow_maps(memory, settings.map, maps_.size(), settings.size,
+                                lights::needs_chromatic_maps(scene));
     if (settings.light_size == 0) return;
     const Stopwatch stopwatch(build_seconds_);
-    lights_.emplace(scene, settings.light_size, settings.map);
+    lights_.emplace(scene, settings.light_size, settings.map, memory);
     built_ += lights_->count();
     rays_.add(lights_->rays());
 }

@@ -16,8 +16,10 @@ namespace mote::integrators {
 
 class VplShadowMaps {
   public:
-    /// Builds the maps of the lights. Throws InputError when a map would be larger than its limit.
-    VplShadowMaps(const core::Scene& scene, const VisibilitySettings& settings);
+    /// Builds the maps of the lights. Throws InputError when a map would be larger than its limit,
+    /// OutOfMemory when all of them are larger than `memory`.
+    VplShadowMaps(const core::Scene& scene, const VisibilitySettings& settings,
+                  const core::MemoryBudget& memory);
 
     /// Null where lights are traced.
     const lights::LightShadowMaps* of_lights() const { return lights_ ? &*lights_ : nullptr; }

@@ -22,7 +22,10 @@ class VplBundleEstimator final : public Estimator {
             settings_.eye.wanted[Transport::direct] || settings_.eye.wanted[Transport::emission];
         eye_paths_ = wants_direct ? settings_.direct_paths() : 1;
         if (settings_.imperfect_links && settings_.has_bundles())
-            links_ = std::make_unique<gathering::ImperfectLinks>(scene.shapes());
+            links_ = std::make_unique<gathering::ImperfectLinks>(
+                scene.shapes(),
+                gathering::ImperfectLinkSettings{.memory_budget = options.memory.at_most(
+                                                     gathering::ImperfectLinkSettings().memory_budget)});
         if (settings_.filters) filter_.emplace(scene, options, LayerFilterParameters());
     }
 

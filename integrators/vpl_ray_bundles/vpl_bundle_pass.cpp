@@ -11,7 +11,7 @@ using gathering::Techniques;
 VplBundlePass::VplBundlePass(const LitScene& lit, const VplBundleSettings& settings,
                              const gathering::ImperfectLinks* links, const RenderOptions& options,
                              const PassContext& context)
-    : vpls(lights::trace_light_paths(lit, settings.light_paths(), options.seed, context.index,
+    : vpls(lights::trace_light_paths(lit, settings.light_paths(options.memory), options.seed, context.index,
                                      options.sampler, context.cancelled)),
       bundles{lit, vpls, {}, {}, settings.techniques()} {
     const float share = 1.0f / float(settings.interleaving * settings.interleaving);

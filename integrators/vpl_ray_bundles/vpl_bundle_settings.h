@@ -76,9 +76,9 @@ struct VplBundleSettings {
         return choice == BundleTechniques::combined && !bound ? continuation : 0.0f;
     }
     bool has_bundles() const { return choice != BundleTechniques::vpls && directions > 0; }
-    lights::LightPathSettings light_paths() const {
+    lights::LightPathSettings light_paths(const core::MemoryBudget& memory = {}) const {
         lights::LightPathSettings s;
-        s.paths = paths, s.rr_depth = eye.rr_depth, s.keep_starts = true;
+        s.memory = memory, s.paths = paths, s.rr_depth = eye.rr_depth, s.keep_starts = true;
         s.max_vertices = eye.max_depth < 0 ? -1 : std::max(0, eye.max_depth - 2);
         return s;
     }

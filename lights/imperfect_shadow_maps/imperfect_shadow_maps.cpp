@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <string>
 
 #include "core/math/vectorize.h"
 
@@ -98,6 +99,10 @@ void ImperfectShadowMaps::build(const SurfaceSamples& points, const VplSet& vpls
     margin_ = 1.0f - settings.bias / float(size_);
     views_.clear();
     for (const VirtualPointLight& vpl : vpls.lights) views_.push_back(view_of(vpls, vpl, size_));
+    const double bytes = double(views_.size()) * double(settings.bytes());
+    settings.memory.require(
+        bytes > double(memory_bytes()) ? bytes : 0.0,
+        std::to_string(views_.size()) + " imperfect shadow maps of " + std::to_string(size_) + "^2 texels");
     inverse_.resize(views_.size() * settings.bytes() / sizeof(float));
     const std::size_t all = points.points.size(), count = std::min(std::size_t(settings.points), all);
     const float radius = points.radius(count, settings.splat);

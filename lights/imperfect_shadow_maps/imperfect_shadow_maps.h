@@ -18,6 +18,7 @@
 #include <span>
 
 #include "core/objects/cancellation.h"
+#include "core/objects/memory_budget.h"
 #include "lights/imperfect_shadow_maps/surface_samples.h"
 #include "lights/shadow_maps/shadow_map_view.h"
 #include "lights/virtual_lights/virtual_point_light.h"
@@ -26,12 +27,13 @@
 namespace mote::lights {
 
 struct ImperfectMapSettings {
-    int size = 32;            ///< texels along an edge of a map
-    int points = 8192;        ///< that go into each map
-    int all_points = 131072;  ///< of the scene
-    float splat = 4.0f;       ///< how often the discs of a map cover a surface
-    bool pull_push = true;    ///< fill holes and close gaps
-    float bias = 0.5f;        ///< occluders nearer by less than so many texels' width cast no shadow
+    int size = 32;                   ///< texels along an edge of a map
+    int points = 8192;               ///< that go into each map
+    int all_points = 131072;         ///< of the scene
+    float splat = 4.0f;              ///< how often the discs of a map cover a surface
+    bool pull_push = true;           ///< fill holes and close gaps
+    float bias = 0.5f;               ///< occluders nearer by less than so many texels' width cast no shadow
+    core::MemoryBudget memory = {};  ///< of all maps of a pass
 
     /// Texels of one map, with a border that continues it over its edges.
     std::size_t bytes() const { return std::size_t(size + 2) * std::size_t(size + 2) * sizeof(float); }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace mote::lights {
 
@@ -11,7 +12,7 @@ using namespace core;
 
 namespace {
 
-constexpr std::uint32_t chunk_size = 32;
+constexpr std::uint32_t chunk_size = 32, chunks_at_once = 1024;
 constexpr std::uint32_t ray_light_stream = 0x56524cu;  // apart from pixels of the same index
 
 /// Leaves ray lights on the segments of one path, and VPLs on surfaces.
@@ -91,13 +92,19 @@ RayLightSet trace_ray_lights(const LitScene& scene, const ScatteringMedia& media
                              const LightPathSettings& settings, std::uint64_t seed, std::uint32_t pass,
                              SamplerKind sampler, CancelToken cancelled) {
     const std::uint32_t chunks = (settings.paths + chunk_size - 1) / chunk_size;
-    std::vector<RayLightSet> parts(chunks);
-    tbb::parallel_for(std::uint32_t(0), chunks, [&](std::uint32_t c) {
-        const std::uint32_t begin = c * chunk_size, end = std::min(begin + chunk_size, settings.paths);
-        parts[c] = trace_chunk(scene, media, settings, begin, end, seed, pass, sampler, cancelled);
-    });
     RayLightSet set;
-    for (RayLightSet& part : parts) append(set, std::move(part));
+    for (std::uint32_t first = 0; first < chunks; first += chunks_at_once) {
+        std::vector<RayLightSet> parts(std::min(chunks_at_once, chunks - first));
+        tbb::parallel_for(std::size_t(0), parts.size(), [&](std::size_t p) {
+            const std::uint32_t begin = (first + std::uint32_t(p)) * chunk_size;
+            const std::uint32_t end = std::min(begin + chunk_size, settings.paths);
+            parts[p] = trace_chunk(scene, media, settings, begin, end, seed, pass, sampler, cancelled);
+        });
+        for (RayLightSet& part : parts) append(set, std::move(part)), part = {};
+        if (first == 0 && parts.size() < chunks)  // lists that grow by doubling hold it twice
+            settings.memory.require(2.0 * double(chunks) / double(parts.size()) * double(set.memory_bytes()),
+                                    "the ray lights of " + std::to_string(settings.paths) + " light paths");
+    }
     set.surface.paths = settings.paths;
     double sum = 0.0;
     for (const RayLight& light : set.rays) set.ray_power.push_back(sum += sampling_power(light));

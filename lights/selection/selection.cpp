@@ -65,13 +65,18 @@ ReceiverTile TileSelector::lanes_of(const ReceiverTile& receivers, ReceiverKind 
     return tile;
 }
 
-void Selection::check_memory(std::size_t vpls) const {
-    if (const std::size_t bytes = memory_bytes(vpls); bytes > max_bytes)
+void Selection::check_memory(const SelectionPass& pass) const {
+    const std::size_t vpls = pass.vpls.lights.size(), bytes = memory_bytes(vpls);
+    if (bytes > max_bytes)
         throw InputError(
             fmt::format("selecting from {} virtual point lights takes {:.0f} MB while it is built, more "
                         "than the {:.0f} MB that a selection may take",
                         vpls, double(bytes) * 1e-6, double(max_bytes) * 1e-6),
             where);
+    pass.memory.require(double(bytes), fmt::format("selecting from {} virtual point lights", vpls),
+                        [&](double available) {
+                            return fmt::format("about {:.0f} fit", available / double(bytes) * double(vpls));
+                        });
 }
 
 void Selection::plan_memory(Plan& plan, const std::string& topic, const SelectionSize& size) const {

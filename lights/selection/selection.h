@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/objects/error.h"
+#include "core/objects/memory_budget.h"
 #include "core/objects/object.h"
 #include "core/render/plan.h"
 #include "core/render/statistics.h"
@@ -47,6 +48,7 @@ struct SelectionPass {
     /// Receivers on about so many eye paths, spread over the image, of random numbers that the pass does not
     /// use.
     std::function<std::vector<PathReceiver>(std::size_t paths)> sample_receivers;
+    core::MemoryBudget memory = {};  ///< of the selector
 };
 
 /// Gathers for one task.
@@ -115,8 +117,9 @@ class Selection : public core::Object {
     core::SourceLocation where;
 
   protected:
-    /// Throws core::InputError where so many VPLs need more than max_bytes.
-    void check_memory(std::size_t vpls) const;
+    /// Throws core::InputError where the VPLs need more than max_bytes, core::OutOfMemory where they need
+    /// more than the pass has.
+    void check_memory(const SelectionPass& pass) const;
     /// States what memory_bytes() says.
     void plan_memory(core::Plan& plan, const std::string& topic, const SelectionSize& size) const;
 };

@@ -27,10 +27,14 @@ std::optional<ShadowMapView> shadow_map_view_of(const LitScene& scene, const Emi
     return ShadowMapView::of_point(*position, size);
 }
 
-LightShadowMaps::LightShadowMaps(const LitScene& scene, int size, const ShadowMapSettings& settings) {
+LightShadowMaps::LightShadowMaps(const LitScene& scene, int size, const ShadowMapSettings& settings,
+                                 const MemoryBudget& memory) {
+    std::map<const Emitter*, ShadowMapView> views;
     for (const auto& emitter : scene.emitters())
-        if (const auto view = shadow_map_view_of(scene, *emitter, size))
-            maps_[emitter.get()].build(scene, *view, scene.emitter_medium_state(*emitter, {}), settings);
+        if (const auto view = shadow_map_view_of(scene, *emitter, size)) views.emplace(emitter.get(), *view);
+    require_shadow_maps(memory, settings, views.size(), size, needs_chromatic_maps(scene));
+    for (const auto& [emitter, view] : views)
+        maps_[emitter].build(scene, view, scene.emitter_medium_state(*emitter, {}), settings);
 }
 
 std::size_t LightShadowMaps::memory_bytes() const {

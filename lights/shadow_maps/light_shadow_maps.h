@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "core/objects/memory_budget.h"
 #include "core/scene/lit_scene.h"
 #include "lights/shadow_maps/volumetric_shadow_map.h"
 
@@ -11,9 +12,10 @@ namespace mote::lights {
 
 class LightShadowMaps {
   public:
-    /// Throws InputError when a map would be larger than settings.max_bytes. Lights that are not given a map
-    /// are traced.
-    LightShadowMaps(const core::LitScene& scene, int size, const ShadowMapSettings& settings);
+    /// Throws InputError when a map would be larger than settings.max_bytes, OutOfMemory when all of them
+    /// exceed the budget. Lights that are not given a map are traced.
+    LightShadowMaps(const core::LitScene& scene, int size, const ShadowMapSettings& settings,
+                    const core::MemoryBudget& memory = {});
 
     /// Null: none for this light.
     const VolumetricShadowMap* of(const core::Emitter& emitter) const {

@@ -39,6 +39,15 @@ bool needs_chromatic_maps(const RayQueries& scene) {
     return std::any_of(media.begin(), media.end(), [](const auto& m) { return m->traits().chromatic; });
 }
 
+void require_shadow_maps(const MemoryBudget& memory, const ShadowMapSettings& settings, std::size_t maps,
+                         int size, bool chromatic) {
+    const double bytes = double(maps) * double(settings.bytes(size, chromatic));
+    memory.require(bytes, fmt::format("{} shadow map(s) of {}^2 texels", maps, size), [&](double available) {
+        return fmt::format("maps of {}^2 fit",
+                           std::max(0, int(std::sqrt(available / bytes) * (size + 2)) - 2));
+    });
+}
+
 void VolumetricShadowMap::build(const RayQueries& scene, const ShadowMapView& view,
                                 const MediumState& at_light, const ShadowMapSettings& settings,
                                 CancelToken cancelled) {

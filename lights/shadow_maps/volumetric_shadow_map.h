@@ -17,6 +17,7 @@
 
 #include "core/geometry/ray_counters.h"
 #include "core/objects/cancellation.h"
+#include "core/objects/memory_budget.h"
 #include "core/scene/ray_queries.h"
 #include "lights/shadow_maps/shadow_map_cells.h"
 
@@ -39,6 +40,10 @@ struct ShadowMapSettings {
 
 /// True where maps of this scene need three channels.
 bool needs_chromatic_maps(const core::RayQueries& scene);
+
+/// Throws OutOfMemory where so many maps of `size`^2 texels exceed the budget, with the size that does not.
+void require_shadow_maps(const core::MemoryBudget& memory, const ShadowMapSettings& settings,
+                         std::size_t maps, int size, bool chromatic);
 
 /// Sixteen points, and the transmittance per channel from the light to each.
 struct alignas(64) ShadowLookup {

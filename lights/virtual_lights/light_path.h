@@ -10,6 +10,7 @@
 #include <algorithm>
 
 #include "core/math/sampler.h"
+#include "core/objects/memory_budget.h"
 #include "core/scene/lit_scene.h"
 #include "core/scene/russian_roulette.h"
 #include "core/scene/scattering_vertex.h"
@@ -20,8 +21,9 @@ struct LightPathSettings {
     std::uint32_t paths = 1024;
     int max_vertices = -1;  ///< vertices on a light path after the light, delta ones included; -1: no limit
     int rr_depth = 5;       ///< Russian roulette after this many vertices
-    bool keep_starts = false;  ///< of trace_light_paths(): VplSet::starts
-    bool keep_states = true;   ///< of trace_light_paths(), in media: VplSet::states
+    bool keep_starts = false;        ///< of trace_light_paths(): VplSet::starts
+    bool keep_states = true;         ///< of trace_light_paths(), in media: VplSet::states
+    core::MemoryBudget memory = {};  ///< of all that the paths leave
 };
 
 /// Fraction of the path's first power that is left; never below 1/20, so that one dark bounce does not end

@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <string>
 
 namespace mote::lights {
 
@@ -94,7 +95,16 @@ VplSet trace_light_paths(const LitScene& scene, const LightPathSettings& setting
             parts[p] = trace_chunk(scene, settings, begin, end, seed, pass, sampler, cancelled, starts);
         });
         for (VplSet& part : parts) append(set, std::move(part)), part = {};
-        if (first == 0) reserve(set, double(chunks) / double(parts.size()));
+        if (first > 0 || parts.size() == chunks) continue;
+        const double times = double(chunks) / double(parts.size());
+        settings.memory.require(
+            times * double(set.memory_bytes()),
+            "the virtual point lights of " + std::to_string(settings.paths) + " light paths",
+            [&](double available) {
+                const double paths = available / (times * double(set.memory_bytes())) * settings.paths;
+                return "those of about " + std::to_string(std::uint32_t(paths)) + " fit";
+            });
+        reserve(set, times);
     }
     set.paths = settings.paths;
     return set;

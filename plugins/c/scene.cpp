@@ -1,6 +1,7 @@
 // Scenes of the C interface: loading, building, and what is known of them.
 #include <span>
 
+#include "core/objects/memory_budget.h"
 #include "plugins/c/handles.h"
 
 namespace mote::c {
@@ -111,6 +112,9 @@ mote_status mote_scene_add_mesh(mote_scene* scene, const char* name, const mote_
         core::MeshData data;
         if (m.vertex_count > c::max_mesh_count || m.triangle_count > c::max_mesh_count)
             throw c::InvalidArgument("a mesh has at most 2^32 - 1 vertices and triangles");
+        core::MemoryBudget().require(double(m.vertex_count) * (2 * sizeof(core::Vec3) + sizeof(core::Vec2)) +
+                                         double(m.triangle_count) * sizeof(data.triangles[0]),
+                                     "the copy of a mesh");
         for (std::size_t i = 0; i < m.vertex_count; ++i) {
             const float* p = &required(m.positions, "positions") + 3 * i;
             data.positions.emplace_back(p[0], p[1], p[2]);
@@ -138,6 +142,7 @@ mote_status mote_scene_add_grid(mote_scene* scene, const char* name, const mote_
         const std::size_t count =
             std::size_t(g.width) * std::size_t(g.height) * std::size_t(g.depth) * std::size_t(channels);
         const float* values = &required(g.values, "values");
+        core::MemoryBudget().require(double(count) * sizeof(float), "the copy of a grid");
         media::VolFile file;
         file.resolution = {g.width, g.height, g.depth}, file.channels = channels;
         file.bounds.lower = {g.lower[0], g.lower[1], g.lower[2]};

@@ -1,5 +1,6 @@
 // The extension module mote._mote: what the package `mote` is written on. Nobody else should use it.
 #include "core/formats/xml/faults.h"
+#include "core/objects/memory_budget.h"
 #include "python/bindings/bindings.h"
 #include "session/render_report.h"
 
@@ -58,6 +59,10 @@ NB_MODULE(_mote, m) {
     using namespace mote;
     m.attr("version") = MOTE_VERSION;
     m.attr("git_hash") = session::git_hash();
+    m.def(
+        "require_memory",
+        [](double bytes, const std::string& purpose) { core::MemoryBudget().require(bytes, purpose); },
+        nanobind::arg("bytes"), nanobind::arg("purpose"), "Raises MemoryError where there is no room.");
     python::bind_errors(m);
     python::bind_scenes(m);
     python::bind_pictures(m);

@@ -103,7 +103,9 @@ class _Writer:
             kind = "arraymesh"
         elif "data" in entries and kind in ("arraygrid", "gridvolume"):
             bounds = entries.pop("bounds", ((0, 0, 0), (1, 1, 1)))
-            values = np.ascontiguousarray(entries.pop("data"), dtype=np.float32)
+            given = np.asarray(entries.pop("data"))
+            _mote.require_memory(8.0 * given.size, f"the grid {place} and its copy")  # of views, which take nothing
+            values = np.ascontiguousarray(given, dtype=np.float32)
             self.tree.add_grid(name, values, [float(x) for x in bounds[0]], [float(x) for x in bounds[1]])
             kind = "arraygrid"
         else:

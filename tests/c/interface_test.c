@@ -4,6 +4,7 @@
 #include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include "check.h"
@@ -347,27 +348,78 @@ static void test_extremes(void) {
     grid.struct_size = sizeof grid, grid.values = corners;
     grid.width = grid.height = grid.depth = 2000000000;
     CHECK(mote_scene_add_grid(scene, "large", &grid) == MOTE_INVALID_ARGUMENT);
+    CHECK(strcmp(mote_scene_error(scene), "a grid has at most 2^34 values") == 0);
     mote_scene_free(scene);
+}
+
+/* Under a limit on the address space: what does not fit is refused before it is begun. */
+static void test_memory(void) {
+    const char *names[] = {"film.width", "film.height"}, *values[] = {"16384", "16384"};
+    const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    const uint32_t triangle[3] = {0, 1, 2};
+    mote_load_options changes = {0};
+    mote_render_options options = {0};
+    mote_mesh mesh = {0};
+    mote_grid grid = {0};
+    mote_scene* scene = mote_scene_new();
+    mote_picture* picture = mote_picture_new();
+    struct rlimit before, limit;
+    const double begin = seconds();
+    getrlimit(RLIMIT_AS, &before);
+    limit = before, limit.rlim_cur = (rlim_t)6 << 30;
+    setrlimit(RLIMIT_AS, &limit);
+    changes.struct_size = sizeof changes, changes.integrator = "path";
+    changes.define_names = names, changes.define_values = values, changes.define_count = 2;
+    CHECK(mote_scene_load_text(scene, small_scene, &changes) == MOTE_OK);
+    options.struct_size = sizeof options, options.passes = 1, options.auxiliary = 1;
+    CHECK(mote_render(scene, &options, picture) == MOTE_OUT_OF_MEMORY);
+    CHECK(strstr(mote_picture_error(picture), "a film of 16384 x 16384 pixels") != NULL);
+    CHECK(strstr(mote_picture_error(picture), "at most") != NULL);
+    CHECK(seconds() - begin < 5.0);
+    grid.struct_size = sizeof grid, grid.values = corners;
+    grid.width = 2000000000, grid.height = grid.depth = 1; /* the values are not read */
+    CHECK(mote_scene_add_grid(scene, "large", &grid) == MOTE_OUT_OF_MEMORY);
+    mesh.struct_size = sizeof mesh, mesh.positions = corners, mesh.triangles = triangle;
+    mesh.vertex_count = 2000000000, mesh.triangle_count = 1;
+    CHECK(mote_scene_add_mesh(scene, "large", &mesh) == MOTE_OUT_OF_MEMORY);
+    setrlimit(RLIMIT_AS, &before);
+    mote_picture_free(picture), mote_scene_free(scene);
 }
 
 /* A checkpoint replaces and removes nothing but its own. */
 static void test_files_of_others(const char* folder) {
+    static const char* const beside[] = {"precious",   "c.png",      "c.part",
+                                         "c.exr.part", "c.json",     "c.exr.checkpoint",
+                                         "c.1-0.part", "c.exr.json", "c_files"};
     char path[1000], text[16] = "";
+    size_t i;
     mote_render_options options = {0};
     mote_scene* scene = mote_scene_new();
     mote_picture* picture = mote_picture_new();
     FILE* file;
+    for (i = 0; i < sizeof beside / sizeof *beside; ++i) {
+        snprintf(path, sizeof path, "%s/%s", folder, beside[i]);
+        file = fopen(path, "w");
+        fputs("a diary", file), fclose(file);
+    }
     snprintf(path, sizeof path, "%s/precious", folder);
-    file = fopen(path, "w");
-    fputs("a diary", file), fclose(file);
     options.struct_size = sizeof options, options.passes = 1, options.checkpoint = path;
     CHECK(mote_scene_load_text(scene, small_scene, NULL) == MOTE_OK);
     CHECK(mote_render(scene, &options, picture) == MOTE_INPUT_ERROR);
     CHECK(strstr(mote_picture_error_file(picture), "precious") != NULL);
-    file = fopen(path, "r");
-    CHECK(file && fgets(text, sizeof text, file) && strcmp(text, "a diary") == 0);
-    if (file) fclose(file);
-    remove(path);
+    /* Nor does a render touch what stands beside its checkpoint and its picture. */
+    snprintf(path, sizeof path, "%s/c", folder);
+    CHECK(mote_render(scene, &options, picture) == MOTE_OK);
+    CHECK(access(path, F_OK) != 0); /* a complete render has none */
+    snprintf(path, sizeof path, "%s/c.exr", folder);
+    CHECK(mote_picture_save(picture, path, 0) == MOTE_OK);
+    for (i = 0; i < sizeof beside / sizeof *beside; ++i) {
+        snprintf(path, sizeof path, "%s/%s", folder, beside[i]);
+        file = fopen(path, "r");
+        CHECK(file && fgets(text, sizeof text, file) && strcmp(text, "a diary") == 0);
+        if (file) fclose(file);
+        remove(path);
+    }
     mote_picture_free(picture), mote_scene_free(scene);
 }
 
@@ -578,6 +630,9 @@ int main(int argc, char** argv) {
     test_bits(argv[1], argv[2]);
     test_arrays();
     test_extremes();
+#if !defined(MOTE_SANITIZED)
+    test_memory();
+#endif
     test_files_of_others(argv[2]);
     test_algorithms();
     test_sequence();

@@ -5,6 +5,8 @@ Usage: module_test.py MOTE (the command); PYTHONPATH holds the folder of the pac
 """
 import json
 import os
+import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -241,6 +243,25 @@ class ModuleTest(unittest.TestCase):
         with self.assertRaisesRegex(mote.Error, "/dev/null"):
             mote.render(self.scene, passes=1, checkpoint="/dev/null")
 
+    def test_bystanders(self):
+        """Beside what is named nothing is written or removed, whatever it is called."""
+        folder = Path(self.folder.name) / "bystanders"
+        folder.mkdir()
+        named = {"c", "p.exr"}
+        names = {base + ending for base in ("c", "p", "p.exr") for ending in
+                 ("", ".exr", ".png", ".part", ".1-0.part", ".checkpoint", ".json", ".film", "_denoised.exr")} - named
+        for name in names:
+            (folder / name).write_text(f"this is {name}")
+        stopped = mote.render(self.scene, passes=1 << 29, checkpoint=folder / "c", checkpoint_every=0.0,
+                              progress=lambda p: p["passes"] < 2)
+        self.assertTrue((folder / "c").exists())
+        picture = mote.render(self.scene, passes=stopped.passes + 1, checkpoint=folder / "c", resume=True, auxiliary=False)
+        for _ in range(2):
+            mote.denoise(picture).save(folder / "p.exr")
+        self.assertEqual({p.name for p in folder.iterdir()}, names | {"p.exr"})
+        for name in names:
+            self.assertEqual((folder / name).read_text(), f"this is {name}")
+
     def test_arguments(self):
         picture = mote.Picture({"beauty": np.ones((2, 3, 3))})
         with self.assertRaises(ValueError):
@@ -267,6 +288,42 @@ class ModuleTest(unittest.TestCase):
             scene["mesh"] = {"type": "arraymesh", "positions": corners, "triangles": np.array(triangles)}
             with self.assertRaisesRegex(mote.Error, "triangles"):
                 mote.Scene(scene)
+
+    def test_oidn_of_this_interpreter(self):
+        """The package pyoidn is that of the running interpreter, which need not be the python3 of the path."""
+        library = "libOpenImageDenoise.so.2"
+        site = Path(self.folder.name) / "site"
+        (site / "pyoidn" / "oidn" / "lib").mkdir(parents=True)
+        (site / "pyoidn" / "__init__.py").write_text("raise ImportError('found, not imported')")
+        shutil.copy(Path(MOTE).parent / "stand_ins" / library, site / "pyoidn" / "oidn" / "lib" / library)
+        picture = mote.render(self.scene, passes=1)
+        before = {name: os.environ.pop(name, None) for name in ("MOTE_OIDN", "MOTE_PYTHON", "PYTHONPATH")}
+        os.environ["MOTE_PYTHON"] = "/bin/false"
+        sys.path.insert(0, str(site))
+        try:
+            for denoised in (mote.denoise(picture, "oidn"), mote.render(self.scene, passes=1, denoise="oidn")):
+                self.assertIn("OpenImageDenoise 9.8.7", denoised.metadata["denoised"])
+        finally:
+            sys.path.remove(str(site))
+            os.environ.pop("MOTE_PYTHON")
+            os.environ.update({name: value for name, value in before.items() if value is not None})
+
+    def test_memory(self):
+        """What does not fit is a MemoryError before the first pass, with what would."""
+        limits = resource.getrlimit(resource.RLIMIT_AS)
+        resource.setrlimit(resource.RLIMIT_AS, (8 << 30, limits[1]))
+        try:
+            scene = mote.load(self.path, integrator="path", define={"film.width": 16384, "film.height": 16384})
+            begin = time.monotonic()
+            with self.assertRaisesRegex(MemoryError, "film of 16384 x 16384 pixels .* at most [0-9]+ x [0-9]+ pixels"):
+                mote.render(scene, passes=1, auxiliary=True)
+            self.assertLess(time.monotonic() - begin, 5.0)
+            floor = {"type": "arraygrid", "data": np.broadcast_to(np.float32(1), (1, 1, 2_000_000_000))}
+            with self.assertRaisesRegex(MemoryError, "grid"):
+                mote.Scene({**dictionary(), "box": {"type": "cube", "interior": {"type": "heterogeneous",
+                                                                                 "sigma_t": floor}}})
+        finally:
+            resource.setrlimit(resource.RLIMIT_AS, limits)
 
     def test_interrupt_and_resume(self):
         checkpoint = Path(self.folder.name) / "render.checkpoint"

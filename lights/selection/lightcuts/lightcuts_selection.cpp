@@ -92,7 +92,7 @@ const ParameterList<LightcutSettings> parameters{
 }  // namespace
 
 std::unique_ptr<VplSelector> LightcutsSelection::prepare(const SelectionPass& pass) const {
-    check_memory(pass.vpls.lights.size());
+    check_memory(pass);
     return std::make_unique<LightcutsSelector>(pass, settings_, multidimensional_);
 }
 

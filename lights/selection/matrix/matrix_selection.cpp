@@ -77,7 +77,7 @@ const ParameterList<MatrixSettings> parameters{
 }  // namespace
 
 std::unique_ptr<VplSelector> MatrixSelection::prepare(const SelectionPass& pass) const {
-    check_memory(pass.vpls.lights.size());
+    check_memory(pass);
     return std::make_unique<MatrixSelector>(pass, settings_);
 }
 

@@ -151,7 +151,7 @@ const ParameterList<ResamplingSettings> parameters{
 }  // namespace
 
 std::unique_ptr<VplSelector> ResamplingSelection::prepare(const SelectionPass& pass) const {
-    check_memory(pass.vpls.lights.size());
+    check_memory(pass);
     return std::make_unique<ResamplingSelector>(pass, candidates_, samples_);
 }
 

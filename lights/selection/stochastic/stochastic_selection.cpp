@@ -72,7 +72,7 @@ const ParameterList<StochasticSettings> parameters{
 }  // namespace
 
 std::unique_ptr<VplSelector> StochasticSelection::prepare(const SelectionPass& pass) const {
-    check_memory(pass.vpls.lights.size());
+    check_memory(pass);
     return std::make_unique<StochasticSelector>(pass, samples_, by_cut_);
 }
 

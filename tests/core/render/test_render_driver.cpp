@@ -7,6 +7,8 @@
 #include <thread>
 
 #include "core/objects/error.h"
+#include "core/objects/memory_error.h"
+#include "core/render/checkpoint.h"
 #include "core/render/stop_clock.h"
 #include "tests/core/render/fake_render.h"
 #include "tests/support/catch.h"
@@ -60,6 +62,30 @@ TEST_CASE("Passes run in index order, as many as asked for", "[driver]") {
 
     RenderRequest by_scene;  // no rule: what the film asks for
     CHECK(render(*scene, CountingIntegrator(), by_scene).film.pass_count() == 20);
+}
+
+TEST_CASE("A film beyond the budget is refused before the first pass", "[driver][memory]") {
+    const auto scene = fake_scene(2000, 1000);
+    int passes = 0;
+    const CountingIntegrator integrator([&](std::uint32_t) { ++passes; });
+    RenderRequest request = request_for(1);
+    request.memory = MemoryBudget(1e6);
+    CHECK_THROWS_AS(render(*scene, integrator, request), OutOfMemory);
+    CHECK(passes == 0);
+    request.memory = MemoryBudget(1e9);
+    CHECK(render(*scene, integrator, request).film.pass_count() == 1);
+}
+
+TEST_CASE("A checkpoint beyond the budget is not begun", "[driver][memory]") {
+    const TemporaryFolder folder;
+    const auto scene = fake_scene(200, 100);
+    const CountingIntegrator integrator;
+    const RenderResult whole = render(*scene, integrator, request_for(2));
+    const std::string path = folder.file("checkpoint");
+    CHECK_THROWS_AS(write_checkpoint(path, {"0123456789abcdef", 9}, whole.film, MemoryBudget(1000.0)),
+                    OutOfMemory);
+    CHECK(folder.size() == 0);
+    CHECK_NOTHROW(write_checkpoint(path, {"0123456789abcdef", 9}, whole.film, MemoryBudget(1e9)));
 }
 
 TEST_CASE("Another seed gives another picture, another number of threads the same", "[driver]") {

@@ -1,0 +1,69 @@
+// What a film is said to take, against what the allocator hands out.
+#include <malloc.h>
+
+#include "core/film/film_image.h"
+#include "core/film/film_memory.h"
+#include "core/objects/memory_error.h"
+#include "tests/support/catch.h"
+
+using namespace mote::core;
+
+namespace {
+
+double allocated() {
+    const struct mallinfo2 info = ::mallinfo2();
+    return double(info.uordblks) + double(info.hblkhd);
+}
+
+constexpr int width = 500, height = 300;
+
+std::vector<Layer> layers(bool auxiliary, std::size_t parts) {
+    std::vector<Layer> list;
+    for (std::size_t i = 0; i < 3; ++i) {
+        list.push_back({"light" + std::to_string(i), ""});
+        list.back().part = i % parts;
+    }
+    for (int i = 0; auxiliary && i < 4; ++i) list.push_back({"N" + std::to_string(i), "", true, true});
+    return list;
+}
+
+}  // namespace
+
+TEST_CASE("The memory of films and pictures is known before they are made", "[memory][film]") {
+    for (const bool auxiliary : {false, true})
+        for (const std::size_t parts : {1, 2})
+            for (const std::uint32_t passes : {1u, 6u, 8u}) {
+                const FilmMemory said(width, height, layers(auxiliary, parts), false, passes);
+                const double before = allocated();
+                Film film(width, height, layers(auxiliary, parts));
+                const double begin = allocated() - before;
+                for (std::size_t part = 0; part < parts; ++part) {
+                    const PassImage image(width, height, film.layers_of(part).size());
+                    for (std::uint32_t pass = 0; pass < passes; ++pass) film.add_pass(image, part);
+                }
+                const double sums = allocated() - before;
+                const ImageChannels image = film_image(film);
+                const double picture = allocated() - before;
+                INFO(auxiliary << " " << parts << " " << passes << ": " << begin << " of " << said.begin()
+                               << ", " << sums << " of " << said.sums() << ", " << picture << " of "
+                               << said.peak());
+                if (before == 0.0) return;  // another allocator, of a sanitizer
+                CHECK(begin < 1.01 * said.begin() + 1e5);
+                CHECK(begin > 0.99 * said.begin() - 1e5);
+                CHECK(sums < 1.01 * said.sums() + 1e5);
+                CHECK(sums > 0.9 * said.sums());  // blocks that wait for their other half come and go
+                CHECK(picture < said.peak());
+                CHECK(picture > 0.7 * said.peak());  // or what the noise takes before it
+            }
+}
+
+TEST_CASE("A film that does not fit is refused with the largest that does", "[memory][film]") {
+    const FilmMemory needed(4000, 1000, layers(true, 1));
+    CHECK_NOTHROW(needed.require(MemoryBudget(needed.peak())));
+    CHECK_THROWS_AS(needed.require(MemoryBudget(needed.peak()), 1.0), OutOfMemory);
+    const double quarter = 0.2501 * needed.peak();
+    CHECK_THROWS_WITH(needed.require(MemoryBudget(quarter)),
+                      ContainsSubstring("a film of 4000 x 1000 pixels and 7 layers (") &&
+                          ContainsSubstring("at most 2000 x 500 pixels of this shape fit"));
+    CHECK_NOTHROW(FilmMemory(2000, 500, layers(true, 1)).require(MemoryBudget(quarter)));
+}
