@@ -18,7 +18,7 @@ namespace mote::apps {
 
 namespace {
 
-std::atomic<bool> stop{false}, time_over{false};
+std::atomic<bool> stop{false}, time_over{false}, writing{false};
 std::atomic<int> first_signal{0};
 std::atomic<std::int64_t> first_time{0};
 std::atomic<const char*> idle_phase{nullptr}, idle_reason{nullptr};
@@ -56,6 +56,8 @@ extern "C" void on_signal(int number) {
     int none = 0;
     if (first_signal.compare_exchange_strong(none, number)) {
         first_time = milliseconds(), stop = true;
+        if (writing)
+            say("mote: interrupted while writing, which ends first; another signal ends mote at once\n");
         return;
     }
     if (milliseconds() - first_time > one_press_ms) ::_exit(128 + number);
@@ -80,7 +82,7 @@ struct sigaction before[std::size(caught)];  ///< handlers, before construction
 }  // namespace
 
 Interruption::Interruption() {
-    stop = false, time_over = false, first_signal = 0, idle_phase = nullptr;
+    stop = false, time_over = false, writing = false, first_signal = 0, idle_phase = nullptr;
     for (std::size_t i = 0; i < std::size(caught); ++i) {
         ::sigaction(caught[i], nullptr, &before[i]);
         if (caught[i] == SIGHUP && is_ignored(SIGHUP)) continue;  // nohup
@@ -96,6 +98,8 @@ void Interruption::end_at_once_while(const char* phase, const char* why) {
     idle_reason = why;
     idle_phase = phase;
 }
+
+void Interruption::writing_begins() { writing = true; }
 
 void Interruption::set_alarm(std::optional<double> seconds) {
     itimerval timer{};

@@ -21,6 +21,9 @@ class Interruption {
     /// the program at once, with one line, which ends in `why`. Both must be literals; null: from now on
     /// there is.
     void end_at_once_while(const char* phase, const char* why = "no pixel was rendered yet");
+    /// From now on files are written, perhaps into a folder that hangs: the first signal waits for them and
+    /// prints a line that says so.
+    void writing_begins();
     /// The end of the time, from now [s]; nothing: no more.
     void set_alarm(std::optional<double> seconds);
 

@@ -100,6 +100,7 @@ int finish(const RenderArguments& a, const RenderFiles& files, const std::option
             return 128 + interruption.signal_number();
         }
     }
+    interruption.writing_begins();
     if (rendered.film || !rendered.image.names.empty()) write_outputs(a, files, range, scene, rendered);
     report_render(a, rendered);
     if (rendered.interrupted) return report_interruption(a, files, rendered, interruption.signal_number());

@@ -137,7 +137,8 @@ std::string statistics_json(const RenderReport& r) {
     j["integrator"] = r.plan.integrator;
     j["plan"] = {{"runs", entries_json(r.plan.runs)},
                  {"left_out", entries_json(r.plan.left_out)},
-                 {"missing", entries_json(r.plan.missing)}};
+                 {"missing", entries_json(r.plan.missing)},
+                 {"costly", r.plan.costly}};
     j["width"] = r.result.film.width();
     j["height"] = r.result.film.height();
     j["seed"] = r.seed;

@@ -67,7 +67,8 @@ class Film::NewBlock {
     void put(std::size_t pixel, float sum) {
         for (std::size_t k = 0; k < joins_; ++k) {
             const float before = part_.blocks[part_.blocks.size() - 1 - k].sums[pixel];
-            part_.half_squares[level_ + k].add(pixel, (before - sum) * (before - sum));
+            const double difference = double(before) - double(sum);
+            part_.half_squares[level_ + k].add(pixel, difference * difference);
             sum += before;
         }
         part_.blocks[target_].sums[pixel] = sum;
@@ -253,7 +254,8 @@ std::vector<Rgb> Film::beauty() const {
     return result;
 }
 
-std::vector<Rgb> Film::variance_of_mean(std::span<const std::size_t> layers, const ExactSums& squares) const {
+std::vector<Rgb> Film::variance_of_mean(std::span<const std::size_t> layers, const ExactSums& squares,
+                                        double unit) const {
     std::vector<Rgb> result(pixels(), Rgb(0.0f));
     if (layers.empty()) return result;
     const double passes = parts_[layers_[layers.front()].part].passes;
@@ -263,28 +265,28 @@ std::vector<Rgb> Film::variance_of_mean(std::span<const std::size_t> layers, con
             double sum = 0.0;
             for (const std::size_t layer : layers) sum += sums_[layer].at(i);
             const double n = layers.size() == 1 ? passes_of(layers.front(), p) : passes;
-            result[p][c] = float(variance_from_sums(sum, squares.at(i), n));
+            result[p][c] = float(variance_from_sums(sum, squares.at(i), n) / (unit * unit));
         }
     });
     return result;
 }
 
-std::vector<Rgb> Film::part_variance_of_mean(std::size_t part) const {
-    return variance_of_mean(parts_.at(part).beauty_layers, parts_.at(part).beauty_squares);
+std::vector<Rgb> Film::part_variance_of_mean(std::size_t part, double unit) const {
+    return variance_of_mean(parts_.at(part).beauty_layers, parts_.at(part).beauty_squares, unit);
 }
 
-std::vector<Rgb> Film::beauty_variance_of_mean() const {
-    std::vector<Rgb> result = part_variance_of_mean(0);
+std::vector<Rgb> Film::beauty_variance_of_mean(double unit) const {
+    std::vector<Rgb> result = part_variance_of_mean(0, unit);
     for (std::size_t part = 1; part < parts_.size(); ++part) {
-        const std::vector<Rgb> more = part_variance_of_mean(part);
+        const std::vector<Rgb> more = part_variance_of_mean(part, unit);
         for_each_pixel(pixels(), [&](std::size_t p) { result[p] += more[p]; });
     }
     return result;
 }
 
-std::vector<Rgb> Film::layer_variance_of_mean(std::size_t layer) const {
+std::vector<Rgb> Film::layer_variance_of_mean(std::size_t layer, double unit) const {
     if (!has_squares(layer)) throw std::logic_error("the film does not keep the squares of this layer");
-    return variance_of_mean(std::span(&layer, 1), layer_squares_.at(layer));
+    return variance_of_mean(std::span(&layer, 1), layer_squares_.at(layer), unit);
 }
 
 void Film::set_mean(std::size_t layer, std::span<const Rgb> values, std::span<const float> variance) {

@@ -71,13 +71,14 @@ class Film {
     std::vector<Rgb> beauty() const;
     /// Variance of the beauty's mean per pixel and channel: (sum of squares / n - mean^2) / (n - 1), added up
     /// over parts. Zero for n < 2.
-    std::vector<Rgb> beauty_variance_of_mean() const;
+    /// `unit`: of light, in which its square is a float; a power of two.
+    std::vector<Rgb> beauty_variance_of_mean(double unit = 1.0) const;
     /// The share of a part in that.
-    std::vector<Rgb> part_variance_of_mean(std::size_t part) const;
+    std::vector<Rgb> part_variance_of_mean(std::size_t part, double unit = 1.0) const;
     /// True where the film keeps the variance of a layer.
     bool has_squares(std::size_t layer) const { return !layer_squares_.at(layer).empty(); }
     /// Variance of a layer's mean, over the passes of Layer::where; needs has_squares(layer).
-    std::vector<Rgb> layer_variance_of_mean(std::size_t layer) const;
+    std::vector<Rgb> layer_variance_of_mean(std::size_t layer, double unit = 1.0) const;
     /// Replaces what mean() returns for a layer, for post-processes (Estimator::finish). The sums, and with
     /// them all variances and the serialised film, stay those of the passes.
     /// Without values it is the mean of the passes again. `variance`: what the process leaves of the
@@ -138,12 +139,13 @@ class Film {
     bool has_replaced_variance() const;
     /// Variance of the beauty as it is shown: that of set_mean() in place of the variance of a layer's
     /// passes.
-    std::vector<Rgb> shown_variance_of_mean() const;
+    std::vector<Rgb> shown_variance_of_mean(double unit) const;
     /// sum w v of a part as it is shown, where that of its passes is `of_passes`.
-    double shown_sum(const Part& part, double of_passes, std::span<const double> weights) const;
+    double shown_sum(const Part& part, double of_passes, std::span<const double> weights, double unit) const;
     /// d[k] of core/film/sobol_gain.h.
-    std::vector<double> differences(const Part& part, std::span<const double> weights) const;
-    std::vector<Rgb> variance_of_mean(std::span<const std::size_t> layers, const ExactSums& squares) const;
+    std::vector<double> differences(const Part& part, std::span<const double> weights, double unit) const;
+    std::vector<Rgb> variance_of_mean(std::span<const std::size_t> layers, const ExactSums& squares,
+                                      double unit) const;
     /// Number of passes that the mean of a layer is over, for a pixel.
     double passes_of(std::size_t layer, std::size_t pixel) const;
     template <typename AnyFilm, typename Body>

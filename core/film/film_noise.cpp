@@ -11,12 +11,25 @@
 
 namespace mote::core {
 
-std::vector<double> Film::differences(const Part& part, std::span<const double> weights) const {
+namespace {
+
+/// 1, but for light whose square is no float, or leaves nothing of small values: a power of two near its
+/// maximum.
+double unit_of(std::span<const Rgb> picture) {
+    float brightest = 0.0f;
+    for (const Rgb& p : picture) brightest = std::max(brightest, max_component(p));
+    const bool usual = brightest == 0.0f || (brightest > 1e-12f && brightest < 1e12f);
+    return usual || !std::isfinite(brightest) ? 1.0 : std::exp2(std::floor(std::log2(double(brightest))));
+}
+
+}  // namespace
+
+std::vector<double> Film::differences(const Part& part, std::span<const double> weights, double unit) const {
     std::vector<double> d;
     for (std::size_t k = 0; part.complete_blocks(k) > 0; ++k) {
         double squares = 0.0;
         for (std::size_t p = 0; p < pixels(); ++p) squares += weights[p] * part.half_squares[k].at(p);
-        d.push_back(squares / part.complete_blocks(k) / std::exp2(double(k) + 2.0));
+        d.push_back(squares / (unit * unit) / part.complete_blocks(k) / std::exp2(double(k) + 2.0));
     }
     return d;
 }
@@ -43,27 +56,28 @@ bool Film::has_replaced_variance() const {
 
 // A layer and the rest of its part come from the same paths, so the rest has what is left when the layer's
 // own variance is taken away, covariance included. Pixel by pixel that may be less than nothing.
-std::vector<Rgb> Film::shown_variance_of_mean() const {
-    std::vector<Rgb> result = beauty_variance_of_mean();
+std::vector<Rgb> Film::shown_variance_of_mean(double unit) const {
+    std::vector<Rgb> result = beauty_variance_of_mean(unit);
     for (std::size_t layer = 0; layer < layers_.size(); ++layer) {
         const std::vector<float>& left = replaced_[layer].variance;
         if (left.empty() || layers_[layer].auxiliary) continue;
-        const std::vector<Rgb> own = layer_variance_of_mean(layer);
+        const std::vector<Rgb> own = layer_variance_of_mean(layer, unit);
         for (std::size_t p = 0; p < pixels(); ++p)
-            result[p] = glm::max(result[p] - own[p], Rgb(0.0f)) + Rgb(left[p]);
+            result[p] = glm::max(result[p] - own[p], Rgb(0.0f)) + Rgb(float(double(left[p]) / (unit * unit)));
     }
     return result;
 }
 
-double Film::shown_sum(const Part& part, double of_passes, std::span<const double> weights) const {
+double Film::shown_sum(const Part& part, double of_passes, std::span<const double> weights,
+                       double unit) const {
     double rest = of_passes, filtered = 0.0;
     for (const std::size_t layer : part.beauty_layers) {
         const std::vector<float>& left = replaced_[layer].variance;
         if (left.empty()) continue;
-        const std::vector<Rgb> own = layer_variance_of_mean(layer);
+        const std::vector<Rgb> own = layer_variance_of_mean(layer, unit);
         for (std::size_t p = 0; p < pixels(); ++p) {
             if (weights[p] > 0.0) rest -= weights[p] * mean_of_channels(own[p]);
-            filtered += weights[p] * double(left[p]);
+            filtered += weights[p] * double(left[p]) / (unit * unit);
         }
     }
     return std::max(0.0, rest) + filtered;
@@ -73,9 +87,11 @@ Film::GainAndNoise Film::gain_and_noise() const {
     GainAndNoise result;
     if (!has_passes(2)) return result;
     const bool replaced = has_replaced_variance();
-    const std::vector<Rgb> picture = replaced ? beauty() : mean_of_passes();
+    std::vector<Rgb> picture = replaced ? beauty() : mean_of_passes();
+    const double unit = unit_of(picture);
+    for (Rgb& p : picture) p /= float(unit);
     const RelativeWeights weights = relative_weights(
-        picture, replaced ? shown_variance_of_mean() : beauty_variance_of_mean(), width_, height_);
+        picture, replaced ? shown_variance_of_mean(unit) : beauty_variance_of_mean(unit), width_, height_);
     if (!(weights.noise_norm > 0.0)) {
         const bool black =
             std::all_of(picture.begin(), picture.end(), [](const Rgb& c) { return c == Rgb(0.0f); });
@@ -84,20 +100,20 @@ Film::GainAndNoise Film::gain_and_noise() const {
     }
     double independent = 0.0, expected = 0.0, shown = 0.0;
     for (std::size_t i = 0; i < parts_.size(); ++i) {
-        const std::vector<Rgb> variance = part_variance_of_mean(i);
+        const std::vector<Rgb> variance = part_variance_of_mean(i, unit);
         double sum = 0.0, squares = 0.0;
         for (std::size_t p = 0; p < pixels(); ++p) {
             const double v = weights.weight[p] * mean_of_channels(variance[p]);
             sum += v, squares += v * v;
         }
         if (!(squares > 0.0)) continue;
-        const std::vector<double> d = differences(parts_[i], weights.weight);
+        const std::vector<double> d = differences(parts_[i], weights.weight, unit);
         // A filter weighs the errors of pixels, which are independent: what it leaves is as much smaller.
         // Where the film begins later, blocks are fewer: what they cannot say of longer ones is not counted.
         const auto passes = std::uint32_t(std::min<std::uint64_t>(parts_[i].passes, (2ull << d.size()) - 1));
         const double gain = sobol_gain(d, passes, sum * sum / squares);
         independent += sum, expected += gain * sum;
-        shown += gain * (replaced ? shown_sum(parts_[i], sum, weights.weight) : sum);
+        shown += gain * (replaced ? shown_sum(parts_[i], sum, weights.weight, unit) : sum);
     }
     if (independent > 0.0) result.gain = expected / independent;
     result.noise = std::sqrt(shown / weights.noise_norm);

@@ -43,6 +43,7 @@ void Plan::miss(std::string topic, std::string choice, std::string reason, std::
 
 std::vector<std::string> Plan::warnings() const {
     std::vector<std::string> lines;
+    for (const std::string& text : costly) lines.push_back("warning: " + text);
     std::vector<std::pair<std::string, std::string>> by_choice;  // topic; what is left out, and its switch
     for (const PlanEntry& e : missing) {
         if (e.cure.empty()) {
@@ -67,6 +68,7 @@ std::string Plan::to_text() const {
     append_table(text, "runs", runs);
     append_table(text, "left out: this scene does not need it", left_out);
     append_table(text, "missing: this integrator cannot compute it", missing);
+    for (const std::string& sentence : costly) text += "\nwarning: " + sentence + "\n";
     return text;
 }
 

@@ -19,12 +19,13 @@ struct Plan {
     std::vector<PlanEntry> runs;
     std::vector<PlanEntry> left_out;  ///< code and data that this scene does not need
     std::vector<PlanEntry> missing;   ///< transport that this integrator cannot compute in this scene
+    std::vector<std::string> costly;  ///< sentences on what takes very long in this scene, with its size
 
     void run(std::string topic, std::string choice, std::string reason);
     void leave_out(std::string topic, std::string choice, std::string reason);
     void miss(std::string topic, std::string choice, std::string reason, std::string cure = "");
-    /// Messages for the user: a warning for each thing that this integrator cannot compute, and one line with
-    /// the switches of a topic for what it leaves out by choice.
+    /// Messages for the user: a warning for each thing that takes very long or that this integrator cannot
+    /// compute, and one line with the switches of a topic for what it leaves out by choice.
     std::vector<std::string> warnings() const;
     /// A table for people.
     std::string to_text() const;

@@ -58,18 +58,23 @@ class PassLoop {
         result_.statistics.values["noise"] = known(found.noise);
         if (found.noise < known(found.noise))
             result_.statistics.warnings.emplace_back(
-                "every pixel of every pass is black: how noisy the picture is, is not known");
+                "no pass found any light but that of lights in view: how noisy the picture is, is not known");
         result_.statistics.values["varianceGain"] = found.gain;
     }
 
   private:
-    /// Passes that have found no light yet agree with each other, and say nothing: infinity.
+    /// Passes that have found no light yet, but that of lights in view, agree with each other and say nothing:
+    /// infinity.
     double known(double noise) const {
         if (noise > 0.0) return noise;
-        const std::vector<Rgb> picture = result_.film.beauty();
-        const bool black =
-            std::all_of(picture.begin(), picture.end(), [](const Rgb& c) { return c == Rgb(0.0f); });
-        return black ? infinity : noise;
+        const Film& film = result_.film;
+        for (std::size_t i = 0; i < film.layers().size(); ++i) {
+            const Layer& layer = film.layers()[i];
+            if (layer.auxiliary || layer.transport == TransportSet(Transport::emission)) continue;
+            const std::vector<Rgb> mean = film.mean(i);
+            if (std::ranges::any_of(mean, [](const Rgb& c) { return c != Rgb(0.0f); })) return noise;
+        }
+        return infinity;
     }
     /// After an interruption: reuses the last preview's result of every step that would take too long.
     void finish_in_a_hurry() {

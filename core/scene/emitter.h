@@ -114,6 +114,7 @@ class Emitter : public Object {
 
     const Medium* medium = nullptr;  ///< the medium around the light where the scene file names one
     SourceLocation medium_where;     ///< of that name
+    SourceLocation where;            ///< of the light itself
 };
 
 }  // namespace mote::core

@@ -1,5 +1,9 @@
 #include "gathering/stored_light/lit_points.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "core/math/random.h"
 #include "gathering/photon_maps/photon_tracer.h"
 #include "lights/virtual_lights/particle_tracer.h"
@@ -34,6 +38,28 @@ Vec2 ray_place(std::uint64_t key, std::uint32_t pass) {
     return glm::min(Vec2(float(x - std::floor(x)), float(y - std::floor(y))), Vec2(one_minus_epsilon));
 }
 
+/// Throws InputError, with the file and line of the light that is strongest there, where a point's light
+/// exceeds single precision: a lamp touches a surface, or lights are that strong.
+void check_finite(const LitScene& scene, const SurfelSides& sides, std::span<const Rgb> light) {
+    const auto bad = std::ranges::find_if(light, [](const Rgb& e) { return !is_finite(e); });
+    if (bad == light.end()) return;
+    const Vec3 p = sides.vertex(std::size_t(bad - light.begin())).position;
+    const Emitter* strongest = nullptr;
+    double most = -1.0;
+    for (const auto& emitter : scene.emitters()) {
+        const auto sample = emitter->sample_direct(p, Vec2(0.5f));
+        const double here = sample ? double(max_component(sample->weight)) : 0.0;
+        if (here > most || std::isnan(here))
+            most = std::isnan(here) ? infinity : here, strongest = emitter.get();
+    }
+    throw InputError(
+        fmt::format("the light that arrives at the surface point ({:.4g}, {:.4g}, {:.4g}) is not finite "
+                    "in single precision, that of this light above all: make lights weaker, or move "
+                    "it away from the surface",
+                    p.x, p.y, p.z),
+        strongest ? strongest->where : SourceLocation{});
+}
+
 void add(std::vector<Rgb>& sum, const std::vector<Rgb>& more) {
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += more[i];
 }
@@ -61,6 +87,7 @@ LitPoints::LitPoints(const LitScene& scene, const SurfaceTriangles& surfaces, Sh
     if (settings.light == StoredLight::radiosity)
         light = point_radiosity(*hierarchy_, *buffers_, sides, std::move(light),
                                 {std::max(0, settings.bounces - 1), radiosity_level, key, cancelled});
+    check_finite(scene, sides, light);
     const SurfelSides::Radiance sent = sides.reflected(light);
     radiance_.emplace(*hierarchy_, sent.front, sent.back);
     cost_.places = sides.size();

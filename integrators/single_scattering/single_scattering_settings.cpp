@@ -74,6 +74,26 @@ bool has_other_lights(const Scene& scene) {
     return other;
 }
 
+namespace {
+
+/// Every light is marched in every pass, whatever it adds: a pass of thousands takes minutes and more.
+void warn_of_many_lights(Plan& plan, const Scene& scene, const ScatteringSettings& s, std::size_t lights) {
+    constexpr double patience = 1e7;  ///< rays: two minutes of one processor
+    const double pixels = double(scene.film().width) * double(scene.film().height);
+    const double of_light = s.sampling == ScatteringSampling::full       ? pixels
+                            : s.sampling == ScatteringSampling::epipolar ? double(s.lines) * s.line.initial
+                                                                         : pixels / sqr(double(s.spacing));
+    constexpr std::size_t few = 16;
+    if (lights <= few || double(lights) * of_light < patience) return;
+    plan.costly.push_back(
+        fmt::format("every pass marches at least {:.0f} million rays, {:.0f} for each of {} lights, and "
+                    "shows no pixel before; "
+                    "volpath and mote_layers sample one light a ray",
+                    1e-6 * double(lights) * of_light, of_light, lights));
+}
+
+}  // namespace
+
 void plan_single_scattering(Plan& plan, const Scene& scene, const Requirements& r,
                             const ScatteringSettings& s) {
     plan.run(
@@ -101,13 +121,14 @@ void plan_single_scattering(Plan& plan, const Scene& scene, const Requirements& 
     const std::size_t lights = s.lights == ScatteringLights::other ? 0 : positional_lights(scene).size();
     if (s.lights == ScatteringLights::other)
         plan.leave_out("marching", "no ray is marched", "lights is 'other'");
-    else if (lights > 0)
+    else if (lights > 0) {
         plan.run(
             "marching",
             fmt::format("{} steps a ray, {}", s.march.steps,
                         s.in_scattering == AlongRay::uniform_steps ? "of equal lengths" : "of equal angles"),
             fmt::format("{} light{} with a position", lights, lights == 1 ? "" : "s"));
-    else
+        warn_of_many_lights(plan, scene, s, lights);
+    } else
         plan.leave_out("marching", "no ray is marched", "no light has a position");
     plan_scattering_accelerations(plan, scene, s.accelerations(), s.march.steps);
     if (s.lights != ScatteringLights::positional && has_other_lights(scene))

@@ -15,19 +15,21 @@ using namespace core;
 class AreaLight final : public Emitter {
   public:
     /// `scale` multiplies the texture.
-    AreaLight(const Rgb& radiance, TexturePtr texture, SourceLocation where = {}, float scale = 1.0f)
-        : radiance_(radiance), scale_(scale), texture_(std::move(texture)), where_(std::move(where)) {}
+    AreaLight(const Rgb& radiance, TexturePtr texture, SourceLocation location = {}, float scale = 1.0f)
+        : radiance_(radiance), scale_(scale), texture_(std::move(texture)) {
+        where = std::move(location);
+    }
 
     EmitterTraits traits() const override {
         return {.kind = EmitterKind::area, .textured = texture_ && !texture_->constant()};
     }
 
     void set_shape(const Shape* shape) override {
-        if (shape_ && shape_ != shape) throw InputError("one area light cannot belong to two shapes", where_);
+        if (shape_ && shape_ != shape) throw InputError("one area light cannot belong to two shapes", where);
         shape_ = shape;
     }
     void set_scene_bounds(const Vec3&, float) override {
-        if (!shape_) throw InputError("an area light must be nested in a shape", where_);
+        if (!shape_) throw InputError("an area light must be nested in a shape", where);
     }
 
     std::optional<DirectSample> sample_direct(const Vec3& p, const Vec2& u) const override {
@@ -100,7 +102,6 @@ class AreaLight final : public Emitter {
     Rgb radiance_;
     float scale_;
     TexturePtr texture_;  ///< takes the place of radiance_ where there is one
-    SourceLocation where_;
     const Shape* shape_ = nullptr;
 };
 

@@ -151,6 +151,7 @@ void bind_scenes(nb::module_& m) {
             nb::dict d;
             d["integrator"] = plan.integrator, d["runs"] = entries(plan.runs);
             d["left_out"] = entries(plan.left_out), d["missing"] = entries(plan.missing);
+            d["costly"] = plan.costly;
             return d;
         });
     m.def("manuals", &manuals);

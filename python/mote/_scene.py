@@ -12,7 +12,7 @@ from ._scene_dict import texts_of, tree_of
 
 class Plan(dict):
     """What an integrator will run on a scene, and why: {"integrator", "runs", "left_out", "missing"}, lists of
-    {"topic", "choice", "reason", "cure"}. str(plan) is the table that `mote plan` prints."""
+    {"topic", "choice", "reason", "cure"}, and "costly", sentences on what takes very long. str(plan) is the table that `mote plan` prints."""
 
     def __init__(self, entries: Mapping[str, Any], text: str) -> None:
         super().__init__(entries)

@@ -1,6 +1,7 @@
 // Careless and hostile command lines: inputs as outputs, malformed numbers, pipes as files, JSON without end.
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -240,4 +241,44 @@ TEST_CASE("What compensation leaves out by choice is one line that names the swi
           "-D integrator.compensation.transmittance=exact"})
         CHECK(contains(run.err, part));
     CHECK_FALSE(contains(run.err, "warning"));
+}
+
+TEST_CASE("Light that exceeds single precision at a point names the light with its line",
+          "[command][hostile]") {
+    const TemporaryFolder folder;
+    write_file(folder.file("s.xml"), R"(<scene version="3.0.0"><integrator type="mote_micro_rendering"/>
+        <sensor type="perspective"><film type="hdrfilm"><integer name="width" value="8"/>
+        <integer name="height" value="8"/></film></sensor>
+        <emitter type="point"><point name="position" x="0" y="0" z="0.50007"/><rgb name="intensity" value="1e30"/></emitter>
+        <emitter type="point"><point name="position" x="0" y="0" z="0.50006"/><rgb name="intensity" value="1e30"/></emitter>
+        <shape type="rectangle"><transform name="to_world"><scale value="1e-6"/><translate z="0.5"/></transform></shape>
+        </scene>)");
+    const RunResult r = run_mote(folder, {"render", "s.xml", "-o", "a.exr", "--passes", "1", "--quiet"});
+    INFO(r.err);
+    CHECK(r.exit_code == 1);
+    CHECK(r.err.find("mote: s.xml:5: the light that arrives at the surface point (") != std::string::npos);
+    CHECK(r.err.find(", 0.5) is not finite in single precision") != std::string::npos);
+    CHECK(std::count(r.err.begin(), r.err.end(), '\n') == 1);
+}
+
+TEST_CASE("A plan says when a pass marches thousands of lights", "[command][hostile]") {
+    const TemporaryFolder folder;
+    for (const int count : {10, 1000}) {
+        std::string lights;
+        for (int i = 0; i < count; ++i) lights += "<emitter type=\"point\"/>";
+        write_file(folder.file("s.xml"), R"(<scene version="3.0.0"><sensor type="perspective"/>
+            <shape type="sphere"><float name="radius" value="9"/><bsdf type="null"/>
+            <medium name="interior" type="homogeneous"/></shape><shape type="sphere"/>)" +
+                                             lights + "</scene>");
+        for (const char* integrator : {"mote_epipolar", "mote_single_scattering", "mote_layers"}) {
+            const RunResult r = run_mote(folder, {"plan", "s.xml", "--integrator", integrator});
+            INFO(integrator << " " << count << "\n" << r.out);
+            CHECK(r.exit_code == 0);
+            const bool marches = count == 1000 && std::string(integrator) != "mote_layers";
+            CHECK((r.out.find("million rays") != std::string::npos) == marches);
+            if (std::string(integrator) == "mote_epipolar" && marches)
+                CHECK(r.out.find("at least 16 million rays, 16384 for each of 1000 lights") !=
+                      std::string::npos);
+        }
+    }
 }

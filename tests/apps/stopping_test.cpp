@@ -154,6 +154,24 @@ TEST_CASE("A pipe that nobody reads can be interrupted", "[command][stopping]") 
     }
 }
 
+TEST_CASE("A write that hangs says so at the first signal and ends at the second", "[command][stopping]") {
+    const Folder folder;  // statistics come last: a pipe without a reader stands for a folder that hangs
+    REQUIRE(::mkfifo(folder.file("s.json").c_str(), 0600) == 0);
+    MoteProcess process(folder,
+                        folder.render({"--integrator", "path", "--passes", "1", "--stats", "s.json"}));
+    REQUIRE(wait_for_file(process, folder.file("a.png")));
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    process.send(SIGINT);
+    std::this_thread::sleep_for(std::chrono::milliseconds(600));
+    CHECK(process.running());
+    process.send(SIGINT);
+    const RunResult r = process.wait();
+    INFO(r.err);
+    CHECK(r.exit_code == 128 + SIGINT);
+    CHECK(r.err.find("another signal ends mote at once") != std::string::npos);
+    CHECK(folder.has("a.exr"));
+}
+
 TEST_CASE("A signal ends a command that has nothing to lose with a line", "[command][stopping]") {
     RunResult r;
     for (int wait = 250; r.exit_code == -1 && wait < 20000; wait *= 2) {  // as above
@@ -225,7 +243,18 @@ TEST_CASE("Too little memory names what it was for", "[command][stopping]") {
     INFO(r.err);
     CHECK(r.exit_code == 3);
     CHECK(r.err.find("not enough memory for a film of 16000 x 16000 pixels") != std::string::npos);
-    CHECK(r.err.find("GB") != std::string::npos);
+    CHECK(r.err.find(" GB are available; at most ") != std::string::npos);
+    // Before anything is built, with a sentence instead of the kernel's end.
+    RunResult whole;
+    CHECK(seconds_of([&] {
+              whole =
+                  run_mote(folder, folder.render({"--integrator", "path", "-D", "size=16384", "--auxiliary"}),
+                           limited(RLIMIT_AS, rlim_t(8) << 30));
+          }) < generous_seconds);
+    CHECK(whole.exit_code == 3);
+    CHECK(whole.err.find("mote: there is not enough memory for a film of 16384 x 16384 pixels") !=
+          std::string::npos);
+    for (const char* name : {"a.exr", "a.png", "a.exr.checkpoint"}) CHECK_FALSE(folder.has(name));
 }
 
 TEST_CASE("A trade and its reference end at once while the scene is loaded", "[command][stopping][trade]") {

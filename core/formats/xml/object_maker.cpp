@@ -120,7 +120,9 @@ bool ObjectMaker::attach(const Element& element, const Properties& properties, O
     if (properties.category == Category::shape) return refuse_materials(element);
     const bool camera = dynamic_cast<Camera*>(&object) != nullptr;
     if (camera && !faults_.attempt(element, [&] { film = film_settings(properties); })) return false;
-    if (!camera && !dynamic_cast<Emitter*>(&object)) return true;
+    auto* const emitter = dynamic_cast<Emitter*>(&object);
+    if (emitter) emitter->where = properties.where;
+    if (!camera && !emitter) return true;
     bool sound = true;
     for (const Element& c : element.children)
         if (!is_value_tag(c.tag) && resolve(c, ids_).tag == "medium" && !attach_medium(c, element, object))

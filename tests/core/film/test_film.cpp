@@ -57,6 +57,27 @@ TEST_CASE("A film's means are those of exact sums", "[film]") {
     }
 }
 
+TEST_CASE("The noise of a film does not depend on the unit of light", "[film][noise]") {
+    const int w = 24, h = 16;
+    const auto noise = [&](float unit) {
+        Film film(w, h, layers);
+        for (std::uint32_t i = 0; i < 8; ++i) {
+            PassImage image = random_pass(w, h, i);
+            for (std::size_t l = 0; l < layers.size(); ++l)
+                for (Rgb& p : image.layer(l)) p *= unit;
+            film.add_pass(image);
+        }
+        return film.gain_and_noise();
+    };
+    const Film::GainAndNoise usual = noise(1.0f);
+    REQUIRE(usual.noise > 0.1);
+    // Squares beyond single precision at both ends: 1e60 and 1e-60.
+    for (const float unit : {0x1p100f, 0x1p-100f, 0x1p40f, 0x1p-50f}) {
+        CHECK(noise(unit).noise == Approx(usual.noise).epsilon(1e-5));
+        CHECK(noise(unit).gain == Approx(usual.gain).epsilon(1e-5));
+    }
+}
+
 TEST_CASE("Films of passes that follow each other add up to the film of all, in any grouping",
           "[film][ranges]") {
     const int w = 5, h = 4;
