@@ -1,5 +1,6 @@
 // Files that the user did not name as outputs are neither written nor removed, whatever they are called.
 #include <filesystem>
+#include <set>
 
 #include "tests/apps/run_mote.h"
 #include "tests/support/catch.h"
@@ -120,5 +121,108 @@ TEST_CASE("Exports and comparisons replace nothing that they did not write", "[c
     for (int i = 0; i < 2; ++i) {  // what they wrote themselves they replace
         CHECK(folder.run({"export", "scene.xml", "--to", "mitsuba3", "-o", "export"}).exit_code == 0);
         CHECK(folder.run({"compare", "a.exr", "a.exr", "--difference", "x4", "-o", "d.png"}).exit_code == 0);
+    }
+}
+
+namespace {
+
+/// Every name that some command writes or removes, for outputs that are called `base`.
+std::vector<std::string> names_we_use(const std::string& base) {
+    std::vector<std::string> names;
+    for (const char* ending : {".exr",
+                               ".png",
+                               ".film",
+                               ".json",
+                               ".html",
+                               ".csv",
+                               ".xml",
+                               ".txt",
+                               ".exr.checkpoint",
+                               ".film.checkpoint",
+                               ".exr.film",
+                               ".exr.checkpoint.json",
+                               ".part",
+                               ".exr.part",
+                               ".exr.1-0.part",
+                               ".png.part",
+                               "_denoised.exr",
+                               "_denoised.png",
+                               "_difference.png",
+                               "_files",
+                               "_trade",
+                               ".0001.exr",
+                               ".0002.exr",
+                               ".0001.png",
+                               ".0-1.film"})
+        names.push_back(base + ending);
+    return names;
+}
+
+struct Command {
+    std::vector<std::string> arguments;
+    std::set<std::string> named;  ///< outputs, with the previews and checkpoints that belong to them
+};
+
+std::set<std::string> entries(const Folder& folder) {
+    std::set<std::string> names;
+    for (const auto& entry : fs::recursive_directory_iterator(folder.path()))
+        if (entry.is_regular_file()) names.insert(fs::relative(entry.path(), folder.path()).string());
+    return names;
+}
+
+}  // namespace
+
+TEST_CASE("No command writes or removes a path that is no output of its own", "[command][bystanders]") {
+    const Command commands[] = {
+        {{"render", "scene.xml", "-o", "a.exr", "--passes", "2", "--stats", "s.json", "--checkpoint-every",
+          "0"},
+         {"a.exr", "a.png", "a.exr.checkpoint", "s.json"}},
+        {{"render", "scene.xml", "--pass-range", "1:2", "-o", "p.film"}, {"p.film", "p.film.checkpoint"}},
+        {{"merge", "in/0.film", "in/1.film", "-o", "m.exr", "--stats", "s.json"},
+         {"m.exr", "m.png", "m.exr.checkpoint", "s.json"}},
+        {{"merge", "in/0.film", "in/1.film", "-o", "m.film"}, {"m.film"}},
+        {{"render", "scene.xml", "-o", "f.####.exr", "-D", "film.width=8:9", "--passes", "1"},
+         {"f.0008.exr", "f.0008.png", "f.0009.exr", "f.0009.png"}},
+        {{"convert", "in/a.exr", "c.png"}, {"c.png"}},
+        {{"compare", "in/a.exr", "in/a.exr", "--map", "c.png", "--difference", "x4", "-o", "d.png"},
+         {"c.png", "d.png"}},
+        {{"denoise", "in/a.exr", "-o", "a.exr", "--method", "bmfr"}, {"a.exr", "a.png"}},
+        {{"trade", "scene.xml", "--make-reference", "r.exr", "--resolve", "0.9", "--passes", "8"},
+         {"r.exr", "r.png", "r.exr.checkpoint"}},
+        {{"plan", "scene.xml"}, {}},
+        {{"info", "in/a.exr"}, {}}};
+    const Folder inputs;
+    REQUIRE(inputs.run({"render", "scene.xml", "-o", "a.exr", "--passes", "2", "--auxiliary"}).exit_code ==
+            0);
+    for (const char* range : {"0:1", "1:2"})
+        REQUIRE(
+            inputs
+                .run({"render", "scene.xml", "--pass-range", range, "-o", std::string(1, range[0]) + ".film"})
+                .exit_code == 0);
+    for (const Command& command : commands) {
+        const Folder folder;
+        fs::create_directory(folder.file("in"));
+        for (const char* name : {"a.exr", "0.film", "1.film"})
+            fs::copy_file(inputs.file(name), folder.file(std::string("in/") + name));
+        std::vector<std::string> bystanders;
+        for (const char* base : {"a", "b", "c", "d", "f", "m", "p", "r", "s", "scene", "in/a", "in/0"})
+            for (const std::string& name : names_we_use(base))
+                if (!command.named.contains(name) && !fs::exists(folder.file(name)))
+                    bystanders.push_back(name);
+        for (const std::string& name : bystanders) folder.put(name);
+        std::set<std::string> before = entries(folder);
+        const RunResult r = folder.run(command.arguments);
+        INFO(command.arguments[0] << " " << command.arguments[1] << "\n" << r.err);
+        CHECK(r.exit_code == 0);
+        for (const std::string& name : bystanders) {
+            INFO(name);
+            CHECK(folder.holds(name));
+        }
+        before.insert({"stdout.txt", "stderr.txt"});
+        before.insert(command.named.begin(), command.named.end());
+        for (const std::string& name : entries(folder)) {
+            INFO(name);
+            CHECK(before.contains(name));
+        }
     }
 }
