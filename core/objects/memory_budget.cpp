@@ -47,8 +47,8 @@ constexpr GroupFiles version_1{"/sys/fs/cgroup/memory", "memory.limit_in_bytes",
                                "total_inactive_file"};
 constexpr GroupFiles version_2{"/sys/fs/cgroup", "memory.max", "memory.current", "inactive_file"};
 
-/// What a group and those that it lies in leave. Pages of files that nobody reads any more count as usage and
-/// are given back.
+/// Bytes that a group and those that it lies in leave. Pages of files that nobody reads any more count as
+/// usage and are given back.
 double left_in_group(const std::string& root, const GroupFiles& files, std::string group) {
     double left = infinity;
     for (;; group.resize(std::min(group.rfind('/'), group.size()))) {
