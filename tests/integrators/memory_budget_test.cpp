@@ -11,7 +11,7 @@ using namespace mote::tests;
 
 namespace {
 
-const std::string fog =
+const std::string medium =
     R"(<medium name="interior" type="homogeneous"><float name="sigma_t" value="0.5"/></medium>)";
 
 /// Words of the error of a first pass with so many bytes; "" where there is none.
@@ -55,7 +55,7 @@ TEST_CASE("Methods refuse what exceeds the budget, and name it", "[memory]") {
         {"mote_micro_rendering", "", " points "},
         {"mote_ray_bundles", "", "triangles"}};
     for (const Case& c : cases) {
-        const auto scene = scene_from(box(grey, c.media ? fog : ""), 4);
+        const auto scene = scene_from(box(grey, c.media ? medium : ""), 4);
         const std::string said = refusal(*scene, c.type, c.settings, 500.0);
         INFO(c.type << " " << c.settings << ": " << said);
         CHECK(said.find(c.words) != std::string::npos);
