@@ -84,10 +84,10 @@ LitPoints::LitPoints(const LitScene& scene, const SurfaceTriangles& surfaces, Sh
     buffers_.emplace(*hierarchy_, of_pass);
     const SurfelSides sides(surfaces, shapes, surfels_);
     std::vector<Rgb> light = arriving(scene, sides, settings, seed, pass, sampler, cancelled);
+    check_finite(scene, sides, light);
     if (settings.light == StoredLight::radiosity)
         light = point_radiosity(*hierarchy_, *buffers_, sides, std::move(light),
                                 {std::max(0, settings.bounces - 1), radiosity_level, key, cancelled});
-    check_finite(scene, sides, light);
     const SurfelSides::Radiance sent = sides.reflected(light);
     radiance_.emplace(*hierarchy_, sent.front, sent.back);
     cost_.places = sides.size();
