@@ -44,7 +44,7 @@ TEST_CASE("Light paths keep the light of rooms where they end after 500 vertices
     const double error = std::sqrt((squares - sum * sum) / renders);
     CHECK(error < 0.03 * vertices);
     CHECK(std::abs(sum - vertices) < 4.5 * error);
-    // What most renders show, whatever rare paths bring to the mean.
+    // The median: most renders show it, whatever rare paths bring to the mean.
     CHECK(means[renders / 2] > 0.9 * vertices);
     CHECK(means_of_weights({500, 0.95f})[renders / 2] < 0.75 * vertices);
 }
