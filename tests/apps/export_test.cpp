@@ -143,7 +143,7 @@ TEST_CASE("a shape in an outermost fog is exported with its exterior", "[export]
         return R"(<scene version="3.0.0"><medium type="homogeneous" id="fog"/>
             <sensor type="perspective"><transform name="to_world"><lookat origin="0, 0, 5" target="0, 0, 0"
                 up="0, 1, 0"/></transform>)" +
-               named + R"(</sensor><emitter type="constant"/><shape type="sphere"><bsdf type="null"/>
+               named + R"(</sensor><emitter type="point"/><shape type="sphere"><bsdf type="null"/>
             <medium type="homogeneous" name="interior"><float name="sigma_t" value="2"/></medium></shape></scene>)";
     };
     write_file(folder.file("fog.xml"), scene(R"(<ref id="fog"/>)"));

@@ -51,6 +51,11 @@ struct Case {
 std::vector<Case> cases() {
     const std::string fog = R"(<medium type="homogeneous"><float name="sigma_t" value="0.15"/>
         <float name="albedo" value="0.8"/></medium>)";
+    // Light from infinity needs an end of the medium.
+    const std::string box_of_fog =
+        R"(<shape type="cube"><transform name="to_world"><scale value="6"/></transform><bsdf type="null"/>
+        <medium type="homogeneous" name="interior"><float name="sigma_t" value="0.15"/>
+        <float name="albedo" value="0.8"/></medium></shape>)";
     const std::string equiangular = R"(<integrator type="volpath"><integer name="max_depth" value="4"/>
         <boolean name="equiangular" value="true"/></integrator>)";
     const std::string volpath =
@@ -66,7 +71,7 @@ std::vector<Case> cases() {
             {"virtual point lights", scene_of(vpl, lamp)},
             // No number was chosen by the last two, though a prototype of the estimate was tried on them.
             {"direct light of a lamp", scene_of(direct, lamp)},
-            {"fog under a lamp and a sky", scene_of(volpath, lamp + sky, fog)}};
+            {"fog under a lamp and a sky", scene_of(volpath, lamp + sky + box_of_fog)}};
 }
 
 constexpr std::uint32_t reference_passes = 512;
