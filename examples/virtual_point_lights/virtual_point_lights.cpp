@@ -1,7 +1,11 @@
 // Virtual point lights in a triangle soup of one's own, traced by an Embree scene of one's own: a closed room
 // with grey walls and a lamp. What its walls receive in all is known: power / (area (1 - reflectance)),
 // bounces included.
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
 #include <embree3/rtcore.h>
+#endif
 #include <mote/core/materials/bsdfs.h>
 #include <mote/core/materials/textures.h>
 #include <mote/core/scene/callback_scene.h>
@@ -46,8 +50,12 @@ std::optional<SurfaceHit> trace(RTCScene soup, const core::ForeignSurface& wall,
              0,
              0};
     r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+#if RTC_VERSION_MAJOR >= 4
+    rtcIntersect1(soup, &r);
+#else
     RTCIntersectContext context;
     rtcInitIntersectContext(&context), rtcIntersect1(soup, &context, &r);
+#endif
     if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
     const Vec3 normal = glm::normalize(Vec3(r.hit.Ng_x, r.hit.Ng_y, r.hit.Ng_z));
     return wall.hit(ray, r.ray.tfar, glm::dot(normal, ray.direction) < 0.0f ? normal : -normal, 1e-6f);
