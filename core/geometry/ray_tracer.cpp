@@ -44,10 +44,12 @@ void scale(ShadowPacket& p, embree::TracingUnit unit) {
 
 /// Some builds of Embree (Debian's) abort on rays that are not finite or start beyond what it can trace, in
 /// the space of an instance too (ShapeScenes::max_ray_origin): those hit nothing.
-bool traceable(const Vec3& origin, const Vec3& direction, float t_min, float t_max, float max_origin) {
-    return glm::all(glm::lessThan(glm::abs(origin), Vec3(max_origin))) &&
-           glm::all(glm::lessThan(glm::abs(direction), Vec3(largest_coordinate))) &&
-           (std::fabs(t_min) < infinity) && (t_max >= t_min);
+inline bool traceable(const Vec3& origin, const Vec3& direction, float t_min, float t_max, float max_origin) {
+    const auto below = [](const Vec3& v, float limit) {
+        return std::fabs(v.x) < limit && std::fabs(v.y) < limit && std::fabs(v.z) < limit;
+    };
+    return below(origin, max_origin) && below(direction, largest_coordinate) && std::fabs(t_min) < infinity &&
+           t_max >= t_min;
 }
 bool traceable(const Ray& r, float max_origin) {
     return traceable(r.origin, r.direction, r.t_min, r.t_max, max_origin);
@@ -109,8 +111,9 @@ bool RayTracer::occluded(const Ray& ray) const {
 void RayTracer::occluded(ShadowPacket& packet) const {
     embree::Query query;
     alignas(64) int valid[ShadowPacket::width];
+    const float max_origin = impl_->scenes.max_ray_origin();
     for (int lane = 0; lane < ShadowPacket::width; ++lane)
-        valid[lane] = -int(traceable(packet, lane, impl_->scenes.max_ray_origin()));
+        valid[lane] = -int(traceable(packet, lane, max_origin));
     const auto trace = [&](ShadowPacket& p) {
         embree::occluded(valid, impl_->scene(Group::surfaces), query, reinterpret_cast<RTCRay16&>(p));
     };
