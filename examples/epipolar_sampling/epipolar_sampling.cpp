@@ -4,6 +4,7 @@
 #include <mote/screenspace/epipolar/epipolar_picture.h>
 #include <mote/screenspace/in_scattering/airlight.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 

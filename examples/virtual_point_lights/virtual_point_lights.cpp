@@ -13,6 +13,7 @@
 #include <mote/lights/virtual_lights/particle_tracer.h>
 #include <mote/lights/virtual_lights/vpl_gather.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
