@@ -62,7 +62,9 @@ class EyePath {
     /// advance() that continues to surfaces until the path has scattered: media on the segment scatter at
     /// `points`, and let the rest through. Those of the segment are chosen from `points` afterwards, whether
     /// or not there is a vertex; what scatters there is up to the method (light_at()).
-    bool advance_to_surface(core::WalkContext& context, TransportSum& sum, core::ScatteringPoints& points) {
+    template <typename OnSegment>
+    bool advance_to_surface(core::WalkContext& context, TransportSum& sum, core::ScatteringPoints& points,
+                            const OnSegment& on_segment) {
         points.start(core::Rng(context.rng.next_u32()));
         return advance_by(
             [&](core::Rgb& emitted, core::WalkContext& c) {
@@ -70,7 +72,7 @@ class EyePath {
                            ? core::walk_to_surface(scene_, ray_, state_, weights_, emitted, points, c)
                            : next_event(emitted, c);
             },
-            context, sum, [](const EyeSegment&) {});
+            context, sum, on_segment);
     }
 
     // At a vertex:

@@ -17,6 +17,9 @@ using core::Transport, core::TransportSet, core::transport_count, core::transpor
 struct TransportSum {
     std::array<core::Rgb, transport_count> light{};
     core::Rgb& operator[](Transport t) { return light[std::size_t(t)]; }
+    void add(const TransportSum& other) {
+        for (std::size_t i = 0; i < transport_count; ++i) light[i] += other.light[i];
+    }
 };
 
 /// Layer of one cell, named after it.

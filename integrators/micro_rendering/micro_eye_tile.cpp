@@ -13,77 +13,47 @@ constexpr std::uint32_t warp_cells = 24;
 
 }  // namespace
 
-void MicroEyeTile::start(int index, const EyeRay& eye) {
-    Lane& lane = lanes_[std::size_t(index)];
-    lane.sum = {}, lane.seen = {}, lane.alive = true, lane.film = eye.film;
-    walk_.rng = eye.rng;
-    lane.path.emplace(scene_, settings_.eye, eye, walk_);
-    lane.rng = walk_.rng;
+void MicroEyeTile::run(bool gathers) {
+    packet_.run([&] {
+        packet_.sample_lights();
+        gather(gathers);
+    });
 }
 
-void MicroEyeTile::stop(int index) {
-    Lane& lane = lanes_[std::size_t(index)];
-    lane.sum = {}, lane.alive = false;
+/// True where a receiver is to gather light; records it for its neighbours.
+bool MicroEyeTile::receives(Packet::Lane& lane) const {
+    const EyePath<false>& path = *lane.path;
+    // A light, a point, the receiver and the eye: two edges more.
+    const bool fits = settings_.eye.max_depth < 0 || path.depth() + 2 <= settings_.eye.max_depth;
+    if (!lane.alive || !path.vertex().connectable() || !fits || !settings_.eye.wanted[Transport::indirect])
+        return false;
+    see_receiver(lane.seen, path);
+    if (settings_.glossy_upsampling && path.depth() == 1) lane.seen.surface.shared = true;
+    return true;
 }
 
-void MicroEyeTile::run() {
-    for (bool any = true; any;) {
-        any = false;
-        for (Lane& lane : lanes_) {
-            lane.receives = false;
-            if (lane.alive) lane.alive = advance(lane);
-            any |= lane.alive;
-        }
-        gather();
-    }
-}
-
-/// Follows one eye path to its next vertex; makes it a receiver where it can be connected. False at the
-/// path's end.
-bool MicroEyeTile::advance(Lane& lane) {
-    walk_.rng = lane.rng;
-    EyePath<false>& path = *lane.path;
-    const bool at_vertex = path.advance(walk_, lane.sum);
-    if (at_vertex && path.depth() == 1) {
-        lane.seen = see_first_segment(scene_, path, lane.film);
-        if (!path.vertex().connectable()) lane.seen.share_nothing();
-    }
-    if (at_vertex && path.vertex().connectable()) {
-        if (path.wants_connection()) lane.sum[path.layer_of_connection()] += path.sample_light(walk_);
-        // A light, a point, the receiver and the eye: two edges more.
-        const bool fits = settings_.eye.max_depth < 0 || path.depth() + 2 <= settings_.eye.max_depth;
-        if (fits && settings_.eye.wanted[Transport::indirect]) {
-            see_receiver(lane.seen, path);
-            if (settings_.glossy_upsampling && path.depth() == 1) lane.seen.surface.shared = true;
-            lane.receives = gathers_;
-        }
-    }
-    lane.rng = walk_.rng;
-    return at_vertex;
-}
-
-void MicroEyeTile::gather() {
-    std::array<Lane*, width> diffuse{}, glossy{};
+void MicroEyeTile::gather(bool gathers) {
+    std::array<Packet::Lane*, Packet::width> diffuse{}, glossy{};
     std::size_t diffuse_count = 0, glossy_count = 0;
-    for (Lane& lane : lanes_) {
-        if (!lane.receives) continue;
+    packet_.for_each([&](int, Packet::Lane& lane) {
+        if (!receives(lane) || !gathers) return;
         const bool is_diffuse = lane.path->vertex().diffuse_reflectance().has_value();
         (is_diffuse ? diffuse[diffuse_count++] : glossy[glossy_count++]) = &lane;
-    }
-    walk_.cancelled.check();
+    });
+    packet_.walk().cancelled.check();
     receivers_ += diffuse_count + glossy_count;
-    if (diffuse_count > 0) gather_diffuse(std::span<Lane* const>(diffuse).first(diffuse_count));
-    if (glossy_count > 0) gather_glossy(std::span<Lane* const>(glossy).first(glossy_count));
+    if (diffuse_count > 0) gather_diffuse(Lanes(diffuse).first(diffuse_count));
+    if (glossy_count > 0) gather_glossy(Lanes(glossy).first(glossy_count));
 }
 
-MicroReceiver MicroEyeTile::receiver_of(Lane& lane) {
+MicroReceiver MicroEyeTile::receiver_of(Packet::Lane& lane) {
     return gathering::micro_receiver(lane.path->vertex(), lane.path->sampler().next_1d());
 }
 
 /// Gathers with texels of equal projected solid angles.
-void MicroEyeTile::gather_diffuse(std::span<Lane* const> lanes) {
+void MicroEyeTile::gather_diffuse(Lanes lanes) {
     group_.clear();
-    for (Lane* lane : lanes) group_.push_back(receiver_of(*lane));
+    for (Packet::Lane* lane : lanes) group_.push_back(receiver_of(*lane));
     const std::size_t each = points_.buffers().texels_each();
     points_.buffers().render(group_, std::span(texels_).first(lanes.size() * each));
     const float cosine_weight = points_.buffers().texels().cosine_weight();
@@ -99,9 +69,9 @@ void MicroEyeTile::gather_diffuse(std::span<Lane* const> lanes) {
 }
 
 /// Gathers with texels that are small where the BSDF reflects much (Engelhardt 2013, Sec. 8.1.3).
-void MicroEyeTile::gather_glossy(std::span<Lane* const> lanes) {
+void MicroEyeTile::gather_glossy(Lanes lanes) {
     group_.clear(), warps_.clear();
-    for (Lane* lane : lanes) {
+    for (Packet::Lane* lane : lanes) {
         group_.push_back(receiver_of(*lane));
         const ScatteringVertex& vertex = lane->path->vertex();
         const Frame& frame = group_.back().frame;

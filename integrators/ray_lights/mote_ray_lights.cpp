@@ -6,7 +6,6 @@
 // continue (ray_light_tile.h). So the mean is right, but for light that passes mirrors and glass last.
 #include <fmt/format.h>
 
-#include "integrators/eye_path/counters.h"
 #include "integrators/eye_path/eye_path_parameters.h"
 #include "integrators/eye_path/plan_narrow_phases.h"
 #include "integrators/ray_lights/ray_light_tile.h"
@@ -25,6 +24,7 @@ class RayLightEstimator final : public Estimator {
         : scene_(scene),
           options_(options),
           settings_(settings),
+          loop_(scene, options),
           bound_(settings.bound_for(scene.rays().bounds())),
           media_(scene.media()) {
         settings_.eye.wanted = options.cells;
@@ -36,18 +36,21 @@ class RayLightEstimator final : public Estimator {
         const lights::RayLightSet set =
             lights::trace_ray_lights(scene_, media_, settings_.light_paths(options_.memory), options_.seed,
                                      context.index, options_.sampler, context.cancelled);
-        counters_.add(set.surface.rays, set.surface.tracking);
+        loop_.counters().add(set.surface.rays, set.surface.tracking);
         rays_ += set.rays.size(), vpls_ += set.surface.lights.size(), paths_ += settings_.paths;
         bytes_ = std::max(bytes_, set.memory_bytes());
         const RayLightPass lights{media_, set, bound_};
-        return for_each_tile(options_.width, options_.height, tile_size, context.cancelled,
-                             [&](int x0, int y0, int x1, int y1) {
-                                 render_tile(context, lights, image, {x0, y0, x1, y1});
-                             });
+        const EyePacketSettings eye{.limits = settings_.eye, .scattering_points = scattering_points()};
+        return loop_.run(context, image, eye, [&](EyeTask<Media>& task) {
+            RayLightTile<Media> tile(scene_, settings_, lights, task.packet());
+            task.for_each([&](const PacketPixels&) { tile.run(); });
+            const std::lock_guard lock(mutex_);
+            pairs_.add(tile.counters());
+        });
     }
 
     void add_statistics(Statistics& statistics) const override {
-        counters_.report(statistics, Media);
+        loop_.add_statistics(statistics);
         statistics.values["ray_lights"] += double(rays_);
         statistics.values["vpls"] += double(vpls_);
         statistics.values["light_paths"] += double(paths_);
@@ -58,48 +61,16 @@ class RayLightEstimator final : public Estimator {
     }
 
   private:
-    using Tile = RayLightTile<Media>;
-    static constexpr int tile_size = 16;
-    struct Box {
-        int x0, y0, x1, y1;
-    };
-
-    void render_tile(const PassContext& context, const RayLightPass& lights, PassImage& image,
-                     const Box& box) {
-        WalkContext walk;
-        walk.cancelled = context.cancelled;
-        const auto scratch = std::make_unique<lights::GatherScratch>();
-        const auto tile = std::make_unique<Tile>(scene_, settings_, lights, *scratch, walk);
-        for (int y = box.y0; y < box.y1; y += Tile::side)
-            for (int x = box.x0; x < box.x1; x += Tile::side) {
-                if (context.cancelled) return;
-                const auto pixels = [&](const auto& visit) {
-                    for (int i = 0; i < Tile::side * Tile::side; ++i)
-                        visit(i, x + i % Tile::side, y + i / Tile::side,
-                              x + i % Tile::side < box.x1 && y + i / Tile::side < box.y1);
-                };
-                pixels([&](int i, int px, int py, bool there) {
-                    if (there)
-                        tile->start(i, make_eye_ray(scene_, options_, context, px, py));
-                    else
-                        tile->stop(i);
-                });
-                tile->run();
-                pixels([&](int i, int px, int py, bool there) {
-                    if (there) store(tile->sum(i), image, px, py, Media);
-                });
-            }
-        counters_.add(walk.rays, walk.tracking);
-        const std::lock_guard lock(mutex_);
-        pairs_.add(tile->counters());
+    int scattering_points() const {
+        return settings_.eye.wanted[Transport::single_scattering] ? settings_.scattering_points : 0;
     }
 
     const Scene& scene_;
     RenderOptions options_;
     RayLightSettings settings_;
+    ImageLoop<Media> loop_;
     float bound_;
     lights::ScatteringMedia media_;
-    SharedCounters counters_;
     std::mutex mutex_;
     lights::LineCounters pairs_;
     std::uint64_t rays_ = 0, vpls_ = 0, paths_ = 0;

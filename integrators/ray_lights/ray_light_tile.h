@@ -1,4 +1,4 @@
-// The eye paths of a 4x4 tile of pixels of `mote_ray_lights`.
+// Callbacks of the eye paths of `mote_ray_lights`.
 //
 // A path continues to its first surface that is no mirror and no glass. Media before it are lines, which
 // gather ray lights and the VPLs on surfaces all along; lights themselves are looked for at a few scattering
@@ -8,11 +8,9 @@
 #pragma once
 
 #include <array>
-#include <limits>
-#include <optional>
 #include <vector>
 
-#include "integrators/eye_path/eye_path.h"
+#include "integrators/eye_path/image_loop.h"
 #include "integrators/ray_lights/ray_light_settings.h"
 #include "lights/ray_lights/line_gather.h"
 
@@ -28,108 +26,82 @@ struct RayLightPass {
 template <bool Media>
 class RayLightTile {
   public:
-    static constexpr int side = 4;
+    using Packet = EyePacket<Media>;
     static constexpr std::size_t lane_count = lights::ReceiverTile::width;
-    static_assert(std::size_t(side * side) == lane_count);
+    static_assert(std::size_t(Packet::width) == lane_count);
 
     RayLightTile(const core::Scene& scene, const RayLightSettings& settings, const RayLightPass& pass,
-                 lights::GatherScratch& scratch, core::WalkContext& walk)
-        : scene_(scene),
-          settings_(settings),
+                 Packet& packet)
+        : settings_(settings),
           pass_(pass),
-          walk_(walk),
-          context_{scene, scratch, walk.rays, walk.tracking, walk.cancelled},
-          gather_(context_, pass.set, settings.candidate_count()) {}
+          packet_(packet),
+          walk_(packet.walk()),
+          scratch_(std::make_unique<lights::GatherScratch>()),
+          gather_({scene, *scratch_, walk_.rays, walk_.tracking, walk_.cancelled}, pass.set,
+                  settings.candidate_count()) {}
 
-    void start(int lane, const EyeRay& eye) {
-        Lane& l = lanes_[std::size_t(lane)];
-        l.sum = {}, l.alive = true, l.lines.clear();
-        l.extinction = l.step = 0.0f;
-        walk_.rng = eye.rng;
-        l.path.emplace(scene_, settings_.eye, eye, walk_);
-        l.points.emplace(wants_points() ? settings_.scattering_points : 0);
-        l.rng = walk_.rng;
-    }
-    void stop(int lane) { lanes_[std::size_t(lane)].alive = false; }
-    const TransportSum& sum(int lane) const { return lanes_[std::size_t(lane)].sum; }
     const lights::LineCounters& counters() const { return gather_.counters(); }
 
     /// Follows the eye paths to their ends.
     void run() {
-        for (bool any = true; any;) {
-            receivers_.clear();
-            any = false;
-            for (std::size_t i = 0; i < lane_count; ++i) {
-                Lane& lane = lanes_[i];
-                lane.lines.clear();
-                if (!lane.alive) continue;
-                walk_.rng = lane.rng;
-                lane.alive = advance(lane, int(i));
-                lane.rng = walk_.rng;
-                any |= lane.alive;
-            }
-            gather();
-        }
+        lanes_ = {};
+        packet_.run([&] { step(); },
+                    [&](int i, PathLane& path, const EyeSegment& segment) {
+                        if (Media && !lanes_[std::size_t(i)].receives) add_lines(i, path, segment);
+                    });
     }
 
   private:
+    using PathLane = typename Packet::Lane;
     struct Lane {
-        std::optional<EyePath<Media>> path;
-        core::Rng rng;  ///< of the path, while other lanes advance
-        TransportSum sum;
-        std::optional<core::ScatteringPoints> points;
         std::vector<lights::EyeLine> lines;  ///< of the last segment
         core::Vec3 normal{0.0f};             ///< shading normal of the last point that gathered
-        bool on_surface = true;              ///< or was that in a medium?
+        bool receives = false;               ///< the path has come to its first receiver
+        bool on_surface = true;              ///< or was the last one in a medium?
         float extinction = 0.0f;             ///< mean along the last segment in media [1/m]
         float step = 0.0f;                   ///< light that a connection carries
-        bool alive = false;
     };
 
-    bool wants_points() const { return settings_.eye.wanted[Transport::single_scattering]; }
-    /// Deeper lights would make a path longer than max_depth.
-    std::int32_t light_depth(int eye_depth) const {
-        const int most = settings_.eye.max_depth;
-        return most < 0 ? std::numeric_limits<std::int32_t>::max() : std::max(0, most - eye_depth - 1);
+    void step() {
+        receivers_.clear();
+        packet_.for_each(
+            [&](int i, PathLane& path) { path.alive = continues(lanes_[std::size_t(i)], path); });
+        packet_.sample_lights();
+        packet_.for_each([&](int i, PathLane& path) {
+            if (path.alive && path.path->vertex().connectable()) receive(i, *path.path);
+        });
+        gather();
+        for (Lane& lane : lanes_) lane.lines.clear();
     }
 
-    /// Follows one eye path to its next vertex, and makes a receiver of it. Returns whether it continues.
-    bool advance(Lane& lane, int index) {
-        EyePath<Media>& path = *lane.path;
-        const bool first = path.scatterings() == 0 && (path.depth() == 0 || !path.vertex().connectable());
-        if (!(first ? to_surface(lane) : path.advance(walk_, lane.sum))) return false;
+    /// Single scattering of the first segments, and what is left of the weight behind. False where the path
+    /// ends.
+    bool continues(Lane& lane, PathLane& path) {
+        const bool first = !lane.receives;
+        if (Media && first && wants_points() && path.path->may_go_on()) add_single_scattering(path);
+        if (!path.alive) return false;
+        // Mirrors and glass that come later send what no VPL represents.
+        if (!path.path->vertex().connectable()) return first;
+        return first || keep_residual(lane, *path.path);
+    }
+
+    void receive(int index, EyePath<Media>& path) {
         const core::ScatteringVertex& vertex = path.vertex();
-        if (first && !vertex.connectable()) return true;
-        if (!first && !keep_residual(lane)) return false;
-        if (path.wants_connection()) lane.sum[path.layer_of_connection()] += path.sample_light(walk_);
         if (settings_.eye.wanted[Transport::indirect])
             receivers_.set(index, vertex, path.throughput(), path.state(), core::Rng(walk_.rng.next_u32()),
-                           light_depth(path.depth()));
+                           settings_.eye.light_depth(path.depth()));
+        Lane& lane = lanes_[std::size_t(index)];
         lane.normal = vertex.hit.shading.n, lane.on_surface = vertex.on_surface();
-        return true;
+        lane.receives = true;
+        packet_[index].points.reset();
     }
 
-    /// The first segment, or one behind a mirror: media on it are lines. Returns whether there is a vertex.
-    bool to_surface(Lane& lane) {
-        EyePath<Media>& path = *lane.path;
-        bool at_vertex;
-        if constexpr (Media) {
-            lane.points->start(core::Rng(walk_.rng.next_u32()));
-            const auto walker = [&](core::Rgb& emitted, core::WalkContext& c) {
-                return core::walk_to_surface(scene_, path.ray(), path.state(), path.weights(), emitted,
-                                             *lane.points, c);
-            };
-            at_vertex = path.advance_by(walker, walk_, lane.sum,
-                                        [&](const EyeSegment& segment) { add_lines(lane, segment); });
-            if (wants_points() && path.may_go_on()) add_single_scattering(lane);
-        } else {
-            at_vertex = path.advance(walk_, lane.sum);
-        }
-        return at_vertex;
-    }
+    bool wants_points() const { return settings_.eye.wanted[Transport::single_scattering]; }
 
-    void add_lines(Lane& lane, const EyeSegment& segment) {
-        const std::int32_t depth = light_depth(lane.path->depth());
+    /// Media on the first segment, and on those behind mirrors, are lines.
+    void add_lines(int index, PathLane& path, const EyeSegment& segment) {
+        Lane& lane = lanes_[std::size_t(index)];
+        const std::int32_t depth = settings_.eye.light_depth(path.path->depth());
         if (!settings_.eye.wanted[Transport::multiple_scattering] || depth == 0) return;
         const core::Rgb throughput = lights::throughput_of<Media>(segment.before);
         core::Rng rng(walk_.rng.next_u32());
@@ -145,7 +117,7 @@ class RayLightTile {
         lane.extinction = depth_of_media / segment.event.surface_distance;
     }
 
-    void add_single_scattering(Lane& lane) {
+    void add_single_scattering(PathLane& lane) {
         for (const core::ScatteringPoint& point : lane.points->choose(rare_light)) {
             if (core::is_black(point.weight)) continue;
             const core::MediumState& state = lane.points->state_of(point);
@@ -154,13 +126,10 @@ class RayLightTile {
         }
     }
 
-    /// At a vertex behind the first: (G - b)/G of the edge that led there. Returns whether anything is left;
-    /// mirrors and glass send what no VPL represents.
-    bool keep_residual(Lane& lane) {
-        EyePath<Media>& path = *lane.path;
-        const core::ScatteringVertex& vertex = path.vertex();
-        if (!vertex.connectable()) return false;
+    /// At a vertex behind the first: (G - b)/G of the edge that led there. Returns whether anything is left.
+    bool keep_residual(const Lane& lane, EyePath<Media>& path) {
         const float cosine = lane.on_surface ? std::fabs(glm::dot(lane.normal, path.ray().direction)) : 1.0f;
+        const core::ScatteringVertex& vertex = path.vertex();
         const float g = cosine * vertex.geometric_cosine(vertex.wo) / core::sqr(path.segment_length());
         if (!(g > pass_.bound)) return false;
         path.scale(std::isfinite(g) ? 1.0f - pass_.bound / g : 1.0f);
@@ -187,7 +156,7 @@ class RayLightTile {
             add(gather_.to_points(at_points_, steps, pass_.bound, receivers_), Transport::indirect);
         for (std::size_t n = 0; n < eyes_.size(); ++n) {
             for (std::size_t i = 0; i < lane_count; ++i)
-                if (eyes_[n].of[i]) attenuation_.rng[i] = core::Rng(lanes_[i].rng.next_u32());
+                if (eyes_[n].of[i]) attenuation_.rng[i] = core::Rng(packet_[int(i)].rng.next_u32());
             add(gather_.to_eyes(eyes_[n], along_eyes_[n], steps, attenuation_),
                 Transport::multiple_scattering);
         }
@@ -203,7 +172,7 @@ class RayLightTile {
         for (std::size_t i = lane_count; i-- > 0;)
             if (gathers(i)) first = i, ++count;
         if (count == 0) return false;
-        core::Rng rng(lanes_[first].rng.next_u32());
+        core::Rng rng(packet_[int(first)].rng.next_u32());
         gather_.sample_candidates(rng, count);
         return true;
     }
@@ -239,17 +208,17 @@ class RayLightTile {
     }
 
     void add(const lights::TileLight& light, Transport layer) {
-        for (std::size_t i = 0; i < lane_count; ++i) lanes_[i].sum[layer] += light[i];
+        for (std::size_t i = 0; i < lane_count; ++i) packet_[int(i)].sum[layer] += light[i];
     }
 
     /// Scattering points that carry less than this share of the light are evaluated by Russian roulette.
     static constexpr float rare_light = 0.3f;
 
-    const core::Scene& scene_;
     const RayLightSettings& settings_;
     const RayLightPass& pass_;
+    Packet& packet_;
     core::WalkContext& walk_;
-    lights::GatherContext context_;
+    std::unique_ptr<lights::GatherScratch> scratch_;
     lights::LineGather gather_;
     std::array<Lane, lane_count> lanes_;
     lights::ReceiverTile receivers_;

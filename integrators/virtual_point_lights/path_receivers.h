@@ -31,13 +31,14 @@ inline std::vector<glm::ivec2> spread_pixels(int width, int height, std::size_t 
     return pixels;
 }
 
-/// Receivers on the eye paths of these pixels, on surfaces and in media. `tile` is a VplEyeTile that records
-/// receivers from then on.
-template <typename Tile>
+/// Receivers on the eye paths of these pixels, on surfaces and in media. `tile` is an EyeTile over `packet`,
+/// and records receivers from then on.
+template <typename Packet, typename Tile>
 std::vector<lights::PathReceiver> sample_path_receivers(const core::Scene& scene,
                                                         const core::RenderOptions& options,
                                                         const core::PassContext& pass,
-                                                        std::span<const glm::ivec2> pixels, Tile& tile) {
+                                                        std::span<const glm::ivec2> pixels, Packet& packet,
+                                                        Tile& tile) {
     std::vector<lights::PathReceiver> receivers;
     tile.record_receivers(receivers);
     core::RenderOptions own = options;
@@ -47,9 +48,10 @@ std::vector<lights::PathReceiver> sample_path_receivers(const core::Scene& scene
         if (pass.cancelled) break;
         for (std::size_t i = 0; i < lanes; ++i)
             if (first + i < pixels.size())
-                tile.start(int(i), make_eye_ray(scene, own, pass, pixels[first + i].x, pixels[first + i].y));
+                packet.start(int(i),
+                             make_eye_ray(scene, own, pass, pixels[first + i].x, pixels[first + i].y));
             else
-                tile.stop(int(i));
+                packet.stop(int(i));
         tile.run({}, 1.0f);
     }
     return receivers;

@@ -1,23 +1,11 @@
-// Results of the eye paths of `mote_vpl`: light, and receivers for shadow maps.
+// Maps that the eye paths of `mote_vpl` look up instead of tracing shadow rays.
 #pragma once
 
-#include "integrators/eye_path/transport_layers.h"
 #include "lights/imperfect_shadow_maps/imperfect_visibility.h"
+#include "lights/shadow_maps/light_shadow_maps.h"
 #include "lights/shadow_maps/shadow_map_gather.h"
 
 namespace mote::integrators {
-
-/// One estimate of a pixel.
-struct VplPixel {
-    TransportSum transport;
-    std::array<core::Rgb, 2> compensation{};  ///< by lights::ReceiverKind
-
-    void add(const VplPixel& other, float weight) {
-        for (std::size_t i = 0; i < transport.light.size(); ++i)
-            transport.light[i] += weight * other.transport.light[i];
-        for (std::size_t i = 0; i < 2; ++i) compensation[i] += weight * other.compensation[i];
-    }
-};
 
 /// Where shadow maps stand in for shadow rays; all null where they do not.
 struct EyeShadowMaps {

@@ -2,8 +2,6 @@
 
 #include <mutex>
 
-#include "integrators/eye_path/counters.h"
-#include "integrators/eye_path/eye_ray.h"
 #include "integrators/layer_filter/layer_filter.h"
 #include "integrators/vpl_ray_bundles/vpl_bundle_tile.h"
 
@@ -12,15 +10,21 @@ namespace mote::integrators {
 using namespace core;
 namespace {
 
+/// Eye paths a pixel and pass: those after the first are for direct light.
+int eye_paths(const VplBundleSettings& settings, TransportSet wanted) {
+    return wanted[Transport::direct] || wanted[Transport::emission] ? settings.direct_paths() : 1;
+}
+
 class VplBundleEstimator final : public Estimator {
   public:
     VplBundleEstimator(const Scene& scene, const RenderOptions& options, const VplBundleSettings& settings)
-        : scene_(scene), options_(options), settings_(settings) {
+        : scene_(scene),
+          options_(options),
+          settings_(settings),
+          loop_(scene, options,
+                {.interleaving = settings.interleaving, .eye_samples = eye_paths(settings, options.cells)}) {
         settings_.eye.wanted = options.cells;
         settings_.sky = settings_.sky && settings_.has_bundles() && scene.environment();
-        const bool wants_direct =
-            settings_.eye.wanted[Transport::direct] || settings_.eye.wanted[Transport::emission];
-        eye_paths_ = wants_direct ? settings_.direct_paths() : 1;
         if (settings_.imperfect_links && settings_.has_bundles())
             links_ = std::make_unique<gathering::ImperfectLinks>(
                 scene.shapes(),
@@ -42,17 +46,23 @@ class VplBundleEstimator final : public Estimator {
         const double begin = process_cpu_seconds();
         const VplBundlePass pass(scene_, settings_, links_.get(), options_, context);
         light_seconds_ += process_cpu_seconds() - begin;
-        counters_.add(pass.vpls.rays, pass.vpls.tracking);
+        loop_.counters().add(pass.vpls.rays, pass.vpls.tracking);
         vpls_ += pass.vpls.lights.size(), paths_ += pass.vpls.paths;
         bytes_ = std::max(bytes_,
                           pass.vpls.memory_bytes() + pass.rivals.size() * sizeof(float) + pass.kept_bytes());
-        return for_each_tile(
-            options_.width, options_.height, tile_size(), context.cancelled,
-            [&](int x0, int y0, int x1, int y1) { render_tile(context, pass, image, x0, y0, x1, y1); });
+        const EyePacketSettings eye{.limits = settings_.eye, .lights = pass.eye_lights()};
+        return loop_.run(context, image, eye, [&](EyeTask<false>& task) {
+            VplBundleTile tile(settings_, pass, task.packet());
+            task.for_each([&](const PacketPixels& pixels) { tile.run(pixels); },
+                          [&](const PacketPixels& pixels) { tile.add_gathered(pixels, image); });
+            const std::lock_guard lock(time_mutex_);
+            const VplBundleTime& time = tile.time();
+            time_.eye += time.eye, time_.vpls += time.vpls, time_.bundles += time.bundles;
+        });
     }
 
     void add_statistics(Statistics& statistics) const override {
-        counters_.report(statistics, false);
+        loop_.add_statistics(statistics);
         statistics.values["vpls"] += double(vpls_);
         statistics.values["light_paths"] += double(paths_);
         statistics.values["vpl_bytes_peak"] = double(bytes_);
@@ -68,69 +78,12 @@ class VplBundleEstimator final : public Estimator {
     }
 
   private:
-    /// Pixels of a task: a multiple of the tiles of receivers, whose pixels are `interleaving` apart.
-    int tile_size() const {
-        const int n = settings_.interleaving;
-        return VplBundleTile::side * n * std::max(1, 4 / n);
-    }
-
-    void render_tile(const PassContext& context, const VplBundlePass& pass, PassImage& image, int x0, int y0,
-                     int x1, int y1) {
-        WalkContext walk;
-        walk.cancelled = context.cancelled;
-        const auto scratch = std::make_unique<lights::GatherScratch>();
-        const auto tile = std::make_unique<VplBundleTile>(scene_, settings_, pass, *scratch, walk);
-        const int n = settings_.interleaving, side = VplBundleTile::side * n;
-        for (int place = 0; place < n * n; ++place) {
-            const auto& lines = pass.lines[std::size_t(place)];
-            for (int y = y0; y < y1; y += side)
-                for (int x = x0; x < x1; x += side) {
-                    if (context.cancelled) return;
-                    render_lanes(context, image, *tile, lines, x + place % n, y + place / n, x1, y1);
-                }
-        }
-        counters_.add(walk.rays, walk.tracking);
-        const std::lock_guard lock(time_mutex_);
-        time_.eye += tile->time().eye, time_.vpls += tile->time().vpls, time_.bundles += tile->time().bundles;
-    }
-
-    /// Pixels from (x0, y0) on, n apart. They go round the n^2 shares of the VPLs from pass to pass.
-    void render_lanes(const PassContext& context, PassImage& image, VplBundleTile& tile,
-                      std::span<const gathering::BundleDirection> lines, int x0, int y0, int x1,
-                      int y1) const {
-        constexpr int side = VplBundleTile::side;
-        const int n = settings_.interleaving;
-        const std::size_t shares = std::size_t(n) * std::size_t(n);
-        const std::size_t start = std::size_t(hash_keys(options_.seed, 0x696e7465726cull) % shares);
-        const std::size_t place = std::size_t(x0 % n) + std::size_t(n) * std::size_t(y0 % n);
-        const auto pixel = [&](int lane) { return std::array{x0 + lane % side * n, y0 + lane / side * n}; };
-        for (int lane = 0; lane < VplBundleTile::width; ++lane)
-            if (const auto [x, y] = pixel(lane); x < x1 && y < y1)
-                tile.start(lane, eye_ray(context, x, y, 0), eye_paths_);
-            else
-                tile.stop(lane);
-        tile.run({(place + start + context.index) % shares, shares}, lines);
-        for (int lane = 0; lane < VplBundleTile::width; ++lane)
-            if (const auto [x, y] = pixel(lane); x < x1 && y < y1) {
-                for (int k = 1; k < eye_paths_; ++k) tile.add_direct(lane, eye_ray(context, x, y, k));
-                store(tile.sum(lane), image, x, y, false);
-            }
-    }
-
-    /// Eye path k of a pixel's in this pass; they are numbered on from pass to pass.
-    EyeRay eye_ray(const PassContext& context, int x, int y, int k) const {
-        const PassContext path{context.index * std::uint32_t(eye_paths_) + std::uint32_t(k), context.filter,
-                               context.cancelled, context.part};
-        return make_eye_ray(scene_, options_, path, x, y);
-    }
-
     const Scene& scene_;
     RenderOptions options_;
     VplBundleSettings settings_;
-    int eye_paths_ = 1;                                       ///< of a pixel and pass
+    ImageLoop<false> loop_;
     std::unique_ptr<const gathering::ImperfectLinks> links_;  ///< null: rays are traced
     std::optional<LayerFilter> filter_;                       ///< nothing: pixels stay as they are
-    SharedCounters counters_;
     std::mutex time_mutex_;
     VplBundleTime time_;
     double light_seconds_ = 0.0;

@@ -4,96 +4,60 @@ namespace mote::integrators {
 
 using namespace core;
 
-void VplBundleTile::start(int lane, const EyeRay& eye, int paths) {
-    Lane& l = lanes_[std::size_t(lane)];
-    l.found = l.gathered = {}, l.alive = true, l.paths = float(paths);
-    walk_.rng = eye.rng;
-    l.path.emplace(scene_, settings_.eye, eye, walk_, pass_.eye_lights());
-    l.rng = walk_.rng;
-}
+VplBundleTile::VplBundleTile(const VplBundleSettings& settings, const VplBundlePass& pass, Packet& packet)
+    : settings_(settings),
+      pass_(pass),
+      packet_(packet),
+      walk_(packet.walk()),
+      scratch_(std::make_unique<lights::GatherScratch>()),
+      bundles_(pass.bundles, *scratch_, walk_) {}
 
-void VplBundleTile::stop(int lane) {
-    Lane& l = lanes_[std::size_t(lane)];
-    l.found = l.gathered = {}, l.alive = false;
-}
-
-void VplBundleTile::add_direct(int lane, const EyeRay& eye) {
-    const double begin = thread_cpu_seconds();
-    EyePathLimits limits = settings_.eye;
-    limits.wanted = limits.wanted - Transport::indirect;
-    walk_.rng = eye.rng;
-    EyePath<false> path(scene_, limits, eye, walk_, pass_.eye_lights());
-    TransportSum& sum = lanes_[std::size_t(lane)].found;
-    while (advance(path, sum)) {
-    }
-    time_.eye += thread_cpu_seconds() - begin;
-}
-
-TransportSum VplBundleTile::sum(int lane) const {
-    const Lane& l = lanes_[std::size_t(lane)];
-    TransportSum sum = l.gathered;
-    for (std::size_t i = 0; i < transport_count; ++i) sum.light[i] += l.found.light[i] / l.paths;
-    return sum;
-}
-
-void VplBundleTile::run(const lights::VplRange& share,
-                        std::span<const gathering::BundleDirection> directions) {
-    for (bool any = true; any;) {
-        const double begin = thread_cpu_seconds();
-        tile_.clear();
-        receivers_.fill({});
-        any = false;
-        for (int i = 0; i < width; ++i) {
-            Lane& lane = lanes_[std::size_t(i)];
-            walk_.rng = lane.rng;
-            if (lane.alive) lane.alive = advance(i);
-            lane.rng = walk_.rng;
-            any |= lane.alive;
-        }
-        time_.eye += thread_cpu_seconds() - begin;
-        if (tile_.any_active) gather(share, directions);
-    }
-}
-
-/// Follows an eye path to its next vertex, and adds the direct light there. Returns whether there is one.
-bool VplBundleTile::advance(EyePath<false>& path, TransportSum& sum) {
-    const auto sky_behind = [&](const EyeSegment& segment) {
+void VplBundleTile::run(const PacketPixels& pixels) {
+    if (pixels.sample == 0) gathered_ = {};
+    double begin = thread_cpu_seconds();
+    const auto sky_behind = [&](int, Packet::Lane& lane, const EyeSegment& segment) {
         // The sky is no light of the eye path then, but is seen.
+        const EyePath<false>& path = *lane.path;
         if (pass_.bundles.sky && segment.event.kind == WalkEvent::Kind::escaped && path.scatterings() == 0 &&
             !(settings_.eye.hide_emitters && path.depth() == 1))
-            sum[Transport::emission] +=
+            lane.sum[Transport::emission] +=
                 path.throughput() * pass_.bundles.sky->environment(segment.ray.direction);
     };
-    if (!path.advance(walk_, sum, sky_behind)) return false;
-    if (path.vertex().connectable() && path.wants_connection())
-        sum[path.layer_of_connection()] += path.sample_light(walk_);
-    return true;
+    const auto step = [&] {
+        packet_.sample_lights();
+        tile_.clear(), receivers_.fill({});
+        if (pixels.sample == 0) packet_.for_each([&](int i, Packet::Lane& lane) { receive(i, lane); });
+        time_.eye += thread_cpu_seconds() - begin;
+        if (tile_.any_active) gather(pixels);
+        begin = thread_cpu_seconds();
+    };
+    packet_.run(step, sky_behind);
 }
 
-/// The first eye path of a pixel; makes its vertex a receiver where it can be connected.
-bool VplBundleTile::advance(int index) {
-    Lane& lane = lanes_[std::size_t(index)];
-    EyePath<false>& path = *lane.path;
-    if (!advance(path, lane.found)) return false;
-    if (path.vertex().connectable() && (settings_.eye.wanted[Transport::indirect] || pass_.bundles.sky))
-        add_receiver(index, path);
-    return true;
+void VplBundleTile::add_gathered(const PacketPixels& pixels, PassImage& image) const {
+    pixels.for_each([&](std::size_t lane, int x, int y) {
+        image.at(Transport::indirect, x, y) += gathered_[lane].indirect;
+        image.at(Transport::direct, x, y) += gathered_[lane].direct;
+    });
 }
 
-void VplBundleTile::add_receiver(int index, const EyePath<false>& path) {
-    const int max_depth = settings_.eye.max_depth;
-    std::int32_t vpl_depth =
-        max_depth < 0 ? std::numeric_limits<std::int32_t>::max() : max_depth - path.depth() - 1;
-    if (!settings_.eye.wanted[Transport::indirect]) vpl_depth = 0;
-    Lane& lane = lanes_[std::size_t(index)];
-    tile_.set(index, path.vertex(), path.throughput(), {}, Rng(walk_.rng.next_u32()), vpl_depth);
-    receivers_[std::size_t(index)] = {&path.vertex(), path.throughput(), vpl_depth, &lane.path->sampler()};
+/// The vertex becomes a receiver where it can be connected.
+void VplBundleTile::receive(int index, Packet::Lane& lane) {
+    const bool indirect = settings_.eye.wanted[Transport::indirect];
+    if (!lane.alive || !lane.path->vertex().connectable() || !(indirect || pass_.bundles.sky)) return;
+    const EyePath<false>& path = *lane.path;
+    const std::int32_t depth = indirect ? settings_.eye.light_depth(path.depth()) : 0;
+    tile_.set(index, path.vertex(), path.throughput(), {}, Rng(walk_.rng.next_u32()), depth);
+    receivers_[std::size_t(index)] = {&path.vertex(), path.throughput(), depth, &lane.path->sampler()};
+    bundle_rng_ = Rng(walk_.rng.next_u32());
 }
 
-void VplBundleTile::gather(const lights::VplRange& share,
-                           std::span<const gathering::BundleDirection> directions) {
+void VplBundleTile::gather(const PacketPixels& pixels) {
     const double begin = thread_cpu_seconds();
-    const lights::GatherContext context{scene_, scratch_, walk_.rays, walk_.tracking, walk_.cancelled};
+    const std::span<const gathering::BundleDirection> directions = pass_.lines[std::size_t(pixels.place)];
+    const lights::VplRange share{pixels.share, pass_.lines.size()};
+    const lights::GatherContext context{pass_.bundles.scene, *scratch_, walk_.rays, walk_.tracking,
+                                        walk_.cancelled};
     const bool own_rays = pass_.own_rays() > 0.0f && tile_.any_directional;
     const auto light =
         own_rays ? lights::gather(context, pass_.vpls, share,
@@ -101,14 +65,15 @@ void VplBundleTile::gather(const lights::VplRange& share,
                  : lights::gather(context, pass_.vpls, share, gathering::AgainstBundles{pass_.rivals}, tile_);
     const double middle = thread_cpu_seconds();
     lights::TileLight indirect{}, direct{};
+    walk_.rng = bundle_rng_;
     for (std::size_t m = 0; m < directions.size(); ++m) {
         walk_.cancelled.check();
         bundles_.add(receivers_, directions, m, indirect, direct);
     }
     if (own_rays) bundles_.add_own_rays(receivers_, directions, indirect, direct);
-    for (std::size_t i = 0; i < std::size_t(width); ++i) {
-        lanes_[i].gathered[Transport::indirect] += float(share.stride) * light[i] + indirect[i];
-        if (settings_.eye.wanted[Transport::direct]) lanes_[i].gathered[Transport::direct] += direct[i];
+    for (std::size_t i = 0; i < std::size_t(Packet::width); ++i) {
+        gathered_[i].indirect += float(share.stride) * light[i] + indirect[i];
+        if (settings_.eye.wanted[Transport::direct]) gathered_[i].direct += direct[i];
     }
     time_.vpls += middle - begin, time_.bundles += thread_cpu_seconds() - middle;
 }

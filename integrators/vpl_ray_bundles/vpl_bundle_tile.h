@@ -1,12 +1,9 @@
-// The eye paths of sixteen pixels, advanced together to their connectable vertices, where virtual point
-// lights are gathered and bundles of rays start.
+// Callbacks of the eye paths of `mote_vpl_ray_bundles`: virtual point lights are gathered at vertices, and
+// bundles of rays start.
 #pragma once
 
-#include <limits>
-#include <optional>
-
 #include "core/render/cpu_clock.h"
-#include "integrators/eye_path/eye_path.h"
+#include "integrators/eye_path/image_loop.h"
 #include "integrators/vpl_ray_bundles/vpl_bundle_pass.h"
 
 namespace mote::integrators {
@@ -18,52 +15,34 @@ struct VplBundleTime {
 
 class VplBundleTile {
   public:
-    static constexpr int side = 4, width = side * side;
-    static_assert(width == lights::ReceiverTile::width);
+    using Packet = EyePacket<false>;
+    static_assert(Packet::width == lights::ReceiverTile::width);
 
-    VplBundleTile(const core::Scene& scene, const VplBundleSettings& settings, const VplBundlePass& pass,
-                  lights::GatherScratch& scratch, core::WalkContext& walk)
-        : scene_(scene),
-          settings_(settings),
-          pass_(pass),
-          scratch_(scratch),
-          walk_(walk),
-          bundles_(pass.bundles, scratch, walk) {}
+    VplBundleTile(const VplBundleSettings& settings, const VplBundlePass& pass, Packet& packet);
 
-    /// The first of a pixel's `paths` eye paths.
-    void start(int lane, const EyeRay& eye, int paths);
-    /// One of the others: its direct light and what it sees of lights.
-    void add_direct(int lane, const EyeRay& eye);
-    void stop(int lane);
-    /// Follows the eye paths; `share` of the VPLs, and all directions, count for them.
-    void run(const lights::VplRange& share, std::span<const gathering::BundleDirection> directions);
-    TransportSum sum(int lane) const;
+    /// Follows the eye paths, and gathers at the vertices of the pixels' first ones.
+    void run(const PacketPixels& pixels);
+    /// Adds what was gathered to the pixels.
+    void add_gathered(const PacketPixels& pixels, core::PassImage& image) const;
     const VplBundleTime& time() const { return time_; }
 
   private:
-    struct Lane {
-        std::optional<EyePath<false>> path;
-        core::Rng rng;          ///< of the path, while other lanes advance
-        TransportSum found;     ///< by eye paths, all of them together
-        TransportSum gathered;  ///< from virtual point lights and along bundles, for the first
-        float paths = 1.0f;
-        bool alive = false;
+    struct Gathered {
+        core::Rgb indirect{0.0f}, direct{0.0f};
     };
+    void receive(int index, Packet::Lane& lane);
+    void gather(const PacketPixels& pixels);
 
-    bool advance(int lane);
-    bool advance(EyePath<false>& path, TransportSum& sum);
-    void add_receiver(int lane, const EyePath<false>& path);
-    void gather(const lights::VplRange& share, std::span<const gathering::BundleDirection> directions);
-
-    const core::Scene& scene_;
     const VplBundleSettings& settings_;
     const VplBundlePass& pass_;
-    lights::GatherScratch& scratch_;
+    Packet& packet_;
     core::WalkContext& walk_;
+    std::unique_ptr<lights::GatherScratch> scratch_;
     gathering::EyeBundles bundles_;
-    std::array<Lane, width> lanes_;
     lights::ReceiverTile tile_;
     gathering::ReceiverArray receivers_;
+    core::Rng bundle_rng_;  ///< of a step's bundles
+    std::array<Gathered, Packet::width> gathered_;
     VplBundleTime time_;
 };
 

@@ -98,11 +98,11 @@ Study::Method Study::prepare(const std::string& text) const {
     const auto all = lights::all_vpls()->prepare(pass);
     pass.sample_receivers = [&](std::size_t paths) {
         core::WalkContext walk;
-        const auto scratch = std::make_unique<lights::GatherScratch>();
-        EyeTile<true> eye(*scene_, settings_, vpls_, *all, nullptr, *scratch, walk);
+        EyePacket<true> packet(*scene_, EyeTile<true>::packet_settings(settings_), walk);
+        EyeTile<true> eye(*scene_, settings_, vpls_, *all, nullptr, packet);
         const std::atomic<bool> cancelled = false;
         const auto pixels = spread_pixels(options_.width, options_.height, paths, 1);
-        return sample_path_receivers(*scene_, options_, {0, *filter_, cancelled}, pixels, eye);
+        return sample_path_receivers(*scene_, options_, {0, *filter_, cancelled}, pixels, packet, eye);
     };
     method.selector = method.selection->prepare(pass);
     return method;
@@ -112,20 +112,20 @@ Pixels Study::render(std::size_t index, const Method& method, TileCost& cost) co
     VplSettings settings = settings_;
     settings.selection = method.selection;
     core::WalkContext walk;
-    const auto scratch = std::make_unique<lights::GatherScratch>();
-    EyeTile<true> eye(*scene_, settings, vpls_, *method.selector, nullptr, *scratch, walk);
+    EyePacket<true> packet(*scene_, EyeTile<true>::packet_settings(settings), walk);
+    EyeTile<true> eye(*scene_, settings, vpls_, *method.selector, nullptr, packet);
     const std::atomic<bool> cancelled = false;
     const core::PassContext pass{0, *filter_, cancelled};
     const glm::ivec2 wanted = tiles_[index], task = wanted / 16 * 16;
     const auto render_tile = [&](const glm::ivec2& tile) {
         const double begin = now(CLOCK_THREAD_CPUTIME_ID);
         for (int lane = 0; lane < 16; ++lane)
-            eye.start(lane, make_eye_ray(*scene_, options_, pass, tile.x + lane % 4, tile.y + lane / 4));
+            packet.start(lane, make_eye_ray(*scene_, options_, pass, tile.x + lane % 4, tile.y + lane / 4));
         eye.run({}, 1.0f), eye.gather_recorded();
         cost.seconds += now(CLOCK_THREAD_CPUTIME_ID) - begin, ++cost.tiles;
         Pixels light;
         for (int lane = 0; lane < 16; ++lane) {
-            TransportSum sum = eye.sum(lane).transport;
+            TransportSum& sum = packet[lane].sum;
             light[std::size_t(lane)] =
                 double(core::average(sum[Transport::indirect] + sum[Transport::multiple_scattering]));
         }
