@@ -135,7 +135,7 @@ void print_json(const CompareArguments& arguments, const core::Bitmap& size, con
     if (!arguments.layer.empty()) j["layer"] = arguments.layer;
     j["width"] = size.width;
     j["height"] = size.height;
-    j["non_finite"] = {{"share", m.non_finite_share()},
+    j["non_finite"] = {{"share", m.non_finite_fraction()},
                        {"image", m.non_finite_image},
                        {"reference", m.non_finite_reference},
                        {"either", m.non_finite_either},
@@ -168,7 +168,7 @@ void print_text(const CompareArguments& arguments, const core::Bitmap& size, con
     if (!arguments.layer.empty()) text += fmt::format("layer      {}\n", core::printable(arguments.layer));
     text += fmt::format("pixels     {} x {}\n\n", size.width, size.height) + headline(m);
     text += fmt::format("non-finite {:.3g} % of the pixels ({} in the image, {} in the reference): {}\n",
-                        100.0 * m.non_finite_share(), m.non_finite_image, m.non_finite_reference,
+                        100.0 * m.non_finite_fraction(), m.non_finite_image, m.non_finite_reference,
                         non_finite_definition);
     text += fmt::format("mean       {} in the image,\n           {} in the reference: {}\n",
                         mean_text(m.mean_image, m.average_image),

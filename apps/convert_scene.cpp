@@ -46,7 +46,7 @@ int convert_scene(const ConvertArguments& arguments) {
     core::GltfOptions options = core::take_gltf_options(defines);
     if (!defines.empty())
         throw UsageError("-D " + core::printable(defines.front().first) +
-                         ": a conversion knows camera=NAME and emission=FACTOR");
+                         ": a conversion takes camera=NAME and emission=FACTOR");
     const fs::path folder = fs::path(arguments.output).replace_extension().string() + "_files";
     options.prefix = folder.filename().string() + "/", options.copy_pictures = true;
     const core::ScratchFolder scratch;  // nothing is left of a scene that is refused

@@ -65,7 +65,7 @@ Read read(const std::string& path) {
     try {
         json j = json::parse(partial.about);
         RenderArguments a;
-        j.at("scene").get_to(a.scene.scene), j.at("asked_integrator").get_to(a.scene.integrator);
+        j.at("scene").get_to(a.scene.scene), j.at("requested_integrator").get_to(a.scene.integrator);
         j.at("defines").get_to(a.scene.defines), j.at("lenient").get_to(a.scene.lenient);
         j.at("auxiliary").get_to(a.auxiliary), j.at("denoise").get_to(a.denoise), j.at("half").get_to(a.half);
         a.seed = whole<std::uint64_t>(j.at("seed"));
@@ -143,7 +143,7 @@ MergedFilm merge_partials(const std::vector<std::string>& paths) {
             sum.merged.film->add(*next.merged.film);
         } catch (const std::invalid_argument&) {
             throw core::InputError(
-                fmt::format("this file is damaged: its film does not go on where that of '{}' ends",
+                fmt::format("this file is damaged: its film does not continue where that of '{}' ends",
                             core::printable(sum.path, 300)),
                 {order[i].second, 0});
         }

@@ -32,7 +32,7 @@ json about(const MergedFilm& m) {
     return {{"mote", MOTE_VERSION},
             {"commit", git_hash()},
             {"scene", a.scene.scene},
-            {"asked_integrator", a.scene.integrator},
+            {"requested_integrator", a.scene.integrator},
             {"defines", a.scene.defines},
             {"lenient", a.scene.lenient},
             {"auxiliary", a.auxiliary},

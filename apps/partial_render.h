@@ -1,4 +1,4 @@
-// Text of a partial film about the render that it is a share of (`mote render --pass-range`, `mote merge`).
+// Text of a partial film about the render that it is a part of (`mote render --pass-range`, `mote merge`).
 #pragma once
 
 #include <memory>

@@ -29,9 +29,9 @@ std::optional<core::PassRange> pass_range(const RenderArguments& arguments) {
     const bool colon = first.ec == std::errc() && first.ptr != end && *first.ptr == ':';
     const auto last = std::from_chars(colon ? first.ptr + 1 : end, end, range.end);
     if (last.ec != std::errc() || last.ptr != end || range.first >= range.end ||
-        range.end > core::Film::most_passes)
+        range.end > core::Film::max_passes)
         throw UsageError(fmt::format("--pass-range {}: expected A:B, passes A to B - 1, with A < B <= {}",
-                                     core::printable(text), core::Film::most_passes));
+                                     core::printable(text), core::Film::max_passes));
     if (arguments.passes || arguments.seconds || arguments.noise)
         throw UsageError(
             "--pass-range says which passes are rendered: --passes, --time and --noise do not go with it");

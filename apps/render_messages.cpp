@@ -60,7 +60,7 @@ void report_render(const RenderArguments& arguments, const Rendered& rendered) {
 
 std::string finished_text(const RenderFiles& files, const Rendered& rendered) {
     return fmt::format("{} holds {:.1f} % of its pixels, the others have alpha 0", files.picture,
-                       100.0 * finished_share(rendered.finished_pixels));
+                       100.0 * finished_fraction(rendered.finished_pixels));
 }
 
 int report_interruption(const RenderArguments& arguments, const RenderFiles& files, const Rendered& rendered,

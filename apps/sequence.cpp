@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double most_frames = 1e6;
+constexpr double max_frames = 1e6;
 
 std::optional<double> number(const std::string& text) {
     double value = 0.0;
@@ -55,7 +55,7 @@ std::vector<double> range(const std::vector<double>& ends, const std::string& de
             ": expected name=FIRST:LAST or name=FIRST:STEP:LAST, with a step that leads to the end");
     // A last value that rounding keeps from being met belongs to it.
     const double steps = std::floor((last - first) / step + 1e-9);
-    if (steps + 1.0 > most_frames)
+    if (steps + 1.0 > max_frames)
         throw UsageError("-D " + core::printable(define) + ": more than a million frames");
     std::vector<double> values;
     for (double i = 0.0; i <= steps; i += 1.0) values.push_back(first + i * step);
@@ -157,7 +157,7 @@ int render_sequence(const RenderArguments& arguments) {
         if (const int code = render_command(frame); code != exit_ok) {
             if (!arguments.quiet && i + 1 < frames)
                 std::fputs(
-                    fmt::format("mote: {} frames are left; --resume goes on with this one\n", frames - i)
+                    fmt::format("mote: {} frames are left; --resume continues with this one\n", frames - i)
                         .c_str(),
                     stderr);
             return code;

@@ -118,7 +118,7 @@ void add_trade(CLI::App& app, TradeArguments& a, std::function<int()>& action) {
         ->check(number_from_0());
     command.add_flag("--fresh", s.fresh, "Start anew instead of continuing");
     command.add_flag("--trust-reference", s.trust_reference,
-                     "Believe what the reference does not say of itself");
+                     "Take the reference as it is, whatever it lacks");
     command.add_flag("--force-reference", s.force_reference,
                      "Accept a reference of another version of the scene");
     CLI::Option* redraw_flag = command.add_flag("--redraw", a.redraw, "Draw the records in DIR again");

@@ -1,4 +1,4 @@
-// The bounded geometry term, and the share of it that the bound takes away.
+// The bounded geometry term, and the fraction of it that the bound takes away.
 //
 // Engelhardt 2013, Sec. 10.1.3: VPLs are gathered with G_b = min(G*, b), where
 //   G*(y,z) = C*(y->z) C*(z->y) / |y - z|^2,  C* the positive cosine on a surface and 1 in a medium.
@@ -8,7 +8,7 @@
 // positive inside the radius r = b^(-1/2), where the text prints G^(1/2); cosines only make that region
 // smaller.
 //
-// Both shares are formed from x = b d^2, never from G* itself: nothing overflows as d -> 0.
+// Both fractions are formed from x = b d^2, never from G* itself: nothing overflows as d -> 0.
 #pragma once
 
 #include <cmath>
@@ -17,16 +17,16 @@
 
 namespace mote::compensation {
 
-/// B*, below Eq. 10.11 (on surfaces in Eq. 4.7): the share of the light between two points that a bound
+/// B*, below Eq. 10.11 (on surfaces in Eq. 4.7): the fraction of the light between two points that a bound
 /// `bound` [1/m^2] takes away, 0 to 1. `cosines` is C* C*, `distance` in metres. A bound of 0 takes
-/// everything, an infinite one nothing. Without cosines there is no light to share: 0.
-inline float residual_share(float cosines, float distance, float bound) {
+/// everything, an infinite one nothing. Without cosines there is no light to distribute: 0.
+inline float residual_fraction(float cosines, float distance, float bound) {
     const float x = bound * distance * distance;
     return std::isfinite(bound) && x < cosines ? 1.0f - x / cosines : 0.0f;
 }
 
 /// G_b / G* = min(G*, b) / G* = 1 - B*: what the bound leaves.
-inline float bounded_share(float cosines, float distance, float bound) {
+inline float bounded_fraction(float cosines, float distance, float bound) {
     const float x = bound * distance * distance;
     return std::isfinite(bound) && x < cosines ? x / cosines : 1.0f;
 }

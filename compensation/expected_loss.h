@@ -6,8 +6,9 @@
 // because directions integrate to one for every phase function. Without a bound the same integral runs over
 // the whole medium, on average along its mean chord D:  beta_all = albedo (1 - e^(-sigma_t D)).  Of the light
 // that reaches a point of the medium from the medium, bounded VPLs leave out beta / beta_all, and what k
-// steps leave out is beta^(k+1) / beta_all. Walls that send light to the point make the share smaller. This
-// is no bound but an estimate; the study experiments/studies/vpls_and_media.py measures how well it holds.
+// steps leave out is beta^(k+1) / beta_all. Walls that send light to the point make the fraction smaller.
+// This is no bound but an estimate; the study experiments/studies/vpls_and_media.py measures how well it
+// holds.
 #pragma once
 
 #include <cmath>
@@ -40,7 +41,7 @@ struct ExpectedMedium {
     }
 };
 
-/// The share that is still missing after `steps` steps (-1: no limit), 0 to 1.
+/// Relative loss that remains after `steps` steps (-1: no limit), 0 to 1.
 double expected_loss(const ExpectedMedium& medium, double bound, int steps);
 
 /// The bound [1/m^2] with which `steps` steps leave out `loss` of the light; 0 where any bound will do.

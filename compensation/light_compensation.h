@@ -12,7 +12,7 @@
 namespace mote::compensation {
 
 /// Light of the primary lights, over `steps` steps at most (-1: no limit), at the receiver that `path` starts
-/// from, times the path's weights. Draws from context.rng; counts vertices, rays and tracking.
+/// from, times the path's weights. Samples from context.rng; counts vertices, rays and tracking.
 template <bool Media>
 core::Rgb compensation_from_lights(const core::LitScene& scene, const ResidualTransport& transport,
                                    ResidualPath path, int steps, core::WalkContext& context,

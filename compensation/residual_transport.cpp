@@ -12,9 +12,9 @@ using namespace core;
 
 namespace {
 
-/// Distances are never drawn from less than a tenth of an optical depth over the region: the mean may be
+/// Distances are never sampled from less than a tenth of an optical depth over the region: the mean may be
 /// nearly zero where there is extinction on one side, and every point must have a chance.
-constexpr float least_optical_depth = 0.1f;
+constexpr float min_optical_depth = 0.1f;
 
 /// Where a path along the ray stops at the latest: at the first surface, or by chance at a pane before it.
 struct Stop {
@@ -80,7 +80,7 @@ struct Placement1D {
 };
 
 /// One channel of `extinction` drives the distance; the density is the average over all of them.
-Placement1D place(const Rgb& extinction, float surface, float radius, bool keep_inside, Rng& rng) {
+Placement1D sample_distance(const Rgb& extinction, float surface, float radius, bool keep_inside, Rng& rng) {
     const float s = extinction[std::min(int(rng.next_float() * 3.0f), 2)], u = rng.next_float();
     const bool reach_surface = surface < radius;
     Placement1D p;
@@ -129,7 +129,7 @@ ResidualPath ResidualTransport::start(const ScatteringVertex& receiver, const Me
     ResidualPath path;
     path.vertex = receiver, path.state = state;
     path.weights.throughput = throughput;
-    path.weights.hero = draw_hero(rng);
+    path.weights.hero = sample_hero(rng);
     find_mean_extinction(path);
     return path;
 }
@@ -155,7 +155,7 @@ bool ResidualTransport::may_hold(const Medium& medium, const Vec3& p) const {
 }
 
 template <bool Media>
-bool ResidualTransport::place_by_free_path(ResidualPath& path, const Ray& ray, WalkContext& context) const {
+bool ResidualTransport::sample_by_free_path(ResidualPath& path, const Ray& ray, WalkContext& context) const {
     Rgb emitted(0.0f);  // emission on the way is not part of the VPLs' light
     const WalkEvent event = walk<Media>(scene_, ray, path.state, path.weights, emitted, context);
     if (event.kind == WalkEvent::Kind::escaped) return false;
@@ -163,16 +163,17 @@ bool ResidualTransport::place_by_free_path(ResidualPath& path, const Ray& ray, W
     return true;
 }
 
-bool ResidualTransport::place_in_mean_medium(ResidualPath& path, const Ray& ray, WalkContext& context) const {
+bool ResidualTransport::sample_in_mean_medium(ResidualPath& path, const Ray& ray,
+                                              WalkContext& context) const {
     const bool look = settings_.local_visibility || path.vertex.on_surface();
     const Stop stop = look ? first_stop(scene_, ray, context) : Stop{};
     const std::optional<SurfaceHit>& hit = stop.hit;
     if (!path.mean_known) find_mean_extinction(path);
     if (!path.mean_extinction && !hit) return false;
     const Rgb mean = path.mean_extinction.value_or(Rgb(0.0f));
-    const Rgb drawn_from = path.mean_extinction ? glm::max(mean, Rgb(least_optical_depth / radius_)) : mean;
-    const Placement1D p = place(drawn_from, hit ? hit->t : infinity, radius_,
-                                settings_.placement == Placement::in_region, context.rng);
+    const Rgb sampled_from = path.mean_extinction ? glm::max(mean, Rgb(min_optical_depth / radius_)) : mean;
+    const Placement1D p = sample_distance(sampled_from, hit ? hit->t : infinity, radius_,
+                                          settings_.placement == Placement::in_region, context.rng);
     if (p.lost || !(p.density > 0.0f)) return false;
 
     const Ray part{ray.origin, ray.direction, 0.0f, p.distance};
@@ -214,9 +215,9 @@ bool ResidualTransport::step(ResidualPath& path, WalkContext& context) const {
 
     bool placed;
     if (!Media || by_free_path())
-        placed = place_by_free_path<Media>(path, ray, context);
+        placed = sample_by_free_path<Media>(path, ray, context);
     else
-        placed = place_in_mean_medium(path, ray, context);
+        placed = sample_in_mean_medium(path, ray, context);
     path.mean_known = false;
     if (!placed || !path.vertex.connectable()) return false;
 
@@ -224,7 +225,7 @@ bool ResidualTransport::step(ResidualPath& path, WalkContext& context) const {
     // B*(y,z), below Eq. 10.11, and on surfaces the factor of Eq. 4.7. C* with the shading normal at the
     // receiver and the geometric one at the other end, as VPLs are gathered.
     path.weights.throughput *=
-        residual_share(cosine * path.vertex.geometric_cosine(path.vertex.wo), distance, bound_);
+        residual_fraction(cosine * path.vertex.geometric_cosine(path.vertex.wo), distance, bound_);
     const float remaining = max_component(glm::abs(path.throughput()));
     if (!(remaining > 0.0f)) return false;
     if (remaining < before) {

@@ -4,7 +4,7 @@
 //   L_r(x <- y) = integral of  f*(x<-y<-z) B*(y,z) tau(y,z) C*(y->z) L(y <- z)  dt dw
 // L is the light that z reflects or scatters, without what it emits: VPLs represent that alone. The integral
 // runs over points in the medium, with sigma_s there, plus the surface at the end of the ray. A step
-// estimates it with one vertex z, drawn with p(w) p(t); what is left to the caller is L at z. Since B* is 0
+// estimates it with one vertex z, sampled with p(w) p(t); what is left to the caller is L at z. Since B* is 0
 // beyond the bounding radius, rays are no longer than that.
 #pragma once
 
@@ -38,12 +38,12 @@ class ResidualTransport {
     ResidualTransport(const core::RayQueries& scene, float bound, const CompensationSettings& settings);
 
     /// A path that starts at a receiver: y's own weights do not matter to the steps, so they are one number a
-    /// channel. Draws the channel that drives distances.
+    /// channel. Samples the channel that drives distances.
     ResidualPath start(const core::ScatteringVertex& receiver, const core::MediumState& state,
                        const core::Rgb& throughput, core::Rng& rng) const;
 
     /// One step. Weights are multiplied by f* B* tau C* (and sigma_s) over the densities. Russian roulette by
-    /// the share that is left. Returns false where nothing is to be compensated. Counts rays and tracking.
+    /// the fraction that is left. Returns false where nothing is to be compensated. Counts rays and tracking.
     template <bool Media>
     bool step(ResidualPath& path, core::WalkContext& context) const;
 
@@ -54,8 +54,8 @@ class ResidualTransport {
   private:
     /// The end of a ray of at most the bounding radius, found in one of two ways.
     template <bool Media>
-    bool place_by_free_path(ResidualPath& path, const core::Ray& ray, core::WalkContext& context) const;
-    bool place_in_mean_medium(ResidualPath& path, const core::Ray& ray, core::WalkContext& context) const;
+    bool sample_by_free_path(ResidualPath& path, const core::Ray& ray, core::WalkContext& context) const;
+    bool sample_in_mean_medium(ResidualPath& path, const core::Ray& ray, core::WalkContext& context) const;
     void find_mean_extinction(ResidualPath& path) const;
     bool by_free_path() const;
     bool may_hold(const core::Medium& medium, const core::Vec3& p) const;

@@ -9,7 +9,7 @@ namespace mote::compensation {
 
 using namespace core;
 
-void clamp_roughness(lights::VplSet& vpls, const RoughnessClamping& clamping, float share) {
+void clamp_roughness(lights::VplSet& vpls, const RoughnessClamping& clamping, float fraction) {
     vpls.peak_density.assign(vpls.lights.size(), infinity);
     std::vector<Vec3> points;
     std::vector<std::size_t> index;
@@ -23,7 +23,7 @@ void clamp_roughness(lights::VplSet& vpls, const RoughnessClamping& clamping, fl
             tree.nearest(points[i], std::size_t(clamping.neighbours) + 1, infinity, heap);
             const float r2 = heap.front().distance_squared;
             const float known = float(heap.size() - 1) / float(clamping.neighbours);
-            vpls.peak_density[index[i]] = heap.size() > 1 ? share * known / (pi * r2) : 0.0f;
+            vpls.peak_density[index[i]] = heap.size() > 1 ? fraction * known / (pi * r2) : 0.0f;
         }
     });
 }

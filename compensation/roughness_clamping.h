@@ -23,8 +23,8 @@ struct RoughnessClamping {
     std::uint32_t neighbours = 16;  ///< m'
 };
 
-/// Fills VplSet::peak_density. `share`: of the lights that a receiver meets. VPLs in media have no
+/// Fills VplSet::peak_density. `fraction`: of the lights, those that a receiver meets. VPLs in media have no
 /// neighbours: what they light is not clamped.
-void clamp_roughness(lights::VplSet& vpls, const RoughnessClamping& clamping, float share = 1.0f);
+void clamp_roughness(lights::VplSet& vpls, const RoughnessClamping& clamping, float fraction = 1.0f);
 
 }  // namespace mote::compensation

@@ -22,7 +22,7 @@ bool reflects_only(const SphericalLight& light) {
     return !light.detail || reflects_only(light.detail->vertex);
 }
 
-/// The sum over all samples; `arrives(w)`, the share of the light, is evaluated only for directions that
+/// The sum over all samples; `arrives(w)`, the fraction of the light, is evaluated only for directions that
 /// carry any.
 template <typename Arrives>
 Rgb sample_sphere(const ScatteringVertex& receiver, const SphericalLight& light, const SphereCone& cone,

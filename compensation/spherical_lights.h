@@ -2,13 +2,13 @@
 //
 // The power that arrived at y_j is spread over the disc that a sphere of radius r_j cuts out of the surface:
 // every point in the sphere represents y_j, with its BSDF and its normal. A receiver integrates over the cone
-// of directions that the sphere subtends (all directions, from inside), instead of looking at one point:
+// of directions that the sphere subtends (all directions, from inside), instead of evaluating one point:
 //
 //   L_j = alpha_j / (pi r_j^2)  int_cone  f(x, wo, w) |cos_x|  f(y_j, w_j, -w) |cos_y|  dw
 //
-// The factor |cos_y| is the share of the cone that a plane disc covers. As r -> 0 the cone's solid angle is
-// pi r^2 / d^2 and the VPL's f G f alpha is left; near y_j, where that has no bound, L_j has. It is biased:
-// light is blurred over the spheres, also around edges and corners that lie within one.
+// The factor |cos_y| is the fraction of the cone that a plane disc covers. As r -> 0 the cone's solid angle
+// is pi r^2 / d^2 and the VPL's f G f alpha is left; near y_j, where that has no bound, L_j has. It is
+// biased: light is blurred over the spheres, also around edges and corners that lie within one.
 //
 // Estimate: n_c directions uniform in the cone, n_x from the BSDF at x, n_y from the BSDF at y_j, combined by
 // the balance heuristic. With F the integrand (0 outside the cone, Omega its solid angle), the sum over all
@@ -53,7 +53,7 @@ std::vector<float> sphere_radii(const lights::VplSet& set, std::uint32_t neighbo
 struct SampleCounts {
     /// By the sphere's solid angle, by the BSDF of the receiver, by that of the light.
     int cone, receiver, light;
-    /// Shares them out among the techniques that have something to draw.
+    /// Shares them out among the techniques that have something to sample.
     SampleCounts(int samples, bool glossy_receiver, bool glossy_light);
 };
 
@@ -65,7 +65,8 @@ core::Rgb unoccluded_light(const core::ScatteringVertex& receiver, const Spheric
 enum class SphereVisibility : std::uint8_t {
     /// One ray per sampled direction, until it enters the sphere or reaches the tangent plane of y_j: behind
     /// either lies the light's own surface. Without the plane the surface in front of the sphere would hide
-    /// part of its own light, a share that does not vanish with r. From inside there is no such segment, and
+    /// part of its own light, a fraction that does not vanish with r. From inside there is no such segment,
+    /// and
     /// the centre is tested.
     per_sample,
     /// One ray to the centre for all directions, as in the paper: shadow edges as hard as a VPL's.

@@ -66,7 +66,7 @@ void register_constant_volume(core::Registry& registry) {
         {row("value", &Settings::value, at_least(0), "The value."),
          row("to_world", &Settings::to_world,
              "As an extinction it ends at the transformed unit cube (at the smallest box along the world's "
-             "axes around it), as in Mitsuba 3; without one it goes on to the shapes that hold the medium.")
+             "axes around it), as in Mitsuba 3; without one it extends to the shapes that hold the medium.")
              .when_absent("none")},
         R"(<volume type="constvolume"><rgb name="value" value="0.9 0.8 0.7"/></volume>)",
         [](const Settings& s) { return std::make_shared<ConstantVolume>(s.value, s.to_world); });

@@ -1,7 +1,7 @@
 // The exponential of a mean, without bias, from independent estimates of that mean.
 //
 // exp of one of them is off by half its variance. Around it the series of exp is taken in powers of the
-// others' differences, to an order that is drawn: seldom any (after Kettunen et al. 2021).
+// others' differences, to an order that is sampled: seldom any (after Kettunen et al. 2021).
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ template <typename Wide>
 using MeanEstimates = std::array<Wide, max_terms + 1>;
 
 /// Samples the number of estimates for exp_of_mean().
-inline std::size_t draw_estimates(core::Rng& rng) {
+inline std::size_t sample_estimates(core::Rng& rng) {
     if (!sample_event(series_chance, rng)) return 1;
     std::size_t count = 2;
     while (count <= max_terms && sample_event(1.0 / double(count), rng)) ++count;

@@ -108,7 +108,7 @@ void register_grid_volume(core::Registry& registry) {
         "box), with vacuum outside. `wrap_mode` says what lies in the corners between the two where the "
         "transform "
         "rotates or shears, what the half voxel between the last centre and the box's face is interpolated "
-        "with, and how an albedo or an emission goes on outside.",
+        "with, and how an albedo or an emission continues outside.",
         grid_file_rows(), R"(<volume type="gridvolume"><string name="filename" value="smoke.vol"/></volume>)",
         make_grid);
 }

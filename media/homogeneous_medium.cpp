@@ -128,8 +128,8 @@ void HomogeneousMedium::scatter_along(const Ray& ray, core::PathWeights& weights
     const int first = samples > 0 ? std::min(int(rng.next_float() * float(count)), count - 1) : 0;
     for (int i = 0; i < samples; ++i) {
         const auto h = std::size_t((first + i) % count);
-        const double place = (double(i) + double(rng.next_float())) / double(samples);
-        const double t = -std::log1p(-place * collides[h]) / sigma_t_[channels[h]];
+        const double u = (double(i) + double(rng.next_float())) / double(samples);
+        const double t = -std::log1p(-u * collides[h]) / sigma_t_[channels[h]];
         // Everything over the transmittance of channel h, which may be as small as it likes.
         const double of_h = optical_depth(sigma_t_[channels[h]], t);
         double density = 0.0;

@@ -62,7 +62,7 @@ class MajorantGrid {
     Range total() const;
     /// The sum of the cells' lower bounds over that of their upper ones: 1 for a constant, 0 where every cell
     /// touches vacuum.
-    double certain_share() const;
+    double certain_fraction() const;
     /// For tests that plant an error: every upper bound multiplied by `factor`.
     void scale_upper(float factor) {
         for (Range& r : cells_) r.upper *= factor;

@@ -131,7 +131,7 @@ auto MajorantGrid<Value>::total() const -> Range {
 }
 
 template <typename Value>
-double MajorantGrid<Value>::certain_share() const {
+double MajorantGrid<Value>::certain_fraction() const {
     double lower = detail::largest(outside_.lower), upper = detail::largest(outside_.upper);
     if (!cells_.empty()) lower = upper = 0.0;
     for (const Range& r : cells_) lower += detail::largest(r.lower), upper += detail::largest(r.upper);

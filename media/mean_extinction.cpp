@@ -49,7 +49,7 @@ void MeanExtinction::fill_finest(Level& level) const {
     level.values.resize(std::size_t(count_of(level.size)) * std::size_t(channels_));
     // About one sample a voxel, two along the edge of a cell at least.
     const int along = std::max(2, int(std::ceil(level.cell / medium_.traits().voxel_size)));
-    const double share = 1.0 / double(along * along * along);
+    const double per_cell = 1.0 / double(along * along * along);
     tbb::parallel_for(0, level.size.z, [&](int z) {
         for (int y = 0; y < level.size.y; ++y)
             for (int x = 0; x < level.size.x; ++x) {
@@ -67,7 +67,7 @@ void MeanExtinction::fill_finest(Level& level) const {
                                           std::size_t(level.size.x) +
                                       std::size_t(x);
                 for (int c = 0; c < channels_; ++c)
-                    level.values[i * std::size_t(channels_) + std::size_t(c)] = float(sum[c] * share);
+                    level.values[i * std::size_t(channels_) + std::size_t(c)] = float(sum[c] * per_cell);
             }
     });
 }

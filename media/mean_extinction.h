@@ -2,7 +2,7 @@
 //
 // Approximate bias compensation treats the medium inside a bounding region as homogeneous, with the mean
 // extinction there (Engelhardt 2013, Sec. 10.2). Level 0 holds the means of cubic cells, every further level
-// those of eight cells of the one before. A lookup interpolates: a trilinear lookup in level l weighs space
+// those of eight cells of the one before. A lookup interpolates: a trilinear lookup in level l weights space
 // with a variance of h_l^2 / 4 an axis (box and tent), a ball of radius r with r^2 / 5; two levels, or the
 // medium itself and level 0, are mixed so that the variances agree. Filtered, that is, never a point sample,
 // and exact wherever the extinction is linear.

@@ -15,9 +15,9 @@ using namespace core;
 
 namespace {
 
-constexpr int cells_along = 32;     ///< the longest side of the box
-constexpr int points_along = 4;     ///< of each side of a cell, to find its emission
-constexpr float even_share = 0.1f;  ///< of the choices: what the points of a cell missed is still found
+constexpr int cells_along = 32;           ///< the longest side of the box
+constexpr int points_along = 4;           ///< of each side of a cell, to find its emission
+constexpr float even_probability = 0.1f;  ///< of the choices: what the points of a cell missed is still found
 
 float max_extinction(const Rgb& sigma_t) { return max_component(sigma_t); }
 
@@ -25,7 +25,7 @@ float max_extinction(const Rgb& sigma_t) { return max_component(sigma_t); }
 
 MediumEmitter::MediumEmitter(const Medium& source, const Bounds3& box, bool direct)
     : medium_(source), box_(box), direct_(direct) {
-    // A flat box has no volume to draw points from.
+    // A flat box has no volume to sample points from.
     const Vec3 pad(1e-6f * std::max(box.radius(), 1e-20f));
     box_.lower -= pad, box_.upper += pad;
     make_cells();
@@ -48,8 +48,8 @@ void MediumEmitter::make_cells() {
     if (!(sum > 0.0)) sum = 1.0;  // black as far as the points saw: even choices
     std::vector<float> weights(count);
     for (std::size_t i = 0; i < count; ++i)
-        weights[i] =
-            (1.0f - even_share) * float(double(average(emission[i])) / sum) + even_share / float(count);
+        weights[i] = (1.0f - even_probability) * float(double(average(emission[i])) / sum) +
+                     even_probability / float(count);
     choice_ = Distribution1D(weights);
 }
 

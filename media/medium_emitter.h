@@ -1,6 +1,6 @@
-// The emission of a medium as a light: points of it are drawn for receivers, and particles start in it.
+// The emission of a medium as a light: points of it are sampled for receivers, and particles start in it.
 //
-// Receivers find the same emission by walking through it. Both techniques are weighed against each other per
+// Receivers find the same emission by walking through it. Both techniques are weighted against each other per
 // length of the ray (see DirectSample::line_density): a direction of density p_w that leads to a point y
 // finds it with p_w c(y), light sampling with p_V(y) d^2, where c(y) is the extinction there. Any c would do,
 // as long as both sides use the same; the extinction is what delta tracking samples by.
@@ -22,7 +22,7 @@ class MediumEmitter final : public core::Emitter {
         return {.kind = core::EmitterKind::medium, .direct = direct_};
     }
     std::optional<core::DirectSample> sample_direct(const core::Vec3& p, const core::Vec2& u) const override;
-    /// No surface of it can be hit; what a walk finds is weighed by light_over_walk().
+    /// No surface of it can be hit; what a walk finds is weighted by light_over_walk().
     float pdf_direct(const core::Vec3&, const core::Vec3&, const core::SurfaceHit*) const override {
         return 0.0f;
     }

@@ -15,7 +15,7 @@ class StratifiedEvents {
   public:
     /// `stratum` is the length of a stratum, in optical depth; above 0.
     StratifiedEvents(double stratum, core::Rng& rng)
-        : stratum_(stratum), rng_(rng), place_(rng.next_float()), to_sample_(place_ * stratum) {
+        : stratum_(stratum), rng_(rng), position_(rng.next_float()), to_sample_(position_ * stratum) {
         to_collision_ = sample_optical_depth(rng);
     }
     /// The optical depth from the last event to the next.
@@ -24,8 +24,8 @@ class StratifiedEvents {
         at_sample_ = to_sample_ < to_collision_;
         to_sample_ -= gap, to_collision_ -= gap;
         if (at_sample_) {
-            const double place = rng_.next_float();
-            to_sample_ = (1.0 - place_ + place) * stratum_, place_ = place;
+            const double position = rng_.next_float();
+            to_sample_ = (1.0 - position_ + position) * stratum_, position_ = position;
         } else {
             to_collision_ = sample_optical_depth(rng_);
         }
@@ -38,7 +38,7 @@ class StratifiedEvents {
   private:
     double stratum_;
     core::Rng& rng_;
-    double place_;  ///< of the last or next sample in its stratum, 0 to 1
+    double position_;  ///< of the last or next sample in its stratum, 0 to 1
     double to_sample_, to_collision_ = 0.0;
     bool at_sample_ = false;
 };

@@ -77,11 +77,11 @@ class TrackedMedium final : public HeterogeneousMedium {
     TrackedMedium(Grid grid, MediumParts parts)
         : HeterogeneousMedium(std::move(parts)), grid_(std::move(grid)) {
         grid_.majorants.scale_upper(parts_.plant_majorant_factor);
-        certain_share_ = grid_.majorants.certain_share();
+        certain_fraction_ = grid_.majorants.certain_fraction();
         estimator_ = parts_.tracking.transmittance;
         if (estimator_ == TransmittanceEstimator::automatic)
-            estimator_ = certain_share_ == 1.0 ? TransmittanceEstimator::residual_ratio_tracking
-                                               : TransmittanceEstimator::unbiased_ray_marching;
+            estimator_ = certain_fraction_ == 1.0 ? TransmittanceEstimator::residual_ratio_tracking
+                                                  : TransmittanceEstimator::unbiased_ray_marching;
         majorant_ = float(detail::largest(grid_.majorants.total().upper) * double(parts_.scale));
         if (majorant_ == 0.0f) return;
         voxel_size_ = find_voxel_size();
@@ -184,7 +184,7 @@ class TrackedMedium final : public HeterogeneousMedium {
     float majorant_ = 0.0f;
     /// Rate from which a cell may be tracked regularly, wherever a ray ends, so that two techniques agree.
     double regular_from_ = core::infinity;
-    double certain_share_ = 0.0;  ///< of the majorants: a sum over all cells, taken once
+    double certain_fraction_ = 0.0;  ///< of the majorants: a sum over all cells, taken once
 };
 
 }  // namespace mote::media

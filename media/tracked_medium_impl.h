@@ -181,7 +181,7 @@ bool TrackedMedium<Grid>::pass_voxels(const Voxels& voxels, double t0, double t1
     const int hero = weights.hero;
     double left = sample_optical_depth(rng);  // of the hero, until its next collision
     // Ratios of densities between the channels, exact where the exponentials of one channel alone overflow.
-    const auto weigh = [&](const Wide& ratio) {
+    const auto apply = [&](const Wide& ratio) {
         if constexpr (chromatic) {
             const core::Rgb bounded(glm::min(ratio, Wide(1e30)));
             weights.throughput *= bounded, weights.unidirectional *= bounded;
@@ -189,7 +189,7 @@ bool TrackedMedium<Grid>::pass_voxels(const Voxels& voxels, double t0, double t1
     };
     // The walk passes by the chance exp(-tau_h), which light sampling does not need.
     const auto pass = [&](const Wide& depth, double of_hero) {
-        weigh(detail::exp_minus(depth - Wide(of_hero)));
+        apply(detail::exp_minus(depth - Wide(of_hero)));
         weights.light *= float(std::exp(of_hero));
     };
     voxels.for_each(t0, t1, [&](double from, double to, const Wide& depth) {
@@ -202,7 +202,7 @@ bool TrackedMedium<Grid>::pass_voxels(const Voxels& voxels, double t0, double t1
         std::array<double, 4> along;
         for (std::size_t i = 0; i < along.size(); ++i)
             along[i] = detail::channel(voxels.density(from + double(i) / 3.0 * (to - from)), hero);
-        const double t = from + detail::place_of_share(along, left / of_hero) * (to - from);
+        const double t = from + detail::inverse_integral(along, left / of_hero) * (to - from);
         Wide before(left);
         if constexpr (chromatic) before = voxels.depth_within(from, t), before[hero] = left;
         Wide density = voxels.density(t);
@@ -214,7 +214,7 @@ bool TrackedMedium<Grid>::pass_voxels(const Voxels& voxels, double t0, double t1
                 emissive_ ? (core::Rgb(1.0f) - albedo) * parts_.emission.at(p) : core::Rgb(0.0f);
             !core::is_black(source)) {
             // A real collision is a sample of density sigma_t T of the source sigma_a L_e, the mean over the
-            // heroes; against light sampling it is weighed as tentative collisions are, without sigma_t.
+            // heroes; against light sampling it is weighted as tentative collisions are, without sigma_t.
             const core::PathWeights here = weights;
             pass(before, left);
             core::Rgb pdfs = weights.unidirectional;
@@ -227,7 +227,7 @@ bool TrackedMedium<Grid>::pass_voxels(const Voxels& voxels, double t0, double t1
                        (core::average(of_walk) / core::average(pdfs));
             weights = here;
         }
-        weigh(detail::exp_minus(before - Wide(left)) * density / real);
+        apply(detail::exp_minus(before - Wide(left)) * density / real);
         weights.throughput *= albedo;
         found = std::fmin(float(t), std::fmin(ray.t_max, std::numeric_limits<float>::max()));
         return false;
@@ -362,9 +362,9 @@ core::Rgb TrackedMedium<Grid>::by_marching(const core::Ray& ray, core::TrackingC
             return true;
         }
         std::uint64_t n = std::uint64_t(std::clamp(std::ceil(length * voxels_per_metre), 1.0, 2187.0));
-        const auto at = [&](double place) {
+        const auto at = [&](double x) {
             ++counters.lookups;
-            return detail::widen(cursor.lookup(origin + (t0 + place * length) * direction));
+            return detail::widen(cursor.lookup(origin + (t0 + x * length) * direction));
         };
         Wide sum(0.0);
         for (std::uint64_t i = 0; i < n; ++i) sum += at((double(i) + 0.5) / double(n));
@@ -539,10 +539,10 @@ core::MediumTraits TrackedMedium<Grid>::traits() const {
     t.estimator = name_of(estimator_);
     t.estimator_reason =
         parts_.tracking.transmittance == TransmittanceEstimator::automatic
-            ? std::string(certain_share_ == 1.0
+            ? std::string(certain_fraction_ == 1.0
                               ? "every cell is constant: in closed form"
                               : "least variance at the time of tracking, which takes over in dense parts")
-            : std::string("asked for");
+            : std::string("requested");
     t.voxel_size = voxel_size_;
     return t;
 }

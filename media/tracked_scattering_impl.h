@@ -42,14 +42,14 @@ void TrackedMedium<Grid>::scatter_along(const core::Ray& ray, core::PathWeights&
     Wide passed(1.0);  // the transmittance so far
     detail::StratifiedEvents events(stratum_along(ray, points.candidates()), rng);
     const auto at_event = [&](const Range&, double majorant, double t, Wide density) {
-        const Wide share = glm::min(density, Wide(majorant)) / majorant;
+        const Wide probability = glm::min(density, Wide(majorant)) / majorant;
         if (!events.at_sample()) {
-            passed *= Wide(1.0) - share;  // ratio tracking (Novák et al. 2014)
+            passed *= Wide(1.0) - probability;  // ratio tracking (Novák et al. 2014)
             return detail::russian_roulette(passed, rng);
         }
-        if (!(detail::largest(share) > 0.0)) return true;
+        if (!(detail::largest(probability) > 0.0)) return true;
         const core::Vec3 p = ray.at(float(t));
-        const core::Rgb collides = start * core::Rgb(passed * share * events.stratum()),
+        const core::Rgb collides = start * core::Rgb(passed * probability * events.stratum()),
                         albedo = albedo_at(p);
         points.add(p, collides * albedo);
         if (emissive_) emitted += collides * (core::Rgb(1.0f) - albedo) * parts_.emission.at(p);

@@ -33,7 +33,7 @@ core::Rgb TrackedMedium<Grid>::by_unbiased_marching(const core::Ray& ray, core::
     const double length = (end - begin) / double(steps);
     const core::Vec3d from = origin + begin * direction, step = length * direction;
     MeanEstimates<Wide> depths;
-    const std::size_t count = draw_estimates(rng);
+    const std::size_t count = sample_estimates(rng);
     for (std::size_t i = 0; i < count; ++i) {
         const double first = uniform_double(rng);
         Wide mean(0.0);

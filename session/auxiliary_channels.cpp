@@ -39,30 +39,32 @@ std::vector<core::HitFeature> auxiliary_features(const core::Scene& scene) {
     return features;
 }
 
-std::vector<core::HitFeature> features_by_name(const core::Scene& scene, std::span<const std::string> asked) {
-    if (asked.empty()) return {};
+std::vector<core::HitFeature> features_by_name(const core::Scene& scene,
+                                               std::span<const std::string> requested) {
+    if (requested.empty()) return {};
     std::vector<core::HitFeature> features = auxiliary_features(scene);
-    std::erase_if(features, [&](const core::HitFeature& f) {  // means over hits need the share of hits
+    std::erase_if(features, [&](const core::HitFeature& f) {  // means over hits need the fraction of hits
         return f.layer.name != core::coverage_layer &&
-               std::find(asked.begin(), asked.end(), f.layer.name) == asked.end();
+               std::find(requested.begin(), requested.end(), f.layer.name) == requested.end();
     });
     return features;
 }
 
-std::vector<core::HitFeature> features_for_denoising(const core::Scene& scene, std::vector<std::string> asked,
-                                                     bool regression) {
-    for (const char* name : {"Albedo", "Ns"}) asked.emplace_back(name);
+std::vector<core::HitFeature> features_for_denoising(const core::Scene& scene,
+                                                     std::vector<std::string> requested, bool regression) {
+    for (const char* name : {"Albedo", "Ns"}) requested.emplace_back(name);
     for (const char* name :
          {"P", "Depth", "Transmittance", "Mirrored.Emission", "Mirrored.Albedo", "Mirrored.P", "Mirrored.Ns"})
-        if (regression) asked.emplace_back(name);
-    return features_by_name(scene, asked);
+        if (regression) requested.emplace_back(name);
+    return features_by_name(scene, requested);
 }
 
-std::vector<core::HitFeature> wanted_features(const core::Scene& scene, const std::vector<std::string>& asked,
-                                              bool auxiliary, const std::string& denoise) {
+std::vector<core::HitFeature> wanted_features(const core::Scene& scene,
+                                              const std::vector<std::string>& requested, bool auxiliary,
+                                              const std::string& denoise) {
     if (auxiliary) return auxiliary_features(scene);
-    return denoise.empty() ? features_by_name(scene, asked)
-                           : features_for_denoising(scene, asked, denoise == "bmfr");
+    return denoise.empty() ? features_by_name(scene, requested)
+                           : features_for_denoising(scene, requested, denoise == "bmfr");
 }
 
 void add_center_channels(core::ImageChannels& image, const core::Scene& scene) {

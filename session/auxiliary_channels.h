@@ -15,17 +15,19 @@ std::vector<core::HitFeature> auxiliary_features(const core::Scene& scene);
 
 /// Those of them with these names (which a scene file names by an integrator `aov`), and Coverage; none
 /// for none.
-std::vector<core::HitFeature> features_by_name(const core::Scene& scene, std::span<const std::string> asked);
+std::vector<core::HitFeature> features_by_name(const core::Scene& scene,
+                                               std::span<const std::string> requested);
 
-/// Features of a denoiser: Albedo and Ns, besides `asked`. `regression`: it regresses on P, Depth and
+/// Features of a denoiser: Albedo and Ns, besides `requested`. `regression`: it regresses on P, Depth and
 /// Transmittance as well.
-std::vector<core::HitFeature> features_for_denoising(const core::Scene& scene, std::vector<std::string> asked,
-                                                     bool regression);
+std::vector<core::HitFeature> features_for_denoising(const core::Scene& scene,
+                                                     std::vector<std::string> requested, bool regression);
 
 /// Features of the first hit that are written: all (`auxiliary`), or those of a denoiser
-/// ("oidn", "bmfr"; "": none), with those that the scene `asked` for by name.
-std::vector<core::HitFeature> wanted_features(const core::Scene& scene, const std::vector<std::string>& asked,
-                                              bool auxiliary, const std::string& denoise);
+/// ("oidn", "bmfr"; "": none), with those that `requested` names.
+std::vector<core::HitFeature> wanted_features(const core::Scene& scene,
+                                              const std::vector<std::string>& requested, bool auxiliary,
+                                              const std::string& denoise);
 
 /// Adds Center.P, Center.N (geometric, turned to the viewer) and Center.DiffuseAlbedo: what the rays through
 /// the middle of the pixels and of the lens hit, zero where that is nothing. The picture must have the size

@@ -35,8 +35,8 @@ struct Identity {
 // Where a link leads that leads to no file yet.
 fs::path followed(fs::path path) {
     std::error_code ignored;
-    constexpr int most_links = 40;  // as the system itself
-    for (int i = 0; i < most_links && fs::is_symlink(fs::symlink_status(path, ignored)); ++i)
+    constexpr int max_links = 40;  // as the system itself
+    for (int i = 0; i < max_links && fs::is_symlink(fs::symlink_status(path, ignored)); ++i)
         path = path.parent_path() / fs::read_symlink(path, ignored);
     return path;
 }

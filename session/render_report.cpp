@@ -60,7 +60,7 @@ std::size_t peak_memory_bytes() {
     return std::size_t(usage.ru_maxrss) * 1024;
 }
 
-double finished_share(std::span<const std::uint8_t> pixels) {
+double finished_fraction(std::span<const std::uint8_t> pixels) {
     return pixels.empty() ? 1.0 : double(std::count(pixels.begin(), pixels.end(), 1)) / double(pixels.size());
 }
 
@@ -103,7 +103,7 @@ std::map<std::string, std::string> picture_metadata(const RenderReport& r) {
     if (!r.result.finished_pixels.empty()) {
         metadata["passes"] = "0";
         metadata["partOfFirstPass"] = fmt::format("{:.6f} of the pixels; those that are missing have A = 0",
-                                                  finished_share(r.result.finished_pixels));
+                                                  finished_fraction(r.result.finished_pixels));
     }
     if (r.result.finished_for)
         metadata["postProcessed"] =
@@ -144,7 +144,8 @@ std::string statistics_json(const RenderReport& r) {
     j["seed"] = r.seed;
     j["threads"] = r.threads;
     j["passes"] = r.result.finished_pixels.empty() ? r.result.film.pass_count() : 0;
-    if (!r.result.finished_pixels.empty()) j["part_of_first_pass"] = finished_share(r.result.finished_pixels);
+    if (!r.result.finished_pixels.empty())
+        j["part_of_first_pass"] = finished_fraction(r.result.finished_pixels);
     for (std::size_t part = 0; part < r.result.film.parts() && r.result.film.parts() > 1; ++part) {
         const core::Film& film = r.result.film;
         json layers = json::array();

@@ -31,8 +31,8 @@ std::string quoted(const std::vector<std::string>& command_line);
 /// Largest resident size of this process so far.
 std::size_t peak_memory_bytes();
 std::string git_hash();
-/// Share of the pixels that are finished (RenderResult::finished_pixels); 1 where all are.
-double finished_share(std::span<const std::uint8_t> finished);
+/// Fraction of the pixels that are finished (RenderResult::finished_pixels); 1 where all are.
+double finished_fraction(std::span<const std::uint8_t> finished);
 
 /// Channels that are added to the layers of a film.
 struct PictureExtras {

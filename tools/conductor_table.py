@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes core/materials/conductor_table.cpp: eta and k of every conductor that Mitsuba 3 knows by name, as linear RGB.
+"""Writes core/materials/conductor_table.cpp: eta and k of every conductor that Mitsuba 3 has by name, as linear RGB.
 
     tools/conductor_table.py > core/materials/conductor_table.cpp && clang-format -i core/materials/conductor_table.cpp
 

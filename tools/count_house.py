@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Measures of how plain the source is: lines, parameters, repeated declarations, twins, comments, error measures.
+"""Measures of how plain the source is: lines, parameters, repeated declarations, twins, comments, words, error measures.
 
 Usage: count_house.py [--where] [ROOT]
 Counts the committed files of the checkout ROOT (default: the one that holds this script). The goal stands beside each
@@ -10,8 +10,9 @@ import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(HERE / "tests/floors"))
+sys.path[:0] = [str(HERE / "tests/floors"), str(HERE / "tests/pages")]
 import check_floors  # noqa: E402
+import check_words  # noqa: E402
 
 PRODUCT = ["core", "media", "lights", "compensation", "screenspace", "gathering", "integrators", "session", "apps", "trade",
            "python", "plugins"]
@@ -27,6 +28,10 @@ TYPE = (r'"(?:boolean|integer|float|string|rgb|point|vector|transform|texture|vo
 ROW = re.compile(rf'\{{\s*"[a-z_0-9]+",\s*{TYPE},\s*(?:"[^"\n]*"|[^",{{}}]+),(?!\s*{TYPE})')
 COMMENT = re.compile(r"(?P<code>.*?)(?P<mark>//[/!]?<?)\s*(?P<text>.*)")
 OPENING = re.compile(r"(?:Of|Whether|The same|What|Who|Whose|Whoever)\b")
+
+# Files that hold the words that are searched for.
+HOLD_WORDS = {"tests/pages/check_words.py", "tests/pages/self_check.py", "tools/count_house.py", "tests/floors/count_house_check.py",
+              "tests/floors/self_check.py"}
 
 # name: (pattern over product code without comments, occurrences that are not twins)
 TWINS = {
@@ -121,6 +126,17 @@ class House:
                            if OPENING.match(text)]
         return len(places)
 
+    def words(self):
+        """Lines of C++ and Python with a word that the field has a better one for (tests/pages/check_words.py)."""
+        places = self.places.setdefault("words", [])
+        for path in self.files:
+            if path.suffix in CPP | {".py"} and self.name(path) not in HOLD_WORDS:
+                for number, line in enumerate(path.read_text("utf-8", "replace").splitlines(), 1):
+                    found = check_words.first_word(line, check_words.CODE_WORDS)
+                    if found:
+                        places.append(f"{self.name(path)}:{number}: '{found[0]}': {found[1]}")
+        return len(places)
+
     def error_measures(self):
         """The files that hold one: core/metrics together, every Python file and every other C++ file."""
         places = self.places.setdefault("error implementations", [])
@@ -147,13 +163,13 @@ def without_comments(text):
 
 
 def beginnings(text):
-    """(line, first line of a comment) of every comment: those that go on from the line before are one."""
+    """(line, first line of a comment) of every comment: those that continue from the line before are one."""
     continued = False
     for number, line in enumerate(text.splitlines(), 1):
         found = COMMENT.match(re.sub(r'"(?:\\.|[^"\\])*"', '""', line))
         if found and not (continued and not found["code"].strip()):
             yield number, found["text"]
-        # A comment behind code goes on in the lines below it.
+        # A comment behind code continues in the lines below it.
         continued = found is not None
 
 
@@ -170,6 +186,7 @@ def report(root, where=False):
     rows += [("circles of subfolders", house.circles(), "0")]
     rows += [("comments that begin with a listed word", house.openings(True), "0"),
              ("  elsewhere: tests, tools, experiments, examples", house.openings(False), "0")]
+    rows += [("words that the field has better ones for", house.words(), "0")]
     rows += [("twins", sum(twins.values()), "0")] + [(f"  {name}", count, "") for name, count in twins.items()]
     rows += [("error implementations", house.error_measures(), "1")]
     page = [f"{name:<52}{count:>8}  {goal}".rstrip() for name, count, goal in rows]

@@ -69,8 +69,8 @@ Tally read_tally(const std::string& path, std::uint32_t passes) {
     throw core::InputError("damaged: the trade cannot be continued, --fresh starts anew", {path, 0});
 }
 
-// The bias of one pass, Eq. (3) of core/metrics/relative_error.h, plus 1; of a part, its share in that. The
-// film's rule: a pixel that is not finite in some layer adds nothing.
+// The bias of one pass, Eq. (3) of core/metrics/relative_error.h, plus 1; of a part, its contribution to
+// that. The film's rule: a pixel that is not finite in some layer adds nothing.
 double projection(const core::PassImage& image, const core::Film& film, std::size_t part,
                   const Reference& reference) {
     const std::span<const std::size_t> layers = film.layers_of(part);

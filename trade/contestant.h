@@ -23,7 +23,7 @@ struct Tally {
     std::uint32_t passes = 0;
     double build_wall = 0.0, build_cpu = 0.0;
     double wall = 0.0, cpu = 0.0;  ///< passes alone
-    /// Spread of the passes' biases, plus their part's share of the picture (Welford 1962).
+    /// Spread of the passes' biases, plus their part's contribution to the picture (Welford 1962).
     struct Spread {
         std::uint32_t passes = 0;
         double mean = 0.0, squares = 0.0;

@@ -1,5 +1,5 @@
 // The folder that a trade writes into: what was measured with which inputs, so that it can be continued, and
-// drawn again.
+// plotted again.
 #pragma once
 
 #include <nlohmann/json.hpp>

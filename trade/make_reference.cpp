@@ -33,7 +33,7 @@ std::string verdict(double noise, double smallest, double resolve) {
         "noise {:.3g} %: it judges errors down to {:.3g} %{}", 100.0 * noise, 100.0 * smallest,
         smallest <= resolve
             ? ""
-            : fmt::format(", not the {:.3g} % asked for; the same command renders on", 100.0 * resolve));
+            : fmt::format(", not the {:.3g} % requested; the same command renders on", 100.0 * resolve));
 }
 
 /// The scene with the integrator of the reference; adds to `warnings`.

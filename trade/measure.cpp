@@ -48,8 +48,8 @@ Limits limits_of(const Settings& s, const MethodsFile& file) {
 bool make_automatic_reference(const Settings& s, const MethodsFile& file, const Limits& limits, Host& host) {
     Settings reference = s;
     reference.passes.reset();
-    const double shares = double(file.methods.size()) * s.seeds.value_or(file.seeds);
-    reference.seconds = limits.seconds ? shares * *limits.seconds : seconds_of_automatic_reference;
+    const double renders = double(file.methods.size()) * s.seeds.value_or(file.seeds);
+    reference.seconds = limits.seconds ? renders * *limits.seconds : seconds_of_automatic_reference;
     return make_reference(reference, {reference_file(s), false, "", {}}, host);
 }
 
@@ -120,7 +120,7 @@ Identity identity_of(const Settings& a, const Plan& plan) {
     return identity;
 }
 
-/// The beauty of the reference, so that the folder can be drawn again alone.
+/// The beauty of the reference, so that the folder can be plotted again alone.
 void keep_reference(const Folder& folder, const Reference& reference) {
     core::ImageChannels image;
     image.width = reference.image.width, image.height = reference.image.height;

@@ -41,7 +41,7 @@ std::string slug_of(const std::string& name);
 /// known word for whatever is unknown, repeated, missing or of the wrong kind.
 MethodsFile read_methods_file(const std::string& path, const core::Registry& registry,
                               const core::Scene& scene, std::vector<std::string>& warnings);
-/// Reads them from text; `path` stands in messages.
+/// Reads them from text; `path` is its name in messages.
 MethodsFile read_methods(const std::string& text, const std::string& path, const core::Registry& registry,
                          const core::Scene& scene, std::vector<std::string>& warnings);
 

@@ -33,8 +33,8 @@ struct Record {
 
 /// RFC 4180, with a header row. Numbers read back as the same numbers; empty for unknown.
 std::string to_csv(std::span<const Record> records);
-/// Columns are found by their names; `path` stands in messages. Throws InputError with the line of what is
-/// missing, unknown or no number.
+/// Columns are found by their names; `path` is its name in messages. Throws InputError with the line of what
+/// is missing, unknown or no number.
 std::vector<Record> records_from_csv(const std::string& text, const std::string& path);
 
 }  // namespace mote::trade

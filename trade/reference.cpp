@@ -28,7 +28,7 @@ std::optional<double> number(const std::string& text) {
 }
 
 /// Weights and noise, which need pixels that are finite.
-void weigh(Reference& r) {
+void set_weights(Reference& r) {
     if (r.variance.empty()) {
         r.weights = core::relative_weights(r.pixels);
         return;
@@ -48,7 +48,7 @@ class Check {
     void run(const std::string& content) const {
         check_size();
         check_pixels();
-        weigh(reference_);
+        set_weights(reference_);
         check_camera();
         check_scene(content);
         check_completeness();
@@ -116,7 +116,7 @@ class Check {
         if (reference_.floor() <= rules_.resolve * (1.0 + 1e-6)) return;
         refuse(
             fmt::format("it is too noisy: with a noise of {:.3g} % it judges errors down to {:.3g} %, not "
-                        "{:.3g} %; render it on with --make-reference, or ask for less with --resolve {:.3g}",
+                        "{:.3g} %; continue it with --make-reference, or demand less by --resolve {:.3g}",
                         100.0 * *reference_.noise, 100.0 * reference_.floor(), 100.0 * rules_.resolve,
                         reference_.floor() * 1.01));
     }

@@ -170,7 +170,7 @@ std::size_t next_turn(const std::vector<double>& seconds, const std::vector<bool
     std::size_t best = seconds.size();
     for (std::size_t i = 0; i < seconds.size(); ++i)
         if (running[i] && (best == seconds.size() || seconds[i] < seconds[best])) best = i;
-    if (best == seconds.size()) throw std::logic_error("nobody is left to take a turn");
+    if (best == seconds.size()) throw std::logic_error("no method is left to take a turn");
     return best;
 }
 

@@ -91,7 +91,7 @@ std::string to_text(const Reach& reach, const Curve& curve) {
         case Reach::Kind::never:
             return fmt::format("not with a bias of {:+.2g} %", 100.0 * curve.bias);
         case Reach::Kind::below_reference:
-            return "the reference cannot tell";
+            return "the reference is too noisy";
         case Reach::Kind::unclear:
             break;
     }

@@ -1,6 +1,7 @@
 // Error against time of several methods on one scene: settings, and the interface that receives reports.
 //
-// Everything is read and checked before the first pass; then methods take turns; then the results are drawn.
+// Everything is read and checked before the first pass; then methods take turns; then the results are
+// plotted.
 #pragma once
 
 #include <atomic>

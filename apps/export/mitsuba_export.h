@@ -25,8 +25,8 @@ struct MitsubaExport {
     std::vector<std::string> inputs;               ///< files that the scene was read from
 };
 
-/// `file` stands in messages. Throws InputError for a scene that mote would not render, and for a grid whose
-/// dense twin would be larger than `max_grid_bytes`.
+/// `file` is its name in messages. Throws InputError for a scene that mote would not render, and for a grid
+/// whose dense twin would be larger than `max_grid_bytes`.
 MitsubaExport export_to_mitsuba(core::SceneDocument document, const core::Registry& registry,
                                 const std::string& file, std::uint64_t max_grid_bytes);
 

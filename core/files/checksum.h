@@ -2,7 +2,7 @@
 //
 // FNV-1a over 64-bit words instead of bytes (eight times faster on films of a gigabyte). Every step is a
 // bijection of the state, so a change within a single word always changes the result. It finds accidents; it
-// is no defence against someone who forges files.
+// is no defence against forged files.
 #pragma once
 
 #include <cstdint>

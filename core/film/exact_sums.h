@@ -19,7 +19,7 @@ namespace mote::core {
 class ExactSums {
   public:
     /// So many terms fit into a sum: digits below 2^40 in 63 bits.
-    static constexpr std::uint32_t most_terms = (1u << 23) - 1;
+    static constexpr std::uint32_t max_terms = (1u << 23) - 1;
 
     explicit ExactSums(std::size_t size = 0) : high_(size, 0), low_(size, 0), place_(size, 0) {}
     std::size_t size() const { return place_.size(); }

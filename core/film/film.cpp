@@ -168,8 +168,8 @@ float Film::add_pixel(const PassImage& image, Part& part, std::size_t pixel) {
 }
 
 void Film::check_room(const Part& part, std::uint32_t more) const {
-    if (more > most_passes - part.passes)
-        throw InputError("a film holds at most " + std::to_string(most_passes) + " passes");
+    if (more > max_passes - part.passes)
+        throw InputError("a film holds at most " + std::to_string(max_passes) + " passes");
 }
 
 void Film::add_pass(const PassImage& image, std::size_t index, double work) {

@@ -23,7 +23,7 @@ namespace mote::core {
 
 class Film {
   public:
-    static constexpr std::uint32_t most_passes = ExactSums::most_terms;  ///< of a part
+    static constexpr std::uint32_t max_passes = ExactSums::max_terms;  ///< of a part
 
     /// `all_squares`: keep the sum of squares of every layer, not only of the beauty and of those that
     /// require it. Throws std::invalid_argument when two layers have one name, a Layer::where names none or
@@ -57,7 +57,7 @@ class Film {
     std::uint64_t non_finite() const { return non_finite_; }
 
     /// Adds the next pass of a part. Must be called in index order. `work` is what it cost, in any unit: the
-    /// film keeps the sum. Undoes set_mean(). Throws InputError beyond most_passes.
+    /// film keeps the sum. Undoes set_mean(). Throws InputError beyond max_passes.
     void add_pass(const PassImage& image, std::size_t part = 0, double work = 0.0);
     /// Adds the passes that follow, of a film with the same size and layers: to the same bits as if they had
     /// been added here one by one. Throws std::invalid_argument where the parts of `next` do not begin where

@@ -108,7 +108,7 @@ Film::GainAndNoise Film::gain_and_noise() const {
         }
         if (!(squares > 0.0)) continue;
         const std::vector<double> d = differences(parts_[i], weights.weight, unit);
-        // A filter weighs the errors of pixels, which are independent: what it leaves is as much smaller.
+        // A filter weights the errors of pixels, which are independent: what it leaves is as much smaller.
         // Where the film begins later, blocks are fewer: what they cannot say of longer ones is not counted.
         const auto passes = std::uint32_t(std::min<std::uint64_t>(parts_[i].passes, (2ull << d.size()) - 1));
         const double gain = sobol_gain(d, passes, sum * sum / squares);

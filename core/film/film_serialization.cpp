@@ -126,7 +126,7 @@ void Film::deserialize(std::span<const std::byte> bytes) {
     std::memcpy(heads.data(), content.data() + sizeof(header), head_bytes);
 
     for (const PartHeader& head : heads)
-        if (head.passes > most_passes || head.first > std::numeric_limits<std::uint32_t>::max() - most_passes)
+        if (head.passes > max_passes || head.first > std::numeric_limits<std::uint32_t>::max() - max_passes)
             throw InputError("the film is damaged: it has too many passes");
 
     // Into a film of its own: this one is changed when all is known to be right. What it holds besides its

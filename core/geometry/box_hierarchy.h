@@ -1,4 +1,4 @@
-// The boxes that sixteen neighbouring rays pass, out of many: Embree's hierarchy, for those who test what is
+// The boxes that sixteen neighbouring rays pass, out of many: Embree's hierarchy, for code that tests what is
 // in the boxes by rules of their own.
 #pragma once
 

@@ -157,9 +157,9 @@ void Curves::fill(std::uint32_t segment, double along, const Point& point, const
 }
 
 ShapeSample Curves::sample_area(const Vec2& u) const {
-    const double count = double(data_.segments.size()), place = double(u.x) * count;
-    const auto segment = std::min(std::uint32_t(place), std::uint32_t(data_.segments.size() - 1));
-    const double along = place - double(segment), angle = 2.0 * std::numbers::pi * double(u.y);
+    const double count = double(data_.segments.size()), position = double(u.x) * count;
+    const auto segment = std::min(std::uint32_t(position), std::uint32_t(data_.segments.size() - 1));
+    const double along = position - double(segment), angle = 2.0 * std::numbers::pi * double(u.y);
     const Point point = point_at(segment, along);
     const Cross cross(point.tangent());
     const Vec3d radial = std::cos(angle) * cross.start + std::sin(angle) * cross.next;

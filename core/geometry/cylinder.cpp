@@ -8,8 +8,8 @@
 namespace mote::core {
 namespace {
 
-/// Arc lengths around an ellipse across the axis, so that points can be drawn uniformly by area. Exact for a
-/// circle; else the angle is interpolated by cubics whose slopes are right, in 256 parts.
+/// Arc lengths around an ellipse across the axis, so that points can be sampled uniformly by area. Exact for
+/// a circle; else the angle is interpolated by cubics whose slopes are right, in 256 parts.
 class ArcLengths {
   public:
     ArcLengths(const Vec3d& x, const Vec3d& y, const Vec3d& z)
@@ -25,7 +25,7 @@ class ArcLengths {
     }
     /// Area of the strip between angles 0 and 2 pi.
     double total() const { return sums_[parts]; }
-    /// The angle below which a share u of the area lies.
+    /// The angle below which a fraction u of the area lies.
     double angle(double u) const {
         const double target = u * total();
         const auto above = std::upper_bound(sums_.begin() + 1, sums_.end() - 1, target);

@@ -21,7 +21,7 @@ TracingUnit unit_for(std::span<const std::shared_ptr<Shape>> shapes) {
     return TracingUnit::of(max_component(glm::max(-box.lower, box.upper)));
 }
 
-/// Embree asks before each block, and ends the build where the answer is false.
+/// Embree calls it before each block, and ends the build where it returns false.
 bool ShapeScenes::count_memory(void* memory, ssize_t bytes, bool done) {
     auto& [used, budget] = *static_cast<Memory*>(memory);
     constexpr ssize_t small = 1 << 20;

@@ -52,7 +52,7 @@ void intersect_shape(const RTCIntersectFunctionNArguments* arguments) {
             RTCHitN_primID(hit, n, lane) = arguments->primID;
             RTCHitN_instID(hit, n, lane, 0) = instance;
             RTCHitN_u(hit, n, lane) = RTCHitN_v(hit, n, lane) = 0.0f;
-            // The normal is computed in fill_hit; Embree only wants it to be set.
+            // The normal is computed in fill_hit; Embree only needs it to be set.
             RTCHitN_Ng_x(hit, n, lane) = RTCHitN_Ng_y(hit, n, lane) = 0.0f;
             RTCHitN_Ng_z(hit, n, lane) = 1.0f;
         }

@@ -18,7 +18,7 @@ void check_mesh(const MeshData& data, const SourceLocation& where);
 /// True when at least one triangle has an area (see drop_degenerate_triangles). Indices must be in range.
 bool has_area(const MeshData& data);
 
-/// Removes triangles whose corners are collinear as far as double precision can tell. Returns how many.
+/// Removes triangles whose corners are collinear as far as double precision shows. Returns how many.
 std::size_t drop_degenerate_triangles(MeshData& data);
 
 /// True when, after joining vertices at equal positions, every edge is passed as often in one direction as in

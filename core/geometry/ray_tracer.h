@@ -2,7 +2,7 @@
 //
 // Shapes come in two groups, each a scene of its own: `surfaces`, which stop connections, and `boundaries`,
 // which light passes straight on: null BSDFs, borders between media, and panes, which reflect a part of it
-// (thindielectric). Shadow rays look at the first group only; what the boundaries take and which media lie
+// (thindielectric). Shadow rays test the first group only; what the boundaries take and which media lie
 // between them is found by Scene::transmittance.
 #pragma once
 

@@ -34,7 +34,7 @@ struct SurfaceHit {
     float error = 0.0f;  ///< how far along the normal rounding can put `position` off the surface [m]
 };
 
-/// A point drawn on a shape.
+/// A point sampled on a shape.
 struct ShapeSample {
     Vec3 position;          ///< on the shape [m]
     Vec3 normal;            ///< geometric, unit
@@ -73,7 +73,7 @@ class Shape : public Object {
     virtual float area() const = 0;
     /// Uniform by area.
     virtual ShapeSample sample_area(const Vec2& u) const = 0;
-    /// Draws a point for lighting `p`: uniform by area unless the shape has a better density (a sphere
+    /// Samples a point for lighting `p`: uniform by area unless the shape has a better density (a sphere
     /// samples its cone). The density is returned per solid angle at p in pdf_solid_angle.
     virtual std::optional<ShapeSample> sample_visible(const Vec3& p, const Vec2& u,
                                                       float& pdf_solid_angle) const;

@@ -39,7 +39,7 @@ Vec3 BentNormal::unit_normal(const BsdfPoint& p) const {
     return length > 0.0f && std::isfinite(length) ? m / length : Vec3(0.0f, 0.0f, 1.0f);
 }
 
-/// The bent normal that one who looks from `eye` sees.
+/// The bent normal as seen from `eye`.
 Vec3 BentNormal::towards(const Vec3& m, const Vec3& eye) const {
     return settings_.flip_invalid_normals && !same_side(m, eye) ? turned_over(m) : m;
 }
@@ -58,27 +58,27 @@ Rgb BentNormal::eval(const BsdfPoint& p, const Vec3& wo, const Vec3& wi, Transpo
     const Bent bent{frame_around(towards(unit_normal(p), from_eye ? wo : wi)), 1.0f};
     const float factor = visible_factor(bent.m(), from_eye ? wo : wi, from_eye ? wi : wo);
     if (factor == 0.0f) return Rgb(0.0f);
-    return factor * stopped_share(p, bent, wo) *
+    return factor * stopped_fraction(p, bent, wo) *
            nested_->eval(seen_in(bent.frame, p), bent.frame.to_local(wo), bent.frame.to_local(wi), mode);
 }
 
 /// The normals that sample() chooses from. From the eye there is one. From a light the viewer's direction,
-/// which decides whether the normal is turned over, is still to be drawn: both are tried, the turned one the
-/// less the closer the two are. Chances are zero where the light is below.
-std::array<BentNormal::Bent, 2> BentNormal::drawn_from(const Vec3& m, const Vec3& wo,
-                                                       TransportMode mode) const {
+/// which decides whether the normal is turned over, is still to be sampled: both are tried, the turned one
+/// the less the closer the two are. Chances are zero where the light is below.
+std::array<BentNormal::Bent, 2> BentNormal::sampled_from(const Vec3& m, const Vec3& wo,
+                                                         TransportMode mode) const {
     if (mode == TransportMode::radiance) return {{{frame_around(towards(m, wo)), 1.0f}, {Frame(), 0.0f}}};
     const Vec3 turned = turned_over(m);
     const float tilt = std::hypot(m.x, m.y);
     const bool plain = same_side(m, wo),
                over = settings_.flip_invalid_normals && tilt > 0.0f && same_side(turned, wo);
-    const float share = !over ? 0.0f : plain ? std::fmin(0.5f, tilt) : 1.0f;
-    return {{{frame_around(m), plain ? 1.0f - share : 0.0f}, {frame_around(turned), share}}};
+    const float probability = !over ? 0.0f : plain ? std::fmin(0.5f, tilt) : 1.0f;
+    return {{{frame_around(m), plain ? 1.0f - probability : 0.0f}, {frame_around(turned), probability}}};
 }
 
 /// As much passes panes straight on as if nothing were bent: what the nested one scatters is scaled to the
 /// rest.
-float BentNormal::stopped_share(const BsdfPoint& p, const Bent& bent, const Vec3& wo) const {
+float BentNormal::stopped_fraction(const BsdfPoint& p, const Bent& bent, const Vec3& wo) const {
     if (!traits_.pane) return 1.0f;
     const float stops = straight_passage_of(*nested_, seen_in(bent.frame, p), bent.frame.to_local(wo)).stops;
     return stops > 0.0f ? straight_passage(p, wo).stops / stops : 0.0f;
@@ -92,9 +92,9 @@ float BentNormal::pdf_solid_angle(const BsdfPoint& p, const Vec3& wo, const Vec3
     const Vec3 &eye = from_eye ? wo : wi, &light = from_eye ? wi : wo;
     if (visible_factor(towards(m, eye), eye, light) == 0.0f) return 0.0f;
     float sum = 0.0f;
-    for (const Bent& bent : drawn_from(m, wo, mode))
+    for (const Bent& bent : sampled_from(m, wo, mode))
         if (bent.chance > 0.0f && same_side(bent.m(), eye))
-            sum += bent.chance * stopped_share(p, bent, wo) *
+            sum += bent.chance * stopped_fraction(p, bent, wo) *
                    nested_->pdf_solid_angle(seen_in(bent.frame, p), bent.frame.to_local(wo),
                                             bent.frame.to_local(wi), mode);
     return sum;
@@ -106,7 +106,7 @@ std::optional<BsdfSample> BentNormal::sample(const BsdfPoint& p, const Vec3& wo,
     if (u_lobe >= passage.stops) return straight_sample(passage, wo);
     u_lobe = stretched(u_lobe, passage.stops);
     const Vec3 m = unit_normal(p);
-    const auto both = drawn_from(m, wo, mode);
+    const auto both = sampled_from(m, wo, mode);
     const Bent& bent = both[u_lobe < both[0].chance ? 0 : 1];
     if (!(bent.chance > 0.0f)) return std::nullopt;
     u_lobe = stretched(u_lobe < both[0].chance ? u_lobe : u_lobe - both[0].chance, bent.chance);

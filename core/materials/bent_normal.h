@@ -44,8 +44,8 @@ class BentNormal : public Bsdf {
     };
     Vec3 unit_normal(const BsdfPoint& p) const;
     Vec3 towards(const Vec3& m, const Vec3& eye) const;
-    std::array<Bent, 2> drawn_from(const Vec3& m, const Vec3& wo, TransportMode mode) const;
-    float stopped_share(const BsdfPoint& p, const Bent& bent, const Vec3& wo) const;
+    std::array<Bent, 2> sampled_from(const Vec3& m, const Vec3& wo, TransportMode mode) const;
+    float stopped_fraction(const BsdfPoint& p, const Bent& bent, const Vec3& wo) const;
     float visible_factor(const Vec3& m, const Vec3& eye, const Vec3& light) const;
 
     BsdfPtr nested_;

@@ -1,4 +1,4 @@
-// BSDFs "blendbsdf" and "mask": two BSDFs at once, each with a share that may be textured. A mask is a blend
+// BSDFs "blendbsdf" and "mask": two BSDFs at once, each with a weight that may be textured. A mask is a blend
 // of nothing at all, through which light passes straight on, and a BSDF.
 #include <algorithm>
 #include <array>
@@ -29,18 +29,18 @@ class Blend final : public Bsdf {
     BsdfTraits traits() const override { return traits_; }
 
     Rgb eval(const BsdfPoint& p, const Vec3& wo, const Vec3& wi, TransportMode mode) const override {
-        const std::array<float, 2> share = shares(p);
+        const std::array<float, 2> weight = weights(p);
         Rgb sum(0.0f);
         for (std::size_t k = 0; k < 2; ++k)
-            if (share[k] > 0.0f) sum += share[k] * nested_[k]->eval(p, wo, wi, mode);
+            if (weight[k] > 0.0f) sum += weight[k] * nested_[k]->eval(p, wo, wi, mode);
         return sum;
     }
     float pdf_solid_angle(const BsdfPoint& p, const Vec3& wo, const Vec3& wi,
                           TransportMode mode) const override {
-        const std::array<float, 2> share = shares(p);
+        const std::array<float, 2> weight = weights(p);
         float sum = 0.0f;
         for (std::size_t k = 0; k < 2; ++k)
-            if (share[k] > 0.0f) sum += share[k] * drawn_pdf(*nested_[k], p, wo, wi, mode);
+            if (weight[k] > 0.0f) sum += weight[k] * sampled_pdf(*nested_[k], p, wo, wi, mode);
         return sum;
     }
 
@@ -50,18 +50,18 @@ class Blend final : public Bsdf {
         if (traits_.pane)
             if (const StraightPassage passage = straight_passage(p, wo); u_lobe >= passage.stops)
                 return straight_sample(passage, wo);
-        const std::array<float, 2> share = shares(p);
-        const float first = share[0] * straight_passage_of(*nested_[0], p, wo).stops;
-        const std::size_t k = u_lobe < first || share[1] == 0.0f ? 0 : 1;
+        const std::array<float, 2> weight = weights(p);
+        const float first = weight[0] * straight_passage_of(*nested_[0], p, wo).stops;
+        const std::size_t k = u_lobe < first || weight[1] == 0.0f ? 0 : 1;
         const float stops = straight_passage_of(*nested_[k], p, wo).stops;
-        const float within = stretched(k == 0 ? u_lobe : u_lobe - first, share[k] * stops) * stops;
+        const float within = stretched(k == 0 ? u_lobe : u_lobe - first, weight[k] * stops) * stops;
         auto s = nested_[k]->sample(p, wo, within, u, mode);
         if (!s || s->delta) return s;
         if (!nested_[1 - k]->traits().smooth) {
-            s->pdf_solid_angle *= share[k];
+            s->pdf_solid_angle *= weight[k];
             return s;
         }
-        // The other one could have drawn this direction too.
+        // The other one could have sampled this direction too.
         s->pdf_solid_angle = pdf_solid_angle(p, wo, s->wi, mode);
         s->weight = eval(p, wo, s->wi, mode) * (std::fabs(s->wi.z) / s->pdf_solid_angle);
         return s;
@@ -69,34 +69,34 @@ class Blend final : public Bsdf {
 
     StraightPassage straight_passage(const BsdfPoint& p, const Vec3& wo) const override {
         return mixed_passage(straight_passage_of(*nested_[0], p, wo), straight_passage_of(*nested_[1], p, wo),
-                             shares(p)[1]);
+                             weights(p)[1]);
     }
     std::optional<Rgb> diffuse_reflectance(const BsdfPoint& p, const Vec3& wo) const override {
         if (traits_.null) return std::nullopt;
-        const std::array<float, 2> share = shares(p);
+        const std::array<float, 2> weight = weights(p);
         Rgb sum(0.0f);
         for (std::size_t k = 0; k < 2; ++k) {
             if (nested_[k]->traits().null) continue;  // scatters nothing
             const auto reflectance = nested_[k]->diffuse_reflectance(p, wo);
             if (!reflectance) return std::nullopt;
-            sum += share[k] * *reflectance;
+            sum += weight[k] * *reflectance;
         }
         return sum;
     }
     Rgb albedo(const BsdfPoint& p, const Vec3& wo) const override {
-        const std::array<float, 2> share = shares(p);
-        return share[0] * nested_[0]->albedo(p, wo) + share[1] * nested_[1]->albedo(p, wo);
+        const std::array<float, 2> weight = weights(p);
+        return weight[0] * nested_[0]->albedo(p, wo) + weight[1] * nested_[1]->albedo(p, wo);
     }
 
   private:
-    /// Density with which a part comes back with this direction: where it is black it draws nothing, whatever
-    /// its density says (sample() of all kinds), and the other part has to make up for it.
-    static float drawn_pdf(const Bsdf& part, const BsdfPoint& p, const Vec3& wo, const Vec3& wi,
-                           TransportMode mode) {
+    /// Density with which a part comes back with this direction: where it is black it samples nothing,
+    /// whatever its density says (sample() of all kinds), and the other part has to make up for it.
+    static float sampled_pdf(const Bsdf& part, const BsdfPoint& p, const Vec3& wo, const Vec3& wi,
+                             TransportMode mode) {
         return is_black(part.eval(p, wo, wi, mode)) ? 0.0f : part.pdf_solid_angle(p, wo, wi, mode);
     }
     /// Weights of the first and the second. Textures may leave [0, 1], as in Mitsuba.
-    std::array<float, 2> shares(const BsdfPoint& p) const {
+    std::array<float, 2> weights(const BsdfPoint& p) const {
         const float second = std::clamp(weight_.eval(p.uv), 0.0f, 1.0f);
         return {1.0f - second, second};
     }
@@ -123,7 +123,7 @@ void register_blend(Registry& registry) {
         registry, Category::bsdf, "blendbsdf",
         "Two BSDFs at once: (1 - weight) of the first and weight of the second.",
         {row("weight", &Settings::weight,
-             "Share of the second BSDF, clamped to 0 to 1; of a picture its luminance."),
+             "Weight of the second BSDF, clamped to 0 to 1; of a picture its luminance."),
          nested("bsdf", &Settings::nested, Category::bsdf, "required", "Two, in this order (any names).")},
         R"(<bsdf type="blendbsdf">
     <float name="weight" value="0.25"/>
@@ -142,13 +142,13 @@ void register_mask(Registry& registry) {
     };
     add_type<Settings>(
         registry, Category::bsdf, "mask",
-        "Holes in a surface: a share of the light passes straight on as if nothing were there, the rest "
+        "Holes in a surface: a fraction of the light passes straight on as if nothing were there, the rest "
         "meets the nested BSDF. What passes is no scattering and counts no depth, in all integrators, as "
         "through "
         "'thindielectric' (Mitsuba's volpath does the same; its path counts it). Such a surface is no area "
         "light.",
         {row("opacity", &Settings::opacity,
-             "Share that the nested BSDF gets, clamped to 0 to 1; of a picture its luminance."),
+             "Weight of the nested BSDF, clamped to 0 to 1; of a picture its luminance."),
          nested("bsdf", &Settings::nested, Category::bsdf, "required",
                 "The BSDF that the rest meets (any name).")},
         R"(<bsdf type="mask">

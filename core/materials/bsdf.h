@@ -38,7 +38,7 @@ struct BsdfTraits {
     bool passes_straight() const { return null || pane; }
 };
 
-/// A direction drawn for a viewer.
+/// A direction sampled for a viewer.
 struct BsdfSample {
     Vec3 wi;                   ///< local
     Rgb weight;                ///< f * |cos(wi)| / pdf; for a delta part, the weight of that part
@@ -78,7 +78,7 @@ class Bsdf : public Object {
     virtual Rgb eval(const BsdfPoint& p, const Vec3& wo, const Vec3& wi, TransportMode mode) const = 0;
 
     /// At least eval() of any wi in a (local) cone, whatever the mode, without a peak_limit [1/sr]: for
-    /// upper bounds of what a group of lights sends. Infinity: no bound.
+    /// upper bounds of what a cluster of lights sends. Infinity: no bound.
     virtual Rgb eval_bound(const BsdfPoint&, const Vec3& /*wo*/, const DirectionCone& /*wi*/) const {
         return Rgb(infinity);
     }
@@ -88,12 +88,12 @@ class Bsdf : public Object {
     ///
     /// The reverse density, with which a path that goes the other way is scattered from wi to wo, is this one
     /// with the directions exchanged and the other mode: pdf_solid_angle(p, wi, wo, opposite(mode)). Nothing
-    /// in the arguments tells the two ways apart, because both directions point away from the surface and the
-    /// local frame stays where it is; indices of refraction are taken from the side that wo is on.
+    /// in the arguments distinguishes the two ways, because both directions point away from the surface and
+    /// the local frame stays where it is; indices of refraction are taken from the side that wo is on.
     virtual float pdf_solid_angle(const BsdfPoint& p, const Vec3& wo, const Vec3& wi,
                                   TransportMode mode) const = 0;
 
-    /// Draws wi given wo. `u_lobe` chooses among lobes, `u` the direction. Nothing when absorbed.
+    /// Samples wi given wo. `u_lobe` chooses among lobes, `u` the direction. Nothing when absorbed.
     virtual std::optional<BsdfSample> sample(const BsdfPoint& p, const Vec3& wo, float u_lobe, const Vec2& u,
                                              TransportMode mode) const = 0;
 

@@ -10,7 +10,7 @@ namespace mote::core {
 
 template <typename T>
 struct FresnelResult {
-    T reflectance;  ///< share of the power that is reflected, in [0, 1]
+    T reflectance;  ///< fraction of the power that is reflected, in [0, 1]
     T cos_t;        ///< cosine of the refracted direction; 0 at total internal reflection
 };
 

@@ -32,7 +32,7 @@ float density_bound(const Microfacet& facets, float least) {
 
 LobeBound::LobeBound(const Microfacet& facets, const Vec3& wo, const DirectionCone& wi) {
     const float from_wo = angle_between(wo, wi.axis), angle = wi.angle + 1e-5f;
-    least_cosine_ = std::cos(0.5f * std::fmin(from_wo + angle, pi));
+    min_cosine_ = std::cos(0.5f * std::fmin(from_wo + angle, pi));
     // wi + wo is at most 2 sin(angle / 2) from axis + wo, whose length is 2 cos(from_wo / 2).
     const float moved = 2.0f * std::sin(0.5f * std::fmin(angle, pi));
     const Vec3 middle = wo + wi.axis;
@@ -49,9 +49,9 @@ LobeBound::LobeBound(const Microfacet& facets, const Vec3& wo, const DirectionCo
     facets_ = slack * density_bound(facets, least) / (4.0f * facets.projected_area(wo) * area);
 }
 
-float dielectric_bound(float least_cosine, float eta) {
+float dielectric_bound(float min_cosine, float eta) {
     if (eta == 1.0f) return 0.0f;
-    const float c = least_cosine, cos2_t = ((eta - 1.0f) * (eta + 1.0f) + c * c) / sqr(eta);
+    const float c = min_cosine, cos2_t = ((eta - 1.0f) * (eta + 1.0f) + c * c) / sqr(eta);
     if (!(cos2_t > 0.0f)) return 1.0f;
     const float t = std::sqrt(cos2_t);
     const float perpendicular = (c - eta * t) / (c + eta * t), parallel = (eta * c - t) / (eta * c + t);

@@ -22,15 +22,15 @@ class LobeBound {
     /// At least D(m) / (4 A(wo) A(wi)) for any wi of the cone [1/sr].
     float facets() const { return facets_; }
     /// At most the cosine between wo and any of the half vectors.
-    float least_cosine() const { return least_cosine_; }
+    float min_cosine() const { return min_cosine_; }
 
   private:
-    float facets_, least_cosine_;
+    float facets_, min_cosine_;
 };
 
-/// At least the reflectance of a dielectric of index eta at any cosine from `least_cosine` to 1. The
+/// At least the reflectance of a dielectric of index eta at any cosine from `min_cosine` to 1. The
 /// perpendicular part grows with the angle; the parallel one falls up to Brewster's angle and grows behind
 /// it.
-float dielectric_bound(float least_cosine, float eta);
+float dielectric_bound(float min_cosine, float eta);
 
 }  // namespace mote::core

@@ -1,5 +1,5 @@
 // Sampling of visible normals. The direction is stretched so that the surface has roughness 1, a normal is
-// drawn there, and its slopes are stretched back (Heitz & d'Eon 2014).
+// sampled there, and its slopes are stretched back (Heitz & d'Eon 2014).
 #include "core/materials/microfacet.h"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ double erf_inverse(double x) {
 
 constexpr double sqrt_pi = 1.7724538509055160273;
 
-/// Draws the slope x along the viewing azimuth with density proportional to (c - x) exp(-x^2) for x < c,
+/// Samples the slope x along the viewing azimuth with density proportional to (c - x) exp(-x^2) for x < c,
 /// where c > 0 is the cotangent of the viewing angle. With b = erf(x) the distribution function is
 /// proportional to  c sqrt(pi) (1 + b) + exp(-x^2),  which Newton's method inverts inside a bracket.
 double sample_beckmann_slope(double c, double u) {

@@ -66,7 +66,7 @@ class Microfacet {
 
     /// A normal m with the density pdf_visible(wo, m). Precondition: wo.z > 0.
     Vec3 sample_visible(const Vec3& wo, const Vec2& u) const;
-    /// <wo, m> D(m) / A(wo) [1/sr]: the share of m in what is seen from wo (wo.z > 0).
+    /// <wo, m> D(m) / A(wo) [1/sr]: the fraction of m in what is seen from wo (wo.z > 0).
     float pdf_visible(const Vec3& wo, const Vec3& m) const {
         const float c = glm::dot(wo, m);
         return c > 0.0f ? c * density(m) / projected_area(wo) : 0.0f;

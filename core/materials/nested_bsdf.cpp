@@ -16,12 +16,13 @@ std::vector<BsdfPtr> NestedBsdfs::exactly(std::size_t count, const Properties& p
     return bsdfs;
 }
 
-StraightPassage mixed_passage(const StraightPassage& a, const StraightPassage& b, float share_of_b) {
+StraightPassage mixed_passage(const StraightPassage& a, const StraightPassage& b, float probability_of_b) {
     StraightPassage both;
-    both.stops = (1.0f - share_of_b) * a.stops + share_of_b * b.stops;
+    both.stops = (1.0f - probability_of_b) * a.stops + probability_of_b * b.stops;
     const float passes = both.probability();
     if (!(passes > 0.0f)) return both;
-    both.weight = ((1.0f - share_of_b) * a.transmittance() + share_of_b * b.transmittance()) / passes;
+    both.weight =
+        ((1.0f - probability_of_b) * a.transmittance() + probability_of_b * b.transmittance()) / passes;
     return both;
 }
 

@@ -19,8 +19,8 @@ inline StraightPassage straight_passage_of(const Bsdf& bsdf, const BsdfPoint& p,
     return bsdf.traits().passes_straight() ? bsdf.straight_passage(p, wo) : StraightPassage{};
 }
 
-/// Two passages of which one is met with probability `share_of_b`, the other otherwise.
-StraightPassage mixed_passage(const StraightPassage& a, const StraightPassage& b, float share_of_b);
+/// Two passages of which one is met with probability `probability_of_b`, the other otherwise.
+StraightPassage mixed_passage(const StraightPassage& a, const StraightPassage& b, float probability_of_b);
 
 /// A path that was let pass.
 std::optional<BsdfSample> straight_sample(const StraightPassage& passage, const Vec3& wo);

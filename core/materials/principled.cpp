@@ -135,8 +135,8 @@ class Principled final : public Bsdf {
         float diffuse, glass;  ///< of the opaque and of the transparent dielectric
         Microfacet facets;
     };
-    /// Probabilities of the lobes. `glass` is the share of the facets that light is refracted through, which
-    /// takes that share of (1 - F) from the reflection.
+    /// Probabilities of the lobes. `glass` is the fraction of the facets that light is refracted through,
+    /// which takes that fraction of (1 - F) from the reflection.
     struct Choice {
         float diffuse, clearcoat, specular, glass;
     };

@@ -18,7 +18,7 @@ const ParameterList<PrincipledWeights>& weight_rows() {
         row("roughness", &S::roughness, weight_range,
             "Roughness of all glossy lobes but the clearcoat: GGX of alpha = roughness^2."),
         row("anisotropic", &S::anisotropic, weight_range, "Stretches the reflection along the tangent."),
-        row("spec_trans", &S::spec_trans, weight_range, "Share of the surface that is glass."),
+        row("spec_trans", &S::spec_trans, weight_range, "Fraction of the surface that is glass."),
         row("spec_tint", &S::spec_tint, weight_range, "Tints the dielectric's reflection with base_color."),
         row("sheen", &S::sheen, weight_range, "Light at grazing angles as of cloth; adds light."),
         row("sheen_tint", &S::sheen_tint, weight_range, "Tints the sheen with base_color."),
@@ -51,7 +51,7 @@ const ParameterList<PrincipledSettings>& principled_rows() {
         weight_rows(),
         within(&S::rates, row("diffuse_reflectance_sampling_rate", &Rates::diffuse, rate_range,
                               "How often the diffuse lobe is sampled, relatively.")),
-        row("metallic", &S::metallic, weight_range, "Share of the surface that is metal."),
+        row("metallic", &S::metallic, weight_range, "Fraction of the surface that is metal."),
         row("eta", &S::given_eta, between(0.01, 100),
             "Index of refraction inside over outside, instead of specular.")
             .when_absent("specular"),
@@ -71,7 +71,7 @@ const ParameterList<PrincipledThinParameters>& principled_thin_rows() {
     static const ParameterList<S> list{
         weight_rows(), row("eta", &S::eta, between(0.01, 100), "Index of refraction."),
         row("diff_trans", &S::diff_trans, between(0, 2),
-            "Share of the diffuse light that passes, times two."),
+            "Fraction of the diffuse light that passes, times two."),
         within(&S::rates,
                row("diffuse_reflectance_sampling_rate", &S::Rates::diffuse, rate_range,
                    "How often the diffuse lobe is sampled, relatively."),

@@ -50,7 +50,7 @@ class RoughPlastic final : public Bsdf {
         if (!(wo.z > 0.0f && reaches_up(wi))) return Rgb(0.0f);
         const LobeBound lobe(microfacet_, wo, wi);
         return base(p) * (transmittance_(wo.z) * inv_eta2_ * inv_pi) +
-               specular_.eval(p.uv) * (lobe.facets() * dielectric_bound(lobe.least_cosine(), eta_));
+               specular_.eval(p.uv) * (lobe.facets() * dielectric_bound(lobe.min_cosine(), eta_));
     }
     float pdf_solid_angle(const BsdfPoint&, const Vec3& wo, const Vec3& wi, TransportMode) const override {
         if (!(wo.z > 0.0f && wi.z > 0.0f)) return 0.0f;

@@ -14,7 +14,7 @@ enum class LostLight : std::uint8_t {
     transmitted,  ///< it passes the boundary
 };
 
-/// Share of the power arriving at angle acos(mu) that leaves by a single reflection at a rough boundary of
+/// Fraction of the power arriving at angle acos(mu) that leaves by a single reflection at a rough boundary of
 /// relative index eta (far side over near side): the integral of F(wo.m) G1(wi) over the visible normals.
 double rough_reflectance(const Microfacet& microfacet, float eta, float mu);
 /// Transmittance of a single refraction: the integral of (1 - F(wo.m)) G1(wt).

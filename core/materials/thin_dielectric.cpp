@@ -31,7 +31,7 @@ class ThinDielectric final : public Bsdf {
         if (wo.z == 0.0f) return std::nullopt;
         BsdfSample s{.wi = reflect_local(wo), .weight = reflectance_.eval(p.uv), .pdf_solid_angle = 0.0f};
         s.delta = true;
-        if (u_lobe >= reflected_share(wo)) {
+        if (u_lobe >= reflection_probability(wo)) {
             s.wi = -wo;
             s.weight = transmittance_.eval(p.uv);
             s.transmitted = true;
@@ -41,16 +41,16 @@ class ThinDielectric final : public Bsdf {
     }
     StraightPassage straight_passage(const BsdfPoint& p, const Vec3& wo) const override {
         if (wo.z == 0.0f) return {};
-        return {reflected_share(wo), transmittance_.eval(p.uv)};
+        return {reflection_probability(wo), transmittance_.eval(p.uv)};
     }
     Rgb albedo(const BsdfPoint& p, const Vec3& wo) const override {
-        const float r = reflected_share(wo);
+        const float r = reflection_probability(wo);
         return r * reflectance_.eval(p.uv) + (1.0f - r) * transmittance_.eval(p.uv);
     }
 
   private:
     /// R + T R T + T R^3 T + ... = 2 R / (1 + R) with T = 1 - R: both faces and all orders.
-    float reflected_share(const Vec3& wo) const {
+    float reflection_probability(const Vec3& wo) const {
         const float r = fresnel_dielectric(std::fmin(std::fabs(wo.z), 1.0f), eta_).reflectance;
         return 2.0f * r / (1.0f + r);
     }

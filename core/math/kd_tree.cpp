@@ -53,7 +53,7 @@ struct KdTree::Search {
     float limit;  ///< squared: nothing farther can be among the nearest
     std::vector<Neighbour>& heap;
 
-    void offer(const Neighbour& candidate) {
+    void insert(const Neighbour& candidate) {
         if (candidate.distance_squared > limit) return;
         if (heap.size() == k) {
             if (!(candidate < heap.front())) return;
@@ -80,7 +80,7 @@ void KdTree::search(Search& s, std::size_t first, std::size_t last) const {
             search(s, middle + 1, last);
             last = middle;
         }
-        s.offer({glm::dot(d, d), std::uint32_t(middle)});
+        s.insert({glm::dot(d, d), std::uint32_t(middle)});
         if (sqr(beyond) > s.limit) return;
     }
 }

@@ -3,7 +3,7 @@
 // The points are put into the tree's order once: the root of every range [first, last) is its middle element,
 // what lies below the root's plane comes before it, the rest behind. Besides the points in that order the
 // tree keeps one byte a point, the axis of its plane. The caller orders its own data by order() and speaks of
-// points by their place in it from then on.
+// points by their index in it from then on.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ class KdTree {
   public:
     struct Neighbour {
         float distance_squared;
-        std::uint32_t index;  ///< place in the tree's order
+        std::uint32_t index;  ///< index in the tree's order
         bool operator<(const Neighbour& o) const {
             return distance_squared != o.distance_squared ? distance_squared < o.distance_squared
                                                           : index < o.index;
@@ -31,7 +31,7 @@ class KdTree {
     explicit KdTree(std::span<const Vec3> points);
 
     std::size_t size() const { return points_.size(); }
-    /// order()[i] is the place, in the span given to the constructor, of the point at i.
+    /// order()[i] is the index, in the span given to the constructor, of the point at i.
     std::span<const std::uint32_t> order() const { return order_; }
     /// Frees order(), once the caller has put its data into it.
     void forget_order() { order_ = {}; }

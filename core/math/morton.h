@@ -21,8 +21,8 @@ inline std::uint64_t morton_code(const Vec3& p, const Bounds3& bounds) {
     const double scale = 2097151.0 / std::max(double(max_component(bounds.diagonal())), 1e-30);
     std::uint64_t code = 0;
     for (int axis = 0; axis < 3; ++axis) {
-        const double place = (double(p[axis]) - double(bounds.lower[axis])) * scale;
-        code |= spread_bits(std::uint64_t(std::clamp(place, 0.0, 2097151.0))) << (2 - axis);
+        const double cell = (double(p[axis]) - double(bounds.lower[axis])) * scale;
+        code |= spread_bits(std::uint64_t(std::clamp(cell, 0.0, 2097151.0))) << (2 - axis);
     }
     return code;
 }

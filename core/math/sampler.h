@@ -28,7 +28,7 @@ class Sampler {
         const std::uint32_t d = dimension_++;
         return kind_ == SamplerKind::sobol ? sobol(d) : independent(d);
     }
-    /// A generator for an unbounded number of draws (tracking), independent of the dimensions used before.
+    /// A generator for an unbounded number of numbers (tracking), independent of the dimensions used before.
     Rng make_rng() const { return Rng(hash_keys(key_, pass_, 0x7261636bull, dimension_)); }
 
   private:

@@ -2,8 +2,8 @@
 //
 // Shown is |d| sqrt(w) with the weights of relative_error.h, on a logarithmic scale: what the error is made
 // of. The colours are those of viridis (matplotlib, in the public domain): lightness rises evenly with the
-// error, so they keep their order in grey and for most who see colours differently. Pixels that are not
-// finite are magenta, which viridis has not.
+// error, so they keep their order in grey and for most people who see colours differently. Pixels that are
+// not finite are magenta, which viridis has not.
 #pragma once
 
 #include <span>

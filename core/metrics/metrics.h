@@ -30,7 +30,9 @@ struct ImageMetrics {
     double ssim = 0.0;
 
     /// Fraction of the pixels that are not finite in either picture, in [0, 1].
-    double non_finite_share() const { return pixels == 0 ? 0.0 : double(non_finite_either) / double(pixels); }
+    double non_finite_fraction() const {
+        return pixels == 0 ? 0.0 : double(non_finite_either) / double(pixels);
+    }
 };
 
 /// Variances of the means of both pictures, pixel by pixel; empty where they are not known.

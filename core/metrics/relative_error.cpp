@@ -12,10 +12,10 @@ namespace mote::core {
 
 namespace {
 
-constexpr int reach = 2;                ///< neighbours within 5 x 5 pixels
-constexpr double alike = 9.0;           ///< three standard deviations, squared
-constexpr double certain = 4.0;         ///< two, squared
-constexpr double darkest_share = 0.01;  ///< (1 / 10)^2 in Eq. (1)
+constexpr int reach = 2;                   ///< neighbours within 5 x 5 pixels
+constexpr double alike = 9.0;              ///< three standard deviations, squared
+constexpr double certain = 4.0;            ///< two, squared
+constexpr double darkest_fraction = 0.01;  ///< (1 / 10)^2 in Eq. (1)
 
 double median_that_is_not_black(const std::vector<double>& squares) {
     std::vector<double> lit;
@@ -28,7 +28,7 @@ double median_that_is_not_black(const std::vector<double>& squares) {
 
 /// Eq. (1) from `squares`, |r|^2 pixel by pixel; m is the median of `level`.
 std::vector<double> weights_of(const std::vector<double>& squares, const std::vector<double>& level) {
-    const double darkest = darkest_share * median_that_is_not_black(level);
+    const double darkest = darkest_fraction * median_that_is_not_black(level);
     std::vector<double> weights(squares.size(), 0.0);
     if (!(darkest > 0.0)) return weights;
     std::transform(squares.begin(), squares.end(), weights.begin(),

@@ -1,7 +1,7 @@
 // The wish to stop, passed down to whatever takes long: a flag that a signal or a clock sets.
 //
 // Loops that can end early return; what lies deeper throws Cancelled, which unwinds through parallel loops
-// and is caught where a pass is run. What was half done is thrown away. A test costs one load.
+// and is caught where a pass is run. What was half done is discarded. A test costs one load.
 #pragma once
 
 #include <atomic>

@@ -47,7 +47,7 @@ constexpr GroupFiles version_1{"/sys/fs/cgroup/memory", "memory.limit_in_bytes",
                                "total_inactive_file"};
 constexpr GroupFiles version_2{"/sys/fs/cgroup", "memory.max", "memory.current", "inactive_file"};
 
-/// Bytes that a group and those that it lies in leave. Pages of files that nobody reads any more count as
+/// Bytes that a group and those that it lies in leave. Pages of files that are read no more count as
 /// usage and are given back.
 double left_in_group(const std::string& root, const GroupFiles& files, std::string group) {
     double left = infinity;
@@ -100,8 +100,8 @@ double available_memory(const std::string& root) {
 }
 
 double MemoryBudget::available() const {
-    constexpr double share = 0.95;
-    return std::max(0.0, (fixed_ ? *fixed_ : share * available_memory()) - later_);
+    constexpr double fraction = 0.95;
+    return std::max(0.0, (fixed_ ? *fixed_ : fraction * available_memory()) - later_);
 }
 
 MemoryBudget MemoryBudget::without(double bytes) const {

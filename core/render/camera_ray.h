@@ -1,5 +1,5 @@
 // The ray with which the eye path of a pixel starts in a pass: the first four numbers of its sampler choose
-// the place on the film, through the pixel's filter, and the place on the lens.
+// the position on the film, through the pixel's filter, and the position on the lens.
 //
 // Eye paths of integrators begin here (integrators/eye_path/eye_ray.h), so code that needs the ray once more
 // finds the very same one.
@@ -23,11 +23,11 @@ inline Sampler pixel_sampler(const RenderOptions& options, const PassContext& pa
 
 struct CameraRay {
     Ray ray;
-    Vec2 film;  ///< its place in the picture [pixels]
+    Vec2 film;  ///< its position in the picture [pixels]
 };
 
-/// Draws from `sampler`, of which nothing has been used. `lens`: a point on the lens that all rays of a pass
-/// share; null: every ray has its own.
+/// Samples from `sampler`, of which nothing has been used. `lens`: a point on the lens that all rays of a
+/// pass share; null: every ray has its own.
 inline CameraRay camera_ray(const Camera& camera, const PassContext& pass, int x, int y, Sampler& sampler,
                             const Vec2* lens = nullptr) {
     const Vec2 offset = pass.filter.sample_offset(sampler.next_2d());

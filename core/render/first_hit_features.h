@@ -2,9 +2,9 @@
 // albedo, and the transmittance of the media before them. Masks stop rays by chance, as they stop eye paths;
 // rays pass through thin glass.
 //
-// The rays are those of the picture itself: every pass draws its place on the film and on the lens from the
-// same keys as the eye paths do, so features are filtered as the picture is, blurred as the lens blurs it,
-// and their variance belongs to the same samples. This costs one closest hit a pixel and pass and needs
+// The rays are those of the picture itself: every pass samples its position on the film and on the lens from
+// the same keys as the eye paths do, so features are filtered as the picture is, blurred as the lens blurs
+// it, and their variance belongs to the same samples. This costs one closest hit a pixel and pass and needs
 // nothing of the integrator, whose layers keep their bits.
 #pragma once
 

@@ -51,7 +51,7 @@ class PixelFilter {
     virtual ~PixelFilter() = default;
     virtual Vec2 sample_offset(const Vec2& u) const = 0;  ///< relative to the pixel centre [pixels]
     /// Density of sample_offset() [1/pixels^2]: the filter itself, normalised. What a light path that ends at
-    /// `offset` from a pixel's centre weighs there (see splat.h).
+    /// `offset` from a pixel's centre counts there (see splat.h).
     virtual float pdf_area(const Vec2& offset) const = 0;
     /// The density is zero beyond this in x or in y [pixels].
     virtual float radius() const = 0;

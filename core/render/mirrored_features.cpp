@@ -12,7 +12,7 @@ constexpr float widest_density =
     1.0f;  ///< [1/sr], of the skirts of a narrow lobe: thrice that of a diffuse one
 
 /// True where there is a narrow lobe about the mirrored direction, or about the middle of what the BSDF
-/// draws.
+/// samples.
 bool has_narrow_lobe(const SurfaceHit& hit, const Vec3& wo) {
     const Bsdf& bsdf = *hit.shape->bsdf;
     const BsdfTraits traits = bsdf.traits();
@@ -26,7 +26,7 @@ bool has_narrow_lobe(const SurfaceHit& hit, const Vec3& wo) {
     return is_narrow(Vec3(-wo.x, -wo.y, wo.z)) || (middle && is_narrow(middle->wi));
 }
 
-/// A direction of such a lobe; nothing where the BSDF draws one of a wide lobe beside it.
+/// A direction of such a lobe; nothing where the BSDF samples one of a wide lobe beside it.
 std::optional<BsdfSample> narrow_sample(const SurfaceHit& hit, const Vec3& wo, float u_lobe, const Vec2& u) {
     const auto s = hit.shape->bsdf->sample(bsdf_point(hit), wo, u_lobe, u, TransportMode::radiance);
     if (!s || (!s->delta && !(s->pdf_solid_angle > widest_density))) return std::nullopt;

@@ -12,7 +12,7 @@ namespace mote::core {
 namespace {
 
 constexpr FileKind partial_file{{'m', 'o', 't', 'e', 'p', 'a', 'r', 't'}, 1, "a partial film of mote"};
-constexpr std::uint32_t most_layers = 10000, most_edge = 1u << 20;
+constexpr std::uint32_t max_layers = 10000, max_edge = 1u << 20;
 
 PartialFilm read_from(std::span<const std::byte> bytes) {
     HeadedFile file = read_headed_file(bytes, partial_file);
@@ -21,7 +21,7 @@ PartialFilm read_from(std::span<const std::byte> bytes) {
     const auto width = reader.number<std::uint32_t>(), height = reader.number<std::uint32_t>();
     const bool all_squares = reader.number<std::uint8_t>() != 0;
     const auto count = reader.number<std::uint32_t>();
-    if (width > most_edge || height > most_edge || count > most_layers)
+    if (width > max_edge || height > max_edge || count > max_layers)
         throw InputError("damaged (its size cannot be)");
     std::vector<Layer> layers;
     for (std::uint32_t i = 0; i < count; ++i) {

@@ -1,6 +1,7 @@
 // Pixel filters as distributions of offsets (filter importance sampling, Ernst et al. 2006).
 //
-// All three are products of one function per axis and nowhere negative, so that every sample weighs the same.
+// All three are products of one function per axis and nowhere negative, so that every sample has the same
+// weight.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -44,8 +45,8 @@ class TentFilter final : public PixelFilter {
     float radius_;
 };
 
-// exp(-x^2 / (2 stddev^2)) minus its value at the radius, as Mitsuba 3 has it. Drawn from a piecewise-linear
-// density of 512 cells, exactly: the density is then right to about 1e-5 of its peak.
+// exp(-x^2 / (2 stddev^2)) minus its value at the radius, as Mitsuba 3 has it. Sampled from a
+// piecewise-linear density of 512 cells, exactly: the density is then right to about 1e-5 of its peak.
 class GaussianFilter final : public PixelFilter {
   public:
     GaussianFilter(double radius, double stddev) : radius_(radius), cell_(2.0 * radius / cells) {
@@ -77,7 +78,7 @@ class GaussianFilter final : public PixelFilter {
         return i;
     }
 
-    /// Value of the table, so that it is exactly what invert() draws by.
+    /// Value of the table, so that it is exactly what invert() samples by.
     double density(double x) const {
         const double at = (x + radius_) / cell_;
         if (!(at >= 0.0 && at < double(cells))) return 0.0;

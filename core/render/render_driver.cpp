@@ -63,8 +63,8 @@ class PassLoop {
     }
 
   private:
-    /// Passes that have found no light yet, but that of lights in view, agree with each other and say nothing:
-    /// infinity.
+    /// Passes that have found no light yet, but that of lights in view, agree with each other and say
+    /// nothing: infinity.
     double known(double noise) const {
         if (noise > 0.0) return noise;
         const Film& film = result_.film;
@@ -79,7 +79,7 @@ class PassLoop {
     /// After an interruption: reuses the last preview's result of every step that would take too long.
     void finish_in_a_hurry() {
         try {
-            const Deadline deadline(most_finish_seconds);
+            const Deadline deadline(max_finish_seconds);
             return runner_.estimator().finish(result_.film, deadline.is_over());
         } catch (const Cancelled&) {
         } catch (const std::bad_alloc&) {
@@ -181,7 +181,7 @@ class PassLoop {
         ++previews_, preview_time_ = Clock::now(), preview_seconds_ = seconds_since(begin);
         result_.statistics.seconds["previews"] += preview_seconds_;
     }
-    /// Looks at the finished picture; the film is afterwards as it was. Throws Cancelled.
+    /// Shows the finished picture to `look`; the film is afterwards as it was. Throws Cancelled.
     template <typename Look>
     void finish_for_now(const Look& look) {
         try {
@@ -229,7 +229,7 @@ class PassLoop {
     /// Noise of the picture when it was finished last, and relative to the noise of its passes.
     double finished_noise_ = infinity, left_of_noise_ = infinity;
     Clock::time_point preview_time_ = Clock::now();
-    double noise_seconds_ = 0.0;  ///< that looking at the noise took the last time
+    double noise_seconds_ = 0.0;  ///< cost of the last evaluation of the noise
     const Clock::time_point start_ = Clock::now();
     Clock::time_point noise_time_ = start_, checkpoint_time_ = start_;
 };

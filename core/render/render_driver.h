@@ -28,7 +28,7 @@ struct PassRange {
     std::uint32_t first = 0, end = 0;  ///< index of the first, and behind the last
 };
 
-/// Told after every pass.
+/// Called after every pass.
 struct RenderProgress {
     std::uint32_t passes, passes_of_this_run;    ///< the first holds those of a checkpoint too
     std::optional<std::uint32_t> passes_wanted;  ///< where a number was given
@@ -42,7 +42,7 @@ struct RenderProgress {
 struct RenderRequest {
     std::uint64_t seed = 0;  ///< of all random numbers
     StopRule stop;           ///< when it ends
-    /// These passes alone, whatever `stop` says. Estimator::finish() is for who has the others too.
+    /// These passes alone, whatever `stop` says. Estimator::finish() needs the others too.
     std::optional<PassRange> range;
     const Film* begin_with = nullptr;        ///< passes that were rendered elsewhere, from the first on
     std::string checkpoint_path;             ///< "" for none
@@ -85,13 +85,13 @@ struct RenderResult {
 };
 
 /// Estimator::finish() of an interrupted render may take so long [s]: half of what stopping may take.
-inline constexpr double most_finish_seconds = 1.0;
+inline constexpr double max_finish_seconds = 1.0;
 
 /// Renders until a stop rule holds. When interrupted, the running pass is dropped and everything before it
-/// kept. Throws InputError when a range of passes is requested and the integrator cannot tell which those
-/// are, when a checkpoint does not belong to this render or is damaged, and when something else stands where
-/// it is to be written; OutOfMemory when the film does not fit into the budget. One that cannot be written is
-/// a warning and another try later: the one before it stays intact.
+/// kept. Throws InputError when a range of passes is requested and the integrator cannot determine which
+/// those are, when a checkpoint does not belong to this render or is damaged, and when something else stands
+/// where it is to be written; OutOfMemory when the film does not fit into the budget. One that cannot be
+/// written is a warning and another try later: the one before it stays intact.
 RenderResult render(const Scene& scene, const Integrator& integrator, const RenderRequest& request);
 
 /// The filter of a film as a distribution of offsets. Throws InputError for an unknown name.

@@ -2,7 +2,7 @@
 //
 // A pixel's value is int f_j(x) I(x) dx (see camera.h), so a light path of contribution c (its power times
 // CameraSample::weight, over the number of light paths traced) that ends at x adds c f_j(x) to every pixel j
-// within the filter's reach. Eye paths of the same pixel need no such factor: they draw x by f_j itself.
+// within the filter's reach. Eye paths of the same pixel need no such factor: they sample x by f_j itself.
 //
 // Multiple importance sampling of both techniques may leave the filter out of the weights: let eye paths have
 // the density of one ray a pixel, as RayImportance counts it. The weights of one path then add up to 1 in

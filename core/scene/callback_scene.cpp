@@ -84,9 +84,9 @@ float CallbackScene::light_probability(const LightReceiver&, const Emitter* emit
 
 LightChoice CallbackScene::choose_emitter_by_power(float u, float* remapped) const {
     if (by_power_.empty()) return {nullptr, 0.0f};
-    const auto drawn = by_power_.sample_discrete(u);
-    if (remapped) *remapped = drawn.remapped;
-    return {calls_.emitters[drawn.index].get(), drawn.probability};
+    const auto sampled = by_power_.sample_discrete(u);
+    if (remapped) *remapped = sampled.remapped;
+    return {calls_.emitters[sampled.index].get(), sampled.probability};
 }
 
 float CallbackScene::probability_by_power(const Emitter* emitter) const {

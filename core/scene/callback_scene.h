@@ -26,7 +26,7 @@ class ForeignSurface final : public Shape {
     /// along it the point may lie off the surface [m]; rays that leave start so much farther out.
     SurfaceHit hit(const Ray& ray, float t, const Vec3& geometric_normal, float error = 0.0f) const;
 
-    /// No extent, as all that follows: a foreign surface is never drawn from.
+    /// No extent, as all that follows: a foreign surface is never sampled from.
     Bounds3 bounds() const override { return {}; }
     float area() const override { return 0.0f; }                              ///< zero
     ShapeSample sample_area(const Vec2& /*u*/) const override { return {}; }  ///< of no use

@@ -65,7 +65,7 @@ class Camera : public Object {
     /// The importance of a ray from `origin` on the lens, unit `direction` into the scene. A delta part is
     /// taken to be the camera's own. Nothing where no ray of the camera leaves so, or where it belongs to a
     /// place more than `margin` pixels outside of the film: pixels at the border see as far as their filter
-    /// reaches (PixelFilter::radius). Does not look at the clipping planes, which end rays, not directions.
+    /// reaches (PixelFilter::radius). Ignores the clipping planes, which end rays, not directions.
     virtual std::optional<RayImportance> importance(const Vec3& origin, const Vec3& direction,
                                                     float margin) const = 0;
 

@@ -73,7 +73,7 @@ class Emitter : public Object {
     /// Called once when the scene is complete: bounding sphere of everything. Lights at infinity need it.
     virtual void set_scene_bounds(const Vec3& /*center*/, float /*radius*/) {}
 
-    /// Draws a direction to the light as seen from p. Nothing when the light is black there.
+    /// Samples a direction to the light as seen from p. Nothing when the light is black there.
     virtual std::optional<DirectSample> sample_direct(const Vec3& p, const Vec2& u) const = 0;
     /// Density, per solid angle at p, of sample_direct() choosing the light point that a ray from p hit:
     /// `hit` for area lights, the direction wi alone for lights at infinity (hit is null then).
@@ -84,13 +84,13 @@ class Emitter : public Object {
     /// Radiance arriving from direction wi (away from the receiver) for lights at infinity.
     virtual Rgb environment(const Vec3& /*wi*/) const { return Rgb(0.0f); }
 
-    /// Draws a particle. Nothing when the sample carries no light.
+    /// Samples a particle. Nothing when the sample carries no light.
     virtual std::optional<EmissionSample> sample_emission(const Vec2& u_position,
                                                           const Vec2& u_direction) const = 0;
 
-    /// With which densities sample_emission() draws this origin and this direction (unit, away from the
+    /// With which densities sample_emission() samples this origin and this direction (unit, away from the
     /// light). `normal` is that of the light's surface at the origin, and of no consequence for other lights.
-    /// Draws that carry no light count like all others.
+    /// Samples that carry no light count like all others.
     ///
     /// A delta part (see EmitterTraits) is taken to be the light's own and counts as 1: no other technique
     /// can find it. For lights at infinity any point of the particle's ray will do for its origin, since all

@@ -14,7 +14,7 @@ struct LightBounds {
     /// Where all normals are one, and reach is a right angle: how far behind the box's centre, against the
     /// normal, the light's points lie at most [m]. Else infinite: nothing is known.
     float back = infinity;
-    double intensity = 0.0;  ///< along a normal, the mean of the channels; of a group the sum [W/sr]
+    double intensity = 0.0;  ///< along a normal, the mean of the channels; of a cluster the sum [W/sr]
 };
 
 /// Holds both.

@@ -9,18 +9,18 @@ namespace {
 
 constexpr int buckets = 16;
 
-/// M_Omega: of the directions that a group shines in (Eq. 1).
-double orientation_measure(const LightBounds& group) {
-    const double o = std::max(double(group.normals.angle), 0.0),
-                 w = std::min(o + double(group.reach), double(pi));
+/// M_Omega: of the directions that a cluster shines in (Eq. 1).
+double orientation_measure(const LightBounds& cluster) {
+    const double o = std::max(double(cluster.normals.angle), 0.0),
+                 w = std::min(o + double(cluster.reach), double(pi));
     return 2.0 * double(pi) * (1.0 - std::cos(o)) +
            0.5 * double(pi) *
                (2.0 * w * std::sin(o) - std::cos(o - 2.0 * w) - 2.0 * o * std::sin(o) + std::cos(o));
 }
 
-double cost(const LightBounds& group) {
-    const Vec3d d(group.box.diagonal());
-    return group.intensity * orientation_measure(group) * glm::dot(d, d);
+double cost(const LightBounds& cluster) {
+    const Vec3d d(cluster.box.diagonal());
+    return cluster.intensity * orientation_measure(cluster) * glm::dot(d, d);
 }
 
 int bucket_of(const Vec3& c, const Bounds3& centers, int axis) {

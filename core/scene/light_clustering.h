@@ -1,9 +1,9 @@
-// Sorting lights into groups, for a hierarchy over them.
+// Sorting lights into clusters, for a hierarchy over them.
 //
-// Top down: each group is cut where the orientation-aware surface heuristic costs least (Estevez and
-// Kulla 2018, Eq. 1 and 2), between buckets of the lights' centres along each axis. The measure of a group's
-// place is the square of its diagonal where the paper takes its surface area, which is zero for all groups of
-// lights in a row.
+// Top down: each cluster is cut where the orientation-aware surface heuristic costs least (Estevez and
+// Kulla 2018, Eq. 1 and 2), between buckets of the lights' centres along each axis. The measure of a
+// cluster's place is the square of its diagonal where the paper takes its surface area, which is zero for all
+// clusters of lights in a row.
 #pragma once
 
 #include <cstdint>

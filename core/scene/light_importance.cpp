@@ -15,20 +15,20 @@ AngleOf half_angle(float radius, float distance) {
             outside ? sine * slack.cos + cosine * slack.sin : 0.0f};
 }
 
-/// The largest cosine at the light, `off` its axis, when the group's normals spread and it fills `around`; 0
-/// beyond its reach.
-float emitted_cosine(const LightGroups& g, std::size_t i, const AngleOf& off, const AngleOf& around) {
+/// The largest cosine at the light, `off` its axis, when the cluster's normals spread and it fills `around`;
+/// 0 beyond its reach.
+float emitted_cosine(const LightClusters& g, std::size_t i, const AngleOf& off, const AngleOf& around) {
     const AngleOf least = minus(minus(off, {g.cos_spread[i], g.sin_spread[i]}), around);
     return least.cos > g.cos_reach[i] ? least.cos : 0.0f;
 }
 
 }  // namespace
 
-LightGroups::LightGroups(std::span<const LightBounds> groups) {
+LightClusters::LightClusters(std::span<const LightBounds> clusters) {
     double brightest = 0.0;
-    for (const LightBounds& group : groups) brightest = std::max(brightest, group.intensity);
-    for (std::size_t i = 0; i < groups.size(); ++i) {
-        const LightBounds& g = groups[i];
+    for (const LightBounds& cluster : clusters) brightest = std::max(brightest, cluster.intensity);
+    for (std::size_t i = 0; i < clusters.size(); ++i) {
+        const LightBounds& g = clusters[i];
         const Vec3 center = g.box.center(), half = 0.5f * g.box.diagonal(), axis = g.normals.axis;
         center_x[i] = center.x, center_y[i] = center.y, center_z[i] = center.z;
         half_x[i] = half.x, half_y[i] = half.y, half_z[i] = half.z;
@@ -43,11 +43,11 @@ LightGroups::LightGroups(std::span<const LightBounds> groups) {
     }
 }
 
-LightImportances light_importances(const LightGroups& g, const LightReceiver& receiver) {
+LightImportances light_importances(const LightClusters& g, const LightReceiver& receiver) {
     const Vec3 p = receiver.position, n = receiver.normal;
     const float any_side = n == Vec3(0.0f) ? 1.0f : 0.0f;
     LightImportances importances;
-    for (std::size_t i = 0; i < LightGroups::width; ++i) {
+    for (std::size_t i = 0; i < LightClusters::width; ++i) {
         const float x = g.center_x[i] - p.x, y = g.center_y[i] - p.y, z = g.center_z[i] - p.z;
         const float distance2 = x * x + y * y + z * z, radius2 = g.radius[i] * g.radius[i];
         const float distance = std::sqrt(std::max(distance2, 1e-30f));
@@ -69,11 +69,11 @@ LightImportances light_importances(const LightGroups& g, const LightReceiver& re
     return importances;
 }
 
-LightImportances light_importances(const LightGroups& g, const LightSegment& segment) {
+LightImportances light_importances(const LightClusters& g, const LightSegment& segment) {
     const Vec3d d(segment.direction);
     const double t0 = double(segment.t0), t1 = std::min(double(segment.t1), 1e30);
     LightImportances importances{};
-    for (std::size_t i = 0; i < LightGroups::width; ++i) {
+    for (std::size_t i = 0; i < LightClusters::width; ++i) {
         if (!(g.intensity[i] > 0.0f)) continue;
         const Vec3d from_light = Vec3d(segment.origin) - Vec3d(g.center_x[i], g.center_y[i], g.center_z[i]);
         const double along = glm::dot(from_light, d), off2 = glm::dot(from_light, from_light);

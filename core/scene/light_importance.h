@@ -10,9 +10,9 @@
 
 namespace mote::core {
 
-/// Eight groups, the children of one node, each number of all eight side by side: they are compared with each
-/// other and with nothing else. Slots that hold no group have no importance.
-struct alignas(32) LightGroups {
+/// Eight clusters, the children of one node, each number of all eight side by side: they are compared with
+/// each other and with nothing else. Slots that hold no cluster have no importance.
+struct alignas(32) LightClusters {
     static constexpr std::size_t width = 8;
     template <typename T>
     using Each = std::array<T, width>;
@@ -23,16 +23,16 @@ struct alignas(32) LightGroups {
     Each<float> cos_spread{}, sin_spread{}, cos_reach{};
     Each<float> intensity{};  ///< over that of the brightest of the eight
 
-    LightGroups() = default;
-    explicit LightGroups(std::span<const LightBounds> groups);  ///< at most eight
+    LightClusters() = default;
+    explicit LightClusters(std::span<const LightBounds> clusters);  ///< at most eight
 };
 
-using LightImportances = LightGroups::Each<float>;
+using LightImportances = LightClusters::Each<float>;
 
-/// Estimates of the light from each group at a receiver, up to a common factor: intensity, both cosines,
+/// Estimates of the light from each cluster at a receiver, up to a common factor: intensity, both cosines,
 /// 1/d^2. They are 0 only where nothing can arrive, and scenes of any scale give the same ratios.
-LightImportances light_importances(const LightGroups& groups, const LightReceiver& receiver);
+LightImportances light_importances(const LightClusters& clusters, const LightReceiver& receiver);
 /// Estimates along a segment: in the place of 1/d^2 its integral, (theta_b - theta_a) / D.
-LightImportances light_importances(const LightGroups& groups, const LightSegment& segment);
+LightImportances light_importances(const LightClusters& clusters, const LightSegment& segment);
 
 }  // namespace mote::core

@@ -28,12 +28,12 @@ LightTree::LightTree(std::span<const LightBounds> lights) : leaves_(lights.size(
         depth_ = std::max(depth_, work.depth);
         const auto index = std::uint32_t(nodes_.size());
         if (work.parent.node != none) nodes_[work.parent.node].child[work.parent.slot] = index;
-        const std::vector<LightRun> runs = clustering.cut_into(work.run, LightGroups::width);
-        std::vector<LightBounds> groups;
+        const std::vector<LightRun> runs = clustering.cut_into(work.run, LightClusters::width);
+        std::vector<LightBounds> clusters;
         Node node;
         node.parent = work.parent, node.children = std::uint32_t(runs.size());
         for (std::uint32_t slot = 0; slot < runs.size(); ++slot) {
-            groups.push_back(runs[slot].bounds);
+            clusters.push_back(runs[slot].bounds);
             if (runs[slot].size() == 1) {
                 const std::uint32_t light = clustering.light(runs[slot]);
                 node.is_light[slot] = true, node.child[slot] = light, leaves_[light] = {index, slot};
@@ -41,33 +41,33 @@ LightTree::LightTree(std::span<const LightBounds> lights) : leaves_(lights.size(
                 works.push_back({runs[slot], {index, slot}, work.depth + 1});
             }
         }
-        node.groups = LightGroups(groups);
+        node.clusters = LightClusters(clusters);
         nodes_.push_back(node);
     }
 }
 
 template <typename Where>
-LightImportances LightTree::shares(const Node& node, const Where& where) {
-    LightImportances importances = light_importances(node.groups, where);
-    const double sum = sum_of(importances);
-    if (sum > 0.0 && std::isfinite(sum)) return importances;
-    for (std::uint32_t slot = 0; slot < LightGroups::width; ++slot)
-        importances[slot] = slot < node.children ? 1.0f : 0.0f;
-    return importances;
+LightImportances LightTree::importances(const Node& node, const Where& where) {
+    LightImportances result = light_importances(node.clusters, where);
+    const double sum = sum_of(result);
+    if (sum > 0.0 && std::isfinite(sum)) return result;
+    for (std::uint32_t slot = 0; slot < LightClusters::width; ++slot)
+        result[slot] = slot < node.children ? 1.0f : 0.0f;
+    return result;
 }
 
 template <typename Where>
 LightTree::Choice LightTree::sample(const Where& where, double u) const {
     Choice choice{0, 1.0};
     for (const Node* node = &nodes_.front();;) {
-        const LightImportances share = shares(*node, where);
-        const double sum = sum_of(share);
+        const LightImportances importance = importances(*node, where);
+        const double sum = sum_of(importance);
         double left = u * sum;
-        std::uint32_t slot = 0, last = 0;  // `last` that has a share: rounding must not go beyond it
-        for (std::uint32_t i = 0; i < node->children; ++i) last = share[i] > 0.0f ? i : last;
-        while (slot < last && left >= double(share[slot])) left -= double(share[slot++]);
-        u = std::min(left / double(share[slot]), 1.0 - 0x1p-53);
-        choice.probability *= double(share[slot]) / sum;
+        std::uint32_t slot = 0, last = 0;  // `last` of positive importance: rounding must not go beyond it
+        for (std::uint32_t i = 0; i < node->children; ++i) last = importance[i] > 0.0f ? i : last;
+        while (slot < last && left >= double(importance[slot])) left -= double(importance[slot++]);
+        u = std::min(left / double(importance[slot]), 1.0 - 0x1p-53);
+        choice.probability *= double(importance[slot]) / sum;
         choice.light = node->child[slot];
         if (node->is_light[slot]) return choice;
         node = &nodes_[choice.light];
@@ -78,8 +78,8 @@ template <typename Where>
 double LightTree::probability(const Where& where, std::uint32_t light) const {
     double probability = 1.0;
     for (Place place = leaves_[light]; place.node != none; place = nodes_[place.node].parent) {
-        const LightImportances share = shares(nodes_[place.node], where);
-        probability *= double(share[place.slot]) / sum_of(share);
+        const LightImportances importance = importances(nodes_[place.node], where);
+        probability *= double(importance[place.slot]) / sum_of(importance);
     }
     return probability;
 }

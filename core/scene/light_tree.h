@@ -1,9 +1,9 @@
-// A hierarchy over lights, eight children a node, from which one is drawn for a receiver in proportion to
-// what it may contribute (Estevez and Kulla 2018; without their splitting: one light a draw).
+// A hierarchy over lights, eight children a node, from which one is sampled for a receiver in proportion to
+// what it may contribute (Estevez and Kulla 2018; without their splitting: one light a sample).
 //
-// Going down, each child's share is its importance over that of all eight. The probability of a light is the
-// product of the shares on its way; where no child matters all are alike, so that the probabilities of all
-// lights add up to 1 for every receiver.
+// Going down, each child's probability is its importance over that of all eight. The probability of a light
+// is the product of the probabilities on its way; where no child matters all are alike, so that the
+// probabilities of all lights add up to 1 for every receiver.
 #pragma once
 
 #include <span>
@@ -23,10 +23,10 @@ class LightTree {
     std::size_t size() const { return leaves_.size(); }  ///< lights
     int depth() const { return depth_; }                 ///< nodes on the longest way down
 
-    /// A light drawn.
+    /// A light sampled.
     struct Choice {
         std::uint32_t light;  ///< index into the list that the tree was made of
-        double probability;   ///< of this draw
+        double probability;   ///< of this sample
     };
     /// Precondition: !empty(). `where` is a LightReceiver or a LightSegment; u in [0, 1).
     template <typename Where>
@@ -42,14 +42,14 @@ class LightTree {
         std::uint32_t node = none, slot = 0;
     };
     struct Node {
-        LightGroups groups;
+        LightClusters clusters;
         Place parent;
         std::uint32_t children = 0;
-        LightGroups::Each<std::uint32_t> child{};  ///< a node, or a light where is_light
-        LightGroups::Each<bool> is_light{};
+        LightClusters::Each<std::uint32_t> child{};  ///< a node, or a light where is_light
+        LightClusters::Each<bool> is_light{};
     };
     template <typename Where>
-    static LightImportances shares(const Node& node, const Where& where);
+    static LightImportances importances(const Node& node, const Where& where);
 
     std::vector<Node> nodes_;
     std::vector<Place> leaves_;  ///< by light

@@ -7,7 +7,7 @@
 
 namespace mote::core {
 
-/// A light drawn from the scene.
+/// A light sampled from the scene.
 struct LightChoice {
     const Emitter* emitter;  ///< null: none
     float probability;       ///< of this choice

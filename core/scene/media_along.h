@@ -38,15 +38,15 @@ template <typename Part, typename Pane>
 std::optional<MediumState> for_each_part(const RayQueries& scene, const Ray& ray, MediumState state,
                                          const Part& part, const Pane& pane) {
     float t = ray.t_min;
-    bool goes_on = true;
+    bool continues = true;
     const auto cross = [&](const SurfaceHit& boundary) {
-        goes_on = part(t, boundary.t, state) && (!is_pane(boundary) || pane(boundary));
+        continues = part(t, boundary.t, state) && (!is_pane(boundary) || pane(boundary));
         state.cross(*boundary.shape, boundary.geometric_normal, ray.direction);
         t = boundary.t;
-        return goes_on;
+        return continues;
     };
     if (scene.has_boundaries()) scene.for_each_boundary(ray, cross);
-    if (!goes_on || !part(t, ray.t_max, state)) return std::nullopt;
+    if (!continues || !part(t, ray.t_max, state)) return std::nullopt;
     return state;
 }
 

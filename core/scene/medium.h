@@ -111,7 +111,7 @@ class Medium : public Object {
     /// Optical depth per channel from t_min to t_max, by marching: deterministic, biased by the step, exact
     /// for homogeneous media. The segment, clipped to bounds(), is cut into equal steps of at most
     /// marching_step(); each counts with the extinction in its middle. An infinite segment of a medium
-    /// without bounds counts as if the extinction of its start went on.
+    /// without bounds counts as if the extinction of its start continued.
     virtual Vec3d optical_depth_along(const Ray& ray, float voxels, TrackingCounters& counters) const;
     /// Optical depths from t_min to the end of each of depths.size() equal parts of a finite segment.
     virtual void optical_depths_along(const Ray& ray, float voxels, std::span<Vec3d> depths,
@@ -121,8 +121,8 @@ class Medium : public Object {
     virtual float marching_step(float voxels, float length) const;
     static constexpr int default_steps = 256;  ///< of marching_step()
 
-    /// Its emission within `box` as a light, to be drawn from; null where there is none. From then on
-    /// sample_collision() weighs the emission it meets against that light.
+    /// Its emission within `box` as a light, to be sampled from; null where there is none. From then on
+    /// sample_collision() weights the emission it meets against that light.
     virtual std::shared_ptr<Emitter> make_emitter(const Bounds3& /*box*/) { return nullptr; }
 };
 

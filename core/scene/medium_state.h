@@ -1,6 +1,6 @@
 // Media that surround a point of a path: the shapes it is inside of, and the medium outside all of them.
 //
-// A scene has one outermost medium (Scene::outermost_medium): who is outside of all shapes is in it, be it
+// A scene has one outermost medium (Scene::outermost_medium): what is outside of all shapes is in it, be it
 // the sensor, a light, or a vertex of a path. Open walls, such as those of a room with a window, may part the
 // outside into regions of different media; closed shapes never do.
 //

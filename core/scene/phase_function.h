@@ -12,7 +12,7 @@
 
 namespace mote::core {
 
-/// A direction drawn for a viewer.
+/// A direction sampled for a viewer.
 struct PhaseSample {
     Vec3 wi;                ///< unit, away from the point
     Rgb weight;             ///< value / pdf
@@ -26,7 +26,7 @@ class PhaseFunction : public Object {
     virtual Rgb eval(const Vec3& wo, const Vec3& wi) const = 0;
     /// Density of sample() choosing wi given wo. The reverse density is this with the directions exchanged.
     virtual float pdf_solid_angle(const Vec3& wo, const Vec3& wi) const = 0;
-    /// Draws wi for wo from a point of the unit square.
+    /// Samples wi for wo from a point of the unit square.
     virtual PhaseSample sample(const Vec3& wo, const Vec2& u) const = 0;
     virtual bool isotropic() const = 0;
     /// Mean cosine of the scattering angle (0 for isotropic, > 0 forward).

@@ -16,7 +16,7 @@ std::optional<float> cross_segment(const MediumState& state, const Ray& ray, flo
     return medium->sample_collision(segment, weights, emitted, context.rng, context.tracking);
 }
 
-/// A path passes a pane by chance. Light that was looked for through it, with certainty, could have been
+/// A path passes a pane by chance. Light that was sampled through it, with certainty, could have been
 /// found this way with that chance: what `light` compares.
 bool passes(const StraightPassage& pane, PathWeights& weights, Rng& rng) {
     if (!(rng.next_float() < pane.probability())) return false;

@@ -24,8 +24,8 @@ struct WalkContext {
     CancelToken cancelled;                  ///< walk() tests it, and throws
 };
 
-/// The channel that drives the distances of a path, drawn once a path (PathWeights::hero).
-inline int draw_hero(Rng& rng) { return std::min(int(rng.next_float() * 3.0f), 2); }
+/// The channel that drives the distances of a path, sampled once a path (PathWeights::hero).
+inline int sample_hero(Rng& rng) { return std::min(int(rng.next_float() * 3.0f), 2); }
 
 struct WalkEvent {
     enum class Kind : std::uint8_t { escaped, surface, collision };
@@ -46,8 +46,8 @@ template <bool Media>
 WalkEvent walk(const RayQueries& scene, const Ray& ray, MediumState& state, PathWeights& weights,
                Rgb& emitted, WalkContext& context);
 
-/// Goes on to the first surface, or to a pane that reflects the path, or outside: media on the way scatter at
-/// `points` and let the rest through (Medium::scatter_along). For paths whose `weights.light` is black.
+/// Continues to the first surface, or to a pane that reflects the path, or outside: media on the way scatter
+/// at `points` and let the rest through (Medium::scatter_along). For paths whose `weights.light` is black.
 WalkEvent walk_to_surface(const RayQueries& scene, const Ray& ray, MediumState& state, PathWeights& weights,
                           Rgb& emitted, ScatteringPoints& points, WalkContext& context);
 

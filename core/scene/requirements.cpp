@@ -1,4 +1,4 @@
-// Looks at every shape, light and medium of a scene once.
+// Visits every shape, light and medium of a scene once.
 #include "core/scene/requirements.h"
 
 #include <algorithm>

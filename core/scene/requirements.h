@@ -17,7 +17,7 @@ struct Requirements {
     std::size_t bsdfs_diffuse = 0, bsdfs_glossy = 0, bsdfs_delta = 0, bsdfs_null = 0;
     bool textures = false;
     std::size_t lights_point = 0, lights_area = 0, lights_infinite = 0;  ///< point includes spot
-    std::size_t lights_media = 0;  ///< media whose emission is drawn from
+    std::size_t lights_media = 0;  ///< media whose emission is sampled from
     std::size_t media = 0, media_homogeneous = 0, media_heterogeneous = 0;
     bool media_emissive = false, media_anisotropic = false, media_chromatic = false, media_scattering = false;
     bool camera_in_medium = false;

@@ -1,5 +1,5 @@
-// The density with which a path through a vertex would have been drawn from its other end: what multiple
-// importance sampling needs to weigh a technique against those that build the same path the other way.
+// The density with which a path through a vertex would have been sampled from its other end: what multiple
+// importance sampling needs to weight a technique against those that build the same path the other way.
 #pragma once
 
 #include "core/scene/scattering_vertex.h"

@@ -13,15 +13,15 @@ void ScatteringPoints::begin_part(const MediumState& state) { parts_.push_back(s
 
 void ScatteringPoints::add(const Vec3& position, const Rgb& weight) {
     if (count_ == 0 || !(max_component(weight) > 0.0f)) return;
-    if (candidates_.size() == most_candidates) {  // half as many replace them, with the same mean
-        draw(candidates_, most_candidates / 2, chosen_);
+    if (candidates_.size() == max_candidates) {  // half as many replace them, with the same mean
+        sample(candidates_, max_candidates / 2, chosen_);
         candidates_.swap(chosen_);
     }
     candidates_.push_back({position, weight, std::uint32_t(parts_.size() - 1)});
 }
 
-double ScatteringPoints::draw(const std::vector<ScatteringPoint>& from, std::size_t count,
-                              std::vector<ScatteringPoint>& to) {
+double ScatteringPoints::sample(const std::vector<ScatteringPoint>& from, std::size_t count,
+                                std::vector<ScatteringPoint>& to) {
     to.clear();
     double sum = 0.0;
     for (const ScatteringPoint& c : from) sum += average(c.weight);
@@ -30,7 +30,7 @@ double ScatteringPoints::draw(const std::vector<ScatteringPoint>& from, std::siz
     for (const ScatteringPoint& c : from) {
         const double weight = average(c.weight);
         passed += weight;
-        // Each is drawn weight / step times on average. The last one ends what rounding has left over.
+        // Each is sampled weight / step times on average. The last one ends what rounding has left over.
         for (; to.size() < count && (next < passed || &c == &from.back()); next += step)
             to.push_back({c.position, c.weight * float(step / weight), c.part});
     }
@@ -40,7 +40,7 @@ double ScatteringPoints::draw(const std::vector<ScatteringPoint>& from, std::siz
 std::span<const ScatteringPoint> ScatteringPoints::choose(float rare) {
     if (candidates_.empty()) return {};
     const auto count = std::size_t(count_);
-    const double sum = draw(candidates_, count, chosen_);
+    const double sum = sample(candidates_, count, chosen_);
     const auto first = std::min(std::size_t(rng_.next_float() * float(count_)), count - 1);
     std::rotate(chosen_.begin(), chosen_.begin() + std::ptrdiff_t(first), chosen_.end());
     if (const auto stays = float(sum / double(rare)); stays < 1.0f)

@@ -4,10 +4,10 @@
 // One walk along the ray (walk_to_surface(), ray_walk.h) finds what comes through to its end and leaves any
 // number of candidates on the way, each with the weight of light that is scattered there:
 //   throughput T(t) sigma_s(t) / density of the candidate
-// whose sum over candidates is unbiased. Of them a fixed number is drawn in proportion to their weights, by
+// whose sum over candidates is unbiased. Of them a fixed number is sampled in proportion to their weights, by
 // systematic sampling: equal steps through the sum of weights from one random start, so that points keep
 // their distance. No channel drives anything: weights are those of all channels, and later decisions may be
-// driven by any one that is drawn independently.
+// driven by any one that is sampled independently.
 #pragma once
 
 #include <span>
@@ -32,7 +32,7 @@ class ScatteringPoints {
     /// Number of candidates that a medium should submit, where it is free to choose.
     int candidates() const { return 4 * std::max(count_, 1); }
 
-    /// Begins a ray; `rng` is drawn from where there are too many candidates to keep, and in choose().
+    /// Begins a ray; `rng` is sampled from where there are too many candidates to keep, and in choose().
     void start(const Rng& rng);
     /// Candidates from now on lie in the medium of `state`.
     void begin_part(const MediumState& state);
@@ -46,11 +46,11 @@ class ScatteringPoints {
     const MediumState& state_of(const ScatteringPoint& point) const { return parts_[point.part]; }
 
   private:
-    /// Draws `count` of `from` in order into `to`; returns the sum of the weights.
-    double draw(const std::vector<ScatteringPoint>& from, std::size_t count,
-                std::vector<ScatteringPoint>& to);
+    /// Samples `count` of `from` in order into `to`; returns the sum of the weights.
+    double sample(const std::vector<ScatteringPoint>& from, std::size_t count,
+                  std::vector<ScatteringPoint>& to);
 
-    static constexpr std::size_t most_candidates = 512;
+    static constexpr std::size_t max_candidates = 512;
     int count_;
     Rng rng_;
     std::vector<MediumState> parts_;

@@ -15,7 +15,7 @@
 
 namespace mote::core {
 
-/// A direction drawn at a vertex.
+/// A direction sampled at a vertex.
 struct ScatterSample {
     Vec3 wi;                                  ///< world
     Rgb weight;                               ///< f* C* / pdf
@@ -45,7 +45,7 @@ struct ScatteringVertex {
     Rgb eval_cos(const Vec3& wi, TransportMode mode, float peak_limit = infinity) const;
     /// Density of sample() choosing wi, per solid angle.
     float pdf_solid_angle(const Vec3& wi, TransportMode mode) const;
-    /// Draws a direction; nothing where the path ends.
+    /// Samples a direction; nothing where the path ends.
     std::optional<ScatterSample> sample(float u_lobe, const Vec2& u, TransportMode mode) const;
 
     /// On a surface: its reflectance where it is Lambertian and nothing else, seen from wo's side.

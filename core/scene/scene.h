@@ -90,7 +90,7 @@ class Scene final : public LitScene {
     LightChoice choose_emitter_by_power(float u, float* remapped = nullptr) const override;
     float probability_by_power(const Emitter* emitter) const override;
 
-    /// The medium that surrounds everything, of which all who name it agree; null: vacuum.
+    /// The medium that surrounds everything, of which all shapes that name it agree; null: vacuum.
     const Medium* outermost_medium() const { return outermost_; }
     /// The media around a point: found by casting rays against the medium boundaries, see medium_state.h.
     /// `declared`: what stands there says in which medium it is; counts where open walls part the outside.

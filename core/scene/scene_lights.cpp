@@ -1,6 +1,6 @@
 // Light sampling: for a receiver by the light hierarchy, for a particle by power.
 //
-// Lights at infinity and the emission of media have no place in the hierarchy, and are drawn half by power
+// Lights at infinity and the emission of media have no place in the hierarchy, and are sampled half by power
 // and half equally, so that no light is starved. All others share their part: most of it goes to the
 // hierarchy, the rest stays with each as it is. For a hierarchy does not see what is in the way, nor how a
 // surface reflects, and a bright light close by that does not count would leave hardly a chance to all
@@ -25,7 +25,8 @@ float scalar_power(const Emitter& emitter, const std::string& file) {
     return average(power);
 }
 
-/// More bits than a float holds, so that a draw among many lights wears none of them out. They follow from u.
+/// More bits than a float holds, so that a sample among many lights wears none of them out. They follow from
+/// u.
 double refined(float u) {
     std::uint64_t bits = std::uint64_t(double(u) * 0x1p32) * 0x9e3779b97f4a7c15ull;
     bits ^= bits >> 29, bits *= 0xbf58476d1ce4e5b9ull, bits ^= bits >> 32;
@@ -75,13 +76,13 @@ void Scene::build_light_tables() {
 
 LightChoice Scene::choose_light(const LightReceiver& receiver, float u) const {
     if (direct_lights_.empty()) return {nullptr, 0.0f};
-    const auto drawn = direct_lights_.sample_discrete(u);
-    std::size_t light = drawn.index;
+    const auto sampled = direct_lights_.sample_discrete(u);
+    std::size_t light = sampled.index;
     if (light == parts_.emitters.size()) {  // by the hierarchy
-        const auto choice = light_tree_->sample(receiver, refined(drawn.remapped));
+        const auto choice = light_tree_->sample(receiver, refined(sampled.remapped));
         light = tree_lights_[choice.light];
         return {parts_.emitters[light].get(),
-                float(double(drawn.probability) * choice.probability) + direct_lights_.probability(light)};
+                float(double(sampled.probability) * choice.probability) + direct_lights_.probability(light)};
     }
     return {parts_.emitters[light].get(), probability_of(light, receiver)};
 }

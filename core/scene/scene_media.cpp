@@ -1,7 +1,7 @@
 // Media that surround a point.
 //
 // A point's shapes are found by casting a ray: along it the crossings of a closed shape alternate between
-// leaving and entering, and the first one tells on which side of the surface (as its normals have it) the
+// leaving and entering, and the first one shows on which side of the surface (as its normals have it) the
 // point lies. A ray that grazes a surface or meets an edge breaks the pattern and is replaced by another.
 #include <algorithm>
 #include <array>

@@ -3,7 +3,8 @@
 
 namespace mote::core {
 
-/// Shadow rays stop this share of the way: rounding must not let them hit the surface at their own end.
+/// Shadow rays stop at this fraction of the segment: rounding must not let them hit the surface at their own
+/// end.
 inline constexpr float shadow_fraction = 0.9999f;
 
 }  // namespace mote::core

@@ -17,7 +17,7 @@ int main(int argc, char** argv) try {
     core::ImageChannels image = core::read_exr(argv[1]);
     const screenspace::SsbcPicture picture = screenspace::read_ssbc_picture(image, {});
     screenspace::SsbcSettings settings;
-    settings.bound = std::stof(image.metadata.at("bound"));  // [1/m^2], or as you know it
+    settings.bound = std::stof(image.metadata.at("bound"));  // [1/m^2], or a value of your own
     const auto result = screenspace::compensate(picture.surfaces, picture.light, settings);
 
     std::vector<core::Rgb> beauty = image.rgb("");

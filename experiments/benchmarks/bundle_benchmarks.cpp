@@ -122,7 +122,8 @@ double bare_scan(const SurfaceTriangles& triangles, const BundleGrid& grid) {
     double sum = 0.0;
     for (const auto& corners : triangles.corners) {
         const auto p = project(projection, corners);
-        const GridSteps rows(least_of(p[0].y, p[1].y, p[2].y), most_of(p[0].y, p[1].y, p[2].y), grid.rows);
+        const GridSteps rows(lowest_of(p[0].y, p[1].y, p[2].y), highest_of(p[0].y, p[1].y, p[2].y),
+                             grid.rows);
         for (std::int64_t y = rows.from; y <= rows.to; ++y) {
             double lower = infinity, upper = -infinity;
             for (std::size_t i = 0; i < 3; ++i) {
@@ -143,7 +144,7 @@ void bundle_rays_against_bare_embree(benchmark::State& state) {
     BareRays bare(room().triangles);
     const auto side = std::uint32_t(state.range(0));
     // Embree tests four triangles of a leaf at once, and counts what passes an edge twice or not at all; the
-    // rule that counts it once is asked for each triangle whose box a packet meets.
+    // rule that counts it once is requested each triangle whose box a packet meets.
     take_turns(
         state, 4.0, room().hits(side), [&] { return room().trace(BundleForm::rays, side); },
         [&] { return bare.trace(side); });

@@ -21,9 +21,10 @@ struct EllipsePicture {
 
 struct EllipseSettings {
     int width = 512, height = 512, count = 100;
-    float least_radius = 6.0f, largest_radius = 11.0f;  ///< the longer half axis [pixels]
-    float aspect = 3.0f;                                ///< of the longer to the shorter
-    float spread = 0.25f;  ///< share of the picture's width and height, about its middle, where middles lie
+    float min_radius = 6.0f, largest_radius = 11.0f;  ///< the longer half axis [pixels]
+    float aspect = 3.0f;                              ///< of the longer to the shorter
+    float spread =
+        0.25f;  ///< fraction of the picture's width and height, about its middle, where middles lie
     std::uint64_t seed = 1;
 };
 
@@ -53,7 +54,7 @@ inline EllipsePicture make_ellipses(const EllipseSettings& s) {
     for (int i = 0; i < s.count; ++i) {
         const float x = float(s.width) * (0.5f + s.spread * (rng.next_float() - 0.5f));
         const float y = float(s.height) * (0.5f + s.spread * (rng.next_float() - 0.5f));
-        const float r = s.least_radius + (s.largest_radius - s.least_radius) * rng.next_float();
+        const float r = s.min_radius + (s.largest_radius - s.min_radius) * rng.next_float();
         const float turn = core::pi * rng.next_float();
         const Ellipse ellipse{x, y, r, r / s.aspect, std::cos(turn), std::sin(turn)};
         picture.bounds.push_back(ellipse.bounds());

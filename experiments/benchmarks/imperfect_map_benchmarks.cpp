@@ -1,5 +1,5 @@
 // Lookups in imperfect shadow maps against shadow rays, for the very pairs of a gather: VPLs in the room of
-// half a million triangles, and tiles of 4x4 neighbouring pixels. The label tells in how many pairs the
+// half a million triangles, and tiles of 4x4 neighbouring pixels. The label states in how many pairs the
 // answers differ, and what a map takes to build in shadow rays.
 #include <fmt/format.h>
 #include <tbb/global_control.h>
@@ -18,7 +18,7 @@ using namespace lights;
 
 constexpr int picture = 256, spacing = 32, side = 4;
 
-/// Receivers, and what a gather asks about them: packets of sixteen rays to one VPL.
+/// Receivers, and the queries of a gather about them: packets of sixteen rays to one VPL.
 struct Pairs {
     std::unique_ptr<Scene> scene = make_room("path", picture, picture, false);
     VplSet vpls = trace_light_paths(*scene, {.paths = 128}, 1, 0, SamplerKind::sobol);

@@ -39,7 +39,7 @@ std::vector<ShadowPacket> packets_of(const std::vector<Ray>& rays) {
     return packets;
 }
 
-/// A scene of which the compiler knows no more than the interface.
+/// A scene of which the compiler sees only the interface.
 const RayQueries& hidden(const RayQueries& scene) {
     const RayQueries* pointer = &scene;
     benchmark::DoNotOptimize(pointer);

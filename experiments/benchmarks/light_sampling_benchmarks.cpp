@@ -1,5 +1,5 @@
-// A light drawn by the tree over a million virtual point lights, for a tile of sixteen receivers and for one:
-// seconds of a light, and how often they are those of seven loads that depend on each other, three lines
+// A light sampled by the tree over a million virtual point lights, for a tile of sixteen receivers and for
+// one: seconds of a light, and how often they are those of seven loads that depend on each other, three lines
 // each, from as much memory as the tree has: a tree of eight parts a cluster is at least seven deep.
 #include <benchmark/benchmark.h>
 

@@ -19,7 +19,7 @@ class OcclusionRays {
         std::string name;
         double (*seconds)(const OcclusionRays&);
     };
-    /// All forms that this Embree offers. Each traces all rays; arranging them is not timed.
+    /// All forms that this Embree has. Each traces all rays; arranging them is not timed.
     static std::vector<Form> forms();
 
   private:

@@ -4,7 +4,7 @@
 // surfaces, as eye paths find them; `random`, points in the smoke in random order, with which no cache can
 // help.
 //
-// The label tells the map's error against ray marching in steps of a tenth of a voxel and exact visibility:
+// The label states the map's error against ray marching in steps of a tenth of a voxel and exact visibility:
 // the mean relative error where at least 1 % gets through, its root mean square, and the mean absolute error
 // of all points, shadows included, relative to their mean transmittance.
 #include <fmt/format.h>
@@ -40,7 +40,7 @@ const Registry& registry() {
     return all;
 }
 
-/// Points where there is smoke, drawn by density.
+/// Points where there is smoke, sampled by density.
 Points points_in_smoke(const Medium& smoke, std::size_t packets) {
     Rng rng(4);
     const Bounds3 box = smoke.bounds();

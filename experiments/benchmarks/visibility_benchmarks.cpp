@@ -24,7 +24,7 @@ const EllipsePicture& picture() {
     static const EllipsePicture made = make_ellipses({.width = 1920,
                                                       .height = 1080,
                                                       .count = int(objects),
-                                                      .least_radius = 12.0f,
+                                                      .min_radius = 12.0f,
                                                       .largest_radius = 30.0f,
                                                       .aspect = 2.0f,
                                                       .spread = 1.0f});

@@ -94,7 +94,7 @@ def draw(table, cullings, details, path):
 
 def figure(mote, quick, output):
     table = run(mote, "ellipses", "--pictures", 4 if quick else 20)
-    large = ["ellipses", "--counts", 4096, "--width", 1920, "--height", 1080, "--spread", 1, "--least-radius", 12,
+    large = ["ellipses", "--counts", 4096, "--width", 1920, "--height", 1080, "--spread", 1, "--min-radius", 12,
              "--largest-radius", 30, "--aspect", 2, "--pictures", 1, "--threads", 1, "--repeat", 5 if quick else 25]
     tiles = [dict(run(mote, *large, "--tiles", t)[0], t=t) for t in range(6)]
     cullings = kept_cullings(Path(__file__).parents[2] / "docs/gallery/engelhardt_06_queries.csv")

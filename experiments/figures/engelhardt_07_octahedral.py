@@ -62,7 +62,7 @@ def check(layouts, views, build_ms):
                  f"{min(boxes):.2f} to {max(boxes):.2f} us, texel by texel {min(cones):.0f} us",
                  max(boxes) < 3 * min(boxes) and max(boxes) < 0.1 * min(cones))
     errors = [relative_error(r) for r in views]
-    claims.check("a box stands for a round lobe of the same solid angle (within 1/3 of the mean, root mean square)",
+    claims.check("a box represents a round lobe of the same solid angle (within 1/3 of the mean, root mean square)",
                  ", ".join(f"{100 * e:.0f} %" for e in errors), max(errors) < 1 / 3)
     print(f"                the table is built in {build_ms:.2f} ms (paper, 512 x 512: {PAPER_BUILD_MS} ms on a GPU)")
     return claims.exit_code()

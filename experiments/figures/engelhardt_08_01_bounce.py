@@ -34,9 +34,9 @@ def figure(mote, quick, output):
         noise = view.error(path)
         # The error of path falls with the square root of its time.
         slower = {name: path.cpu * (noise / error[name]) ** 2 / p.cpu for name, p in pictures.items()}
-        told = "; ".join(f"{name}: error {error[name]:.1%}, mean {view.ratio(p) - 1:+.1%}, {p.cpu:.1f} s" for name, p in pictures.items())
+        measured = "; ".join(f"{name}: error {error[name]:.1%}, mean {view.ratio(p) - 1:+.1%}, {p.cpu:.1f} s" for name, p in pictures.items())
         title = scene.stem.replace("_", " ")
-        claims.check(f"{title}: differences are minor: below {LARGEST:.0%}, the mean within {LARGEST_BIAS:.0%}", told,
+        claims.check(f"{title}: differences are minor: below {LARGEST:.0%}, the mean within {LARGEST_BIAS:.0%}", measured,
                      all(error[n] < LARGEST and abs(view.ratio(p) - 1) < LARGEST_BIAS for n, p in pictures.items()))
         claims.check(f"{title}: with bilateral upsampling they are slightly more perceptible", f"{error['every pixel']:.2%} and {error['1/16 of the pixels']:.2%}",
                      error["every pixel"] < error["1/16 of the pixels"] < 2 * error["every pixel"], differs=None if quick else SMOOTHED)

@@ -2,7 +2,7 @@
 """Bilateral upsampling from a quarter and a sixteenth of the pixels, and micro-buffers of three sizes: Engelhardt 2013, Figs. 8.10, 8.11.
 
 A diffuse bunny in a room and a glossy one in a box. By default `mote_micro_rendering` renders glossy pixels again, which find
-nobody to take their light from; here they share it as in the thesis (glossy_upsampling), to show what it says. Every
+no neighbour to take their light from; here they share it as in the thesis (glossy_upsampling), to show what it says. Every
 setting has two passes of the same points. A full run takes some 4 minutes of one core, --quick half of one.
 
     experiments/figures/engelhardt_08_10_upsampling.py [--quick] [--redraw] [--output FOLDER] [--bin FOLDER]

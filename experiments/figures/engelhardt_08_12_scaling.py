@@ -2,7 +2,7 @@
 """Cost of a gather by the number of points and by the distance of the receivers of one walk: Engelhardt 2013, Fig. 8.12.
 
 The bunny's room, one bounce. Times are processor seconds of the gather alone: a run with one point is taken off. Lanes of
-one walk are neighbouring pixels, or with upsampling pixels that are as far apart as its lattice, which stands for the
+one walk are neighbouring pixels, or with upsampling pixels that are as far apart as its lattice, which represents the
 thesis's receivers with and without a space-filling curve. A full run takes some 4 minutes of one core, --quick half of one.
 
     experiments/figures/engelhardt_08_12_scaling.py [--quick] [--redraw] [--output FOLDER] [--bin FOLDER]

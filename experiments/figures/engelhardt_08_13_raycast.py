@@ -28,8 +28,8 @@ def figure(mote, quick, output):
     places = {"edges": edges, "elsewhere": ~edges}
     light = {cast: {name: view.ratio(p, place) - 1 for name, place in places.items()} for cast, p in pictures.items()}
     error = {cast: view.error(p) for cast, p in pictures.items()}
-    told = "; ".join(f"{NAMES[c]} {light[c]['edges']:+.1%} at edges, {light[c]['elsewhere']:+.1%} elsewhere" for c in NAMES)
-    claims.check("without ray casting light is missing, and around edges more of it", told,
+    measured = "; ".join(f"{NAMES[c]} {light[c]['edges']:+.1%} at edges, {light[c]['elsewhere']:+.1%} elsewhere" for c in NAMES)
+    claims.check("without ray casting light is missing, and around edges more of it", measured,
                  light[False]["edges"] < min(light[False]["elsewhere"], light[True]["edges"] - 0.02))
     claims.check("it cannot be omitted: the error is larger without", ", ".join(f"{NAMES[c]} {error[c]:.1%}" for c in NAMES), error[False] > error[True])
     seconds = {c: p.value("gather_cpu_seconds") for c, p in pictures.items()}

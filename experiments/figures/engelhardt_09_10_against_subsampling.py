@@ -65,7 +65,7 @@ def render(mote, name, scene, settings, size, sampling):
     rays = epipolar.value("marched_rays")
 
     def grid(times):
-        # Some pixels that nothing continues are marched beside the grid's: a little closer than the number asks for.
+        # Some pixels that nothing continues are marched beside the grid's: a little closer than the number requests.
         spacing = (full.value("lit_pixels") / (times * 1.02 * rays)) ** 0.5
         return mote.render(scene, f"{tag}_grid_{times}", {**settings, **FULL, **march, "integrator.sampling": "sub_sampled",
                                                           "integrator.spacing": spacing}, passes=1)

@@ -17,7 +17,7 @@ from measure import series_error
 from panels import TITLE, Canvas, clean, enlarged, mark, show, show_difference
 from renders import RECOVERED, approximate, luminance, main, mean_and_error, write_csv
 
-VISIBLE = 0.02  # of the brightness: about the step that an eye tells apart
+VISIBLE = 0.02  # of the brightness: about the step that an eye distinguishes
 BLOCK = 8  # pixels to a side, over which differences are averaged
 
 

@@ -19,7 +19,7 @@ from renders import RECOVERED, approximate, luminance, main, mean_and_error, wri
 
 WALL = Path(__file__).resolve().parent / "scenes" / "thin_wall.xml"
 SCALE = 512  # of the paper's difference
-VISIBLE = 0.02  # of the brightness: about the step that an eye tells apart
+VISIBLE = 0.02  # of the brightness: about the step that an eye distinguishes
 STRIPS = 12  # of the wall's picture, upright: the wall is between the sixth and the seventh
 LIT, SHADED = 5, 6
 

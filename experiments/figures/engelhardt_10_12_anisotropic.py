@@ -18,7 +18,7 @@ from panels import TITLE, Canvas, blocks, cleanest, enlarged, show
 from renders import RECOVERED, approximate, compensation, luminance, main, mean_and_error, write_csv
 
 VPLS, SETS = 4320, 3
-MORE_SETS = 3  # with approximate compensation alone, to tell how much sets differ
+MORE_SETS = 3  # with approximate compensation alone, to measure how much sets differ
 ANISOTROPIES = {-0.6: "backward", 0.0: "isotropic", 0.6: "forward"}
 FOG = {"sigma_s": 0.075, "sigma_a": 0.001}
 PAPER_MILLISECONDS, PAPER_PIXELS = 16, 1024 ** 2  # for one VPL, on a GeForce GTX 580
@@ -60,7 +60,7 @@ def check(pairs, more, cost):
                      f"{100 * gaps[0]:+.2f} +- {100 * gaps[1]:.2f} %; {100 * shares[0]:.0f} +- {100 * shares[1]:.0f} % of "
                      f"what the bound took, which is {100 * lost[0]:.1f} %", abs(gaps[0]) + 2 * gaps[1] < 0.02)
     noise = {row[0]: row[-1] for row in rows}
-    claims.check("anisotropic scattering asks for more VPLs (sets differ more than in the isotropic medium)",
+    claims.check("anisotropic scattering requests more VPLs (sets differ more than in the isotropic medium)",
                  ", ".join(f"g = {g}: {100 * x:.0f} %" for g, x in noise.items()),
                  min(noise[-0.6], noise[0.6]) > noise[0.0])
     paper = 1e6 * PAPER_MILLISECONDS / PAPER_PIXELS

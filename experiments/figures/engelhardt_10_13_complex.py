@@ -3,7 +3,7 @@
 
 The atrium (as many triangles as Crytek Sponza, homogeneous haze) and the city (823 thousand triangles in the paper,
 clouds, an environment map), with two steps of approximate compensation. Passes without VPLs, with bounded ones, and
-with compensation tell what each part takes. The clean pictures, by `mote_layers`, are for the eye alone. Exit code 0:
+with compensation show what each part takes. The clean pictures, by `mote_layers`, are for the eye alone. Exit code 0:
 all is as documented; 1: it is not; 2: wrong usage, or mote is missing. A full run takes 2.5 minutes of one core, --quick
 40 s.
 

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Three steps of screen-space bias compensation against exact compensation: Engelhardt 2013, Figs. 11.1 and 11.5.
 
-A bunny and a pierced sculpture in a room stand for the Buddha and the dragon, the atrium for Crytek Sponza. Exact
+A bunny and a pierced sculpture in a room represent the Buddha and the dragon, the atrium for Crytek Sponza. Exact
 compensation (Kollig and Keller 2006) and screen space are given the same light paths. Differences are the relative RMSE
 (measure.py) of blocks of 8 x 8 pixels of all light: 2 % is about the contrast that one begins to see. Times are compared at equal
 error of pixels: exact compensation has no bias, and what it takes, at least, follows from its variance. The noise of the
@@ -113,7 +113,7 @@ def figure(mote, quick, output):
                      r["recovered"] > 0.5, differs)
         claims.check(f"{name}: the picture is nearly that of exact compensation: 2 % or less in blocks",
                      f"{r['screen']:.2%}, bounded {r['bounded']:.2%}", r["screen"] <= 0.02, differs)
-        if not quick:  # there pictures are too noisy to tell
+        if not quick:  # there pictures are too noisy to decide
             claims.check(f"{name}: at a small fraction of its time, at equal error: a tenth at most", f"{ratio:.1%}", ratio <= 0.1,
                          differs and "screen space stays at an error there to which exact compensation comes down soon")
         rows.append([name, *(float(r[k]) for k in ("taken", "taken_error", "recovered", "recovered_error", "bounded", "screen",

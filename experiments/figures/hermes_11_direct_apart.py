@@ -2,7 +2,7 @@
 """Direct light by its own method, indirect light by ray-bundles: Hermes 2010, Fig. 11.
 
 A small lamp in the room: few directions of a bundle meet it. The paper takes shadow maps for its direct light, here points of the
-lamp are drawn, at pixels and at texels. Compared at the same number of directions. A full run takes about 4 minutes, --quick
+lamp are sampled, at pixels and at texels. Compared at the same number of directions. A full run takes about 4 minutes, --quick
 less than one.
 
     experiments/figures/hermes_11_direct_apart.py [--quick] [--redraw] [--output FOLDER] [--bin FOLDER]

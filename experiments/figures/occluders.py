@@ -1,6 +1,6 @@
 """Meshes that cut light into shafts, as PLY files: a sculpture full of holes, and the crown of a tree; and water.
 
-The sculpture stands for the model that Engelhardt 2013 shows in chapter 9, which is not free: four spheres inside each
+The sculpture represents the model that Engelhardt 2013 shows in chapter 9, which is not free: four spheres inside each
 other, pierced along the level sets of gyroids.
 """
 import numpy as np

@@ -1,4 +1,4 @@
-"""Where a picture of the gallery and its table come from, written into both, so that nobody has to believe a text.
+"""Where a picture of the gallery and its table come from, written into both, so that no text has to be trusted.
 
 A PNG holds it as text chunks, a CSV file as lines that begin with '# ': the script, whether the run was full, the commit of
 the script and that of the program, what was rendered with which settings, and a digest of the table, which ties the two

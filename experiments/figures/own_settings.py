@@ -56,7 +56,7 @@ class OwnSettings:
         return re.findall(r"^\| `(\w+)` \|", self.pages.get(integrator, ""), re.M)
 
     def check(self):
-        """Raises ValueError for what nobody took."""
+        """Raises ValueError for settings that were not taken."""
         left = [f"--{name}" for name in self.values if name not in self.taken]
         if left:
             raise ValueError(f"no render takes {', '.join(left)}: neither a $parameter of a scene nor one of an integrator")

@@ -75,7 +75,7 @@ def blocks(image, n):
 
 
 def along(image, where, axis):
-    """`image` at fractional places along an axis; the border goes on."""
+    """`image` at fractional places along an axis; the border continues."""
     where = np.clip(where, 0, image.shape[axis] - 1)
     low = np.minimum(where.astype(int), image.shape[axis] - 2)
     share = (where - low).reshape([-1 if i == axis else 1 for i in range(image.ndim)])

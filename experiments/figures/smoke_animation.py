@@ -3,7 +3,7 @@
 
 One `mote render` with a parameter that runs (-D t=0.25:7.5:352.75), a grid a frame (smoke.####.vdb, by mote_smoke), `mote_layers` with
 its filter. The same sequence is made again, killed three times and resumed: no bit may differ. A contact sheet and an
-animated picture are drawn. A full run takes about 12 minutes on two cores, --quick half a minute.
+animated picture are plotted. A full run takes about 12 minutes on two cores, --quick half a minute.
 
     experiments/figures/smoke_animation.py [--quick] [--redraw] [--output FOLDER] [--bin FOLDER]
 """

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Bidirectional paths, denoised by block-wise feature regression: Sun 2020, Figs. 5.11 to 5.13.
 
-Three Cornell boxes stand for those of the paper: two mirroring spheres, a mirror for a back wall, and water that throws
+Three Cornell boxes represent those of the paper: two mirroring spheres, a mirror for a back wall, and water that throws
 caustics. Each is rendered by `mote_bdpt` with one sample a pixel and with many, and denoised (`mote denoise --method
 bmfr`, beside OpenImageDenoise where it is installed). The error is that of `mote compare`, a root of squares relative to
 the reference. What is to be kept is measured by edges: in a piece of the picture that holds the caustic, the shadows or

@@ -2,7 +2,7 @@
 """Bidirectional paths and paths from the eye at equal time, and what a sample costs: Sun 2020, Figs. 5.7 to 5.10, Sec. 5.2.1.
 
 The thesis counts D^2 + 3 D rays for a sample of bidirectional paths of D edges from either end, 2 D for a path from the eye, and
-tests every connection; here one of an eye vertex's connections is drawn (`all_connections` tests them all), and rays are counted.
+tests every connection; here one of an eye vertex's connections is sampled (`all_connections` tests them all), and rays are counted.
 Six scenes: error^2 times processor seconds, against two long bidirectional pictures. A full run takes about 12
 minutes of one core, --quick a minute.
 

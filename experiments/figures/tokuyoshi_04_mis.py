@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""Virtual point lights, bundles from the eye, and both weighed against each other: Tokuyoshi and Ogaki 2012, Fig. 4.
+"""Virtual point lights, bundles from the eye, and both weighted against each other: Tokuyoshi and Ogaki 2012, Fig. 4.
 
 One bounce, 21 light paths and 21 directions a picture, as in the paper; a bunny in a room with a light close to its ears
-stands for the paper's (70 thousand triangles there as here). Errors are the relative RMSE of a picture (measure.py), over
+represents the paper's (70 thousand triangles there as here). Errors are the relative RMSE of a picture (measure.py), over
 several seeds, against two references of `path`. A full run takes some 3 minutes of
 one core, --quick half of one.
 

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Direct light of an environment map by directions that serve both ways: Tokuyoshi and Ogaki 2012, Fig. 6.
 
-A bunny and a ball under the sky of scenes/generate stand for the paper's scene of 87 thousand triangles. Light of the sky
+A bunny and a ball under the sky of scenes/generate represent the paper's scene of 87 thousand triangles. Light of the sky
 alone, without bounces. Directions that serve one way, as a shadow map tests, were measured at commit 05a8b1c, where their
 code last stood (docs/gallery.md). `time` turns the bunny. A full run takes half a minute of one core, --quick 10 s.
 

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Against path tracing, and where the time goes: Tokuyoshi and Ogaki 2012, Fig. 9 and Table 1.
 
-A copper bunny, moving with its light, stands for the paper's scene of 174 thousand triangles. The paper's ratio is that of a
+A copper bunny, moving with its light, represents the paper's scene of 174 thousand triangles. The paper's ratio is that of a
 GPU's rasterizer to a path tracer on a processor; here both trace rays on the same processor, and what is compared is the
 time to equal error, from a few passes each (squares fall as one over the passes). Table 1 as shares of processor time.
 A full run takes 2 minutes of one core, --quick 20 s.

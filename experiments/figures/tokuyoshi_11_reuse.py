@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Several bounces along the directions of one pass: Tokuyoshi and Ogaki 2012, Figs. 11 and 12.
 
-A path goes on along another of the pass's own directions, in random order, each at most once: then it is as good as one of
+A path continues along another of the pass's own directions, in random order, each at most once: then it is as good as one of
 fresh directions. Directions that are chosen again and again, as in the paper, bias the light by 0.6 over their number, for
 one path of two bounces in M goes straight back to where it came from: measured at commit 05a8b1c, where that code last
 stood (docs/gallery.md). Bundles are rays from the points themselves here, not grids that are kept. A full run takes 5
@@ -26,7 +26,7 @@ def figure(mote, quick, output):
     size = {"resx": 64, "resy": 40} if quick else {"resx": 128, "resy": 80}
     view = View(mote, "bunny_room", size, 16 if quick else 64, "reuse", depth=BOUNCES + 2)
     base = BUNDLES | with_options(techniques="reused_bundles", paths=0)
-    # Paths meet the bright spot too seldom to tell a few per cent; virtual point lights weighed against bundles have their mean.
+    # Paths meet the bright spot too seldom to show a few per cent; virtual point lights weighted against bundles have their mean.
     exact = np.array([luminance(view.render("exact", BUNDLES | with_options(paths=256), 16 if quick else 64, s)["indirect"]).mean() for s in (11, 12, 13, 14)])
     light, doubt = exact.mean(), exact.std(ddof=1) / 2 / exact.mean()
     for n in COUNTS:

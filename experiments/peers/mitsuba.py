@@ -49,7 +49,7 @@ def arguments():
     parser.add_argument("--quick", action="store_true", help="six scenes, a twelfth of the samples")
     parser.add_argument("--trade", metavar="DIR", help="measure Mitsuba against the reference of a trade instead")
     parser.add_argument("--timed", metavar="DIR", help="do the job of experiments/trade/run --peers in DIR instead")
-    parser.add_argument("--install", action="store_true", help="make build/mitsuba_env, then go on")
+    parser.add_argument("--install", action="store_true", help="make build/mitsuba_env, then continue")
     options = parser.parse_args()
     options.n = options.n or (8 if options.quick else 32)
     if options.n < 4:
@@ -79,7 +79,7 @@ def become_a_python_with_mitsuba():
 
 
 def scene_list(options):
-    """(name, file, passes) of every scene asked for."""
+    """(name, file, passes) of every scene requested."""
     share = 3 if options.quick else 1
     default = [name for name in WITNESS_SET if not (options.quick and name in LEFT_OUT_OF_QUICK)]
     for word in options.scenes or default:

@@ -3,7 +3,7 @@
 
 Usage: cluster_throughput.py MOTE [--scene scenes/cornell_box.xml] [--passes N] [--block B] [--workers W] [--repeat R] [--quick]
 With a Python that has `distributed` (tests/cluster/run makes one: build/release/python_cluster/bin/python). Times are of
-the wall and of processors, from the first pass asked for to the picture; both turns alternate, medians count. On a machine
+the wall and of processors, from the first pass requested to the picture; both turns alternate, medians count. On a machine
 that others use too, only processor seconds can be compared: workers, merging and what Dask itself does are in them.
 """
 import argparse

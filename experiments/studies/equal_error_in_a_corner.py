@@ -21,7 +21,7 @@ from exr import read_exr
 SCENE = Path(__file__).resolve().parent.parent / "figures" / "scenes" / "corner.xml"
 LAYER = "compensation_surface"
 STEPS = 3
-FEW = "exact compensation joins its vertices to all virtual point lights, of which there are 48; screen space asks for none"
+FEW = "exact compensation joins its vertices to all virtual point lights, of which there are 48; screen space needs none"
 
 
 def quadrature(mote, quick, settings):

@@ -3,9 +3,9 @@
 
 Layers of surfaces are the future work of Engelhardt 2013, Sec. 11.5. Three scenes: the Cornell box with a bound that
 reaches a quarter of it, the atrium without haze, and rows of thin boards. In each, the light that exact compensation adds
-is compared with what three steps of screen-space compensation add with one to four layers. What is still missing is told
+is compared with what three steps of screen-space compensation add with one to four layers. What is still missing is found
 apart: hidden (more layers), beyond the frame (twice as wide a picture, cut back), the size of pixels (twice as many),
-receivers that are not Lambertian (from their albedos). Shadow rays instead of none tell how much comes through walls.
+receivers that are not Lambertian (from their albedos). Shadow rays instead of none show how much comes through walls.
 Image errors are relative RMSE (measure.py) of pixels and of blocks of them, what two seeds share: without noise. Times are processor time.
 A full run takes some eight minutes of processor time, --quick without the atrium half a minute.
 """
@@ -32,7 +32,7 @@ SCENES = {
     "boards": (BOARDS, {}, (128, 96), 36, (48, 12)),
 }
 LAYERS = (1, 2, 3, 4)
-TOO_FINE = "mouldings and balusters are finer than pixels: one point of each stands for what a pixel holds of them"
+TOO_FINE = "mouldings and balusters are finer than pixels: one point of each represents what a pixel holds of them"
 STEPS = 3
 
 

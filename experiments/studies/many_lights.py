@@ -2,7 +2,7 @@
 """Scenes with many lights: what choosing them by the receiver buys.
 
 Two scenes are written: a long hall with 10,000 small panels of light, and 1,000 spot lights in fog. Each is rendered
-with a number of passes that takes about the processor seconds asked for, and held against a long render of the same
+with a number of passes that takes about the processor seconds requested, and held against a long render of the same
 program (in the fog by equi-angular sampling, another estimator); with --against PROGRAM also another program, such as
 the `mote` of a commit before, is given the same seconds. A long render that is there already is not made again. Prints the
 squared relative RMSE (measure.py) and processor seconds, and the ratio of their products.

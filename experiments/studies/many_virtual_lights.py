@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Virtual point lights by the million: what selecting them costs, and what it leaves of the picture.
 
-Runs mote_study_selection at tiles of 4 x 4 pixels drawn from a picture of 512 x 512: all methods have the same lights, eye
+Runs mote_study_selection at tiles of 4 x 4 pixels sampled from a picture of 512 x 512: all methods have the same lights, eye
 paths and points along them, and are held against the light of all lights. That takes a million lights 5 to 20 s a tile, so
 sums of 60 tiles lie in experiments/studies/selection/references, and only what is missing there is made (of other numbers of
 lights in build/references); --references makes them and nothing else. Prints a table a scene, error against threshold, and

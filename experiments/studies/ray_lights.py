@@ -3,7 +3,7 @@
 
 Two scenes, 48 x 30: a small room full of fog (micro_fog.xml) and the smoke room. Every method has the best of its settings: all
 of them are rendered by three seeds, and the one with the least squared error times seconds is rendered anew by other seeds, which
-are judged. Starting is taken off (a render of one pass tells it); errors are the relative RMSE (measure.py) of all light, against two
+are judged. Starting is taken off (a render of one pass measures it); errors are the relative RMSE (measure.py) of all light, against two
 references, one of volpath and one of long ray lights. The time to 5 % is that of
 an error that falls with the root of the time, above the bias, which is the part that pairs of seeds share: where that alone is
 above 5 %, there is none ("never"). `--quick`: the foggy room in less than a minute, numbers without a meaning.
@@ -48,7 +48,7 @@ OWN_NAMES = {"integrator.paths": "paths"}
 
 
 def seconds_to_target(pictures, references, bias_stays):
-    """By picture: its error and its seconds to the target; and the error that pairs of pictures share. Few seeds do not tell
+    """By picture: its error and its seconds to the target; and the error that pairs of pictures share. Few seeds do not show
     bias from the noise of virtual lights, which pixels have in common: without `bias_stays` all of it is noise."""
     shared = series_error([light for light, _ in pictures], references)["systematic"]
     stays = shared**2 if bias_stays else 0.0

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Virtual point lights, bundles from the eye, and both weighed against each other: processor time to an error of 2 %.
+"""Virtual point lights, bundles from the eye, and both weighted against each other: processor time to an error of 2 %.
 
 Usage: vpl_ray_bundles.py [--mote build/release/bin/mote] [--scenes cornell_box,atrium] [--width 640] [--height 400]
                           [--passes N] [--seeds N] [--reference PASSES] [--folder FOLDER] [--methods "combined;bundles;vpls"] [--quick]

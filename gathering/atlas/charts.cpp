@@ -98,7 +98,7 @@ void fit_rectangle(Chart& chart, const SurfaceTriangles& surfaces, std::span<con
 
 }  // namespace
 
-Charts make_charts(const SurfaceTriangles& surfaces, float least_cosine) {
+Charts make_charts(const SurfaceTriangles& surfaces, float min_cosine) {
     const Neighbours neighbours(surfaces);
     const std::size_t n = surfaces.size();
     std::vector<Vec3d> areas(n);
@@ -120,7 +120,7 @@ Charts make_charts(const SurfaceTriangles& surfaces, float least_cosine) {
         for (std::size_t i = chart.first; i < result.triangles.size(); ++i)
             neighbours.for_each(result.triangles[i], [&](std::uint32_t t) {
                 if (result.chart_of[t] != Charts::none || !(area(t) > 0.0)) return;
-                if (!(glm::dot(areas[t], Vec3d(chart.n)) >= double(least_cosine) * area(t))) return;
+                if (!(glm::dot(areas[t], Vec3d(chart.n)) >= double(min_cosine) * area(t))) return;
                 result.triangles.push_back(t), result.chart_of[t] = number;
             });
         chart.count = std::uint32_t(result.triangles.size()) - chart.first;

@@ -35,8 +35,8 @@ struct Charts {
 };
 
 /// Grows charts over shared edges of one shape, beginning with the largest triangles. Normals of a chart
-/// differ from that of its first triangle by `least_cosine` at most, which bounds how much smaller than the
+/// differ from that of its first triangle by `min_cosine` at most, which bounds how much smaller than the
 /// surface its projection is.
-Charts make_charts(const SurfaceTriangles& surfaces, float least_cosine = 0.8f);
+Charts make_charts(const SurfaceTriangles& surfaces, float min_cosine = 0.8f);
 
 }  // namespace mote::gathering

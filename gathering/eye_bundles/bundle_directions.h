@@ -1,6 +1,6 @@
 // The directions of a pass: lines that serve both ways (Tokuyoshi & Ogaki 2012, Sec. 3.3).
 //
-// Uniform lines have p_r = 1 / (2 pi). With a light at infinity they can be drawn half by its light:
+// Uniform lines have p_r = 1 / (2 pi). With a light at infinity they can be sampled half by its light:
 //   p_r(w) = q(w) + q(-w),   q = 1 / (8 pi) + p_sky / 2,
 // which is Eq. 2 with an offset L_o that makes both parts equal (as printed its integral over all directions
 // is 2, as it must be where a line counts twice).
@@ -18,7 +18,7 @@ struct BundleDirection {
     const RayBundle* kept = nullptr;  ///< where its links are looked up; null: they are traced
 };
 
-/// p_r of a direction; `sky` is the light that half of the lines are drawn by, or null.
+/// p_r of a direction; `sky` is the light that half of the lines are sampled by, or null.
 inline float line_pdf(const core::Emitter* sky, const core::Vec3& w) {
     if (!sky) return core::inv_two_pi;
     const core::Vec3 anywhere(0.0f);

@@ -12,7 +12,7 @@ using lights::TileLight;
 
 namespace {
 
-/// Light that weighs less is followed by chance: bundles are many, and most of what they find is far away,
+/// Light of a smaller weight is followed by chance: bundles are many, and most of what they find is far away,
 /// where virtual point lights do better.
 constexpr float rare_weight = 0.1f;
 
@@ -56,9 +56,9 @@ void EyeBundles::add_own_rays(const ReceiverArray& receivers, std::span<const Bu
         found_[i].max_vpl_depth = 0;
         if (!x.vertex || !has_own_ray(*x.vertex)) continue;
         const Vec2 u = x.sampler->next_2d();
-        const auto drawn = x.vertex->sample(walk_.rng.next_float(), u, TransportMode::radiance);
-        if (!drawn || drawn->delta) continue;  // the eye path itself goes on behind mirrors
-        trace(x, drawn->wi, pass_.samples.directions * line_pdf(pass_.sky, drawn->wi), nullptr, found_[i],
+        const auto sampled = x.vertex->sample(walk_.rng.next_float(), u, TransportMode::radiance);
+        if (!sampled || sampled->delta) continue;  // the eye path itself continues behind mirrors
+        trace(x, sampled->wi, pass_.samples.directions * line_pdf(pass_.sky, sampled->wi), nullptr, found_[i],
               direct[i]);
     }
     light_found_points(lines, lines.size(), indirect);
@@ -74,7 +74,7 @@ void EyeBundles::light_found_points(std::span<const BundleDirection> lines, std:
 
 void EyeBundles::light_points(TileLight& indirect) {
     connect_lights(indirect);
-    if (pass_.samples.joined_share > 0.0f) join_lights(indirect);
+    if (pass_.samples.joined_probability > 0.0f) join_lights(indirect);
 }
 
 /// Each found point becomes the next one of its path, or none. Returns whether there are any.
@@ -95,7 +95,7 @@ bool EyeBundles::continue_path(Found& y) {
     Rgb scattered = y.vertex.eval_cos(w, TransportMode::radiance);
     if (is_black(scattered) || !(pdf > 0.0f)) return false;
     const Ray ray{y.vertex.ray_origin(w), w};
-    const WalkEvent event = look(y.vertex, ray, nullptr, scattered);
+    const WalkEvent event = first_surface(y.vertex, ray, nullptr, scattered);
     if (event.kind == WalkEvent::Kind::escaped) return false;
     const ScatteringVertex next = make_vertex(event, ray);
     if (!next.connectable()) return false;
@@ -119,10 +119,10 @@ void EyeBundles::continue_paths(std::span<const BundleDirection> lines, std::siz
             const Found y = found_[i];
             found_[i].max_vpl_depth = 0;
             if (y.max_vpl_depth < 2 || unused[i].empty()) continue;
-            const auto drawn =
+            const auto sampled =
                 std::min(std::size_t(walk_.rng.next_float() * float(unused[i].size())), unused[i].size() - 1);
-            const BundleDirection& line = lines[unused[i][drawn]];
-            std::swap(unused[i][drawn], unused[i].back()), unused[i].pop_back();
+            const BundleDirection& line = lines[unused[i][sampled]];
+            std::swap(unused[i][sampled], unused[i].back()), unused[i].pop_back();
             const BundleReceiver here{&y.vertex, y.throughput, y.max_vpl_depth - 1, y.sampler, false};
             Rgb direct(0.0f);
             trace(here, towards_eye_side(y.vertex, line.direction), line.pdf_line, line.kept, found_[i],
@@ -134,8 +134,8 @@ void EyeBundles::continue_paths(std::span<const BundleDirection> lines, std::siz
 }
 
 /// First event along the ray from x, looked up in a kept bundle or traced.
-WalkEvent EyeBundles::look(const ScatteringVertex& x, const Ray& ray, const RayBundle* kept,
-                           Rgb& throughput) {
+WalkEvent EyeBundles::first_surface(const ScatteringVertex& x, const Ray& ray, const RayBundle* kept,
+                                    Rgb& throughput) {
     WalkEvent event;
     const auto end = kept ? pass_.links->next(*kept, x, ray.direction) : std::nullopt;
     if (!end) {
@@ -152,7 +152,7 @@ WalkEvent EyeBundles::look(const ScatteringVertex& x, const Ray& ray, const RayB
     return event;
 }
 
-/// `pdf_lines`: what the direction's share is divided by, M p_r where there are M [1/sr].
+/// `pdf_lines`: the divisor of the direction's contribution, M p_r where there are M [1/sr].
 void EyeBundles::trace(const BundleReceiver& x, const Vec3& w, float pdf_lines, const RayBundle* kept,
                        Found& y, Rgb& direct) {
     // Tokuyoshi & Ogaki 2012, Eq. 14, for all that a bundle finds.
@@ -161,8 +161,8 @@ void EyeBundles::trace(const BundleReceiver& x, const Vec3& w, float pdf_lines, 
     if (is_black(f_cos)) return;
     const Ray ray{x.vertex->ray_origin(w), w};
     Rgb before = x.throughput * f_cos;
-    const WalkEvent event = look(*x.vertex, ray, kept, before);
-    // All of a receiver's directions are weighed by the balance heuristic: f / (M p_r + p_f).
+    const WalkEvent event = first_surface(*x.vertex, ray, kept, before);
+    // All of a receiver's directions are weighted by the balance heuristic: f / (M p_r + p_f).
     const bool own = x.first && has_own_ray(*x.vertex);
     const float pdf_own = own ? own_ray_pdf(*x.vertex, w, 1.0f) : 0.0f;
     const Rgb throughput = before / (pdf_lines + pdf_own);

@@ -37,8 +37,9 @@ struct BundlePass {
     std::span<const float> rivals;  ///< of the VPLs, where techniques are combined
     TechniqueSamples samples;
     Techniques techniques = Techniques::combined;
-    std::size_t stride = 1;           ///< every so many VPLs are joined to a point, from a random one on
-    std::optional<float> bound = {};  ///< of paths of two bounces and more, as in the paper; nothing: weighed
+    std::size_t stride = 1;  ///< every so many VPLs are joined to a point, from a random one on
+    std::optional<float> bound =
+        {};  ///< of paths of two bounces and more, as in the paper; nothing: weighted
     const core::Emitter* sky = nullptr;  ///< whose direct light the bundles find; null: none
     bool own_rays = true;  ///< of glossy receivers: one more direction each, sampled by the BSDF
     /// Bounces of paths that take the pass's own lines in random order, each at most once (the paper's
@@ -58,7 +59,7 @@ class EyeBundles {
     }
 
     /// Adds the light that line `index` of the pass finds, divided by M p_r: indirect light to `indirect`,
-    /// that of the sky to `direct`. Draws from the receivers' samplers and from the walk's generator.
+    /// that of the sky to `direct`. Samples from the receivers' samplers and from the walk's generator.
     void add(const ReceiverArray& receivers, std::span<const BundleDirection> lines, std::size_t index,
              lights::TileLight& indirect, lights::TileLight& direct);
     /// Adds the light that the glossy receivers' own rays find, weighted against lines.
@@ -84,8 +85,8 @@ class EyeBundles {
                             lights::TileLight& indirect);
     void trace(const BundleReceiver& x, const core::Vec3& w, float pdf_lines, const RayBundle* kept, Found& y,
                core::Rgb& direct);
-    core::WalkEvent look(const core::ScatteringVertex& x, const core::Ray& ray, const RayBundle* kept,
-                         core::Rgb& throughput);
+    core::WalkEvent first_surface(const core::ScatteringVertex& x, const core::Ray& ray,
+                                  const RayBundle* kept, core::Rgb& throughput);
     void continue_paths(std::span<const BundleDirection> lines, std::size_t first,
                         lights::TileLight& indirect);
     void light_points(lights::TileLight& indirect);

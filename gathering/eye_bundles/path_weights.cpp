@@ -37,8 +37,9 @@ Step step_between(const lights::VplSet& vpls, const VirtualPointLight& z, const 
     const float cos_z =
         before ? before->vertex.geometric_cosine(direction) : std::max(0.0f, glm::dot(z.normal, direction));
     const float g = cos_y * cos_z / d2;
-    const bool goes_on = !here || may_continue(here->vertex);
-    return {next_vertex_pdf(before, direction, g, cos_y, d2), goes_on ? continued * continued_pdf(g) : 0.0f};
+    const bool continues = !here || may_continue(here->vertex);
+    return {next_vertex_pdf(before, direction, g, cos_y, d2),
+            continues ? continued * continued_pdf(g) : 0.0f};
 }
 
 }  // namespace
@@ -73,7 +74,7 @@ float connection_over_emission(const LitScene& scene, const LightReceiver& y, co
 }
 
 FewerFound fewer_than_one(const TechniqueSamples& samples, float found) {
-    return {samples.light_share / std::max(samples.directions * found, 1e-30f), 0.0f};
+    return {samples.light_probability / std::max(samples.directions * found, 1e-30f), 0.0f};
 }
 
 FewerFound fewer_than_next(const TechniqueSamples& samples, const ScatteringVertex& y,
@@ -83,7 +84,7 @@ FewerFound fewer_than_next(const TechniqueSamples& samples, const ScatteringVert
     const Vec3 direction = to_next / std::sqrt(d2);
     const float cos_y = y.shading_cosine(direction), cos_next = next.geometric_cosine(direction);
     const float made = samples.continued * continued_pdf(cos_y * cos_next / d2);
-    const float plain = std::min(samples.joined_share / std::max(made, 1e-30f), certain);
+    const float plain = std::min(samples.joined_probability / std::max(made, 1e-30f), certain);
     // p(next -> y) b / (c e(y -> next)): |y - next| and the cosine at y are in both, and for a plain surface
     // that at next, too. No quotient of what may be 0, where the points are one.
     const float onward = std::min(fewer.from(y, direction) / samples.continued, certain);
@@ -106,12 +107,12 @@ Rival rival_of(const LitScene& scene, const lights::VplSet& vpls, const Techniqu
         const LightReceiver at =
             detail ? detail->vertex.light_receiver() : LightReceiver{y.position, y.normal};
         const float ratio = connection_over_emission(scene, at, y.normal, vpls.starts[y.path]);
-        return {ratio_of(samples.directions * ratio, samples.paths * samples.light_share)};
+        return {ratio_of(samples.directions * ratio, samples.paths * samples.light_probability)};
     }
     // Behind a mirror there is no VPL that bundles could join.
     if (j == 0 || vpls.lights[j - 1].path != y.path || vpls.lights[j - 1].depth + 1 != y.depth) return {};
     const Step step = step_between(vpls, vpls.lights[j - 1], y, samples.continued);
-    return {ratio_of(samples.directions * samples.joined_share, samples.light_share * step.light),
+    return {ratio_of(samples.directions * samples.joined_probability, samples.light_probability * step.light),
             ratio_of(step.eye, step.light)};
 }
 

@@ -7,15 +7,16 @@
 //   by the bundle             with  M p(z | y) p_r(x -> y) C(y -> x) / |x-y|^2,
 // where z is a point of a light or the VPL before y. If z is a light, the first has the density of its
 // particles, and the second that of next-event estimation at y. If z is a VPL, both have what led to it,
-// which cancels, and the second a share s_2 of them. The balance heuristic of a path needs their ratio alone;
-// what of it depends on y and not on x is one number of the VPL, its `rival` a_j [m^2 sr]:
+// which cancels, and the second a fraction s_2 of them. The balance heuristic of a path needs their ratio
+// alone; what of it depends on y and not on x is one number of the VPL, its `rival` a_j [m^2 sr]:
 //   w_1 = 1 / (1 + a_j p_r C(y -> x) / |x-y|^2).
 // Eqs. 4 and 5 are this for a point light, with the common factor C(y -> x) C(y -> z) / (|x-y|^2 |y-z|^2)
 // left out. Both techniques find the ratio by the same functions, so that the weights of a path add up to 1
 // whatever rounding or roulette does to its density.
 //
 // The second of the two singularities, |z-y| -> 0, is the paper's reason to bound paths of two bounces (Eqs.
-// 7 and 8). Here they are weighed as well: near y the VPL before it has w_2 -> 0, near x the VPL at y has w_1
+// 7 and 8). Here they are weighted as well: near y the VPL before it has w_2 -> 0, near x the VPL at y has
+// w_1
 // -> 0. Nothing is left out.
 //
 // Where both edges are short, in a corner of a corner, neither has small values. So a bundle's path continues
@@ -47,11 +48,12 @@ inline constexpr float uniform_line_pdf = core::inv_two_pi;
 
 /// Numbers of samples that a receiver gets from each technique.
 struct TechniqueSamples {
-    float directions = 0.0f;    ///< M
-    float paths = 0.0f;         ///< N, light paths
-    float light_share = 1.0f;   ///< s_1, the chance of a VPL to meet a receiver
-    float joined_share = 0.0f;  ///< s_2, the chance of a VPL to be joined to a point that a bundle found
-    float continued = 0.0f;     ///< c, the probability that a bundle's path continues from a point
+    float directions = 0.0f;         ///< M
+    float paths = 0.0f;              ///< N, light paths
+    float light_probability = 1.0f;  ///< s_1, the chance of a VPL to meet a receiver
+    float joined_probability =
+        0.0f;                ///< s_2, the chance of a VPL to be joined to a point that a bundle found
+    float continued = 0.0f;  ///< c, the probability that a bundle's path continues from a point
 };
 
 /// Larger than any ratio of densities that matters, and small enough to be multiplied.
@@ -177,14 +179,14 @@ struct AgainstLights {
             const float fewer_found = next_vertex_pdf(z, direction, g, cos_y, d2) *
                                       (glossy ? b.from(*glossy, -direction) : b.plain);
             const float more = glossy && !may_continue(*glossy) ? 0.0f : rival * continued_pdf(g);
-            const float share = all.samples.joined_share;
-            return g * share / (share + fewer_found + more + 1e-37f);
+            const float joined = all.samples.joined_probability;
+            return g * joined / (joined + fewer_found + more + 1e-37f);
         }
     };
     ForLight for_pair(const lights::ReceiverLanes& y, const lights::VplSet& vpls, std::size_t index) const {
         const std::uint32_t detail = vpls.lights[index].detail;
         const bool plain = detail == lights::VirtualPointLight::no_detail;
-        const float more = samples.continued * samples.light_share / samples.directions;
+        const float more = samples.continued * samples.light_probability / samples.directions;
         return {*this, y, plain ? nullptr : &vpls.details[detail],
                 plain ? vpls.lights[index].position : vpls.details[detail].vertex.position,
                 more * rivals[index]};

@@ -12,33 +12,33 @@ using namespace core;
 
 namespace {
 
-/// Running shares of weights in [0, 1]; even where all are zero.
-void accumulate(std::span<const double> weights, std::span<float> shares) {
+/// Cumulative distribution of weights in [0, 1]; even where all are zero.
+void accumulate(std::span<const double> weights, std::span<float> cdf) {
     double total = 0.0, sum = 0.0;
     for (const double w : weights) total += w;
     for (std::size_t i = 0; i < weights.size(); ++i) {
-        shares[i] = total > 0.0 ? float(sum / total) : float(i) / float(weights.size());
+        cdf[i] = total > 0.0 ? float(sum / total) : float(i) / float(weights.size());
         sum += weights[i];
     }
-    shares[weights.size()] = 1.0f;
+    cdf[weights.size()] = 1.0f;
 }
 
-/// The last cell that begins at or before `share` and is not empty.
-std::uint32_t cell_at(std::span<const float> shares, float share) {
-    const auto above = std::upper_bound(shares.begin() + 1, shares.end() - 1, share);
-    return std::uint32_t(above - shares.begin() - 1);
+/// The last cell that begins at or before `u` and is not empty.
+std::uint32_t cell_at(std::span<const float> cdf, float u) {
+    const auto above = std::upper_bound(cdf.begin() + 1, cdf.end() - 1, u);
+    return std::uint32_t(above - cdf.begin() - 1);
 }
 
-float within(std::span<const float> shares, std::uint32_t cell, float share) {
-    const float width = shares[cell + 1] - shares[cell];
-    const float part = width > 0.0f ? std::clamp((share - shares[cell]) / width, 0.0f, 1.0f) : 0.5f;
-    return (float(cell) + part) / float(shares.size() - 1);
+float within(std::span<const float> cdf, std::uint32_t cell, float u) {
+    const float width = cdf[cell + 1] - cdf[cell];
+    const float part = width > 0.0f ? std::clamp((u - cdf[cell]) / width, 0.0f, 1.0f) : 0.5f;
+    return (float(cell) + part) / float(cdf.size() - 1);
 }
 
-float share_at(std::span<const float> shares, float place) {
-    const float at = std::clamp(place, 0.0f, 1.0f) * float(shares.size() - 1);
-    const auto cell = std::min(std::uint32_t(at), std::uint32_t(shares.size() - 2));
-    return lerp(shares[cell], shares[cell + 1], at - float(cell));
+float cdf_at(std::span<const float> cdf, float position) {
+    const float at = std::clamp(position, 0.0f, 1.0f) * float(cdf.size() - 1);
+    const auto cell = std::min(std::uint32_t(at), std::uint32_t(cdf.size() - 2));
+    return lerp(cdf[cell], cdf[cell + 1], at - float(cell));
 }
 
 }  // namespace
@@ -74,27 +74,27 @@ std::uint32_t BrdfWarp::cell_of(std::uint32_t column, float y) const {
 }
 
 float BrdfWarp::conditional(std::uint32_t column, float v) const {
-    return share_at(std::span(conditional_).subspan(column * (cells_ + 1), cells_ + 1), v);
+    return cdf_at(std::span(conditional_).subspan(column * (cells_ + 1), cells_ + 1), v);
 }
 
 Vec2 BrdfWarp::to_cosine_square(const Vec2& warped) const {
     const std::uint32_t column = column_of(warped.x);
-    const auto shares = std::span(conditional_).subspan(column * (cells_ + 1), cells_ + 1);
+    const auto cdf = std::span(conditional_).subspan(column * (cells_ + 1), cells_ + 1);
     // C^-1(y | u(x)) and M^-1(x).
-    return {within(marginal_, column, warped.x), within(shares, cell_of(column, warped.y), warped.y)};
+    return {within(marginal_, column, warped.x), within(cdf, cell_of(column, warped.y), warped.y)};
 }
 
 Vec2 BrdfWarp::to_warped_square(const Vec2& cosine) const {
     const auto column = std::min(std::uint32_t(std::max(cosine.x, 0.0f) * float(cells_)), cells_ - 1);
-    return {share_at(marginal_, cosine.x), conditional(column, cosine.y)};
+    return {cdf_at(marginal_, cosine.x), conditional(column, cosine.y)};
 }
 
 void BrdfWarp::warp_box(const Vec2& lower, const Vec2& upper, Vec2& warped_lower, Vec2& warped_upper) const {
     const auto column_at = [&](float u) {
         return std::min(std::uint32_t(std::clamp(u, 0.0f, 1.0f) * float(cells_)), cells_ - 1);
     };
-    warped_lower = {share_at(marginal_, lower.x), 1.0f};
-    warped_upper = {share_at(marginal_, upper.x), 0.0f};
+    warped_lower = {cdf_at(marginal_, lower.x), 1.0f};
+    warped_upper = {cdf_at(marginal_, upper.x), 0.0f};
     for (std::uint32_t c = column_at(lower.x), last = column_at(upper.x); c <= last; ++c) {
         if (!(marginal_[c + 1] > marginal_[c])) continue;
         warped_lower.y = std::min(warped_lower.y, conditional(c, lower.y));
@@ -111,14 +111,14 @@ void BrdfWarp::fill_directions(std::uint32_t side, const Vec2& place, RayDirecti
 }
 
 void BrdfWarp::fill_weights(std::uint32_t side, std::span<Rgb> weights) const {
-    const float share = 1.0f / float(side * side);
+    const float cell = 1.0f / float(side * side);
     for (std::uint32_t i = 0; i < side * side; ++i) {
         weights[i] = Rgb(0.0f);
         if (black()) continue;
         const std::uint32_t column = column_of((float(i % side) + 0.5f) / float(side));
         const Rgb& f = values_[column * cells_ + cell_of(column, (float(i / side) + 0.5f) / float(side))];
         // f cos / density: the cell's colour, with the luminance of the whole.
-        if (luminance(f) > 0.0f) weights[i] = f * (share * luminance(integral_) / luminance(f));
+        if (luminance(f) > 0.0f) weights[i] = f * (cell * luminance(integral_) / luminance(f));
     }
 }
 

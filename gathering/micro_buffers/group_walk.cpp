@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint32_t width = ReceiverLanes::width;
 /// A flat node that is seen at a slant counts as small as it looks, but not below this.
-constexpr float least_slant = 0.25f;
+constexpr float min_slant = 0.25f;
 
 class GroupWalk {
   public:
@@ -67,7 +67,7 @@ class GroupWalk {
             const float up = fused_dot(x, y, z, lanes_.n[0][i], lanes_.n[1][i], lanes_.n[2][i]) + r;
             const float away = fused_dot(x, y, z, node.axis.x, node.axis.y, node.axis.z);
             const bool hidden = up <= 0.0f;
-            const float slant = min_of(max_of(std::fabs(away) + cone_sin * d, least_slant * d), d);
+            const float slant = min_of(max_of(std::fabs(away) + cone_sin * d, min_slant * d), d);
             // r^2 / d^2 * slant / d against the threshold times d / up.
             const float size = r2 * slant * up, limit = threshold * d2 * d2;
             const bool small = leaf | (whole & (size <= limit) & (four_r2 < d2));

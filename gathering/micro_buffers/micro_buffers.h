@@ -41,7 +41,7 @@ struct MicroBufferSettings {
     /// Where in each of them its ray lies, in [0, 1)^2: buffers that are averaged should differ in it, else
     /// all of them miss the same.
     core::Vec2 place{0.5f};
-    /// A node is not entered whose solid angle is at most this share of its texel's.
+    /// A node is not entered whose solid angle is at most this fraction of its texel's.
     float cut = 1.0f;
     /// If true, points fill all texels whose rays meet them (Fig. 8.13), else only the one that they fall on.
     bool cast_leaves = true;

@@ -37,7 +37,7 @@ void walk_warped(const PointHierarchy& hierarchy, const MicroBufferSettings& set
                  const RayDirections& rays, const MicroReceiver& receiver, DepthRows out) {
     if (hierarchy.empty()) return;
     const float side = float(rays.side);
-    // As large as the box around a disc of the cut's share of a texel.
+    // As large as the box around a disc of the cut's fraction of a texel.
     const float largest = settings.cut * sqr(2.0f * square_reach);
     for (NodePlace place = hierarchy.root(); hierarchy.exists(place);) {
         const std::uint32_t index = hierarchy.node_index(place);

@@ -100,9 +100,9 @@ PhotonSet split(std::vector<Candidate>&& candidates, int halvings) {
         std::count_if(candidates.begin(), candidates.end(), [](auto& c) { return c.surface; });
     set.surface.reserve(std::size_t(surfaces));
     set.volume.reserve(candidates.size() - std::size_t(surfaces));
-    const float share = std::ldexp(1.0f, halvings);
+    const float fraction = std::ldexp(1.0f, halvings);
     for (Candidate& c : candidates) {
-        c.photon.power *= share;
+        c.photon.power *= fraction;
         (c.surface ? set.surface : set.volume).push_back(c.photon);
     }
     return set;

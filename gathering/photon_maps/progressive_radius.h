@@ -11,7 +11,7 @@
 namespace mote::gathering {
 
 /// Radius of pass `pass` (from 0) over that of pass 0. `alpha` in (0, 1]: 1 does not shrink.
-inline double radius_share(std::uint32_t pass, double alpha) {
+inline double radius_fraction(std::uint32_t pass, double alpha) {
     const double i = double(pass);
     // product over j = 1 .. pass of (j + alpha) / (j + 1)
     const double log_product =

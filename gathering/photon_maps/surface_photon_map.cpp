@@ -19,11 +19,11 @@ SurfacePhotonMap::SurfacePhotonMap(std::vector<Photon> photons) {
 
 Rgb SurfacePhotonMap::radiance(const ScatteringVertex& receiver, const DensityEstimate& estimate,
                                int max_depth, std::vector<KdTree::Neighbour>& scratch) const {
-    constexpr float least_normal_cosine = 0.5f;
+    constexpr float min_normal_cosine = 0.5f;
     tree_.nearest(receiver.position, std::max<std::size_t>(estimate.neighbours, 2), infinity, scratch);
     if (scratch.size() < 2) return Rgb(0.0f);
     // Photons strictly inside r: never the k-th one, which set it.
-    const float r2 = scratch.front().distance_squared * sqr(estimate.radius_share);
+    const float r2 = scratch.front().distance_squared * sqr(estimate.radius_fraction);
     if (!(r2 > 0.0f)) return Rgb(0.0f);
     const Vec3 normal = receiver.hit.geometric_normal;
     Rgb sum(0.0f);
@@ -31,8 +31,7 @@ Rgb SurfacePhotonMap::radiance(const ScatteringVertex& receiver, const DensityEs
         if (!(n.distance_squared < r2)) continue;
         const Photon& photon = photons_[n.index];
         if (int(photon.depth) > max_depth) continue;
-        if (std::fabs(glm::dot(decode_normal(photon.normal_or_medium), normal)) < least_normal_cosine)
-            continue;
+        if (std::fabs(glm::dot(decode_normal(photon.normal_or_medium), normal)) < min_normal_cosine) continue;
         const Vec3 wi = decode_direction(photon.towards_light);
         const float geometric = receiver.geometric_cosine(wi);
         if (!(geometric > 0.0f)) continue;

@@ -6,10 +6,10 @@
 
 namespace mote::gathering {
 
-/// Number of photons of an estimate, and the share of their radius that it uses (progressive_radius.h).
+/// Number of photons of an estimate, and the fraction of their radius that it uses (progressive_radius.h).
 struct DensityEstimate {
-    std::size_t neighbours = 50;  ///< k
-    float radius_share = 1.0f;    ///< of the distance of the k-th, in (0, 1]
+    std::size_t neighbours = 50;   ///< k
+    float radius_fraction = 1.0f;  ///< of the distance of the k-th, in (0, 1]
 };
 
 /// Photons on surfaces, ordered for estimates.
@@ -21,10 +21,10 @@ class SurfacePhotonMap {
 
     /// Reflected radiance at `receiver` towards its wo, from photons of depth up to `max_depth`:
     ///   sum over p of f*(wo, w_p) Phi_p / (pi r^2)   (Engelhardt 2013, Eq. 4.5)
-    /// r is `radius_share` times the distance of the k-th nearest photon, which itself is left out: with k -
-    /// 1 in the numerator the estimate of an even density is unbiased. Photons on the receiver's other side,
-    /// and those on surfaces turned more than 60 degrees away, do not count. Zero in a map of fewer than two
-    /// photons.
+    /// r is `radius_fraction` times the distance of the k-th nearest photon, which itself is left out: with k
+    /// - 1 in the numerator the estimate of an even density is unbiased. Photons on the receiver's other
+    /// side, and those on surfaces turned more than 60 degrees away, do not count. Zero in a map of fewer
+    /// than two photons.
     core::Rgb radiance(const core::ScatteringVertex& receiver, const DensityEstimate& estimate, int max_depth,
                        std::vector<core::KdTree::Neighbour>& scratch) const;
 

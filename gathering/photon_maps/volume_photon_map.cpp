@@ -44,7 +44,7 @@ VolumePhotonMap::VolumePhotonMap(const RayQueries& scene, std::vector<Photon> ph
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
             photons_[i] = photons[order[i]];
             const float r = radius_of(tree, std::uint32_t(i), estimate.neighbours, largest_radius, scratch);
-            discs[i] = {photons_[i].position, std::max(smallest, r * estimate.radius_share)};
+            discs[i] = {photons_[i].position, std::max(smallest, r * estimate.radius_fraction)};
         }
     });
     discs_.build(std::move(discs));

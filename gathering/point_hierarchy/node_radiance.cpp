@@ -28,8 +28,8 @@ std::vector<Rgb> pulled_up(const PointHierarchy& hierarchy, std::span<const Rgb>
             Rgb& mean = values[hierarchy.node_index(node)];
             mean = values[hierarchy.node_index(a)];
             if (!hierarchy.exists(b)) continue;
-            const float share = float(hierarchy.points_below(b)) / float(hierarchy.points_below(node));
-            mean = mean + share * (values[hierarchy.node_index(b)] - mean);
+            const float fraction = float(hierarchy.points_below(b)) / float(hierarchy.points_below(node));
+            mean = mean + fraction * (values[hierarchy.node_index(b)] - mean);
         }
     return values;
 }

@@ -56,7 +56,7 @@ class PointHierarchy {
     bool empty() const { return points() == 0; }        ///< there is no node then
     float disc_radius() const { return disc_radius_; }  ///< of each point [m]
     double patch() const { return patch_; }             ///< area of each point [m^2]
-    /// order()[i] is the place of leaf i among the surfels.
+    /// order()[i] is the index of leaf i among the surfels.
     std::span<const std::uint32_t> order() const { return order_; }
 
     /// All nodes, leaves first: node i is the disc of point order()[i] for i < points().

@@ -19,7 +19,7 @@ std::uint64_t facing(const Vec3& n) {
     return std::uint64_t(2 * axis + (n[axis] < 0.0f));
 }
 
-/// Orders [first, last), which is a part of a node of 2^level points, so that its children are the two sides
+/// Orders [first, last), which lies within a node of 2^level points, so that its children are the two sides
 /// of a cut across the longest side.
 void cut_at_medians(const Surfels& surfels, std::uint32_t* order, std::size_t first, std::size_t last,
                     std::uint32_t level) {

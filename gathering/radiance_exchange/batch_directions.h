@@ -2,7 +2,7 @@
 //
 // Batches that follow each other must be independent: what one received is sent along the next, and the mean
 // of a product is that of its factors only then. One Halton sequence would look in every batch where the last
-// one had not. So two sequences take turns, each going on where it ended.
+// one had not. So two sequences take turns, each continuing where it ended.
 #pragma once
 
 #include "gathering/ray_bundles/bundle_directions.h"

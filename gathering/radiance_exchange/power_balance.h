@@ -1,6 +1,6 @@
 // Scales indirect light so that its power is the one at which as much arrives as is sent.
 //
-// Of each channel: what arrived, sum A E_i, is the share kappa of what was sent, sum A rho (E_d + E_i
+// Of each channel: what arrived, sum A E_i, is the fraction kappa of what was sent, sum A rho (E_d + E_i
 // before). If E_i keeps its shape, and kappa, the fixed point has the factor
 //   alpha sum A E_i = kappa sum A rho (E_d + alpha E_i).
 // This is where the part of the iteration converges to that would take longest.

@@ -47,10 +47,10 @@ class Exchange {
         for (std::size_t t = 0; t < n_; ++t)
             sent_.reflected[t] = rgb4(scene_.materials.of[t].reflectance * inv_pi * arriving[t]);
     }
-    /// Direct irradiance: that of TexelDirectLight plus `share` of the sum over batches.
-    Irradiance direct(float share) const {
+    /// Direct irradiance: that of TexelDirectLight plus `fraction` of the sum over batches.
+    Irradiance direct(float fraction) const {
         Irradiance sum = sampled_.irradiance.empty() ? Irradiance(n_) : sampled_.irradiance;
-        if (settings_.lights) add(sum, light_.direct, share);
+        if (settings_.lights) add(sum, light_.direct, fraction);
         return sum;
     }
 

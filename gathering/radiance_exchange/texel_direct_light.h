@@ -11,7 +11,7 @@ namespace mote::gathering {
 /// One connection of a texel to a light.
 struct TexelLightSample {
     core::Vec3 wi;         ///< unit, to the light
-    core::Rgb irradiance;  ///< its share of the texel's [W/m^2]
+    core::Rgb irradiance;  ///< its contribution to the texel's [W/m^2]
 };
 
 struct TexelDirectLight {
@@ -21,8 +21,8 @@ struct TexelDirectLight {
     int samples = 0;
 };
 
-/// `samples` connections a texel, each to a light that `lights` draws for it, from places drawn on the texel
-/// where it is a whole cell, else from its position. Numbers are keyed by `key` and the texel.
+/// `samples` connections a texel, each to a light that `lights` samples for it, from places sampled on the
+/// texel where it is a whole cell, else from its position. Numbers are keyed by `key` and the texel.
 TexelDirectLight texel_direct_light(const core::LitScene& lights, const SurfaceAtlas& atlas,
                                     const TexelMaterials& materials, int samples, std::uint64_t key,
                                     core::CancelToken cancelled);

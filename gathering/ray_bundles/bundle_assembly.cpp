@@ -14,7 +14,7 @@ using namespace core;
 
 namespace {
 
-constexpr std::size_t most_hits = 0xffffffffu;  // what RayBundle::first can count
+constexpr std::size_t max_hits = 0xffffffffu;  // what RayBundle::first can count
 
 std::size_t bytes_of(std::size_t rays, std::size_t hits) {
     return (rays + 1) * sizeof(std::uint32_t) + hits * sizeof(BundleHit);
@@ -33,7 +33,7 @@ struct Coarser {
 
 [[noreturn]] void refuse(const BundleGrid& grid, double all_hits, std::size_t budget) {
     const double inside = (double(grid.columns) - 2.0) * (double(grid.rows) - 2.0);
-    const double allowed = std::min(double(budget), double(most_hits) * sizeof(BundleHit));
+    const double allowed = std::min(double(budget), double(max_hits) * sizeof(BundleHit));
     double times = 1.0, coarse_bytes = infinity;
     while (coarse_bytes > 0.95 * allowed && times < 1e9) {
         times *= 1.05;
@@ -83,7 +83,7 @@ RayBundle assemble_bundle(const BundleGrid& grid, std::uint32_t rows_per_band, c
         bands[i] = band.ordered((end - begin) * grid.columns, order);
         const std::size_t rays_now = rays += std::size_t(end - begin) * grid.columns;
         const std::size_t hits_now = hits += bands[i].hits.size();
-        if (hits_now > most_hits || bytes_of(grid.rays(), hits_now) > limits.memory_budget)
+        if (hits_now > max_hits || bytes_of(grid.rays(), hits_now) > limits.memory_budget)
             refuse(grid, double(hits_now) * double(grid.rays()) / double(rays_now), limits.memory_budget);
     });
     return joined(grid, bands, hits);

@@ -14,8 +14,8 @@ struct BundleSample {
 /// Van der Corput's sequence: the digits of `index` mirrored at the point.
 inline double radical_inverse(std::uint32_t base, std::uint64_t index) {
     const double step = 1.0 / base;
-    double place = step, result = 0.0;
-    for (; index != 0; index /= base, place *= step) result += double(index % base) * place;
+    double weight = step, result = 0.0;
+    for (; index != 0; index /= base, weight *= step) result += double(index % base) * weight;
     return result;
 }
 

@@ -11,7 +11,7 @@ using namespace core;
 
 namespace {
 
-constexpr double most_rays = 0x1p31;
+constexpr double max_rays = 0x1p31;
 
 struct Extent {
     double lower = infinity, upper = -infinity;
@@ -52,8 +52,8 @@ BundleGrid bundle_grid(const Vec3& direction, const Bounds3& bounds, float spaci
     // The first ray of a row is `offset` of a spacing before the bounds, the last one at most as far behind.
     const double step = double(spacing);
     const double columns = std::ceil(x.length() / step) + 2.0, rows = std::ceil(y.length() / step) + 2.0;
-    if (!(columns * rows <= most_rays)) {
-        const double fits = step * std::sqrt(columns * rows / most_rays) * 1.01;
+    if (!(columns * rows <= max_rays)) {
+        const double fits = step * std::sqrt(columns * rows / max_rays) * 1.01;
         throw InputError(fmt::format("a ray-bundle of {} x {} rays is too large: a spacing of {:.3g} m fits",
                                      columns, rows, fits));
     }

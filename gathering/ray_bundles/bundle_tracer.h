@@ -29,7 +29,7 @@ enum class BundleForm : std::uint8_t {
 struct BundleSettings {
     BundleForm form = BundleForm::automatic;           ///< how hits are found
     std::size_t memory_budget = std::size_t(1) << 30;  ///< of the bundle's hits [B]
-    core::CancelToken cancelled = {};                  ///< thrown at
+    core::CancelToken cancelled = {};                  ///< throws Cancelled
 };
 
 /// Traces bundles through one list of triangles.

@@ -11,7 +11,7 @@ using namespace core;
 
 namespace {
 
-constexpr std::uint32_t least_sides = 8, most_sides = 64, most_pieces = 1024;
+constexpr std::uint32_t min_sides = 8, max_sides = 64, max_pieces = 1024;
 
 /// The centre line with its radius as fourth component, and its direction.
 struct LinePoint {
@@ -77,10 +77,10 @@ TubeCuts tube_cuts(const Curves& curves, float chord_error) {
     const double cos_half = std::max(1.0 - tolerance / double(widest), -1.0);
     TubeCuts cuts;
     cuts.around =
-        std::clamp(std::uint32_t(std::ceil(std::numbers::pi / std::acos(cos_half))), least_sides, most_sides);
+        std::clamp(std::uint32_t(std::ceil(std::numbers::pi / std::acos(cos_half))), min_sides, max_sides);
     for (std::uint32_t s = 0; s < curves.data().segments.size(); ++s) {
         const double pieces = std::ceil(std::sqrt(largest_bend(curves, s) / (8.0 * tolerance)));
-        cuts.along.push_back(std::uint32_t(std::clamp(pieces, 1.0, double(most_pieces))));
+        cuts.along.push_back(std::uint32_t(std::clamp(pieces, 1.0, double(max_pieces))));
     }
     return cuts;
 }

@@ -17,8 +17,8 @@ struct TubeCuts {
     std::size_t triangles() const;
 };
 
-/// So that the tube lies no further off its triangles than this share of the curves' extent; eight sides at
-/// least, so that thin tubes keep 97 % of their area.
+/// So that the tube lies no further off its triangles than this fraction of the curves' extent; eight sides
+/// at least, so that thin tubes keep 97 % of their area.
 TubeCuts tube_cuts(const core::Curves& curves, float chord_error);
 
 /// Where an instance places them, or as they are (null).

@@ -16,7 +16,7 @@ struct GridSteps {
     bool empty() const { return from > to; }
 };
 
-inline double least_of(double a, double b, double c) { return std::min(a, std::min(b, c)); }
-inline double most_of(double a, double b, double c) { return std::max(a, std::max(b, c)); }
+inline double lowest_of(double a, double b, double c) { return std::min(a, std::min(b, c)); }
+inline double highest_of(double a, double b, double c) { return std::max(a, std::max(b, c)); }
 
 }  // namespace mote::gathering

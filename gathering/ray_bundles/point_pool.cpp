@@ -17,10 +17,10 @@ PointPool::PointPool(const SurfaceTriangles& triangles, std::uint32_t points, st
     values_.resize(std::size_t(columns) * stride_ * sets), triangles_.resize(stride_ * sets);
     if (points_ == 0) return;
     tbb::parallel_for(std::uint32_t(0), sets, [&](std::uint32_t set) {
-        std::vector<SurfacePoint> drawn;
-        surface.draw(set, points, 0, points, drawn);
+        std::vector<SurfacePoint> sampled;
+        surface.sample(set, points, 0, points, sampled);
         for (std::size_t i = 0; i < stride_; ++i) {
-            const SurfacePoint& p = drawn[std::min(i, drawn.size() - 1)];  // the last fills the block
+            const SurfacePoint& p = sampled[std::min(i, sampled.size() - 1)];  // the last fills the block
             const auto& c = triangles.corners[p.triangle];
             const Vec3d e1 = Vec3d(c[1]) - Vec3d(c[0]), e2 = Vec3d(c[2]) - Vec3d(c[0]),
                         cross = glm::cross(e1, e2);

@@ -1,4 +1,5 @@
-// Sets of points on surfaces, drawn once, with what a disc around each needs: read in order, eight at a time.
+// Sets of points on surfaces, sampled once, with what a disc around each needs: read in order, eight at a
+// time.
 #pragma once
 
 #include <array>

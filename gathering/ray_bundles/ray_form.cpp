@@ -65,8 +65,8 @@ class PacketMaker {
 /// True if the boxes of the triangle and of the packet at (x0, y0) meet on the grid.
 bool may_hit(const std::array<Vec3d, 3>& p, double x0, double y0) {
     constexpr double last = side - 1;
-    return least_of(p[0].x, p[1].x, p[2].x) <= x0 + last && most_of(p[0].x, p[1].x, p[2].x) >= x0 &&
-           least_of(p[0].y, p[1].y, p[2].y) <= y0 + last && most_of(p[0].y, p[1].y, p[2].y) >= y0;
+    return lowest_of(p[0].x, p[1].x, p[2].x) <= x0 + last && highest_of(p[0].x, p[1].x, p[2].x) >= x0 &&
+           lowest_of(p[0].y, p[1].y, p[2].y) <= y0 + last && highest_of(p[0].y, p[1].y, p[2].y) >= y0;
 }
 
 /// The values of the edges at each ray of a packet.

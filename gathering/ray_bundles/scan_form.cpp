@@ -19,8 +19,9 @@ GridSteps columns_of(const std::array<Vec3d, 3>& p, double y, std::uint32_t colu
     for (std::size_t i = 0; i < 3; ++i) {
         const Vec3d &a = p[i], &b = p[(i + 1) % 3];
         if (std::min(a.y, b.y) > y || std::max(a.y, b.y) < y) continue;
-        const double height = b.y - a.y, share = (y - a.y) / height;
-        const double from = height != 0.0 ? a.x + share * (b.x - a.x) : a.x, to = height != 0.0 ? from : b.x;
+        const double height = b.y - a.y, fraction = (y - a.y) / height;
+        const double from = height != 0.0 ? a.x + fraction * (b.x - a.x) : a.x,
+                     to = height != 0.0 ? from : b.x;
         lower = std::min(lower, std::min(from, to)), upper = std::max(upper, std::max(from, to));
     }
     return GridSteps(lower - room, upper + room, columns);
@@ -41,9 +42,10 @@ void ScanForm::scan_rows(std::uint32_t begin, std::uint32_t end, HitBand& band) 
     for (const std::uint32_t index : bins_.of_band(begin / rows_per_band_)) {
         const ProjectedTriangle triangle(project(projection_, triangles_.corners[index]));
         const auto& p = triangle.corners();
-        const GridSteps rows(std::max(double(begin), least_of(p[0].y, p[1].y, p[2].y)),
-                             most_of(p[0].y, p[1].y, p[2].y), end);
-        const GridSteps box(least_of(p[0].x, p[1].x, p[2].x), most_of(p[0].x, p[1].x, p[2].x), grid_.columns);
+        const GridSteps rows(std::max(double(begin), lowest_of(p[0].y, p[1].y, p[2].y)),
+                             highest_of(p[0].y, p[1].y, p[2].y), end);
+        const GridSteps box(lowest_of(p[0].x, p[1].x, p[2].x), highest_of(p[0].x, p[1].x, p[2].x),
+                            grid_.columns);
         for (std::int64_t y = rows.from; y <= rows.to; ++y) {
             const GridSteps columns =
                 box.to - box.from < narrow ? box : columns_of(p, double(y), grid_.columns);

@@ -40,29 +40,29 @@ SurfacePoints::SurfacePoints(const SurfaceTriangles& triangles) {
     for (const std::uint32_t i : order_) below_.push_back(area_), area_ += areas[i];
     below_.push_back(area_);
     guide_.resize(std::bit_ceil(order_.size() + 1));
-    std::uint32_t place = 0;
+    std::uint32_t index = 0;
     for (std::size_t i = 0; i < guide_.size(); ++i) {
-        const double share = area_ * double(i) / double(guide_.size());
-        while (place + 1 < order_.size() && below_[place + 1] <= share) ++place;
-        guide_[i] = place;
+        const double fraction = area_ * double(i) / double(guide_.size());
+        while (index + 1 < order_.size() && below_[index + 1] <= fraction) ++index;
+        guide_[i] = index;
     }
 }
 
-void SurfacePoints::draw(std::uint64_t set, std::uint32_t count, std::uint32_t begin, std::uint32_t end,
-                         std::vector<SurfacePoint>& points) const {
+void SurfacePoints::sample(std::uint64_t set, std::uint32_t count, std::uint32_t begin, std::uint32_t end,
+                           std::vector<SurfacePoint>& points) const {
     points.clear();
     if (order_.empty()) return;
     Rng rng(hash_keys(set, 0x706f696e7473ull));
-    const double shift = double(rng.next_float()), share = 1.0 / double(count);
+    const double shift = double(rng.next_float()), fraction = 1.0 / double(count);
     const std::uint32_t turned = rng.next_u32();
     for (std::uint32_t i = begin; i < end; ++i) {
-        const double at = (double(i) + shift) * share;
-        std::uint32_t place = guide_[std::size_t(at * double(guide_.size()))];
-        while (place + 1 < order_.size() && below_[place + 1] <= at * area_) ++place;
-        const double within = (at * area_ - below_[place]) / (below_[place + 1] - below_[place]);
+        const double at = (double(i) + shift) * fraction;
+        std::uint32_t index = guide_[std::size_t(at * double(guide_.size()))];
+        while (index + 1 < order_.size() && below_[index + 1] <= at * area_) ++index;
+        const double within = (at * area_ - below_[index]) / (below_[index + 1] - below_[index]);
         const Vec2 uv = square_to_triangle(
             {std::clamp(float(within), 0.0f, one_minus_epsilon), moved_radical_inverse(i, turned)});
-        points.push_back({order_[place], uv.x, uv.y});
+        points.push_back({order_[index], uv.x, uv.y});
     }
 }
 

@@ -34,7 +34,7 @@ inline double triangle_area(const std::array<core::Vec3, 3>& corners) {
 
 /// Settings of the tessellation of curved shapes.
 struct TessellationSettings {
-    /// Max distance of a sphere, cylinder, disk or curve from its triangles, as a share of its extent.
+    /// Max distance of a sphere, cylinder, disk or curve from its triangles, as a fraction of its extent.
     float chord_error = 1e-3f;
     std::size_t memory_budget = std::size_t(4) << 30;  ///< [B]
 };

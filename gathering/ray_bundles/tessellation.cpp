@@ -8,7 +8,7 @@ using namespace core;
 
 namespace {
 
-constexpr int least_pieces = 8;  // of each side, so that no bend hides between the points that are tested
+constexpr int min_pieces = 8;  // of each side, so that no bend hides between the points that are tested
 constexpr float shortest = 0x1p-16f;  // side of a piece
 
 float distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
@@ -31,8 +31,8 @@ float bend(const Shape& shape, const Vec2& from, const Vec2& to) {
 /// Cuts [from, to] until the surface bends by at most `tolerance` along `axis`, wherever it is on the other.
 void cut(const Shape& shape, int axis, float from, float to, float tolerance, std::vector<float>& cuts) {
     float most = 0.0f;
-    for (int i = 0; i <= least_pieces; ++i) {
-        Vec2 a(float(i) / least_pieces), b = a;
+    for (int i = 0; i <= min_pieces; ++i) {
+        Vec2 a(float(i) / min_pieces), b = a;
         a[axis] = from, b[axis] = to;
         most = std::max(most, bend(shape, a, b));
     }
@@ -46,8 +46,8 @@ void cut(const Shape& shape, int axis, float from, float to, float tolerance, st
 
 std::vector<float> cuts_along(const Shape& shape, int axis, float tolerance) {
     std::vector<float> cuts = {0.0f};
-    for (int i = 0; i < least_pieces; ++i)
-        cut(shape, axis, float(i) / least_pieces, float(i + 1) / least_pieces, tolerance, cuts);
+    for (int i = 0; i < min_pieces; ++i)
+        cut(shape, axis, float(i) / min_pieces, float(i + 1) / min_pieces, tolerance, cuts);
     return cuts;
 }
 

@@ -16,7 +16,7 @@ struct Tessellation {
     std::size_t triangles() const { return 2 * (xs.size() - 1) * (ys.size() - 1); }  ///< at most
 };
 
-/// So fine that no triangle lies further off the surface than this share of the shape's extent.
+/// So fine that no triangle lies further off the surface than this fraction of the shape's extent.
 Tessellation tessellation_of(const core::Shape& shape, float chord_error);
 
 /// Corners lie on the surface, borders that meet share theirs to the bit; triangles without area are left

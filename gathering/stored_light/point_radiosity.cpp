@@ -12,7 +12,7 @@ namespace {
 
 /// Normals of places that share what one of them gathers differ by less than about 25 degrees.
 constexpr float alike = 0.9f;
-/// Receivers until somebody may want to stop: some tenths of a second.
+/// Receivers between two tests for cancellation: some tenths of a second.
 constexpr std::size_t between_looks = 2048;
 
 /// The places of each surfel: front and back, or none.

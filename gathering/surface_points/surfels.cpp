@@ -48,7 +48,7 @@ Surfels blue_noise_surfels(const SurfaceTriangles& triangles, std::uint32_t coun
     const auto candidates =
         std::uint32_t(std::min<std::uint64_t>(std::uint64_t(count) * settings.candidates, 0xffffffffu));
     std::vector<SurfacePoint> places;
-    surface.draw(settings.seed, candidates, 0, candidates, places);
+    surface.sample(settings.seed, candidates, 0, candidates, places);
     const Surfels all = placed(triangles, std::move(places), surface.area());
     const DartThrow darts = throw_darts(all.positions, all.normals, std::min<std::size_t>(count, all.size()),
                                         surface.area(), settings.seed, settings.cancelled);

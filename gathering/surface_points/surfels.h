@@ -1,4 +1,4 @@
-// Points that represent the surfaces of a scene: discs of one radius, each for an equal share of the area.
+// Points that represent the surfaces of a scene: discs of one radius, each for an equal part of the area.
 #pragma once
 
 #include <span>

@@ -21,9 +21,9 @@ LightEnds::LightEnds(const LitScene& scene) : scene_(scene) {
 
 LightChoice LightEnds::choose(float u, float* remapped) const {
     if (by_power_.empty()) return {nullptr, 0.0f};
-    const auto drawn = by_power_.sample_discrete(u);
-    *remapped = drawn.remapped;
-    return {scene_.emitters()[drawn.index].get(), drawn.probability};
+    const auto sampled = by_power_.sample_discrete(u);
+    *remapped = sampled.remapped;
+    return {scene_.emitters()[sampled.index].get(), sampled.probability};
 }
 
 float LightEnds::probability(const Emitter* emitter) const {
@@ -38,8 +38,8 @@ LightEnds::Start LightEnds::start(const LightPoint& point) const {
     return {chance * double(d.pdf_area), double(d.pdf_solid_angle)};
 }
 
-double LightEnds::drawn(const LightReceiver& receiver, const LightPoint& point,
-                        double distance_squared) const {
+double LightEnds::sampled(const LightReceiver& receiver, const LightPoint& point,
+                          double distance_squared) const {
     const EmitterTraits traits = point.emitter->traits();
     if (!traits.direct) return 0.0;
     const double chance = double(scene_.light_probability(receiver, point.emitter));

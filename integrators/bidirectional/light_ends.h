@@ -49,7 +49,8 @@ class LightEnds {
 
     /// Density with which a receiver samples the point (LitScene::choose_light and Emitter::sample_direct),
     /// in the measure of Start::light; 0 where it never does.
-    double drawn(const core::LightReceiver& receiver, const LightPoint& point, double distance_squared) const;
+    double sampled(const core::LightReceiver& receiver, const LightPoint& point,
+                   double distance_squared) const;
 
   private:
     const core::LitScene& scene_;

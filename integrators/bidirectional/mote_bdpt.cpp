@@ -67,7 +67,7 @@ void register_mote_bdpt(Registry& registry) {
         {within(&S::limits, eye_path_rows()),
          row("heuristic", &S::heuristic,
              {{"power", Heuristic::power}, {"balance", Heuristic::balance}, {"none", Heuristic::none}},
-             "Weights of the techniques that find the same path; none: all count in full, to look at "
+             "Weights of the techniques that find the same path; none: all count in full, to inspect "
              "them by `strategies`."),
          row("all_connections", &S::all_connections,
              "Test every connection of an eye vertex with the light path; false: one, sampled by its "

@@ -25,7 +25,7 @@ bool Strategies<Media>::start_light_path(Sampler& sampler, SubpathWalk<Media>& w
     weights.throughput = emission->weight / choice.probability;
     MediumState state;
     if constexpr (Media) {
-        weights.hero = draw_hero(context_.rng);
+        weights.hero = sample_hero(context_.rng);
         state = scene_.emitter_medium_state(*choice.emitter, *emission);
     }
     walk.start({emission->origin, emission->direction}, start.receiver, light_start_.infinite(), weights,
@@ -33,14 +33,15 @@ bool Strategies<Media>::start_light_path(Sampler& sampler, SubpathWalk<Media>& w
     return true;
 }
 
-/// The density with which the first vertex would draw the light, now that it is known.
+/// The density with which the first vertex would sample the light.
 template <bool Media>
 void Strategies<Media>::finish_light_start() {
     PathVertex& first = light_.vertices[1];
     first.connection = 0.0;
     if (!first.scattering.connectable() || !(light_.vertices[0].density > 0.0)) return;
-    const double drawn = ends_.drawn(first.scattering.light_receiver(), light_start_, first.distance_squared);
-    first.connection = mis_term(settings_.heuristic, drawn / light_.vertices[0].density);
+    const double sampled =
+        ends_.sampled(first.scattering.light_receiver(), light_start_, first.distance_squared);
+    first.connection = mis_term(settings_.heuristic, sampled / light_.vertices[0].density);
 }
 
 template <bool Media>
@@ -71,7 +72,7 @@ Rgb Strategies<Media>::between(const Ray& segment, const ScatteringVertex& from,
                                     context_.tracking);
     // To infinity. A channel of its own drives it: estimates that are multiplied must be independent.
     PathWeights weights;
-    weights.light = Rgb(1.0f), weights.hero = draw_hero(context_.rng);
+    weights.light = Rgb(1.0f), weights.hero = sample_hero(context_.rng);
     scene_.connect(segment, start, weights, context_.rng, context_.tracking);
     return weights.throughput / average(weights.light);
 }
@@ -137,12 +138,12 @@ Contribution Strategies<Media>::hit_light(std::size_t t) {
     if (t >= 3 && settings_.heuristic != Heuristic::none) {
         const PathVertex& receiver = eye_.vertices[t - 2];
         const ScatteringVertex& v = receiver.scattering;
-        const double drawn =
-            receiver.delta ? 0.0 : ends_.drawn(v.light_receiver(), point, z.distance_squared);
+        const double sampled =
+            receiver.delta ? 0.0 : ends_.sampled(v.light_receiver(), point, z.distance_squared);
         const LightEnds::Start start = ends_.start(point);
         const double by_light =
             start.of(v.geometric_cosine(direction), z.distance_squared, z.infinite) * z.edge;
-        others = mis_term(settings_.heuristic, drawn / z.density) +
+        others = mis_term(settings_.heuristic, sampled / z.density) +
                  mis_term(settings_.heuristic, start.light / z.density) * eye_.ratio(t - 2, by_light) *
                      (eye_.technique(t - 2) + z.others);
     }
@@ -166,7 +167,7 @@ Contribution Strategies<Media>::draw_light(std::size_t t, float u_light, const V
     light_point_ = point;
     const double d2 = infinite ? 1.0 : double(light->distance) * double(light->distance);
     const double measure = point.area_measure(d2);
-    const double drawn =
+    const double sampled =
         double(choice.probability) * (light->delta ? 1.0 : double(light->pdf_solid_angle) * measure);
     const bool can_be_hit = choice.emitter->traits().can_be_hit();
     const double to_light =
@@ -175,9 +176,9 @@ Contribution Strategies<Media>::draw_light(std::size_t t, float u_light, const V
     const double by_light = start.of(v.geometric_cosine(light->wi), d2, infinite);
     const double before = reverse_of_previous(eye_, t - 1, light->wi, TransportMode::radiance);
     const auto weight_with = [&](double edge) {
-        return weight(
-            mis_term(settings_.heuristic, to_light * edge / drawn),
-            mis_term(settings_.heuristic, start.light / drawn) * eye_.others(t - 1, by_light * edge, before));
+        return weight(mis_term(settings_.heuristic, to_light * edge / sampled),
+                      mis_term(settings_.heuristic, start.light / sampled) *
+                          eye_.others(t - 1, by_light * edge, before));
     };
     const float chance = worth_a_ray(weight_with(1.0));
     if (!(chance > 0.0f)) return {};

@@ -145,7 +145,7 @@ void Strategies<Media>::trace_eye_path(const EyeRay& eye, const Found& found) {
     core::PathWeights weights;
     core::MediumState state;
     if constexpr (Media) {
-        weights.hero = core::draw_hero(context_.rng);
+        weights.hero = core::sample_hero(context_.rng);
         state = scene_.eye_medium_state(eye.ray);
     }
     const auto importance = scene_.camera().importance(eye.ray.origin, eye.ray.direction, filter_radius_);
@@ -160,12 +160,12 @@ void Strategies<Media>::trace_eye_path(const EyeRay& eye, const Found& found) {
                             context_);
     walk.start(eye.ray, density, parallel, weights, state);
     while (true) {
-        const bool goes_on = walk.advance();
+        const bool continues = walk.advance();
         const PathVertex& last = eye_.vertices.back();
         // That of media is found by no other technique.
         if (Media && !core::is_black(walk.emitted()))
-            found(Contribution{walk.emitted(), walk.emission_layer(), 0, int(eye_.size()) + !goes_on});
-        if (!goes_on) return;
+            found(Contribution{walk.emitted(), walk.emission_layer(), 0, int(eye_.size()) + !continues});
+        if (!continues) return;
         const std::size_t t = eye_.size();
         if (t == 2)
             eye_.vertices[1].connection =
@@ -199,9 +199,9 @@ void Strategies<Media>::connect(std::size_t t, const Found& found) {
     std::size_t i = 0;
     while (i + 1 < connections_.size() && left >= connections_[i].expected)
         left -= connections_[i++].expected;
-    Connection& drawn = connections_[i];
-    drawn.light *= sum / drawn.expected;
-    found(test(drawn, t));
+    Connection& sampled = connections_[i];
+    sampled.light *= sum / sampled.expected;
+    found(test(sampled, t));
 }
 
 }  // namespace mote::integrators

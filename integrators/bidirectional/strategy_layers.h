@@ -16,8 +16,8 @@ inline std::size_t strategy_index(int s, int t) {
     return before + std::size_t(s);
 }
 
-inline void append_strategy_layers(std::vector<core::Layer>& layers, int most_edges) {
-    for (int e = 1; e <= most_edges; ++e)
+inline void append_strategy_layers(std::vector<core::Layer>& layers, int max_edges) {
+    for (int e = 1; e <= max_edges; ++e)
         for (int s = 0; s <= (e > 1 ? e : 0); ++s) {
             const int t = e + 1 - s;
             layers.push_back({fmt::format("s{}_t{}", s, t),

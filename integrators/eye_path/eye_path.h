@@ -38,7 +38,7 @@ class EyePath {
           sampler_(eye.sampler),
           ray_(eye.ray) {
         if constexpr (Media) {
-            weights_.hero = core::draw_hero(context.rng);
+            weights_.hero = core::sample_hero(context.rng);
             state_ = scene.eye_medium_state(eye.ray);
         }
     }
@@ -93,7 +93,7 @@ class EyePath {
                        const core::MediumState& state, core::WalkContext& context,
                        const lights::LightSampling& how = {});
     /// False where the last segment is the longest path's last edge.
-    bool may_go_on() const { return depth_ != limits_.max_depth; }
+    bool may_continue() const { return depth_ != limits_.max_depth; }
     /// Ends the path where it would leave the vertex by a mirror or through glass.
     void end_at_delta(bool ends) { ends_at_delta_ = ends; }
     void scale(float factor) { weights_.throughput *= factor; }

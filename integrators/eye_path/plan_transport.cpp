@@ -31,19 +31,18 @@ void plan_choice_of_lights(Plan& plan, const Scene& scene) {
         plan.run("choice of lights", in_tree ? others + ", against the other one" : others,
                  "half by power, half equally: receivers make no difference");
     else
-        plan.run(
-            "choice of lights",
-            fmt::format("hierarchy of {} lights, {} deep{}", in_tree, scene.light_tree().depth(),
-                        others.empty() ? "" : "; " + others),
-            "each receiver draws one by distance, directions and intensity; one draw in 16 by power, for "
-            "what the hierarchy does not see");
+        plan.run("choice of lights",
+                 fmt::format("hierarchy of {} lights, {} deep{}", in_tree, scene.light_tree().depth(),
+                             others.empty() ? "" : "; " + others),
+                 "each receiver samples one by distance, directions and intensity; one in 16 by power, for "
+                 "what the hierarchy does not see");
 }
 
 void plan_medium_lights(Plan& plan, const Requirements& r) {
     if (r.lights_media > 0)
         plan.run(
             "emission of media", fmt::format("{} as lights", r.lights_media),
-            "points of heterogeneous ones are drawn for receivers, weighted against walks that meet them; "
+            "points of heterogeneous ones are sampled for receivers, weighted against walks that meet them; "
             "particles start in all of them");
 }
 

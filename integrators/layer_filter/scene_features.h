@@ -1,6 +1,6 @@
 // The features of a view of a scene for the filter of layers (screenspace/layer_filter/filter_features.h).
 //
-// Every pixel has a few eye rays of its own, drawn through the scene's pixel filter and lens from keys that
+// Every pixel has a few eye rays of its own, sampled through the scene's pixel filter and lens from keys that
 // no render uses; media are marched once a pixel, along its first ray.
 #pragma once
 

@@ -13,7 +13,7 @@ using namespace core;
 namespace {
 
 /// More lights than this, marched one after the other, take longer than one that is sampled.
-constexpr std::size_t most_marched_lights = 16;
+constexpr std::size_t max_marched_lights = 16;
 
 /// Light at collisions close to a lamp has no finite variance: the density of collisions does not follow
 /// 1/d^2.
@@ -47,7 +47,7 @@ std::vector<LayerMethod> choose_layer_methods(const Scene& scene, const Requirem
         return {{make_path(limits), near, "one scattering: light and BSDF sampling"},
                 {far(), Transport::indirect, reason}};
     const std::size_t lights = positional_lights(scene).size();
-    const bool marched = r.media_scattering && lights > 0 && lights <= most_marched_lights &&
+    const bool marched = r.media_scattering && lights > 0 && lights <= max_marched_lights &&
                          (limits.max_depth < 0 || limits.max_depth > 1);
     const std::string surfaces = "surfaces behind media whose transmittance is marched";
     if (!marched) {

@@ -17,7 +17,7 @@ namespace mote::integrators {
 struct LayerMethod {
     std::shared_ptr<const core::Integrator> integrator;
     core::TransportSet cells;  ///< that it fills; empty: all that it can
-    std::string reason = "asked for";
+    std::string reason = "requested";
     core::SourceLocation where = {};
     std::vector<core::Layer> layers = {};  ///< of the method, all of them; from fill_layers()
     std::vector<std::size_t> kept = {};    ///< indices of those that hold its cells

@@ -53,7 +53,7 @@ class MoteLayers final : public Integrator {
                         " works on the mean of its whole picture here, and cannot fill a part of another",
                     where);
             const bool named = name != "integrator";  // the name of the parameter is as good as none
-            nested_.push_back({integrator, read_transport(named ? name : "", where), "asked for", where});
+            nested_.push_back({integrator, read_transport(named ? name : "", where), "requested", where});
         }
         if (nested_.empty()) return;
         for (const std::string name : {"max_depth", "rr_depth", "hide_emitters", "far_light"})

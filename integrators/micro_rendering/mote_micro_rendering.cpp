@@ -79,10 +79,11 @@ void MoteMicroRendering::plan_missing(Plan& plan, const Scene& scene, const Requ
         plan.miss("panes and masks", "left out of what is gathered",
                   "buffers look through them unhindered, and what they reflect to other surfaces is missing");
     if (settings_.upsampling > 1)
-        plan.run("upsampling",
-                 fmt::format("receivers at one pixel of {0} x {0}, another one in every pass",
-                             settings_.upsampling),
-                 "biased: light is blurred between them; pixels that find nobody alike are rendered again");
+        plan.run(
+            "upsampling",
+            fmt::format("receivers at one pixel of {0} x {0}, another one in every pass",
+                        settings_.upsampling),
+            "biased: light is blurred between them; pixels without similar neighbours are rendered again");
 }
 
 Plan MoteMicroRendering::plan(const Scene& scene, const Requirements& r) const {

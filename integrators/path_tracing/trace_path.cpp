@@ -27,8 +27,9 @@ TransportSum trace_path(const Scene& scene, const PathSettings& settings, const 
         if (vpl_edge)
             // min(G*, b)/G* of the edge between the first connectable vertex and this one, where no VPL
             // stands on a delta surface: what continues from there is not part of the bounded transport.
-            path.scale(compensation::bounded_share(path.first_cosine() * vertex.geometric_cosine(vertex.wo),
-                                                   path.segment_length(), settings.bound));
+            path.scale(
+                compensation::bounded_fraction(path.first_cosine() * vertex.geometric_cosine(vertex.wo),
+                                               path.segment_length(), settings.bound));
         if (vertex.connectable() && path.wants_connection())
             sum[path.layer_of_connection()] += path.sample_light(context, {lit_along});
     }

@@ -51,9 +51,9 @@ void Volpath::plan_equiangular(Plan& plan, const Requirements& r) const {
     const bool useful = r.media_scattering && r.lights_point > 0;
     if (equiangular_ && useful)
         plan.run("equi-angular sampling", "one distance a ray, for point and spot lights",
-                 "asked for, or by mote_layers where one stands in a medium");
+                 "requested, or by mote_layers where one stands in a medium");
     else if (equiangular_)
-        plan.leave_out("equi-angular sampling", "asked for, without effect",
+        plan.leave_out("equi-angular sampling", "requested, without effect",
                        r.media_scattering ? "no light has a position" : "no medium scatters");
     else if (useful)
         plan.leave_out("equi-angular sampling", "point lights are connected to collisions",
@@ -69,7 +69,7 @@ Plan Volpath::plan(const Scene& scene, const Requirements& requirements) const {
     plan_medium_lights(plan, requirements);
     if (bounded())
         plan.run("bound", std::to_string(settings_.bound) + " /m^2",
-                 "asked for: second edges are weighted by min(G*, b)/G*, the transport of bounded VPLs");
+                 "requested: second edges are weighted by min(G*, b)/G*, the transport of bounded VPLs");
     plan_equiangular(plan, requirements);
     plan_caustics(plan, scene, requirements);
     return plan;
@@ -96,7 +96,7 @@ void register_volpath(Registry& registry) {
         [](const S& s, const Properties& p) {
             if (s.equiangular && s.vpl_bound > 0.0f)
                 throw InputError(
-                    "equiangular and vpl_bound do not go together: the bound weighs edges that end at "
+                    "equiangular and vpl_bound do not go together: the bound weights edges that end at "
                     "collisions",
                     p.where_of("equiangular"));
             return std::make_shared<Volpath>(s);

@@ -73,7 +73,7 @@ class PhotonMapEstimator final : public Estimator {
         statistics.values["photons_before_thinning"] += double(met_);
         statistics.values["light_paths"] += double(paths_);
         statistics.values["photon_bytes_peak"] = double(bytes_);
-        statistics.values["kernel_radius_share"] = radius_share_;
+        statistics.values["kernel_radius_share"] = radius_fraction_;
     }
 
   private:
@@ -85,9 +85,9 @@ class PhotonMapEstimator final : public Estimator {
         counters_.add(set.rays, set.tracking);
         paths_ += settings_.paths, met_ += set.met;
         on_surfaces_ += set.surface.size(), in_media_ += set.volume.size();
-        radius_share_ = gathering::radius_share(pass, settings_.alpha);
+        radius_fraction_ = gathering::radius_fraction(pass, settings_.alpha);
         PhotonMaps maps;
-        maps.estimate = {settings_.neighbours, float(radius_share_)};
+        maps.estimate = {settings_.neighbours, float(radius_fraction_)};
         maps.single_scattering = settings_.single_scattering;
         maps.surface = gathering::SurfacePhotonMap(std::move(set.surface));
         const float scene_radius = scene_.bounds().radius();
@@ -104,7 +104,7 @@ class PhotonMapEstimator final : public Estimator {
     SharedCounters counters_;
     std::uint64_t on_surfaces_ = 0, in_media_ = 0, met_ = 0, paths_ = 0;
     std::size_t bytes_ = 0;
-    double radius_share_ = 1.0;
+    double radius_fraction_ = 1.0;
 };
 
 class MotePhotonMap final : public Integrator {
@@ -145,7 +145,7 @@ Plan MotePhotonMap::plan(const Scene& scene, const Requirements& r) const {
                  "one walk of the transmittance serves all photons of a ray");
         plan.run("single scattering",
                  settings_.single_scattering ? "from photons" : "sampled at one collision of every ray",
-                 settings_.single_scattering ? "asked for" : "single_scattering is 'sampled'");
+                 settings_.single_scattering ? "requested" : "single_scattering is 'sampled'");
     }
     plan.run("kernels", fmt::format("radii shrink with alpha = {:.3g}", settings_.alpha),
              settings_.alpha < 1.0 ? "bias and noise of the mean both go to zero with the number of passes"

@@ -21,7 +21,7 @@ class AtlasView {
         : atlas_(atlas), locator_(locator), light_(light), sampled_(sampled) {}
 
     /// On the side of vertex.wo, bilinear between texels; never negative, where a border is extrapolated to.
-    /// Nothing where the atlas does not know the surface.
+    /// Nothing where the atlas lacks the surface.
     std::optional<PlaceIrradiance> at(const core::ScatteringVertex& vertex) const {
         using gathering::SurfaceSide;
         const auto place = locator_.find(vertex.hit);

@@ -21,7 +21,7 @@ namespace {
 /// Lights sampled for a texel: its noise is averaged by all directions that the texel sends to.
 constexpr int light_samples = 4;
 
-/// Lights that rays of a bundle meet, or that no surface can draw.
+/// Lights that rays of a bundle meet, or that no surface can sample.
 std::vector<const Emitter*> lights_of_bundles(const Scene& scene) {
     std::vector<const Emitter*> result;
     for (const auto& emitter : scene.emitters())
@@ -173,7 +173,7 @@ Plan MoteRayBundles::plan(const Scene& scene, const Requirements& r) const {
         interleaved ? "what a batch of directions received is sent by the next" : "transfer is 'one_bounce'");
     const bool hit = r.lights_area + r.lights_infinite > 0;
     if (hit)
-        plan.run("area lights and environment", e.lights ? "by bundles" : "drawn at texels and pixels",
+        plan.run("area lights and environment", e.lights ? "by bundles" : "sampled at texels and pixels",
                  e.lights ? "direct is 'bundles'" : "direct is 'lights'");
     if (r.lights_point > 0)
         plan.run("lights with a position", fmt::format("{} samples a texel, one a pixel", light_samples),

@@ -122,8 +122,8 @@ Plan MoteRayLights::plan(const Scene& scene, const Requirements& r) const {
     const float bound = settings_.bound_for(scene.rays().bounds());
     plan.run(
         "bound", fmt::format("{:.4g} /m^2, from surface to surface", bound),
-        settings_.bound ? "asked for" : "automatic: by the light paths that a receiver looks at, over R^2");
-    plan.run("compensation", "exact: eye paths go on to what is nearer than the bound",
+        settings_.bound ? "requested" : "automatic: by the light paths that a receiver gathers, over R^2");
+    plan.run("compensation", "exact: eye paths continue to what is nearer than the bound",
              "nothing is bounded along eye rays");
     if (r.any_delta())
         plan.miss("caustics", "light that reaches a receiver through a delta surface",

@@ -15,7 +15,7 @@ struct RayLightSettings {
     EyePathLimits eye;                            ///< max_depth counts the whole path from light to eye
     std::uint32_t paths = 256;
     std::size_t connections = 12;  ///< connections of a segment of an eye path; 0: to all lights
-    std::size_t candidates = 128;  ///< ray lights, and VPLs, that they are drawn from; 0: all
+    std::size_t candidates = 128;  ///< ray lights, and VPLs, that they are sampled from; 0: all
     std::optional<float> bound;    ///< b of VPLs from surface to surface [1/m^2]; nothing: automatic
     int scattering_points = 8;     ///< where an eye ray in media looks for the light of lights
 

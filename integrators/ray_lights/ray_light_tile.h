@@ -78,7 +78,7 @@ class RayLightTile {
     /// ends.
     bool continues(Lane& lane, PathLane& path) {
         const bool first = !lane.receives;
-        if (Media && first && wants_points() && path.path->may_go_on()) add_single_scattering(path);
+        if (Media && first && wants_points() && path.path->may_continue()) add_single_scattering(path);
         if (!path.alive) return false;
         // Mirrors and glass that come later send what no VPL represents.
         if (!path.path->vertex().connectable()) return first;

@@ -84,7 +84,7 @@ void HiddenLight::gather(const PassContext& context, const lights::VplSet& vpls,
             Sampler sampler(options_.sampler, options_.seed, context.index, p.pixel, first_stream + p.side);
             walk.rng = sampler.make_rng();
             PathWeights weights;
-            if constexpr (Media) weights.hero = draw_hero(walk.rng);
+            if constexpr (Media) weights.hero = sample_hero(walk.rng);
             light[i] =
                 scattered_light<Media>(scene_, vertices[i].vertex, weights, vertices[i].state, sampler, walk);
             tile->set(int(i), vertices[i].vertex, Rgb(1.0f), vertices[i].state, Rng(walk.rng.next_u32()),

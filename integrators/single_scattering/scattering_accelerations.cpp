@@ -54,7 +54,7 @@ void plan_exact(Plan& plan, const AnalyticCounts& analytic, const AccelerationSe
         plan.run("behind occluders", fmt::format("{} steps a ray", steps), "looked up in shadow maps");
     else
         plan.run("behind occluders", fmt::format("{} shadow rays a ray", steps),
-                 "they tell which parts are lit; these are integrated");
+                 "they show which parts are lit; these are integrated");
     if (analytic.lights < analytic.all_lights)
         plan.run("marched lights",
                  fmt::format("{} of {}", analytic.all_lights - analytic.lights, analytic.all_lights),
@@ -80,7 +80,7 @@ void plan_maps(Plan& plan, const Scene& scene, const VisibilitySettings& s, int 
     plan.run("visibility",
              fmt::format("{} shadow map{} of {}^2 texels, {:.1f} MB each, built once", count,
                          count == 1 ? "" : "s", s.light_size, double(bytes) * 1e-6),
-             "asked for, biased; at march steps alone: surfaces are traced");
+             "requested, biased; at march steps alone: surfaces are traced");
     plan.run("cost of shadow maps",
              fmt::format("{:.0f} texels a light, against up to {:.0f} steps a pass", texels, pixels * steps),
              pixels * steps > steps_per_texel * texels

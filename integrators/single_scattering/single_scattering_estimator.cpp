@@ -10,7 +10,7 @@ using namespace screenspace;
 namespace {
 
 constexpr int tile_size = 16;
-/// With more lights than this one of all is drawn: connecting to each would take longer than it saves.
+/// With more lights than this one of all is sampled: connecting to each would take longer than it saves.
 constexpr std::size_t max_connected_lights = 16;
 
 template <bool Media>

@@ -13,7 +13,7 @@ namespace {
 void add_other_lights(const Scene& scene, const EyeSettings& settings, const Ray& ray, MediumState state,
                       PathWeights weights, Sampler& sampler, WalkContext& context, TransportSum& sum) {
     const LitScene& others = settings.others ? static_cast<const LitScene&>(*settings.others) : scene;
-    weights.hero = draw_hero(context.rng);
+    weights.hero = sample_hero(context.rng);
     const WalkEvent event = walk<true>(scene, ray, state, weights, sum[Transport::emission], context);
     const Vec2 choices = sampler.next_2d(), u_light = sampler.next_2d(), u = sampler.next_2d();
     if (event.kind != WalkEvent::Kind::collision) return;
@@ -89,7 +89,7 @@ class MarchedSegments {
     EyeLight& found_;
 };
 
-/// Direct light at a vertex: of every light that it is connected to, and of one that is drawn.
+/// Direct light at a vertex: of every light that it is connected to, and of one that is sampled.
 template <bool Media>
 Rgb direct_light(const Scene& scene, const EyeSettings& settings, EyePath<Media>& path, WalkContext& walk) {
     const lights::LightSampling how{.marched_voxels = settings.voxels};

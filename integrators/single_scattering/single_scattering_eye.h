@@ -22,8 +22,8 @@ struct EyeSettings {
     EyePathLimits limits{.max_depth = 33, .rr_depth = 1 << 30, .max_scatterings = 1};
     float voxels = 1.0f;
     const lights::LightShadowMaps* maps = nullptr;  ///< of lights without a position; null: traced
-    /// Lights with a position that every vertex is connected to, and all others, one of which is drawn; where
-    /// these are null, one of all is drawn.
+    /// Lights with a position that every vertex is connected to, and all others, one of which is sampled;
+    /// where these are null, one of all is sampled.
     std::span<const core::Emitter* const> connected = {};
     const lights::OtherLights* others = nullptr;
     bool other_lights =

@@ -99,7 +99,7 @@ void plan_single_scattering(Plan& plan, const Scene& scene, const Requirements& 
     plan.run(
         "surfaces", "one eye path per pixel and pass",
         "direct light at full rate: of each light with a position where they are few, and of one that is "
-        "drawn, by two techniques");
+        "sampled, by two techniques");
     if (r.cells[Transport::indirect] || r.cells[Transport::multiple_scattering])
         plan.miss("light scattered more than once", "indirect light and multiple scattering",
                   "this integrator stops after one scattering; volpath renders the rest");

@@ -141,14 +141,14 @@ Plan MoteVsl::plan(const Scene& scene, const Requirements& r) const {
     plan.run("radius",
              std::to_string(gather.radius_scale) + " times the distance to neighbour " +
                  std::to_string(gather.neighbours),
-             "a light stands for the disc that its neighbours leave to it");
+             "a light covers the disc that its neighbours leave to it");
     plan.run("directions", std::to_string(gather.samples) + " a light",
              r.any_glossy() ? "from the cone and from glossy BSDFs at both ends, balance heuristic"
                             : "from the cone: every surface is diffuse");
     if (gather.visibility == compensation::SphereVisibility::per_sample)
         plan.run("visibility", "a shadow ray a direction", "soft where a sphere is partly hidden");
     else
-        plan.run("visibility", "a shadow ray to the centre of every sphere", "asked for");
+        plan.run("visibility", "a shadow ray to the centre of every sphere", "requested");
     plan_choice_of_lights(plan, scene);
     plan.miss("detail of indirect light", "blurred over the spheres",
               "more passes do not sharpen it, more light paths do");

@@ -194,7 +194,7 @@ void MoteVpl::plan_bound(Plan& plan, const Bounds3& surfaces) const {
     const std::string choice =
         std::to_string(bound) + " /m^2, radius " + std::to_string(1.0f / std::sqrt(bound)) + " m";
     plan.run("bound", choice,
-             settings_.bound ? "asked for"
+             settings_.bound ? "requested"
                              : "automatic: light paths / R^2, with R = " + std::to_string(surfaces.radius()) +
                                    " m the radius of all shapes");
 }
@@ -260,7 +260,7 @@ Plan MoteVpl::plan(const Scene& scene, const Requirements& r) const {
     plan_image_space(plan);
     if (settings_.clamping.enabled)
         plan.miss("sharp reflections of indirect light", "roughness clamping blurs them",
-                  "asked for: biased; more passes do not sharpen them, more light paths do");
+                  "requested: biased; more passes do not sharpen them, more light paths do");
     if (r.any_delta())
         plan.miss("caustics", "light that reaches a receiver through a delta surface",
                   "a VPL cannot be connected through mirrors and glass; volpath renders it");

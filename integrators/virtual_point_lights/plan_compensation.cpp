@@ -108,7 +108,7 @@ void plan_compensation(Plan& plan, const Scene& scene, const Requirements& r, co
     if (!r.any_media()) {
         plan.leave_out("compensation in media", "volume vertices, mean extinction", "there are no media");
         if (!s.surfaces)
-            plan.miss("compensation", "everything", "only media are asked for, and there are none",
+            plan.miss("compensation", "everything", "only media are requested, and there are none",
                       all_receivers);
         if (s.depth >= 0)
             plan.miss("compensation", fmt::format("what needs more than {} step(s)", s.depth),

@@ -199,7 +199,7 @@ class VplEstimator final : public Estimator {
     ImageLoop<Media> loop_;
     std::unique_ptr<lights::VplSelector> selector_;  ///< of this pass
     Statistics selection_statistics_;
-    std::optional<lights::ReflectiveShadowMaps> reflective_;  ///< nothing: lights draw their paths
+    std::optional<lights::ReflectiveShadowMaps> reflective_;  ///< nothing: lights sample their paths
     lights::SurfaceSamples points_;
     lights::ImperfectShadowMaps imperfect_;  ///< of this pass, from these points
     double imperfect_seconds_ = 0.0;

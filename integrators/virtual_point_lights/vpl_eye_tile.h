@@ -155,7 +155,7 @@ class EyeTile {
     void begin_step(int index, Lane& lane) {
         if (!Media || !lane.points) return;
         EyePath<Media>& path = *lane.path;
-        if (path.may_go_on()) points_[std::size_t(index)] = lane.points->choose(rare_light);
+        if (path.may_continue()) points_[std::size_t(index)] = lane.points->choose(rare_light);
         lane.alive = lane.alive && (path.scatterings() > 0 || survives(path));
     }
     /// The vertex becomes a receiver where it can be connected. Engelhardt 2013, Eq. 10.9: tau sigma_s / p(t)

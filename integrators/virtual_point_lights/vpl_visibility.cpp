@@ -112,7 +112,7 @@ void plan_visibility(Plan& plan, const Scene& scene, const VisibilitySettings& s
         plan.run("visibility",
                  fmt::format("imperfect shadow maps of {}^2 texels, {} of {} points in each, biased",
                              map.size, map.points, map.all_points),
-                 "asked for; traced is exact");
+                 "requested; traced is exact");
         plan.run("memory of shadow maps",
                  fmt::format("{} for 1000 VPLs, {} of points", megabytes(1000 * map.bytes()),
                              megabytes(std::size_t(map.all_points) * sizeof(lights::SurfaceSample))),
@@ -134,7 +134,7 @@ void plan_visibility(Plan& plan, const Scene& scene, const VisibilitySettings& s
     const std::size_t bytes = s.map.bytes(s.size, chromatic);
     plan.run("visibility",
              fmt::format("shadow maps of {}^2 texels, {} intervals each, biased", s.size, s.map.intervals),
-             "asked for; traced is exact");
+             "requested; traced is exact");
     plan.run("memory of shadow maps",
              fmt::format("{} of {}, whatever the number of VPLs{}", s.maps, megabytes(bytes),
                          bytes > s.map.max_bytes ? "; refused: above max_megabytes" : ""),

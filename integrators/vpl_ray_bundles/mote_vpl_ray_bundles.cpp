@@ -108,7 +108,7 @@ void MoteVplRayBundles::plan_techniques(Plan& plan) const {
     plan.run("light paths", std::to_string(settings_.paths) + " a pass", "a fresh set every pass");
     if (!settings_.has_bundles()) {
         plan.leave_out("bundles", "no rays leave what the eye sees",
-                       "virtual point lights alone are asked for");
+                       "virtual point lights alone are requested");
         return;
     }
     plan.run("bundles", std::to_string(settings_.directions) + " directions a pass",
@@ -117,16 +117,16 @@ void MoteVplRayBundles::plan_techniques(Plan& plan) const {
              settings_.choice == BundleTechniques::combined ? "balance heuristic" : "bundles alone",
              settings_.choice == BundleTechniques::combined
                  ? "bundles take what is close to the receiver, virtual point lights what is far"
-                 : "asked for: virtual point lights are left what bundles cannot make");
+                 : "requested: virtual point lights are left what bundles cannot make");
     if (settings_.reuses_lines())
         plan.run("bounces", std::to_string(settings_.bounces()) + " along directions of the same pass",
                  "in random order: the bundles of a pass are used again");
     else
         plan.run("bounces",
                  std::to_string(settings_.joined) + " virtual point lights for each point of a bundle",
-                 settings_.bound ? "bounded" : "weighed against the virtual point light at that point");
+                 settings_.bound ? "bounded" : "weighted against the virtual point light at that point");
     if (settings_.continuation_of_pass() > 0.0f)
-        plan.run("paths of bundles", fmt::format("go on by a chance of {:.4g}", settings_.continuation),
+        plan.run("paths of bundles", fmt::format("continue by a chance of {:.4g}", settings_.continuation),
                  "light between surfaces that are close to each other and to the receiver");
     if (settings_.glossy == GlossyTreatment::own_rays && !settings_.reuses_lines())
         plan.run("glossy surfaces", "one ray of their own, by the BSDF", "lines do not follow narrow lobes");
@@ -142,7 +142,7 @@ void MoteVplRayBundles::plan_bias(Plan& plan) const {
         plan.run("bound", "none", "right in the mean, with splotches around VPLs");
     if (settings_.bound)
         plan.miss("short distances", "light of two bounces and more between close points is darkened",
-                  "bound is set; without it these paths are weighed and nothing is missing");
+                  "bound is set; without it these paths are weighted and nothing is missing");
     if (settings_.reuses_lines())
         plan.miss("light of more bounces", "no more than " + std::to_string(settings_.bounces()),
                   "a path takes each line once, and max_depth limits it");
@@ -152,7 +152,7 @@ void MoteVplRayBundles::plan_bias(Plan& plan) const {
                   "disc");
     if (settings_.glossy == GlossyTreatment::clamping)
         plan.miss("sharp reflections of indirect light", "roughness clamping blurs them",
-                  "asked for: biased; more passes do not sharpen them, more light paths do");
+                  "requested: biased; more passes do not sharpen them, more light paths do");
     if (settings_.filters)
         plan.run(
             "filter", "indirect light in image space",
@@ -168,7 +168,7 @@ Plan MoteVplRayBundles::plan(const Scene& scene, const Requirements& r) const {
     plan_choice_of_lights(plan, scene);
     if (settings_.sky && scene.environment())
         plan.run("direct light of the sky", "by bundles",
-                 "asked for; that of all other lights by connections");
+                 "requested; that of all other lights by connections");
     if (r.any_delta())
         plan.miss(
             "caustics", "light that reaches a receiver through a delta surface",

@@ -17,14 +17,14 @@ VplBundlePass::VplBundlePass(const LitScene& lit, const VplBundleSettings& setti
     const float share = 1.0f / float(settings.interleaving * settings.interleaving);
     auto& samples = bundles.samples;
     samples.directions = settings.has_bundles() ? float(settings.directions) : 0.0f;
-    samples.paths = float(settings.paths), samples.light_share = share;
+    samples.paths = float(settings.paths), samples.light_probability = share;
     const std::size_t lights = vpls.lights.size();
     bundles.bounces = settings.bounces();
     bundles.own_rays = settings.glossy == GlossyTreatment::own_rays && bundles.bounces == 0;
     if (const std::uint32_t joined = settings.joined_lights();
         settings.has_bundles() && joined > 0 && lights > 0) {
         bundles.stride = (lights + joined - 1) / joined;
-        samples.joined_share = 1.0f / float(bundles.stride);
+        samples.joined_probability = 1.0f / float(bundles.stride);
     }
     bundles.bound = settings.bound;
     if (settings.sky) {
@@ -56,7 +56,7 @@ void VplBundlePass::draw_lines(const VplBundleSettings& settings, const RenderOp
     const int n = settings.interleaving;
     lines.resize(std::size_t(n) * std::size_t(n));
     if (!settings.has_bundles()) return;
-    // Paths that go on along other lines of the set take them for independent ones.
+    // Paths that continue along other lines of the set take them for independent ones.
     const SamplerKind kind = settings.bounces() > 1 ? SamplerKind::independent : options.sampler;
     for (std::size_t place = 0; place < lines.size(); ++place)
         for (std::uint32_t m = 0; m < settings.directions; ++m)

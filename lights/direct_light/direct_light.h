@@ -36,8 +36,8 @@ struct LightSampling {
     float marched_voxels = 0.0f;
 };
 
-/// Next-event estimation: the light at `vertex` from one light drawn by `u_light` (and a point on it by `u`),
-/// weighted against directions from vertex.sample(). `weights` and `state` describe the path up to the
+/// Next-event estimation: the light at `vertex` from one light sampled by `u_light` (and a point on it by
+/// `u`), weighted against directions from vertex.sample(). `weights` and `state` describe the path up to the
 /// vertex.
 template <bool Media>
 core::Rgb sample_light(const core::LitScene& scene, const core::ScatteringVertex& vertex,

@@ -10,8 +10,8 @@ namespace mote::lights {
 using namespace core;
 
 namespace {
-/// Where the others have a chance of one in so many, nothing is drawn any more: it would take too long.
-constexpr float least_chance = 1.0f / 4096.0f;
+/// Where the others have a chance of one in so many, nothing is sampled any more: it would take too long.
+constexpr float min_chance = 1.0f / 4096.0f;
 }  // namespace
 
 OtherLights::OtherLights(const LitScene& scene, std::vector<const Emitter*> left_out)
@@ -28,10 +28,10 @@ float OtherLights::probability_of_others(const LightReceiver& receiver) const {
     float of_left_out = 0.0f;
     for (const Emitter* emitter : left_out_) of_left_out += scene_.light_probability(receiver, emitter);
     const float others = 1.0f - of_left_out;
-    return others > least_chance ? others : 0.0f;
+    return others > min_chance ? others : 0.0f;
 }
 
-/// Draws until it is one of the others, with numbers that follow from u.
+/// Samples until it is one of the others, with numbers that follow from u.
 LightChoice OtherLights::choose_light(const LightReceiver& receiver, float u) const {
     const float others = any_ ? probability_of_others(receiver) : 0.0f;
     if (!(others > 0.0f)) return {nullptr, 0.0f};

@@ -1,5 +1,5 @@
-// A scene without some of its lights, for those who add the light of these themselves, one after the other:
-// what is drawn then is one of the others.
+// A scene without some of its lights, for methods that add the light of these themselves, one after the
+// other: what is sampled then is one of the others.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@ namespace mote::lights {
 
 class OtherLights final : public core::LitScene {
   public:
-    /// `scene` must outlive this. Each draw evaluates the probabilities of all that are left out: a few.
+    /// `scene` must outlive this. Each sample evaluates the probabilities of all that are left out: a few.
     OtherLights(const core::LitScene& scene, std::vector<const core::Emitter*> left_out);
 
     /// True if there is any other light.
@@ -69,7 +69,7 @@ class OtherLights final : public core::LitScene {
 
   private:
     bool is_left_out(const core::Emitter* emitter) const;
-    /// That a draw of the scene is one of the others.
+    /// That a sample of the scene is one of the others.
     float probability_of_others(const core::LightReceiver& receiver) const;
 
     const core::LitScene& scene_;

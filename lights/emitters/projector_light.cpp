@@ -20,8 +20,8 @@ namespace {
 
 using namespace core;
 
-/// Directions are drawn by the picture with this chance, else evenly over it: no place that shines is missed,
-/// however the texture is made.
+/// Directions are sampled by the picture with this chance, else evenly over it: no place that shines is
+/// missed, however the texture is made.
 constexpr float by_picture = 0.9f;
 constexpr int finest_table = 512;  // cells along a side
 
@@ -116,7 +116,7 @@ class ProjectorLight final : public Emitter, public ConeLight {
         if (u.x >= by_picture) return {(u.x - by_picture) / (1.0f - by_picture), u.y};
         return table_.sample({u.x / by_picture, u.y}).uv;
     }
-    /// A solid angle dw around the cosine c covers the share dw / (c^3 area) of the picture.
+    /// A solid angle dw around the cosine c covers the fraction dw / (c^3 area) of the picture.
     float pdf_solid_angle(const Vec2& uv, float cosine) const {
         const float per_picture = table_.empty() ? 1.0f : 1.0f - by_picture + by_picture * table_.pdf(uv);
         return per_picture / (cosine * cosine * cosine * area());

@@ -13,7 +13,7 @@ using namespace core;
 
 namespace {
 
-constexpr int most_reach = 8;  // texels around its middle that a disc is tried in
+constexpr int max_reach = 8;  // texels around its middle that a disc is tried in
 
 /// A light shines to one side of a surface, or everywhere.
 ShadowMapView view_of(const VplSet& vpls, const VirtualPointLight& vpl, int size) {
@@ -55,7 +55,7 @@ class Splats {
         // A plane seen along itself is anywhere.
         nearer(middle, plane > 0.5f * nearest && plane < 2.0f * nearest ? plane : nearest);
         const float reach = 1.5f * radius_ / (distance * texel_width_);  // where texels are smallest
-        if (reach > 0.5f) disc(d, normal, middle, std::min(int(std::ceil(reach)), most_reach));
+        if (reach > 0.5f) disc(d, normal, middle, std::min(int(std::ceil(reach)), max_reach));
     }
 
   private:

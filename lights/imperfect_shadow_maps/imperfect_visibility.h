@@ -7,7 +7,7 @@
 
 namespace mote::lights {
 
-/// A visibility policy of gather_pairs(), for the VPLs that `maps` were built of. Draws from the tile's
+/// A visibility policy of gather_pairs(), for the VPLs that `maps` were built of. Samples from the tile's
 /// generators where the scene attenuates light.
 class ImperfectVisibility final : public BatchVisibility {
   public:

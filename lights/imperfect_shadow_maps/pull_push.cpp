@@ -8,9 +8,9 @@ using namespace core;
 
 namespace {
 
-constexpr int most_levels = 3;  // holes up to 2^3 texels wide
+constexpr int max_levels = 3;   // holes up to 2^3 texels wide
 constexpr float behind = 1.3f;  // so much nearer are others than what a gap shows
-constexpr int most_of_eight = 5;
+constexpr int majority_of_eight = 5;
 
 /// The mean of up to four texels, if half of those that there are are known.
 float pulled(std::span<const float> fine, int size, int x, int y) {
@@ -39,7 +39,7 @@ void pull_push(std::span<float> map, int size, int levels) {
 
 }  // namespace
 
-void pull_push(std::span<float> map, int size) { pull_push(map, size, most_levels); }
+void pull_push(std::span<float> map, int size) { pull_push(map, size, max_levels); }
 
 void close_gaps(std::span<float> map, const ShadowMapView& view) {
     const std::vector<float> open(map.begin(), map.end());
@@ -52,7 +52,7 @@ void close_gaps(std::span<float> map, const ShadowMapView& view) {
                 const float value = open[std::size_t(view.neighbour(i, j))];
                 if (value > behind * open[std::size_t(texel)]) sum += value, ++nearer;
             }
-        if (nearer >= most_of_eight) map[std::size_t(texel)] = sum / float(nearer);
+        if (nearer >= majority_of_eight) map[std::size_t(texel)] = sum / float(nearer);
     }
 }
 

@@ -14,7 +14,7 @@ using namespace core;
 namespace {
 
 constexpr std::size_t batch = 4096, chunk = 64;  // lines
-constexpr int most_surfaces = 64;                // on one line
+constexpr int max_surfaces = 64;                 // on one line
 constexpr std::uint64_t stream = 0x737572666163ull;
 
 void follow_line(const RayQueries& scene, const Vec3& centre, float radius, Rng rng,
@@ -23,7 +23,7 @@ void follow_line(const RayQueries& scene, const Vec3& centre, float radius, Rng 
     const Frame frame(direction);
     const Vec2 at = radius * square_to_disk(rng.next_vec2());
     Ray ray{centre - radius * direction + at.x * frame.s + at.y * frame.t, direction};
-    for (int k = 0; k < most_surfaces; ++k) {
+    for (int k = 0; k < max_surfaces; ++k) {
         const auto hit = scene.first_hit(ray);
         if (!hit) return;
         points.push_back({hit->position, hit->geometric_normal});

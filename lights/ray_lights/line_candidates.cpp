@@ -16,7 +16,7 @@ float connect_by_steps(const LineChoice& light, float expected, float step, floa
     int steps = 0;
     for (; next < expected; next += step) ++steps;
     const float weight = light.weight * (step / expected);
-    // Points on ray lights are drawn anew each time; a VPL is the same.
+    // Points on ray lights are sampled anew each time; a VPL is the same.
     if (light.ray)
         choices.insert(choices.end(), std::size_t(steps), {light.light, true, weight});
     else

@@ -9,10 +9,10 @@ using namespace core;
 
 namespace {
 
-/// Distances of lines below this share of what surrounds them are rounding; any positive h gives a valid
+/// Distances of lines below this fraction of what surrounds them are rounding; any positive h gives a valid
 /// density.
 constexpr double resolution = 1e-12;
-/// Share of an even distribution in weights that are guessed from the middles of cells.
+/// Fraction of an even distribution in weights that are guessed from the middles of cells.
 constexpr float defensive = 0.15f;
 
 double square(double x) { return x * x; }  // core::sqr() is for single precision
@@ -71,20 +71,20 @@ std::span<const float> weights_towards(const MediumLine& line, const Vec3d& poin
 }
 
 /// Distances along a line [m].
-struct Part {
+struct Range {
     double begin, end;
 };
 /// Range of the line above the plane through a point; nothing for a line in the plane or parallel to it and
 /// below.
-std::optional<Part> part_above(const MediumLine& line, const Vec3d& point, const Vec3& n) {
-    Part part{0.0, double(line.length)};
+std::optional<Range> range_above(const MediumLine& line, const Vec3d& point, const Vec3& n) {
+    Range range{0.0, double(line.length)};
     const Vec3d normal(n);
     const double height = glm::dot(Vec3d(line.origin) - point, normal),
                  slope = glm::dot(Vec3d(line.direction), normal);
-    if (slope > 0.0) part.begin = std::max(part.begin, -height / slope);
-    if (slope < 0.0) part.end = std::min(part.end, -height / slope);
+    if (slope > 0.0) range.begin = std::max(range.begin, -height / slope);
+    if (slope < 0.0) range.end = std::min(range.end, -height / slope);
     if (slope == 0.0 && height <= 0.0) return std::nullopt;
-    return part;
+    return range;
 }
 
 /// The point on the ray light: by its distance from the eye ray; and, where it has cells, by what would go to
@@ -160,14 +160,14 @@ std::optional<LineConnection> connect(const ReceiverLanes& receivers, int lane, 
     const ScatteringVertex* vertex = receivers.directional[lane];
     const MediumLine& line = light.line;
     const Vec3d x(vertex ? vertex->position : receivers.position(lane));
-    std::optional<Part> part = Part{0.0, double(line.length)};
+    std::optional<Range> range = Range{0.0, double(line.length)};
     if (!vertex && receivers.in_medium[lane] == 0.0f) {  // nothing comes from below a diffuse surface
-        part = part_above(line, x, receivers.geometric_normal(lane));
-        if (!part) return std::nullopt;
+        range = range_above(line, x, receivers.geometric_normal(lane));
+        if (!range) return std::nullopt;
     }
     CellWeights weights;
     const auto by = weights_towards(line, x, weights);
-    const auto on_light = sample_line(around(line, x, 1.0f / std::sqrt(bound)), part->begin, part->end,
+    const auto on_light = sample_line(around(line, x, 1.0f / std::sqrt(bound)), range->begin, range->end,
                                       double(line.length), by, u);
     if (!on_light) return std::nullopt;
     const Vec3d y = line.at(on_light->position);
@@ -201,15 +201,15 @@ std::optional<LineConnection> connect(const EyeLine& eye, const VplSet& vpls, co
         vpl.detail == VirtualPointLight::no_detail ? nullptr : &vpls.details[vpl.detail];
     const MediumLine& line = eye.line;
     const Vec3d y(detail ? detail->vertex.position : vpl.position);
-    std::optional<Part> part = Part{0.0, double(line.length)};
+    std::optional<Range> range = Range{0.0, double(line.length)};
     if (!detail) {  // it shines to one side
-        part = part_above(line, y, vpl.normal);
-        if (!part) return std::nullopt;
+        range = range_above(line, y, vpl.normal);
+        if (!range) return std::nullopt;
     }
     CellWeights weights;
     const auto by = weights_towards(line, y, weights);
     const auto on_eye =
-        sample_line(around(line, y, 0.0f), part->begin, part->end, double(line.length), by, u);
+        sample_line(around(line, y, 0.0f), range->begin, range->end, double(line.length), by, u);
     if (!on_eye) return std::nullopt;
     const Vec3d x = line.at(on_eye->position);
     const Towards towards(x, y);

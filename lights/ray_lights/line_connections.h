@@ -1,7 +1,7 @@
 // Unoccluded light of a light at a receiver, where one of the two or both are
 // lines: an eye ray through a medium, a ray light.
 //
-// Points on the lines are drawn (line_sampling.h), the values are divided by their densities: estimates of
+// Points on the lines are sampled (line_sampling.h), the values are divided by their densities: estimates of
 //   eye ray, ray light    integral over v and u of  T sigma_s f_p(x)  V*/w^2  f_p(y) sigma_s T P
 //   point, ray light      integral over u of        f*(x)    min(G*, b) V*    f_p(y) sigma_s T P
 //   eye ray, surface VPL  integral over v of        T sigma_s f_p(x)  V* C*(y)/w^2  I
@@ -13,7 +13,7 @@
 
 namespace mote::lights {
 
-/// An eye ray's part in one medium.
+/// An eye ray's segment in one medium.
 struct EyeLine {
     MediumLine line;
     core::Rgb throughput{0.0f};  ///< of the eye path up to the line's origin

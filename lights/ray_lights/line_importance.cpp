@@ -48,13 +48,13 @@ struct LineSegments {
     float length;  ///< of one of them [m]
 
     explicit LineSegments(const MediumLine& line) : length(line.length / float(segments)) {
-        constexpr int looks = 4;
+        constexpr int lookups = 4;
         for (int k = 0; k <= segments; ++k) end[k] = line.origin + float(k) * length * line.direction;
         for (int k = 0; k < segments; ++k) {
             weight[k] = 0.0f;
-            for (int i = 0; i < looks; ++i) {
-                const float share = (float(k * looks + i) + 0.5f) / float(segments * looks);
-                weight[k] += line.weights[std::uint32_t(share * float(line.cells))] / float(looks);
+            for (int i = 0; i < lookups; ++i) {
+                const float at = (float(k * lookups + i) + 0.5f) / float(segments * lookups);
+                weight[k] += line.weights[std::uint32_t(at * float(line.cells))] / float(lookups);
             }
         }
     }

@@ -74,9 +74,9 @@ std::optional<LineSample> sample_line(const Density& density, double begin, doub
     while (cell + 1 < cells && rest >= masses[cell]) rest -= masses[cell++];
     while (cell > 0 && !(masses[cell] > 0.0)) --cell, rest = masses[cell];  // rounding led beyond the last
     if (!(masses[cell] > 0.0)) return std::nullopt;
-    const double share = std::min(rest / masses[cell], 1.0);
+    const double fraction = std::min(rest / masses[cell], 1.0);
     const double position =
-        std::clamp(density.inverse(integrals[cell] + share * (integrals[cell + 1] - integrals[cell])),
+        std::clamp(density.inverse(integrals[cell] + fraction * (integrals[cell + 1] - integrals[cell])),
                    edges[cell], edges[cell + 1]);
     const double pdf = double(weights[cell]) * density.density(position) / sum;
     if (!(pdf > 0.0) || !std::isfinite(pdf)) return std::nullopt;

@@ -6,7 +6,7 @@
 // angle,
 //   w^2 = h^2 + u^2 + v^2 - 2 u v cos(theta)
 // where u and v are counted from the points that are nearest to each other. The integral over all v is
-// pi / sqrt(h^2 + u^2 sin^2 theta), so u is drawn in proportion to that,
+// pi / sqrt(h^2 + u^2 sin^2 theta), so u is sampled in proportion to that,
 //   p(u) ~ 1/sqrt(h^2 + u^2 sin^2 theta),  whose integral is asinh(u sin(theta) / h) / sin(theta),
 // and v then equi-angularly around the point at u (Kulla and Fajardo 2012). What is left of the integrand is
 // bounded: (theta_b - theta_a) times the difference of the asinh over sin(theta).
@@ -64,7 +64,7 @@ inline constexpr std::size_t max_cells = 16;
 
 /// Samples the range [begin, end] of a line of `length`, in proportion to the density times the weight of
 /// the cell; weights are those of equal parts of the whole line, at most max_cells, not negative. Nothing
-/// where there is nothing to draw from.
+/// where there is nothing to sample from.
 template <typename Density>
 std::optional<LineSample> sample_line(const Density& density, double begin, double end, double length,
                                       std::span<const float> weights, float u);

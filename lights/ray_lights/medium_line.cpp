@@ -14,8 +14,9 @@ constexpr float even_depth = 0.3f;  ///< optical depth over which a homogeneous 
 constexpr std::uint32_t fog_cells =
     6;  ///< of lines in homogeneous media that are deeper, or scatter unevenly
 constexpr float voxels_per_cell = 2.0f;  ///< at least
-constexpr int looks = 2;                 ///< at the density of a cell
-constexpr float defensive_share = 0.1f;  ///< of the mean of all cells that each has, whatever was seen in it
+constexpr int lookups = 2;               ///< at the density of a cell
+constexpr float defensive_fraction =
+    0.1f;  ///< of the mean of all cells that each has, whatever was seen in it
 
 Rgb exp_minus(const Rgb& depth) { return {std::exp(-depth.x), std::exp(-depth.y), std::exp(-depth.z)}; }
 
@@ -46,17 +47,17 @@ std::optional<MediumLine> homogeneous_line(MediumLine line, const MediumCoeffici
     return line;
 }
 
-/// Looks at the coefficients of a cell: the mean of sigma_s.
-Rgb look_at(MediumLine& line, double t0, double t1, Rng& rng, TrackingCounters& counters) {
+/// Samples the coefficients of a cell: the mean of sigma_s.
+Rgb sample_cell(MediumLine& line, double t0, double t1, Rng& rng, TrackingCounters& counters) {
     Rgb mean(0.0f);
-    for (int i = 0; i < looks; ++i) {
-        const double t = t0 + (t1 - t0) * (double(i) + double(rng.next_float())) / double(looks);
+    for (int i = 0; i < lookups; ++i) {
+        const double t = t0 + (t1 - t0) * (double(i) + double(rng.next_float())) / double(lookups);
         const MediumCoefficients c = line.medium->coefficients(Vec3(line.at(t)));
-        mean += c.sigma_s / float(looks);
-        line.sigma_t += c.sigma_t / float(looks * int(line.cells));
-        line.sigma_s += c.sigma_s / float(looks * int(line.cells));
+        mean += c.sigma_s / float(lookups);
+        line.sigma_t += c.sigma_t / float(lookups * int(line.cells));
+        line.sigma_s += c.sigma_s / float(lookups * int(line.cells));
     }
-    counters.lookups += looks;
+    counters.lookups += lookups;
     return mean;
 }
 
@@ -79,12 +80,12 @@ std::optional<MediumLine> varying_line(MediumLine line, float voxel, Rng& rng, T
         const float there = std::fabs(average(before));  // estimates may be negative
         line.weights[i] = there > 0.0f
                               ? std::fabs(average(0.5f * (before + after) *
-                                                  look_at(line, double(t0), double(t1), rng, counters)))
+                                                  sample_cell(line, double(t0), double(t1), rng, counters)))
                               : 0.0f;
         sum += line.weights[i], rest += there;
     }
     // Between the samples there may be more scattering.
-    const float floor = sum > 0.0f ? defensive_share * sum / rest : 1.0f / line.length;
+    const float floor = sum > 0.0f ? defensive_fraction * sum / rest : 1.0f / line.length;
     for (std::uint32_t i = 0; i < line.cells; ++i)
         line.weights[i] += floor * std::fabs(average(line.transmittance[i]));
     return line;

@@ -71,8 +71,8 @@ void append(RayLightSet& to, RayLightSet&& from) {
 
 /// Light scattered on the line, by its weights, over the root of its length. For a line of length L and power
 /// P that is P sqrt(L), which is how its light spreads: P / d within L of it, P L / d^2 farther away, so that
-/// the mean of the square over receivers on surfaces around it is P^2 L, but for logarithms. Drawn by P L,
-/// short lines would count so much where they are drawn that they were points again.
+/// the mean of the square over receivers on surfaces around it is P^2 L, but for logarithms. Sampled by P L,
+/// short lines would count so much where they are sampled that they were points again.
 double sampling_power(const RayLight& light) {
     double sum = 0.0;
     for (const float weight : light.line.cell_weights()) sum += double(weight);
@@ -119,12 +119,12 @@ WeightedVpl PowerSampling::choose(std::size_t n, float start) const { return cho
 /// Searches from `first` on.
 WeightedVpl PowerSampling::choose_behind(std::size_t n, float start, std::size_t first) const {
     if (all_) return {n, 1.0f};
-    const double total = power_.back(), place = (double(n) + double(start)) / double(count_) * total;
+    const double total = power_.back(), target = (double(n) + double(start)) / double(count_) * total;
     std::size_t index = first;
     constexpr std::size_t few = 8;  // steps of a walk are foreseen, those of a search are not
-    for (std::size_t i = 0; i < few && index < power_.size() && power_[index] <= place; ++i) ++index;
-    if (index < power_.size() && power_[index] <= place)
-        index = std::size_t(std::upper_bound(power_.begin() + std::ptrdiff_t(index), power_.end(), place) -
+    for (std::size_t i = 0; i < few && index < power_.size() && power_[index] <= target; ++i) ++index;
+    if (index < power_.size() && power_[index] <= target)
+        index = std::size_t(std::upper_bound(power_.begin() + std::ptrdiff_t(index), power_.end(), target) -
                             power_.begin());
     index = std::min(index, power_.size() - 1);
     const double own = power_[index] - (index > 0 ? power_[index - 1] : 0.0);

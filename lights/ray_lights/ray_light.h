@@ -2,7 +2,7 @@
 //
 // A segment leaves a light or a vertex with power P, and light scatters everywhere along it, so that a
 // receiver x sees  P integral over u of  T(u) sigma_s(u) f_p G*(x, y(u)) V*(x, y(u)).  The segment reaches to
-// the first surface, past the collision where its path went on: the distribution of that collision is T
+// the first surface, past the collision where its path continued: the distribution of that collision is T
 // sigma_s itself. So a ray light is all that the volume VPLs at the end of its segment represent, and VPLs
 // are left on surfaces alone.
 #pragma once

@@ -24,8 +24,8 @@ std::optional<LightPathStart> ReflectiveShadowMaps::start(std::uint32_t path, Sa
     if (path >= texels()) return of_other_light(sampler);
     const Map& map = maps_[path / texels_];
     const int texel = int(path % texels_), size = map.view.size;
-    const Vec2 place = (Vec2(float(texel % size), float(texel / size)) + sampler.next_2d()) / float(size);
-    const Ray ray = map.view.ray_at(place);
+    const Vec2 position = (Vec2(float(texel % size), float(texel / size)) + sampler.next_2d()) / float(size);
+    const Ray ray = map.view.ray_at(position);
     // The intensity is what arrives times the squared distance; of parallel light it is the irradiance.
     const auto light = map.emitter->sample_direct(ray.at(distance_), Vec2(0.5f));
     if (!light) return std::nullopt;
@@ -33,7 +33,7 @@ std::optional<LightPathStart> ReflectiveShadowMaps::start(std::uint32_t path, Sa
     EmissionSample emission{};
     emission.origin = ray.origin, emission.direction = ray.direction;
     emission.pdf_area = emission.pdf_solid_angle = 1.0f;
-    emission.weight = light->weight * per_solid_angle * map.view.measure(place);
+    emission.weight = light->weight * per_solid_angle * map.view.measure(position);
     if (is_black(emission.weight)) return std::nullopt;
     return LightPathStart{map.emitter, emission, emission.weight / float(texels_)};
 }

@@ -5,7 +5,7 @@
 // times area. Each texel is a light path, whose first ray goes through a random place of the texel and counts
 // by the solid angle per area of the map there: so the mean is that of particle tracing, and the paths are
 // spread evenly. Maps have the views of shadow maps (shadow_maps/light_shadow_maps.h): point lights, cones
-// and parallel light have one. Paths of all other lights are drawn as ever.
+// and parallel light have one. Paths of all other lights are sampled as ever.
 #pragma once
 
 #include "lights/shadow_maps/light_shadow_maps.h"

@@ -15,7 +15,7 @@ class SamplingSelector : public TileSelector {
   protected:
     /// VPLs with weights 1 / (n p), until the next call.
     virtual std::span<const WeightedVpl> sample(const ReceiverLanes& receivers, core::Rng& rng) = 0;
-    /// If true, record_light() wants the light of every sample.
+    /// If true, record_light() needs the light of every sample.
     virtual bool learns() const { return false; }
     /// Light of the i-th sample at all receivers, average of the channels, in order; 0 where none arrives.
     virtual void record_light(std::size_t, double) {}

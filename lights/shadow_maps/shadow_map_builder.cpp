@@ -64,10 +64,10 @@ float ShadowMapBuilder::find_surface(const Ray& ray, VolumetricShadowMap::Header
     const float length = glm::length(slope);
     if (length > steepest) slope *= steepest / length;
     const Vec3 plane = direction + slope;
-    const Vec3 place = view.frame.to_local(ray.at(hit->t) - view.origin);
+    const Vec3 local = view.frame.to_local(ray.at(hit->t) - view.origin);
     const float spacing = view.spacing(hit->t);
     header.plane_x = plane.x, header.plane_y = plane.y, header.plane_z = plane.z;
-    header.limit = glm::dot(plane, place) + spacing;
+    header.limit = glm::dot(plane, local) + spacing;
     return hit->t + spacing * (1.0f + std::min(length, march_behind));
 }
 

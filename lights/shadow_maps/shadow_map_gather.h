@@ -1,6 +1,6 @@
 // Gathering by shadow maps: receivers are stored first, then lights come one after the other with their maps
 // and add to all of them. The other way round than a tile that evaluates all lights, because a map pays when
-// many receivers look at it while it is there; the loop is the same (virtual_lights/vpl_gather.h).
+// many receivers read it while it is there; the loop is the same (virtual_lights/vpl_gather.h).
 #pragma once
 
 #include <deque>
@@ -18,7 +18,7 @@ class ReceiverStore {
     struct Tile : ReceiverLanes {
         std::int32_t column, row;  ///< pixel of the first lane; lanes continue in rows of four
         std::int32_t spacing;      ///< pixels from lane to lane
-        VplRange range;            ///< the VPLs that they look at
+        VplRange range;            ///< the VPLs that they gather
     };
 
     /// Keeps receivers whose light counts `scale` times. Copies what they point to.

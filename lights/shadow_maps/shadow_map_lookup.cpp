@@ -30,12 +30,12 @@ struct alignas(64) Corner {
     float enter[N], inverse_step[N], plane_x[N], plane_y[N], plane_z[N], limit[N];
     float weight[N];
     std::int32_t k[N];  ///< interval
-    float f[N];         ///< place within it
+    float f[N];         ///< fraction within it
     std::int32_t low[N], high[N];
 
-    void load(const std::byte* first, std::size_t record_bytes, const std::int32_t* place) {
+    void load(const std::byte* first, std::size_t record_bytes, const std::int32_t* index) {
         for (int i = 0; i < N; ++i) {
-            const std::byte* const from = first + std::size_t(place[i]) * record_bytes;
+            const std::byte* const from = first + std::size_t(index[i]) * record_bytes;
             const auto number = [from](std::size_t offset) {
                 float value;
                 std::memcpy(&value, from + offset, sizeof value);
@@ -53,7 +53,7 @@ struct alignas(64) Corner {
     }
 
     /// Bilinear weight, 0 behind the surface.
-    void weigh(const ShadowMapCells<N>& cells, bool right, bool upper) {
+    void set_weights(const ShadowMapCells<N>& cells, bool right, bool upper) {
         MOTE_INDEPENDENT_LANES
         for (int i = 0; i < N; ++i) {
             const float across = right ? cells.s[i] : 1.0f - cells.s[i];
@@ -107,7 +107,7 @@ void VolumetricShadowMap::look_up(const ShadowMapCells<N>& cells, float* r, floa
     for (int c = 0; c < 4; ++c) {
         const bool right = c & 1, upper = c & 2;
         corner.load(records_.data()->bytes + (right ? bytes : 0) + (upper ? row : 0), bytes, cells.corner);
-        corner.weigh(cells, right, upper);
+        corner.set_weights(cells, right, upper);
         corner.find_interval(cells.distance, settings_.intervals);
         for (std::size_t channel = 0; channel < channels_; ++channel) {
             corner.load_values(first + 2 * channel * values);

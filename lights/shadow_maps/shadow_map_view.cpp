@@ -26,8 +26,8 @@ Ray ShadowMapView::ray(int texel) const {
     return ray_at(Vec2(float(texel % size) + 0.5f, float(texel / size) + 0.5f) / float(size));
 }
 
-Ray ShadowMapView::ray_at(const Vec2& place) const {
-    const Vec2 p = 2.0f * place - 1.0f;
+Ray ShadowMapView::ray_at(const Vec2& position) const {
+    const Vec2 p = 2.0f * position - 1.0f;
     switch (kind) {
         case Kind::octahedral:
             return {origin, frame.to_world(octahedral_unproject(p))};
@@ -42,8 +42,8 @@ Ray ShadowMapView::ray_at(const Vec2& place) const {
     return {origin + xy.x * frame.s + xy.y * frame.t, frame.n};
 }
 
-float ShadowMapView::measure(const Vec2& place) const {
-    const Vec2 p = 2.0f * place - 1.0f;
+float ShadowMapView::measure(const Vec2& position) const {
+    const Vec2 p = 2.0f * position - 1.0f;
     // On the octahedron a direction w lies at w / |w|_1, on a face at the distance 1/sqrt(3), and the map
     // shows faces at a slant with a cosine of as much: dw = |w|_1^3 dx dy. [0, 1]^2 is 4 dx dy, the half of
     // it 2 dx dy.

@@ -18,7 +18,7 @@ struct ShadowMapView {
     /// See the top of this file.
     enum class Kind : std::uint8_t { octahedral, hemispherical, perspective, parallel };
 
-    Kind kind = Kind::octahedral;  ///< how places and rays belong together
+    Kind kind = Kind::octahedral;  ///< how positions and rays belong together
     core::Vec3 origin{0.0f};       ///< of the light; parallel: centre of the square that rays start from
     core::Frame frame;             ///< n: up of the map, axis of a spot or of parallel light
     float half_extent =
@@ -40,11 +40,11 @@ struct ShadowMapView {
     /// The ray through a texel's centre; `t` is the distance from the light, or from the plane of a parallel
     /// one.
     core::Ray ray(int texel) const;
-    /// The ray through any place of the map, in [0, 1]^2.
-    core::Ray ray_at(const core::Vec2& place) const;
+    /// The ray through any position of the map, in [0, 1]^2.
+    core::Ray ray_at(const core::Vec2& position) const;
     /// Measure of a piece of the map, per its fraction of the map: solid angle [sr], of a parallel one area
     /// [m^2].
-    float measure(const core::Vec2& place) const;
+    float measure(const core::Vec2& position) const;
     /// The texel that column i of row j, both in [-1, size], continues the map with: round the edges of the
     /// octahedron, else the nearest.
     int neighbour(int i, int j) const;

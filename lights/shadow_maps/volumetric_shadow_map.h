@@ -87,8 +87,8 @@ class VolumetricShadowMap {
     struct alignas(32) Block {
         std::byte bytes[32];
     };
-    std::byte* record(std::size_t place) { return records_[place * blocks_].bytes; }
-    const std::byte* record(std::size_t place) const { return records_[place * blocks_].bytes; }
+    std::byte* record(std::size_t index) { return records_[index * blocks_].bytes; }
+    const std::byte* record(std::size_t index) const { return records_[index * blocks_].bytes; }
     template <int N>
     void look_up(const ShadowMapCells<N>& cells, float* r, float* g, float* b) const;
     void prefetch(const ShadowMapCells<ShadowLookup::width>& cells) const;

@@ -2,7 +2,7 @@
 //
 // A policy is called with G*(x,y) = C*(x->y) C*(y->x) / |x-y|^2 [1/m^2], the squared distance [m^2] and the
 // two C*, and returns G* times its weight. It is called in the sixteen-lane loop and must be straight
-// arithmetic. A technique that is weighed against another one is a policy too: its weight is a function of
+// arithmetic. A technique that is weighted against another one is a policy too: its weight is a function of
 // the same four numbers, or of more: with for_pair(receivers, vpls, index) it is made anew for every light,
 // and a policy that takes a fifth number receives the lane.
 #pragma once
@@ -13,7 +13,8 @@ namespace mote::lights {
 
 /// Weighted geometry term of one lane.
 template <typename Weight>
-float weigh(const Weight& weight, float g, float d2, float cos_x, float cos_y, [[maybe_unused]] int lane) {
+float weighted_geometry(const Weight& weight, float g, float d2, float cos_x, float cos_y,
+                        [[maybe_unused]] int lane) {
     if constexpr (requires { weight(g, d2, cos_x, cos_y, lane); })
         return weight(g, d2, cos_x, cos_y, lane);
     else

@@ -58,7 +58,7 @@ void follow_particle(const core::LitScene& scene, const LightPathSettings& setti
     weights.throughput = start;
     core::MediumState state;
     if constexpr (Media) {
-        weights.hero = core::draw_hero(context.rng);
+        weights.hero = core::sample_hero(context.rng);
         state = scene.emitter_medium_state(emitter, emission);
         if (emission.inside && state.current() != emission.inside) return;
     }

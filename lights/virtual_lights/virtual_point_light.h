@@ -35,7 +35,7 @@ static_assert(sizeof(VirtualPointLight) <= 64, "a diffuse or isotropic VPL fits 
 
 /// Data of a directional VPL: its vertex, whose `wo` points back to where the light came from.
 struct VplDetail {
-    core::ScatteringVertex vertex;  ///< where it stands
+    core::ScatteringVertex vertex;  ///< its own
 
     /// f*(x <- y <- y') with the adjoint correction of a shading normal; `to_receiver` is unit length.
     /// `peak_limit`: BsdfPoint::peak_limit.

@@ -18,7 +18,7 @@ struct WeightedVpl {
     float weight = 1.0f;  ///< 1/p
 };
 
-/// Every `stride`-th from `first` on, before `end`, each once: all of them, a share of them, or one.
+/// Every `stride`-th from `first` on, before `end`, each once: all of them, a subset of them, or one.
 struct VplRange {
     std::size_t first = 0, stride = 1, end = std::size_t(-1);  ///< indices of lights
 

@@ -52,7 +52,7 @@ bool plain_contributions(const ReceiverLanes& x, const VirtualPointLight& y, flo
         const float c_x = core::min_of(side_x, cos_x) > 0.0f ? cos_x * inv_d : x.in_medium[i];
         const float c_y = core::min_of(side_y, cos_y) > 0.0f ? cos_y * inv_d : y_in_medium;
         const float g = c_x * c_y * (inv_d * inv_d);  // G* = C* C* / d^2
-        const float weighted_g = weigh(own_weight, g, d2, c_x, c_y, i);
+        const float weighted_g = weighted_geometry(own_weight, g, d2, c_x, c_y, i);
         const float weighted = depth <= x.max_vpl_depth[i] ? weighted_g : 0.0f;
         // f* w(G*) I_j of Eqs. 10.4 and 10.5
         const float r = x.weight_r[i] * ir * weighted;
@@ -88,7 +88,8 @@ bool general_contributions(const ReceiverLanes& x, const VplSet& vpls, const Vir
         if (std::int32_t(y.depth) > x.max_vpl_depth[i]) continue;
         const LaneConnection c = lane_connection(x, i, vpls, y, light_weight);
         const float g = c.cos_x * c.cos_y / c.distance_squared;
-        const core::Rgb value = c.value * weigh(weight, g, c.distance_squared, c.cos_x, c.cos_y, i);
+        const core::Rgb value =
+            c.value * weighted_geometry(weight, g, c.distance_squared, c.cos_x, c.cos_y, i);
         if (!(core::max_component(value) > 0.0f)) continue;
         out.r[i] = value.x, out.g[i] = value.y, out.b[i] = value.z;
         packet.set(i, c.origin, c.target - c.origin, core::shadow_fraction);

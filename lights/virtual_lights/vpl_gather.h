@@ -57,7 +57,7 @@ struct GatherContext {
     GatherScratch& scratch;            ///< of this task
     core::RayCounters& rays;           ///< counted up
     core::TrackingCounters& tracking;  ///< counted up
-    core::CancelToken cancelled = {};  ///< thrown at, a batch at a time
+    core::CancelToken cancelled = {};  ///< throws Cancelled, a batch at a time
 };
 
 /// V* of a batch of pairs.
@@ -85,7 +85,7 @@ class TracedVisibility final : public BatchVisibility {
 std::uint64_t count_rays(std::span<const core::ShadowPacket> packets);
 
 /// Takes the light of occluded lanes away, whose t_max is below 0, and of all others what is lost between
-/// receiver and light, an estimate that draws from the tile's generators.
+/// receiver and light, an estimate that samples from the tile's generators.
 void attenuate_free(const GatherContext& context, ReceiverTile& tile,
                     std::span<const core::ShadowPacket> packets, std::span<LaneLight> light);
 

@@ -9,7 +9,7 @@
 
 namespace mote::lights {
 
-/// Where sixteen receivers stand and what they make of light: all that a connection needs but its visibility.
+/// Positions and BSDFs of sixteen receivers: all that a connection needs but its visibility.
 struct alignas(64) ReceiverLanes {
     static constexpr int width = core::ShadowPacket::width;  ///< lanes
 

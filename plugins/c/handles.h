@@ -59,7 +59,7 @@ Options known_options(const Options* given, std::size_t smallest = sizeof(Option
     for (std::size_t i = sizeof options; i < size; ++i)
         if (bytes[i] != 0)
             throw InvalidArgument(
-                "struct_size is that of a newer version, and what this one does not know is set");
+                "struct_size is that of a newer version, and a field that this one lacks is set");
     std::memcpy(&options, given, std::min(size, sizeof options));
     return options;
 }

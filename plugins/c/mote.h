@@ -115,7 +115,7 @@ MOTE_API const char* mote_scene_plan(mote_scene* scene);
  *     ... sensor, emitters ...
  *     mote_scene_build(scene, NULL);
  *
- * Materials, lights, cameras, media and integrators are those of the scene language; `arraymesh` stands for a
+ * Materials, lights, cameras, media and integrators are those of the scene language; `arraymesh` replaces a
  * mesh and `arraygrid` for a grid of the host, and "vdbvolume" with "filename" reads a .vdb file. What is
  * written down is used up by mote_scene_build(), whether it succeeds or not. */
 
@@ -199,7 +199,7 @@ MOTE_API void mote_picture_free(mote_picture* picture); /* null is allowed */
 
 /* Renders into `picture`, whose layers it replaces; errors are the picture's. Scene, seed and passes
  * determine every bit, whatever the number of threads. A render that was cancelled is MOTE_OK:
- * mote_picture_interrupted() tells, and mote_picture_passes() what there is. */
+ * mote_picture_interrupted() reports it, and mote_picture_passes() what there is. */
 MOTE_API mote_status mote_render(const mote_scene* scene, const mote_render_options* options,
                                  mote_picture* picture);
 
@@ -318,7 +318,7 @@ typedef struct mote_epipolar_options {
 MOTE_API mote_status mote_epipolar(const mote_epipolar_options* options, float* light, size_t count,
                                    uint64_t* marched);
 
-/* A hierarchy over lights, of which one is drawn for a receiver in proportion to what it may contribute,
+/* A hierarchy over lights, of which one is sampled for a receiver in proportion to what it may contribute,
  * unoccluded (Estevez and Kulla 2018). */
 typedef struct mote_light_tree mote_light_tree;
 typedef struct mote_light {
@@ -331,12 +331,12 @@ typedef struct mote_light {
  * than 2^28, or one of them cannot be. */
 MOTE_API mote_light_tree* mote_light_tree_new(const mote_light* lights, size_t count, mote_status* status);
 MOTE_API void mote_light_tree_free(mote_light_tree* tree); /* null is allowed */
-/* A light drawn by u in [0, 1), and the probability of that draw. `normal`: unit, on the side from which
- * light counts; null: from all sides. Several threads may ask at once. */
+/* A light sampled by u in [0, 1), and the probability of that sample. `normal`: unit, on the side from which
+ * light counts; null: from all sides. Several threads may call it at once. */
 MOTE_API mote_status mote_light_tree_sample(const mote_light_tree* tree, const float position[3],
                                             const float normal[3], double u, size_t* light,
                                             double* probability);
-/* Of mote_light_tree_sample() drawing this light; over all lights they sum to 1. NaN for arguments that
+/* Of mote_light_tree_sample() sampling this light; over all lights they sum to 1. NaN for arguments that
  * cannot be. */
 MOTE_API double mote_light_tree_probability(const mote_light_tree* tree, const float position[3],
                                             const float normal[3], size_t light);

@@ -1,4 +1,4 @@
-// The extension module mote._mote: what the package `mote` is written on. Nobody else should use it.
+// The extension module mote._mote: what the package `mote` is written on. Only the package should use it.
 #include "core/formats/xml/faults.h"
 #include "core/objects/memory_budget.h"
 #include "python/bindings/bindings.h"

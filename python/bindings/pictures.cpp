@@ -77,7 +77,7 @@ nb::dict compare(const Pixels& image, const Pixels& reference, const std::option
         throw std::invalid_argument("image and reference have different shapes");
     core::ImageMetrics m;
     {
-        const nb::gil_scoped_release others_go_on;
+        const nb::gil_scoped_release without_gil;
         if (!second) {
             m = session::measure({a, a_variance}, {r, r_variance}, width, height);
         } else {
@@ -110,7 +110,7 @@ nb::dict series_error(const std::vector<Pixels>& images, const core::ErrorMeasur
     for (const Pixels& image : images) pictures.push_back(colours(image));
     core::SeriesError e;
     {
-        const nb::gil_scoped_release others_go_on;
+        const nb::gil_scoped_release without_gil;
         e = measure.measure(pictures);
     }
     nb::dict d;
@@ -132,7 +132,7 @@ void compensate(Picture& picture, float bound, int steps, bool flat, bool half_r
     screenspace::SsbcSettings settings;
     settings.bound = bound, settings.steps = steps, settings.hierarchical = !flat;
     settings.half_resolution = half_resolution, settings.blur = blur;
-    const nb::gil_scoped_release others_go_on;
+    const nb::gil_scoped_release without_gil;
     session::compensate_picture(picture.rendered.image, settings, {}, replace);
 }
 
@@ -142,7 +142,7 @@ struct Sequence {
 };
 
 Picture read_picture(const std::string& path) {
-    const nb::gil_scoped_release others_go_on;
+    const nb::gil_scoped_release without_gil;
     Picture picture;
     picture.rendered.image = core::read_exr(path);
     return picture;
@@ -158,7 +158,7 @@ void bind_pictures(nb::module_& m) {
         .def(
             "save",
             [](const Picture& p, const std::string& path, bool half) {
-                const nb::gil_scoped_release others_go_on;
+                const nb::gil_scoped_release without_gil;
                 session::require_exr_name(path);
                 core::write_exr(path, p.rendered.image, half);
             },
@@ -186,7 +186,7 @@ void bind_pictures(nb::module_& m) {
         .def(
             "denoise",
             [](Picture& p, const std::string& method, int threads, const std::string& oidn_package) {
-                const nb::gil_scoped_release others_go_on;
+                const nb::gil_scoped_release without_gil;
                 session::BorrowedArena(threads).execute(
                     [&] { session::make_denoiser(method, threads, false, oidn_package)(p.rendered.image); });
             },
@@ -196,7 +196,7 @@ void bind_pictures(nb::module_& m) {
         .def(
             "denoise",
             [](Sequence& s, Picture& p) {
-                const nb::gil_scoped_release others_go_on;
+                const nb::gil_scoped_release without_gil;
                 s.frames.add_denoised_layer(p.rendered.image);
             },
             nb::arg("picture"));

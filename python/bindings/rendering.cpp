@@ -78,7 +78,7 @@ nb::tuple render(const session::LoadedScene& scene, std::optional<std::uint32_t>
     PythonObserver observer(std::move(progress), std::move(preview));
     Picture picture;
     {
-        const nb::gil_scoped_release others_go_on;
+        const nb::gil_scoped_release without_gil;
         picture.rendered = session::render(scene, settings, observer);
     }
     return nb::make_tuple(nb::cast(std::move(picture)), observer.raised());

@@ -50,7 +50,7 @@ using Defines = std::vector<std::pair<std::string, std::string>>;
 template <typename Load>
 LoadedScene load(const std::string& integrator, const Defines& defines, bool lenient, const Load& load_now) {
     const session::SceneChanges changes{integrator, defines, lenient};
-    const nb::gil_scoped_release others_go_on;
+    const nb::gil_scoped_release without_gil;
     LoadedScene loaded = load_now(changes);
     loaded.integrator();  // what is missing is said now
     return loaded;

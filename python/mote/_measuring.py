@@ -132,7 +132,7 @@ def _with_features(picture: Image, features: Optional[Mapping[str, np.ndarray]])
 
 
 def denoise_sequence(frames: Iterable[Image], features: Optional[Iterable[Mapping[str, np.ndarray]]] = None) -> Iterator[Picture]:
-    """Copies of the frames of a sequence, in their order and one by one as they are asked for, each with the layer
+    """Copies of the frames of a sequence, in their order and one by one as they are requested, each with the layer
     "denoised": by regression on features, and by what earlier frames show of the same places (docs/denoising.md).
 
     Frames have one size and the same layers. For arrays of radiance give the features of each frame by name, as denoise()

@@ -43,7 +43,7 @@ def render(scene: Union[Scene, str, Path], *, passes: Optional[int] = None, seco
             picture = stopped.picture
 
     checkpoint: a file of its own, refused where something else stands there, that is written every `checkpoint_every` seconds and when the render is interrupted; with
-    resume=True the render goes on from there, to the very bits that it would have had. auxiliary: also layers of what
+    resume=True the render continues from there, to the very bits that it would have had. auxiliary: also layers of what
     is seen (Albedo, N, Ns, P, Depth, ...). denoise: "bmfr", or "oidn" where it is installed, adds the layer "denoised".
     Raises mote.Error, and ValueError for arguments out of range.
     """
@@ -58,13 +58,13 @@ def render(scene: Union[Scene, str, Path], *, passes: Optional[int] = None, seco
         raise ValueError("resume needs a checkpoint")
     if not 0 <= threads <= 4096:
         raise ValueError(f"threads must be between 0 and 4096, not {threads}")
-    told = _line if progress is True else (progress or None)
+    reported = _line if progress is True else (progress or None)
     preview = (lambda inner: callback(Picture._of(inner))) if callback else None
     words = ["mote.render", scene.path or "{...}"]
     words += [f"{name}={value}" for name, value in
               (("passes", passes), ("seconds", seconds), ("noise", noise), ("seed", seed)) if value is not None]
     inner, raised = _mote.render(scene._scene, passes, seconds, noise, seed, threads, path_text(checkpoint or ""),
-                                 checkpoint_every, resume, auxiliary, denoise, oidn_package(denoise), words, told, preview)
+                                 checkpoint_every, resume, auxiliary, denoise, oidn_package(denoise), words, reported, preview)
     picture = Picture._of(inner)
     if progress is True:
         print(file=sys.stderr)

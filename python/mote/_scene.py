@@ -64,7 +64,7 @@ class Scene:
 
     @property
     def sample_count(self) -> int:
-        """Passes of a render that nobody says when to end."""
+        """Passes of a render without an end of its own."""
         return self._scene.sample_count
 
     @property

@@ -113,7 +113,7 @@ class _Writer:
         return kind, {"array": name, **entries}
 
     def value(self, name: str, value: Any, kind: str, place: str) -> None:
-        """`kind` as the manual page has it; "": it does not know the name, and the loader will say so."""
+        """`kind` as the manual page has it; "": the page lacks the name, and the loader reports it."""
         matrix = getattr(value, "matrix", None)
         if matrix is not None or kind == "transform":
             rows = np.asarray(value if matrix is None else matrix, dtype=float)

@@ -20,7 +20,7 @@ FILM_MAGIC = b"motepart"  # of partial films (core/render/partial_film.cpp)
 
 
 class ClusterError(Exception):
-    """What the user can change: told in one line."""
+    """An error of the user, reported in one line."""
 
 
 def run_mote(command, arguments):
@@ -200,7 +200,7 @@ class Cluster:
         waiting = blocks(self.film.passes, o.passes, o.block)
         try:
             under_way = as_completed(loop=self.client.loop)
-            ahead = lambda: 2 + 2 * sum(self.client.nthreads().values())  # noqa: E731: nobody waits for work
+            ahead = lambda: 2 + 2 * sum(self.client.nthreads().values())  # noqa: E731: no worker waits for work
             def fill():
                 while len(self.ends) < ahead():
                     block = next(waiting, None)
@@ -225,11 +225,11 @@ class Cluster:
 
 
 def render(scene, output, scheduler, *, passes=None, noise=None, block=USUAL_BLOCK, threads=1, options=(), defines=(),
-           mote=None, worker_mote=None, resume=False, retries=3, most_passes=65536, quiet=False, client=None, wait=60.0):
+           mote=None, worker_mote=None, resume=False, retries=3, max_passes=65536, quiet=False, client=None, wait=60.0):
     """Renders `scene` (a path) by the workers of a Dask cluster, into `output` (.exr or .png).
 
     scheduler: its address, or a distributed.Client as `client`. passes: how many; or noise: until it is that
-    (of the passes, before filters of the whole picture), looked at after every `block` passes, so the number of
+    (of the passes, before filters of the whole picture), evaluated after every `block` passes, so the number of
     workers changes no bit. threads: of each task, 0 for all cores. options: further ones of `mote render`
     ("--seed", "7"). defines: those of -D. mote, worker_mote: the command here and there. wait: seconds until a first
     worker has joined. Returns the number of passes. Raises ClusterError.
@@ -261,7 +261,7 @@ def render(scene, output, scheduler, *, passes=None, noise=None, block=USUAL_BLO
             film.path.unlink()
     job = {"id": f"{ours['content']}-{os.getpid()}-{os.urandom(4).hex()}", "mote": worker_mote, "render": arguments,
            "identity": ours, "threads": threads}
-    settings = argparse.Namespace(passes=passes or most_passes, noise=noise, block=block, retries=retries, quiet=quiet,
+    settings = argparse.Namespace(passes=passes or max_passes, noise=noise, block=block, retries=retries, quiet=quiet,
                                   wait=wait)
     own = None
     if client is None:
@@ -283,7 +283,7 @@ def render(scene, output, scheduler, *, passes=None, noise=None, block=USUAL_BLO
         raise ClusterError("interrupted before the first block: there is nothing to write")
     run_mote(command, ["merge", str(film.path), "-o", str(out), "--quiet"])
     if interrupted:
-        say(f"interrupted after {film.passes} passes: {out} holds the picture so far, --resume goes on")
+        say(f"interrupted after {film.passes} passes: {out} holds the picture so far, --resume continues")
         raise KeyboardInterrupt
     film.path.unlink()
     return film.passes
@@ -296,7 +296,7 @@ def parser():
     p.add_argument("-o", "--output", required=True, help="the EXR file to write, or the PNG beside it")
     p.add_argument("--passes", type=int, help="how many (default: the scene's sample_count)")
     p.add_argument("--noise", type=float, help="stop when the noise of the passes is this, such as 0.02")
-    p.add_argument("--most-passes", type=int, default=65536, help="with --noise, no more than these (default: 65536)")
+    p.add_argument("--max-passes", type=int, default=65536, help="with --noise, no more than these (default: 65536)")
     p.add_argument("--block", type=int, default=USUAL_BLOCK, help=f"passes of a task (default: {USUAL_BLOCK})")
     p.add_argument("--integrator", help="render with this type instead of the scene's")
     p.add_argument("-D", "--define", action="append", default=[], help="as of mote render (repeatable)")
@@ -307,7 +307,7 @@ def parser():
     p.add_argument("--worker-mote", help="the command where the workers run (default: the same of theirs)")
     p.add_argument("--retries", type=int, default=3, help="of a task that failed (default: 3)")
     p.add_argument("--wait", type=float, default=60.0, help="seconds until a first worker has joined (default: 60)")
-    p.add_argument("--resume", action="store_true", help="go on with what an interrupted render has left")
+    p.add_argument("--resume", action="store_true", help="continue an interrupted render")
     p.add_argument("--quiet", action="store_true")
     return p
 
@@ -316,11 +316,11 @@ def main(arguments=None):
     a = parser().parse_args(arguments)
     options = ["--seed", str(a.seed)] + (["--auxiliary"] if a.auxiliary else [])
     options += ["--integrator", a.integrator] if a.integrator else []
-    for name, value in (("--passes", a.passes), ("--block", a.block), ("--most-passes", a.most_passes)):
+    for name, value in (("--passes", a.passes), ("--block", a.block), ("--max-passes", a.max_passes)):
         if value is not None and value < 1:
             parser().error(f"{name} {value}: expected a whole number from 1 on")
     if a.passes and a.noise:
-        parser().error("--passes or --noise, not both (--most-passes goes with --noise)")
+        parser().error("--passes or --noise, not both (--max-passes goes with --noise)")
     try:
         import distributed  # noqa: F401
     except ImportError:
@@ -329,7 +329,7 @@ def main(arguments=None):
     try:
         render(a.scene, a.output, a.scheduler, passes=a.passes, noise=a.noise, block=a.block, threads=a.threads,
                options=options, defines=a.define, mote=a.mote, worker_mote=a.worker_mote, resume=a.resume,
-               retries=a.retries, most_passes=a.most_passes, quiet=a.quiet, wait=a.wait)
+               retries=a.retries, max_passes=a.max_passes, quiet=a.quiet, wait=a.wait)
     except ClusterError as error:
         for line in str(error).splitlines():
             say(line.removeprefix("mote: "))

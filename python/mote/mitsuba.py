@@ -8,7 +8,7 @@
 
 What is rendered is the scene as it was loaded, from Mitsuba's parser, which keeps all parameters; changes by
 mi.traverse() are not seen. It is written as XML (export()) and rendered by the `mote` command (MOTE_COMMAND of the
-environment, or `mote` on the path), so the bits are those of the command on that file. What mote does not know is an error
+environment, or `mote` on the path), so the bits are those of the command on that file. What mote lacks is an error
 in its words. `path` and `volpath` are called mote_path and mote_volpath here. Nothing is differentiated.
 """
 import os
@@ -135,7 +135,7 @@ def _make(kind):
     class MoteIntegrator(mi.SamplingIntegrator):
         def __init__(self, props):
             super().__init__(props)
-            for name in props.keys():  # Mitsuba refuses what nobody has asked for; mote does so itself
+            for name in props.keys():  # Mitsuba refuses what was not queried; mote does so itself
                 props[name]
             self.layers, self.source = {}, None
 

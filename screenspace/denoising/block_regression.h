@@ -42,7 +42,7 @@ struct RegressionSettings {
     int block = 32;            ///< side [pixels]
     core::Vec2i offset{0, 0};  ///< of the blocks' grid, other ones in every frame
     bool overlapping =
-        true;  ///< four grids, half a block apart, weighed by tents: no seams, at four times the cost
+        true;  ///< four grids, half a block apart, weighted by tents: no seams, at four times the cost
     float noise = 1e-2f;        ///< largest, of features in [-1, 1]
     std::uint64_t seed = 0;     ///< of that noise
     bool keep_positive = true;  ///< fits below zero become zero

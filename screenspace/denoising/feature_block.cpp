@@ -13,7 +13,7 @@ using namespace core;
 namespace {
 
 // Weighted fits. A block is uneven where its brightest pixel is so many times its mean; the weight of the
-// darkest is that of a pixel of this share of the mean; and a fit whose energy is further off than this is
+// darkest is that of a pixel of this fraction of the mean; and a fit whose energy is further off than this is
 // discarded. Found on three boxes with reflected lamps and caustics: a floor of 0.2 to 0.4 does as well,
 // 0.03 leaves a fifth more error.
 constexpr float uneven_block = 1.5f, darkest_weight = 0.3f;

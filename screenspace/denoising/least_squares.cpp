@@ -39,7 +39,7 @@ Reflection reflect_column(float* column, int first, int rows) {
     float above = 0.0f;
     for (int i = 0; i < first; ++i) above += column[i] * column[i], column[i] = 0.0f;
     const float left = above > 0.0f ? dot(column, column, rows) : whole;
-    if (!(left > dependent_share * dependent_share * whole)) return {};
+    if (!(left > dependent_fraction * dependent_fraction * whole)) return {};
     const float norm = std::sqrt(left), x0 = column[first];
     const float alpha = x0 > 0.0f ? -norm : norm;
     column[first] = x0 - alpha;

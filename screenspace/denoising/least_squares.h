@@ -40,9 +40,9 @@ class TallMatrix {
     std::vector<float> values_;
 };
 
-/// Smallest remainder of a column behind the reflections of those before it, as a share of the column: below
-/// it the column depends on them (rounding leaves some 1e-6) and gets the coefficient zero.
-inline constexpr float dependent_share = 1e-4f;
+/// Smallest remainder of a column behind the reflections of those before it, as a fraction of the column:
+/// below it the column depends on them (rounding leaves some 1e-6) and gets the coefficient zero.
+inline constexpr float dependent_fraction = 1e-4f;
 
 /// Coefficients x that make |A x - b| smallest for every colour b, colour by colour: features() numbers each.
 /// The matrix is used up. Finite for every finite matrix whose squares do not overflow, of any rank. Throws

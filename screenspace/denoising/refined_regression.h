@@ -4,7 +4,7 @@
 // of 16 and of 8 pixels follow shadows, caustics and what mirrors show better than those of 32, and carry 4
 // and 16 times their noise. Over a window, with the residual of the smaller blocks for the variance,
 //   g = max(0, 1 - k (p / n) mean |b - fine|^2 (n / (n - p)) / mean |fine - coarse|^2) (1)
-// is how much of the difference is believed: coarse + g (fine - coarse), from one size to the next.
+// is how much of the difference is kept: coarse + g (fine - coarse), from one size to the next.
 #pragma once
 
 #include "screenspace/denoising/block_regression.h"

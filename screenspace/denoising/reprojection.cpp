@@ -44,7 +44,7 @@ class Rejection {
     Rejection(const FrameFeatures& now, const FrameFeatures& before, const RejectionSettings& settings)
         : now_(now), before_(before), s_(settings) {}
 
-    /// The pixel `q` of the frame before saw another point than `p` does now, `reach` [m] apart at most.
+    /// The pixel `q` of the frame before showed another point than `p` does now, `reach` [m] apart at most.
     bool rejects(std::size_t p, std::size_t q, float reach) const {
         if (!now_.id.empty() && !before_.id.empty() && now_.id[p] != before_.id[q]) return true;
         if (!now_.position.empty() && !before_.position.empty()) {

@@ -1,8 +1,9 @@
-// Where each pixel's point was in the frame before, and which of the four pixels around that place saw it.
+// Where each pixel's point was in the frame before, and which of the four pixels around that position show
+// it.
 //
-// A pixel of the frame before is taken if it saw the same object, a normal alike and a position within a few
-// pixels' footprints; what is left of the bilinear weights is brought to 1. The footprint is the distance to
-// the nearest neighbour's position, so it depends on distance and slant, and on no unit.
+// A pixel of the frame before is taken if it shows the same object, a normal alike and a position within a
+// few pixels' footprints; what is left of the bilinear weights is brought to 1. The footprint is the distance
+// to the nearest neighbour's position, so it depends on distance and slant, and on no unit.
 #pragma once
 
 #include <array>

@@ -126,7 +126,7 @@ std::vector<Rgb> SequenceDenoiser::add(const DenoiserFrame& frame, bool connecte
     remember(frame.features), ++frame_;
     if (!settings_.regress) return noisy;
     if (!settings_.blend || frame.variance.empty()) return denoised;
-    // Remaining share of a frame's variance: 1 / n, or less beyond the longest history.
+    // Remaining fraction of a frame's variance: 1 / n, or less beyond the longest history.
     std::vector<Rgb> variance(frame.variance.begin(), frame.variance.end());
     const std::span<const float> length = history();
     if (variance.size() == length.size())

@@ -4,7 +4,7 @@
 // mean is the plain one of n frames, with a variance of 1 / n; then it forgets exponentially, with 1 / (2
 // longest - 1).
 //
-// Light may change where nothing moves. History is believed as far as its mean over 7 x 7 pixels agrees with
+// Light may change where nothing moves. History is kept as far as its mean over 7 x 7 pixels agrees with
 // that of the frame, within so many standard errors: beyond, n is cut down by the square of the excess.
 #pragma once
 

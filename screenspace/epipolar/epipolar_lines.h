@@ -32,19 +32,20 @@ struct FilmRectangle {
 /// One line.
 struct EpipolarLine {
     Vec2d start, end;  ///< start is the end nearer to the light's projection
-    double length() const { return glm::length(end - start); }              ///< [pixels]
-    Vec2d at(double share) const { return start + share * (end - start); }  ///< between start and end
-    /// Share of the line at the foot of the perpendicular from p, in [0, 1].
+    double length() const { return glm::length(end - start); }                    ///< [pixels]
+    Vec2d at(double fraction) const { return start + fraction * (end - start); }  ///< between start and end
+    /// Fraction of the line at the foot of the perpendicular from p, in [0, 1].
     double project(const Vec2d& p) const;
 };
 
 /// All lines of a light.
 class EpipolarLines {
   public:
-    /// `count` lines for the whole border, those that are not visible included, shifted by the share `offset`
-    /// in [0, 1) of their distance. Where the projection lies outside, the corners that bound the visible
-    /// part of the border get a line each, so that no point of the picture is outside all of them. Throws
-    /// std::invalid_argument unless count > 0, the rectangle has an area and the point is not the eye's.
+    /// `count` lines for the whole border, those that are not visible included, shifted by the fraction
+    /// `offset` in [0, 1) of their distance. Where the projection lies outside, the corners that bound the
+    /// visible part of the border get a line each, so that no point of the picture is outside all of them.
+    /// Throws std::invalid_argument unless count > 0, the rectangle has an area and the point is not the
+    /// eye's.
     EpipolarLines(const FilmPoint& light, const FilmRectangle& frame, int count, double offset);
 
     std::span<const EpipolarLine> lines() const { return lines_; }  ///< around the border

@@ -61,10 +61,10 @@ std::optional<Rgb> EpipolarPicture::texel_light(const SampledLine& line, double 
 EpipolarPicture::Tap EpipolarPicture::tap(std::size_t line, const Vec2d& film, double spacing,
                                           const RayEnd& end, InScatteringTask& task) const {
     const SampledLine& sampled = sampled_[line];
-    const double share = sampled.line().project(film);
-    const double texel = share * double(sampled.texels().size() - 1);
+    const double fraction = sampled.line().project(film);
+    const double texel = fraction * double(sampled.texels().size() - 1);
     Tap result;
-    result.distance = glm::length(film - sampled.line().at(share));
+    result.distance = glm::length(film - sampled.line().at(fraction));
     if (const auto light = texel_light(sampled, texel, end, task)) {
         result.light = *light, result.weight = 1.0f;
         return result;
@@ -98,8 +98,8 @@ std::optional<Rgb> EpipolarPicture::light_at(const Vec2d& film, const RayEnd& en
     };
     outwards(before, -1, left), outwards(after, 1, right);
     const double total = left.distance + right.distance;
-    const double share = total > 0.0 ? right.distance / total : 0.5;
-    const double a = double(left.weight) * share, b = double(right.weight) * (1.0 - share);
+    const double fraction = total > 0.0 ? right.distance / total : 0.5;
+    const double a = double(left.weight) * fraction, b = double(right.weight) * (1.0 - fraction);
     if (!(a + b > 0.1)) return std::nullopt;
     return end.weight * Rgb((a * Vec3d(left.light) + b * Vec3d(right.light)) / (a + b));
 }

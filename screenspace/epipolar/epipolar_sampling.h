@@ -20,8 +20,8 @@ struct LineSampling {
     int initial = 16;  ///< samples spread over the lit part, at least 2
     int cap = 1024;  ///< samples of one line, at most: far above what shafts need, so that memory is bounded
     float tolerance =
-        0.05f;  ///< of interpolation, as a share of the light there and in the mean; 0: no refinement
-    /// Discontinuities of distance, as a share of it, see continues().
+        0.05f;  ///< of interpolation, as a fraction of the light there and in the mean; 0: no refinement
+    /// Discontinuities of distance, as a fraction of it, see continues().
     float depth_tolerance = 0.02f;
     double texels = 1.0;  ///< a pixel along the line: where samples can be, and edges are found
     double shift = 0.0;   ///< of the spread samples, in [0, 1) of their distance

@@ -17,7 +17,7 @@ class InScatteringGrid {
   public:
     using Loop = std::function<void(int count, const std::function<void(int)>& body)>;
 
-    /// Rays `spacing` pixels apart, shifted by the share `shift` in [0, 1)^2 of it; the grid covers the
+    /// Rays `spacing` pixels apart, shifted by the fraction `shift` in [0, 1)^2 of it; the grid covers the
     /// frame.
     InScatteringGrid(const FilmRectangle& frame, double spacing, const Vec2d& shift, float depth_tolerance,
                      const InScatteringSource& source, const Loop& loop);

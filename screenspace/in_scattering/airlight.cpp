@@ -27,7 +27,7 @@ constexpr std::array<double, points> weight = {
 constexpr double longest_panel = 1.5;
 constexpr double exponent_of_panel = 6.0;
 constexpr double longest_panel_of_profiles = 0.4;  ///< tested for the rims of spot lights
-constexpr double negligible = 1e-9;                ///< share of the sum that may be left out
+constexpr double negligible = 1e-9;                ///< fraction of the sum that may be left out
 
 /// Henyey-Greenstein without its constants, for h = 1 - cos to the preferred direction, a = |g|.
 double lobe(double a, double h) {
@@ -48,8 +48,9 @@ struct Piece {
         rest = s0 > 0.0 ? h2 / (start + s0) : start - s0;
         // tanh(span / 2) = length / (d0 + d1), and 1 minus that without a difference where it is near 1
         const double beyond = s1 > 0.0 ? h2 / (end + s1) : end - s1;  // d1 - s1
-        const double share = length / (start + end);
-        span = share < 0.5 ? 2.0 * std::atanh(share) : std::log((start + end + length) / (sum + beyond));
+        const double fraction = length / (start + end);
+        span =
+            fraction < 0.5 ? 2.0 * std::atanh(fraction) : std::log((start + end + length) / (sum + beyond));
         if (!std::isfinite(to)) span = infinity;
     }
 };

@@ -7,7 +7,7 @@ namespace mote::screenspace {
 using namespace core;
 
 namespace {
-/// Smallest beam, as a share of the cone, whose rim is smooth enough for eight points a panel.
+/// Smallest beam, as a fraction of the cone, whose rim is smooth enough for eight points a panel.
 constexpr double smallest_beam = 0.25;
 }  // namespace
 

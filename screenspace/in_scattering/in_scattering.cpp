@@ -18,9 +18,9 @@ void find_segments(const RayQueries& scene, const Ray& ray, const MediumState& s
     bool pane_between = false;
     const auto add = [&](float t0, float t1, const MediumState& s) {
         if (!(t0 < t1)) return true;
-        const bool goes_on = !segments.empty() && segments.back().medium == s.current() &&
-                             segments.back().t1 == t0 && !pane_between;
-        if (goes_on)
+        const bool continues = !segments.empty() && segments.back().medium == s.current() &&
+                               segments.back().t1 == t0 && !pane_between;
+        if (continues)
             segments.back().t1 = t1, segments.back().state = s;
         else
             segments.push_back({s.current(), t0, t1, s, panes});

@@ -54,8 +54,8 @@ struct StepRule {
     /// For the part of a ray from `from` to `to` [m].
     StepRule(MarchRule r, const core::Ray& ray, const core::Vec3& light, double from, double to)
         : rule(r), passing(ray, light), t0(from), t1(to), a0(passing.angle(from)), a1(passing.angle(to)) {}
-    /// Where the march has come to after a share of its steps.
-    double at(double share) const;
+    /// Where the march has come to after a fraction of its steps.
+    double at(double fraction) const;
     /// One over the density of steps at t, per length and for a single step.
     double length(double t) const;
 };

@@ -14,7 +14,7 @@ namespace mote::screenspace {
 using namespace core;
 
 namespace {
-constexpr double end_share = 1e-3;  ///< of the angle that the part subtends at the light
+constexpr double end_fraction = 1e-3;  ///< of the angle that the part subtends at the light
 }  // namespace
 
 const AnalyticMedium* InScattering::analytic_medium(const Medium* medium) const {
@@ -78,8 +78,8 @@ std::optional<Rgb> InScattering::integrate(const Ray& ray, double t0, double t1,
     if (!accelerations_.space || !analytic_light_ || !medium || t0 < double(at.t0) || t1 > double(at.t1))
         return std::nullopt;
     const StepRule all(MarchRule::equiangular, ray, position_, t0, t1);
-    const double from = t0 > double(ray.t_min) ? all.at(end_share) : t0;
-    const double to = std::isfinite(t1) ? all.at(1.0 - end_share) : t1;
+    const double from = t0 > double(ray.t_min) ? all.at(end_fraction) : t0;
+    const double to = std::isfinite(t1) ? all.at(1.0 - end_fraction) : t1;
     if (!(t0 <= from && from < to && to <= t1) || !is_free<false>(ray, from, to)) return std::nullopt;
 
     Rgb sum(0.0f);

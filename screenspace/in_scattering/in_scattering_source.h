@@ -52,8 +52,8 @@ class InScatteringSource {
 
 /// True if two rays end at one surface, or both beyond all light: then light is interpolated between them.
 /// The second ends at `distance`; `ray()` returns it where it is needed. Surfaces continue where distances
-/// differ by less than the share `tolerance`, or where the second ray meets the first end's tangent plane as
-/// closely to its own end as that: floors seen at a flat angle.
+/// differ by less than the fraction `tolerance`, or where the second ray meets the first end's tangent plane
+/// as closely to its own end as that: floors seen at a flat angle.
 template <typename RayOf>
 bool continues(const RayEnd& end, float distance, bool surface, float tolerance, const RayOf& ray) {
     if (end.dark() || !(distance > 0.0f)) return false;

@@ -7,11 +7,11 @@ namespace mote::screenspace {
 
 using namespace core;
 
-double StepRule::at(double share) const {
-    if (share <= 0.0) return t0;
-    if (share >= 1.0) return t1;
-    if (rule == MarchRule::uniform) return t0 + share * (t1 - t0);
-    return std::clamp(passing.at_angle(a0 + share * (a1 - a0)), t0, t1);
+double StepRule::at(double fraction) const {
+    if (fraction <= 0.0) return t0;
+    if (fraction >= 1.0) return t1;
+    if (rule == MarchRule::uniform) return t0 + fraction * (t1 - t0);
+    return std::clamp(passing.at_angle(a0 + fraction * (a1 - a0)), t0, t1);
 }
 
 double StepRule::length(double t) const {

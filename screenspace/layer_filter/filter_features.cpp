@@ -48,7 +48,7 @@ MeanSurface mean_surface(std::span<const FeatureSample> samples) {
 
 bool FilterFeatures::set_pixel(std::size_t pixel, std::span<const FeatureSample> all, const PixelFrame& at) {
     const MeanSurface mean = mean_surface(all);
-    const float share = 1.0f / float(all.size());
+    const float per_sample = 1.0f / float(all.size());
     Vec3 shading(0.0f);
     Rgb reflects(0.0f), scatters(0.0f);
     float passes = 0.0f;
@@ -60,8 +60,8 @@ bool FilterFeatures::set_pixel(std::size_t pixel, std::span<const FeatureSample>
         filterable = filterable || (s.hit && s.filterable);
     }
     position[pixel] = mean.position, normal[pixel] = mean.normal, shading_normal[pixel] = unit(shading);
-    distance[pixel] = mean.hit ? mean.distance : far, transmittance[pixel] = passes * share;
-    reflected[pixel] = reflects * share, scattering[pixel] = scatters * share, frame[pixel] = at;
+    distance[pixel] = mean.hit ? mean.distance : far, transmittance[pixel] = passes * per_sample;
+    reflected[pixel] = reflects * per_sample, scattering[pixel] = scatters * per_sample, frame[pixel] = at;
     kind[pixel] = !filterable                                  ? PixelKind::none
                   : complete && one_surface(*this, pixel, all) ? PixelKind::single
                                                                : PixelKind::mixed;

@@ -1,4 +1,4 @@
-// Noise-free features for the filter of layers: the surface that a pixel sees, the share of its reflected
+// Noise-free features for the filter of layers: the surface that a pixel sees, the fraction of its reflected
 // light that reaches the eye, and the light that the media before it scatter.
 //
 // Only these decide which pixels may be averaged, never the noisy layer. A pixel whose samples see one
@@ -23,7 +23,7 @@ struct FeatureSample {
     core::Vec3 position{0.0f};
     core::Vec3 normal{0.0f}, shading_normal{0.0f};  ///< unit, towards the viewer
     core::Rgb reflected{0.0f};                      ///< transmittance times albedo
-    core::Rgb scattering{0.0f};  ///< int T sigma_s dt up to the surface: share of light scattered there
+    core::Rgb scattering{0.0f};  ///< int T sigma_s dt up to the surface: fraction of light scattered there
 };
 
 /// Footprint of a pixel on its surface, for distances in pixels.

@@ -9,16 +9,16 @@ using namespace core;
 
 namespace {
 
-/// A channel of the modulation below this share of the largest is nothing: what is left of it would be noise
-/// divided by nearly zero.
-constexpr float min_share = 1e-4f;
+/// A channel of the modulation below this fraction of the largest is nothing: what is left of it would be
+/// noise divided by nearly zero.
+constexpr float min_fraction = 1e-4f;
 
 const Rgb& raw_modulation(const FilterFeatures& f, LayerKind kind, std::size_t pixel) {
     return kind == LayerKind::surface ? f.reflected[pixel] : f.scattering[pixel];
 }
 
 float lit_channels(const Rgb& m) {
-    const float least = min_share * max_component(m);
+    const float least = min_fraction * max_component(m);
     return float((m.x > least) + 2 * (m.y > least) + 4 * (m.z > least));
 }
 
@@ -43,7 +43,7 @@ void check_sizes(const FilterFeatures& f, const LayerToFilter& layer) {
 
 Rgb modulation(const FilterFeatures& f, LayerKind kind, std::size_t pixel) {
     const Rgb m = raw_modulation(f, kind, pixel);
-    const float least = min_share * max_component(m);
+    const float least = min_fraction * max_component(m);
     return {m.x > least ? m.x : 1.0f, m.y > least ? m.y : 1.0f, m.z > least ? m.z : 1.0f};
 }
 

@@ -12,10 +12,10 @@ namespace {
 /// The variance of what the probes have become.
 std::vector<float> variance_of(const FilterChannels& probes, const FilterChannels& change) {
     std::vector<float> result(probes.planes[0].size());
-    constexpr float share = 1.0f / float(FilterChannels::probes);
+    constexpr float per_plane = 1.0f / float(FilterChannels::probes);
     for (std::size_t c = FilterChannels::colours; c < FilterChannels::count; ++c)
         for (std::size_t i = 0; i < result.size(); ++i)
-            result[i] += share * sqr(probes.planes[c][i] + change.planes[c][i]);
+            result[i] += per_plane * sqr(probes.planes[c][i] + change.planes[c][i]);
     return result;
 }
 

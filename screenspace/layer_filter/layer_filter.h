@@ -6,8 +6,8 @@
 // with local linear regression, and put together again:
 //   f = y + m sum_l (g_l - 1) d_l,    d_l = c_l - c_{l+1},  c_0 = y / m, (1) g_l = max(0, 1 - k E[noise of
 //   d_l]^2 / E[d_l]^2).                                                        (2)
-// Each detail is kept to the share of its local energy that noise does not explain (Wiener), where the energy
-// of noise is that of random numbers of the layer's own variance that went through the same transform.
+// Each detail is kept to the fraction of its local energy that noise does not explain (Wiener), where the
+// energy of noise is that of random numbers of the layer's own variance that went through the same transform.
 // Without noise g = 1 and the layer stays what it is, to the bit; with many passes the picture converges to
 // the mean.
 #pragma once

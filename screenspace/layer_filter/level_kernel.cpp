@@ -14,7 +14,7 @@ namespace {
 constexpr float spline[5] = {1.0f / 16, 4.0f / 16, 6.0f / 16, 4.0f / 16, 1.0f / 16};
 constexpr int middle = 12;
 /// Added to the variance of places, in squared steps, so that taps on a line have a covariance to divide by.
-/// A slope loses this share of itself at most where taps spread over a step.
+/// A slope loses this fraction of itself at most where taps spread over a step.
 constexpr float ridge = 1e-5f;
 
 }  // namespace
@@ -26,9 +26,9 @@ LevelKernel::LevelKernel(const FilterPlanes& planes, int step, int y, int x0, in
         const int dx = tap % 5 - 2, dy = tap / 5 - 2;
         const float k = spline[dx + 2] * spline[dy + 2];
         if (planes.kind == LayerKind::surface)
-            weigh_surface(tap, k);
+            weight_by_surface(tap, k);
         else
-            weigh_volume(tap, k);
+            weight_by_volume(tap, k);
     }
     normalise();
 }
@@ -41,7 +41,7 @@ bool LevelKernel::reach(int tap, int& first, int& last, std::ptrdiff_t& shift) c
     return first < last;
 }
 
-void LevelKernel::weigh_surface(int tap, float k) {
+void LevelKernel::weight_by_surface(int tap, float k) {
     int first, last;
     std::ptrdiff_t shift;
     if (!reach(tap, first, last, shift)) return;
@@ -64,7 +64,7 @@ void LevelKernel::weigh_surface(int tap, float k) {
     }
 }
 
-void LevelKernel::weigh_volume(int tap, float k) {
+void LevelKernel::weight_by_volume(int tap, float k) {
     int first, last;
     std::ptrdiff_t shift;
     if (!reach(tap, first, last, shift)) return;
@@ -83,11 +83,11 @@ void LevelKernel::weigh_volume(int tap, float k) {
         const float along = std::fabs(t[b] - t[a]);
         const float step = along < 0.5f * FilterFeatures::far ? min_of(max_of(own, other), along) : along;
         const bool nearer = t[a] <= t[b];
-        const float share =
+        const float between =
             between_depths(step, nearer ? t[a] : t[b], nearer ? tr[a] : tr[b], nearer ? ln[a] : ln[b]) *
             (1.0f / depth_tolerance);
         const float both = wt[a] > 0.0f && ch[a] == ch[b] ? wt[b] : 0.0f;
-        out[i] = k * tukey(share * share) * both;
+        out[i] = k * tukey(between * between) * both;
     }
 }
 

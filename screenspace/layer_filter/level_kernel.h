@@ -29,8 +29,8 @@ class LevelKernel {
 
   private:
     using Taps = float[taps][max_pixels];
-    void weigh_surface(int tap, float spline);
-    void weigh_volume(int tap, float spline);
+    void weight_by_surface(int tap, float spline);
+    void weight_by_volume(int tap, float spline);
     void place(int tap, Taps& x, Taps& y) const;
     void normalise();
     void apply(const Taps& weights, std::span<const float> plane, float* out) const;

@@ -23,8 +23,8 @@ struct Estimate {
 /// Neighbours farther away than this are used only where there is none nearer [pixels].
 constexpr int near_reach = 2, far_reach = 4;
 constexpr int variance_reach = 3;
-/// Where no neighbour sees the surface, as of a wire, what others nearby see is taken, with this share of it
-/// as its standard deviation: next to much noise it says something, next to little nothing.
+/// Where no neighbour sees the surface, as of a wire, what others nearby see is taken, with this fraction of
+/// it as its standard deviation: next to much noise it says something, next to little nothing.
 constexpr float strangers_deviation = 0.5f;
 
 class MixedPixel {
@@ -72,7 +72,7 @@ class MixedPixel {
 
     /// V[y] is too noisy itself at one pixel: a black one would be taken to be sure. An outlier is known to
     /// be unsure, and would stand in the picture as a dot with the variance of its neighbours; what it takes
-    /// from the light is a share of the share that the pixel's own mean has.
+    /// from the light is a fraction of the weight of the pixel's own mean.
     float own_variance() const {
         float sum = average(layer_.variance[pixel_]), count = 1.0f;
         for_each_neighbour(variance_reach, [&](std::uint32_t q) {
@@ -107,8 +107,8 @@ class MixedPixel {
         const float step = along < 0.5f * FilterFeatures::far ? min_of(off_plane, along) : along;
         const float near = min_of(own, other);
         const float passes = own <= other ? s.transmittance : f_.transmittance[q];
-        const float share = between_depths(step, near, passes, std::log(max_of(passes, 1e-30f)));
-        return tukey(sqr(share / depth_tolerance));
+        const float between = between_depths(step, near, passes, std::log(max_of(passes, 1e-30f)));
+        return tukey(sqr(between / depth_tolerance));
     }
 
     /// Weight of another surface: one over the squared distance, in footprints.
@@ -201,9 +201,9 @@ void put_mixed_together(const FilterFeatures& f, const LayerToFilter& layer, con
         const float own = mixed.own_variance();
         const auto r = mixed.put_together(samples);
         if (!r || !(own > 0.0f) || !is_finite(r->mean)) return;
-        const float share = r->variance / (r->variance + own);  // Eq. (5)
-        changed.mean[pixel] = r->mean + share * (layer.mean[pixel] - r->mean);
-        changed.variance[pixel] = share * own;
+        const float weight_of_own = r->variance / (r->variance + own);  // Eq. (5)
+        changed.mean[pixel] = r->mean + weight_of_own * (layer.mean[pixel] - r->mean);
+        changed.variance[pixel] = weight_of_own * own;
     };
     tbb::parallel_for(std::size_t(0), f.mixed.size(), [&](std::size_t k) {
         const std::uint32_t pixel = f.mixed[k];

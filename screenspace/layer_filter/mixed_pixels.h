@@ -4,7 +4,7 @@
 // pixel is
 //   r = 1/n sum_s m_s E(s), (4)
 // E(s) being the demodulated light of those neighbours, already filtered. r is wrong by its own sampling and
-// by how the light varies between the neighbours, y by its noise; both are weighed by that,
+// by how the light varies between the neighbours, y by its noise; both are weighted by that,
 //   f = r + V[r] / (V[r] + V[y]) (y - r), (5)
 // so that with many passes y is left. Where a sample has no neighbour, as on a wire thinner than a pixel, E
 // is what is seen nearby, with a large variance. Pixels that see one surface which hardly any neighbour sees

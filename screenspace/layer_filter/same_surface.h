@@ -12,7 +12,7 @@ namespace mote::screenspace {
 inline constexpr float surface_tolerance = 2.0f;
 /// 1 - cosine of the angle between shading normals: 30 degrees.
 inline constexpr float normal_tolerance = 0.134f;
-/// Share of the light scattered towards the eye that comes from between the surfaces of two pixels.
+/// Fraction of the light scattered towards the eye that comes from between the surfaces of two pixels.
 inline constexpr float depth_tolerance = 0.1f;
 
 inline float tukey(float x_squared) {
@@ -28,7 +28,7 @@ inline float same_surface(float off_plane, float footprint, float cosine) {
     return plane * tukey(bend * bend);
 }
 
-/// Share of the light that a medium scatters into two neighbouring rays between their ends: with the
+/// Fraction of the light that a medium scatters into two neighbouring rays between their ends: with the
 /// mean extinction s up to the nearer end at t, T the transmittance there and d the distance between both,
 ///   T (1 - exp(-s d)) / (1 - T exp(-s d)),   1 - exp(-x) taken as x / (1 + x).
 /// `log_transmittance` is ln T of the nearer one. Slanted walls have no step: d is their distance from the

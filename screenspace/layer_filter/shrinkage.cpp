@@ -49,8 +49,8 @@ void take_apart(const FilterPlanes& p, int step, const FilterChannels& fine, Lev
             const float* now = fine.planes[c].data() + at;
             const bool probe = c >= colours;
             float* energy = energies[probe];
-            const float share = 1.0f / float(probe ? FilterChannels::probes : colours);
-            for (int i = 0; i < x1 - x0; ++i) energy[i] += share * sqr(now[i] - next[i]);
+            const float per_plane = 1.0f / float(probe ? FilterChannels::probes : colours);
+            for (int i = 0; i < x1 - x0; ++i) energy[i] += per_plane * sqr(now[i] - next[i]);
         }
     });
 }

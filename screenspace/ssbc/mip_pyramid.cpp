@@ -35,8 +35,8 @@ SurfaceNode mean_of(const SurfacePyramid::Level& below, const Children& children
     for (int c = 0; c < children.count; ++c) node.area += below.nodes[children.index[std::size_t(c)]].area;
     for (int c = 0; c < children.count && node.area > 0.0f; ++c) {
         const SurfaceNode& child = below.nodes[children.index[std::size_t(c)]];
-        const float share = child.area / node.area;
-        node.position += share * child.position, node.normal += share * child.normal;
+        const float fraction = child.area / node.area;
+        node.position += fraction * child.position, node.normal += fraction * child.normal;
     }
     node.spread = safe_sqrt(1.0f - glm::dot(node.normal, node.normal));
     return node;

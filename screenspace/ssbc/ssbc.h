@@ -31,7 +31,7 @@ struct SsbcSettings {
     RefinementRules refinement{};  ///< which nodes of the pyramid are summed
     float discontinuity_angle = 0.44f;  ///< [rad] see SurfacePyramid
     /// Pixels whose normal is farther than this from the view send less, quadratically down to nothing at a
-    /// right angle: they are long strips, which one sample stands badly for. pi/2: none do.
+    /// right angle: they are long strips, which one sample represents badly. pi/2: none do.
     float grazing_angle = 80.0f * core::pi / 180.0f;  ///< [rad]
 
     bool half_resolution = false;  ///< gather at one pixel of four, see ssbc_upsampling.h

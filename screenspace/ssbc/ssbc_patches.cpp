@@ -81,16 +81,17 @@ class Neighbourhood {
     /// edge, the nearest one.
     float reach(int dx, int dy, const Vec3& towards, const Vec3& other_step) const {
         float nearest = infinity;
-        const auto look_at = [&](std::size_t there) {
+        const auto shorten_to = [&](std::size_t there) {
             if (const auto edge = cut(there, dx, towards, other_step)) nearest = std::min(nearest, *edge);
         };
-        if (takes_part(side_, dx, dy) && !continues(side_, dx, dy)) look_at(index(side_, x_ + dx, y_ + dy));
+        if (takes_part(side_, dx, dy) && !continues(side_, dx, dy))
+            shorten_to(index(side_, x_ + dx, y_ + dy));
         for (int side = 0; side < layout_.sides; ++side) {
             if (side == side_) continue;
             for (const int there : {0, 1})
                 if (takes_part(side, there * dx, there * dy)) {
                     const std::size_t i = index(side, x_ + there * dx, y_ + there * dy);
-                    if (crosses(i)) look_at(i);
+                    if (crosses(i)) shorten_to(i);
                 }
         }
         return nearest < infinity ? nearest : 0.5f;

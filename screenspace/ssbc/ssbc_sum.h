@@ -24,7 +24,7 @@ struct RefinementRules {
     /// Apparent size of a node: at most, by its bounds, or as the paper has it, by its mean position and
     /// normal. The mean of two walls that meet faces neither, and what lies beside the receiver is missed.
     enum class Estimate : std::uint8_t { at_most, at_mean } estimate = Estimate::at_most;
-    core::CancelToken cancelled = {};  ///< thrown at
+    core::CancelToken cancelled = {};  ///< throws Cancelled
 };
 
 struct SumCounts {

@@ -12,8 +12,8 @@ using namespace core;
 
 namespace {
 
-/// Smallest share of the bilinear weights that must fit: below it one far corner would decide the pixel.
-constexpr float min_share = 1.0f / 16.0f;
+/// Smallest fraction of the bilinear weights that must fit: below it one far corner would decide the pixel.
+constexpr float min_fraction = 1.0f / 16.0f;
 
 float off_plane(const UpsamplingPoint& a, const UpsamplingPoint& b) {
     const Vec3 d = b.position - a.position;
@@ -48,10 +48,10 @@ float Upsampling::alike(const UpsamplingPoint& a, const UpsamplingPoint& b) cons
     const float along = std::fabs(b.distance - a.distance);
     const float step = along < 0.5f * FilterFeatures::far ? min_of(off_plane(a, b), along) : along;
     const UpsamplingPoint& nearer = a.distance <= b.distance ? a : b;
-    const float share = between_depths(step, nearer.distance, nearer.transmittance,
-                                       std::log(max_of(nearer.transmittance, 1e-30f))) /
-                        depth_tolerance;
-    return tukey(share * share);
+    const float between = between_depths(step, nearer.distance, nearer.transmittance,
+                                         std::log(max_of(nearer.transmittance, 1e-30f))) /
+                          depth_tolerance;
+    return tukey(between * between);
 }
 
 Upsampling::Neighbours Upsampling::neighbours(int x, int y) const {
@@ -86,7 +86,7 @@ bool Upsampling::fit(std::size_t pixel, const Neighbours& n) const {
     const Rgb there = modulation_of(n), &here = points_[pixel].modulation;
     bool channels = true;
     for (int c = 0; c < 3; ++c) channels = channels && (there[c] > 0.0f || !(here[c] > 0.0f));
-    return channels && n.fits > min_share * n.all;
+    return channels && n.fits > min_fraction * n.all;
 }
 
 void Upsampling::fill(std::span<Rgb> light) const {

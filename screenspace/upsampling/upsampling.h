@@ -1,5 +1,5 @@
-// Light that is found at a share of the pixels, and between them from neighbours that see the same (bilateral
-// upsampling).
+// Light that is found at a fraction of the pixels, and between them from neighbours that see the same
+// (bilateral upsampling).
 //
 // The pixels of a lattice are shaded. Any other pixel p takes the light of the four lattice points q around
 // it, as far as they see its surface, or its depth of a medium (same_surface.h):

@@ -31,9 +31,9 @@ class Grid {
         for (const PixelRectangle& r : rectangles) for_each_cell(r, [&](std::size_t c) { ++first_[c + 1]; });
         for (std::size_t c = 1; c < first_.size(); ++c) first_[c] += first_[c - 1];
         items_.resize(first_.back());
-        std::vector<std::size_t> place(first_);
+        std::vector<std::size_t> next(first_);
         for (std::size_t i = 0; i < rectangles.size(); ++i)
-            for_each_cell(rectangles[i], [&](std::size_t c) { items_[place[c]++] = std::uint32_t(i); });
+            for_each_cell(rectangles[i], [&](std::size_t c) { items_[next[c]++] = std::uint32_t(i); });
     }
     template <typename Visit>
     void for_each_cell(const PixelRectangle& r, const Visit& visit) const {

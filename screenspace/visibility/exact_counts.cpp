@@ -23,9 +23,9 @@ ExactCounts::ExactCounts(const IdPicture& picture, std::uint32_t items) : first_
     };
     // How many runs of each item a band has, then where they go.
     const std::vector<std::size_t> none(items);
-    std::vector<std::vector<std::size_t>> places(static_cast<std::size_t>(bands), none);
+    std::vector<std::vector<std::size_t>> positions(static_cast<std::size_t>(bands), none);
     tbb::parallel_for(0, bands, [&](int band) {
-        auto& counts = places[std::size_t(band)];
+        auto& counts = positions[std::size_t(band)];
         for_each_row_of(band, [&](std::uint32_t item, const Run& run) {
             if (item >= items) refuse_item(item, run.x0, run.y, items);
             ++counts[item];
@@ -34,13 +34,13 @@ ExactCounts::ExactCounts(const IdPicture& picture, std::uint32_t items) : first_
     std::size_t next = 0;
     for (std::uint32_t item = 0; item < items; ++item) {
         first_[item] = next;
-        for (auto& place : places) next += std::exchange(place[item], next);
+        for (auto& position : positions) next += std::exchange(position[item], next);
     }
     first_[items] = next;
     runs_.resize(next);
     tbb::parallel_for(0, bands, [&](int band) {
-        auto& place = places[std::size_t(band)];
-        for_each_row_of(band, [&](std::uint32_t item, const Run& run) { runs_[place[item]++] = run; });
+        auto& position = positions[std::size_t(band)];
+        for_each_row_of(band, [&](std::uint32_t item, const Run& run) { runs_[position[item]++] = run; });
     });
     pixels_.resize(items);
     for (std::uint32_t item = 0; item < items; ++item)

@@ -69,7 +69,7 @@ class Splitting {
         for (const Part& part : parts_) {
             if (!own_.meets(part.rectangle)) continue;
             const std::uint32_t free = all_ & ~part.taken;
-            const int channel = free ? std::countr_zero(free) : least_conflicting(part.rectangle);
+            const int channel = free ? std::countr_zero(free) : channel_of_fewest_conflicts(part.rectangle);
             regions.push_back({part.rectangle, std::uint8_t(channel)});
             shared += free == 0;
         }
@@ -103,7 +103,7 @@ class Splitting {
 
     /// The channel whose other rectangles cover least of `r`, counted for each of both that may be seen
     /// there.
-    int least_conflicting(const PixelRectangle& r) const {
+    int channel_of_fewest_conflicts(const PixelRectangle& r) const {
         std::array<std::int64_t, 32> area{};
         for (const Other& other : others_) {
             const PixelRectangle both = intersection(r, other.rectangle);

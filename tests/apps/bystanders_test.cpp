@@ -30,7 +30,7 @@ const std::vector<std::string> render_a = {"render", "scene.xml", "-o", "a.exr",
 
 }  // namespace
 
-TEST_CASE("A render refuses to replace what it was not told to write", "[command][bystanders]") {
+TEST_CASE("A render refuses to replace what it was not given to write", "[command][bystanders]") {
     struct Case {
         std::string bystander;
         std::vector<std::string> arguments;

@@ -1,5 +1,5 @@
 // mote export: the exported folder renders the same here, the twin of a VDB grid is the grid, and what was
-// dropped is listed. Mitsuba itself is asked by experiments/peers/mitsuba.py.
+// dropped is listed. Mitsuba itself is tested by experiments/peers/mitsuba.py.
 #include <cstring>
 
 #include "core/formats/pictures/image_file.h"
@@ -121,8 +121,8 @@ TEST_CASE("instances, curves and attributes are exported, and render the same bi
         REQUIRE(result.exit_code == 0);
         CHECK(same_bits(render(folder, peers + name + ".xml"), render(folder, folder.file("out/scene.xml"))));
     }
-    // A group within its instance gets an id, one that nobody places is dropped, mirrored meshes of groups
-    // become files.
+    // A group within its instance gets an id, one that no instance places is dropped, mirrored meshes of
+    // groups become files.
     const TemporaryFolder folder;
     write_file(folder.file("s.xml"),
                R"(<scene version="3.0.0"><integrator type="path"/><sensor type="perspective"/>

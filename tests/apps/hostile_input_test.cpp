@@ -87,7 +87,7 @@ TEST_CASE("A render does not overwrite what it reads", "[command][hostile]") {
                   "cannot be written twice");
 }
 
-TEST_CASE("Files are told apart by what they are, not by their names", "[command][hostile]") {
+TEST_CASE("Files are distinguished by what they are, not by their names", "[command][hostile]") {
     const InputFolder folder;
     fs::create_symlink("sky.exr", folder.file("link.exr"));
     fs::create_hard_link(folder.file("sky.exr"), folder.file("hard.exr"));
@@ -98,7 +98,7 @@ TEST_CASE("Files are told apart by what they are, not by their names", "[command
         check_refused(folder, {"render", "scene.xml", "-o", name}, "would replace");
     check_refused(folder, {"render", "scene.xml", "-o", "dangling.exr", "--stats", "here/not_yet.exr"},
                   "cannot be written twice");
-    // Devices may be named twice, and a picture of an earlier render is nobody's input.
+    // Devices may be named twice, and a picture of an earlier render is no input.
     REQUIRE(run_mote(folder, {"render", "scene.xml", "-o", "a.exr", "--stats", "/dev/null"}).exit_code == 0);
     CHECK(run_mote(folder, {"render", "scene.xml", "-o", "a.exr", "--stats", "/dev/null"}).exit_code == 0);
 }
@@ -202,7 +202,7 @@ TEST_CASE("Pipes are not waited for, and a full output is noticed", "[command][h
     CHECK(contains(run.err, "the standard output cannot be written: No space left"));
 }
 
-TEST_CASE("Libraries do not print, and do not tell stories", "[command][hostile]") {
+TEST_CASE("Libraries do not print", "[command][hostile]") {
     const InputFolder folder;
     std::string png = read_file(folder.file("o2.png"));
     png[png.find("IDAT") + 8] = char(png[png.find("IDAT") + 8] ^ 0x55);

@@ -1,4 +1,4 @@
-// Errors, --lenient, aov and what is told about media, as the command shows them.
+// Errors, --lenient, aov and what is reported about media, as the command shows them.
 #include <nlohmann/json.hpp>
 
 #include "media/vol_file.h"
@@ -80,7 +80,7 @@ TEST_CASE("the features of aov are layers of the picture", "[lenient]") {
     CHECK(info.find("Albedo") == std::string::npos);
 }
 
-TEST_CASE("a grid beside its shape and a camera that does not name its fog are told", "[lenient]") {
+TEST_CASE("a grid beside its shape and a camera that does not name its fog are reported", "[lenient]") {
     const TemporaryFolder folder;
     mote::media::VolFile file;
     file.resolution = {1, 1, 1}, file.values = {1.0f};

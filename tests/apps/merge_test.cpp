@@ -142,7 +142,7 @@ TEST_CASE("what does not belong together is not merged, and the reason is said",
     CHECK(says(folder.render("3:4", "x.film"), "integrator.shares with 2 numbers"));
 }
 
-TEST_CASE("a range that was interrupted goes on to the same film", "[merge]") {
+TEST_CASE("a range that was interrupted continues to the same film", "[merge]") {
     const Folder folder;
     const std::vector<std::string> long_one = {"--integrator", "path", "--checkpoint-every", "0"};
     REQUIRE(folder.render("40:300", "a.film", long_one).exit_code == 0);

@@ -15,7 +15,7 @@ using namespace mote;
 
 namespace {
 
-/// A camera that looks at the origin from the front, above a floor.
+/// A camera aimed at the origin from the front, above a floor.
 std::string scene_of(const std::string& integrator, const std::string& objects,
                      const std::string& sensor = "") {
     return R"(<scene version="3.0.0">)" + integrator + R"(
@@ -130,7 +130,7 @@ TEST_CASE("The noise predicts the true error within 20 % on eight scenes", "[noi
     }
 }
 
-TEST_CASE("A Cornell box, whose lamp is in the picture, stops where its error is what was asked for",
+TEST_CASE("A Cornell box, whose lamp is in the picture, stops where its error is what was requested",
           "[noise][statistics]") {
     const std::string path_of_scene = std::string(MOTE_SOURCE_DIR) + "/scenes/cornell_box.xml";
     const auto scene = core::load_scene(path_of_scene, registry(),

@@ -83,7 +83,7 @@ TEST_CASE("a frame of a sequence has the bits that it has alone, and noise of it
     CHECK_FALSE(fs::exists(folder.file("frames/0003.exr")));
 }
 
-TEST_CASE("a sequence goes on with its first unfinished frame", "[sequence]") {
+TEST_CASE("a sequence continues with its first unfinished frame", "[sequence]") {
     const Folder folder;
     const Values all = {"-D", "t=0:2", "-o", "frames/####.exr"};
     REQUIRE(folder.mote(all).exit_code == 0);

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double generous_seconds = 20.0;  // two are asked for, on a machine that does nothing else
+constexpr double generous_seconds = 20.0;  // two are requested, on a machine that does nothing else
 
 struct Folder : TemporaryFolder {
     Folder() {
@@ -138,7 +138,7 @@ TEST_CASE("A terminal that hangs up saves the picture and the checkpoint", "[com
     CHECK(folder.has("a.exr.checkpoint"));
 }
 
-TEST_CASE("A pipe that nobody reads can be interrupted", "[command][stopping]") {
+TEST_CASE("A pipe that is not read can be interrupted", "[command][stopping]") {
     for (const char* passes : {"1", "1000000"}) {  // while it is opened, and while passes are rendered
         RunResult r;
         for (int wait = 500; too_early(r) && wait < 20000; wait *= 2) {  // as above
@@ -155,7 +155,7 @@ TEST_CASE("A pipe that nobody reads can be interrupted", "[command][stopping]") 
 }
 
 TEST_CASE("A write that hangs says so at the first signal and ends at the second", "[command][stopping]") {
-    const Folder folder;  // statistics come last: a pipe without a reader stands for a folder that hangs
+    const Folder folder;  // statistics come last: a pipe without a reader represents a folder that hangs
     REQUIRE(::mkfifo(folder.file("s.json").c_str(), 0600) == 0);
     MoteProcess process(folder,
                         folder.render({"--integrator", "path", "--passes", "1", "--stats", "s.json"}));
@@ -203,8 +203,8 @@ TEST_CASE("Where the system grants few threads, those do the work", "[command][s
     fs::permissions(folder.path(), fs::perms::all);
     std::vector<std::string> arguments = folder.render({"--integrator", "path", "--passes", "1"});
     arguments[5] = "4";
-    // Libraries start threads of their own before main(), and how many is theirs to know: more and more until
-    // the program says that it has two. The limit does not hold for root, who becomes nobody.
+    // Libraries start threads of their own before main(), and how many is up to them: more and more until
+    // the program says that it has two. The limit does not hold for root, which becomes an unprivileged user.
     for (rlim_t limit = 1; limit < 64; ++limit) {
         const RunResult r = run_mote(folder, arguments, [limit] {
             limited(RLIMIT_NPROC, limit)();
@@ -217,7 +217,7 @@ TEST_CASE("Where the system grants few threads, those do the work", "[command][s
         CHECK(folder.has("a.exr"));
         return;
     }
-    WARN("no limit leaves two threads here, or nobody may not run the program: not tested");
+    WARN("no limit leaves two threads here, or an unprivileged user may not run the program: not tested");
 }
 
 TEST_CASE("Where the system grants no threads, one line says so", "[command][stopping]") {
@@ -228,7 +228,7 @@ TEST_CASE("Where the system grants no threads, one line says so", "[command][sto
         if (::getuid() == 0 && (::setgid(65534) != 0 || ::setuid(65534) != 0)) ::_exit(126);
     });
     if (r.exit_code == 126 || r.exit_code == 127 || r.exit_code == 0) {
-        WARN("nobody may not run the program, or limits do not hold here: not tested");
+        WARN("an unprivileged user may not run the program, or limits do not hold here: not tested");
         return;
     }
     CHECK(r.exit_code == 3);

@@ -190,9 +190,10 @@ TEST_CASE("Ctrl-C saves the picture so far, and --resume gives the bits of one r
                                  "--checkpoint-every", "0"});
     REQUIRE(wait_for_file(process, folder.file("a.exr.checkpoint")));
     process.send(SIGINT);
-    const auto asked = std::chrono::steady_clock::now();
+    const auto requested = std::chrono::steady_clock::now();
     const RunResult cut = process.wait();
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - asked).count();
+    const double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - requested).count();
     INFO(cut.err);
     CHECK(cut.exit_code == 130);
     CHECK(seconds < 2.0);

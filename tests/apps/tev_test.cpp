@@ -1,4 +1,4 @@
-// Live pictures: what a viewer receives, and that nobody waits for one.
+// Live pictures: what a viewer receives, and that no render waits for one.
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <poll.h>
@@ -129,20 +129,20 @@ TEST_CASE("a viewer is shown the picture, in tiles, to the bits of the file", "[
 TEST_CASE("where no viewer listens nothing is said", "[tev]") {
     const TemporaryFolder folder;
     write_file(folder.file("scene.xml"), scene);
-    std::string nobody;
-    { nobody = Listener().address(); }
+    std::string unused;
+    { unused = Listener().address(); }
     const auto render = [&](const std::string& address, const std::string& name) {
         return run_mote(folder, {"render", "scene.xml", "--integrator", "path", "--passes", "2", "-o", name,
                                  "--quiet", "--tev=" + address});
     };
-    const RunResult result = render(nobody, "a.exr");
+    const RunResult result = render(unused, "a.exr");
     CHECK(result.exit_code == 0);
     CHECK(result.err.empty());
     CHECK(render("127.0.0.1:x", "b.exr").exit_code == 1);
     CHECK(render("127.0.0.1:123456", "b.exr").exit_code == 1);
 }
 
-TEST_CASE("a viewer that takes nothing delays nobody, and the next picture replaces the one that waits",
+TEST_CASE("a viewer that takes nothing delays unused, and the next picture replaces the one that waits",
           "[tev]") {
     const Listener listener;    // accepts and never reads
     constexpr int size = 2000;  // 48 MB: more than any socket buffer

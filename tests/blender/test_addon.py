@@ -60,7 +60,7 @@ def cancel(process):
     finish(process, "checked: cancel", codes=(0, 1))  # the program ends with 1 after any Ctrl-C
     print(f"checked: cancelled within {time.monotonic() - began:.1f} s, Blender's end included")
     if time.monotonic() - began > 10:  # what the add-on waits before it ends the process by force
-        sys.exit("a cancelled render went on")
+        sys.exit("a cancelled render continued")
 
 
 def test(words, mote, source):

@@ -136,7 +136,7 @@ with tempfile.TemporaryDirectory() as name:
         command(scene, "other.exr", defines, PASSES + 1, folder)
         expected = read_exr(folder / "command.exr")
         if expected["R"].shape != (SIZE["resy"], SIZE["resx"]) or not expected["R"].max() > 0.0:
-            sys.exit("the command's picture is not the one that was asked for")
+            sys.exit("the command's picture is not the one that was requested")
         if same_bits(read_exr(folder / "other.exr"), expected):
             sys.exit("another picture has the same bits: the comparison sees nothing")
         for border, render in of.items():

@@ -117,14 +117,14 @@ static void test_errors(void) {
 }
 
 typedef struct Watch {
-    double begin, asked;
+    double begin, requested;
     uint32_t passes;
     int previews;
 } Watch;
 static int after_a_moment(void* user) {
     Watch* watch = user;
-    if (watch->asked == 0.0 && seconds() - watch->begin > 0.4) watch->asked = seconds();
-    return watch->asked > 0.0;
+    if (watch->requested == 0.0 && seconds() - watch->begin > 0.4) watch->requested = seconds();
+    return watch->requested > 0.0;
 }
 static void watch_progress(void* user, const mote_progress* progress) {
     ((Watch*)user)->passes = progress->passes;
@@ -142,7 +142,7 @@ static void test_cancel(void) {
     options.user = &watch, options.cancelled = after_a_moment, options.progress = watch_progress;
     options.preview = watch_preview;
     CHECK(mote_render(scene, &options, picture) == MOTE_OK);
-    CHECK(seconds() - watch.asked < 2.0);
+    CHECK(seconds() - watch.requested < 2.0);
     CHECK(mote_picture_interrupted(picture) && mote_picture_passes(picture) > 0);
     CHECK(watch.passes > 0 && watch.passes <= mote_picture_passes(picture) && watch.previews > 0);
     CHECK(mote_picture_layer_channels(picture, "beauty") == 3);
@@ -304,7 +304,7 @@ static void test_arrays(void) {
     mote_mesh mesh;
     CHECK(mean_of_arrays(1.0f) > 0.0f);
     CHECK(mean_of_arrays(1.0f) == mean_of_arrays(1.0f));
-    CHECK(mean_of_arrays(1.0f) != mean_of_arrays(2.0f)); /* the grid is looked at */
+    CHECK(mean_of_arrays(1.0f) != mean_of_arrays(2.0f)); /* the grid is read */
     memset(&mesh, 0, sizeof mesh);
     mesh.struct_size = sizeof mesh, mesh.positions = nowhere, mesh.vertex_count = 3;
     mesh.triangles = beyond, mesh.triangle_count = 1;
@@ -551,11 +551,11 @@ static void test_epipolar(void) {
     CHECK(mote_epipolar(&options, light, 3 * width * height, NULL) == MOTE_INVALID_ARGUMENT);
 }
 
-/* Draws come as often as the probabilities say, which sum to 1. */
+/* Samples come as often as the probabilities say, which sum to 1. */
 static void test_light_tree(void) {
-    enum { count = 21, draws = 20000 };
+    enum { count = 21, samples = 20000 };
     mote_light lights[count];
-    int drawn[count] = {0};
+    int sampled[count] = {0};
     const float here[3] = {3, 0.5f, 0}, up[3] = {0, 0, 1};
     double sum = 0, most = 0, farthest = 0;
     mote_status status;
@@ -568,17 +568,17 @@ static void test_light_tree(void) {
     }
     tree = mote_light_tree_new(lights, count, &status);
     CHECK(tree && status == MOTE_OK);
-    for (i = 0; i < draws; ++i) {
+    for (i = 0; i < samples; ++i) {
         size_t light = count;
         double probability = 0;
-        CHECK(mote_light_tree_sample(tree, here, up, (i + 0.5) / draws, &light, &probability) == MOTE_OK);
+        CHECK(mote_light_tree_sample(tree, here, up, (i + 0.5) / samples, &light, &probability) == MOTE_OK);
         CHECK(light < count && fabs(probability - mote_light_tree_probability(tree, here, up, light)) < 1e-6);
-        if (light < count) ++drawn[light];
+        if (light < count) ++sampled[light];
     }
     for (i = 0; i < count; ++i) {
         const double p = mote_light_tree_probability(tree, here, up, (size_t)i);
         sum += p, most = p > most ? p : most, farthest = i == count - 1 ? p : farthest;
-        CHECK(fabs(drawn[i] - draws * p) <= 2.0); /* evenly spread u: off by its ends */
+        CHECK(fabs(sampled[i] - samples * p) <= 2.0); /* evenly spread u: off by its ends */
     }
     CHECK(fabs(sum - 1) < 1e-6 && most > 5 * farthest);
     CHECK(mote_light_tree_sample(tree, here, NULL, 1.0, NULL, NULL) == MOTE_INVALID_ARGUMENT);

@@ -155,9 +155,9 @@ class Pictures(unittest.TestCase):
                                    f'exec {MOTE} "$@"')
         with self.assertRaisesRegex(cluster.ClusterError, "passes 0 to 3: mote: no luck"):
             self.render("x.exr", passes=4, block=4, worker_mote=broken, retries=1)
-        nobody = wrapper("nobody", f'{MOTE} "$@" | sed s/0.1.0/9.9.9/')
+        other = wrapper("other", f'{MOTE} "$@" | sed s/0.1.0/9.9.9/')
         with self.assertRaisesRegex(cluster.ClusterError, "no worker is left"):
-            self.render("x.exr", passes=4, worker_mote=nobody)
+            self.render("x.exr", passes=4, worker_mote=other)
 
     def test_without_workers_it_says_how_to_start_one_and_ends(self):
         with LocalCluster(n_workers=0, dashboard_address=None, silence_logs=50) as empty:

@@ -1,5 +1,5 @@
-// The two shares of a bounded geometry term add up to one at every extreme, and distances inside the region
-// follow their density from vacuum to lead.
+// The two fractions of a bounded geometry term add up to one at every extreme, and distances inside the
+// region follow their density from vacuum to lead.
 #include "compensation/bounded_geometry.h"
 
 #include "compensation/expected_loss.h"
@@ -12,14 +12,14 @@ using namespace mote;
 using namespace mote::compensation;
 using namespace mote::tests;
 
-TEST_CASE("bounded and residual shares add up to one", "[compensation][bound]") {
+TEST_CASE("bounded and residual fractions add up to one", "[compensation][bound]") {
     core::Rng rng(1);
     for (int i = 0; i < 100000; ++i) {
         const float cosines = rng.next_float();
         const float distance = std::pow(10.0f, 40.0f * rng.next_float() - 20.0f);
         const float bound = std::pow(10.0f, 76.0f * rng.next_float() - 38.0f);
-        const float kept = bounded_share(cosines, distance, bound);
-        const float taken = residual_share(cosines, distance, bound);
+        const float kept = bounded_fraction(cosines, distance, bound);
+        const float taken = residual_fraction(cosines, distance, bound);
         REQUIRE(kept >= 0.0f);
         REQUIRE(kept <= 1.0f);
         REQUIRE(taken >= 0.0f);
@@ -27,14 +27,14 @@ TEST_CASE("bounded and residual shares add up to one", "[compensation][bound]") 
     }
 }
 
-TEST_CASE("shares agree with the definition of the bound in double precision", "[compensation][bound]") {
+TEST_CASE("fractions agree with the definition of the bound in double precision", "[compensation][bound]") {
     core::Rng rng(2);
     for (int i = 0; i < 20000; ++i) {
         const float cosines = rng.next_float(), distance = 0.01f + 3.0f * rng.next_float();
         const float bound = 10.0f * rng.next_float();
         const double g = double(cosines) / (double(distance) * double(distance));
         const double residual = g > 0.0 ? std::max(0.0, g - double(bound)) / g : 0.0;
-        REQUIRE(residual_share(cosines, distance, bound) == Approx(residual).margin(1e-5));
+        REQUIRE(residual_fraction(cosines, distance, bound) == Approx(residual).margin(1e-5));
         // G* B* without the bound subtracted, as Eq. 10.10 prints it, is another number.
         if (g > 2.0 * double(bound) && bound > 0.1f) REQUIRE(residual < 1.0);
     }
@@ -42,19 +42,19 @@ TEST_CASE("shares agree with the definition of the bound in double precision", "
 
 TEST_CASE("limits of the bound", "[compensation][bound]") {
     for (const float d : {0.0f, 1e-20f, 1.0f, 1e15f}) {
-        CHECK(residual_share(1.0f, d, 0.0f) == 1.0f);
-        CHECK(residual_share(1.0f, d, core::infinity) == 0.0f);
-        CHECK(bounded_share(1.0f, d, core::infinity) == 1.0f);
-        CHECK(residual_share(0.0f, d, 1.0f) == 0.0f);
+        CHECK(residual_fraction(1.0f, d, 0.0f) == 1.0f);
+        CHECK(residual_fraction(1.0f, d, core::infinity) == 0.0f);
+        CHECK(bounded_fraction(1.0f, d, core::infinity) == 1.0f);
+        CHECK(residual_fraction(0.0f, d, 1.0f) == 0.0f);
     }
-    CHECK(residual_share(0.5f, 0.0f, 4.0f) == 1.0f);
+    CHECK(residual_fraction(0.5f, 0.0f, 4.0f) == 1.0f);
     CHECK(bounding_radius(4.0f) == 0.5f);
     // The region's edge: inside something is taken, outside nothing.
-    CHECK(residual_share(1.0f, 0.499f, 4.0f) > 0.0f);
-    CHECK(residual_share(1.0f, 0.501f, 4.0f) == 0.0f);
+    CHECK(residual_fraction(1.0f, 0.499f, 4.0f) > 0.0f);
+    CHECK(residual_fraction(1.0f, 0.501f, 4.0f) == 0.0f);
 }
 
-TEST_CASE("the expected loss is the integral that it stands for", "[compensation][loss]") {
+TEST_CASE("the expected loss is the integral that it represents", "[compensation][loss]") {
     for (const double sigma_t : {1e-6, 1e-3, 0.1, 0.499, 0.501, 3.0, 100.0})
         for (const double bound : {0.25, 1.0, 1e4}) {
             const double radius = 1.0 / std::sqrt(bound), sigma_s = 0.9 * sigma_t;
@@ -104,8 +104,8 @@ TEST_CASE("distances in the region follow their density", "[compensation][distan
             INFO(depth << " over " << limit << "\n" << result.message);
             CHECK(result.passed);
             // The density is the derivative of the distribution, and finite.
-            for (const float share : {0.0f, 0.1f, 0.5f, 1.0f}) {
-                const double t = double(share) * double(limit), s = double(depth) / double(limit);
+            for (const float fraction : {0.0f, 0.1f, 0.5f, 1.0f}) {
+                const double t = double(fraction) * double(limit), s = double(depth) / double(limit);
                 const double exact = depth > 0.0f ? s * std::exp(-s * t) / reached : 1.0 / double(limit);
                 CHECK(double(region.pdf_distance(float(t))) == Approx(exact).epsilon(1e-4).margin(1e-30));
             }

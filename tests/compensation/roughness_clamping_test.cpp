@@ -90,7 +90,7 @@ TEST_CASE("the density of lights is that of their neighbours", "[roughness]") {
             vpl.normal = vpl.shading_normal = Vec3(0, 0, 1);
             vpls.lights.push_back(vpl);
         }
-    lights::VirtualPointLight in_fog;  // knows no neighbours
+    lights::VirtualPointLight in_fog;  // has no neighbours
     vpls.lights.push_back(in_fog);
     compensation::clamp_roughness(vpls, {true, 16});
     // 16 neighbours of the middle: within 0.224 (the 20th) lie 20 others; ties make it that radius.

@@ -85,13 +85,13 @@ struct Pair {
     }
 };
 
-/// Is the mean of `draw(rng)` the expected value, in all channels? Two-sided at 4.5 sigma (7e-6 a channel),
+/// Is the mean of `sample(rng)` the expected value, in all channels? Two-sided at 4.5 sigma (7e-6 a channel),
 /// with 1e-3 of the value for the quadrature.
-bool has_mean(const Vec3d& expected, int n, const std::function<Vec3d(Rng&)>& draw) {
+bool has_mean(const Vec3d& expected, int n, const std::function<Vec3d(Rng&)>& sample) {
     Rng rng(hash_keys(11, 7));
     Vec3d sum(0.0), squares(0.0);
     for (int i = 0; i < n; ++i) {
-        const Vec3d v = draw(rng);
+        const Vec3d v = sample(rng);
         sum += v, squares += v * v;
     }
     bool good = true;
@@ -161,7 +161,7 @@ TEST_CASE("the estimate has the mean of the integral over the cone", "[vsl]") {
     }
 }
 
-TEST_CASE("an integral without one of the cosines is told apart", "[vsl][planted]") {
+TEST_CASE("an integral without one of the cosines is distinguished", "[vsl][planted]") {
     for (const Pair& p : pairs()) {
         const auto forgotten = [](const Vec3& normal) {
             return [normal](const Vec3& w) {
@@ -175,7 +175,7 @@ TEST_CASE("an integral without one of the cosines is told apart", "[vsl][planted
 }
 
 // Estimators with the mistakes that other code makes, each beside its right form.
-TEST_CASE("wrong densities are told apart", "[vsl][planted]") {
+TEST_CASE("wrong densities are distinguished", "[vsl][planted]") {
     const Pair wide(diffuse, diffuse, {1, 0, 1}, {-1, 0, 0.3f}, 1.2f);
     const double d = wide.distance(), sin2 = double(wide.radius) * double(wide.radius) / (d * d);
     const double height = 1.0 - std::sqrt(1.0 - sin2), per_disc = 2.0 * height / (sin2 * d * d);
@@ -341,7 +341,7 @@ TEST_CASE("light stays on its side of an edge and of a thin wall", "[vsl][visibi
             };
             CHECK(light(outside).x == 0.0f);
             CHECK(light(wall).x > 0.0f);
-            set.lights[1].depth = 2000;  // deeper than asked for: left out
+            set.lights[1].depth = 2000;  // deeper than requested: left out
             CHECK(light(side).x == 0.0f);
             set.lights[1].depth = 1;
         }

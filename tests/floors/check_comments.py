@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Checks that no comment in the product's C++ begins with "Of", "Whether", "The same", "What" or "Who".
+"""Checks that no comment in C++ begins with "Of", "Whether", "The same", "What" or "Who", and that code speaks the field's words.
 
 Usage: check_comments.py ROOT
-A comment begins with a noun phrase or a verb that stands alone. tools/count_house.py holds the words and the folders.
+A comment begins with a noun phrase or a verb that stands alone. Names, comments and messages of C++ and Python hold none of the
+words of tests/pages/check_words.py. tools/count_house.py holds the openings and the folders.
 Prints every offence as file:line: comment, and ends with 1 if there is one.
 """
 import sys
@@ -15,8 +16,8 @@ import count_house  # noqa: E402
 def offences(root):
     """All offences below root, as lines of text; and the number of files of the product's C++."""
     house = count_house.House(root)
-    house.openings(True)
-    return house.places["comments"], len(house.cpp(count_house.PRODUCT))
+    house.openings(True), house.openings(False), house.words()
+    return house.places["comments"] + house.places["comments elsewhere"] + house.places["words"], len(house.cpp(count_house.PRODUCT))
 
 
 def main():

@@ -4,7 +4,7 @@
 Usage: check_floors.py ROOT
 A file includes from its own folder or from floors below. Folders on the same floor do not include each other, and
 subfolders of one folder form no circle.
-tests/ and tools/ may include from anywhere. Looks at the committed files where ROOT is a git checkout, else at
+tests/ and tools/ may include from anywhere. Reads the committed files where ROOT is a git checkout, else at
 all files. Prints every offence as file:line and ends with 1 if there is one.
 """
 import re
@@ -48,7 +48,7 @@ def committed_files(root):
             names = subprocess.run(command, check=True, capture_output=True).stdout.decode().split("\0")
             return sorted({root / name for name in names if name and (root / name).is_file()})
         except (OSError, subprocess.CalledProcessError):
-            pass  # no git program: look at everything but the folders that .gitignore names
+            pass  # no git program: read everything but the folders that .gitignore names
     left_out = {"build", "out", ".git", "__pycache__", "generated"}
     return sorted(p for p in root.rglob("*")
                   if p.is_file() and not left_out & set(p.relative_to(root).parts))
@@ -149,7 +149,7 @@ def is_exempt_from_paths(relative):
 
 
 def check(root):
-    """All offences below root, as lines of text; and how many files were looked at."""
+    """All offences below root, as lines of text; and how many files were read."""
     files = committed_files(root)
     lines = [f"{path.relative_to(root)}:{number}: {reason}"
              for path in files for number, reason in offences_of_file(root, path)]

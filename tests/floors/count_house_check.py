@@ -24,7 +24,7 @@ PAGE = """## Shapes
 """
 CUT = "std::pop_heap(cut_.begin(), cut_.end());\n"
 BOX = "const float x = max_of(max_of(x0, -x1), 0.0f);\n"
-DRAWN = "lanes.origin_x[i] = x;\n"
+SHADOW_RAY = "lanes.origin_x[i] = x;\n"
 SAMPLER = "SurfaceSamples sample_surfaces(const Scene& scene) {}\n"
 
 # (file, content, what of count() it raises to how much)
@@ -48,14 +48,17 @@ CASES = [
     ("lights/a.h", "/// Of all lights.\nint x;\n", {"lines": 2, "openings": 1}),
     ("lights/a.h", "int x;  ///< whether\nint y;  // Whether it is there\n", {"lines": 2, "openings": 1}),
     ("lights/a.h", "/// The sum\n/// Of all lights.\nint x;\n", {"lines": 3}),
-    ("lights/a.h", "// Offers nothing\n\n// Whatever it is\n", {"lines": 3}),
+    ("lights/a.h", "// Officers, none\n\n// Whatever it is\n", {"lines": 3}),
     ("lights/a.h", 'f("// Of strings");\n', {"lines": 1}),
     ("lights/a.h", "// The same again\n", {"lines": 1, "openings": 1}),
     ("tests/a.h", "// What is tested\n", {"openings_elsewhere": 1}),
+    ("lights/a.h", "int most_lights;  // looks at all\n", {"lines": 1, "words": 1}),
+    ("tests/a.py", "drawn = asked\n", {"words": 1}),
+    ("lights/a.h", "int max_lights;  // gathers all; unknown\n", {"lines": 1}),
     ("lights/a.h", CUT, {"lines": 1}),
     ("lights/a.h", CUT + CUT, {"lines": 2, "twins": 1}),
     ("lights/a.h", BOX + BOX, {"lines": 2, "twins": 1}),
-    ("lights/a.h", DRAWN * 3, {"lines": 3, "twins": 2}),
+    ("lights/a.h", SHADOW_RAY * 3, {"lines": 3, "twins": 2}),
     ("lights/a.h", SAMPLER * 2, {"lines": 2, "twins": 1}),
     ("lights/a.h", "struct alignas(64) LaneValues {\nstruct alignas(64) LaneFloats {\nusing Lanes = std::array<float, 8>;\n",
      {"lines": 3, "twins": 1}),
@@ -91,7 +94,7 @@ def count(files):
         numbers = {"lines": sum(house.lines_by_folder().values()), "apart": house.getters() + house.rows(),
                    "parameters": max((own for own, _ in house.parameters().values()), default=0), "circles": house.circles(),
                    "openings": house.openings(True), "openings_elsewhere": house.openings(False),
-                   "twins": sum(house.twins().values()), "errors": house.error_measures()}
+                   "words": house.words(), "twins": sum(house.twins().values()), "errors": house.error_measures()}
     return {name: number for name, number in numbers.items() if number}
 
 

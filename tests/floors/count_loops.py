@@ -24,7 +24,7 @@ IDEAS = {
         # Legs that cross media by marching, the last one through tracked media, and lights without a position.
         "integrators/single_scattering/single_scattering_eye.cpp": 3,
     }),
-    "a channel drawn for a path": (r"\bdraw_hero\(", {
+    "a channel sampled for a path": (r"\bsample_hero\(", {
         "integrators/eye_path/eye_path.h": 1,
         "lights/virtual_lights/light_path.h": 1,
         "compensation/residual_transport.cpp": 1,

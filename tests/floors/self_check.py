@@ -47,7 +47,7 @@ CITATIONS = [
     ("// residual tracking (Nov\u00e1k et al. 2014)", False),
     ("// Raab, Seibert and Keller 2008", False),
     ("// as Raab et al.\n// 2008 have it", False),
-    ("// Nobody 1999, Eq. 1", True),
+    ("// Unheard 1999, Eq. 1", True),
     ("// Veach 1998", True),
     ("// Raab et al. 2009", True),
     ("// the standard observer of CIE 1931", False),
@@ -61,7 +61,16 @@ COMMENTS = [
     ("lights/a.h", "/// Power of all lights [W]. What is infinite counts as well.\nfloat power();\n", False),
     ("lights/a.h", "/// Power\n/// Of all lights.\nfloat power();\n", False),
     ("lights/a.h", "// Offset; whatever it is\n", False),
-    ("tests/lights/a.cpp", "// What is tested\n", False),
+    ("tests/lights/a.cpp", "// What is tested\n", True),
+    ("lights/a.cpp", "const int most_lights = 3;\n", True),
+    ("tests/a.py", "least_error = 1\n", True),
+    ("lights/a.cpp", "solve_least_squares(a);\n", False),
+    ("lights/a.cpp", "const auto drawn_light = choose();\n", True),
+    ("lights/a.cpp", "// a term that is weighed\n", True),
+    ("lights/a.cpp", "bool knows_media = false;\n", True),
+    ("lights/a.cpp", 'plan("what was asked for");\n', True),
+    ("lights/a.cpp", "// unknown weights; the walk continues, withdrawn by nothing\n", False),
+    ("lights/a.cpp", "m = look_at(eye);\n", False),
 ]
 
 

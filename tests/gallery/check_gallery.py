@@ -2,7 +2,7 @@
 """Is every picture of the gallery the full run of the script beside it, and does the text say what its table says?
 
 For each picture of docs/gallery in a page of docs: it names its script, which the section names too; its run was full; its commit is one
-of this repository, without changes; its table lies beside it, with the same origin, and is the one that it was drawn with
+of this repository, without changes; its table lies beside it, with the same origin, and is the one that it was plotted from
 (experiments/figures/origin.py), and it is wide enough. Each section ends with a comment of lines such as
 
     1.58 ± 0.02 % = bunny; taken_by_the_bound; standard_error

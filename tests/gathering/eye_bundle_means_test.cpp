@@ -20,7 +20,7 @@ constexpr std::uint32_t light_paths = 16, directions = 4;
 struct Planted {
     float line_pdf = 1.0f;  ///< factor on p_r
     bool cosine = true, distance = true;
-    float rival = 1.0f;  ///< factor on the part of rivals that comes from paths that go on
+    float rival = 1.0f;  ///< factor on the part of rivals that comes from paths that continue
 };
 
 /// w_1 with an error.
@@ -39,7 +39,7 @@ struct PlantedWeights {
     }
 };
 
-/// Sixteen points that look at a corner or a bright spot, and estimates of the light they reflect.
+/// Sixteen points that face a corner or a bright spot, and estimates of the light they reflect.
 class Points {
   public:
     Points(const std::string& bsdf, const std::string& light, const Vec3& target, float spread)
@@ -191,7 +191,7 @@ TEST_CASE("virtual point lights and bundles have the mean of paths", "[bundles][
     }
 }
 
-TEST_CASE("paths that bundles begin and that go on have the mean of paths", "[bundles][statistics]") {
+TEST_CASE("paths that bundles begin and that continue have the mean of paths", "[bundles][statistics]") {
     const auto [bsdf, light] = GENERATE(
         table<std::string, std::string>({{matt, point_by_the_wall}, {shiny, ball_lamp + point_by_the_wall}}));
     Points points(bsdf, light, corner, 0.3f);

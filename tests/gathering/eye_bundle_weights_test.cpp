@@ -1,5 +1,5 @@
-// The weights of virtual point lights and of bundles, whose paths go on, add up to 1 for every path that they
-// can make.
+// The weights of virtual point lights and of bundles, whose paths continue, add up to 1 for every path that
+// they can make.
 #include "gathering/eye_bundles/path_weights.h"
 #include "lights/virtual_lights/particle_tracer.h"
 #include "tests/gathering/eye_bundle_rooms.h"
@@ -13,7 +13,7 @@ using namespace mote::tests;
 namespace {
 
 constexpr TechniqueSamples samples{
-    .directions = 5, .paths = 300, .light_share = 0.25f, .joined_share = 0.1f, .continued = 0.3f};
+    .directions = 5, .paths = 300, .light_probability = 0.25f, .joined_probability = 0.1f, .continued = 0.3f};
 
 /// A point on the floor or a wall, seen from inside the room.
 ScatteringVertex receiver(const Scene& scene, Rng& rng) {
@@ -135,7 +135,7 @@ struct Sums {
     double worst = 0.0, least = 1.0, most = 0.0;
 };
 
-/// `planted`: what VPLs take for the chance to go on, over the true one.
+/// `planted`: what VPLs take for the chance to continue, over the true one.
 Sums weights_of_paths(const std::string& bsdf, const std::string& light, float continued, float planted = 1) {
     const auto scene = scene_from(corner_room(bsdf, light));
     const lights::LightPathSettings settings{
@@ -182,7 +182,7 @@ TEST_CASE("weights of virtual point lights and of bundles add up to 1", "[bundle
     CHECK(sums.worst < 2e-6);
 }
 
-TEST_CASE("a VPL that takes paths to go on more often than they do is found", "[bundles][planted]") {
+TEST_CASE("a VPL that takes paths to continue more often than they do is found", "[bundles][planted]") {
     CHECK(weights_of_paths(matt, point_by_the_wall, 0.3f).worst < 2e-6);
     CHECK(weights_of_paths(matt, point_by_the_wall, 0.3f, 1.1f).worst > 1e-4);
 }

@@ -8,7 +8,7 @@ namespace mote::tests {
 
 /// A_i F_ij = 1/pi times the integral over directions of the area, across them, along which i sees j. Bundles
 /// of directions uniform over the sphere serve both ways, with density 1/(2 pi) of each hemisphere: a link of
-/// N directions stands for 2 pi / N of solid angle and ray_area() of area.
+/// N directions represents 2 pi / N of solid angle and ray_area() of area.
 class FormFactors {
   public:
     FormFactors(const gathering::SurfaceTriangles& triangles, std::uint32_t shapes)

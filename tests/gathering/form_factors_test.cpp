@@ -1,4 +1,4 @@
-// Form factors by ray-bundles against closed forms: which links there are, and what each stands for.
+// Form factors by ray-bundles against closed forms: which links there are, and what each represents.
 #include "tests/gathering/form_factors.h"
 
 #include "core/geometry/analytic_shapes.h"
@@ -16,7 +16,7 @@ namespace {
 
 constexpr double critical_z = 4.5;  // as docs/testing.md has it for means
 
-/// The two squares of side 1 a distance apart that look at each other; shapes 0 and 1.
+/// The two squares of side 1 a distance apart that face each other; shapes 0 and 1.
 SurfaceTriangles parallel_plates(float distance) {
     TriangleBuilder plates;
     plates.quad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, 0);

@@ -1,4 +1,4 @@
-// Imperfect bundles: discs have the area that they stand for, lie in their triangles, and approach the exact
+// Imperfect bundles: discs have the area that they represent, lie in their triangles, and approach the exact
 // bundle as there are more of them.
 #include <tbb/global_control.h>
 
@@ -49,7 +49,7 @@ TEST_CASE("points lie on surfaces by their area", "[imperfect]") {
     std::vector<SurfacePoint> points;
     std::vector<double> share(room.size());
     for (std::uint64_t set = 0; set < 8; ++set) {
-        surface.draw(set, 4096, 0, 4096, points);
+        surface.sample(set, 4096, 0, 4096, points);
         REQUIRE(points.size() == 4096);
         for (const SurfacePoint& p : points) {
             share[p.triangle] += surface.area() / (8.0 * 4096.0);
@@ -64,12 +64,12 @@ TEST_CASE("points lie on surfaces by their area", "[imperfect]") {
     }
     // Any part of a set is that part of the whole.
     std::vector<SurfacePoint> part;
-    surface.draw(3, 4096, 1000, 1010, part), surface.draw(3, 4096, 0, 4096, points);
+    surface.sample(3, 4096, 1000, 1010, part), surface.sample(3, 4096, 0, 4096, points);
     for (std::size_t i = 0; i < 10; ++i)
         CHECK((part[i].triangle == points[1000 + i].triangle && part[i].u == points[1000 + i].u));
 }
 
-TEST_CASE("discs have the area that they stand for, in the plane of their triangle", "[imperfect]") {
+TEST_CASE("discs have the area that they represent, in the plane of their triangle", "[imperfect]") {
     const SurfaceTriangles room = furnished_room();
     const ImperfectBundles imperfect(room, 2048, 16);
     const BundleTracer exact(room);

@@ -15,7 +15,7 @@ using namespace mote::tests;
 namespace {
 
 struct Agreement {
-    int asked = 0, known = 0, same = 0;
+    int queries = 0, known = 0, same = 0;
 };
 
 /// Agreement of the grid with traced rays at points that an eye sees, along lines and against them: how often
@@ -35,7 +35,7 @@ Agreement agreement(const ImperfectLinkSettings& settings, bool opposite = false
             const bool leaves =
                 glm::dot(x.hit.geometric_normal, direction) * glm::dot(x.hit.geometric_normal, x.wo) > 0.0f;
             const Vec3 w = leaves ? direction : -direction;
-            ++sum.asked;
+            ++sum.queries;
             const auto end = links.next(bundle, x, opposite ? -w : w);
             if (!end) continue;
             ++sum.known;
@@ -55,11 +55,11 @@ TEST_CASE("imperfect bundles find what a ray finds, more often with more points"
     const Agreement many = agreement({.points = 65536, .splat_size = 1.0f});
     const Agreement wrong =
         agreement({.points = 65536, .splat_size = 1.0f}, true);  // planted: the other side
-    CAPTURE(few.known, few.same, many.known, many.same, wrong.same, many.asked);
+    CAPTURE(few.known, few.same, many.known, many.same, wrong.same, many.queries);
     CHECK(many.same > few.same);
-    CHECK(many.known > 0.5 * many.asked);
+    CHECK(many.known > 0.5 * many.queries);
     CHECK(many.same > 0.8 * many.known);
-    CHECK(wrong.same < 0.6 * wrong.asked);
+    CHECK(wrong.same < 0.6 * wrong.queries);
 }
 
 TEST_CASE("kept bundles share their budget", "[bundles][kept]") {

@@ -25,7 +25,7 @@ struct Trials {
         return (mean() - expected) / std::sqrt(variance);
     }
 };
-constexpr double critical_z = 4.0;  // two-sided level 6e-5: a handful of tests share it
+constexpr double critical_z = 4.0;  // two-sided level 6e-5: a handful of tests fraction it
 
 std::unique_ptr<Scene> foggy_scene() {
     return tests::scene_from(R"(<scene version="3.0.0">
@@ -66,13 +66,13 @@ TEST_CASE("The radiance estimate of an even density is unbiased for every k and 
     Rng rng(3);
     std::vector<KdTree::Neighbour> scratch;
     for (const std::size_t k : {std::size_t(4), std::size_t(20)})
-        for (const float share : {1.0f, 0.6f}) {
+        for (const float fraction : {1.0f, 0.6f}) {
             Trials trials;
             for (int i = 0; i < 2500; ++i) {
                 const SurfacePhotonMap map(photons_on_plane(400, rng));
-                trials.add(map.radiance(receiver, {k, share}, 100, scratch).y);
+                trials.add(map.radiance(receiver, {k, fraction}, 100, scratch).y);
             }
-            INFO("k " << k << " share " << share << ": " << trials.mean() << " against " << expected);
+            INFO("k " << k << " fraction " << fraction << ": " << trials.mean() << " against " << expected);
             CHECK(std::fabs(trials.z(expected)) < critical_z);
             // Counting the k-th photon too is a factor k / (k - 1): the test sees it.
             CHECK(std::fabs(trials.z(expected * double(k) / double(k - 1))) > critical_z);
@@ -110,7 +110,7 @@ TEST_CASE("The beam radiance estimate of an even density is the integral along t
     const double phase = double(inv_four_pi) * (1 - g * g) / std::pow(1 + g * g + 2 * g * cosine, 1.5);
     const double expected = phase / 216.0 * (1.0 - std::exp(-0.5 * t_max)) / 0.5;
     Rng rng(8);
-    for (const float share : {1.0f, 0.5f}) {
+    for (const float fraction : {1.0f, 0.5f}) {
         Trials trials;
         for (int i = 0; i < 800; ++i) {
             std::vector<Photon> photons(2000);
@@ -119,7 +119,7 @@ TEST_CASE("The beam radiance estimate of an even density is the integral along t
                 p.towards_light = encode_direction(towards_light), p.power = Rgb(1.0f / 2000.0f);
                 p.depth = 2, p.normal_or_medium = 0;
             }
-            const VolumePhotonMap map(*scene, std::move(photons), {30, share}, 10.0f);
+            const VolumePhotonMap map(*scene, std::move(photons), {30, fraction}, 10.0f);
             WalkContext context;
             context.rng = Rng(std::uint64_t(i));
             std::vector<RayFacingDiscs::Hit> scratch;
@@ -127,8 +127,8 @@ TEST_CASE("The beam radiance estimate of an even density is the integral along t
             CHECK(light.single == Rgb(0.0f));
             trials.add(light.multiple.x);
         }
-        INFO("share " << share << ": " << trials.mean() << " against " << expected << ", z "
-                      << trials.z(expected));
+        INFO("fraction " << fraction << ": " << trials.mean() << " against " << expected << ", z "
+                         << trials.z(expected));
         CHECK(std::fabs(trials.z(expected)) < critical_z);
         CHECK(std::fabs(trials.z(1.07 * expected)) > critical_z);
     }
@@ -180,7 +180,7 @@ TEST_CASE("Thinning keeps the power of a photon set in the mean, and its size in
     CHECK(std::fabs(difference.z(0.05 * relative.mean())) > critical_z);
 }
 
-TEST_CASE("No photon lies where direct light is sampled, unless asked for", "[photons]") {
+TEST_CASE("No photon lies where direct light is sampled, unless requested", "[photons]") {
     const auto scene = foggy_scene();
     PhotonSettings settings;
     settings.paths.paths = 2000;
@@ -197,7 +197,7 @@ TEST_CASE("Kernels shrink by the product that the passes would give one after th
     for (const double alpha : {0.1, 2.0 / 3.0, 1.0}) {
         double r2 = 1.0;
         for (std::uint32_t pass = 0; pass < 1000; ++pass) {
-            REQUIRE(radius_share(pass, alpha) == Approx(std::sqrt(r2)).epsilon(1e-9));
+            REQUIRE(radius_fraction(pass, alpha) == Approx(std::sqrt(r2)).epsilon(1e-9));
             r2 *= (double(pass) + 1.0 + alpha) / (double(pass) + 2.0);
         }
     }

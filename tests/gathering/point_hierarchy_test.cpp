@@ -128,12 +128,11 @@ TEST_CASE("hierarchies at the extremes", "[point_hierarchy]") {
     Surfels opposed = points_in_a_ball(2);
     opposed.normals = {Vec3(0, 0, 1), Vec3(0, 0, -1)};
     CHECK(PointHierarchy(opposed).nodes().back().cone_cos == -1.0f);
-    // 2^24 points are asked for before anything is taken; the message says how many fit.
+    // 2^24 points are requested before anything is taken; the message says how many fit.
     Surfels many;
     many.positions.resize(PointHierarchy::largest_count), many.area = 1.0;
     CHECK_THROWS_WITH(PointHierarchy(many, std::size_t(1) << 30),
                       ContainsSubstring("16777216 points") && ContainsSubstring("15790320 points fit"));
     many.positions.resize(PointHierarchy::largest_count + 1);
-    CHECK_THROWS_WITH(PointHierarchy(many, std::size_t(1) << 40),
-                      ContainsSubstring("16777216 points fit"));
+    CHECK_THROWS_WITH(PointHierarchy(many, std::size_t(1) << 40), ContainsSubstring("16777216 points fit"));
 }

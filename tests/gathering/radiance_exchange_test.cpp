@@ -244,15 +244,15 @@ double power_on_ball(const std::string& light) {
         R"(<scene version="3.0.0"><shape type="sphere"><bsdf type="diffuse"/></shape>)" + light +
             R"(<sensor type="perspective"/></scene>)",
         {.texels_per_metre = 12.0f});
-    const TexelDirectLight drawn = texel_direct_light(*stage.scene, stage.atlas, stage.materials, 2, 1, {});
+    const TexelDirectLight sampled = texel_direct_light(*stage.scene, stage.atlas, stage.materials, 2, 1, {});
     double power = 0.0;
     for (std::size_t t = 0; t < stage.atlas.size(); ++t)
-        power += double(drawn.irradiance[t].x * stage.atlas.texels()[t].area);
+        power += double(sampled.irradiance[t].x * stage.atlas.texels()[t].area);
     return power;
 }
 
 // A ball of radius r at distance d from a lamp of intensity I takes up 2 pi I (1 - sqrt(1 - (r/d)^2)), from a
-// small face of area A and radiance L that looks at it pi L A (r/d)^2. Its texels lie on triangles inside of
+// small face of area A and radiance L that faces it pi L A (r/d)^2. Its texels lie on triangles inside of
 // it, and must not be in its shadow, nor in that of the lamp. 2 %: cosines in the middle of texels, and 0.6 %
 // of the ball's area that its triangles lack.
 TEST_CASE("light of a lamp on the texels of a ball is what its solid angle takes up",
@@ -269,7 +269,8 @@ TEST_CASE("light of a lamp on the texels of a ball is what its solid angle takes
     CHECK(of_face == Approx(double(pi) * 500.0 * 0.01 / 9.0).epsilon(0.02));
 }
 
-TEST_CASE("batches go on in their own sequence, and have another one than their neighbours", "[exchange]") {
+TEST_CASE("batches continue in their own sequence, and have another one than their neighbours",
+          "[exchange]") {
     const BatchDirections all(1, 8), other(2, 8);
     for (std::uint32_t i = 0; i < 8; ++i) {
         CHECK(all.at(16 + i).direction == bundle_sample(hash_keys(1ull, 0u), 8 + i).direction);

@@ -57,7 +57,7 @@ TEST_CASE("the mean over places is right where buffers are coarse", "[micro_buff
         }
         return sum;
     };
-    // 36 x 36 places over the hemisphere: the cap's rim passes through a share of 4 sine / 36 of them, of
+    // 36 x 36 places over the hemisphere: the cap's rim passes through a fraction of 4 sine / 36 of them, of
     // which half may fall on the wrong side.
     CHECK(std::fabs(mean(false) - sine * sine) < 2.0 * sine / 36.0);
     CHECK_FALSE(std::fabs(mean(true) - sine * sine) < 2.0 * sine / 36.0);

@@ -87,8 +87,8 @@ TEST_CASE("direct light of point lights arrives as its closed form, on either si
     }
 }
 
-// Directions and drawn lights are weighed against each other: a sky of radiance 1 brings pi, whatever is in
-// the way brings nothing.
+// Directions and sampled lights are weighted against each other: a sky of radiance 1 brings pi, whatever is
+// in the way brings nothing.
 TEST_CASE("direct light of a sky has its mean", "[stored_light][statistics]") {
     const Stage stage(ball(1.0, false, 1.0) + R"(<emitter type="constant"/>)", 500);
     const ArrivedLight light = direct_light_at(*stage.scene, stage.sides, 4, 1, {});
@@ -158,7 +158,7 @@ TEST_CASE("radiosity in a closed furnace is E / (1 - rho)", "[stored_light][radi
 
 // Concentric balls: F_io = 1, F_oi = (r/R)^2, F_oo = 1 - F_oi, and light is even on each. The cut is so fine
 // that buffers see discs alone, of radius r_d, which stand out beyond the true silhouette by r_d^2 / (2 r), a
-// share of r_d^2 / r^2 of the area seen.
+// fraction of r_d^2 / r^2 of the area seen.
 TEST_CASE("radiosity between two balls is the solution of their two equations", "[stored_light][radiosity]") {
     const double small = 1.0, large = 2.0, rho_i = 0.5, rho_o = 0.8, f = small * small / (large * large);
     const Stage stage(ball(small, false, rho_i) + ball(large, true, rho_o) + lamp, 5000);

@@ -1,4 +1,4 @@
-// Points on surfaces: how even they are, and that each stands for the same area.
+// Points on surfaces: how even they are, and that each has the same area.
 #include <complex>
 
 #include "core/math/random.h"
@@ -63,13 +63,13 @@ TEST_CASE("blue-noise points keep their distance and have no low frequencies", "
     CHECK(power(independent, 0.0, 0.5) > 0.8);
 }
 
-TEST_CASE("points stand for equal areas, on both sides of a thin wall, and their discs hide it",
+TEST_CASE("points have equal areas, on both sides of a thin wall, and their discs hide it",
           "[surface_points]") {
     const SurfaceTriangles room =
         TriangleBuilder().box({0, 0, 0}, {4, 3, 5}, true, 0).box({1, 1, 1}, {1.01f, 2, 3}, false, 6).list();
     const Surfels s = blue_noise_surfels(room, 4000);
-    std::vector<double> share(room.size()), area(room.size());
-    for (const SurfacePoint& p : s.places) share[p.triangle] += s.patch();
+    std::vector<double> found(room.size()), area(room.size());
+    for (const SurfacePoint& p : s.places) found[p.triangle] += s.patch();
     for (std::size_t i = 0; i < room.size(); ++i) {
         area[i] = triangle_area(room.corners[i]);
         // At a border points have neighbours on one side only: half a distance of it counts for more.
@@ -77,14 +77,14 @@ TEST_CASE("points stand for equal areas, on both sides of a thin wall, and their
         const double border =
             double(glm::length(c[1] - c[0]) + glm::length(c[2] - c[1]) + glm::length(c[0] - c[2])) *
             std::sqrt(s.patch());
-        CHECK(std::fabs(share[i] - area[i]) < 0.25 * border + 2.0 * s.patch());
+        CHECK(std::fabs(found[i] - area[i]) < 0.25 * border + 2.0 * s.patch());
     }
     // No place of the room is farther from a point of its side than a disc's radius. On the narrow sides of
     // the thin box candidates are one behind the other, as far apart as their share of the area is long
     // there.
     const float strip = s.radius + float(s.patch() / 8.0 / 0.01);
     std::vector<SurfacePoint> places;
-    SurfacePoints(room).draw(99, 5000, 0, 5000, places);
+    SurfacePoints(room).sample(99, 5000, 0, 5000, places);
     for (const SurfacePoint& place : places) {
         const auto& c = room.corners[place.triangle];
         const Vec3 p = c[0] + place.u * (c[1] - c[0]) + place.v * (c[2] - c[0]);

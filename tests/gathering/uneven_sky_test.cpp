@@ -1,5 +1,5 @@
-// The exchange of radiance under a sky that is not the same on all sides: a constant one does not tell ahead
-// from behind.
+// The exchange of radiance under a sky that is not the same on all sides: a constant one does not distinguish
+// ahead from behind.
 #include "lights/emitters/emitters.h"
 #include "tests/gathering/furnace_scenes.h"
 #include "tests/support/catch.h"

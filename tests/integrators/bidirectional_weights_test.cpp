@@ -77,7 +77,7 @@ class BruteForce {
             (from == int(path.vertices.size()) - 1 && scene_.camera().traits().delta_direction);
         return tau * cosine / (parallel ? 1.0 : glm::dot(d, d));
     }
-    /// Per solid angle, of going on from `at` to `to` when coming from `from`; 1 for a delta part.
+    /// Per solid angle, of continuing from `at` to `to` when coming from `from`; 1 for a delta part.
     double scatters(const WholePath& path, int from, int at, int to, core::TransportMode mode) const {
         if (path.vertices[std::size_t(at)].delta) return 1.0;
         core::ScatteringVertex v = path.vertices[std::size_t(at)].scattering;
@@ -98,7 +98,7 @@ class BruteForce {
         if (s == 1) {
             const auto& v = path.vertices[1].scattering;
             const core::Vec3d d = core::Vec3d(v.position) - core::Vec3d(path.light.position);
-            p *= ends_.drawn(v.light_receiver(), path.light, path.light.infinite() ? 1.0 : glm::dot(d, d));
+            p *= ends_.sampled(v.light_receiver(), path.light, path.light.infinite() ? 1.0 : glm::dot(d, d));
         }
         if (s >= 2) p *= start.light * (planted_ == Planted::light ? 2.0 : 1.0);
         if (s >= 2) p *= start.receiver * measure(path, 0, 1);
@@ -136,7 +136,7 @@ WholePath whole(const core::Scene& scene, const integrators::Strategies<Media>& 
     if (s > 0) path.vertices[std::size_t(s - 1)].delta = false;
     path.vertices[std::size_t(s)].delta = false;
     const int n = s + t;
-    // tau of every edge anew, from its end nearer to the light where that knows its media.
+    // tau of every edge anew, from its end nearer to the light where that has its media.
     for (int i = 0; i + 1 < n; ++i) {
         const bool infinite = i == 0 && path.light.infinite();
         const int at = i == 0 ? 1 : i, other = i == 0 ? 0 : i + 1;

@@ -1,8 +1,8 @@
 // Caustics that path tracers do not find: mote_bdpt against photon mapping, whose kernels go to zero.
 //
 // The bias of a density estimate is proportional to the area of its kernel, which is to the number k of
-// photons that it holds, in every pass alike. Two renders with k and 4 k photons therefore tell the limit:
-// (4 A - B) / 3.
+// photons that it holds, in every pass alike. Two renders with k and 4 k photons therefore determine the
+// limit: (4 A - B) / 3.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -51,7 +51,7 @@ double z_of(const Estimate& a, const Estimate& b) {
 }
 
 /// The largest |z| of the picture's mean and of the blocks that the caustic lights. Where few photons come,
-/// kernels are too wide for the limit to be told.
+/// kernels are too wide for the limit to be found.
 double difference(const RenderStatistics& ours, const RenderStatistics& truth, const std::string& layer) {
     const auto &a = ours.blocks[ours.layer(layer)], &b = truth.blocks[truth.layer(layer)];
     double brightest = 0.0, worst = 0.0;

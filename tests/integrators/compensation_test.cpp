@@ -45,7 +45,7 @@ std::string vpl_integrator(const std::string& compensation, double bound, int pa
 /// by layer.
 class Proof {
   public:
-    /// `power`: an error of this share is found in every layer.
+    /// `power`: an error of this fraction is found in every layer.
     Proof(std::unique_ptr<mote::core::Scene> scene, double bound, double power = 0.08,
           std::uint32_t path_passes = 6000)
         : scene_(std::move(scene)),

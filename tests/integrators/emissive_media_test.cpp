@@ -1,6 +1,6 @@
 // Emission of media. A homogeneous medium is met by walks alone, a heterogeneous one of the same coefficients
-// by walks and by points drawn from it: both must light the same picture. Particles that start in them carry
-// the same light.
+// by walks and by points sampled from it: both must light the same picture. Particles that start in them
+// carry the same light.
 #include <fmt/format.h>
 
 #include "tests/integrators/test_scenes.h"
@@ -48,16 +48,16 @@ const std::string volpath = R"(<integrator type="volpath"/>)";
 
 }  // namespace
 
-TEST_CASE("points drawn from a glowing medium change the noise, not the mean", "[emissive][equality]") {
+TEST_CASE("points sampled from a glowing medium change the noise, not the mean", "[emissive][equality]") {
     for (const bool fog : {false, true}) {
-        const auto drawn = render(glow(true, fog), volpath, 8000, 1);
+        const auto sampled = render(glow(true, fog), volpath, 8000, 1);
         const auto walked = render(glow(false, fog), volpath, 20000, 2);
         INFO("fog " << fog);
-        check(drawn, walked, {"emission", "direct", "indirect", "beauty"}, 1.06);
-        if (fog) check(drawn, walked, {"single_scattering", "multiple_scattering"}, 1.12);
-        const std::size_t direct = drawn.layer("direct");
+        check(sampled, walked, {"emission", "direct", "indirect", "beauty"}, 1.06);
+        if (fog) check(sampled, walked, {"single_scattering", "multiple_scattering"}, 1.12);
+        const std::size_t direct = sampled.layer("direct");
         const double quieter = (walked.whole[direct][1].variance_of_mean * walked.passes) /
-                               (drawn.whole[direct][1].variance_of_mean * drawn.passes);
+                               (sampled.whole[direct][1].variance_of_mean * sampled.passes);
         CHECK(quieter > 3.0);
     }
 }
@@ -84,7 +84,7 @@ TEST_CASE("VPLs of a glowing medium carry what the bounded path tracer finds", "
 }
 
 // Kernels darken what lies along edges, in proportion to their width. Eight times the neighbours are twice
-// the width in a medium and more on surfaces: three widths tell how far the narrowest may be off
+// the width in a medium and more on surfaces: three widths show how far the narrowest may be off
 // (tests/support/grid_convergence.h).
 TEST_CASE("Photons of a glowing medium carry its light", "[emissive][equality]") {
     const auto photons = [](int neighbours, std::uint32_t passes) {

@@ -20,8 +20,7 @@ namespace {
 std::string lit_box(const std::string& medium) {
     std::string xml = box(grey, medium);
     const auto lamp = xml.find("<emitter type=\"area\">");
-    xml.erase(lamp,
-              xml.find("</emitter>", lamp) + 10 - lamp);  // its share of the samples would only add noise
+    xml.erase(lamp, xml.find("</emitter>", lamp) + 10 - lamp);  // its samples would only add noise
     const std::string lights = R"(
         <emitter type="point"><point name="position" x="0.6" y="0.4" z="1.5"/>
             <rgb name="intensity" value="3, 3.5, 4"/></emitter>

@@ -111,7 +111,7 @@ TEST_CASE("fog before and behind a hidden lamp dims alike", "[hide_emitters]") {
         R"(<medium type="homogeneous"><float name="sigma_t" value="2"/><float name="albedo" value="0"/></medium>)";
     const auto scene = scene_from(floor_behind_lamp("", fog), 4);
     // Eye rays begin at the near clip plane, 0.01 m from the camera: 0.04 m to the lamp and 0.05 m behind it;
-    // a path that skips either is brighter by 8 or 10 %, which check_mean() tells.
+    // a path that skips either is brighter by 8 or 10 %, which check_mean() finds.
     const double expected = light_of_floor(2.0);
     for (const char* type : {"volpath", "mote_bdpt", "mote_vpl", "mote_ray_lights", "mote_photon_map",
                              "mote_single_scattering", "mote_epipolar"}) {
@@ -130,7 +130,7 @@ TEST_CASE("lamps are hidden behind panes as well", "[hide_emitters][long]") {
         double passes;
     };
     const std::string black = R"(<bsdf type="diffuse"><rgb name="reflectance" value="0"/></bsdf>)";
-    for (const auto& [bsdf, share] :
+    for (const auto& [bsdf, passes] :
          {Case{R"(<bsdf type="null"/>)", 1.0}, Case{R"(<bsdf type="thindielectric"/>)", passes_straight()},
           Case{R"(<bsdf type="mask"><float name="opacity" value="0.5"/>)" + black + "</bsdf>", 0.5}}) {
         const auto scene = scene_from(floor_behind_lamp(sheet(bsdf)), 4);
@@ -138,8 +138,8 @@ TEST_CASE("lamps are hidden behind panes as well", "[hide_emitters][long]") {
             INFO(type << " " << bsdf);
             const auto hidden = render(*scene, type, true);
             CHECK(mean_of(hidden, "emission") == 0.0);
-            check_mean(hidden, "direct", share * light_of_floor());
-            check_mean(render(*scene, type, false), "emission", share * 5.0);
+            check_mean(hidden, "direct", passes * light_of_floor());
+            check_mean(render(*scene, type, false), "emission", passes * 5.0);
         }
     }
 }

@@ -62,7 +62,7 @@ TEST_CASE("instances render as copies do, in every method", "[instances][equalit
         const auto b = render_statistics(*copied, *integrator_from(method.xml), {4, method.passes, 2});
         CHECK(a.non_finite == 0);
         check_same_mean(a, "beauty", b, "beauty", {1.25});
-        // With the same seed the same paths are drawn, but for rounding where they meet edges.
+        // With the same seed the same paths are sampled, but for rounding where they meet edges.
         const auto same_seed =
             render_statistics(*copied, *integrator_from(method.xml), {4, method.passes, 1});
         for (std::size_t channel = 0; channel < 3; ++channel)

@@ -1,4 +1,4 @@
-// Interleaved virtual point lights: a pixel gathers a share of them, which is different for its neighbours,
+// Interleaved virtual point lights: a pixel gathers a subset of them, which is different for its neighbours,
 // and the mean is that of all lights; the filter in image space takes the noise between neighbours away.
 #include "core/render/pass_runner.h"
 #include "tests/integrators/test_scenes.h"
@@ -77,7 +77,7 @@ TEST_CASE("interleaved VPLs and their compensation are all light",
     check_same_mean(render, "all_indirect", reference, "indirect", {1.12});
 }
 
-TEST_CASE("a share of the VPLs takes a share of the rays, with shadow maps of the lookups",
+TEST_CASE("a subset of the VPLs takes a fraction of the rays, with shadow maps of the lookups",
           "[vpl][interleaving]") {
     const TemporaryFolder folder;
     const auto scene = scene_from(box(grey, smoke_medium(folder.file("smoke.vol"))), 16);
@@ -85,17 +85,17 @@ TEST_CASE("a share of the VPLs takes a share of the rays, with shadow maps of th
         R"(<integer name="scattering_points" value="0"/><integer name="eye_samples" value="1"/>)";
     const std::string maps =
         R"(<visibility type="shadow_map"><integer name="size" value="12"/></visibility>)";
-    core::Statistics all, share, mapped, mapped_share;
+    core::Statistics all, subset, mapped, mapped_subset;
     const auto reference = picture(*scene, vpl(more + maps), "indirect_bounded", 16, &mapped);
     const auto interleaved_maps =
-        picture(*scene, vpl(more + maps + interleaved(4)), "indirect_bounded", 16, &mapped_share);
+        picture(*scene, vpl(more + maps + interleaved(4)), "indirect_bounded", 16, &mapped_subset);
     picture(*scene, vpl(more), "indirect_bounded", 16, &all);
-    picture(*scene, vpl(more + interleaved(4)), "indirect_bounded", 16, &share);
+    picture(*scene, vpl(more + interleaved(4)), "indirect_bounded", 16, &subset);
     // Next-event estimation has a ray or less a pixel; of the rest a sixteenth is left.
     const double next_event = 256.0 * 16.0;
-    CHECK(double(share.rays["occlusion"]) < double(all.rays["occlusion"]) / 14.0 + next_event);
-    CHECK(double(mapped_share.lookups["shadow_maps"]) < double(mapped.lookups["shadow_maps"]) / 12.0);
-    // Sixteen passes go through all shares: means agree as far as noise lets them.
+    CHECK(double(subset.rays["occlusion"]) < double(all.rays["occlusion"]) / 14.0 + next_event);
+    CHECK(double(mapped_subset.lookups["shadow_maps"]) < double(mapped.lookups["shadow_maps"]) / 12.0);
+    // Sixteen passes go through all subsets: means agree as far as noise lets them.
     CHECK(mean_of(interleaved_maps) == Approx(mean_of(reference)).epsilon(0.1));
 }
 

@@ -133,7 +133,7 @@ TEST_CASE("paths through fog in which a lamp stands look for its light along eve
           variance("<integrator type='volpath'/>"));
 }
 
-TEST_CASE("a method that is asked for one cell gives it its own mean and traces fewer rays",
+TEST_CASE("a method that is requested one cell gives it its own mean and traces fewer rays",
           "[mote_layers][long]") {
     const auto foggy = foggy_box(), dry = scene_from(box(mixed, ""), 8);
     for (const std::string& type : registry().types(Category::integrator)) {
@@ -165,7 +165,7 @@ TEST_CASE("a method that is asked for one cell gives it its own mean and traces 
     }
 }
 
-TEST_CASE("what a method is not asked for costs nothing", "[mote_layers]") {
+TEST_CASE("what a method is not requested costs nothing", "[mote_layers]") {
     const auto scene = foggy_box();
     const auto work = [&](const std::string& xml, TransportSet wanted) {
         RenderOptions options{1, 8, 8, SamplerKind::independent};
@@ -192,7 +192,7 @@ TEST_CASE("what a method is not asked for costs nothing", "[mote_layers]") {
     const auto all = work(path, TransportSet::all()),
                more = work(path, TransportSet(Transport::indirect) | Transport::multiple_scattering);
     CHECK(all.at("occlusion") - more.at("occlusion") > 16 * 64 / 2);
-    // Virtual lights are not looked at for light of the primary ones.
+    // Virtual lights are not gathered for light of the primary ones.
     CHECK(work(vpl, Transport::direct)["occlusion"] <= 16 * 64);
 }
 
@@ -251,7 +251,7 @@ TEST_CASE("passes go where they take the most error for their work", "[mote_laye
     CHECK(double(filtered.pass_count(0)) / filtered.pass_count(1) == Approx(1.0).epsilon(0.05));
 }
 
-TEST_CASE("a render of unequal parts ends with every part, and stops where it is told", "[mote_layers]") {
+TEST_CASE("a render of unequal parts ends with every part, and stops where it is due", "[mote_layers]") {
     const auto scene = foggy_box();
     RenderRequest request;
     request.stop.passes = 1;

@@ -67,7 +67,7 @@ double value_after_a_pass(const Scene& scene, const Integrator& integrator, cons
 }  // namespace
 
 // Discs of radius r stand out beyond the block's edges, of length 0.6, by up to r on either side, and hide or
-// shine by 4 r / 0.6 of its area. The block covers no more than an eighth of what anybody sees.
+// shine by 4 r / 0.6 of its area. The block covers no more than an eighth of what any point sees.
 TEST_CASE("micro-rendering has the mean of path, within the size of its points",
           "[micro_rendering][equality]") {
     struct Case {
@@ -85,7 +85,7 @@ TEST_CASE("micro-rendering has the mean of path, within the size of its points",
     const auto expected = render_statistics(*scene, *path(c.max_depth), {.block = 12, .passes = 300});
     const auto found = render_statistics(*scene, *micro(c.settings, c.max_depth, c.points),
                                          {.block = 12, .passes = 8, .seed = 2});
-    // All areas, the lamp's among them; a disc covers what its point stands for about twice.
+    // All areas, the lamp's among them; a disc covers what its point represents about twice.
     const double area = 5 * 4.0 + 6 * 0.36 + 0.25, disc = std::sqrt(2.0 * area / (c.points * 3.14159265));
     const double bias = 4.0 * disc / 0.6 / 8.0;
     const Difference direct = difference(found, expected, "direct"),
@@ -169,7 +169,7 @@ TEST_CASE("mote_micro_rendering refuses wrong settings, and says what it does", 
     const auto plan = [&](const std::string& settings) {
         return micro(settings, -1)->plan(*scene, find_requirements(*scene)).to_text();
     };
-    // Points beyond the memory: the plan says so, and nothing is drawn.
+    // Points beyond the memory: the plan says so, and nothing is sampled.
     const auto many = micro("", -1, 1 << 24);
     CHECK_THROWS_AS(many->prepare(*scene, {}), InputError);
     const std::string text = many->plan(*scene, find_requirements(*scene)).to_text();

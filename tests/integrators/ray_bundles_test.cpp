@@ -68,7 +68,8 @@ TEST_CASE("the closed furnace, as the atlas shows it", "[ray_bundles][furnace]")
     CHECK(r.non_finite == 0);
 }
 
-// Smooth light alone tells a bias from that of shadows' borders: the room is lit by a sky through its front.
+// Smooth light alone separates a bias from that of shadows' borders: the room is lit by a sky through its
+// front.
 TEST_CASE("a room under a sky is path's, layer by layer, within what texels blur", "[ray_bundles]") {
     std::string xml = box(grey, "");
     xml.insert(xml.find("<sensor"),
@@ -95,7 +96,7 @@ TEST_CASE("a room under a sky is path's, layer by layer, within what texels blur
     }
 }
 
-TEST_CASE("lights with a position are drawn at texels and pixels", "[ray_bundles]") {
+TEST_CASE("lights with a position are sampled at texels and pixels", "[ray_bundles]") {
     std::string xml = box(grey, "");
     xml.erase(xml.rfind("<shape type=\"rectangle\"><transform name=\"to_world\"><scale value=\"0.25\"/>"));
     xml += R"(<emitter type="point"><point name="position" x="0.3" y="0.6" z="0.5"/></emitter>

@@ -41,7 +41,7 @@ void check(const std::string& xml, const std::string& settings, const std::strin
 }
 
 const std::string paths = R"(<integer name="paths" value="8"/>)";
-// Lights are drawn by power, then by what they would send.
+// Lights are sampled by power, then by what they would send.
 const std::string shared = R"(<integer name="paths" value="40"/><integer name="candidates" value="12"/>
                               <integer name="connections" value="6"/>)";
 const std::string forward = R"(<phase type="hg"><float name="g" value="0.6"/></phase>)";
@@ -66,7 +66,7 @@ TEST_CASE("ray lights equal paths where all lights are connected to", "[ray_ligh
     check(box(grey, fog("0.8, 1.0, 1.3", "")),
           R"(<integer name="paths" value="4"/><integer name="connections" value="0"/>)", "", quick);
 }
-TEST_CASE("ray lights equal paths in smoke, a share of them", "[ray_lights][equality]") {
+TEST_CASE("ray lights equal paths in smoke, a subset of them", "[ray_lights][equality]") {
     const mote::tests::TemporaryFolder folder;
     check(box(grey, smoke_medium(folder.file("smoke.vol"))), shared, "", quick);
 }
@@ -78,7 +78,7 @@ TEST_CASE("ray lights equal paths: max_depth, thick fog, fog without walls, pane
         const std::string limit = fmt::format(R"(<integer name="max_depth" value="{}"/>)", depth);
         check(box(grey, fog("0.8, 1.0, 1.3", "")), paths + limit, limit, long_run);
     }
-    // Far noisier than thin fog, and with tails so long that the spread of 3000 passes tells too little of
+    // Far noisier than thin fog, and with tails so long that the spread of 3000 passes shows too little of
     // them.
     check(box(grey, fog("6, 8, 10", forward)), paths, "", {30000, 60000, 0.25});
     check(leafy_box(fog("0.8, 1.0, 1.3", "")), paths + R"(<integer name="max_depth" value="5"/>)",

@@ -277,7 +277,7 @@ int check_all(const Scene& scene, const std::string& type, std::set<std::string>
         if (const bool same = one == resumed(scene, *integrator, 4); !same) {
             INFO("interrupted and resumed on one thread the same: "
                  << (one == resumed(scene, *integrator, 1)));
-            INFO("in one go on four threads the same: " << (one == straight(scene, *integrator, 4)));
+            INFO("in one continue four threads the same: " << (one == straight(scene, *integrator, 4)));
             CHECK(same);
         }
         if (rendered == 0 || s.xml().find("\"shares\"") != std::string::npos)
@@ -355,7 +355,7 @@ TEST_CASE("every integrator gives the same bits on one thread, and on many after
     CHECK(count("imperfect bundles have no panes") == 1);
 }
 
-TEST_CASE("a pass that knows its threads or its predecessors gives other bits", "[same_bits][planted]") {
+TEST_CASE("a pass that depends on its threads or its predecessors gives other bits", "[same_bits][planted]") {
     const auto scene = lit_box("");
     const Careless threads(Carelessness::threads), state(Carelessness::state);
     CHECK_FALSE((straight(*scene, threads, 1) == straight(*scene, threads, 4)));

@@ -80,12 +80,12 @@ Rendered render(const core::Scene& scene, const std::string& compensation, std::
     return result;
 }
 
-std::string screen_space(int steps, int layers, int share = 1) {
+std::string screen_space(int steps, int layers, int stride = 1) {
     const auto number = [](const std::string& name, int value) {
         return "<integer name=\"" + name + "\" value=\"" + std::to_string(value) + "\"/>";
     };
     return "<compensation type=\"screen_space\">" + number("steps", steps) + number("layers", layers) +
-           number("hidden_share", share) + "</compensation>";
+           number("hidden_share", stride) + "</compensation>";
 }
 
 /// The corner behind a black board that hides the middle of it. It stands outside of the corner, where it is
@@ -120,12 +120,13 @@ std::string whole_corner() {
     return xml.replace(xml.find(fov), fov.size(), R"(value="30")");
 }
 
-struct Share {
+struct Fraction {
     double value, error;  ///< standard error over seeds
 };
 
 /// How much of exact compensation the picture finds.
-Share found_share(const core::Scene& scene, const std::string& screen, int seeds, std::uint32_t passes) {
+Fraction found_fraction(const core::Scene& scene, const std::string& screen, int seeds,
+                        std::uint32_t passes) {
     std::vector<double> found, right;
     double sum = 0.0, all = 0.0;
     for (int seed = 1; seed <= seeds; ++seed) {
@@ -151,19 +152,20 @@ TEST_CASE("screen-space compensation brings back what exact compensation does in
         return fmt::format(
             R"(<compensation type="screen_space"><integer name="steps" value="{}"/></compensation>)", steps);
     };
-    std::array<double, 3> share{};
+    std::array<double, 3> fraction{};
     double error = 0.0;
     for (std::size_t k = 0; k < 3; ++k) {
-        const Share s = found_share(*scene_from(whole_corner(), 40 << k), screen(8), 6, 40u >> k);
-        share[k] = s.value, error = s.error;
+        const Fraction s = found_fraction(*scene_from(whole_corner(), 40 << k), screen(8), 6, 40u >> k);
+        fraction[k] = s.value, error = s.error;
     }
     // Compensation is largest beside edges, where the order in the pixels' size is 2/3 (ssbc_exact_test.cpp).
-    const double tolerance = grid_convergence_index(share, 2.0 / 3.0, 1.0) + 4.0 * error;
-    INFO(share[0] << ", " << share[1] << ", " << share[2] << " +- " << error << ", tolerance " << tolerance);
+    const double tolerance = grid_convergence_index(fraction, 2.0 / 3.0, 1.0) + 4.0 * error;
+    INFO(fraction[0] << ", " << fraction[1] << ", " << fraction[2] << " +- " << error << ", tolerance "
+                     << tolerance);
     CHECK(tolerance < 0.1);
-    CHECK(std::abs(share[2] - 1.0) < tolerance);
-    CHECK(std::abs(0.85 * share[2] - 1.0) > tolerance);  // planted
-    CHECK(std::abs(1.15 * share[2] - 1.0) > tolerance);
+    CHECK(std::abs(fraction[2] - 1.0) < tolerance);
+    CHECK(std::abs(0.85 * fraction[2] - 1.0) > tolerance);  // planted
+    CHECK(std::abs(1.15 * fraction[2] - 1.0) > tolerance);
 
     // The picture is the same but for the compensation, which every step adds to.
     const auto scene = scene_from(whole_corner(), 40);
@@ -249,10 +251,10 @@ TEST_CASE("screen-space compensation finds the even part of glossy surfaces", "[
 
 TEST_CASE("screen-space compensation never finds too much on glossy surfaces", "[compensation][ssbc]") {
     for (const std::string& bsdf : {plastic, metal}) {
-        const Share share = found_share(*corner_with(bsdf, false), screen_space(3, 1), 4, 8);
-        INFO(bsdf << ": " << share.value << " +- " << share.error);
-        CHECK(share.value > 0.0);
-        CHECK(share.value + 4.0 * share.error < 1.0);  // the lobe is missing
+        const Fraction fraction = found_fraction(*corner_with(bsdf, false), screen_space(3, 1), 4, 8);
+        INFO(bsdf << ": " << fraction.value << " +- " << fraction.error);
+        CHECK(fraction.value > 0.0);
+        CHECK(fraction.value + 4.0 * fraction.error < 1.0);  // the lobe is missing
     }
 }
 
@@ -315,8 +317,8 @@ TEST_CASE("light of hidden surfaces is that of seen ones", "[compensation][ssbc]
     // against means over pixels.
     const auto with = scene_from(corner_with_board(), 48), without = scene_from(corner, 48);
     const Rendered seen = render(*without, screen_space(3, 1), 30);
-    const auto light_behind = [&](int share, std::uint64_t seed) {
-        return render(*with, screen_space(3, 2, share), 30, 0, seed).layers.at("hidden_light_2");
+    const auto light_behind = [&](int stride, std::uint64_t seed) {
+        return render(*with, screen_space(3, 2, stride), 30, 0, seed).layers.at("hidden_light_2");
     };
     const std::vector<core::Rgb> hidden = light_behind(1, 7);
     double behind = 0.0, all = 0.0, squares = 0.0;

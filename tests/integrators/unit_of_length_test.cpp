@@ -170,8 +170,8 @@ Rendered rendered(const ScaledScene& made, double s, const std::string& integrat
     return result;
 }
 
-/// The share of pixels that differ by more than `tolerance` of the layer's mean.
-double share_of_others(const std::vector<Rgb>& a, const std::vector<Rgb>& b, double tolerance) {
+/// The fraction of pixels that differ by more than `tolerance` of the layer's mean.
+double fraction_of_others(const std::vector<Rgb>& a, const std::vector<Rgb>& b, double tolerance) {
     double mean = 0.0, others = 0.0;
     for (const Rgb& pixel : a) mean += double(average(pixel)) / double(a.size());
     for (std::size_t i = 0; i < a.size(); ++i)
@@ -196,7 +196,7 @@ TEST_CASE("no picture of any integrator depends on the unit of length", "[scale]
                 for (std::size_t i = 0; i < metres.layers.size(); ++i) {
                     INFO(metres.names[i]);
                     // Rounding near 1e-6, and rays that just miss.
-                    CHECK(share_of_others(metres.layers[i], other.layers[i], 1e-4) <= 0.01);
+                    CHECK(fraction_of_others(metres.layers[i], other.layers[i], 1e-4) <= 0.01);
                 }
             }
         }

@@ -113,7 +113,7 @@ TEST_CASE("bounded VPLs equal bounded paths: fog behind ground glass", "[vpl][eq
     xml.insert(xml.find("<sensor"), R"(<shape type="sphere"><point name="center" x="-0.2" y="0" z="0.4"/>
         <float name="radius" value="0.6"/><bsdf type="roughdielectric"><float name="alpha" value="0.5"/></bsdf>)" +
                                         fog("3, 2, 1.5", "") + "</shape>");
-    check_bounded(xml, false, 4.0);  // no layer begins in the fog: whoever looks, sees the glass first
+    check_bounded(xml, false, 4.0);  // no layer begins in the fog: every eye ray meets the glass first
 }
 
 // Interpolated normals need the adjoint correction where light is traced from the light (Veach 1997,

@@ -92,7 +92,7 @@ TEST_CASE("A picture by imperfect shadow maps is that of shadow rays but for a s
     CHECK(none.mean > 0.05);  // without points there are no shadows
 }
 
-TEST_CASE("Imperfect shadow maps know media and refuse settings out of range",
+TEST_CASE("Imperfect shadow maps take media into account and refuse settings out of range",
           "[vpl][imperfect_shadow_maps]") {
     const auto scene = scene_from(box(grey, fog("0.6", "")), 12);
     const Difference d = difference(picture(*scene, vpl(imperfect), 4), picture(*scene, vpl(""), 4));

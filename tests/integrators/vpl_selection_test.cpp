@@ -1,6 +1,6 @@
 // Virtual point lights selected by a hierarchy, in `mote_vpl`: the mean of all lights where nothing is left
-// out and where lights are drawn, the same picture by a lightcut without an error, and plans that say what is
-// best.
+// out and where lights are sampled, the same picture by a lightcut without an error, and plans that say what
+// is best.
 #include "core/objects/error.h"
 #include "core/render/pass_runner.h"
 #include "core/render/render_driver.h"
@@ -18,7 +18,7 @@ std::string vpl(const std::string& selection, const std::string& settings = "", 
         <float name="bound" value="1"/>{}{}</integrator>)",
                        paths, selection, settings);
 }
-std::string drawn(const std::string& type, int samples) {
+std::string sampled(const std::string& type, int samples) {
     return fmt::format(R"(<selection type="{}"><integer name="samples" value="{}"/></selection>)", type,
                        samples);
 }
@@ -79,10 +79,10 @@ TEST_CASE("selected VPLs have the mean of volpath", "[vpl][selection][equality]"
         fog("0.8, 1.0, 1.3", R"(<phase type="hg"><float name="g" value="0.5"/></phase>)");
     for (const Case& c :
          {Case{"",
-               {drawn("light_tree", 8), drawn("stochastic_lightcuts", 8), matrix(32, 9, 2), resampled()},
+               {sampled("light_tree", 8), sampled("stochastic_lightcuts", 8), matrix(32, 9, 2), resampled()},
                1.15},
           Case{haze,
-               {drawn("light_tree", 6) + apart, drawn("stochastic_lightcuts", 6) + two,
+               {sampled("light_tree", 6) + apart, sampled("stochastic_lightcuts", 6) + two,
                 cut("multidimensional_lightcuts", 0.0) + two, matrix(32, 9, 2) + apart, resampled() + apart,
                 resampled() + two},
                1.25}}) {
@@ -125,8 +125,8 @@ TEST_CASE("Few rays for many VPLs", "[vpl][selection]") {
         return double(statistics.rays.at("occlusion"));
     };
     const double all = rays("");
-    CHECK(rays(drawn("light_tree", 64)) < 0.03 * all);
-    CHECK(rays(drawn("stochastic_lightcuts", 64)) < 0.03 * all);
+    CHECK(rays(sampled("light_tree", 64)) < 0.03 * all);
+    CHECK(rays(sampled("stochastic_lightcuts", 64)) < 0.03 * all);
     CHECK(rays(resampled(256, 8)) < 0.002 * all);
     CHECK(rays(cut("lightcuts", 0.02, 1000)) < 0.2 * all);
     // Sixteen rows of all lights, and 64 columns, of a picture of 256 pixels.
@@ -137,7 +137,7 @@ TEST_CASE("Without lights there is nothing to select", "[vpl][selection][extreme
     const auto scene = scene_from(box(grey, fog("0.8, 1.0, 1.3", "")), 8);
     for (const int paths : {0, 1})
         for (const std::string& selection :
-             {drawn("light_tree", 4), drawn("stochastic_lightcuts", 4), cut("lightcuts", 0.02),
+             {sampled("light_tree", 4), sampled("stochastic_lightcuts", 4), cut("lightcuts", 0.02),
               cut("multidimensional_lightcuts", 0.02), resampled(), matrix(32, 2, 2),
               std::string(R"(<selection type="matrix"/>)")})
             for (const core::Rgb& pixel : picture(*scene, vpl(selection, "", paths)))
@@ -156,7 +156,7 @@ TEST_CASE("A matrix with more columns than lights is the picture of all VPLs", "
 }
 
 TEST_CASE("What does not go together with a selection is refused by name", "[vpl][selection]") {
-    const std::string selection = drawn("light_tree", 4);
+    const std::string selection = sampled("light_tree", 4);
     const std::vector<std::pair<std::string, std::string>> cases{
         {R"(<boolean name="roughness_clamping" value="true"/>)", "roughness_clamping"},
         {R"(<compensation type="exact"/>)", "compensation"},

@@ -40,26 +40,27 @@ double mean_of(const RenderStatistics& r, const std::string& layer) {
 
 }  // namespace
 
-TEST_CASE("upsampled VPLs keep the light of the picture for a share of the rays", "[vpl][upsampling]") {
+TEST_CASE("upsampled VPLs keep the light of the picture for a fraction of the rays", "[vpl][upsampling]") {
     const auto scene = scene_from(box(grey, fog("0.4", "")), 32);
-    const Rendered all = render(*scene, vpl(1), 16), share = render(*scene, vpl(2), 16);
-    const double again = share.counts.values.at("pixels_shaded_again");
+    const Rendered all = render(*scene, vpl(1), 16), upsampled = render(*scene, vpl(2), 16);
+    const double again = upsampled.counts.values.at("pixels_shaded_again");
     INFO(again << " of " << 32 * 32 << " pixels shaded again");
     CHECK((again > 0.0 && again < 0.35 * 32 * 32));  // silhouettes and edges of a small picture
-    CHECK(double(share.counts.rays.at("occlusion")) < 0.75 * double(all.counts.rays.at("occlusion")));
+    CHECK(double(upsampled.counts.rays.at("occlusion")) < 0.75 * double(all.counts.rays.at("occlusion")));
     for (const std::string layer : {"emission", "direct", "single_scattering"})  // nothing to do with it
-        CHECK(mean_of(share.light, layer) == Approx(mean_of(all.light, layer)).epsilon(0.03));
+        CHECK(mean_of(upsampled.light, layer) == Approx(mean_of(all.light, layer)).epsilon(0.03));
     for (const std::string layer : {"indirect_bounded", "multiple_scattering_bounded"}) {
-        INFO(layer << ": " << mean_of(share.light, layer) << " of " << mean_of(all.light, layer));
-        CHECK(std::fabs(mean_of(share.light, layer) / mean_of(all.light, layer) - 1.0) < 0.03);
+        INFO(layer << ": " << mean_of(upsampled.light, layer) << " of " << mean_of(all.light, layer));
+        CHECK(std::fabs(mean_of(upsampled.light, layer) / mean_of(all.light, layer) - 1.0) < 0.03);
     }
 }
 
-TEST_CASE("glossy surfaces share nothing: all pixels gather, and light is what it was", "[vpl][upsampling]") {
+TEST_CASE("glossy surfaces upsampled nothing: all pixels gather, and light is what it was",
+          "[vpl][upsampling]") {
     const auto scene = scene_from(box(glossy, ""), 16);
-    const Rendered all = render(*scene, vpl(1), 2), share = render(*scene, vpl(4), 2);
-    CHECK(share.counts.values.at("pixels_shaded_again") > 0.5 * 16 * 16);
-    CHECK(mean_of(share.light, "indirect_bounded") ==
+    const Rendered all = render(*scene, vpl(1), 2), upsampled = render(*scene, vpl(4), 2);
+    CHECK(upsampled.counts.values.at("pixels_shaded_again") > 0.5 * 16 * 16);
+    CHECK(mean_of(upsampled.light, "indirect_bounded") ==
           Approx(mean_of(all.light, "indirect_bounded")).epsilon(1e-5));
 }
 

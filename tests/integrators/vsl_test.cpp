@@ -72,7 +72,7 @@ TEST_CASE("the blur of spherical lights shrinks with their radius", "[vsl]") {
         same_mean(wide_render, "indirect_spherical", reference, "indirect", OnFailure::nothing).passed);
 }
 
-// The blur is at least of the first order in the radius, so spheres of four, two and one times a radius tell
+// The blur is at least of the first order in the radius, so spheres of four, two and one times a radius show
 // how far the last may be off (tests/support/grid_convergence.h), besides the noise.
 TEST_CASE("both kinds of visibility come near the path tracer; max_depth counts the whole path", "[vsl]") {
     const auto scene = scene_from(box(mixed, ""), 8);

@@ -1,8 +1,8 @@
-// One fog, told in every way that the scene language has: as the inside of a shape, as the outside of one, by
-// the sensor, by the light; and seen from inside, across its border, and from outside. Every method that
-// walks through media must render the same transport: bounded VPLs that of volpath with vpl_bound, by rays
-// and by maps, exact compensation brings back the rest, marching has volpath's mean, epipolar lines follow
-// marching.
+// One fog, declared in every way that the scene language has: as the inside of a shape, as the outside of
+// one, by the sensor, by the light; and seen from inside, across its border, and from outside. Every method
+// that walks through media must render the same transport: bounded VPLs that of volpath with vpl_bound, by
+// rays and by maps, exact compensation brings back the rest, marching has volpath's mean, epipolar lines
+// follow marching.
 #include <fmt/format.h>
 
 #include "core/render/pass_runner.h"
@@ -49,7 +49,7 @@ std::string scene_of(Namer namer, Eye eye, Lamp lamp) {
     wall(R"(<translate z="-1"/>)");
     wall(R"(<translate z="-1"/><rotate x="1" angle="-90"/>)");
     // A light says which medium it stands in, where it is the one to say so: a faint one beside the globe.
-    // Near a point in fog 1/d^2 has no variance: what is drawn at collisions is lit by a globe instead.
+    // Near a point in fog 1/d^2 has no variance: what is sampled at collisions is lit by a globe instead.
     const std::string lit_in = namer == Namer::light ? fog_named("") : "";
     if (lamp == Lamp::point)
         xml += R"(<emitter type="point"><point name="position" x="0.4" y="0.5" z="0.3"/>
@@ -158,7 +158,7 @@ TEST_CASE("one name is as good as another, to the bit, in every integrator", "[n
         }
 }
 
-TEST_CASE("bounded VPLs equal bounded paths, whoever names the fog", "[vpl][equality][naming]") {
+TEST_CASE("bounded VPLs equal bounded paths, whatever names the fog", "[vpl][equality][naming]") {
     for_every_telling(Lamp::globe, [](const core::Scene& scene) {
         const auto reference =
             render(scene, R"(<integrator type="volpath"><float name="vpl_bound" value="1"/></integrator>)",
@@ -172,7 +172,7 @@ TEST_CASE("bounded VPLs equal bounded paths, whoever names the fog", "[vpl][equa
     });
 }
 
-TEST_CASE("bidirectional paths equal volpath, whoever names the fog", "[bdpt][equality][naming]") {
+TEST_CASE("bidirectional paths equal volpath, whatever names the fog", "[bdpt][equality][naming]") {
     for_every_telling(Lamp::globe, [](const core::Scene& scene) {
         check_same(render(scene, R"(<integrator type="mote_bdpt"/>)", 250, 21),
                    render(scene, R"(<integrator type="volpath"/>)", 1500, 22),
@@ -184,7 +184,7 @@ TEST_CASE("bidirectional paths equal volpath, whoever names the fog", "[bdpt][eq
     });
 }
 
-TEST_CASE("VPLs with maps equal those by rays, whoever names the fog", "[vpl][shadow_map][naming]") {
+TEST_CASE("VPLs with maps equal those by rays, whatever names the fog", "[vpl][shadow_map][naming]") {
     // Lights and eye paths are the same; the interpolation error of maps is below 2 % here (docs/media.md).
     const std::string maps = R"(<visibility type="shadow_map"><integer name="size" value="32"/>
         <integer name="light_size" value="32"/></visibility>)";
@@ -199,7 +199,7 @@ TEST_CASE("VPLs with maps equal those by rays, whoever names the fog", "[vpl][sh
     });
 }
 
-TEST_CASE("exact compensation brings all light back, whoever names the fog",
+TEST_CASE("exact compensation brings all light back, whatever names the fog",
           "[compensation][equality][naming]") {
     for_every_telling(Lamp::globe, [](const core::Scene& scene) {
         check_same(render(scene, vpl(R"(<compensation type="exact"/>)"), 300, 13),
@@ -208,7 +208,7 @@ TEST_CASE("exact compensation brings all light back, whoever names the fog",
     });
 }
 
-TEST_CASE("marching has volpath's mean, whoever names the fog", "[epipolar][equality][naming]") {
+TEST_CASE("marching has volpath's mean, whatever names the fog", "[epipolar][equality][naming]") {
     for_every_telling(Lamp::point, [](const core::Scene& scene) {
         check_same(render(scene, R"(<integrator type="mote_single_scattering"/>)", 200, 15),
                    render(scene, R"(<integrator type="volpath"><integer name="max_depth" value="3"/>
@@ -218,7 +218,7 @@ TEST_CASE("marching has volpath's mean, whoever names the fog", "[epipolar][equa
     });
 }
 
-TEST_CASE("photon maps have volpath's direct light, whoever names the fog",
+TEST_CASE("photon maps have volpath's direct light, whatever names the fog",
           "[photon_map][equality][naming]") {
     for_every_telling(Lamp::globe, [](const core::Scene& scene) {
         check_same(
@@ -231,7 +231,7 @@ TEST_CASE("photon maps have volpath's direct light, whoever names the fog",
     });
 }
 
-TEST_CASE("epipolar lines follow full rate, whoever names the fog", "[epipolar][naming]") {
+TEST_CASE("epipolar lines follow full rate, whatever names the fog", "[epipolar][naming]") {
     // Lines as dense as pixels march or interpolate next to nothing: what is left is below a hundredth.
     const std::string lines =
         R"(<integrator type="mote_epipolar"><integer name="lines" value="256"/></integrator>)";

@@ -1,4 +1,4 @@
-// Algorithms over the callbacks of a scene that mote knows nothing of, and over plain arrays, each against a
+// Algorithms over the callbacks of a scene outside of mote, and over plain arrays, each against a
 // closed form: gathering by rays and by imperfect shadow maps, choosing lights, ray-bundles, marching along
 // eye rays, screen-space compensation, regression. Linked without anything that reads files (see
 // CMakeLists.txt).
@@ -90,7 +90,7 @@ void choosing_lights() {
     expect(std::fabs(by_power - 1.0) < 1e-6, "probabilities of a scene of callbacks add up to", by_power);
 }
 
-/// Two unit squares face each other: parallel rays across them link the share that a slant leaves.
+/// Two unit squares face each other: parallel rays across them link the fraction that a slant leaves.
 void bundles() {
     gathering::SurfaceTriangles surfaces;
     for (const float z : {0.0f, 1.0f}) {
@@ -192,7 +192,7 @@ void pictures() {
     }
     // A fit of three numbers (1, the feature, noise of the features) to 1024 pixels keeps about 3 / 1024 of
     // the variance.
-    expect(after / before < 0.02, "share of the variance that a regression on the truth keeps",
+    expect(after / before < 0.02, "fraction of the variance that a regression on the truth keeps",
            after / before);
 }
 

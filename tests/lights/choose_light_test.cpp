@@ -1,5 +1,5 @@
-// The choice of a light for a receiver, over real lights of every kind: drawn as stated, adding up to 1, and
-// none left out that shines.
+// The choice of a light for a receiver, over real lights of every kind: sampled as stated, adding up to 1,
+// and none left out that shines.
 #include <fmt/format.h>
 
 #include "core/math/warp.h"
@@ -64,14 +64,14 @@ std::vector<LightReceiver> receivers(int count) {
     return result;
 }
 
-/// Draws for one receiver against the probabilities stated for another; they are the same but where an error
-/// is planted.
-Chi2Result chi2_of_choice(const LitScene& scene, const LightReceiver& drawn_for,
+/// Samples for one receiver against the probabilities stated for another; they are the same but where an
+/// error is planted.
+Chi2Result chi2_of_choice(const LitScene& scene, const LightReceiver& sampled_for,
                           const LightReceiver& stated_for, std::size_t& impossible) {
     constexpr int samples = 50000;
     std::map<const Emitter*, double> counts;
     Rng rng(23);
-    for (int i = 0; i < samples; ++i) ++counts[scene.choose_light(drawn_for, rng.next_float()).emitter];
+    for (int i = 0; i < samples; ++i) ++counts[scene.choose_light(sampled_for, rng.next_float()).emitter];
     std::vector<Cell> cells;
     for (const auto& light : scene.emitters())
         cells.push_back(
@@ -94,7 +94,7 @@ TEST_CASE("the chances of all lights of a scene add up to 1 for any receiver", "
     }
 }
 
-TEST_CASE("lights are drawn with the chance that is stated", "[lights][light_tree][chi2]") {
+TEST_CASE("lights are sampled with the chance that is stated", "[lights][light_tree][chi2]") {
     const auto scene = all_lights();
     constexpr std::size_t tests = 8;
     const auto at = receivers(tests);
@@ -122,7 +122,7 @@ TEST_CASE("lights are drawn with the chance that is stated", "[lights][light_tre
 TEST_CASE("no light that shines on a receiver is left out", "[lights][light_tree]") {
     const auto scene = all_lights();
     Rng rng(29);
-    // A hierarchy alone, without the draws by power that the scene adds.
+    // A hierarchy alone, without the samples by power that the scene adds.
     std::vector<LightBounds> bounds;
     std::map<const Emitter*, std::uint32_t> in_tree;
     for (const auto& light : scene->emitters())
@@ -145,7 +145,7 @@ TEST_CASE("no light that shines on a receiver is left out", "[lights][light_tree
     CHECK(shone.size() == scene->emitters().size());  // each did, somewhere
 }
 
-TEST_CASE("without some of its lights a scene draws the others alone, with the chance that is stated",
+TEST_CASE("without some of its lights a scene samples the others alone, with the chance that is stated",
           "[lights][light_tree][chi2]") {
     const auto scene = all_lights();
     std::vector<const Emitter*> left_out;

@@ -1,5 +1,5 @@
 // Ray lights and lines in media that scatter forward: every phase function's angle is the one between the way
-// of the light and the way on, which isotropic media do not tell from its opposite.
+// of the light and the way on, which isotropic media do not distinguish from its opposite.
 #include "core/scene/scene.h"
 #include "lights/ray_lights/line_connections.h"
 #include "lights/ray_lights/line_importance.h"
@@ -93,7 +93,7 @@ TEST_CASE("both phase functions of a ray light and an eye ray see their own angl
         }
 }
 
-TEST_CASE("what is expected of ray lights knows where media scatter to", "[ray_lights][directions]") {
+TEST_CASE("the importance of ray lights follows where media scatter to", "[ray_lights][directions]") {
     // The way along the light, and along the eye ray, towards the other one and away from it.
     const auto expected = [](const Vec3& way_of_light, const Vec3& way_of_eye) {
         RayLight light;

@@ -1,5 +1,6 @@
-// Every emitter draws what it claims, by the chi-square test of directions: connections against pdf_direct(),
-// the directions of particles and the points where they start against pdf_solid_angle and pdf_area.
+// Every emitter samples what it claims, by the chi-square test of directions: connections against
+// pdf_direct(), the directions of particles and the points where they start against pdf_solid_angle and
+// pdf_area.
 //
 // The densities that particles carry are compared with pdf_emission() and with a density written down here,
 // and pdf_emission() with the samples. Points on a surface are counted as directions in which they are
@@ -19,7 +20,7 @@ using namespace mote::tests;
 
 namespace {
 
-/// The registered type that an example of light_examples() stands for.
+/// The registered type that an example of light_examples() represents.
 std::string type_of(const LightExample& example) {
     if (example.shape) return "area";
     for (const std::string type : {"spot", "projector"})
@@ -231,11 +232,11 @@ TEST_CASE("directions of particles follow pdf_solid_angle", "[lights][emitters][
         if (type_of(example) == "projector") o.subdivisions = 4;  // its rim is sharp
         if (type_of(example) == "spot" || type_of(example) == "projector")
             o.frame = Frame(glm::normalize(Vec3(0.02f, 0.03f, -1.0f))), o.cap = 0.12;
-        const auto drawn = [&](Rng& r) -> std::optional<Vec3> {
+        const auto sampled = [&](Rng& r) -> std::optional<Vec3> {
             const auto s = particle(*example.light, r);
             return s ? std::optional<Vec3>(direction_of(example, *s)) : std::nullopt;
         };
-        check(chi2_test(drawn, direction_density(example, *some), o));
+        check(chi2_test(sampled, direction_density(example, *some), o));
     }
 }
 
@@ -311,13 +312,13 @@ TEST_CASE("planted errors of emitters are caught", "[lights][emitters][chi2][pla
         if (example.shape) target.emplace(example);
         Chi2Options o = planted(example);
         aim(o, example, receivers[0]);
-        const auto drawn = connections(*example.light, receivers[0]);
+        const auto sampled = connections(*example.light, receivers[0]);
         const auto density = connection_density(example, target ? &*target : nullptr, receivers[0]);
-        REQUIRE(chi2_test(drawn, density, o).passed);
+        REQUIRE(chi2_test(sampled, density, o).passed);
         // A density off by three per cent.
         for (const double factor : {0.97, 1.03})
             CHECK_FALSE(chi2_test(
-                            drawn, [&](const Vec3& w) { return factor * density(w); }, o)
+                            sampled, [&](const Vec3& w) { return factor * density(w); }, o)
                             .passed);
         // Samples for another receiver, a tenth of a metre away; environments have none.
         if (example.shape)
@@ -338,10 +339,10 @@ TEST_CASE("planted errors of emitters are caught", "[lights][emitters][chi2][pla
     for (const auto& example : light_examples()) {
         if (example.name != "disk") continue;
         // The cosine of emission dropped: even over the hemisphere.
-        const auto drawn = [&](Rng& r) -> std::optional<Vec3> {
+        const auto sampled = [&](Rng& r) -> std::optional<Vec3> {
             return direction_of(example, *particle(*example.light, r));
         };
-        CHECK_FALSE(chi2_test(drawn, on_hemisphere, planted(example)).passed);
+        CHECK_FALSE(chi2_test(sampled, on_hemisphere, planted(example)).passed);
         // The cosine forgotten between area and solid angle.
         const Target target(example);
         const Vec3 witness = witness_of(example);

@@ -98,10 +98,11 @@ TEST_CASE("samples of an environment map follow its density", "[lights][emitters
             const double solid_angle =
                 2.0 * double(pi) / bins_x *
                 (std::cos(double(pi) * y / bins_y) - std::cos(double(pi) * (y + 1) / bins_y));
-            const double share = double(map.pdf_solid_angle(d)) * solid_angle;
-            total += share;
-            REQUIRE(share * samples > 5.0);
-            chi2 += std::pow(counts[std::size_t(y * bins_x + x)] - share * samples, 2) / (share * samples);
+            const double probability = double(map.pdf_solid_angle(d)) * solid_angle;
+            total += probability;
+            REQUIRE(probability * samples > 5.0);
+            chi2 += std::pow(counts[std::size_t(y * bins_x + x)] - probability * samples, 2) /
+                    (probability * samples);
         }
     CHECK(total == Approx(1.0).epsilon(1e-5));
     // For many degrees of freedom k, chi^2 is close to normal with mean k and variance 2k.

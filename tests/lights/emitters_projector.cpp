@@ -57,7 +57,7 @@ TEST_CASE("a projector's power is pi times the picture's area and mean", "[light
     }
 }
 
-TEST_CASE("a single texel of a picture is drawn nearly always", "[lights][emitters][projector]") {
+TEST_CASE("a single texel of a picture is sampled nearly always", "[lights][emitters][projector]") {
     ProjectorSettings s;
     s.tan_half_fov_x = 0.3, s.irradiance = one_texel(64, 17, 40);
     const auto light = make_projector_light(s);
@@ -67,7 +67,7 @@ TEST_CASE("a single texel of a picture is drawn nearly always", "[lights][emitte
         const Vec2 u = rng.next_vec2();
         lit += light->sample_emission(u, rng.next_vec2()) ? 1 : 0;
     }
-    // Nine tenths by the table, which knows this texel alone, the rest evenly: a binomial count.
+    // Nine tenths by the table, which holds this texel alone, the rest evenly: a binomial count.
     const double p = 0.9 + 0.1 / 4096.0;
     CHECK(std::fabs(lit - 10000.0 * p) <= sigmas * std::sqrt(10000.0 * p * (1.0 - p)));
 }
@@ -80,13 +80,13 @@ TEST_CASE("a projector's density is the integral of the filtered picture", "[lig
     ProjectorSettings s;
     s.tan_half_fov_x = 0.3, s.irradiance = make_bitmap_texture(picture);
     const auto light = make_projector_light(s);
-    const double share[8] = {0, 0, 0.125, 0.75, 0.125, 0, 0, 0};
+    const double probability[8] = {0, 0, 0.125, 0.75, 0.125, 0, 0, 0};
     for (int y = 0; y < 8; ++y)
         for (int x = 0; x < 8; ++x) {
             INFO(x << " " << y);
             const Vec3d through(0.3 * (1.0 - (x + 0.4) / 4.0), 0.3 * (1.0 - (y + 0.6) / 4.0), 1.0);
             const double cosine = 1.0 / glm::length(through);
-            const double in_cell = share[x] * (y >= 2 ? share[y - 2] : 0.0);
+            const double in_cell = probability[x] * (y >= 2 ? probability[y - 2] : 0.0);
             const double expected = (0.1 + 0.9 * 64.0 * in_cell) / (0.36 * cosine * cosine * cosine);
             CHECK(light->pdf_emission({}, {}, Vec3(glm::normalize(through))).pdf_solid_angle ==
                   Approx(expected).epsilon(1e-5));

@@ -125,7 +125,7 @@ TEST_CASE("geometry weights equal the plain sum", "[gather][policies]") {
     }
 }
 
-TEST_CASE("a weight of one's own gets distance and cosines, and shares add up", "[gather][policies]") {
+TEST_CASE("a weight of one's own gets distance and cosines, and subsets add up", "[gather][policies]") {
     for (const std::string& material : materials) {
         Room room(material);
         constexpr float k = 0.5f;
@@ -149,16 +149,16 @@ TEST_CASE("a weight of one's own gets distance and cosines, and shares add up", 
     }
 }
 
-TEST_CASE("shares of the lights add up, and drawn lights count by their weights", "[gather][policies]") {
+TEST_CASE("subsets of the lights add up, and sampled lights count by their weights", "[gather][policies]") {
     for (const std::string& material : materials) {
         Room room(material);
         const lights::BoundedGeometry weight{bound};
         const auto all = room.gather(lights::VplRange{}, weight);
-        std::array<Vec3d, 16> shares{};
+        std::array<Vec3d, 16> subsets{};
         for (std::size_t first = 0; first < 3; ++first) {
             const lights::VplRange third{first, 3};
             const auto light = room.gather(third, weight);
-            for (std::size_t i = 0; i < light.size(); ++i) shares[i] += Vec3d(light[i]);
+            for (std::size_t i = 0; i < light.size(); ++i) subsets[i] += Vec3d(light[i]);
             std::vector<WeightedVpl> members;
             for (const WeightedVpl& vpl : room.all())
                 if (third.contains(vpl.index)) members.push_back(vpl);
@@ -166,12 +166,12 @@ TEST_CASE("shares of the lights add up, and drawn lights count by their weights"
                         room.plain_sum(members, [](double g, double) { return std::min(g, double(bound)); }));
         }
         for (std::size_t i = 0; i < all.size(); ++i)
-            for (int c = 0; c < 3; ++c) CHECK(shares[i][c] == Approx(all[i][c]).epsilon(1e-5));
+            for (int c = 0; c < 3; ++c) CHECK(subsets[i][c] == Approx(all[i][c]).epsilon(1e-5));
 
-        const std::vector<WeightedVpl> drawn{{5, 2.0f}, {0, 0.5f}, {5, 1.5f}, {17, 3.0f}};
+        const std::vector<WeightedVpl> sampled{{5, 2.0f}, {0, 0.5f}, {5, 1.5f}, {17, 3.0f}};
         REQUIRE(room.vpls.lights.size() > 17);
-        check_equal(room.gather(lights::SampledVpls{drawn}, weight),
-                    room.plain_sum(drawn, [](double g, double) { return std::min(g, double(bound)); }));
+        check_equal(room.gather(lights::SampledVpls{sampled}, weight),
+                    room.plain_sum(sampled, [](double g, double) { return std::min(g, double(bound)); }));
     }
 }
 
@@ -181,40 +181,40 @@ struct Estimate {
     double mean, error;  ///< standard deviation of the mean
 };
 
-/// The light at all receivers from four lights drawn by their intensity, over many draws. `share` not 1
+/// The light at all receivers from four lights sampled by their intensity, over many samples. `factor` not 1
 /// plants an error in the weights.
-Estimate drawn_light(Room& room, float share, int draws) {
+Estimate sampled_light(Room& room, float factor, int samples) {
     std::vector<float> power;
     for (const auto& vpl : room.vpls.lights) power.push_back(average(vpl.intensity));
     const Distribution1D selector(power);
     constexpr std::size_t count = 4;
     Rng rng(11);
     double sum = 0.0, squares = 0.0;
-    for (int k = 0; k < draws; ++k) {
-        std::array<WeightedVpl, count> drawn;
-        for (WeightedVpl& light : drawn) {
+    for (int k = 0; k < samples; ++k) {
+        std::array<WeightedVpl, count> sampled;
+        for (WeightedVpl& light : sampled) {
             const auto chosen = selector.sample_discrete(rng.next_float());
-            light = {chosen.index, share / (float(count) * chosen.probability)};
+            light = {chosen.index, factor / (float(count) * chosen.probability)};
         }
         double light = 0.0;
-        for (const Rgb& c : room.gather(lights::SampledVpls{drawn}, lights::BoundedGeometry{bound}))
+        for (const Rgb& c : room.gather(lights::SampledVpls{sampled}, lights::BoundedGeometry{bound}))
             light += double(average(c));
         sum += light, squares += light * light;
     }
-    const double mean = sum / draws;
-    return {mean, std::sqrt((squares / draws - mean * mean) / (draws - 1.0))};
+    const double mean = sum / samples;
+    return {mean, std::sqrt((squares / samples - mean * mean) / (samples - 1.0))};
 }
 
 }  // namespace
 
-TEST_CASE("the mean over drawn lights is the light of all", "[gather][policies][statistics]") {
+TEST_CASE("the mean over sampled lights is the light of all", "[gather][policies][statistics]") {
     constexpr double critical = 2.576;  // two-sided, 1 %
     for (const std::string& material : materials) {
         Room room(material);
         double all = 0.0;
         for (const Rgb& c : room.gather(lights::VplRange{}, lights::BoundedGeometry{bound}))
             all += double(average(c));
-        const Estimate right = drawn_light(room, 1.0f, 4000), wrong = drawn_light(room, 1.05f, 4000);
+        const Estimate right = sampled_light(room, 1.0f, 4000), wrong = sampled_light(room, 1.05f, 4000);
         CHECK(std::abs(right.mean - all) < critical * right.error);
         CHECK(std::abs(wrong.mean - all) > critical * wrong.error);  // 5 % too much is found
     }

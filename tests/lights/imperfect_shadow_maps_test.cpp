@@ -1,5 +1,5 @@
 // Imperfect shadow maps: points lie evenly on surfaces, holes are filled, closed walls keep light in, and
-// answers are those of shadow rays but for a stated share, near the light and far from it.
+// answers are those of shadow rays but for a stated fraction, near the light and far from it.
 #include "lights/imperfect_shadow_maps/imperfect_shadow_maps.h"
 
 #include <tbb/global_control.h>
@@ -52,7 +52,7 @@ std::vector<SurfaceHit> receivers(const Scene& scene, int count) {
 }
 
 struct Wrong {
-    double near = 0.0, far = 0.0;  ///< shares of the pairs closer than 1 m, and of all others
+    double near = 0.0, far = 0.0;  ///< fractions of the pairs closer than 1 m, and of all others
     double lit = 0.0;              ///< of wrong answers, how many say that there is light
 };
 
@@ -122,8 +122,8 @@ TEST_CASE("Points lie on surfaces, evenly by area", "[imperfect_shadow_maps]") {
         on_ball += round, wall += p.position.x > 1.999f;
         first += i < 10000 && round;  // any range is a sample
     }
-    const auto z = [](double found, double n, double share) {
-        return std::fabs(found - n * share) / std::sqrt(n * share * (1.0 - share));
+    const auto z = [](double found, double n, double fraction) {
+        return std::fabs(found - n * fraction) / std::sqrt(n * fraction * (1.0 - fraction));
     };
     CHECK(z(on_ball, 40000.0, ball / area) < 4.5);
     CHECK(z(wall, 40000.0, 16.0 / area) < 4.5);
@@ -192,7 +192,8 @@ TEST_CASE("Little light leaks through a closed wall of points", "[imperfect_shad
     CHECK(leak({.pull_push = false}) > 0.03);
 }
 
-TEST_CASE("Answers of imperfect maps are those of rays but for a stated share", "[imperfect_shadow_maps]") {
+TEST_CASE("Answers of imperfect maps are those of rays but for a stated fraction",
+          "[imperfect_shadow_maps]") {
     const auto scene = furnished();
     const Wrong usual = wrong_answers(*scene, {});
     INFO("near " << usual.near << ", far " << usual.far << ", lit " << usual.lit);

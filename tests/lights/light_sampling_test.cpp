@@ -1,5 +1,5 @@
-// Lights drawn by a hierarchy: probabilities add up to 1 whatever the scale and the depth, means are those of
-// all lights, and sets that are no sets are dealt with.
+// Lights sampled by a hierarchy: probabilities add up to 1 whatever the scale and the depth, means are those
+// of all lights, and sets that are no sets are dealt with.
 #include "core/objects/error.h"
 #include "lights/selection/stochastic/light_sampler.h"
 #include "tests/lights/random_lights.h"
@@ -48,10 +48,10 @@ double check_probabilities(const WideLightTree& tree, const Floor& floor, float 
     return sum;
 }
 
-double light_of(const lights::VplSet& set, std::span<const WeightedVpl> drawn,
+double light_of(const lights::VplSet& set, std::span<const WeightedVpl> sampled,
                 const lights::ReceiverTile& tile) {
     double sum = 0.0;
-    for (const WeightedVpl& light : drawn)
+    for (const WeightedVpl& light : sampled)
         for (const double v : sent(set, light.index, tile, infinity)) sum += double(light.weight) * v;
     return sum;
 }
@@ -85,7 +85,7 @@ TEST_CASE("Probabilities of all lights add up to 1, in any scale", "[light_selec
     }
 }
 
-TEST_CASE("Lights at distances 2^-i, and a million in one place", "[light_selection][sampling]") {
+TEST_CASE("Lights at distances 2^-i, and a million in one index", "[light_selection][sampling]") {
     lights::VplSet powers, many;
     for (int i = 0; i < 120; ++i)
         powers.lights.push_back(light_at({std::ldexp(1.0f, -i), 0.0f, 1.0f}, {0, 0, -1}));
@@ -105,14 +105,15 @@ TEST_CASE("Lights at distances 2^-i, and a million in one place", "[light_select
         else
             for (std::size_t j = 0; j < set->lights.size(); ++j)
                 for (const double v : sent(*set, j, floor.tile, infinity)) all += v;
-        // These are nearly all alike, and so nearly any draw has the sum.
+        // These are nearly all alike, and so nearly any sample has the sum.
         for (const bool cut : {false, true}) {
-            const auto drawn = cut ? sampler.by_cut(tree, receivers, infinity, 64, rng)
-                                   : sampler.by_tree(tree, receivers, infinity, 64, rng);
-            CHECK(light_of(*set, drawn, floor.tile) == Approx(all).epsilon(0.02));
+            const auto sampled = cut ? sampler.by_cut(tree, receivers, infinity, 64, rng)
+                                     : sampler.by_tree(tree, receivers, infinity, 64, rng);
+            CHECK(light_of(*set, sampled, floor.tile) == Approx(all).epsilon(0.02));
         }
     }
-    // A chain of clusters deeper than 32, where nothing but depth tells lights apart: 2^-i from the receiver.
+    // A chain of clusters deeper than 32, where nothing but depth distinguishes lights: 2^-i from the
+    // receiver.
     lights::VplSet deep;
     for (int i = 0; i < 120; ++i) deep.lights.push_back(light_at({0.0f, 0.0f, std::ldexp(1.0f, -i)}));
     const VplLeaves leaves(deep);
@@ -123,11 +124,11 @@ TEST_CASE("Lights at distances 2^-i, and a million in one place", "[light_select
     CHECK(check_probabilities(tree, on_them, infinity) == Approx(1.0).epsilon(1e-9));
 }
 
-TEST_CASE("Lights drawn by the tree and by a cut have the mean of all",
+TEST_CASE("Lights sampled by the tree and by a cut have the mean of all",
           "[light_selection][sampling][statistics]") {
     constexpr double critical = 3.3;  // two-sided, 0.1 %: of twenty tests one in fifty fails for no reason
     const Materials& materials = all_materials();
-    Rng rng(4), draws(5);
+    Rng rng(4), samples(5);
     lights::LightSampler sampler;
     for (const Lights kind : {Lights::plain, Lights::glossy, Lights::isotropic, Lights::lobes, Lights::all}) {
         const auto set = random_lights(rng, materials, kind, 500, 1.0f, 0.5f);
@@ -140,18 +141,18 @@ TEST_CASE("Lights drawn by the tree and by a cut have the mean of all",
             for (const double v : sent(set, j, floor.tile, infinity)) all += v;
         REQUIRE(all > 0.0);
         for (const bool cut : {false, true}) {
-            const auto draw = [&] {
-                const auto drawn = cut ? sampler.by_cut(tree, receivers, infinity, 64, draws)
-                                       : sampler.by_tree(tree, receivers, infinity, 64, draws);
-                return light_of(set, drawn, floor.tile);
+            const auto sample = [&] {
+                const auto sampled = cut ? sampler.by_cut(tree, receivers, infinity, 64, samples)
+                                         : sampler.by_tree(tree, receivers, infinity, 64, samples);
+                return light_of(set, sampled, floor.tile);
             };
-            const Mean found = mean_of(6000, draw);
+            const Mean found = mean_of(6000, sample);
             INFO("kind " << int(kind) << ", cut " << cut << ": " << found.mean << " +- " << found.error
                          << " of " << all);
             CHECK(std::fabs(found.mean - all) < critical * found.error);
             // Errors of weights that are planted are found.
             const double power = critical * found.error / all;
-            // Groups of all kinds know little of each: there errors are larger.
+            // Clusters of all kinds say little of each light: there errors are larger.
             const double planted = kind == Lights::all ? 0.5 : 0.1;
             CHECK(power < 0.7 * planted);
             for (const double wrong : {1.0 - planted, 1.0 + planted})
@@ -160,11 +161,11 @@ TEST_CASE("Lights drawn by the tree and by a cut have the mean of all",
     }
 }
 
-TEST_CASE("Learned shares have the mean of all, whatever was learned",
+TEST_CASE("Learned probabilities have the mean of all, whatever was learned",
           "[light_selection][sampling][statistics]") {
     constexpr double critical = 3.5;  // two-sided, 0.05 %
     const Materials& materials = all_materials();
-    Rng rng(14), draws(15);
+    Rng rng(14), samples(15);
     const auto set = random_lights(rng, materials, Lights::plain, 800, 1.0f, 0.5f);
     const VplLeaves leaves(set);
     const WideLightTree tree(leaves);
@@ -187,23 +188,23 @@ TEST_CASE("Learned shares have the mean of all, whatever was learned",
             lights::LightSampler sampler;
             lights::LearnedImportance learned;
             sampler.learn_into(&learned);
-            const auto drawn = [&] {
-                return way == "tree"  ? sampler.by_tree(tree, receivers, infinity, 32, draws)
-                       : way == "cut" ? sampler.by_cut(tree, receivers, infinity, 32, draws)
-                                      : sampler.from_clusters(tree, receivers, infinity, 16, 2, draws);
+            const auto sampled = [&] {
+                return way == "tree"  ? sampler.by_tree(tree, receivers, infinity, 32, samples)
+                       : way == "cut" ? sampler.by_cut(tree, receivers, infinity, 32, samples)
+                                      : sampler.from_clusters(tree, receivers, infinity, 16, 2, samples);
             };
             for (int k = 0; taught > 0 && k < 150; ++k) {
-                const auto lights = drawn();
+                const auto lights = sampled();
                 for (std::size_t i = 0; i < lights.size(); ++i)
                     sampler.learn(i,
                                   double(lights[i].weight) * (taught == 1 ? light : other)[lights[i].index]);
             }
-            const auto draw = [&] {
+            const auto sample = [&] {
                 double sum = 0.0;
-                for (const WeightedVpl& l : drawn()) sum += double(l.weight) * light[l.index];
+                for (const WeightedVpl& l : sampled()) sum += double(l.weight) * light[l.index];
                 return sum;
             };
-            const Mean found = mean_of(6000, draw);
+            const Mean found = mean_of(6000, sample);
             INFO(way << ", taught " << taught << ": " << found.mean << " +- " << found.error << " of "
                      << all);
             errors[std::size_t(taught)] = found.error;
@@ -237,7 +238,7 @@ TEST_CASE("More lights, less noise", "[light_selection][sampling][statistics]") 
                            })
                 .error;
         };
-        CHECK(error(64) < 0.5 * error(4));  // independent draws: 0.25
+        CHECK(error(64) < 0.5 * error(4));  // independent samples: 0.25
     }
 }
 
@@ -252,9 +253,9 @@ TEST_CASE("Every node holds what is below it, and one array holds all", "[light_
     std::size_t wrong = 0;
     const auto visit = [&](const auto& self, const lights::LightCluster& c) -> void {
         const lights::LightNode node = tree.node(c);
-        for (const double share : {0.0, 0.3, 0.999999}) {
-            const std::uint32_t place = tree.index_at(c, share);
-            wrong += place < c.first || place >= c.first + c.count;
+        for (const double fraction : {0.0, 0.3, 0.999999}) {
+            const std::uint32_t index = tree.index_at(c, fraction);
+            wrong += index < c.first || index >= c.first + c.count;
         }
         Rgb energy(0.0f);
         for (const std::uint32_t light : tree.lights(c)) {
@@ -276,7 +277,7 @@ TEST_CASE("Every node holds what is below it, and one array holds all", "[light_
     for (const int count : seen) CHECK(count == 1);
 }
 
-TEST_CASE("Every part of a node that is drawn from holds what is below it", "[light_selection]") {
+TEST_CASE("Every child of a node that is sampled from holds what is below it", "[light_selection]") {
     const Materials& materials = all_materials();
     Rng rng(9);
     for (const Lights kind : {Lights::plain, Lights::lobes, Lights::all}) {
@@ -297,7 +298,7 @@ TEST_CASE("Every part of a node that is drawn from holds what is below it", "[li
             const bool surface =
                 leaf.kind == lights::LightKind::surface || leaf.kind == lights::LightKind::glossy;
             held &= surface || parts.has_cosine[i] == 0.0f;
-            // A cone is asked for where there is a cosine or a lobe.
+            // A cone is requested where there is a cosine or a lobe.
             if (parts.has_cosine[i] == 1.0f || (parts.any_lobe && parts.g_high[i] > 0.0f))
                 held &= glm::dot(axis, leaf.axis()) >= parts.cos_angle[i] - 1e-6f;
             if (parts.any_lobe && parts.g_high[i] > 0.0f)
@@ -309,7 +310,7 @@ TEST_CASE("Every part of a node that is drawn from holds what is below it", "[li
                                const lights::WideLightNode& node) -> std::vector<std::uint32_t> {
             const lights::LightChildren parts(node);
             std::vector<std::uint32_t> all;
-            double share = 0.0;
+            double energy = 0.0;
             for (int i = 0; i < node.count; ++i) {
                 const auto below = node.leaf(i) ? std::vector<std::uint32_t>{node.child[i]}
                                                 : self(self, tree.node(node.child[i]));
@@ -318,10 +319,10 @@ TEST_CASE("Every part of a node that is drawn from holds what is below it", "[li
                     ++seen[node.child[i]];
                     wide += parts.cos_angle[i] < 0.9995f && parts.has_cosine[i] == 1.0f;  // 1.8 degrees
                 }
-                share += double(node.share[i]);
+                energy += double(node.energy_fraction[i]);
                 all.insert(all.end(), below.begin(), below.end());
             }
-            if (std::fabs(share - 1.0) > 1e-4) FAIL_CHECK(share << " is not all energy");
+            if (std::fabs(energy - 1.0) > 1e-4) FAIL_CHECK(energy << " is not all energy");
             return all;
         };
         CHECK(visit(visit, tree.root()).size() == set.lights.size());
@@ -338,18 +339,18 @@ TEST_CASE("ChildProbabilities of a cluster's energy are places in proportion to 
     const auto set = random_lights(rng, materials, Lights::plain, 300, 2.0f, 3.0f);
     const VplLeaves leaves(set);
     const LightHierarchy tree(leaves);
-    constexpr int shares = 20000;
+    constexpr int steps = 20000;
     for (lights::LightCluster c = tree.root(); !c.single();
          c = c.count % 2 == 0 ? tree.left(c) : tree.right(c)) {
         std::vector<double> count(c.count);
         double all = 0.0, worst = 0.0;
-        for (int k = 0; k < shares; ++k)
-            count[tree.index_at(c, (double(k) + 0.5) / double(shares)) - c.first] += 1.0;
+        for (int k = 0; k < steps; ++k)
+            count[tree.index_at(c, (double(k) + 0.5) / double(steps)) - c.first] += 1.0;
         for (std::uint32_t i = 0; i < c.count; ++i) all += double(tree.weight_at(c.first + i));
         CHECK(std::fabs(all / double(tree.weight(c)) - 1.0) < 1e-5);
         for (std::uint32_t i = 0; i < c.count; ++i)
-            worst = std::max(
-                worst, std::fabs(count[i] - double(shares) * double(tree.weight_at(c.first + i)) / all));
+            worst = std::max(worst,
+                             std::fabs(count[i] - double(steps) * double(tree.weight_at(c.first + i)) / all));
         CHECK(worst < 1.5);  // even steps: each light has what it is due, but for one at either end
     }
 }
@@ -372,9 +373,9 @@ TEST_CASE("No lights, one light, dark ones, and more than memory holds", "[light
     set.lights.push_back(light_at({0.0f, 0.0f, 1.0f}));
     const WideLightTree one(leaves);
     REQUIRE(one.size() == 1);
-    const auto drawn = sampler.by_tree(one, receivers(one), 1.0f, 4, rng);
-    REQUIRE(drawn.size() == 1);
-    CHECK(drawn[0].weight == 1.0f);
+    const auto sampled = sampler.by_tree(one, receivers(one), 1.0f, 4, rng);
+    REQUIRE(sampled.size() == 1);
+    CHECK(sampled[0].weight == 1.0f);
     CHECK(sampler.by_cut(one, receivers(one), 1.0f, 4, rng).size() == 1);
 
     set.lights.assign(100, light_at({0.0f, 0.0f, 1.0f}));
@@ -397,7 +398,7 @@ TEST_CASE("No lights, one light, dark ones, and more than memory holds", "[light
     for (const WeightedVpl& light : sampler.by_tree(two, receivers(two), infinity, 64, rng))
         CHECK(std::isfinite(light.weight));
 
-    /// 2^24 lights that are never made: asked for nothing but their number.
+    /// 2^24 lights that are never made: requested nothing but their number.
     struct Many final : lights::LightLeaves {
         std::size_t size() const override { return std::size_t(1) << 24; }
         lights::LightNode leaf(std::uint32_t) const override { return {}; }

@@ -110,7 +110,8 @@ TEST_CASE("A lightcut with a threshold of 0 is the light of all", "[light_select
 TEST_CASE("A lightcut's error is what its threshold lets it be", "[light_selection][lightcuts]") {
     Room room(tests::diffuse, 3000);
     const auto all = room.all(20.0f);
-    // Root of the mean square over pixels and over who stands for groups. A threshold holds for one node.
+    // Root of the mean square over pixels and over representatives of clusters. A threshold holds for one
+    // node.
     const auto relative_error = [&](float threshold) {
         double squares = 0.0;
         for (std::uint64_t seed = 1; seed < 4; ++seed) {
@@ -126,13 +127,13 @@ TEST_CASE("A lightcut's error is what its threshold lets it be", "[light_selecti
     const auto pairs = room.counters.pairs;
     INFO("errors " << fine << ", " << middle << ", " << coarse << "; " << room.vpls.lights.size()
                    << " lights, pairs " << pairs);
-    // Errors of some hundred groups add up, those of the points of a ray with one sign: one light stands for
-    // all.
+    // Errors of some hundred clusters add up, those of the points of a ray with one sign: one light
+    // represents all.
     CHECK(fine < middle);
     CHECK(middle < coarse);
     CHECK(middle < 0.1);
     CHECK(pairs < 7 * room.vpls.lights.size() / 20);
-    // A lightcut of every point alone looks at more than one of all points of the pixels.
+    // A lightcut of every point alone evaluates more pairs than one of all points of the pixels.
     room.cut(20.0f, {0.02f, 1u << 30});
     const auto together = room.counters.pairs;
     const lights::VplLeaves leaves(room.vpls);
@@ -172,12 +173,12 @@ TEST_CASE("A lightcut of single groups has the mean of all lights", "[light_sele
     const lights::VplLeaves leaves(room.vpls);
     const lights::LightHierarchy tree(leaves);
     // Two groups: of all lights at walls, and of all at points in the air. Whose shadow ray is shared by a
-    // tile is drawn so that the tile's light is right.
+    // tile is sampled so that the tile's light is right.
     for (const float angle : {0.0f, 10.0f}) {
         lights::Lightcut cut(room.vpls, tree, 20.0f, {0.02f, 2, 0.0f, angle});
-        constexpr int draws = 4000;
+        constexpr int samples = 4000;
         double sum[2] = {}, squares[2] = {};
-        for (std::uint64_t seed = 0; seed < draws; ++seed) {
+        for (std::uint64_t seed = 0; seed < samples; ++seed) {
             GatherPoints points;
             points.add(room.tiles[Room::points], ReceiverKind::surface);
             points.add(room.tiles[0], ReceiverKind::medium), points.add(room.tiles[5], ReceiverKind::medium);
@@ -187,17 +188,17 @@ TEST_CASE("A lightcut of single groups has the mean of all lights", "[light_sele
             for (std::size_t kind = 0; kind < 2; ++kind) {
                 double tile = 0.0;
                 for (const Rgb& c : light[kind]) tile += double(average(c));
-                sum[kind] += tile / draws, squares[kind] += tile * tile / draws;
+                sum[kind] += tile / samples, squares[kind] += tile * tile / samples;
             }
         }
-        CHECK(cut.counters().pairs == 2 * draws);
+        CHECK(cut.counters().pairs == 2 * samples);
         double right[2] = {};
         for (const int n : {0, 5, Room::points})
             for (const Rgb& c : lights::gather(room.context(), room.vpls, lights::VplRange{},
                                                lights::BoundedGeometry{20.0f}, room.tiles[std::size_t(n)]))
                 right[n == Room::points ? 0 : 1] += double(average(c));
         for (std::size_t kind = 0; kind < 2; ++kind) {
-            const double deviation = std::sqrt((squares[kind] - sqr(sum[kind])) / draws);
+            const double deviation = std::sqrt((squares[kind] - sqr(sum[kind])) / samples);
             INFO("angle " << angle << ", kind " << kind << ": " << sum[kind] << " for " << right[kind]
                           << " +- " << deviation);
             CHECK(std::fabs(sum[kind] - right[kind]) < 4.0 * deviation);
@@ -222,9 +223,9 @@ TEST_CASE("A shadow ray that receivers share is right in the mean", "[light_sele
         const lights::LightHierarchy tree(leaves);
         if (tree.empty()) continue;
         lights::Lightcut cut(room.vpls, tree, 20.0f, {0.02f, 1000, 0.0f, 10.0f});
-        constexpr int draws = 200;
+        constexpr int samples = 200;
         double sum = 0.0, squares = 0.0;
-        for (std::uint64_t seed = 0; seed < draws; ++seed) {
+        for (std::uint64_t seed = 0; seed < samples; ++seed) {
             GatherPoints points;
             points.add(tile, ReceiverKind::medium);
             Rng rng(seed + 1);
@@ -232,10 +233,10 @@ TEST_CASE("A shadow ray that receivers share is right in the mean", "[light_sele
             double all = 0.0;
             const auto light_of_tile = cut.gather(room.context(), points, rng);
             for (const Rgb& c : light_of_tile[1]) all += double(average(c));
-            sum += all / draws, squares += all * all / draws;
+            sum += all / samples, squares += all * all / samples;
         }
-        const double deviation = std::sqrt(std::max(squares - sqr(sum), 0.0) / draws);
-        // All lanes that get light see the light, or none does: the same whoever is asked.
+        const double deviation = std::sqrt(std::max(squares - sqr(sum), 0.0) / samples);
+        // All lanes that get light see the light, or none does: the same for every receiver.
         if (deviation < 1e-6 * sum || sum == 0.0) {
             CHECK(sum == Approx(right).epsilon(1e-4).margin(1e-12));
             continue;
@@ -261,7 +262,7 @@ TEST_CASE("A lightcut that has seen tiles before plans, and is right still", "[l
         points.build(rng);
         return cut.gather(room.context(), points, rng);
     };
-    // With few groups, which those that were seen share out better; estimates that no_representative uses are
+    // With few clusters, which those that were seen divide better; estimates that no_representative uses are
     // fewer.
     lights::Lightcut cut(room.vpls, tree, 20.0f, {0.001f, 400});
     gather(cut, 1);

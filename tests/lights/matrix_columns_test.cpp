@@ -1,5 +1,5 @@
 // Columns of a matrix: costs of clusters by their definition, matrices whose answer is known, and the
-// probabilities that columns are drawn with.
+// probabilities that columns are sampled with.
 #include "lights/selection/matrix/column_sampler.h"
 #include "lights/selection/matrix/column_split.h"
 #include "tests/lights/random_lights.h"
@@ -65,11 +65,11 @@ std::vector<double> sum_of_columns(const RandomColumns& m) {
 }
 
 /// Estimate of the sum of all columns by one random column of each cluster.
-std::vector<double> estimate(const RandomColumns& m, const ColumnSampler& draws, Rng& rng) {
-    std::vector<WeightedVpl> drawn;
-    draws.sample(rng, drawn);
+std::vector<double> estimate(const RandomColumns& m, const ColumnSampler& samples, Rng& rng) {
+    std::vector<WeightedVpl> sampled;
+    samples.sample(rng, sampled);
     std::vector<double> sum(m.rows);
-    for (const WeightedVpl& light : drawn)
+    for (const WeightedVpl& light : sampled)
         for (std::size_t i = 0; i < m.rows; ++i)
             sum[i] += double(light.weight) * double(m.values[light.index * m.rows + i]);
     return sum;
@@ -107,11 +107,11 @@ TEST_CASE("A matrix of rank one is exact with one column", "[light_selection][ma
     Rng rng(2);
     for (const int directions : {1, 2}) {
         const RandomColumns m(rng, 24, 500, 0.0f, directions);
-        const ColumnSampler draws(lights::cluster_columns(m.columns(), m.members, 1, rng), m.norms);
-        REQUIRE(draws.size() == 1);
+        const ColumnSampler samples(lights::cluster_columns(m.columns(), m.members, 1, rng), m.norms);
+        REQUIRE(samples.size() == 1);
         const auto all = sum_of_columns(m);
         for (int k = 0; k < 20; ++k) {
-            const auto found = estimate(m, draws, rng);
+            const auto found = estimate(m, samples, rng);
             double worst = 0.0;
             for (std::size_t i = 0; i < m.rows; ++i)
                 worst = std::max(worst, std::fabs(found[i] - all[i]) / all[i]);
@@ -164,28 +164,28 @@ TEST_CASE("Splitting is best along its line", "[light_selection][matrix]") {
     CHECK(lights::split_columns(m.columns(), one) == 0);
 }
 
-TEST_CASE("Columns are drawn with the probabilities that they are scaled by",
+TEST_CASE("Columns are sampled with the probabilities that they are scaled by",
           "[light_selection][matrix][statistics]") {
     Rng rng(5);
     const RandomColumns m(rng, 8, 12, 0.5f);
-    const ColumnSampler draws(lights::cluster_columns(m.columns(), m.members, 2, rng), m.norms);
+    const ColumnSampler samples(lights::cluster_columns(m.columns(), m.members, 2, rng), m.norms);
     std::vector<double> count(12);
     constexpr int tries = 20000;
-    std::vector<WeightedVpl> drawn;
+    std::vector<WeightedVpl> sampled;
     for (int k = 0; k < tries; ++k) {
-        drawn.clear();
-        draws.sample(rng, drawn);
-        for (const WeightedVpl& light : drawn) count[light.index] += 1.0;
-        if (k == 0) CHECK(drawn.size() == draws.size());
+        sampled.clear();
+        samples.sample(rng, sampled);
+        for (const WeightedVpl& light : sampled) count[light.index] += 1.0;
+        if (k == 0) CHECK(sampled.size() == samples.size());
     }
     double chi2 = 0.0, sum = 0.0;
     int degrees = 0;
     for (std::size_t i = 0; i < 12; ++i) {
-        const double p = draws.probability(i), expected = p * tries;
+        const double p = samples.probability(i), expected = p * tries;
         sum += p, ++degrees;
-        chi2 += sqr(count[draws.clusters().members[i]] - expected) / expected;
+        chi2 += sqr(count[samples.clusters().members[i]] - expected) / expected;
     }
-    degrees -= int(draws.size());
-    CHECK(sum == Approx(double(draws.size())).epsilon(1e-12));
+    degrees -= int(samples.size());
+    CHECK(sum == Approx(double(samples.size())).epsilon(1e-12));
     CHECK(chi2 < double(degrees) + 4.0 * std::sqrt(2.0 * double(degrees)) + 6.0);  // beyond 0.1 %
 }

@@ -107,14 +107,14 @@ TEST_CASE("Light by a matrix has the mean of all lights, on both sides of a wall
         // Few receivers make rows, others are lit.
         const auto few = std::span(room.receivers).first(20);
         const MatrixClusters matrix(room.context(visibility), few, settings_of(16, 24, 1), 5);
-        std::vector<WeightedVpl> drawn;
+        std::vector<WeightedVpl> sampled;
         const lights::ReceiverTile tile = room.tile(100);
         const double all = room.light(tile, lights::VplRange{});
         REQUIRE(all > 0.0);
-        const auto draw = [&] {
-            return room.light(tile, lights::SampledVpls{matrix.sample(tile, rng, drawn)});
+        const auto sample = [&] {
+            return room.light(tile, lights::SampledVpls{matrix.sample(tile, rng, sampled)});
         };
-        const Mean found = mean_of(5000, draw);
+        const Mean found = mean_of(5000, sample);
         INFO("visibility " << int(visibility) << ": " << found.mean << " +- " << found.error << " of "
                            << all);
         CHECK(std::fabs(found.mean - all) < critical * found.error);
@@ -139,15 +139,15 @@ TEST_CASE("Wrong probabilities and a missing defensive part are found",
     const lights::ReceiverTile tile = room.tile(100);
     const double sum = room.light(tile, lights::VplRange{});
     const auto test = [&](const ColumnClusters& some, bool wrong_weight) {
-        const ColumnSampler draws(some, matrix.weights);
-        std::vector<WeightedVpl> drawn;
+        const ColumnSampler samples(some, matrix.weights);
+        std::vector<WeightedVpl> sampled;
         const Mean found = mean_of(3000, [&] {
-            drawn.clear();
-            draws.sample(rng, drawn);
-            if (wrong_weight)  // as if drawn evenly
-                for (std::size_t k = 0; k < drawn.size(); ++k)
-                    drawn[k].weight = float(some.cluster(k).size());
-            return room.light(tile, lights::SampledVpls{drawn});
+            sampled.clear();
+            samples.sample(rng, sampled);
+            if (wrong_weight)  // as if sampled evenly
+                for (std::size_t k = 0; k < sampled.size(); ++k)
+                    sampled[k].weight = float(some.cluster(k).size());
+            return room.light(tile, lights::SampledVpls{sampled});
         });
         UNSCOPED_INFO(found.mean << " +- " << found.error << " of " << sum);
         return std::fabs(found.mean - sum) < critical * found.error;
@@ -193,13 +193,14 @@ TEST_CASE("One thread has the clusters of many, to the bit", "[light_selection][
 TEST_CASE("More columns than lights are all lights, each once", "[light_selection][matrix]") {
     Room room(diffuse, 30);
     const MatrixClusters matrix(room.context(), room.receivers, settings_of(16, 4000, 2), 1);
-    std::vector<WeightedVpl> drawn;
+    std::vector<WeightedVpl> sampled;
     Rng rng(1);
     const auto tile = room.tile(7);
-    matrix.sample(tile, rng, drawn);
-    REQUIRE(drawn.size() == room.vpls.lights.size());
-    for (std::size_t j = 0; j < drawn.size(); ++j) CHECK((drawn[j].index == j && drawn[j].weight == 1.0f));
-    CHECK(room.light(tile, lights::SampledVpls{drawn}) == room.light(tile, lights::VplRange{}));
+    matrix.sample(tile, rng, sampled);
+    REQUIRE(sampled.size() == room.vpls.lights.size());
+    for (std::size_t j = 0; j < sampled.size(); ++j)
+        CHECK((sampled[j].index == j && sampled[j].weight == 1.0f));
+    CHECK(room.light(tile, lights::SampledVpls{sampled}) == room.light(tile, lights::VplRange{}));
 }
 
 TEST_CASE("Maps of receivers see what rays see", "[light_selection][matrix]") {
@@ -255,43 +256,43 @@ TEST_CASE("Places are parted evenly, and found again", "[light_selection][matrix
 
 TEST_CASE("No lights, one, dark ones, no receivers", "[light_selection][matrix][extremes]") {
     Room room(diffuse, 100);
-    std::vector<WeightedVpl> drawn;
+    std::vector<WeightedVpl> sampled;
     Rng rng(1);
     const auto tile = room.tile(0);
     const MatrixSettings settings = settings_of(16, 8, 2);
     const auto vpls = room.vpls;
-    const auto draw = [&](std::span<const PathReceiver> receivers, float bound = 4.0f) {
+    const auto sample = [&](std::span<const PathReceiver> receivers, float bound = 4.0f) {
         const MatrixClusters matrix(room.context(RowKind::rays, bound), receivers, settings, 1);
-        return matrix.sample(tile, rng, drawn);
+        return matrix.sample(tile, rng, sampled);
     };
     room.vpls.lights.clear();
-    CHECK(draw(room.receivers).empty());
+    CHECK(sample(room.receivers).empty());
     room.vpls.lights.assign(vpls.lights.begin(), vpls.lights.begin() + 1);
-    CHECK(draw(room.receivers).size() == 1);
+    CHECK(sample(room.receivers).size() == 1);
     room.vpls.lights.assign(100, vpls.lights[0]);
     for (auto& light : room.vpls.lights) light.intensity = Rgb(0.0f);
-    CHECK(draw(room.receivers).empty());
+    CHECK(sample(room.receivers).empty());
     // One of a hundred, of hardly any power.
     room.vpls.lights[70].intensity = Rgb(1e-30f);
-    REQUIRE(draw(room.receivers).size() == 1);
-    CHECK((drawn[0].index == 70 && drawn[0].weight == 1.0f));
+    REQUIRE(sample(room.receivers).size() == 1);
+    CHECK((sampled[0].index == 70 && sampled[0].weight == 1.0f));
     // A hundred in one at, and receivers on a light without a bound.
     room.vpls.lights.assign(100, vpls.lights[0]);
-    for (const WeightedVpl& light : draw(room.receivers)) CHECK(light.weight >= 1.0f);
+    for (const WeightedVpl& light : sample(room.receivers)) CHECK(light.weight >= 1.0f);
     double sum = 0.0;
-    for (const WeightedVpl& light : drawn) sum += double(light.weight);
+    for (const WeightedVpl& light : sampled) sum += double(light.weight);
     CHECK(sum == Approx(100.0));
     auto on_it = room.receivers;
     for (PathReceiver& r : on_it) r.vertex.position = r.vertex.hit.position = vpls.lights[0].position;
-    for (const WeightedVpl& light : draw(on_it, infinity)) CHECK(std::isfinite(light.weight));
+    for (const WeightedVpl& light : sample(on_it, infinity)) CHECK(std::isfinite(light.weight));
     // Powers that single precision has no squares of.
     room.vpls = vpls;
     for (const float scale : {1e-25f, 1e25f}) {
         for (std::size_t j = 0; j < vpls.lights.size(); ++j)
             room.vpls.lights[j].intensity = scale * vpls.lights[j].intensity;
-        CHECK(draw(room.receivers).size() >= 8);
-        for (const WeightedVpl& light : drawn) CHECK((std::isfinite(light.weight) && light.weight >= 1.0f));
+        CHECK(sample(room.receivers).size() >= 8);
+        for (const WeightedVpl& light : sampled) CHECK((std::isfinite(light.weight) && light.weight >= 1.0f));
     }
     room.vpls = vpls;
-    CHECK(draw({}).size() >= 1);  // drawn by energy
+    CHECK(sample({}).size() >= 1);  // sampled by energy
 }

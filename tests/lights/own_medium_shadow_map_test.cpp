@@ -1,4 +1,4 @@
-// Shadow maps of a medium that the project does not know: marched through its interface alone.
+// Shadow maps of a medium that is not part of the project: marched through its interface alone.
 #include <cmath>
 
 #include "core/formats/xml/scene_loader.h"
@@ -17,7 +17,7 @@ using lights::ShadowMapSettings, lights::ShadowMapView, lights::VolumetricShadow
 namespace {
 
 /// Extinction in short waves along x, chromatic; it names a voxel size or none. `planted`: every part of a
-/// march counts as if the extinction of its start went on, which is how such media were once mapped.
+/// march counts as if the extinction of its start continued, which is how such media were once mapped.
 class Waves final : public Medium {
   public:
     Waves(float voxel_size, bool planted) : voxel_size_(voxel_size), planted_(planted) {}

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::array<float, 4> even{1.0f, 1.0f, 1.0f, 1.0f}, uneven{0.5f, 3.0f, 0.0f, 1.0f};
 
-/// The integral of the density over [begin, end], as it is drawn from: by the mean of f = 1 over samples at
+/// The integral of the density over [begin, end], as it is sampled from: by the mean of f = 1 over samples at
 /// midpoints. Each f/pdf times pdf is 1, so what is integrated is 1/pdf: the length of the part where the
 /// weights are not zero.
 template <typename Density>
@@ -92,7 +92,7 @@ TEST_CASE("densities on lines integrate to 1", "[ray_lights][pdf]") {
                 INFO("sine " << sine << " h " << h << " cells " << weights.size());
                 CHECK(pdf_integral(density, 0.0, 3.0, 3.0, weights) == Approx(1.0).epsilon(1e-4));
                 const double zero =
-                    weights.size() > 1 ? 0.75 : 0.0;  // where the weight is zero nothing is drawn
+                    weights.size() > 1 ? 0.75 : 0.0;  // where the weight is zero nothing is sampled
                 CHECK(length_by_samples(density, 0.0, 3.0, 3.0, weights) == Approx(3.0 - zero).epsilon(1e-3));
             }
     for (const double h : {1.0, 0.05, 1e-2})
@@ -166,7 +166,7 @@ TEST_CASE("parallel, crossing, empty and coincident lines are finite", "[ray_lig
     CHECK(line_integral(clear_line({0, 1, 0}, {0, 0, 1}, 0.0f), eye, 4) == 0.0);
 }
 
-TEST_CASE("a share of the ray lights counts for all", "[ray_lights]") {
+TEST_CASE("a subset of the ray lights counts for all", "[ray_lights]") {
     const std::array<double, 5> power{1.0, 1.0, 6.0, 6.25, 26.25};  // sums: the second has none
     const PowerSampling all(power, 0), three(power, 3);
     CHECK(all.count() == 5);

@@ -22,7 +22,7 @@ constexpr float map_tolerance(float size) {
 constexpr int size = 256;  // no receiver lies within a texel of the edge of the shadow
 }  // namespace
 
-TEST_CASE("gathering by rays asks another scene and finds the closed form", "[gather][interface]") {
+TEST_CASE("gathering by rays queries another scene and finds the closed form", "[gather][interface]") {
     const AnalyticScene scene(fog);
     FloorUnderLight at(scene);
     const auto found = tests::traced_light(scene, at);
@@ -32,12 +32,12 @@ TEST_CASE("gathering by rays asks another scene and finds the closed form", "[ga
     CHECK(dark < lights::ReceiverLanes::width);
     CHECK(FloorUnderLight::largest_error(scene, found) < rounding);
     CHECK(scene.transmittances == lights::ReceiverLanes::width - dark);
-    // A closed form without the ball, or with other fog, is told apart.
+    // A closed form without the ball, or with other fog, is distinguished.
     CHECK(FloorUnderLight::largest_error(scene, found, false) > 100.0f * rounding);
     CHECK(FloorUnderLight::largest_error(AnalyticScene(1.01f * fog), found) > 100.0f * rounding);
 }
 
-TEST_CASE("transmittance is not asked for where nothing attenuates", "[gather][interface]") {
+TEST_CASE("transmittance is not requested where nothing attenuates", "[gather][interface]") {
     const AnalyticScene scene(Rgb(0.0f));
     FloorUnderLight at(scene);
     CHECK(FloorUnderLight::largest_error(scene, tests::traced_light(scene, at)) < rounding);

@@ -1,5 +1,5 @@
 // Reflective shadow maps: the light that VPLs bring is that of particle tracing, for every kind of light that
-// has a map, alone and among others; and maps stand for all directions.
+// has a map, alone and among others; and maps represent all directions.
 #include "lights/reflective_shadow_maps/reflective_shadow_maps.h"
 
 #include <cmath>

@@ -50,9 +50,9 @@ TEST_CASE("Choices have their chances in every order", "[light_selection][resamp
                 std::array<Weights, 3> weights{};
                 for (std::size_t c = 0; c < 3; ++c) weights[c][0] = values[std::size_t(order[c])];
                 std::array<double, 3> mean{};
-                for_each_choice(weights, n, [&](const Choice& choice, double share) {
+                for_each_choice(weights, n, [&](const Choice& choice, double probability) {
                     for (const auto& chosen : choice.chosen[0])
-                        mean[chosen.candidate] += share * double(chosen.count);
+                        mean[chosen.candidate] += probability * double(chosen.count);
                     CHECK(choice.chosen[1].empty());
                 });
                 const double sum = double(values[0] + values[1] + values[2]);
@@ -64,7 +64,7 @@ TEST_CASE("Choices have their chances in every order", "[light_selection][resamp
 }
 
 TEST_CASE("Resampling over three lights, by enumeration", "[light_selection][resampling]") {
-    // Two of M = 1, 2, 3 candidates drawn from p; one light may be one that sends nothing.
+    // Two of M = 1, 2, 3 candidates sampled from p; one light may be one that sends nothing.
     Rng rng(5);
     const auto set = random_lights(rng, all_materials(), Lights::plain, 3, 2.0f, 3.0f);
     RandomReceivers receivers(rng, all_materials(), set.lights[0].position, false);
@@ -84,23 +84,23 @@ TEST_CASE("Resampling over three lights, by enumeration", "[light_selection][res
             const int tuples = int(std::lround(std::pow(3.0, candidates)));
             for (int tuple = 0; tuple < tuples; ++tuple) {  // in every order
                 double chance = 1.0;
-                std::vector<std::size_t> drawn;
+                std::vector<std::size_t> sampled;
                 std::vector<Weights> weights;
                 for (int k = 0, rest = tuple; k < candidates; ++k, rest /= 3) {
                     const auto j = std::size_t(rest % 3);
-                    chance *= p[j], drawn.push_back(j);
+                    chance *= p[j], sampled.push_back(j);
                     core::Lanes values{};
                     Weights& own = weights.emplace_back();
                     own = {};
                     if (target.of_light({j, float(1.0 / (candidates * p[j]))}, 0.0f, *scratch, values))
                         own[0] = values[lane];
                 }
-                for_each_choice(weights, 1, [&](const Choice& choice, double share) {
+                for_each_choice(weights, 1, [&](const Choice& choice, double probability) {
                     for (const auto& chosen : choice.chosen[0]) {
-                        const std::size_t j = drawn[chosen.candidate];
+                        const std::size_t j = sampled[chosen.candidate];
                         const double p_hat = double(target.of_lane(int(lane), j).value);
-                        mean += chance * share * choice.sum[0] / p_hat * f[j];
-                        without_m += chance * share * choice.sum[0] * candidates / p_hat * f[j];
+                        mean += chance * probability * choice.sum[0] / p_hat * f[j];
+                        without_m += chance * probability * choice.sum[0] * candidates / p_hat * f[j];
                     }
                 });
             }

@@ -86,20 +86,20 @@ struct Room {
         <bsdf type="diffuse"/></shape>)";
 };
 
-/// z of every lane, of the mean of draw() against what is right, and the relative error of the mean of all.
+/// z of every lane, of the mean of sample() against what is right, and the relative error of the mean of all.
 struct Comparison {
-    double least_z = 0.0, largest_z = 0.0, bias = 0.0, its_error = 0.0;
-    bool unbiased() const { return least_z > -limit && largest_z < limit; }
+    double min_z = 0.0, largest_z = 0.0, bias = 0.0, its_error = 0.0;
+    bool unbiased() const { return min_z > -limit && largest_z < limit; }
     /// A lane passes by chance 6e-7 times less than 1.
     static constexpr double limit = 5.0;
 };
-template <typename Draw>
-Comparison compare(const TileLight& right, int draws, const Draw& draw) {
+template <typename Sample>
+Comparison compare(const TileLight& right, int samples, const Sample& sample) {
     std::array<double, 16> sum{}, squares{};
     double whole = 0.0, of_all = 0.0, all_squares = 0.0;
     for (const Rgb& r : right) whole += double(average(r));
-    for (int k = 0; k < draws; ++k) {
-        const TileLight light = draw(std::uint64_t(k));
+    for (int k = 0; k < samples; ++k) {
+        const TileLight light = sample(std::uint64_t(k));
         double all = 0.0;
         for (std::size_t i = 0; i < 16; ++i) {
             const double x = double(average(light[i]));
@@ -109,20 +109,20 @@ Comparison compare(const TileLight& right, int draws, const Draw& draw) {
     }
     Comparison c;
     const auto error = [&](double mean, double mean_square) {
-        return std::sqrt(std::max(0.0, mean_square - mean * mean) / (draws - 1.0));
+        return std::sqrt(std::max(0.0, mean_square - mean * mean) / (samples - 1.0));
     };
     for (std::size_t i = 0; i < 16; ++i) {
-        const double mean = sum[i] / draws, r = double(average(right[i]));
-        const double z = (mean - r) / (error(mean, squares[i] / draws) + 1e-5 * r + 1e-20);
-        c.least_z = std::min(c.least_z, z), c.largest_z = std::max(c.largest_z, z);
+        const double mean = sum[i] / samples, r = double(average(right[i]));
+        const double z = (mean - r) / (error(mean, squares[i] / samples) + 1e-5 * r + 1e-20);
+        c.min_z = std::min(c.min_z, z), c.largest_z = std::max(c.largest_z, z);
     }
-    c.bias = of_all / draws - 1.0, c.its_error = error(of_all / draws, all_squares / draws);
+    c.bias = of_all / samples - 1.0, c.its_error = error(of_all / samples, all_squares / samples);
     return c;
 }
 
 std::string report(const Comparison& c) {
-    return fmt::format("z of {:.2f} to {:.2f}, mean {:+.2f} +- {:.2f} %", c.least_z, c.largest_z,
-                       100 * c.bias, 100 * c.its_error);
+    return fmt::format("z of {:.2f} to {:.2f}, mean {:+.2f} +- {:.2f} %", c.min_z, c.largest_z, 100 * c.bias,
+                       100 * c.its_error);
 }
 
 }  // namespace
@@ -170,19 +170,19 @@ TEST_CASE("Pairs of a light and a distance have the mean of all", "[light_select
     std::vector<lights::ReceiverBounds> bounds;
     for (const RecordedReceivers* p : points) bounds.emplace_back(p->tile);
     const lights::ReceiverClusters receivers(bounds, room.tree);
-    const auto draw = [&](std::uint64_t k) {
+    const auto sample = [&](std::uint64_t k) {
         Rng rng(hash_keys(k, 5));
         const auto candidates = sampler.by_tree(room.tree, receivers, 5.0f, 16, rng);
         return resampling.gather(room.context(), points, candidates, rng);
     };
-    const auto c = compare(right, 1500, draw);
+    const auto c = compare(right, 1500, sample);
     INFO(report(c));
     CHECK(c.unbiased());
     // Four distances, and at most three shadow rays a ray.
     CHECK(resampling.counters().chosen <= 1500 * 16 * 3);
     CHECK(resampling.counters().candidates > 1500 * 4 * 8);
     const auto dark = compare(right, 1500, [&](std::uint64_t k) {
-        TileLight light = draw(k);
+        TileLight light = sample(k);
         for (Rgb& l : light) l *= 0.95f;
         return light;
     });

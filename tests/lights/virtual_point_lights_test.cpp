@@ -27,7 +27,7 @@ lights::LightPathSettings paths(std::uint32_t n, int rr_depth = 5) {
 }  // namespace
 
 // Every particle in a closed box arrives somewhere: the power at the first vertices is the power of the
-// light, and every diffuse bounce keeps the albedo's share of it in the mean, with roulette from the second
+// light, and every diffuse bounce keeps the fraction of the albedo in the mean, with roulette from the second
 // vertex on, from the fourth, or never.
 TEST_CASE("the VPLs of each depth carry the light's power times albedo^depth", "[vpl][particles]") {
     const auto scene = scene_from(closed_box(diffuse, ""));

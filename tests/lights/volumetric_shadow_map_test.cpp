@@ -297,10 +297,10 @@ TEST_CASE("walls seen at grazing angles do not shadow themselves, and do not lea
         const float cosine = -glm::dot(hit->geometric_normal, d) / glm::length(d);
         const float weight = std::fabs(cosine) * std::max(d.y, 0.0f) / glm::length(d);
         const bool seen = !scene->rays().occluded(Ray{p, -d, 0.0f, 0.9999f});
-        const double share = double(map.transmittance(p).x);
-        (seen ? lit : leaked) += double(weight) * (seen ? 1.0 : share);
+        const double transmittance = double(map.transmittance(p).x);
+        (seen ? lit : leaked) += double(weight) * (seen ? 1.0 : transmittance);
         if (!seen) continue;
-        missing += double(weight) * (1.0 - share);
+        missing += double(weight) * (1.0 - transmittance);
         // A hand's breadth behind the same wall there is no light.
         through += double(weight) * double(map.transmittance(p + 0.3f * glm::normalize(d)).x);
     }

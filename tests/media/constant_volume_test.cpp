@@ -41,7 +41,7 @@ TEST_CASE("a constant with a transform ends at its box", "[constvolume]") {
     CHECK(depth_along_x(*medium_of(Rgb(0.4f), std::nullopt), 0) == Approx(8.0).epsilon(1e-5));
 }
 
-TEST_CASE("a constant's value goes on beyond its box", "[constvolume]") {
+TEST_CASE("a constant's value continues beyond its box", "[constvolume]") {
     const Transform moved(glm::translate(glm::dmat4(1.0), Vec3d(5.0)));
     CHECK(ConstantVolume(Rgb(0.1f, 0.2f, 0.3f), moved).eval(Vec3(0.0f)) == Rgb(0.1f, 0.2f, 0.3f));
 }

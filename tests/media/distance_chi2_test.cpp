@@ -1,6 +1,6 @@
 // Every sampler of free-flight distances follows p(t) = sigma_t(t) exp(-tau(t)) for each hero channel, and
 // leaves the medium as often as exp(-tau) says, by the chi-square test of distances. The reference is the
-// closed form, or quadrature of Medium::coefficients() along the ray, which knows nothing of tracking.
+// closed form, or quadrature of Medium::coefficients() along the ray, which is free of tracking.
 #include "media/homogeneous_medium.h"
 #include "media/vdb_volume.h"
 #include "tests/media/test_media.h"

@@ -225,7 +225,7 @@ TEST_CASE("regular tracking keeps every mean: grey, in colours, and with emissio
         }
 }
 
-TEST_CASE("marching, shares of the way and mean extinction stay finite beside 1e37",
+TEST_CASE("marching, fractions of the way and mean extinction stay finite beside 1e37",
           "[media][extremes][regular]") {
     for (const int channels : {1, 3}) {
         const auto m = tests::medium_of(tests::hot_grid(channels, 1e37f), parts_with(1.0f));

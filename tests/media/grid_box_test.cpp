@@ -48,7 +48,7 @@ Ray ray_through(const Bounds3& box, Rng& rng) {
 
 }  // namespace
 
-TEST_CASE("grids go on by clamping, repeating or mirroring", "[media][vol][wrap]") {
+TEST_CASE("grids continue by clamping, repeating or mirroring", "[media][vol][wrap]") {
     const auto file = tests::vol_grid({3, 1, 1}, 1, [](int x, int, int) { return Rgb(float(1 << x)); });
     // Voxels -4 to 6 by each rule.
     const float expected[3][11] = {{1, 1, 1, 1, 1, 2, 4, 4, 4, 4, 4},
@@ -74,7 +74,7 @@ TEST_CASE("a grid's medium ends at its box, in every wrap mode and however it is
     for (const WrapMode mode : modes)
         for (const int channels : {1, 3})
             for (const Transform& to_world : {Transform(), turned()}) {
-                // The border is dense, so that what goes on beyond it would be seen.
+                // The border is dense, so that what continues beyond it would be seen.
                 const GridVolume volume(tests::vol_grid({5, 7, 6}, channels,
                                                         [rng = Rng(8)](int, int, int) mutable {
                                                             return Rgb(rng.next_float(), 1.0f, 0.5f);

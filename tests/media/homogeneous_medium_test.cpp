@@ -58,7 +58,7 @@ TEST_CASE("vacuum of infinite length transmits everything", "[media][homogeneous
 TEST_CASE("homogeneous distances follow the truncated exponential", "[media][homogeneous]") {
     const double sigma = 1.7, length = 2.0;
     const auto m = medium(Rgb(float(sigma)), Rgb(0.8f));
-    const auto draw = [&](double stretch) {
+    const auto sample = [&](double stretch) {
         core::Rng rng(11);
         core::TrackingCounters counters;
         std::vector<double> distances;
@@ -72,12 +72,12 @@ TEST_CASE("homogeneous distances follow the truncated exponential", "[media][hom
         return distances;
     };
     const auto cdf = [&](double t) { return std::expm1(-sigma * t) / std::expm1(-sigma * length); };
-    CHECK(tests::kolmogorov_smirnov_p(draw(1.0), cdf) > 1e-4);
-    CHECK(tests::kolmogorov_smirnov_p(draw(1.02), cdf) < 1e-4);  // planted: two per cent too long
+    CHECK(tests::kolmogorov_smirnov_p(sample(1.0), cdf) > 1e-4);
+    CHECK(tests::kolmogorov_smirnov_p(sample(1.02), cdf) < 1e-4);  // planted: two per cent too long
 }
 
 TEST_CASE("collisions in a very thin medium are as rare as they must be", "[media][homogeneous]") {
-    // 24-bit random numbers would make these 1.3 % too frequent: 2e7 draws, 5 sigma = 112 of 500 expected
+    // 24-bit random numbers would make these 1.3 % too frequent: 2e7 samples, 5 sigma = 112 of 500 expected
     const auto m = medium(Rgb(2.5e-5f), Rgb(1.0f));
     core::Rng rng(2);
     core::TrackingCounters counters;

@@ -50,7 +50,7 @@ TEST_CASE("the mean extinction is that of the ball, at every radius", "[media][m
         int count = 0;
         core::Rng rng(2);
         for (const float radius : {0.05f, 0.4f, 1.0f, 2.5f, 6.0f, 12.0f, 100.0f}) {
-            // A ball about as large as the box, partly outside: cells stand for it badly.
+            // A ball about as large as the box, partly outside: cells represent it badly.
             const bool half_of_the_box = radius == 12.0f;
             double here = 0.0;
             for (int i = 0; i < 12; ++i) {
@@ -70,7 +70,7 @@ TEST_CASE("the mean extinction is that of the ball, at every radius", "[media][m
                       << " voxels: rms error " << 100.0 * std::sqrt(here) << " %\n";
         }
         INFO("worst " << worst << ", rms " << std::sqrt(squares / count));
-        CHECK(std::sqrt(squares / count) < 0.06);  // cubes of cells stand for a ball
+        CHECK(std::sqrt(squares / count) < 0.06);  // cubes of cells represent a ball
     }
 }
 

@@ -141,7 +141,7 @@ TEST_CASE("media shine by temperature", "[media][registry][emission]") {
     CHECK(alone.warnings().size() == 1);
 }
 
-TEST_CASE("grids from files, with what the user should know", "[media][registry]") {
+TEST_CASE("grids from files, with warnings for the user", "[media][registry]") {
     const tests::GridFolder folder;
     media::write_vol_file(folder.file("grid.vol"), tests::vol_grid({2, 2, 2}, 1, [](int x, int, int) {
                               return Rgb(x ? 1.0f : -1.0f);

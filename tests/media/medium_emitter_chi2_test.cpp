@@ -1,6 +1,6 @@
-// The emission of a medium as a light draws what it claims: directions to it, points of it, and directions of
-// its particles, by chi-square tests against its density of points p_V. It is no type of the scene language,
-// so no registered type stands for it.
+// The emission of a medium as a light samples what it claims: directions to it, points of it, and directions
+// of its particles, by chi-square tests against its density of points p_V. It is no type of the scene
+// language, so no registered type represents it.
 #include "media/medium_emitter.h"
 #include "tests/media/test_media.h"
 #include "tests/support/catch.h"
@@ -83,13 +83,13 @@ DistanceSampler coordinate(const Glow& glow, int axis) {
 
 TEST_CASE("connections to a glowing medium follow its density of points", "[media][emission][chi2]") {
     const Glow glow;
-    const auto drawn = [&](core::Rng& rng) -> std::optional<Vec3> {
+    const auto sampled = [&](core::Rng& rng) -> std::optional<Vec3> {
         const auto s = glow.light->sample_direct(receiver, rng.next_vec2());
         return s ? std::optional<Vec3>(s->wi) : std::nullopt;
     };
     const auto density = [&](const Vec3& w) { return direction_density(glow, w); };
     Chi2Options o = towards_the_cube("direct");
-    const Chi2Result result = chi2_test(drawn, density, o);
+    const Chi2Result result = chi2_test(sampled, density, o);
     INFO(result.message);
     CHECK(result.passed);
     core::Rng rng(3);
@@ -102,7 +102,7 @@ TEST_CASE("connections to a glowing medium follow its density of points", "[medi
     // Planted: the density three per cent off, and the squared distance forgotten.
     o.write_table = false;
     CHECK_FALSE(chi2_test(
-                    drawn, [&](const Vec3& w) { return 0.97 * density(w); }, o)
+                    sampled, [&](const Vec3& w) { return 0.97 * density(w); }, o)
                     .passed);
     const auto flat = [&](const Vec3& w) {
         double sum = 0.0;
@@ -112,7 +112,7 @@ TEST_CASE("connections to a glowing medium follow its density of points", "[medi
         }
         return sum;
     };
-    CHECK_FALSE(chi2_test(drawn, flat, o).passed);
+    CHECK_FALSE(chi2_test(sampled, flat, o).passed);
 }
 
 TEST_CASE("particles of a glowing medium start by its density of points, in all directions",
@@ -155,9 +155,9 @@ TEST_CASE("particles of a glowing medium start by its density of points, in all 
 }
 
 // Two techniques find a point y of the medium: a direction of density p_w that a walk collides in, and a
-// point drawn of density p_V. The weights add up to one only where both sides count per length of the ray
+// point sampled of density p_V. The weights add up to one only where both sides count per length of the ray
 // with the same c(y).
-TEST_CASE("light sampling and walks into a glowing medium weigh each other by the same density",
+TEST_CASE("light sampling and walks into a glowing medium weight each other by the same density",
           "[media][emission]") {
     const Glow glow;
     constexpr float chance = 0.3f;

@@ -1,5 +1,5 @@
-// Every phase function draws directions with the density it claims, by the chi-square test of all directions;
-// and the test finds planted errors.
+// Every phase function samples directions with the density it claims, by the chi-square test of all
+// directions; and the test finds planted errors.
 #include <set>
 
 #include "core/scene/phase_function.h"
@@ -89,7 +89,7 @@ Chi2Options planted_options(const PhaseCase& c) {
 
 }  // namespace
 
-TEST_CASE("phase functions draw what they claim by a chi-square test", "[media][phase][chi2]") {
+TEST_CASE("phase functions sample what they claim by a chi-square test", "[media][phase][chi2]") {
     const std::vector<PhaseCase> cases = phase_cases();
     for (const PhaseCase& c : cases)
         for (std::size_t v = 0; v < viewers.size(); ++v) {
@@ -104,7 +104,7 @@ TEST_CASE("phase functions draw what they claim by a chi-square test", "[media][
             INFO(reverse.message);
             CHECK(reverse.passed);
             if (c.cap == 2.0) CHECK(result.integral == Approx(1.0).epsilon(1e-3));
-            // They are normalised and drawn in proportion to their value.
+            // They are normalised and sampled in proportion to their value.
             core::Rng rng(v);
             const core::PhaseSample s = c.phase->sample(viewers[v], rng.next_vec2());
             CHECK(s.pdf_solid_angle == c.phase->pdf_solid_angle(viewers[v], s.wi));

@@ -1,4 +1,4 @@
-// Scattering along a ray, all of it in one walk: candidates, and the points chosen among them, stand for the
+// Scattering along a ray, all of it in one walk: candidates, and the points chosen among them, represent the
 // integral of T sigma_s, the rest of the light comes through, and what the medium emits is met; whatever the
 // medium.
 #include "core/scene/scattering_points.h"
@@ -202,7 +202,7 @@ TEST_CASE("too many candidates to keep leave their mean", "[media][scattering_po
     for (int i = 0; i < 4000; ++i) {
         points.start(core::Rng(rng.next_u32()));
         points.begin_part({});
-        // 5000 candidates at x = 0 to 1 of weight x: the sum is 1/2, the mean of x weighs 2/3.
+        // 5000 candidates at x = 0 to 1 of weight x: the sum is 1/2, the mean of x by weight is 2/3.
         double total = 0.0, moment = 0.0;
         for (int k = 0; k < 5000; ++k) {
             const float x = (float(k) + 0.5f) / 5000.0f;

@@ -2,8 +2,8 @@
 //
 // `escape` and `connection` are the two techniques for light arriving through the segment: by unidirectional
 // tracking alone, and by a connection alone. `two_techniques` adds both under the balance heuristic, the
-// hero drawn uniformly. All three must have the transmittance as their mean, whatever the medium's spectrum;
-// `collision` must have the scattered share as its mean.
+// hero sampled uniformly. All three must have the transmittance as their mean, whatever the medium's
+// spectrum; `collision` must have the scattered share as its mean.
 #pragma once
 
 #include <array>

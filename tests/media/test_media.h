@@ -60,7 +60,7 @@ inline std::shared_ptr<media::HeterogeneousMedium> medium_of(media::VolFile file
     return media::GridVolume(std::move(file), to_world, false, "test").make_medium(std::move(parts));
 }
 
-/// Optical depth from t_min to t, by the midpoint rule on Medium::coefficients(): knows nothing of tracking.
+/// Optical depth from t_min to t, by the midpoint rule on Medium::coefficients(): free of tracking.
 inline core::Vec3d quadrature_depth(const core::Medium& medium, const core::Ray& ray, double t, int steps) {
     core::Vec3d sum(0.0);
     const double h = (t - ray.t_min) / steps;

@@ -136,7 +136,7 @@ TEST_CASE("the exponential of a mean is right in the mean, whatever the spread o
         tests::Mean right, without_series;
         for (int i = 0; i < 400000; ++i) {
             media::MeanEstimates<double> x{};
-            const std::size_t count = media::draw_estimates(rng);
+            const std::size_t count = media::sample_estimates(rng);
             for (std::size_t k = 0; k < count; ++k)
                 x[k] = -1.2 + spread * (2.0 * double(rng.next_float()) - 1.0);
             right.add(media::exp_of_mean(x, count));

@@ -1,4 +1,4 @@
-// Grids whose sides differ, with values that tell the three axes apart.
+// Grids whose sides differ, with values that distinguish the three axes.
 #include "tests/media/test_media.h"
 #include "tests/support/catch.h"
 

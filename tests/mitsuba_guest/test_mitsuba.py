@@ -101,7 +101,7 @@ class Guest(unittest.TestCase):
     def test_the_picture_is_that_of_mitsuba(self):
         mine = np.array(mi.render(mi.load_dict(scene_of({"type": "mote_path"})), spp=256), dtype=float)
         theirs = np.array(mi.render(mi.load_dict(scene_of({"type": "path"})), spp=256), dtype=float)
-        # Pixels are independent of each other in both, so the spread of their differences tells the standard error.
+        # Pixels are independent of each other in both, so the spread of their differences gives the standard error.
         difference = (mine - theirs).mean(axis=2)
         error = difference.std(ddof=1) / np.sqrt(difference.size)
         self.assertLess(abs(difference.mean()), 4.0 * error)
@@ -122,7 +122,7 @@ class Guest(unittest.TestCase):
             guest.export(scene, f"{folder}/e.xml")
             self.assertIn(f"{folder}/one.ply", Path(folder, "e.xml").read_text())
 
-    def test_what_mote_does_not_know_is_named(self):
+    def test_unknown_things_are_named(self):
         for more, name in (({"extra": {"type": "sphere", "bsdf": {"type": "hair"}}}, "hair"),
                            ({"sky": {"type": "sunsky"}}, "sunsky")):
             with self.assertRaisesRegex(RuntimeError, name):

@@ -27,9 +27,9 @@ pages = len(list((folder / "html").glob("*.html")))
 
 planted = headers / "core/math/ray.h"
 whole = planted.read_text()
-planted.write_text(whole.replace("struct Ray {", "struct Ray {\n    float nobody_knows = 0.0f;\n"))
+planted.write_text(whole.replace("struct Ray {", "struct Ray {\n    float undocumented = 0.0f;\n"))
 code, warnings = doxygen()
 planted.write_text(whole)
-if code == 0 or "nobody_knows" not in warnings:
+if code == 0 or "undocumented" not in warnings:
     sys.exit("a name without docs is not found")
 print(f"{pages} pages, no warning; a planted name without docs is found")

@@ -25,10 +25,23 @@ WORDS = [
     (r"drawn (?:lights?|distances?|directions?|samples?)", "sampled"),
     (r"shares? of (?:the )?(?:draws|samples)", "probability"),
     (r"part(?:s)? of (?:the |a )?nodes?", "child"),
-    (r"most_\w+|least_\w+", "max_, min_"),
+    (r"(?:most|least)_(?!squares\b|common\b)[a-z]\w*", "max_, min_"),
 ]
 
+# In names, comments and messages of code as well (tools/count_house.py), where nothing is drawn but pictures.
+CODE_WORDS = [*WORDS, (r"drawn", "sampled"), (r"tells?|told", "shows, reports, distinguishes"), (r"offers?|offered", "submits, has")]
+
 QUOTES_TESTS = "docs/testing.md"
+
+
+def first_word(line, words):
+    """The first match of a list of words in a line, with the better word; or None. Names count by their parts as well."""
+    for pattern, better in words:
+        for text in (line, re.sub("look_at", "", line).replace("_", " ")):  # look_at is a matrix
+            match = re.search(rf"\b(?:{pattern})\b", text, flags=re.IGNORECASE)
+            if match:
+                return match.group(0), better
+    return None
 
 
 def check(root):

@@ -86,8 +86,8 @@ def meshes():
 
 
 def boundaries():
-    """A cube of half 3 around a grid of half 1 is drawn in; one of half 0.5 stays."""
-    for half, drawn_in in ((3, True), (0.5, False)):
+    """A cube of half 3 around a grid of half 1 is shrunk; one of half 0.5 stays."""
+    for half, shrunk in ((3, True), (0.5, False)):
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
             (folder / "g.vol").write_bytes(b"VOL\3" + struct.pack("<5i6f", 1, 2, 2, 2, 1, 0, 0, 0, 2, 2, 2))
@@ -96,9 +96,9 @@ def boundaries():
                 '<string name="filename" value="g.vol"/><transform name="to_world"><translate x="-1" y="-1" z="-1"/>'
                 f'</transform></volume></medium><shape type="cube"><transform name="to_world"><scale value="{half}"/>'
                 '</transform><ref name="interior" id="m"/></shape></scene>')
-            check(bool(tighten(folder)) == drawn_in, f"a boundary of half {half}")
+            check(bool(tighten(folder)) == shrunk, f"a boundary of half {half}")
             shape = read_flat_scene(folder / "scene.xml").all("shape")[0]
-            near(shape.transforms["to_world"][0, 0], 1 if drawn_in else half, "its half side", 1e-3)
+            near(shape.transforms["to_world"][0, 0], 1 if shrunk else half, "its half side", 1e-3)
 
 
 def furnace():

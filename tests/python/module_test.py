@@ -209,15 +209,15 @@ class ModuleTest(unittest.TestCase):
             mote.Scene({**dictionary(), "floor": {**floor, "positions": corners[:, :2]}})
 
     def test_progress_and_callback(self):
-        told, shown = [], []
+        reported, shown = [], []
         main = threading.get_ident()
 
         def progress(p):
             self.assertEqual(threading.get_ident(), main)
-            told.append(p["passes"])
+            reported.append(p["passes"])
         picture = mote.render(self.scene, seconds=0.4, progress=progress, callback=lambda p: shown.append(p["beauty"]))
-        self.assertEqual(told, sorted(told))
-        self.assertEqual(told[-1], picture.passes)
+        self.assertEqual(reported, sorted(reported))
+        self.assertEqual(reported[-1], picture.passes)
         self.assertTrue(shown and shown[0].shape == (30, 40, 3) and np.isfinite(shown[0]).all())
         stopped = mote.render(self.scene, passes=1 << 29, progress=lambda p: p["passes"] < 3)
         self.assertTrue(stopped.interrupted and stopped.passes >= 3)
@@ -346,7 +346,7 @@ class ModuleTest(unittest.TestCase):
         self.assertFalse(checkpoint.exists())
 
     def test_threads(self):
-        """Two renders at once, and the interpreter goes on meanwhile."""
+        """Two renders at once, and the interpreter continues meanwhile."""
         pictures, ticks = {}, 0
         threads = [threading.Thread(target=lambda i=i: pictures.update({i: mote.render(self.scene, passes=20, seed=2)}))
                    for i in range(2)]

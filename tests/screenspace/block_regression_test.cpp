@@ -103,7 +103,7 @@ TEST_CASE("Colours that are linear in the features come back to rounding", "[den
     CHECK(largest_difference(view.regression(noisy, without_noise()).colour, truth) > 5e-4);
 }
 
-TEST_CASE("Regression knows no unit and no place", "[denoising][bmfr]") {
+TEST_CASE("Regression has no unit and no place", "[denoising][bmfr]") {
     const View metres(64, 48);
     const auto colour = metres.colours(noise_of);
     const auto expected = metres.regression(colour, without_noise()).colour;

@@ -44,7 +44,7 @@ std::vector<Case> lights_around(double w, double h) {
 
 double cross(const Vec2d& a, const Vec2d& b) { return a.x * b.y - a.y * b.x; }
 
-/// How far p is from the line through the light and q, as a share of the distances involved.
+/// How far p is from the line through the light and q, as a fraction of the distances involved.
 double off_line(const FilmPoint& light, const Vec2d& p, const Vec2d& q) {
     const Vec2d to_light = Vec2d(light.x, light.y) - light.w * q;
     const double length = glm::length(to_light);

@@ -34,7 +34,7 @@ std::string sub_sampled(double spacing) {
         spacing);
 }
 
-/// How much light changes from a pixel to the one `stride` further on, as a share of the mean.
+/// How much light changes from a pixel to the one `stride` further on, as a fraction of the mean.
 double change(const Picture& picture, std::size_t stride) {
     double sum = 0.0;
     for (std::size_t i = stride; i < picture.pixels.size(); ++i)
@@ -192,7 +192,7 @@ TEST_CASE("Pictures of one pixel and of one row", "[epipolar]") {
         const std::string xml = block_in_fog({0.3, 0.1, 0.5});
         const auto scene = sized(xml, w, h);
         const Picture reference = render(*scene, full);
-        // A pixel of one or two holds much of the view: lines need texels within it to know how light varies.
+        // A pixel of one or two holds much of the view: lines need texels within it to find how light varies.
         const std::string more = tolerance(0.02) + R"(<float name="texels" value="4"/>)";
         CHECK(relative_error(render(*scene, epipolar(256, 8, more)), reference) < 0.02);
         // A sub-sampled pixel is a mean of rays at most two pixels away, or its own ray.

@@ -58,7 +58,7 @@ inline Picture render(const Scene& scene, const std::string& integrator, std::ui
 }
 
 /// The mean of |a - b| over the mean of b: 1 for a black picture, whatever b is. Where every pixel is off by
-/// at most a share of itself, so is the picture.
+/// at most a fraction of itself, so is the picture.
 inline double relative_error(const Picture& a, const Picture& b) {
     double difference = 0.0, all = 0.0;
     for (std::size_t i = 0; i < a.pixels.size(); ++i)
@@ -73,7 +73,7 @@ inline std::string epipolar(int lines, int samples, const std::string& more = ""
         <integer name="samples" value="{}"/>{}</integrator>)",
                        lines, samples, more);
 }
-/// Lines are refined where light varies by more: a pixel between two samples is off by at most this share.
+/// Lines are refined where light varies by more: a pixel between two samples is off by at most this fraction.
 inline std::string tolerance(double share) {
     return fmt::format(R"(<float name="tolerance" value="{}"/>)", share);
 }

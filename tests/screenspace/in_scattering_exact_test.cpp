@@ -258,7 +258,7 @@ TEST_CASE("Marching by shadow maps traces no shadow rays", "[in_scattering_exact
     CHECK(a.statistics.values.at("shadow_maps") == 1.0);
     CHECK(a.statistics.rays.at("occlusion") < b.statistics.rays.at("occlusion") / 10);
     // Both march at the same places, so what differs are the edges of shadows: an error of the first order in
-    // the size of texels, which finer maps tell (tests/support/grid_convergence.h).
+    // the size of texels, found by finer maps (tests/support/grid_convergence.h).
     const auto finer = tests::render(*scene, integrator("mote_single_scattering", by_steps + by_map(128)));
     const auto finest = tests::render(*scene, integrator("mote_single_scattering", by_steps + by_map(256)));
     const double coarse = tests::relative_error(a, finer), fine = tests::relative_error(finer, finest);

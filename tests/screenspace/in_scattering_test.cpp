@@ -75,7 +75,7 @@ TEST_CASE("Marched light is the integral, by either rule", "[in_scattering]") {
     CHECK(std::abs(marched(*scene, ray, MarchRule::uniform, 3, 1).x / expected.x - 1.0) > 1e-2);
 }
 
-TEST_CASE("Marched light knows shadows", "[in_scattering]") {
+TEST_CASE("Marched light has shadows", "[in_scattering]") {
     const auto scene = fog_box(point, true);
     const Ray ray{Vec3(-1.0f, 0.1f, 1.9f), glm::normalize(Vec3(0.2f, 0.02f, -1.0f)), 0.0f, 3.0f};
     MediumState inside = scene->medium_state_at(ray.origin, nullptr);

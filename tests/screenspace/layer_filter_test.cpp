@@ -91,7 +91,7 @@ TEST_CASE("A layer without noise stays what it is, to the bit", "[layer_filter]"
 
 TEST_CASE("Irradiance that is linear on a slanted wall is kept up to its border", "[layer_filter]") {
     const FilterView view = make_view(70, 50, LayerKind::surface, see_gradient);
-    // A slope loses the share 1e-5 / 0.06 of itself in a level where taps spread least, at the border, and
+    // A slope loses the fraction 1e-5 / 0.06 of itself in a level where taps spread least, at the border, and
     // twice at a corner of the picture: 4 levels of slopes below one in a step of 16 pixels.
     CHECK(largest_error(view, smooth_all(view, LayerKind::surface).mean) < 1e-3f);
 }
@@ -126,7 +126,7 @@ TEST_CASE("A pixel at an edge is put together where it is noisy, and left alone 
     const NoisyLayer noisy = add_noise(view.truth, 4.0f, 8, 2);
     const auto result = filter_layer(view.features, noisy.with(LayerKind::surface), {});
     CHECK(squared(result.mean) < squared(noisy.mean) / 10.0);
-    // Something that no neighbour knows, and hardly any noise.
+    // Something that no neighbour has, and hardly any noise.
     for (const std::uint32_t i : view.features.mixed) view.truth[i] += Rgb(0.3f);
     const NoisyLayer clear = add_noise(view.truth, 1e-4f, 8, 2);
     const auto kept = filter_layer(view.features, clear.with(LayerKind::surface), {});
@@ -205,7 +205,7 @@ TEST_CASE("What is left of the variance is what repeated renders show", "[layer_
     constexpr int walls = 64, seeds = 8;
     const auto grey_wall = [](const Vec3& d) {
         Seen seen = see_gradient(d);
-        seen.sample.reflected = Rgb(0.5f);  // the noise of all channels is alike: one probe stands for them
+        seen.sample.reflected = Rgb(0.5f);  // the noise of all channels is alike: one probe represents them
         return seen;
     };
     const FilterView tall = repeated(make_view(32, 20, LayerKind::surface, grey_wall), walls);
@@ -251,7 +251,7 @@ TEST_CASE("Noise falls twentyfold on a wall, and with more passes the picture is
         return sum;
     };
     CHECK(error(4.0f, true) < error(4.0f, false) / 20.0);
-    // A pattern that features do not know: a detail of every size.
+    // A pattern that features do not have: a detail of every size.
     for (std::size_t i = 0; i < view.truth.size(); ++i)
         view.truth[i] *= 1.0f + 0.5f * std::sin(float(i % 64) * float(i % 64) * 0.05f);
     for (const float deviation : {0.3f, 0.03f, 0.003f}) {
@@ -296,7 +296,7 @@ TEST_CASE("Outliers that met in one pixel are no detail", "[layer_filter]") {
         const FilteredLayer filtered = filter_layer(view.features, noisy.with(LayerKind::surface), {});
         INFO("edge " << edge << ": " << filtered.mean[dot].y << " of " << noisy.mean[dot].y << ", truth "
                      << view.truth[dot].y);
-        // Not thrown away: shared with its neighbours. A seventh of it stays, the centre of the kernel.
+        // Not discarded: shared with its neighbours. A seventh of it stays, the centre of the kernel.
         CHECK(filtered.mean[dot].y < view.truth[dot].y + 0.16f * (noisy.mean[dot].y - view.truth[dot].y));
         CHECK(filtered.mean[dot].y > 0.85f * view.truth[dot].y);
     }

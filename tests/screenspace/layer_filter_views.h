@@ -100,7 +100,7 @@ inline Seen see_step(const core::Vec3& d) {
     return seen;
 }
 
-/// Mean of `passes` normal random numbers around the truth, and its variance as a film would know it.
+/// Mean of `passes` normal random numbers around the truth, and its variance as a film would state it.
 struct NoisyLayer {
     std::vector<core::Rgb> mean, variance;
     screenspace::LayerToFilter with(screenspace::LayerKind kind) const { return {mean, variance, kind}; }

@@ -1,7 +1,7 @@
 // The sum over nodes against the sum over all pixels, and what half resolution and the blur change.
 //
 // Approximations are held against the error that the picture has anyway: that of light which is constant over
-// a pixel, told by a picture of half the size (grid_convergence.h).
+// a pixel, found by a picture of half the size (grid_convergence.h).
 #include <tbb/global_control.h>
 
 #include "screenspace/ssbc/ssbc.h"
@@ -157,7 +157,7 @@ TEST_CASE("A blur keeps to its surface and changes nothing that is even", "[ssbc
     const auto even = blurred(surfaces, walls, 2.0f, 0.35f);
     for (std::size_t i = 0; i < walls.size(); ++i)
         CHECK(even[i].x == Approx(walls[i].x).epsilon(1e-4).margin(1e-4));
-    const auto wide = blurred(surfaces, walls, 2.0f, 0.5f * pi);  // an angle that tells no surfaces apart
+    const auto wide = blurred(surfaces, walls, 2.0f, 0.5f * pi);  // an angle that distinguishes no surfaces
     double mixed = 0.0;
     for (std::size_t i = 0; i < walls.size(); ++i) mixed += double(std::abs(wide[i].x - walls[i].x));
     CHECK(mixed > 1.0);

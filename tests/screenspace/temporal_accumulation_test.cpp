@@ -176,10 +176,10 @@ TEST_CASE("A moving shadow's trail is gone within five frames", "[denoising][tem
         }
         return 20;
     };
-    const int watched = frames_of_trail(4.0f), all_believed = frames_of_trail(all);
-    CAPTURE(watched, all_believed);
+    const int watched = frames_of_trail(4.0f), all_kept = frames_of_trail(all);
+    CAPTURE(watched, all_kept);
     CHECK(watched <= 5);
-    CHECK(all_believed > 10);
+    CHECK(all_kept > 10);
 }
 
 TEST_CASE("What is not finite adds nothing, and the sky has a history", "[denoising][temporal]") {

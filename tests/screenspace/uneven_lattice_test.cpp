@@ -21,7 +21,7 @@ TEST_CASE("a lattice begins at its own column and row", "[screenspace][upsamplin
          {ShadedLattice{4, 3, 0}, ShadedLattice{4, 1, 2}, ShadedLattice{3, 0, 2}}) {
         const Upsampling upsampling(width, height, lattice, LayerKind::surface, points);
         CHECK(upsampling.again().empty());
-        std::vector<Rgb> light(points.size(), Rgb(-1e3f));  // wrong where nobody sets it
+        std::vector<Rgb> light(points.size(), Rgb(-1e3f));  // wrong where nothing sets it
         int shaded = 0;
         for (int y = lattice.row; y < height; y += lattice.spacing)
             for (int x = lattice.column; x < width; x += lattice.spacing) {

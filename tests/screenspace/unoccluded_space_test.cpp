@@ -54,7 +54,7 @@ struct Outcome {
     int clear = 0, wrong = 0, unhit = 0;
 };
 
-/// Triangles between a light and a piece of a ray, `shrink` of which is looked at.
+/// Triangles between a light and a piece of a ray, `shrink` of which is tested.
 Outcome try_triangles(float size, double shrink, bool infinite) {
     Numbers random{Rng(7)};
     Outcome o;

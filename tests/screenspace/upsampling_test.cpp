@@ -1,5 +1,5 @@
 // Bilateral upsampling against closed forms: what is linear on a plane stays, nothing leaks across a corner,
-// between parallel planes or depths of a medium, and who finds nobody alike is shaded again.
+// between parallel planes or depths of a medium, and a pixel without similar neighbours is shaded again.
 #include "screenspace/upsampling/upsampling.h"
 
 #include <algorithm>
@@ -43,7 +43,7 @@ View view_of(const std::function<Seen(const Vec3&, int x, int y)>& see, LayerKin
 std::vector<Rgb> upsampled(const View& view, const ShadedLattice& lattice, LayerKind kind,
                            std::vector<std::uint32_t>* again = nullptr) {
     const Upsampling upsampling(width, height, lattice, kind, view.points);
-    std::vector<Rgb> light(view.truth.size(), Rgb(-1.0f));  // wrong where nobody sets it
+    std::vector<Rgb> light(view.truth.size(), Rgb(-1.0f));  // wrong where nothing sets it
     for (int i = 0; i < width * height; ++i)
         if (lattice.holds(i % width, i / width)) light[std::size_t(i)] = view.truth[std::size_t(i)];
     for (const std::uint32_t pixel : upsampling.again()) light[pixel] = view.truth[pixel];
@@ -146,7 +146,7 @@ TEST_CASE("a wire that the lattice misses is shaded again, and nothing else", "[
     CHECK(deviation(upsampled(view, {4, 0, 0}, LayerKind::surface, &again), view.truth) < 1e-6);
     REQUIRE(again.size() == std::size_t(height));
     for (int y = 0; y < height; ++y) CHECK(again[std::size_t(y)] == std::uint32_t(y * width + 10));
-    // Light that nobody shares, and pixels without any.
+    // Light that no pixel shares, and pixels without any.
     auto alone = view;
     alone.points[width * 5 + 21].shared = false;
     alone.points[width * 6 + 10].modulation = Rgb(0.0f), alone.truth[width * 6 + 10] = Rgb(0.0f);
@@ -172,7 +172,7 @@ TEST_CASE("light scattered in a medium is upsampled over one depth of it", "[scr
     };
     const auto step = fog_before([](const Vec3& d) { return d.x < 0.03f ? 1.9f : 6.0f; }, 0.5f);
     CHECK(deviation(upsampled(step, {4, 0, 0}, LayerKind::volume), step.truth) < 2e-3);
-    // Behind dense fog nobody sees the step, and the light of both is the same.
+    // Behind dense fog the step is invisible, and the light of both is the same.
     const auto dense = fog_before([](const Vec3& d) { return d.x < 0.03f ? 1.9f : 6.0f; }, 9.0f);
     std::vector<std::uint32_t> again;
     CHECK(deviation(upsampled(dense, {4, 0, 0}, LayerKind::volume, &again), dense.truth) < 1e-3);

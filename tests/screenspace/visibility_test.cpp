@@ -31,25 +31,25 @@ struct Picture {
     }
 };
 
-int draw(Rng& rng, int end) { return std::min(int(rng.next_float() * float(end)), end - 1); }
+int sample(Rng& rng, int end) { return std::min(int(rng.next_float() * float(end)), end - 1); }
 
 PixelRectangle random_rectangle(Rng& rng, int width, int height) {
-    const int x = draw(rng, width + 20) - 10, y = draw(rng, height + 20) - 10;
-    return {x, y, x + draw(rng, width) - 3, y + draw(rng, height) - 3};  // some are empty, some stick out
+    const int x = sample(rng, width + 20) - 10, y = sample(rng, height + 20) - 10;
+    return {x, y, x + sample(rng, width) - 3, y + sample(rng, height) - 3};  // some are empty, some stick out
 }
 
 /// Noise, runs and blocks, with holes.
 Picture random_picture(Rng& rng, int width, int height, std::uint32_t count) {
     Picture picture{width, height, count, std::vector<std::uint32_t>(std::size_t(width * height), no_item)};
-    const int blocks = draw(rng, 60);
+    const int blocks = sample(rng, 60);
     for (int i = 0; i < blocks; ++i) {
         const PixelRectangle r = intersection(random_rectangle(rng, width, height), picture.view().frame());
-        const auto item = std::uint32_t(draw(rng, int(count)));
+        const auto item = std::uint32_t(sample(rng, int(count)));
         for (int y = r.y0; y < r.y1; ++y)
             for (int x = r.x0; x < r.x1; ++x) picture.items[std::size_t(y * width + x)] = item;
     }
     for (int i = 0; i < width * height / 4; ++i)
-        picture.items[std::size_t(draw(rng, width * height))] = std::uint32_t(draw(rng, int(count)));
+        picture.items[std::size_t(sample(rng, width * height))] = std::uint32_t(sample(rng, int(count)));
     return picture;
 }
 
@@ -59,7 +59,7 @@ std::vector<ItemBounds> bounds_of(const Picture& picture, Rng& rng) {
     std::vector<ItemBounds> bounds(picture.count);
     for (std::uint32_t item = 0; item < picture.count; ++item) {
         PixelRectangle r = counts.bounds(item);
-        if (!r.empty()) r.x0 -= draw(rng, 4), r.y1 += draw(rng, 4);
+        if (!r.empty()) r.x0 -= sample(rng, 4), r.y1 += sample(rng, 4);
         bounds[item].rectangle = r;
     }
     return bounds;
@@ -153,7 +153,7 @@ TEST_CASE("Histograms of items are exact in every tile of every level, for any p
         CHECK(wrong == 0);
         for (int i = 0; i < 50; ++i) {
             const PixelRectangle r = random_rectangle(rng, width, height);
-            const auto item = std::uint32_t(draw(rng, 23));
+            const auto item = std::uint32_t(sample(rng, 23));
             CHECK(histogram.pixels_around(item, r) >= picture.brute_force(item, r));
         }
         for (const int threads : {1, 2, 7})
@@ -165,14 +165,14 @@ TEST_CASE("Histograms of items are exact in every tile of every level, for any p
     }
 }
 
-TEST_CASE("Exact counts are those of looking at every pixel", "[visibility]") {
+TEST_CASE("Exact counts are those of reading every pixel", "[visibility]") {
     Rng rng(5);
     for (int k = 0; k < 30; ++k) {
-        const Picture picture = random_picture(rng, 1 + draw(rng, 90), 1 + draw(rng, 90), 12);
+        const Picture picture = random_picture(rng, 1 + sample(rng, 90), 1 + sample(rng, 90), 12);
         std::vector<VisibilityQuery> queries;
         for (int i = 0; i < 200; ++i)
             queries.push_back(
-                {std::uint32_t(draw(rng, 12)), random_rectangle(rng, picture.width, picture.height)});
+                {std::uint32_t(sample(rng, 12)), random_rectangle(rng, picture.width, picture.height)});
         const auto wrong = [&] {
             const ExactCounts counts(picture.view(), 12);
             return std::count_if(queries.begin(), queries.end(), [&](const VisibilityQuery& q) {
@@ -218,13 +218,13 @@ TEST_CASE("Region sets never count too few pixels, and are exact for items that 
     Rng rng(11);
     std::int64_t extra = 0;
     for (int k = 0; k < 40; ++k) {
-        const Picture picture = random_picture(rng, 1 + draw(rng, 90), 1 + draw(rng, 90), 20);
+        const Picture picture = random_picture(rng, 1 + sample(rng, 90), 1 + sample(rng, 90), 20);
         const auto bounds = bounds_of(picture, rng);
-        const RegionSettings settings{.channels = 1 + draw(rng, 16), .max_rectangles = 1 + draw(rng, 40)};
+        const RegionSettings settings{.channels = 1 + sample(rng, 16), .max_rectangles = 1 + sample(rng, 40)};
         const RegionQueries queries(picture.view(), bounds, settings);
         int below = 0, wrong = 0;
         for (int i = 0; i < 200; ++i) {
-            const VisibilityQuery query{std::uint32_t(draw(rng, 20)),
+            const VisibilityQuery query{std::uint32_t(sample(rng, 20)),
                                         random_rectangle(rng, picture.width, picture.height)};
             const auto counted = queries.pixels(query),
                        truth = picture.brute_force(query.item, query.rectangle);

@@ -77,7 +77,7 @@ TEST_CASE("Ranges of passes add up to the bits of one render", "[session][range]
     }
 }
 
-TEST_CASE("A render that was cancelled goes on to the same bits", "[session][resume]") {
+TEST_CASE("A render that was cancelled continues to the same bits", "[session][resume]") {
     const TemporaryFolder folder;
     const LoadedScene scene = scene_of("path", 64);
     RenderSettings settings = passes(1u << 20);

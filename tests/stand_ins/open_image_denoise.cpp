@@ -1,6 +1,6 @@
 // Functions of OpenImageDenoise with results that a test can predict. A feature becomes itself plus 1; a
 // colour with both features, denoised before (above 0, or above -1 + 1 for normals), twice itself; without
-// any three times; with anything else, or without being told that it is HDR, an error. MOTE_STAND_IN_FAILS:
+// any three times; with anything else, or without the option for HDR, an error. MOTE_STAND_IN_FAILS:
 // the error of every run.
 #include <cstdlib>
 #include <map>

@@ -16,7 +16,7 @@
 
 namespace mote::tests {
 
-/// A shape that only stands for itself: the floor, the ball, or the slab with fog inside.
+/// A shape without BSDF or emitter: the floor, the ball, or the slab with fog inside.
 class NamedShape final : public core::Shape {
   public:
     explicit NamedShape(const core::Bounds3& box) : box_(box) {}
@@ -34,7 +34,7 @@ class AnalyticScene final : public core::RayQueries {
   public:
     static constexpr float extent = 4.0f, fog_low = 1.0f, fog_high = 2.0f, radius = 0.4f;
     static constexpr core::Vec3 centre{0.5f, 0.0f, 3.0f};
-    mutable int transmittances = 0;  ///< how often it was asked
+    mutable int transmittances = 0;  ///< number of queries
 
     /// Extinction [1/m]; black: no fog.
     explicit AnalyticScene(const core::Rgb& sigma_t) : sigma_t_(sigma_t) {
@@ -91,8 +91,8 @@ class AnalyticScene final : public core::RayQueries {
     /// exp(-sigma_t l), where l is the length within the slab.
     core::Rgb through_fog(const core::Vec3& from, const core::Vec3& to) const {
         const float low = std::min(from.z, to.z), high = std::max(from.z, to.z);
-        const float share = std::max(0.0f, std::min(high, fog_high) - std::max(low, fog_low)) / (high - low);
-        return glm::exp(-sigma_t_ * (share * glm::distance(from, to)));
+        const float in_fog = std::max(0.0f, std::min(high, fog_high) - std::max(low, fog_low)) / (high - low);
+        return glm::exp(-sigma_t_ * (in_fog * glm::distance(from, to)));
     }
     /// Does the segment pass the ball?
     bool free_of_ball(const core::Vec3& from, const core::Vec3& to) const {

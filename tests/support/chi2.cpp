@@ -50,7 +50,7 @@ class CellIntegral {
         const std::array<double, 4> parts = {quadrature(h0, h, p0, p), quadrature(h, h1, p0, p),
                                              quadrature(h0, h, p, p1), quadrature(h, h1, p, p1)};
         const double fine = parts[0] + parts[1] + parts[2] + parts[3];
-        // A fiftieth of the standard deviation of the share of samples in the cell.
+        // A fiftieth of the standard deviation of the fraction of samples in the cell.
         const double tolerance = 0.02 * std::sqrt(std::max(fine, 5.0 / samples_) / samples_);
         if (depth >= 8 || (depth >= subdivisions_ && std::fabs(fine - coarse) < tolerance)) return fine;
         return refine(h0, h, p0, p, parts[0], depth + 1) + refine(h, h1, p0, p, parts[1], depth + 1) +

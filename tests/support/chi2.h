@@ -18,7 +18,7 @@
 
 namespace mote::tests {
 
-/// One draw, or nothing for a sample without a smooth direction.
+/// One sample, or nothing for a sample without a smooth direction.
 using DirectionSampler = std::function<std::optional<core::Vec3>(core::Rng&)>;
 /// Claimed density per solid angle.
 using DirectionDensity = std::function<double(const core::Vec3&)>;

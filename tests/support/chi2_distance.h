@@ -17,7 +17,7 @@
 
 namespace mote::tests {
 
-/// One draw: a distance, or nothing for no event.
+/// One sample: a distance, or nothing for no event.
 using DistanceSampler = std::function<std::optional<double>(core::Rng&)>;
 /// Claimed probability of an event before t: rises from 0 at `lower`, and leaves the chance of no event over
 /// at `upper`. Called with rising t.

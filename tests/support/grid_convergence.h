@@ -1,8 +1,9 @@
-// How far a result on pixels of size h may be from its limit, told by results on pixels of 4h, 2h and h.
+// How far a result on pixels of size h may be from its limit, found by results on pixels of 4h, 2h and h.
 //
-// For an error C h^p the differences d = |f(2h) - f(h)| and |f(4h) - f(2h)| tell p, and d / (2^p - 1) is the
-// error at h. The grid convergence index takes 1.25 times that where three grids are at hand (Roache 1994). p
-// is not taken above what theory promises, nor below what it allows: two differences alone tell it badly.
+// For an error C h^p the differences d = |f(2h) - f(h)| and |f(4h) - f(2h)| determine p, and d / (2^p - 1) is
+// the error at h. The grid convergence index takes 1.25 times that where three grids are at hand (Roache
+// 1994). p is not taken above what theory promises, nor below what it allows: two differences alone determine
+// it badly.
 #pragma once
 
 #include <algorithm>

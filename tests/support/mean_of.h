@@ -1,4 +1,4 @@
-// The mean of many draws, and how far it may be off.
+// The mean of many samples, and how far it may be off.
 #pragma once
 
 #include <algorithm>
@@ -10,16 +10,16 @@ struct Mean {
     double mean, error;  ///< error: standard deviation of the mean
 };
 
-/// Mean of `draws` calls of draw(), with its standard error.
-template <typename Draw>
-Mean mean_of(int draws, const Draw& draw) {
+/// Mean of `samples` calls of sample(), with its standard error.
+template <typename Sample>
+Mean mean_of(int samples, const Sample& sample) {
     double sum = 0.0, squares = 0.0;
-    for (int k = 0; k < draws; ++k) {
-        const double x = draw();
+    for (int k = 0; k < samples; ++k) {
+        const double x = sample();
         sum += x, squares += x * x;
     }
-    const double mean = sum / draws;
-    return {mean, std::sqrt(std::max(0.0, squares / draws - mean * mean) / (draws - 1.0))};
+    const double mean = sum / samples;
+    return {mean, std::sqrt(std::max(0.0, squares / samples - mean * mean) / (samples - 1.0))};
 }
 
 }  // namespace mote::tests

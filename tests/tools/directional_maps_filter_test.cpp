@@ -92,7 +92,7 @@ TEST_CASE("Bilinear lookups are no worse over a border than inside", "[direction
         INFO(k.name << ": inside " << e.inside << ", border " << e.border);
         CHECK(e.border <= tolerated * e.inside);
         if (k.kind == MapKind::sphere)
-            continue;  // so bad at its rim, inside as well, that no border could tell
+            continue;  // so bad at its rim, inside as well, that no border would show
         const Errors planted = filter_errors(*make_directional_map(k.kind, 32), without_border);
         INFO("without the border: " << planted.border);
         CHECK(planted.border > 1.3 * e.inside);

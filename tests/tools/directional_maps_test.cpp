@@ -102,7 +102,7 @@ TEST_CASE("A texel's centre lies in the texel", "[directional_map]") {
             int elsewhere = 0;
             for (int t = 0; t < map->texels(); ++t)
                 // Around a disc, centres belong to the continuation, which is stored elsewhere.
-                if (map->used_share(t) == 1.0 && map->texel(map->direction(t)) != t) ++elsewhere;
+                if (map->used_fraction(t) == 1.0 && map->texel(map->direction(t)) != t) ++elsewhere;
             INFO(k.name << " " << size);
             CHECK(elsewhere == 0);
         }
@@ -130,13 +130,13 @@ TEST_CASE("Solid angles of all texels sum to that of the sphere", "[directional_
             for (int t = 0; t < map->texels(); ++t) {
                 sum += map->solid_angle(t);
                 mean_inverse += map->solid_angle(t) / map->domain() * map->sampling_ratio(t);
-                used += map->used_share(t);
+                used += map->used_fraction(t);
             }
             INFO(k.name << " " << size << ": " << sum - map->domain());
             CHECK(std::fabs(sum - map->domain()) < 1e-11);
             // Sampling ratios are densities: their mean over the sphere is 1.
             CHECK(mean_inverse == Approx(1.0).epsilon(1e-11));
-            CHECK(used == Approx(map->used_share() * map->texels()).epsilon(1e-11));
+            CHECK(used == Approx(map->used_fraction() * map->texels()).epsilon(1e-11));
         }
 }
 

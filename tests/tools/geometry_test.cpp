@@ -89,7 +89,7 @@ TEST_CASE("Solids of a soup are closed and face outwards", "[tools][geometry]") 
     ball.lathe({}, 60, 90,
                [](float t, float) { return core::Vec2(std::sin(core::pi * t), -std::cos(core::pi * t)); });
     CHECK(signed_volume(ball) == Approx(4.0 / 3.0 * 3.14159265358979).epsilon(0.005));
-    // Turned inside out, the sign tells.
+    // Turned inside out, the sign changes.
     Soup mirrored;
     for (const auto& t : box.triangles()) mirrored.triangle(t[0], t[2], t[1]);
     CHECK(signed_volume(mirrored) == Approx(-12.0));

@@ -1,5 +1,5 @@
-// Partial films that somebody has made to do harm: their checksums are right, and what they say is not. Each
-// is refused with its name, before memory is asked for that the file cannot fill.
+// Partial films made to do harm: their checksums are right, and what they say is not. Each
+// is refused with its name, before memory is requested that the file cannot fill.
 #include <cstring>
 #include <fstream>
 
@@ -99,7 +99,8 @@ TEST_CASE("partial films that lie are refused", "[partial_film]") {
     }
 }
 
-TEST_CASE("a film of another size does not go on where one ends, whatever its text says", "[partial_film]") {
+TEST_CASE("a film of another size does not continue where one ends, whatever its text says",
+          "[partial_film]") {
     Forged first, next;
     next.bytes = partial_film(5, 8);
     const std::string a = first.write("a.film"), b = first.folder.file("b.film");
@@ -108,5 +109,5 @@ TEST_CASE("a film of another size does not go on where one ends, whatever its te
     larger.begin_at(0, 5);
     for (int i = 0; i < 3; ++i) larger.add_pass(core::PassImage(5, 3, 2));
     core::write_partial_film(b, {core::read_partial_film(next.write("c.film")).about, larger});
-    CHECK_THROWS_WITH(apps::merge_partials({a, b}), ContainsSubstring("does not go on"));
+    CHECK_THROWS_WITH(apps::merge_partials({a, b}), ContainsSubstring("does not continue"));
 }

@@ -110,7 +110,7 @@ TEST_CASE("The Pareto front holds what no point beats", "[trade]") {
     curves = make_curves(records, 0.05);
     mark_pareto_front(curves);
     CHECK_FALSE(curves[0].points[0].on_front);  // c was below the floor before
-    CHECK_FALSE(curves[2].points[0].on_front);  // but how far, nobody knows
+    CHECK_FALSE(curves[2].points[0].on_front);  // but how far is unknown
     curves = make_curves(records, 0.0);
     mark_pareto_front(curves);
     CHECK_FALSE(curves[0].points[0].on_front);  // c was there before, and better

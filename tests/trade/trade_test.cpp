@@ -226,7 +226,7 @@ TEST_CASE("A trade writes everything, the pictures with the bits of mote render"
     CHECK(mote::core::read_exr(folder.file("v.exr")).channels ==
           mote::core::read_exr(folder.file("out/vpl-bounded.exr")).channels);
 
-    // Again: nothing is left to do. Other inputs: refused, unless asked to start anew.
+    // Again: nothing is left to do. Other inputs: refused, unless --fresh is given.
     const std::string csv = read_file(folder.file("out/trade.csv"));
     CHECK(folder.trade({"--reference", "ref.exr", "-o", "out", "--resolve", "0.05", "--quiet"}).exit_code ==
           0);

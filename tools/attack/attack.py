@@ -9,7 +9,7 @@ import numpy as np
 from methods import REFERENCE
 from verdict import CONTINUE, LIE, STAGES, compare_means, noise_lies, threshold
 
-MORE_PASSES = 4  # of the renders that tell a bias from a tail
+MORE_PASSES = 4  # of the renders that separate a bias from a tail
 
 
 @dataclass

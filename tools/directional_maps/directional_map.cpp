@@ -54,12 +54,12 @@ Vec3 DirectionalMap::direction(int texel) const {
     return unproject({p.face, centre(p)});
 }
 
-double DirectionalMap::used_share(int) const { return 1.0; }
+double DirectionalMap::used_fraction(int) const { return 1.0; }
 
 double DirectionalMap::sampling_ratio(int texel) const {
-    const double share = used_share(texel);
+    const double share = used_fraction(texel);
     if (share == 0.0) return 0.0;
-    const double even = domain() / (used_share() * double(texels()));
+    const double even = domain() / (used_fraction() * double(texels()));
     return even * share / solid_angle(texel);
 }
 

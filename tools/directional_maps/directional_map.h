@@ -79,9 +79,9 @@ class DirectionalMap {
     /// Solid angle of the used part of the texel [sr]: 0 in the corners around a disc.
     virtual double solid_angle(int texel) const = 0;
     /// How much of the texel belongs to the picture, in [0, 1].
-    virtual double used_share(int texel) const;
+    virtual double used_fraction(int texel) const;
     /// Used fraction of the whole map: pi / 4 where discs lie in squares.
-    virtual double used_share() const { return 1.0; }
+    virtual double used_fraction() const { return 1.0; }
     /// Density of texels around this one, relative to as many texels spread evenly: above 1 is oversampling.
     /// Only what belongs to the picture counts as texels. 0 where a texel is not used.
     double sampling_ratio(int texel) const;
@@ -100,7 +100,7 @@ class DirectionalMap {
     core::Vec2 centre(const Place& p) const;
 
     /// Adds what lies at a place just beyond an edge of its face, i = -1 or width, or j = -1 or height.
-    /// Unless a map knows better: the bilinear lookup, within one face, at the direction of that place.
+    /// Unless a map overrides it: the bilinear lookup, within one face, at the direction of that place.
     virtual void add_beyond_edge(FilterTaps& taps, const Place& p, float weight) const;
     /// Bilinear within the face, which ends at the centres of its outer texels.
     void add_clamped(FilterTaps& taps, const MapPoint& p, float weight) const;

@@ -14,8 +14,8 @@ class DiscMap : public DirectionalMap {
   public:
     using DirectionalMap::DirectionalMap;
 
-    double used_share() const override { return 0.78539816339744830962; }
-    double used_share(int texel) const override {
+    double used_fraction() const override { return 0.78539816339744830962; }
+    double used_fraction(int texel) const override {
         const Rectangle r = rectangle(texel);
         return disc_area(r) / ((r.high.x - r.low.x) * (r.high.y - r.low.y));
     }
@@ -42,7 +42,7 @@ class SphereMap : public DiscMap {
         const Vec2 p = across > 0.0f ? radius / across * Vec2(d.x, d.y) : Vec2(radius, 0.0f);
         return {0, 0.5f * p + 0.5f};
     }
-    /// Beyond the rim the way through -z goes on, up the other side.
+    /// Beyond the rim the way through -z continues, up the other side.
     Vec3 unproject(const MapPoint& point) const override {
         Vec2 p = 2.0f * point.uv - 1.0f;
         if (const float r = glm::length(p); r > 1.0f) p *= -std::fmax(2.0f - r, 0.0f) / r;

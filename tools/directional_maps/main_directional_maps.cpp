@@ -44,7 +44,7 @@ Spacing spacing(const DirectionalMap& map, int texel) {
     const double sum = glm::dot(a, a) + glm::dot(b, b), area = glm::length(glm::cross(a, b));
     // Singular values s and t: s^2 + t^2 = sum, s t = area.
     const double plus = std::sqrt(sum + 2.0 * area), minus = std::sqrt(std::max(sum - 2.0 * area, 0.0));
-    const double even = std::sqrt(map.domain() / (map.used_share() * map.texels()));
+    const double even = std::sqrt(map.domain() / (map.used_fraction() * map.texels()));
     return {0.5 * (plus + minus) / even, 0.5 * (plus - minus) / even};
 }
 
@@ -53,7 +53,7 @@ void print_texel(const DirectionalMap& map, int texel) {
     const Vec3 d = map.direction(texel);
     const Spacing s = spacing(map, texel);
     std::printf("%d,%d,%d,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", row / map.height(), texel % map.width(),
-                row % map.height(), double(d.x), double(d.y), double(d.z), map.used_share(texel),
+                row % map.height(), double(d.x), double(d.y), double(d.z), map.used_fraction(texel),
                 map.solid_angle(texel), map.sampling_ratio(texel), s.widest, s.narrowest);
 }
 

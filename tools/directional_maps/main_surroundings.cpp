@@ -49,7 +49,7 @@ double seconds(const std::function<void()>& work) {
     work();
     return double(std::clock() - start) / CLOCKS_PER_SEC;
 }
-double least_seconds(int repeat, const std::function<void()>& work) {
+double min_seconds(int repeat, const std::function<void()>& work) {
     double least = core::infinity;
     for (int k = 0; k < repeat; ++k) least = std::min(least, seconds(work));
     return least;
@@ -89,7 +89,7 @@ void time_layouts(const core::Scene& scene, const Options& o) {
                     l.directions, l.whole);
 }
 
-/// Something to look at: Lambertian under a distant sun on a floor of tiles, and a sky.
+/// A test scene: Lambertian under a distant sun on a floor of tiles, and a sky.
 Rgb radiance(const core::Scene& scene, const Vec3& d) {
     const Vec3 sun = glm::normalize(Vec3(0.5f, 0.8f, 0.6f)), direction = to_scene(d);
     const auto hit = hit_along(scene, d);
@@ -150,13 +150,13 @@ void reflect(const core::Scene& scene, const Options& o) {
         values.push_back(radiance(scene, directions.back()));
     }
     std::optional<SummedAreaOctahedral> sums;
-    const double build = least_seconds(o.repeat, [&] { sums.emplace(map, values); });
+    const double build = min_seconds(o.repeat, [&] { sums.emplace(map, values); });
 
     std::vector<Pixel> picture = mirror_sphere(o.pixels);
     std::puts(
         "reach,column,row,solid_angle,r,g,b,cone_r,cone_g,cone_b,build_seconds,box_seconds,cone_seconds");
     for (const float reach : o.reach) {
-        const double box_time = least_seconds(o.repeat, [&] {
+        const double box_time = min_seconds(o.repeat, [&] {
             for (Pixel& p : picture) p.box = sums->mean(p.direction, reach);
         });
         const double cone_time = seconds([&] {

@@ -1,9 +1,9 @@
 // Means of an octahedral map over boxes of any width, at the cost of a few lookups: a summed-area table over
 // the whole sphere (Engelhardt 2013, Sec. 7.3.3), for prefiltered lookups of any glossiness.
 //
-// A box that reaches over an edge of the square goes on where the edge is met again, without a stored border:
-// its parts are folded back. Around the four vertices on the horizon it covers some directions twice, with
-// all their neighbours, so that the mean stays one over a neighbourhood of the direction.
+// A box that reaches over an edge of the square continues where the edge is met again, without a stored
+// border: its parts are folded back. Around the four vertices on the horizon it covers some directions twice,
+// with all their neighbours, so that the mean stays one over a neighbourhood of the direction.
 #pragma once
 
 #include <span>

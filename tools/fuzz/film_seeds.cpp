@@ -38,7 +38,7 @@ std::vector<Bytes> checkpoint_seeds() {
 Bytes partial_film(std::uint32_t first, std::uint32_t end) {
     const std::string passes = "[" + std::to_string(first) + "," + std::to_string(end) + "]";
     const std::string about =
-        R"({"mote":"0.1.0","commit":"0123456789ab","scene":"scene.xml","asked_integrator":"","defines":["a=1"],)"
+        R"({"mote":"0.1.0","commit":"0123456789ab","scene":"scene.xml","requested_integrator":"","defines":["a=1"],)"
         R"("lenient":false,"auxiliary":false,"denoise":"","half":false,"seed":7,"integrator":"path",)"
         R"("content":"0123456789abcdef","passes":)" +
         passes +

@@ -7,9 +7,6 @@
 #include <stdexcept>
 
 #include "apps/partial_render.h"
-#include "trade/methods_file.h"
-#include "trade/record.h"
-#include "trade/reference.h"
 #include "core/files/whole_file.h"
 #include "core/formats/meshes/mesh_file.h"
 #include "core/formats/pictures/image_file.h"
@@ -25,12 +22,15 @@
 #include "media/vol_file.h"
 #include "session/reference_metadata.h"
 #include "tools/fuzz/seeds.h"
+#include "trade/methods_file.h"
+#include "trade/record.h"
+#include "trade/reference.h"
 
 namespace mote::fuzz {
 
 namespace {
 
-// Integrators read numbers and words as every object does; these stand for all of them, so that the harness
+// Integrators read numbers and words as every object does; these represent all of them, so that the harness
 // links no renderer.
 class NoIntegrator final : public core::Integrator {
   public:
@@ -192,21 +192,19 @@ std::vector<Format> formats() {
                            },
                            methods_seeds,
                            {}}));
-    all.push_back(
-        textual({"trade records",
-                 ".csv",
-                 "mote",
-                 [](const std::string& path) { trade::records_from_csv(text_of(path), path); },
-                 record_seeds,
-                 {}}));
-    Format metadata{"EXR metadata",
-                    ".exr",
-                    "mote",
-                    [scene](const std::string& path) {
-                        trade::load_reference(path, *scene, "0123456789abcdef", {});
-                    },
-                    pictures,
-                    {}};
+    all.push_back(textual({"trade records",
+                           ".csv",
+                           "mote",
+                           [](const std::string& path) { trade::records_from_csv(text_of(path), path); },
+                           record_seeds,
+                           {}}));
+    Format metadata{
+        "EXR metadata",
+        ".exr",
+        "mote",
+        [scene](const std::string& path) { trade::load_reference(path, *scene, "0123456789abcdef", {}); },
+        pictures,
+        {}};
     metadata.head = 2048;
     all.push_back(metadata);
     all.push_back({"exr", ".exr", "OpenEXR", read_picture, pictures, {}});

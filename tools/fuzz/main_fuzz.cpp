@@ -1,7 +1,7 @@
 // mote_fuzz: damages files of one format and has them read. tools/fuzz/run starts it, and starts it again
 // where it crashed or hung.
 //
-// Prints "begin I" before and "end I OUTCOME SECONDS" after every case, so that whoever watches knows which
+// Prints "begin I" before and "end I OUTCOME SECONDS" after every case, so that a watcher sees which
 // case it was. Case I depends on the format, the seed, I and the originals alone.
 #include <sys/resource.h>
 
@@ -46,7 +46,7 @@ void write_file(const std::string& path, const Bytes& bytes) {
         .write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
 }
 
-// A file that asks for more memory than its reader may have is refused, with sanitizers and without.
+// A file that requests more memory than its reader may have is refused, with sanitizers and without.
 bool is_of_a_memory_limit(const fs::path& report) {
     const Bytes bytes = bytes_of_file(report.string());
     const std::string text(bytes.begin(), bytes.end());

@@ -1,4 +1,4 @@
-// Injuries as files suffer them from transport, from bad programs, and from people who want to break a
+// Injuries as files suffer them from transport, from bad programs, and from attempts to break a
 // reader.
 #include "tools/fuzz/mutate.h"
 
@@ -30,7 +30,7 @@ class Injurer {
     }
 
   private:
-    // Every number is drawn in a statement of its own where the order matters: compilers evaluate operands
+    // Every number is sampled in a statement of its own where the order matters: compilers evaluate operands
     // and arguments in different orders, and a case must be the same with all of them.
     std::size_t below(std::size_t n) { return n < 2 ? 0 : std::size_t(rng_.next_u32()) % n; }
     /// Where the injury is: anywhere, or within the head.
@@ -135,7 +135,7 @@ class Injurer {
         return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '.' ||
                c == '-' || c == '_';
     }
-    /// A word becomes a number of the kind that nobody writes, or another word of the file.
+    /// A word becomes a number of the kind that is never written, or another word of the file.
     void injure_text() {
         const auto [begin, end] = word_at(place());
         static constexpr std::array<std::string_view, 20> words = {"0",

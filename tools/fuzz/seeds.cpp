@@ -12,10 +12,10 @@
 #include <iterator>
 #include <span>
 
-#include "trade/record.h"
 #include "core/formats/pictures/image_file.h"
 #include "media/vol_file.h"
 #include "tools/fuzz/scratch_file.h"
+#include "trade/record.h"
 
 namespace mote::fuzz {
 
@@ -197,7 +197,7 @@ std::vector<Bytes> exr_seeds(const std::string& world_to_camera) {
     for (const bool half : {false, true}) {
         core::ImageChannels image = gradient(4, 3);
         image.add("Depth.Z", std::vector<float>(12, 2.0f));
-        // A reference must say how noisy it is; little enough for the smallest error that is asked for.
+        // A reference must say how noisy it is; little enough for the smallest error that is requested.
         image.add_rgb("Variance", std::vector<Rgb>(12, Rgb(1e-6f)));
         image.metadata = {{"bound", "12.5"},
                           {"integrator", "path"},

@@ -131,7 +131,7 @@ void add_balustrades(Parts& parts, float detail) {
 void add_hangings(Parts& parts, float detail, Rng& rng) {
     static constexpr const char* colours[] = {"cloth_red", "cloth_blue", "cloth_ochre"};
     for_each_opening([&](int number, const Vec3& a, const Vec3& b, const Vec3& inwards) {
-        // Curtains above, drawn to one side or to both; banners from the balustrade in every third bay.
+        // Curtains above, pulled to one side or to both; banners from the balustrade in every third bay.
         if (number % 2 == 0) {
             const Vec3 along = (b - a) / bay;
             const float wide = 0.7f + 0.5f * rng.next_float();

@@ -5,7 +5,7 @@
 
 namespace mote::tools {
 
-/// One wall with rows of windows. Widths and heights are shares of a cell of the grid.
+/// One wall with rows of windows. Widths and heights are fractions of a cell of the grid.
 struct Facade {
     Vec3 foot, along;  ///< lower left corner, and to the right: its length is the width [m]
     float height;

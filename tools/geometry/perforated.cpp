@@ -13,7 +13,7 @@ using core::pi;
 /// Where a ray from the middle of a cell at this angle leaves the cell, [-0.5, 0.5]^2.
 Vec2 cell_border(float c, float s) { return 0.5f * Vec2(c, s) / std::fmax(std::fabs(c), std::fabs(s)); }
 
-/// The radius of a star with eight tips, at a share of a turn.
+/// The radius of a star with eight tips, at a fraction of a turn.
 float star(float turn, float inner, float outer) {
     const float t = 8.0f * turn - std::floor(8.0f * turn);
     return lerp(outer, inner, 1.0f - std::fabs(2.0f * t - 1.0f));

@@ -1,5 +1,5 @@
 // Thin sheets with many holes, through which a light falls apart into shafts: a carved screen, a lantern, and
-// a tree in leaf. They stand for the hole-rich occluders of Engelhardt 2013, chapter 9.
+// a tree in leaf. They represent the hole-rich occluders of Engelhardt 2013, chapter 9.
 #pragma once
 
 #include "tools/geometry/soup.h"

@@ -13,7 +13,7 @@ struct Sky {
 };
 
 /// Radiance from a direction (unit length, y up) [W/(m^2 sr)]. The disc of the sun is left out: a directional
-/// light stands for it. Below the horizon lies a dull, hazy ground.
+/// light represents it. Below the horizon lies a dull, hazy ground.
 core::Rgb sky_radiance(const Sky& sky, const core::Vec3& direction);
 /// In the layout of the `envmap` light. Throws core::InputError when the file cannot be written.
 void write_sky(const std::filesystem::path& path, const Sky& sky);

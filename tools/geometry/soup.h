@@ -54,7 +54,7 @@ class Soup {
     std::vector<std::array<Vec3, 3>> triangles_;
 };
 
-/// A scene as its materials know it: one soup each.
+/// A scene by materials: one soup each.
 using Parts = std::map<std::string, Soup>;
 void add_parts(Parts& all, const Parts& part, const Placement& placement);
 

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Plants faults, one after the other, and asks whether the tests of their own folder notice.
+"""Plants faults, one after the other, and runs the tests of their own folder.
 
 Usage: tools/mutants/mutants.py [--only NAME,...] [--again] [--trust] [--filters] [--at COMMIT] | --list | --quick | --table
 
 Every fault of faults.toml is an exact text and what takes its place, so that it survives edits elsewhere in its file;
 where the text is gone, the script says so. Faults are planted in a clone of the last commit, build/mutants/tree, never
 in the tree where you work. There the test program of the fault's folder is built and run up to its first failure.
-A program that fails without a fault, or takes ten times as long as without, tells nothing: both are looked at first.
-Results are kept in build/mutants/results.jsonl: what has one is not run again, unless --again asks for it.
+A program that fails without a fault, or takes ten times as long as without, shows nothing: both are tested first.
+Results are kept in build/mutants/results.jsonl: what has one is not run again, unless --again requests it.
 
 --only NAME,...  these faults, or all whose name begins so
 --again          faults that have a result, too
@@ -34,7 +34,7 @@ WORK = ROOT / "build" / "mutants"
 TREE = WORK / "tree"
 RESULTS = WORK / "results.jsonl"
 LATER = "survived its filter"
-LEAST_SECONDS = 120.0  # granted to every run of a program
+MIN_SECONDS = 120.0  # granted to every run of a program
 REPORT = WORK / "report.xml"
 
 
@@ -137,7 +137,7 @@ def run(folder, words, limit):
 def limit(folder, commit, trusted):
     """Seconds granted to a run: ten times what the program takes without a fault. Stops where it fails without one."""
     if trusted:
-        return 5.0 * LEAST_SECONDS
+        return 5.0 * MIN_SECONDS
     name = f"{folder} without a fault"
     known = results().get(name)
     if not known or known["commit"] != commit:
@@ -148,7 +148,7 @@ def limit(folder, commit, trusted):
             sys.exit(f"{name} fails: {failed}")
         known = {"name": name, "commit": commit, "seconds": seconds}
         keep(known)
-    return max(LEAST_SECONDS, 10.0 * known["seconds"])
+    return max(MIN_SECONDS, 10.0 * known["seconds"])
 
 
 def try_fault(fault, commit, trusted, filters_only):

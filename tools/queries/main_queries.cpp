@@ -33,7 +33,7 @@ struct Options {
     int pictures = 8, t = 4, repeat = 3, threads = 2;
 };
 
-double least_milliseconds(int repeat, const std::function<void()>& work) {
+double min_milliseconds(int repeat, const std::function<void()>& work) {
     double least = 1e30;
     for (int k = 0; k < repeat; ++k) {
         const auto start = std::chrono::steady_clock::now();
@@ -84,16 +84,16 @@ void time(const benchmarks::EllipsePicture& picture, const Options& o, Row& row)
     const auto all = [&](const auto& queries) {
         for (std::uint32_t item = 0; item < n; ++item) sink += queries.pixels(item);
     };
-    row.graph_ms = least_milliseconds(o.repeat, [&] { sink += ConflictGraph(rectangles).edges(); });
-    row.colour_ms = least_milliseconds(o.repeat, [&] { sink += colour(graph, o.regions.channels).size(); });
-    row.sets_ms = least_milliseconds(
+    row.graph_ms = min_milliseconds(o.repeat, [&] { sink += ConflictGraph(rectangles).edges(); });
+    row.colour_ms = min_milliseconds(o.repeat, [&] { sink += colour(graph, o.regions.channels).size(); });
+    row.sets_ms = min_milliseconds(
         o.repeat, [&] { sink += RegionSets(picture.bounds, picture.view().frame(), o.regions).regions(); });
     row.summed_ms =
-        least_milliseconds(o.repeat, [&] { all(RegionQueries(picture.view(), picture.bounds, o.regions)); });
-    row.histogram_ms = least_milliseconds(
+        min_milliseconds(o.repeat, [&] { all(RegionQueries(picture.view(), picture.bounds, o.regions)); });
+    row.histogram_ms = min_milliseconds(
         o.repeat, [&] { all(ItemHistogram(picture.view(), ItemLayout::of_objects(n, o.t))); });
-    row.exact_ms = least_milliseconds(o.repeat, [&] { all(ExactCounts(picture.view(), n)); });
-    row.bare_ms = least_milliseconds(o.repeat, [&] {
+    row.exact_ms = min_milliseconds(o.repeat, [&] { all(ExactCounts(picture.view(), n)); });
+    row.bare_ms = min_milliseconds(o.repeat, [&] {
         for (const std::uint32_t item : picture.items) sink += item;
     });
     if (sink == 0) std::fputs("nothing was counted\n", stderr);
@@ -134,7 +134,7 @@ int main(int argc, char** argv) {
     command->add_option("--counts", o.counts, "of ellipses")->delimiter(',');
     command->add_option("--width", o.ellipses.width, "pixels")->check(CLI::Range(1, 16384));
     command->add_option("--height", o.ellipses.height, "pixels")->check(CLI::Range(1, 16384));
-    command->add_option("--least-radius", o.ellipses.least_radius, "pixels");
+    command->add_option("--min-radius", o.ellipses.min_radius, "pixels");
     command->add_option("--largest-radius", o.ellipses.largest_radius, "pixels");
     command->add_option("--aspect", o.ellipses.aspect, "of the longer to the shorter axis");
     command->add_option("--spread", o.ellipses.spread,

@@ -1,4 +1,4 @@
-// A quick look at a density grid: what is seen of it against a light wall, as a PNG.
+// A quick image of a density grid: what is seen of it against a light wall, as a PNG.
 #pragma once
 
 #include <string>

@@ -18,8 +18,8 @@ enum Component : int {
     float32 = 5126
 };
 
-constexpr std::size_t most_elements = std::size_t(1) << 28;
-constexpr std::size_t most_zeros = std::size_t(1) << 24;  // of accessors that have no bytes
+constexpr std::size_t max_elements = std::size_t(1) << 28;
+constexpr std::size_t max_zeros = std::size_t(1) << 24;  // of accessors that have no bytes
 
 std::size_t bytes_of(int type, const GltfValue& value) {
     switch (type) {
@@ -59,11 +59,11 @@ GltfAccessor::GltfAccessor(GltfFile& file, std::size_t index)
       type_(int(std::min<std::uint64_t>(value_["componentType"].whole(0), 1u << 20))),
       components_(components_of(value_)),
       normalized_(value_["normalized"].flag(false)) {
-    if (count_ > most_elements) value_["count"].refuse("is larger than 2^28");
+    if (count_ > max_elements) value_["count"].refuse("is larger than 2^28");
     dense_.type = type_;
     if (value_["bufferView"].present())
         dense_ = numbers(file, value_, count_, type_, components_, true);
-    else if (count_ > most_zeros)
+    else if (count_ > max_zeros)
         value_["count"].refuse("is larger than 2^24, without data");
     if (value_["sparse"].present()) read_sparse(file, value_["sparse"]);
 }

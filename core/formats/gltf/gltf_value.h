@@ -15,7 +15,7 @@ namespace mote::core {
 
 class GltfValue {
   public:
-    /// `json` may be null; it must live as long as this. `file` stands in messages.
+    /// `json` may be null; it must live as long as this. `file` is its name in messages.
     GltfValue(const nlohmann::json* json, std::string place, const std::string& file)
         : json_(json), place_(std::move(place)), file_(&file) {}
 

@@ -1,4 +1,4 @@
-// Elements of the scene language, for those who write scenes.
+// Elements of the scene language, for writers of scenes.
 #pragma once
 
 #include <pugixml.hpp>

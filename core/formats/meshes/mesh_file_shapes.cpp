@@ -100,7 +100,7 @@ void register_mesh_files(Registry& registry) {
 </shape>)");
     add("mesh", "",
         "Triangle mesh from any file that assimp reads (3ds, stl, off, gltf, ...), all its parts in one "
-        "shape. Mitsuba does not know this type.",
+        "shape. Mitsuba has no such type.",
         mesh_rows(flip_row), R"(<shape type="mesh">
     <string name="filename" value="meshes/cube.off"/>
 </shape>)");

@@ -121,7 +121,7 @@ class PlyReader {
     }
 
     /// The least number of bytes that one row of the element takes.
-    std::size_t least_row_size(const Element& element) const {
+    std::size_t min_row_size(const Element& element) const {
         std::size_t size = 0;
         for (const Property& p : element.properties)
             size += ascii_ ? 2 : number_size[std::size_t(p.count.value_or(p.type))];
@@ -129,7 +129,7 @@ class PlyReader {
     }
 
     void read_element(const Element& element) {
-        const std::size_t row = least_row_size(element);
+        const std::size_t row = min_row_size(element);
         if (row == 0) return;
         // The last number of an ASCII file needs no space behind it.
         if (element.count > (remaining() + 1) / row)

@@ -23,11 +23,11 @@ enum Flag : std::uint32_t {
     has_normals = 0x0001,
     has_uvs = 0x0002,
     has_colours = 0x0008,
-    asks_for_face_normals = 0x0010,
+    face_normals_requested = 0x0010,
     double_precision = 0x2000
 };
 /// zlib packs at most 1032 bytes into one. Meshes get nowhere near: large ones that claim to are refused.
-constexpr std::uint64_t most_packed = 1032, most_packed_large = 100, large = 256u << 20;
+constexpr std::uint64_t max_packed = 1032, max_packed_large = 100, large = 256u << 20;
 constexpr std::size_t longest_name = 4096;
 
 template <typename T>
@@ -87,9 +87,9 @@ class SerializedReader {
         const auto vertices = stream.number<std::uint64_t>(), triangles = stream.number<std::uint64_t>();
         check_sizes(vertices, triangles, packed.size());
         read_arrays(stream, std::size_t(vertices), std::size_t(triangles));
-        if (flags_ & asks_for_face_normals)
+        if (flags_ & face_normals_requested)
             file_.notes.push_back(
-                "the file asks for face normals, which has no effect (nor has it in Mitsuba 3): set "
+                "the file requests face normals, which has no effect (nor has it in Mitsuba 3): set "
                 "face_normals");
         return std::move(file_);
     }
@@ -141,7 +141,7 @@ class SerializedReader {
                                       (flags_ & has_colours ? 3u : 0u);
         const std::uint64_t size =
             vertices * numbers * (flags_ & double_precision ? 8u : 4u) + triangles * 12u;
-        if (size > packed * most_packed || (size > large && size > packed * most_packed_large))
+        if (size > packed * max_packed || (size > large && size > packed * max_packed_large))
             fail("the file is too short for " + std::to_string(vertices) + " vertices and " +
                  std::to_string(triangles) + " triangles");
     }

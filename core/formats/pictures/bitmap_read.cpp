@@ -1,7 +1,7 @@
 // Bitmaps of any common kind as linear RGB: OpenEXR through our own reader, all others through OpenImageIO.
 //
 // The kind is found from the first bytes, and only that kind's reader is called: OpenImageIO itself would try
-// every reader it has, video and volumes included, on a file that it does not know.
+// every reader it has, video and volumes included, on a file of an unknown kind.
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
@@ -94,9 +94,9 @@ Decoded decode(const std::string& kind, std::vector<std::byte> bytes, std::size_
     if (!input->set_ioproxy(&memory)) throw InputError("OpenImageIO reads " + kind + " from files alone");
     // OpenImageIO reports that libpng failed; libpng has printed the reason.
     const auto damaged = [&] {
-        const std::string printed = quiet.last_line(), told = printable(input->geterror());
-        return InputError("damaged picture: " + told +
-                          (printed.empty() ? "" : (told.empty() ? "" : " ") + ("(" + printed + ")")));
+        const std::string printed = quiet.last_line(), reported = printable(input->geterror());
+        return InputError("damaged picture: " + reported +
+                          (printed.empty() ? "" : (reported.empty() ? "" : " ") + ("(" + printed + ")")));
     };
     if (!input->open("picture." + kind, spec, config)) throw damaged();
     check_size(spec.width, spec.height, std::int64_t(spec.pixel_bytes()), file_size, max_pixels);

@@ -1,4 +1,4 @@
-// A look at an untrusted BMP file before OpenImageIO sees it.
+// Checks of an untrusted BMP file before OpenImageIO reads it.
 //
 // OpenImageIO 2.4 trusts a BMP header: it decodes runs in a file of 24 bits with the palette that such a
 // file has not, and reads in front of nothing. Earlier versions also take colours past a palette's end from

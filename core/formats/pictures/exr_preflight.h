@@ -1,4 +1,4 @@
-// A look at the header of an untrusted OpenEXR file before the library sees it.
+// Checks of the header of an untrusted OpenEXR file before the library reads it.
 //
 // The library allocates what a header declares, and looks for every chunk that it promises, before it finds
 // out that the file is a hundred bytes long. This walk over the header trusts nothing: every size that is

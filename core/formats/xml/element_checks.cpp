@@ -25,7 +25,8 @@ std::vector<std::string> known_tags() {
 bool accepts_value(const std::string& type, const std::string& tag) {
     const bool number = tag == "float" || tag == "integer";
     const bool colour = tag == "rgb" || tag == "spectrum";
-    // Some numbers have names (an index of refraction "water"); who takes no names says so on reading.
+    // Some numbers have names (an index of refraction "water"); a parameter without names refuses them on
+    // reading.
     if (type == "float") return number || tag == "string";
     if (type == "rgb" || type == "texture" || type == "volume") return number || colour;
     if (type == "point" || type == "vector") return tag == "point" || tag == "vector";

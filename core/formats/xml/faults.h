@@ -31,7 +31,7 @@ struct Fault {
 
 class Faults {
   public:
-    /// Throws SceneErrors with the 1000th: more would tell the user nothing new.
+    /// Throws SceneErrors with the 1000th: more would be no help.
     void add(const Element* element, InputError error);
     /// Runs f and takes up the InputError that it may throw. Returns whether there was none.
     template <typename F>

@@ -17,7 +17,7 @@ namespace mote::core {
 const std::vector<ForeignIntegrator>& foreign_integrators() {
     static const std::vector<ForeignIntegrator> table = {
         {"direct", "path", "paths of depth 2; samples of lights and of the BSDF are one each", 2},
-        {"volpathmis", "volpath", "the same picture; ours always weighs the channels against each other"},
+        {"volpathmis", "volpath", "the same picture; ours always weights the channels against each other"},
         {"ptracer", "path",
          "the same picture from the eye's side, but for caustics of point lights, which 'mote_photon_map' "
          "sees"},

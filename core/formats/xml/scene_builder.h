@@ -7,8 +7,8 @@
 
 namespace mote::core {
 
-/// `file` stands in messages and in Parts::file. What is wrong goes to `faults`; the parts are whole where
-/// nothing is.
+/// `file` is its name in messages and in Parts::file. What is wrong goes to `faults`; the parts are whole
+/// where nothing is.
 Scene::Parts build_scene(const SceneDocument& document, const Registry& registry, const std::string& file,
                          Faults& faults);
 /// Builds the scene; throws SceneErrors.

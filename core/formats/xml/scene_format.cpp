@@ -11,11 +11,11 @@ constexpr const char* introduction = R"(# The scene format
 A scene is an XML file in a subset of Mitsuba 3's language: the same elements, parameters, defaults and
 conventions, so that one file can be given to both renderers. An element, type or parameter that is not on this
 page is an error with file, line and the nearest known name; nothing is skipped in silence, and all errors of a
-scene are told at once. A parameter of Mitsuba that changes nothing here gives a warning. With `--lenient` what is
+scene are reported at once. A parameter of Mitsuba that changes nothing here gives a warning. With `--lenient` what is
 wrong or unknown is left out or approximated instead, and listed in the log, the statistics and the picture's
 metadata (`approximations`). With `--integrator` whatever is wrong with the file's own integrator is a warning.
 Further integrators, each of another type, are what a scene sets for these methods: `--integrator TYPE` and the methods of a trade
-take their parameters from the scene's integrator of that type, else from its first, which renders where nothing else is asked for.
+take their parameters from the scene's integrator of that type, else from its first, which renders where nothing else is requested.
 
 ```xml
 <scene version="3.0.0">
@@ -69,15 +69,15 @@ world is right-handed. Singular transforms are refused.
 
 ## Objects, ids and references
 
-An object is `<category type="…" id="…" name="…">`. `<ref id="…"/>` stands for the object with that id, wherever
+An object is `<category type="…" id="…" name="…">`. `<ref id="…"/>` is the object with that id, wherever
 in the file it is defined; `name` on the reference says what it is used for, as in
 `<ref name="interior" id="smoke"/>`. `<alias id="…" as="…"/>` gives a second id.
 
 - A **shape** holds a `bsdf`, an `emitter` of type `area`, and media named `interior` and `exterior`. Without a
   BSDF it is diffuse with reflectance 0.5, or black when it emits. Inside several shapes at once, the medium of
   the one declared last counts.
-- A **sensor** holds a `film` (with its `rfilter`), a `sampler`, and the `medium` around it where the shapes do
-  not tell.
+- A **sensor** holds a `film` (with its `rfilter`), a `sampler`, and the `medium` around it where the shapes
+  do not name it.
 - An **emitter** may hold the `medium` around it in the same way.
 - The camera looks along its +Z axis with +Y up, and **+X points to the left of the picture**.
 
@@ -85,7 +85,7 @@ in the file it is defined; `name` on the reference says what it is used for, as 
 
 - `<include filename="…"/>` reads the elements of another file, found relative to the one that includes it.
 - `<path value="folder"/>` adds a folder in which files are looked up.
-- `<default name="size" value="512"/>` defines a parameter; `$size` in any later attribute stands for its value.
+- `<default name="size" value="512"/>` defines a parameter; `$size` in any later attribute is its value.
 - `-D size=64` on the command line overrides the default. A `-D` that nothing uses is an error.
 - `-D film.width=64` sets a parameter without the file's help: the words before the last dot choose an element by
   id, tag or type, the last word is the parameter. `-D integrator.type=volpath` changes a type.
@@ -137,7 +137,7 @@ pictures other than PNG and JPEG, and unknown extensions that the file requires.
 
 ## What is ours
 
-Types and parameters that Mitsuba does not know: volumes of type `vdbvolume`; the parameters `Le`, `Lescale`,
+Types and parameters that Mitsuba lacks: volumes of type `vdbvolume`; the parameters `Le`, `Lescale`,
 `temperature`, `temperature_scale` and `temperature_offset` of media that emit; `scale` of area lights; the sampler `sobol`; integrators
 whose type begins with `mote_`. A file shared by both renderers holds none of them; the integrator can be chosen
 on the command line.

@@ -46,7 +46,7 @@ struct LoadOptions {
 /// The scene of a file, XML or glTF. Throws InputError; SceneErrors where several faults were found.
 std::unique_ptr<Scene> load_scene(const std::string& path, const Registry& registry,
                                   const LoadOptions& options = {});
-/// The first two steps alone, for those who write scenes: elements in today's words, every -D applied,
+/// The first two steps alone, for writers of scenes: elements in today's words, every -D applied,
 /// checked against the manual pages. build_scene() makes the scene of them.
 SceneDocument load_scene_elements(const std::string& path, const Registry& registry,
                                   const LoadOptions& options = {});

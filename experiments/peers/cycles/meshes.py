@@ -40,7 +40,7 @@ def mesh_of(shape, folder):
 
 
 def is_smooth(shape):
-    """Mitsuba computes normals of vertices where an OBJ or PLY file has none, unless face_normals are asked for."""
+    """Mitsuba computes normals of vertices where an OBJ or PLY file has none, unless face_normals are requested."""
     return shape.type in ("ply", "obj") and not shape.get("face_normals", False)
 
 

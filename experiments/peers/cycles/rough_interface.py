@@ -49,7 +49,7 @@ def boundary(cosine, eta, alpha, distribution):
 
 
 def visible_facets(cosine, alpha, distribution):
-    """Normals of facets drawn by D(m) cos(m), with the weights <view, m>+ / cos(m) of those that are seen."""
+    """Normals of facets sampled by D(m) cos(m), with the weights <view, m>+ / cos(m) of those that are seen."""
     u, v = np.meshgrid(*[(np.arange(n) + 0.5) / n for n in GRID])
     u, v = u.ravel(), v.ravel()
     tangent2 = alpha**2 * (u / (1 - u) if distribution == "ggx" else -np.log1p(-u))

@@ -69,7 +69,7 @@ def processor_seconds():
 
 
 def found_references(folders, name):
-    """[NAME_a.exr, NAME_b.exr], each in the first folder that has it, or None; NAME.exr stands for a missing NAME_a.exr."""
+    """[NAME_a.exr, NAME_b.exr], each in the first folder that has it, or None; NAME.exr represents a missing NAME_a.exr."""
     first = lambda words: next((Path(f) / w for w in words for f in folders if (Path(f) / w).is_file()), None)
     return [first([f"{name}_a.exr", f"{name}.exr"]), first([f"{name}_b.exr"])]
 

@@ -1,6 +1,6 @@
 """Pictures by other renderers, each in a process of its own that says what it measured in a log.json.
 
-Both read the scene that `mote export --to mitsuba3` writes. `None` stands for a peer that is not installed.
+Both read the scene that `mote export --to mitsuba3` writes. `None` represents a peer that is not installed.
 """
 import json
 import os

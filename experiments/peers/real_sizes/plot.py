@@ -25,7 +25,7 @@ class Axes:
         share = math.log(max(error, self.e[0]) / self.e[0]) / math.log(self.e[1] / self.e[0])
         return HEIGHT - BOTTOM - share * (HEIGHT - TOP - BOTTOM)
 
-    def drawn(self):
+    def marks(self):
         lines = []
         for t in ticks(*self.t):
             lines.append(line(self.x(t), TOP, self.x(t), HEIGHT - BOTTOM, "#e4e4e4"))
@@ -52,15 +52,15 @@ def series(axes, index, name, runs, dashed):
     colour, points = COLOURS[index % len(COLOURS)], [r for r in runs if r["error"] > 0]
     corners = " ".join(f"{axes.x(r['wall_s']):.1f},{axes.y(r['error']):.1f}" for r in points)
     style = ' stroke-dasharray="6 4"' if dashed else ""
-    drawn = [f'<polyline points="{corners}" fill="none" stroke="{colour}" stroke-width="2"{style}/>']
+    marks = [f'<polyline points="{corners}" fill="none" stroke="{colour}" stroke-width="2"{style}/>']
     for r in points:
         x, low, high = axes.x(r["wall_s"]), r["error"] - r["error_se"], r["error"] + r["error_se"]
-        drawn.append(line(x, axes.y(max(low, 1e-9)), x, axes.y(high), colour))
-        drawn.append(f'<circle cx="{x:.1f}" cy="{axes.y(r["error"]):.1f}" r="3" fill="{colour}"/>')
+        marks.append(line(x, axes.y(max(low, 1e-9)), x, axes.y(high), colour))
+        marks.append(f'<circle cx="{x:.1f}" cy="{axes.y(r["error"]):.1f}" r="3" fill="{colour}"/>')
     y = TOP + 14 + 20 * index
-    drawn.append(f'<line x1="{WIDTH - RIGHT + 12}" y1="{y - 4}" x2="{WIDTH - RIGHT + 36}" y2="{y - 4}" '
+    marks.append(f'<line x1="{WIDTH - RIGHT + 12}" y1="{y - 4}" x2="{WIDTH - RIGHT + 36}" y2="{y - 4}" '
                  f'stroke="{colour}" stroke-width="2"{style}/>')
-    return drawn + [text(WIDTH - RIGHT + 42, y, name)]
+    return marks + [text(WIDTH - RIGHT + 42, y, name)]
 
 
 def svg(title, methods):
@@ -69,7 +69,7 @@ def svg(title, methods):
     if not lit:
         return ""
     axes = Axes([r["wall_s"] for r in lit], [r["error"] for r in lit])
-    body = axes.drawn() + [text(LEFT, 22, title, size=15)]
+    body = axes.marks() + [text(LEFT, 22, title, size=15)]
     for index, (name, runs, peer) in enumerate(methods):
         body += series(axes, index, name, runs, peer)
     return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" font-family="sans-serif">\n'

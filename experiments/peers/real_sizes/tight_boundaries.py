@@ -1,5 +1,5 @@
 """Boundaries of grids for Mitsuba: rays that cross one beside its grid come out black in Mitsuba 3.9.1 (volpath; the sky
-around the cloud of scenes/cloud.xml). A cube around a smaller grid is therefore drawn in to the grid's box, outside of
+around the cloud of scenes/cloud.xml). A cube around a smaller grid is therefore shrunk to the grid's box, outside of
 which there is nothing to meet."""
 import struct
 import xml.etree.ElementTree as ElementTree
@@ -48,6 +48,6 @@ def tighten(folder):
         transform.set("name", "to_world")
         for tag, values in (("scale", half), ("translate", tight.mean(axis=0))):
             ElementTree.SubElement(transform, tag, dict(zip("xyz", map(repr, map(float, values)))))
-        notes.append("the boundary of its medium was drawn in to the box of the grid")
+        notes.append("the boundary of its medium was shrunk to the box of the grid")
     tree.write(path)
     return notes

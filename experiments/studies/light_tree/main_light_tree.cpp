@@ -69,26 +69,26 @@ lights::ReceiverBounds tile_of(const PhaseFunction& phase, Rng& rng) {
 }
 
 /// Result of one sampling method: processor time a light [us], z-score of the energy, finite weights.
-struct Draws {
+struct Samples {
     double microseconds = 0.0, z = 0.0;
     bool finite = true;
 };
 
-Draws draw(const lights::WideLightTree& tree, const lights::VplSet& set, bool cut) {
+Samples sample(const lights::WideLightTree& tree, const lights::VplSet& set, bool cut) {
     constexpr int tiles = 300;
-    constexpr std::uint32_t drawn = 64;
+    constexpr std::uint32_t sampled = 64;
     const media::IsotropicPhase phase;
     Rng rng(2);
     lights::LightSampler sampler;
-    Draws result;
+    Samples result;
     double sum = 0.0, squares = 0.0, all = 0.0, seconds = 0.0;
     for (const lights::VirtualPointLight& vpl : set.lights) all += double(average(vpl.intensity));
     for (int t = 0; t < tiles; ++t) {
         const lights::ReceiverBounds receivers = tile_of(phase, rng);
         const double begin = processor_seconds();
         const lights::ReceiverClusters clusters(receivers, tree);
-        const auto found = cut ? sampler.by_cut(tree, clusters, infinity, drawn, rng)
-                               : sampler.by_tree(tree, clusters, infinity, drawn, rng);
+        const auto found = cut ? sampler.by_cut(tree, clusters, infinity, sampled, rng)
+                               : sampler.by_tree(tree, clusters, infinity, sampled, rng);
         seconds += processor_seconds() - begin;
         double x = 0.0;
         for (const lights::WeightedVpl& light : found) {
@@ -98,7 +98,7 @@ Draws draw(const lights::WideLightTree& tree, const lights::VplSet& set, bool cu
         sum += x, squares += x * x;
     }
     const double mean = sum / tiles, variance = std::max(squares / tiles - mean * mean, 0.0) / (tiles - 1);
-    result.microseconds = 1e6 * seconds / (tiles * double(drawn));
+    result.microseconds = 1e6 * seconds / (tiles * double(sampled));
     result.z = variance > 0.0 ? (mean - all) / std::sqrt(variance) : 0.0;
     return result;
 }
@@ -113,7 +113,7 @@ bool measure(std::size_t count, double budget) {
         const lights::WideLightTree tree(leaves, std::size_t(budget));
         const double seconds = processor_seconds() - begin, own = sizeof(lights::VirtualPointLight);
         const double peak = own + (memory("VmHWM:") - before) / double(count);
-        const Draws by_tree = draw(tree, set, false), by_cut = draw(tree, set, true);
+        const Samples by_tree = sample(tree, set, false), by_cut = sample(tree, set, true);
         std::cout << fmt::format("{},{:.3f},{:.1f},{:.1f},{:.3f},{:.3f},{:.2f},{:.2f}\n", count, seconds,
                                  own + double(tree.memory_bytes()) / double(count), peak,
                                  by_tree.microseconds, by_cut.microseconds, by_tree.z, by_cut.z)
@@ -130,7 +130,7 @@ bool measure(std::size_t count, double budget) {
 int main(int argc, char** argv) {
     bool quick = false;
     double budget = 4096.0;
-    CLI::App app{"Cost of drawing lights by a tree, by their number, as CSV"};
+    CLI::App app{"Cost of sampling lights by a tree, by their number, as CSV"};
     app.add_flag("--quick", quick, "up to 10^5 lights");
     app.add_option("--megabytes", budget, "of a tree while it is built");
     CLI11_PARSE(app, argc, argv);

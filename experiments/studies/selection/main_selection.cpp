@@ -1,4 +1,4 @@
-// Error and cost of selecting virtual point lights, at tiles of pixels drawn from a picture: CSV, a line a
+// Error and cost of selecting virtual point lights, at tiles of pixels sampled from a picture: CSV, a line a
 // method. All methods have the same VPLs, the same eye paths and the same points along them, so the error is
 // that of the selection alone: against the light of all, which `--references FILE` keeps for the next time.
 #include <fmt/format.h>

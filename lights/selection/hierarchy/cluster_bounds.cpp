@@ -15,7 +15,7 @@ constexpr int width = ReceiverLanes::width;
 /// Rounding error of the product, at most.
 constexpr float slack = 1.0f + 1e-4f;
 
-/// Bsdf::eval_bound() of glossy lanes, with the cone of the directions in which the group is seen.
+/// Bsdf::eval_bound() of glossy lanes, with the cone of the directions in which the cluster is seen.
 void apply_glossy(const LightNode& node, const ReceiverBounds& x, Lanes& out) {
     const Vec3 middle = 0.5f * node.lower + 0.5f * node.upper;
     const float radius = 0.5f * std::sqrt(node.diagonal2());
@@ -59,7 +59,7 @@ void light_of(const LightNode& node, const ReceiverBounds& x, float bound, Lanes
     // The profile of glossy VPLs holds the cosine, and is 0 behind the surface.
     const float peak_times_cosine = node.peak_times_cosine();
     const float y_is_glossy = node.kind == LightKind::glossy ? 1.0f : 0.0f;
-    const float least_d2 = max_of(0.25f * node.diagonal2(), min_distance_squared);
+    const float min_d2 = max_of(0.25f * node.diagonal2(), min_distance_squared);
     const float peak = node.kind != LightKind::volume ? node.peak : 1.0f;
     const auto depth = std::int32_t(node.min_depth);
     const float own_bound = bound;
@@ -86,7 +86,7 @@ void light_of(const LightNode& node, const ReceiverBounds& x, float bound, Lanes
             most[i] = sent;
         }
         if constexpr (About) {
-            const float g = min_of(c_x * c_y / d.middle_squared(least_d2), own_bound);
+            const float g = min_of(c_x * c_y / d.middle_squared(min_d2), own_bound);
             const float sent = min_of(light * reached, g) > 0.0f ? light * g : 0.0f;
             about[i] = sent;
         }

@@ -34,7 +34,8 @@ class Builder {
     Builder(const LightLeaves& leaves, LightPartition& partition)
         : leaves_(leaves), partition_(partition), splits_(partition.size() - 1) {}
 
-    /// Puts the lights of a group in order, whose number in the walk is given. Returns how many nodes it has.
+    /// Puts the lights of a cluster in order, whose number in the walk is given. Returns how many nodes it
+    /// has.
     std::uint32_t split(std::uint32_t number, std::uint32_t first, std::uint32_t count) {
         if (count == 1) return 0;
         const std::uint32_t n = partition_.split(first, count);
@@ -46,7 +47,7 @@ class Builder {
         return LightCluster{0, first, count}.has_node() ? 1 + left + right : 0;
     }
 
-    /// Writes the nodes of a group.
+    /// Writes the nodes of a cluster.
     LightNode build(std::uint32_t number, const LightCluster& c, std::vector<LightNode>& nodes) const {
         if (c.single()) return leaves_.leaf(partition_.item(c.first).light);
         const auto [n, left_nodes] = splits_[number];
@@ -95,21 +96,21 @@ LightHierarchy::LightHierarchy(const LightLeaves& leaves, std::size_t max_bytes)
     }
 }
 
-std::uint32_t LightHierarchy::index_at(const LightCluster& c, double share) const {
+std::uint32_t LightHierarchy::index_at(const LightCluster& c, double fraction) const {
     const std::uint32_t last = c.first + c.count - 1;
     double before = sums_[c.first / block];
     for (std::uint32_t i = c.first / block * block; i < c.first; ++i) before += double(weights_[i]);
-    const double wanted = before + share * double(weight(c));
+    const double wanted = before + fraction * double(weight(c));
     const auto begin = sums_.begin();
     const auto above = std::upper_bound(begin + c.first / block + 1, begin + last / block + 1, wanted) - 1;
-    std::uint32_t place = c.first;
+    std::uint32_t index = c.first;
     if (const auto first = std::uint32_t(above - begin) * block; first > c.first)
-        place = first, before = *above;
-    for (; place < last; ++place) {
-        before += double(weights_[place]);
+        index = first, before = *above;
+    for (; index < last; ++index) {
+        before += double(weights_[index]);
         if (before > wanted) break;
     }
-    return place;
+    return index;
 }
 
 }  // namespace mote::lights

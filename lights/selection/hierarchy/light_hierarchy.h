@@ -54,14 +54,14 @@ class LightHierarchy {
         return c.single() ? weights_[c.first] : weights_[c.first] + weights_[c.first + 1];
     }
     /// VPL at an index of the order, and its average(E).
-    std::uint32_t light_at(std::uint32_t place) const { return order_[place]; }
-    float weight_at(std::uint32_t place) const { return weights_[place]; }
-    /// Index where the prefix sum of a cluster's weights reaches `share` of them: for an even random number
-    /// in [0, 1) a VPL in proportion to average(E).
-    std::uint32_t index_at(const LightCluster& c, double share) const;
+    std::uint32_t light_at(std::uint32_t index) const { return order_[index]; }
+    float weight_at(std::uint32_t index) const { return weights_[index]; }
+    /// Index where the prefix sum of a cluster's weights reaches `fraction` of them: for an even random
+    /// number in [0, 1) a VPL in proportion to average(E).
+    std::uint32_t index_at(const LightCluster& c, double fraction) const;
     /// Prefetches for index_at() and light_at().
     void prefetch_weights(const LightCluster& c) const { __builtin_prefetch(&weights_[c.first]); }
-    void prefetch_light_at(std::uint32_t place) const { __builtin_prefetch(&order_[place]); }
+    void prefetch_light_at(std::uint32_t index) const { __builtin_prefetch(&order_[index]); }
 
     /// Prefetches a cluster's node, and its left child.
     void prefetch_node(const LightCluster& c) const {

@@ -70,10 +70,10 @@ std::optional<Axis> longest(const Bounds3& box, bool of_positions) {
 
 struct Cut {
     double cost;
-    int bin;  ///< last of the left part
+    int bin;  ///< last of the left side
 };
 
-/// The best place to cut along an axis; both parts hold lights.
+/// The best position of a cut along an axis; both sides hold lights.
 Cut cheapest(std::span<const LightItem> items, const Axis& axis, double c2) {
     std::array<Extent, bins> parts{};
     for (const LightItem& item : items) parts[std::size_t(axis.bin(item))].add(item);

@@ -8,8 +8,8 @@ using namespace core;
 
 namespace {
 
-/// A lobe that the albedo does not contain still has a chance to be drawn.
-constexpr float least_albedo = 0.02f;
+/// A lobe that the albedo does not contain still has a chance to be sampled.
+constexpr float min_albedo = 0.02f;
 
 /// At least the phase function's value towards any wi of the cone.
 float phase_bound(const PhaseFunction& phase, const Vec3& wo, const DirectionCone& wi) {
@@ -46,7 +46,7 @@ void describe_surface(LightNode& node, const VplDetail& detail, const Rgb& alpha
     const ScatteringVertex& v = detail.vertex;
     const Vec3 wo = v.hit.shading.to_local(v.wo);
     const float correction = detail.incoming_correction() / v.stop_chance;
-    const float albedo = std::max(average(v.bsdf->albedo(v.bsdf_point(), wo)), least_albedo);
+    const float albedo = std::max(average(v.bsdf->albedo(v.bsdf_point(), wo)), min_albedo);
     const float constant = albedo * inv_pi * correction;
     node.energy = alpha * constant;
     const float most = max_component(v.bsdf->eval_bound(v.bsdf_point(), wo, DirectionCone::all()));

@@ -16,7 +16,7 @@ using namespace core;
 namespace {
 
 constexpr std::uint32_t side_by_side_from = 4096;  // lights
-/// Groups of fewer lights are parted into multiples of eight, so that the last nodes are full.
+/// Clusters of fewer lights are split into multiples of eight, so that the last nodes are full.
 constexpr std::uint32_t whole_below = 512;
 
 std::uint8_t to_byte(float x) { return std::uint8_t(std::clamp(x, 0.0f, 255.0f)); }
@@ -26,35 +26,35 @@ Vec3 decode_axis(std::uint8_t u, std::uint8_t v) {
 }
 
 /// A cone that holds another, from few bits.
-void set_cone(WideLightNode& node, int i, const LightNode& part) {
-    const Vec3 axis = part.axis();
+void set_cone(WideLightNode& node, int i, const LightNode& child) {
+    const Vec3 axis = child.axis();
     const Vec2 p = octahedral_project(axis);
     node.axis_u[i] = to_byte(std::round(127.0f * p.x) + 127.0f);
     node.axis_v[i] = to_byte(std::round(127.0f * p.y) + 127.0f);
     const Vec3 coded = decode_axis(node.axis_u[i], node.axis_v[i]);
     const float moved = std::atan2(glm::length(glm::cross(axis, coded)), glm::dot(axis, coded));
-    const float angle = std::min(part.cone().angle + moved + (moved > 1e-4f ? 1e-5f : 0.0f), pi);
+    const float angle = std::min(child.cone().angle + moved + (moved > 1e-4f ? 1e-5f : 0.0f), pi);
     node.half_sine[i] = to_byte(std::ceil(255.0f * std::sin(0.5f * angle) - 2e-3f));
 }
 
-void set_part(WideLightNode& node, int i, const LightNode& part, float group_weight) {
+void set_child(WideLightNode& node, int i, const LightNode& child, float cluster_weight) {
     for (int k = 0; k < 3; ++k) {
         const float per_step = node.step[k] > 0.0f ? 1.0f / node.step[k] : 0.0f;
-        float low = std::floor((part.lower[k] - node.lower[k]) * per_step);
-        float high = std::ceil((part.upper[k] - node.lower[k]) * per_step);
-        while (low > 0.0f && node.lower[k] + low * node.step[k] > part.lower[k]) low -= 1.0f;
-        while (high < 255.0f && node.lower[k] + high * node.step[k] < part.upper[k]) high += 1.0f;
+        float low = std::floor((child.lower[k] - node.lower[k]) * per_step);
+        float high = std::ceil((child.upper[k] - node.lower[k]) * per_step);
+        while (low > 0.0f && node.lower[k] + low * node.step[k] > child.lower[k]) low -= 1.0f;
+        while (high < 255.0f && node.lower[k] + high * node.step[k] < child.upper[k]) high += 1.0f;
         node.low[k][i] = to_byte(low), node.high[k][i] = to_byte(high);
     }
-    node.share[i] = std::max(part.weight() / group_weight, 1e-30f);
-    set_cone(node, i, part);
-    node.min_depth[i] = std::uint8_t(std::min<int>(part.min_depth, 255));
-    if (part.kind == LightKind::surface || part.kind == LightKind::glossy)
+    node.energy_fraction[i] = std::max(child.weight() / cluster_weight, 1e-30f);
+    set_cone(node, i, child);
+    node.min_depth[i] = std::uint8_t(std::min<int>(child.min_depth, 255));
+    if (child.kind == LightKind::surface || child.kind == LightKind::glossy)
         node.has_cosine = std::uint8_t(node.has_cosine | 1 << i);
-    if (part.kind != LightKind::volume || part.g_high == 0) return;
+    if (child.kind != LightKind::volume || child.g_high == 0) return;
     node.any_lobe = 1;
-    node.g_low[i] = to_byte(std::floor(float(part.g_low) / 257.0f));
-    node.g_high[i] = std::uint8_t(std::max(int(to_byte(std::ceil(float(part.g_high) / 257.0f))), 1));
+    node.g_low[i] = to_byte(std::floor(float(child.g_low) / 257.0f));
+    node.g_high[i] = std::uint8_t(std::max(int(to_byte(std::ceil(float(child.g_high) / 257.0f))), 1));
 }
 
 /// VPLs [first, first + count) of a child.
@@ -76,11 +76,11 @@ class WideLightTree::Builder {
     }
 
   private:
-    /// Large groups are parted side by side, each small one by one thread into nodes of its own.
-    LightNode build(const LightRange& group, std::uint32_t& index) {
-        if (group.count < side_by_side_from) {
+    /// Large ranges are split side by side, each small one by one thread into nodes of its own.
+    LightNode build(const LightRange& range, std::uint32_t& index) {
+        if (range.count < side_by_side_from) {
             std::vector<WideLightNode> own;
-            const LightNode all = build_small(group, own);
+            const LightNode all = build_small(range, own);
             const std::lock_guard lock(mutex_);
             const auto base = std::uint32_t(nodes_.size());
             for (WideLightNode& node : own)
@@ -90,87 +90,87 @@ class WideLightTree::Builder {
             nodes_.insert(nodes_.end(), own.begin(), own.end());
             return all;
         }
-        std::array<LightRange, max_children> groups;
-        const int count = part(group, groups);
-        std::array<LightNode, max_children> parts;
+        std::array<LightRange, max_children> ranges;
+        const int count = split(range, ranges);
+        std::array<LightNode, max_children> built;
         std::array<std::uint32_t, max_children> children{};
         tbb::parallel_for(0, count, [&](int i) {
             const auto k = std::size_t(i);
-            parts[k] = groups[k].count == 1 ? leaf(groups[k], children[k]) : build(groups[k], children[k]);
+            built[k] = ranges[k].count == 1 ? leaf(ranges[k], children[k]) : build(ranges[k], children[k]);
         });
         LightNode all;
-        const WideLightNode node = join(groups, parts, children, count, all);
+        const WideLightNode node = join(ranges, built, children, count, all);
         const std::lock_guard lock(mutex_);
         index = std::uint32_t(nodes_.size());
         nodes_.push_back(node);
         return all;
     }
 
-    /// The node of the group comes first.
-    LightNode build_small(const LightRange& group, std::vector<WideLightNode>& nodes) {
+    /// The node of the range comes first.
+    LightNode build_small(const LightRange& range, std::vector<WideLightNode>& nodes) {
         const std::size_t own = nodes.size();
         nodes.emplace_back();
-        std::array<LightRange, max_children> groups;
-        const int count = part(group, groups);
-        std::array<LightNode, max_children> parts;
+        std::array<LightRange, max_children> ranges;
+        const int count = split(range, ranges);
+        std::array<LightNode, max_children> built;
         std::array<std::uint32_t, max_children> children{};
         for (std::size_t i = 0; i < std::size_t(count); ++i) {
-            if (groups[i].count == 1) {
-                parts[i] = leaf(groups[i], children[i]);
+            if (ranges[i].count == 1) {
+                built[i] = leaf(ranges[i], children[i]);
             } else {
                 children[i] = std::uint32_t(nodes.size());
-                parts[i] = build_small(groups[i], nodes);
+                built[i] = build_small(ranges[i], nodes);
             }
         }
         LightNode all;
-        nodes[own] = join(groups, parts, children, count, all);
+        nodes[own] = join(ranges, built, children, count, all);
         return all;
     }
 
-    LightNode leaf(const LightRange& group, std::uint32_t& light) const {
-        light = partition_.item(group.first).light;
+    LightNode leaf(const LightRange& range, std::uint32_t& light) const {
+        light = partition_.item(range.first).light;
         return leaves_.leaf(light);
     }
 
-    /// The largest groups first, until there are eight or all are small enough for a node of their own. What
-    /// was parted last are neighbours.
-    int part(const LightRange& group, std::array<LightRange, max_children>& groups) {
-        groups[0] = group;
+    /// The largest ranges first, until there are eight or all are small enough for a node of their own. What
+    /// was split last are neighbours.
+    int split(const LightRange& range, std::array<LightRange, max_children>& ranges) {
+        ranges[0] = range;
         int count = 1;
-        if (group.count <= max_children) {
-            for (; count < int(group.count); ++count)
-                groups[std::size_t(count)] = {group.first + std::uint32_t(count), 1};
-            groups[0].count = 1;
+        if (range.count <= max_children) {
+            for (; count < int(range.count); ++count)
+                ranges[std::size_t(count)] = {range.first + std::uint32_t(count), 1};
+            ranges[0].count = 1;
             return count;
         }
         while (count < max_children) {
             LightRange& most =
-                *std::max_element(groups.begin(), groups.begin() + count,
+                *std::max_element(ranges.begin(), ranges.begin() + count,
                                   [](const LightRange& a, const LightRange& b) { return a.count < b.count; });
             if (most.count <= max_children) break;
             const std::uint32_t n =
                 partition_.split(most.first, most.count, most.count < whole_below ? max_children : 1);
             const LightRange right{most.first + n, most.count - n};
             most.count = n;
-            std::move_backward(&most + 1, groups.data() + count, groups.data() + count + 1);
+            std::move_backward(&most + 1, ranges.data() + count, ranges.data() + count + 1);
             (&most)[1] = right, ++count;
         }
         return count;
     }
 
-    static WideLightNode join(const std::array<LightRange, max_children>& groups,
-                              const std::array<LightNode, max_children>& parts,
+    static WideLightNode join(const std::array<LightRange, max_children>& ranges,
+                              const std::array<LightNode, max_children>& nodes,
                               const std::array<std::uint32_t, max_children>& children, int count,
                               LightNode& all) {
-        all = parts[0];
-        for (int i = 1; i < count; ++i) all = united(all, parts[std::size_t(i)]);
+        all = nodes[0];
+        for (int i = 1; i < count; ++i) all = united(all, nodes[std::size_t(i)]);
         WideLightNode node{};
         node.count = std::uint8_t(count);
         node.lower = all.lower, node.step = (all.upper - all.lower) * (1.00001f / 255.0f);
         for (int i = 0; i < count; ++i) {
             node.child[i] = children[std::size_t(i)];
-            if (groups[std::size_t(i)].count == 1) node.is_light = std::uint8_t(node.is_light | 1 << i);
-            set_part(node, i, parts[std::size_t(i)], all.weight());
+            if (ranges[std::size_t(i)].count == 1) node.is_light = std::uint8_t(node.is_light | 1 << i);
+            set_child(node, i, nodes[std::size_t(i)], all.weight());
         }
         return node;
     }
@@ -215,7 +215,7 @@ LightChildren::LightChildren(const WideLightNode& n) : any_lobe(n.any_lobe != 0)
     const Vec3 lower = n.lower, step = n.step;
     const std::int32_t cosines = n.has_cosine;
     for (int i = 0; i < max_children; ++i) has_cosine[i] = float(cosines >> i & 1);
-    for (int i = 0; i < max_children; ++i) share[i] = n.share[i];
+    for (int i = 0; i < max_children; ++i) energy_fraction[i] = n.energy_fraction[i];
     MOTE_INDEPENDENT_LANES
     for (int i = 0; i < max_children; ++i) {
         lower_x[i] = lower.x + low[0][i] * step.x, upper_x[i] = lower.x + high[0][i] * step.x;

@@ -20,7 +20,7 @@ struct alignas(64) WideLightNode {
     static constexpr int width = max_children;
 
     core::Vec3 lower, step;                      ///< box of the node: lower + [0, 255] step
-    float share[width];                          ///< fraction of the node's energy, average(E); 0: no child
+    float energy_fraction[width];                ///< fraction of the node's energy, average(E); 0: no child
     std::uint32_t child[width];                  ///< node, or light where is_light
     std::uint8_t low[3][width], high[3][width];  ///< boxes in steps, by axis
     std::uint8_t axis_u[width], axis_v[width];   ///< octahedral, in units of 1 / 127 from 127
@@ -63,13 +63,13 @@ class WideLightTree {
     std::size_t size_ = 0;
 };
 
-/// The children of a node as floats, by lane. Lanes without a child have share 0.
+/// The children of a node as floats, by lane. Lanes without a child have energy_fraction 0.
 struct alignas(64) LightChildren {
     static constexpr int width = max_children;
 
     float lower_x[width], lower_y[width], lower_z[width], upper_x[width], upper_y[width], upper_z[width];
     float axis_x[width], axis_y[width], axis_z[width], cos_angle[width], sin_angle[width];
-    float has_cosine[width], share[width], min_depth[width];
+    float has_cosine[width], energy_fraction[width], min_depth[width];
     float g_low[width], g_high[width];  ///< set only where there is any lobe
     bool any_lobe;
 

@@ -194,9 +194,9 @@ void Lightcut::find_worst(std::size_t limit, bool estimated, std::size_t& count)
         for (int i = 0; i < width; ++i) {
             const float bound = errors_[p][i];
             error = core::max_of(error, bound * inverse[i]);
-            const float share = expected_[p][i] * per_total[i];
-            squares += share * share;
-            urgency += share * core::min_of(bound * per_total[i], max_above * share);
+            const float fraction = expected_[p][i] * per_total[i];
+            squares += fraction * fraction;
+            urgency += fraction * core::min_of(bound * per_total[i], max_above * fraction);
         }
         const float seen = pairs_[p].statistics.variance();
         squares = std::min(squares * seen, most);

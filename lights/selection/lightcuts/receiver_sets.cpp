@@ -13,10 +13,10 @@ namespace {
 bool alike(const ReceiverLanes& x, int i, int j) {
     if (x.in_medium[i] != x.in_medium[j]) return false;
     if (x.in_medium[i] != 0.0f) return true;
-    constexpr float least_cosine = 0.8f, most_off_plane2 = 0.09f;
+    constexpr float min_cosine = 0.8f, max_off_plane2 = 0.09f;
     const Vec3 a = x.geometric_normal(i), b = x.geometric_normal(j), d = x.position(i) - x.position(j);
-    return glm::dot(a, b) >= least_cosine &&
-           std::max(sqr(glm::dot(a, d)), sqr(glm::dot(b, d))) <= most_off_plane2 * glm::dot(d, d);
+    return glm::dot(a, b) >= min_cosine &&
+           std::max(sqr(glm::dot(a, d)), sqr(glm::dot(b, d))) <= max_off_plane2 * glm::dot(d, d);
 }
 
 }  // namespace

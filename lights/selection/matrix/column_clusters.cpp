@@ -38,7 +38,7 @@ Sum sum_of(const Columns& columns, std::span<const std::uint32_t> members) {
 
 double cost_of(const Sum& sum) { return std::max(0.0, sum.norms * sum.norms - sum.columns.squaredNorm()); }
 
-/// Unit columns, drawn in proportion to what each costs with all others,
+/// Unit columns, sampled in proportion to what each costs with all others,
 ///   alpha_i = sum over j of ||x_i|| ||x_j|| ||x_i/||x_i|| - x_j/||x_j|| ||^2
 ///           = 2 (||x_i|| sum ||x_j|| - x_i . sum x_j),
 /// by numbers at even distances.
@@ -51,17 +51,17 @@ Eigen::MatrixXf sample_centres(const Columns& columns, std::span<const std::uint
         alpha[i] = std::max(0.0, double(x.norm()) * sum.norms - x.cast<double>().dot(sum.columns));
         all += alpha[i];
     }
-    std::vector<std::uint32_t> drawn;
+    std::vector<std::uint32_t> sampled;
     double next = all / double(count) * double(rng.next_float()), upto = 0.0;
-    for (std::size_t i = 0; i < members.size() && drawn.size() < count; ++i) {
+    for (std::size_t i = 0; i < members.size() && sampled.size() < count; ++i) {
         upto += alpha[i];
         if (!(alpha[i] > 0.0) || upto <= next) continue;
-        drawn.push_back(members[i]);
+        sampled.push_back(members[i]);
         while (next < upto) next += all / double(count);
     }
-    Eigen::MatrixXf centres(Eigen::Index(drawn.size()), Eigen::Index(columns.rows));
-    for (std::size_t k = 0; k < drawn.size(); ++k)
-        centres.row(Eigen::Index(k)) = column_of(columns, drawn[k]).normalized().transpose();
+    Eigen::MatrixXf centres(Eigen::Index(sampled.size()), Eigen::Index(columns.rows));
+    for (std::size_t k = 0; k < sampled.size(); ++k)
+        centres.row(Eigen::Index(k)) = column_of(columns, sampled[k]).normalized().transpose();
     return centres;
 }
 
@@ -150,9 +150,9 @@ ColumnClusters cluster_columns(const Columns& columns, std::span<const std::uint
     const Sum sum = sum_of(columns, members);
     std::vector<Cluster> clusters{{0, members.size(), cost_of(sum)}};
     result.members.assign(members.begin(), members.end());
-    const std::size_t drawn = count * 2 / 3;
-    if (drawn > 1 && clusters[0].cost > 0.0) {
-        const Eigen::MatrixXf centres = sample_centres(columns, members, sum, drawn, rng);
+    const std::size_t sampled = count * 2 / 3;
+    if (sampled > 1 && clusters[0].cost > 0.0) {
+        const Eigen::MatrixXf centres = sample_centres(columns, members, sum, sampled, rng);
         if (centres.rows() > 1) {
             const auto nearest = assign(columns, members, centres, cancelled);
             clusters = sort_by_centre(columns, members, nearest, std::size_t(centres.rows()), result.members);

@@ -1,13 +1,13 @@
 // Columns of a matrix of light in clusters, each of which one column will represent (Hasan et al. 2007).
 //
-// Row i, column j: what light j sends to receiver i. Of a cluster k, one column is drawn with a probability
+// Row i, column j: what light j sends to receiver i. Of a cluster k, one column is sampled with a probability
 // in proportion to its norm and scaled by 1 / p. What that errs by, summed over rows, has the mean square
 //   w_k = sum over pairs i < j of the cluster of ||x_i|| ||x_j|| ||x_i/||x_i|| - x_j/||x_j|| ||^2
 //       = (sum ||x_j||)^2 - ||sum x_j||^2
-// (the second form takes one look at each column). Clusters are made so that the sum of w_k is
-// small: centres drawn in proportion to what each column costs with all others, columns to the nearest centre
-// (clustering by sampling), and from two thirds of the clusters on the most expensive one is
-// divided in two where it falls apart best along a line (splitting).
+// (the second form reads each column once). Clusters are made so that the sum of w_k is
+// small: centres sampled in proportion to what each column costs with all others, columns to the nearest
+// centre (clustering by sampling), and from two thirds of the clusters on the most expensive one is divided
+// in two where it falls apart best along a line (splitting).
 //
 // Columns are sums over few rows, so clusters are found from what a light sends to a few receivers.
 #pragma once

@@ -34,17 +34,17 @@ ColumnClusters in_order(std::span<const std::uint32_t> members, std::span<const 
 /// proportion to their roots.
 std::array<std::size_t, 3> apportion(const ReducedMatrix& matrix, std::size_t columns,
                                      const std::array<std::vector<std::uint32_t>, 3>& members) {
-    std::array<std::size_t, 3> share{};
+    std::array<std::size_t, 3> count{};
     std::array<double, 2> root{};
     for (std::size_t c = 0; c < 2; ++c) root[c] = std::sqrt(cluster_cost(matrix.columns(), members[c]));
-    share[2] = members[2].empty() ? 0 : std::max<std::size_t>(1, columns / 16);
-    const std::size_t rest = columns - std::min(columns, share[2]);
+    count[2] = members[2].empty() ? 0 : std::max<std::size_t>(1, columns / 16);
+    const std::size_t rest = columns - std::min(columns, count[2]);
     const double both = root[0] + root[1];
-    share[1] = both > 0.0 ? std::size_t(double(rest) * root[1] / both) : 0;
-    share[1] =
-        members[1].empty() ? 0 : std::clamp<std::size_t>(share[1], 1, std::max<std::size_t>(1, rest / 2));
-    share[0] = members[0].empty() ? 0 : std::max<std::size_t>(1, rest - std::min(rest, share[1]));
-    return share;
+    count[1] = both > 0.0 ? std::size_t(double(rest) * root[1] / both) : 0;
+    count[1] =
+        members[1].empty() ? 0 : std::clamp<std::size_t>(count[1], 1, std::max<std::size_t>(1, rest / 2));
+    count[0] = members[0].empty() ? 0 : std::max<std::size_t>(1, rest - std::min(rest, count[1]));
+    return count;
 }
 
 }  // namespace
@@ -54,11 +54,11 @@ ColumnClusters cluster_lights(const ReducedMatrix& matrix, std::size_t columns, 
     std::array<std::vector<std::uint32_t>, 3> members;
     for (std::uint32_t j = 0; j < matrix.classes.size(); ++j)
         if (matrix.classes[j] != LightClass::none) members[std::size_t(matrix.classes[j])].push_back(j);
-    const auto share = apportion(matrix, columns, members);
+    const auto count = apportion(matrix, columns, members);
     ColumnClusters clusters;
     for (std::size_t c = 0; c < 2; ++c)
-        append(clusters, cluster_columns(matrix.columns(), members[c], share[c], rng, cancelled));
-    append(clusters, in_order(members[2], matrix.weights, share[2]));
+        append(clusters, cluster_columns(matrix.columns(), members[c], count[c], rng, cancelled));
+    append(clusters, in_order(members[2], matrix.weights, count[2]));
     return clusters;
 }
 

@@ -83,10 +83,10 @@ std::size_t MatrixClusters::slice_of(const ReceiverLanes& receivers) const {
 }
 
 std::span<const WeightedVpl> MatrixClusters::sample(const ReceiverLanes& receivers, Rng& rng,
-                                                    std::vector<WeightedVpl>& drawn) const {
-    drawn.clear();
-    if (receivers.any_active) samplers_[slice_of(receivers)].sample(rng, drawn);
-    return drawn;
+                                                    std::vector<WeightedVpl>& sampled) const {
+    sampled.clear();
+    if (receivers.any_active) samplers_[slice_of(receivers)].sample(rng, sampled);
+    return sampled;
 }
 
 std::size_t MatrixClusters::memory_bytes() const {

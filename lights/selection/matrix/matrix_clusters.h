@@ -45,7 +45,7 @@ class MatrixClusters {
     const ColumnSampler& slice(std::size_t s) const { return samplers_[s]; }
     /// VPLs for a tile, until the next call; weights 1 / p.
     std::span<const WeightedVpl> sample(const ReceiverLanes& receivers, core::Rng& rng,
-                                        std::vector<WeightedVpl>& drawn) const;
+                                        std::vector<WeightedVpl>& sampled) const;
     std::size_t memory_bytes() const;
 
   private:

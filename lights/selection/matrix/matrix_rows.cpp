@@ -15,9 +15,9 @@ namespace {
 constexpr std::size_t row_lanes = ReceiverLanes::width;
 constexpr std::size_t lights_a_task = 1024;  // lights of a task
 constexpr std::size_t sampled_lights = 2048;
-constexpr double min_light = 0.05;   // of the mean of rows: darker ones are not made as bright as others
-constexpr float max_value = 1e30f;   // squares of rows of it are finite in double precision
-constexpr float min_share = 1e-15f;  // columns below it have norms that single precision loses
+constexpr double min_light = 0.05;  // of the mean of rows: darker ones are not made as bright as others
+constexpr float max_value = 1e30f;  // squares of rows of it are finite in double precision
+constexpr float min_column_norm = 1e-15f;  // columns below it have norms that single precision loses
 
 float average_of(const LaneLight& l, std::size_t i) {
     return std::min((l.r[i] + l.g[i] + l.b[i]) * (1.0f / 3.0f), max_value);
@@ -157,13 +157,13 @@ void take(const Chunk& own, const VplSet& vpls, ReducedMatrix& matrix) {
         const auto seen = std::span(own.seen).subspan(k * rows, rows);
         const auto unhidden = std::span(own.unhidden).subspan(k * rows, rows);
         const double s = norm_of(seen), u = norm_of(unhidden);
-        matrix.weights[j] = float(std::min(s + double(hidden_share) * u, 1e30));
+        matrix.weights[j] = float(std::min(s + double(hidden_factor) * u, 1e30));
         matrix.classes[j] = !(energy_of(vpls, j) > 0.0f) ? LightClass::none
                             : s > 0.0                    ? LightClass::lit
                             : u > 0.0                    ? LightClass::hidden
                                                          : LightClass::away;
         const auto column = std::span(matrix.values).subspan(j * rows, rows);
-        for (std::size_t i = 0; i < rows; ++i) column[i] = s > 0.0 ? seen[i] : hidden_share * unhidden[i];
+        for (std::size_t i = 0; i < rows; ++i) column[i] = s > 0.0 ? seen[i] : hidden_factor * unhidden[i];
     }
 }
 
@@ -176,7 +176,7 @@ void normalise(ReducedMatrix& matrix) {
     for (std::size_t j = 0; j < matrix.classes.size(); ++j) {
         matrix.weights[j] /= most;
         const auto column = std::span(matrix.values).subspan(j * matrix.rows, matrix.rows);
-        if (matrix.classes[j] != LightClass::none && norm_of(column) < double(min_share))
+        if (matrix.classes[j] != LightClass::none && norm_of(column) < double(min_column_norm))
             matrix.classes[j] = LightClass::away;
     }
 }
@@ -187,9 +187,9 @@ void raise_weights(const VplSet& vpls, ReducedMatrix& matrix) {
     for (std::size_t j = 0; j < matrix.weights.size(); ++j)
         weights += double(matrix.weights[j]), energies += double(energy_of(vpls, j));
     if (!(energies > 0.0)) return;
-    const double share = weights > 0.0 ? double(energy_share) * weights / energies : 1.0 / energies;
+    const double factor = weights > 0.0 ? double(energy_fraction) * weights / energies : 1.0 / energies;
     for (std::size_t j = 0; j < matrix.weights.size(); ++j)
-        matrix.weights[j] = std::max(matrix.weights[j], float(share * double(energy_of(vpls, j))));
+        matrix.weights[j] = std::max(matrix.weights[j], float(factor * double(energy_of(vpls, j))));
 }
 
 }  // namespace

@@ -2,8 +2,8 @@
 // them is the reduced column of VPL j, and its norm the importance of VPL j for receivers like these.
 //
 // Every VPL that can send light keeps a positive probability. One that no row sees has its unoccluded column
-// times hidden_share, and that column's norm as weight; one without unoccluded light at any row has a weight
-// by its energy alone. Weights that are small for the energy are raised to energy_share of the mean.
+// times hidden_factor, and that column's norm as weight; one without unoccluded light at any row has a weight
+// by its energy alone. Weights that are small for the energy are raised to energy_fraction of the mean.
 #pragma once
 
 #include "lights/selection/matrix/column_clusters.h"
@@ -29,9 +29,9 @@ struct ReducedMatrix {
 };
 
 /// Factor of the unoccluded column of a hidden VPL, and of the term that every weight has besides.
-inline constexpr float hidden_share = 0.05f;
+inline constexpr float hidden_factor = 0.05f;
 /// Smallest weight of a VPL by its energy, in units of the mean.
-inline constexpr float energy_share = 0.02f;
+inline constexpr float energy_fraction = 0.02f;
 
 /// Average energy of a VPL (LightNode::energy), without a BSDF's albedo.
 float energy_of(const VplSet& vpls, std::size_t light);

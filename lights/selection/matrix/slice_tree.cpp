@@ -83,8 +83,8 @@ std::uint32_t SliceTree::build(std::span<const Point> points, std::size_t first,
     }
     const auto left_count = std::size_t(middle - part.begin()), right_count = part.size() - left_count;
     if (left_count == 0 || right_count == 0) return close(index, last);  // all at one position
-    const std::size_t share = (groups * left_count + part.size() / 2) / part.size();
-    const std::size_t left_groups = std::clamp(share, std::size_t(1), groups - 1);
+    const std::size_t on_left = (groups * left_count + part.size() / 2) / part.size();
+    const std::size_t left_groups = std::clamp(on_left, std::size_t(1), groups - 1);
     nodes_[index].axis = int(axis), nodes_[index].cut = cut;
     const std::uint32_t left = build(points, first, first + left_count, std::min(left_groups, left_count));
     const std::uint32_t right =

@@ -8,7 +8,7 @@ using namespace core;
 void Resampling::evaluate(const GatherContext& context, std::span<const WeightedVpl> candidates) {
     pairs_.clear(), weights_.clear();
     found_.assign(candidates.size(), {});
-    // Point by point: even steps through all pairs give each point its share of the choices.
+    // Point by point: even steps through all pairs distribute the choices over the points.
     for (std::size_t p = 0; p < targets_.size(); ++p) {
         const ResamplingTarget& target = targets_[p];
         context.cancelled.check();

@@ -56,8 +56,8 @@ ResamplingTarget::Connection ResamplingTarget::of_lane(int lane, std::size_t lig
     if (std::int32_t(vpl.depth) > tile_->max_vpl_depth[lane]) return {};
     const LaneConnection c = lane_connection(*tile_, lane, *vpls_, vpl, 1.0f);
     const float g = c.cos_x * c.cos_y / c.distance_squared;
-    Connection connection{c.value * weigh(bound_, g, c.distance_squared, c.cos_x, c.cos_y, lane), c.origin,
-                          c.target, 0.0f};
+    Connection connection{c.value * weighted_geometry(bound_, g, c.distance_squared, c.cos_x, c.cos_y, lane),
+                          c.origin, c.target, 0.0f};
     connection.value = min_of(luminance(connection.light), largest);
     return connection;
 }

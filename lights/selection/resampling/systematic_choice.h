@@ -4,7 +4,7 @@
 // Candidates y_c come with weights w_c, such that the sum of w_c g(y_c) is right in the mean for every
 // function g. Each gets v_c = w_c p_hat(y_c), and n are chosen with chance v_c / S, where S is the sum of all
 // v_c. What is chosen counts  W = S / (n p_hat(y)) , so that the mean over all choices of  W f(y)  is the sum
-// of w_c f(y_c): right wherever p_hat is 0 only where f is. With M candidates drawn from p, w_c = 1 / (M p)
+// of w_c f(y_c): right wherever p_hat is 0 only where f is. With M candidates sampled from p, w_c = 1 / (M p)
 // and n = 1 this is W = (1 / p_hat) (1/M) sum of p_hat / p (Bitterli et al. 2020, Eq. 6).
 //
 // All candidates are at hand, so instead of n reservoirs, each with a random number a candidate, one number u

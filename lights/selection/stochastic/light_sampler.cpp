@@ -22,7 +22,7 @@ struct ChildProbabilities {
     ChildProbabilities(const WideLightNode& node, const ReceiverClusters& receivers, float bound)
         : ChildProbabilities(node, importance(LightChildren(node), receivers, bound)) {}
     ChildProbabilities(const WideLightNode& node, const std::array<float, max_children>& importances) {
-        if (!add(importances.data())) add(node.share);
+        if (!add(importances.data())) add(node.energy_fraction);
     }
     double of(int i) const { return (at(i + 1) - at(i)) / before[max_children]; }
     double at(int i) const { return before[std::size_t(i)]; }
@@ -71,12 +71,12 @@ std::vector<double> probabilities(const WideLightTree& tree, const ReceiverClust
     while (!tasks.empty()) {
         const auto [node, reached] = tasks.back();
         tasks.pop_back();
-        const ChildProbabilities shares(*node, receivers, bound);
+        const ChildProbabilities probabilities(*node, receivers, bound);
         for (int i = 0; i < node->count; ++i)
             if (node->leaf(i))
-                p[node->child[i]] = reached * shares.of(i);
+                p[node->child[i]] = reached * probabilities.of(i);
             else
-                tasks.emplace_back(&tree.node(node->child[i]), reached * shares.of(i));
+                tasks.emplace_back(&tree.node(node->child[i]), reached * probabilities.of(i));
     }
     return p;
 }
@@ -135,22 +135,22 @@ void LightSampler::sample_descendants(const WideLightTree& tree, const ReceiverC
         const bool alike = !task.known && task.levels <= 0 && face_one_way(node) &&
                            (candidates_only_ || far_from(node, receivers));
         if (alike)
-            std::copy(node.share, node.share + max_children, importances.begin());
+            std::copy(node.energy_fraction, node.energy_fraction + max_children, importances.begin());
         else
             importances = importance(LightChildren(node), receivers, bound);
         const auto plain = importances;
         LearnedImportance::Means means;
         const bool known = learned(task, importances, means);
-        const ChildProbabilities shares(node, importances);
+        const ChildProbabilities probabilities(node, importances);
         // Samples are points k + u; those within count times the probability of a child are its own.
-        const double u = next_double(rng), per_value = double(task.count) / shares.at(max_children);
+        const double u = next_double(rng), per_value = double(task.count) / probabilities.at(max_children);
         auto done = std::uint32_t(0);
         for (int i = 0; i < node.count && done < task.count; ++i) {
-            const auto end = std::min(std::uint32_t(shares.at(i + 1) * per_value + u), task.count);
+            const auto end = std::min(std::uint32_t(probabilities.at(i + 1) * per_value + u), task.count);
             if (end == done) continue;
             const auto k = std::size_t(i);
             const std::uint32_t count = end - done;
-            const double p = task.p * shares.of(i), sent = task.energy * double(plain[k]);
+            const double p = task.p * probabilities.of(i), sent = task.energy * double(plain[k]);
             std::uint32_t step = task.step;
             if (learned_ && task.levels > 0 && sent > 0.0) step = add_step({task.node, step, i, p / sent});
             if (node.leaf(i)) {
@@ -159,7 +159,7 @@ void LightSampler::sample_descendants(const WideLightTree& tree, const ReceiverC
             } else {
                 tree.prefetch(node.child[i]);
                 tasks_.push_back({node.child[i], count, step, task.levels - 1, means[k], known, p,
-                                  task.energy * double(node.share[i])});
+                                  task.energy * double(node.energy_fraction[i])});
             }
             done = end;
         }
@@ -218,7 +218,7 @@ void LightSampler::make_cut(const WideLightTree& tree, const ReceiverClusters& r
             const std::uint32_t step = learned_ ? add_step({cluster.node, values.step, i, 0.0}) : none;
             add_node(tree, receivers, bound,
                      {node.child[i], 1, step, 0, values.means[std::size_t(i)], values.known, 1.0,
-                      values.energy * double(node.share[i])});
+                      values.energy * double(node.energy_fraction[i])});
             continue;
         }
         // Halves of importances as equal as can be.
@@ -243,7 +243,7 @@ void LightSampler::sample_cluster(const WideLightTree& tree, const Cluster& clus
     const Values& values = values_[cluster.values];
     double sum = 0.0, reached = 0.0;
     for (int i = cluster.first; i < cluster.last; ++i) sum += double(values.light[std::size_t(i)]);
-    // As in draw().
+    // As in sample().
     const double u = next_double(rng), per_value = double(count) / sum;
     std::uint32_t done = 0;
     for (int i = cluster.first; i < cluster.last && done < count; ++i) {
@@ -264,7 +264,8 @@ void LightSampler::sample_cluster(const WideLightTree& tree, const Cluster& clus
         } else {
             tree.prefetch(node.child[i]);
             tasks_.push_back({node.child[i], own, step, count > 1 ? 0 : levels_below_clusters,
-                              values.means[k], values.known, p, values.energy * double(node.share[i])});
+                              values.means[k], values.known, p,
+                              values.energy * double(node.energy_fraction[i])});
         }
     }
 }

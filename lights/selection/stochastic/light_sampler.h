@@ -2,7 +2,7 @@
 //
 // Going down, each child of a node has a probability in proportion to its importance for the receivers, and
 // to its energy where no child has any importance: so the probabilities of all VPLs add up to 1. All
-// receivers share the samples, and shadow rays stay packets.
+// receivers energy_fraction the samples, and shadow rays stay packets.
 //
 // Sampling by the tree (Estevez and Kulla 2018): n samples from the root. They descend together, so nodes
 // near the root are evaluated once; a child of probability p gets n p of its parent's samples, rounded up or

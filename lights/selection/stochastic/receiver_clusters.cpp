@@ -151,7 +151,7 @@ std::array<float, max_children> importance(const LightChildren& y, const Receive
                 max_of(0.25f * (dx * dx + dy * dy + dz * dz + x_diagonal2), min_distance_squared);
             const float g =
                 min_of(max_of(c_x, 0.0f) * max_of(c_y, 0.0f) / d.middle_squared(least), own_bound);
-            light[i] = y.min_depth[i] <= depth ? y.share[i] * g * weight : 0.0f;
+            light[i] = y.min_depth[i] <= depth ? y.energy_fraction[i] * g * weight : 0.0f;
             cosine_x[i] = cx, cosine_y[i] = cy;
         }
         if (y.any_lobe)

@@ -13,7 +13,7 @@ PATIENCE = 10.0  # seconds after SIGINT until the process is ended
 def run(arguments, progress, stopped):
     """Runs until the end, or until stopped() says so. progress(text, share). Returns (its code, its words, cancelled).
 
-    Its stderr is a terminal of its own where there is such a thing: there it tells every pass. Ctrl-C stops it too where
+    Its stderr is a terminal of its own where there is such a thing: there it reports every pass. Ctrl-C stops it too where
     Python has it and not Blender (the module bpy): it must not leave a callback of Blender as an exception.
     """
     ours, theirs = terminal()
@@ -21,22 +21,22 @@ def run(arguments, progress, stopped):
                           start_new_session=True) as process:
         os.close(theirs)
         os.set_blocking(ours, False)
-        words, asked, interrupted = "", None, False
+        words, requested, interrupted = "", None, False
         while process.poll() is None:
             try:
                 words += read(ours)
-                tell(words, progress)
+                report(words, progress)
                 time.sleep(0.02)
             except KeyboardInterrupt:
                 interrupted = True
-            if asked is None and (interrupted or stopped()):
-                asked = time.monotonic()
+            if requested is None and (interrupted or stopped()):
+                requested = time.monotonic()
                 process.send_signal(signal.SIGINT)
-            if asked is not None and time.monotonic() - asked > PATIENCE:
+            if requested is not None and time.monotonic() - requested > PATIENCE:
                 process.kill()
         words += read(ours)
         os.close(ours)
-    return process.returncode, said(words), asked is not None
+    return process.returncode, said(words), requested is not None
 
 
 def terminal():
@@ -50,11 +50,11 @@ def terminal():
 def read(descriptor):
     try:
         return os.read(descriptor, 1 << 16).decode("utf-8", "replace")
-    except (BlockingIOError, OSError):  # nothing new; a terminal that nobody holds any more
+    except (BlockingIOError, OSError):  # nothing new; a terminal that is open no more
         return ""
 
 
-def tell(words, progress):
+def report(words, progress):
     found = None
     for found in PASS.finditer(words[-400:]):
         pass

@@ -54,7 +54,7 @@ def coefficients(export, where, node):
 
 
 def added(export, where, node):
-    """The sum of two; a mean cosine weighed by their scattering."""
+    """The sum of two; a mean cosine weighted by their scattering."""
     a, b = (coefficients(export, where, source_of(i)) for i in node.inputs[:2])
     weights = sum(a[0]), sum(b[0])
     if all(weights) and a[3] != b[3]:

@@ -55,7 +55,7 @@ def show(engine, path, size, begin, view_layer):
 
 
 def fill(render_pass, values):
-    """Blender 3 wants pixels as rows of channels, 4.5 a flat array."""
+    """Blender 3 takes pixels as rows of channels, 4.5 a flat array."""
     rows = np.ascontiguousarray(values, np.float32).reshape(-1, values.shape[2])
     try:
         render_pass.rect.foreach_set(rows)

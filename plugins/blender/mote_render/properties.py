@@ -41,7 +41,7 @@ GROUPS = {name: group_of(name, entry) for name, entry in TABLE["integrators"].it
 
 
 class MoteSettings(bpy.types.PropertyGroup):
-    """Scene.mote: what `mote render` is asked for."""
+    """Scene.mote: options of `mote render`."""
     integrator: EnumProperty(name="Integrator", default="volpath",
                              items=[(name, name, entry["text"]) for name, entry in TABLE["integrators"].items()])
     passes: IntProperty(name="Passes", default=64, min=1, description="One sample a pixel each")

@@ -28,7 +28,7 @@ Chi2Options options(const CameraCase& c, const std::string& what) {
 
 Vec2 anywhere_on_film(Rng& rng) { return film_size * rng.next_vec2(); }
 
-/// Cells over a cap around `axis` that holds what `directions` draws, a little askew.
+/// Cells over a cap around `axis` that holds what `directions` samples, a little askew.
 void aim(Chi2Options& o, const Vec3& axis, const DirectionSampler& directions) {
     o.frame = Frame(glm::normalize(axis + 0.03f * Vec3(0.5f, -1.0f, 0.2f)));
     Rng rng(9);
@@ -209,7 +209,7 @@ TEST_CASE("points that the camera does not see have no importance", "[cameras]")
     }
 }
 
-TEST_CASE("importance knows no unit of length", "[cameras]") {
+TEST_CASE("importance has no unit of length", "[cameras]") {
     for (const float scale : {1e-3f, 1e5f}) {
         const std::vector<CameraCase> metres = camera_cases(), scaled = camera_cases(double(scale));
         for (std::size_t k = 0; k < metres.size(); ++k) {

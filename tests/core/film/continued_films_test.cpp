@@ -28,7 +28,7 @@ TEST_CASE("films of other sizes, layers, squares or parts do not continue one", 
         later.begin_at(part, 3);
         refuses(later);
     }
-    // All squares are asked for, or those of each layer.
+    // All squares are requested, or those of each layer.
     const std::vector<Layer> squared{{"a", "", false, true}, {"b", "", false, true, "", {}, 1}};
     CHECK_THROWS_AS(Film(4, 2, squared).add(Film(4, 2, squared, true)), std::invalid_argument);
     Film film(4, 2, two_parts);

@@ -1,4 +1,4 @@
-// What a film is said to take, against what the allocator hands out.
+// Stated memory of a film against that of the allocator.
 #include <malloc.h>
 
 #include "core/film/film_image.h"

@@ -59,8 +59,8 @@ Compared steps(SamplerKind kind, std::uint32_t passes) {
 
 }  // namespace
 
-TEST_CASE("The gain of Sobol points is found where it goes on as it began", "[noise][gain]") {
-    // Half the slope is believed beyond the largest blocks. So what does not change is exact, and what falls
+TEST_CASE("The gain of Sobol points is found where it continues as it began", "[noise][gain]") {
+    // Half the slope is assumed beyond the largest blocks. So what does not change is exact, and what falls
     // at one rate for ever is stated too high, but by no more than the root of x(sqrt(rate)) / x(rate), with
     // x(t) = t / (1 - t/2).
     for (const int m : {3, 6, 10})
@@ -88,7 +88,7 @@ TEST_CASE("A film says what Sobol points gain, and nothing of a gain that there 
         // Squares of 4096 pixels' errors are good to a few per cent.
         const Compared independent = steps(SamplerKind::independent, passes);
         CHECK(independent.said == Approx(independent.error).epsilon(0.1));
-        // One edge: halved with every doubling, of which half the slope is believed beyond the largest
+        // One edge: halved with every doubling, of which half the slope is assumed beyond the largest
         // blocks.
         const Compared sobol = steps(SamplerKind::sobol, passes);
         INFO(passes << " passes: error^2 " << sobol.error << ", said " << sobol.said << "; independent "

@@ -259,7 +259,7 @@ TEST_CASE("Bytes that are damaged or of another film are refused, and leave the 
     CHECK(film.serialize() == before);
 }
 
-TEST_CASE("Channels of a film's picture bear the names that other programs know", "[film][exr]") {
+TEST_CASE("Channels of a film's picture bear the names that other programs use", "[film][exr]") {
     Film film(2, 1, {{"direct", "", false}, {"Depth", "", true}, {"N", "", true}, {"Albedo", "", true}});
     film.add_pass(PassImage(2, 1, 4));
     CHECK(film_image(film).names == std::vector<std::string>{"R", "G", "B", "direct.R", "direct.G",
@@ -329,9 +329,9 @@ TEST_CASE("what a post-process leaves of a layer's variance is in the noise, in 
     const auto bytes = film.serialize();
     const double before = film.noise(), gain = film.gain_and_noise().gain;
     const std::vector<Rgb> mean = film.mean(0);
-    const auto with = [&](float share) {
+    const auto with = [&](float fraction) {
         std::vector<float> left;
-        for (const Rgb& v : film.layer_variance_of_mean(0)) left.push_back(share * v.x);
+        for (const Rgb& v : film.layer_variance_of_mean(0)) left.push_back(fraction * v.x);
         film.set_mean(0, mean, left);
         return std::pow(film.noise() / before, 2.0);
     };

@@ -149,7 +149,7 @@ TEST_CASE("curves are met from outside only, in all queries and through instance
     }
 }
 
-TEST_CASE("points drawn on curves have the density they claim", "[geometry][curves][sampling]") {
+TEST_CASE("points sampled on curves have the density they claim", "[geometry][curves][sampling]") {
     const auto bent =
         curve(CurveBasis::b_spline,
               {{0, 0, 0, 0.1f}, {1, 0, 0, 0.3f}, {2, 1, 0, 0.2f}, {3, 1, 1, 0.1f}, {4, 0, 1, 0.1f}});

@@ -209,7 +209,7 @@ TEST_CASE("rays leaving an instance never hit it again", "[geometry][instances][
     CHECK(leaks <= 20);  // samples on the very border
 }
 
-TEST_CASE("the area of an instance, and points drawn on it", "[geometry][instances][sampling]") {
+TEST_CASE("the area of an instance, and points sampled on it", "[geometry][instances][sampling]") {
     const auto check = [](const Shape& shape, double expected, double tolerance) {
         CHECK(double(shape.area()) == Approx(expected).epsilon(tolerance));
         // The mean of 1 / pdf_area is the area, whatever the density.
@@ -272,7 +272,7 @@ TEST_CASE("instances that cannot be are refused", "[geometry][instances]") {
     CHECK_THROWS_WITH(place_group(group, scaling(1, 0, 1)), ContainsSubstring("singular"));
     CHECK_THROWS_WITH(place_group(group, scaling(1, std::nan(""), 1)), ContainsSubstring("not finite"));
     CHECK_THROWS_WITH(place_group(group, translation(1e19, 0, 0)), ContainsSubstring("1e18"));
-    // Determinants that single precision does not hold, and rows that it cannot tell apart.
+    // Determinants that single precision does not hold, and rows that it cannot distinguish.
     const auto singular = ContainsSubstring("singular in single precision");
     for (const double s : {1e-20, 1e-13, 1e13, 1e17})
         CHECK_THROWS_WITH(place_group(group, scaling(s, s, s)), singular);

@@ -1,4 +1,4 @@
-// Every disc that a ray passes near enough, against looking at all of them.
+// Every disc that a ray passes near enough, against testing all of them.
 #include "core/geometry/ray_facing_discs.h"
 
 #include <algorithm>

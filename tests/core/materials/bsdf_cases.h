@@ -26,7 +26,7 @@ struct BsdfCase {
     bool heavy = false;
 };
 
-/// A BSDF that is asked about one point of its surface, wherever the others are asked.
+/// A BSDF that is evaluated at one point of its surface, wherever the others are evaluated.
 class AtPoint final : public core::Bsdf {
   public:
     AtPoint(core::BsdfPtr nested, const core::BsdfPoint& p) : nested_(std::move(nested)), point_(p) {}
@@ -70,7 +70,7 @@ inline std::shared_ptr<core::Texture> board(float a, float b) {
 
 inline core::ConductorParameters gold() { return {*core::conductor_index("Au")}; }
 
-/// The colour that stands for a normal in a normal map.
+/// The colour that represents a normal in a normal map.
 inline core::TexturePtr normal_colour(const core::Vec3& n) {
     return core::make_constant_texture(0.5f * glm::normalize(n) + 0.5f);
 }
@@ -269,9 +269,9 @@ inline core::Vec3 random_direction(core::Rng& rng) {
     return direction_at(z, 6.283185307179586 * double(rng.next_float()));
 }
 
-/// One sample; the numbers are drawn in the same order by every compiler.
-inline std::optional<core::BsdfSample> draw(const core::Bsdf& bsdf, const core::Vec3& wo, core::Rng& rng,
-                                            core::TransportMode mode = core::TransportMode::radiance) {
+/// One sample; the numbers are sampled in the same order by every compiler.
+inline std::optional<core::BsdfSample> sample(const core::Bsdf& bsdf, const core::Vec3& wo, core::Rng& rng,
+                                              core::TransportMode mode = core::TransportMode::radiance) {
     const float u_lobe = rng.next_float();
     const core::Vec2 u = rng.next_vec2();
     return bsdf.sample({}, wo, u_lobe, u, mode);

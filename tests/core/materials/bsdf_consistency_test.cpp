@@ -1,4 +1,4 @@
-// eval(), pdf_solid_angle() and sample() of every BSDF tell the same story; reciprocity; sides; extremes.
+// eval(), pdf_solid_angle() and sample() of every BSDF agree; reciprocity; sides; extremes.
 #include "tests/core/materials/bsdf_cases.h"
 #include "tests/support/catch.h"
 
@@ -21,7 +21,7 @@ bool near(const Rgb& a, const Rgb& b, float relative) {
     return true;
 }
 
-/// Random, with a share of grazing, normal and exactly flat directions.
+/// Random, with some grazing, normal and exactly flat directions.
 Vec3 awkward_direction(core::Rng& rng) {
     const float kind = rng.next_float(), phi = 6.2831853f * rng.next_float();
     const float sign = rng.next_float() < 0.5f ? -1.0f : 1.0f;
@@ -43,7 +43,7 @@ TEST_CASE("a smooth sample's weight is f cos / pdf", "[materials]") {
         for (int i = 0; i < 4000; ++i) {
             const Vec3 wo = random_direction(rng);
             for (const TransportMode mode : modes) {
-                const auto s = draw(*c.bsdf, wo, rng, mode);
+                const auto s = sample(*c.bsdf, wo, rng, mode);
                 if (!s) continue;
                 const float pdf = c.bsdf->pdf_solid_angle(point, wo, s->wi, mode);
                 const Rgb expected = c.bsdf->eval(point, wo, s->wi, mode) * (std::fabs(s->wi.z) / pdf);
@@ -70,7 +70,7 @@ TEST_CASE("light and eye see the same BSDF", "[materials]") {
             const Vec3 wo = random_direction(rng);
             Vec3 wi = random_direction(rng);
             // Half of the pairs lie inside the lobe.
-            if (const auto s = draw(*c.bsdf, wo, rng, TransportMode::radiance); s && i % 2 == 0) wi = s->wi;
+            if (const auto s = sample(*c.bsdf, wo, rng, TransportMode::radiance); s && i % 2 == 0) wi = s->wi;
             const Rgb there = c.bsdf->eval(point, wo, wi, TransportMode::radiance);
             const Rgb back = c.bsdf->eval(point, wi, wo, TransportMode::radiance);
             const Rgb power = c.bsdf->eval(point, wi, wo, TransportMode::power);
@@ -156,7 +156,7 @@ TEST_CASE("traits say what eval and sample do", "[materials]") {
         bool smooth = false, delta = false, transmitted = false;
         for (int i = 0; i < 2000; ++i) {
             const Vec3 wo = random_direction(rng);
-            const auto s = draw(*c.bsdf, wo, rng, TransportMode::power);
+            const auto s = sample(*c.bsdf, wo, rng, TransportMode::power);
             if (!s) continue;
             (s->delta ? delta : smooth) = true;
             transmitted = transmitted || s->transmitted;
@@ -202,7 +202,7 @@ TEST_CASE("null passes everything straight on", "[materials]") {
     const auto null = core::make_null();
     for (int i = 0; i < 100; ++i) {
         const Vec3 wo = random_direction(rng);
-        const auto s = draw(*null, wo, rng, TransportMode::radiance);
+        const auto s = sample(*null, wo, rng, TransportMode::radiance);
         REQUIRE(s);
         CHECK((s->wi == -wo && s->weight == Rgb(1.0f) && s->delta && s->transmitted && s->eta == 1.0f));
     }

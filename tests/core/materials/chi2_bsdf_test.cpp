@@ -1,4 +1,4 @@
-// Every BSDF with a smooth part draws directions with the density it claims, for the eye and for the light,
+// Every BSDF with a smooth part samples directions with the density it claims, for the eye and for the light,
 // and the density that a vertex gives for the way back is that of the paths that go it.
 #include "core/scene/reverse_density.h"
 #include "tests/core/materials/bsdf_cases.h"
@@ -37,14 +37,14 @@ Chi2Options options_of(const BsdfCase& c, const Vec3& wo, std::size_t view, Tran
 
 DirectionSampler sampler_of(const BsdfCase& c, const Vec3& wo, TransportMode mode) {
     return [&c, wo, mode](core::Rng& rng) -> std::optional<Vec3> {
-        const auto s = draw(*c.bsdf, wo, rng, mode);
+        const auto s = sample(*c.bsdf, wo, rng, mode);
         if (!s || s->delta) return std::nullopt;
         return s->wi;
     };
 }
 
-/// The density of directions w of light paths that come from `from`, as the eye paths know it that come from
-/// w and go on to `from`: at a vertex turned away from the axes.
+/// The density of directions w of light paths that come from `from`, as that of eye paths that come from
+/// w and continue to `from`: at a vertex turned away from the axes.
 DirectionDensity reverse_density(const BsdfCase& c, const Vec3& from) {
     core::ScatteringVertex vertex;
     vertex.bsdf = c.bsdf.get();
@@ -57,8 +57,8 @@ DirectionDensity reverse_density(const BsdfCase& c, const Vec3& from) {
     };
 }
 
-/// Do paths of light draw what eye paths draw, to the bit, and is the density of the way back that of the way
-/// there, where they go and anywhere else? Then the test of eye paths is theirs, too.
+/// Do paths of light sample what eye paths sample, to the bit, and is the density of the way back that of the
+/// way there, where they go and anywhere else? Then the test of eye paths is theirs, too.
 bool same_both_ways(const BsdfCase& c, const Vec3& from, const DirectionDensity& reverse) {
     // Directions turned into the vertex's frame and back are off by 1e-7, which narrow lobes multiply.
     const auto same_density = [&](const Vec3& w) {
@@ -68,8 +68,8 @@ bool same_both_ways(const BsdfCase& c, const Vec3& from, const DirectionDensity&
     core::Rng rng(0x626f7468ull);
     for (int i = 0; i < 5000; ++i) {
         core::Rng again = rng;
-        const auto eye = draw(*c.bsdf, from, rng, TransportMode::radiance);
-        const auto light = draw(*c.bsdf, from, again, TransportMode::power);
+        const auto eye = sample(*c.bsdf, from, rng, TransportMode::radiance);
+        const auto light = sample(*c.bsdf, from, again, TransportMode::power);
         if (eye.has_value() != light.has_value()) return false;
         if (eye && (eye->wi != light->wi || eye->delta != light->delta)) return false;
         if (eye && !eye->delta && !same_density(eye->wi)) return false;
@@ -147,7 +147,7 @@ TEST_CASE("the way back is not the way there", "[materials][bsdf][chi2][planted]
     CHECK(found == 5);
 }
 
-TEST_CASE("a vertex knows the reverse density of both modes", "[materials][bsdf]") {
+TEST_CASE("a vertex has the reverse density of both modes", "[materials][bsdf]") {
     for (const BsdfCase& c : all_cases()) {
         core::Rng rng(7);
         core::ScatteringVertex vertex;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes mitsuba_values.txt: what BSDFs of Mitsuba 3 say for pairs of directions. mitsuba_values_test.cpp asks ours.
+"""Writes mitsuba_values.txt: what BSDFs of Mitsuba 3 say for pairs of directions. mitsuba_values_test.cpp evaluates ours.
 
     tests/core/materials/mitsuba_values.py > tests/core/materials/mitsuba_values.txt     (made with Mitsuba 3.9.1)
 
@@ -128,7 +128,7 @@ def write(bsdf_type, inside, pairs, rng):
         si = dr.zeros(mi.SurfaceInteraction3f)
         si.wi = mi.Vector3f(view)
         si.uv = mi.Point2f(*(round(float(x), 3) for x in rng.random(2)))
-        # "principledthin" knows no modes there, though it is not reciprocal: its values are those of radiance.
+        # "principledthin" has no modes there, though it is not reciprocal: its values are those of radiance.
         radiance = bsdf_type == "principledthin" or rng.random() < 0.5
         mode = mi.TransportMode.Radiance if radiance else mi.TransportMode.Importance
         context = mi.BSDFContext(mode)

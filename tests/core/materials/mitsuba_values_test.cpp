@@ -79,7 +79,8 @@ double worst(const core::Bsdf& bsdf, const Table& table, bool of_density, std::s
         const Pair& p = table.pairs[i];
         const Rgb f = bsdf.eval({p.uv}, p.wo, p.wi, p.mode);
         const float pdf = bsdf.pdf_solid_angle({p.uv}, p.wo, p.wi, p.mode);
-        // Mitsuba's "principled" claims a density from behind opaque surfaces, though it draws nothing there.
+        // Mitsuba's "principled" claims a density from behind opaque surfaces, though it samples nothing
+        // there.
         if (of_density && p.wo.z < 0.0f && !bsdf.traits().transmissive) continue;
         for (int k = 0; k < 3; ++k) {
             const double d = of_density ? difference(double(pdf), double(p.pdf))

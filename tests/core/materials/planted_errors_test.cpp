@@ -23,7 +23,7 @@ Chi2Options options(std::size_t samples = 160000) {
 
 DirectionSampler sampler_of(const core::BsdfPtr& bsdf, const Vec3& wo) {
     return [bsdf, wo](core::Rng& rng) -> std::optional<Vec3> {
-        const auto s = draw(*bsdf, wo, rng, TransportMode::radiance);
+        const auto s = sample(*bsdf, wo, rng, TransportMode::radiance);
         if (!s || s->delta) return std::nullopt;
         return s->wi;
     };
@@ -55,9 +55,9 @@ TEST_CASE("a dropped cosine is found", "[materials][chi2][planted]") {
 }
 
 TEST_CASE("a density off by two percent is found", "[materials][chi2][planted]") {
-    for (const core::BsdfPtr& bsdf : {core::BsdfPtr(core::make_diffuse()),
-                                      core::BsdfPtr(core::make_rough_conductor(gold(), ggx(0.2f))),
-                                      core::BsdfPtr(core::make_plastic({}))})
+    for (const core::BsdfPtr& bsdf :
+         {core::BsdfPtr(core::make_diffuse()), core::BsdfPtr(core::make_rough_conductor(gold(), ggx(0.2f))),
+          core::BsdfPtr(core::make_plastic({}))})
         for (const double factor : {0.98, 1.02}) {
             const Chi2Result result =
                 chi2_test(sampler_of(bsdf, wo), density_of(bsdf, wo, factor), options());
@@ -67,7 +67,7 @@ TEST_CASE("a density off by two percent is found", "[materials][chi2][planted]")
 }
 
 TEST_CASE("a chance of choosing a lobe off by two percent is found", "[materials][chi2][planted]") {
-    // The density stays normalised: only the shares of the two lobes are wrong (0.50 for 0.48).
+    // The density stays normalised: only the probabilities of the two lobes are wrong (0.50 for 0.48).
     const core::BsdfPtr phong = core::make_phong({20.0f, grey(0.4f), grey(0.4f)});
     const core::BsdfPtr wrong = core::make_phong({20.0f, grey(0.4f), grey(0.4f * 0.48f / 0.52f)});
     const Vec3 normal(0.0f, 0.0f, 1.0f);

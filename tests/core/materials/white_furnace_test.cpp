@@ -23,12 +23,12 @@ Mean mean_of(const core::Vec3d& sum, const core::Vec3d& squares, int n) {
     return {mean, glm::sqrt(glm::max(squares / double(n) - mean * mean, 0.0) / double(n))};
 }
 
-/// Mean weight over n samples, stratified in nothing: sigma is that of independent draws.
+/// Mean weight over n samples, stratified in nothing: sigma is that of independent samples.
 Mean furnace(const core::Bsdf& bsdf, const Vec3& wo, int n, TransportMode mode = TransportMode::power) {
     core::Rng rng(core::hash_keys(11, std::uint64_t(1e6 * double(wo.z + 2.0f))));
     core::Vec3d sum(0.0), squares(0.0);
     for (int i = 0; i < n; ++i) {
-        const auto s = draw(bsdf, wo, rng, mode);
+        const auto s = sample(bsdf, wo, rng, mode);
         if (!s) continue;
         sum += core::Vec3d(s->weight), squares += core::Vec3d(s->weight) * core::Vec3d(s->weight);
     }
@@ -136,7 +136,7 @@ TEST_CASE("albedo() is near the light that sample returns", "[materials][furnace
             CAPTURE(c.name, k, value, claimed);
             // An estimate: it leaves out what facets lose by masking each other, most of it at roughness 1.
             CHECK(claimed > value - margin - 0.03);
-            // Nor does it know the shadows of bent normals.
+            // Nor does it hold the shadows of bent normals.
             if (!c.name.ends_with("_1") && !c.name.ends_with("stretched") && !c.bent)
                 CHECK(claimed < value + 0.15);
             if ((c.bsdf->traits().delta || c.bsdf->traits().diffuse) && !c.bent && c.name != "mask_glass" &&

@@ -56,7 +56,7 @@ TEST_CASE("a mask divides light between passing and its BSDF, where its texture 
     CHECK((leaf->traits().pane && leaf->traits().passes_straight() && !leaf->traits().null));
     CHECK_FALSE(leaf->traits().tints);
 
-    // Values beyond 0 to 1 are cut; in a mask in a mask shares multiply; tinted glass tints what passes.
+    // Values beyond 0 to 1 are cut; in a mask in a mask weights multiply; tinted glass tints what passes.
     CHECK(core::make_mask(core::make_diffuse(), grey(3.0f))->straight_passage(point, wo).stops == 1.0f);
     CHECK(core::make_mask(core::make_diffuse(), grey(-1.0f))->straight_passage(point, wo).stops == 0.0f);
     const auto twice = core::make_mask(core::make_mask(core::make_diffuse(), grey(0.5f)), grey(0.4f));
@@ -71,7 +71,7 @@ TEST_CASE("a mask divides light between passing and its BSDF, where its texture 
            !core::make_mask(core::make_thin_dielectric({}), grey(0.5f))->traits().tints));
 }
 
-TEST_CASE("a blend whose one part is black reflects all of the other's share", "[materials][mask]") {
+TEST_CASE("a blend whose one part is black reflects all that the other part gets", "[materials][mask]") {
     const auto black = core::make_diffuse(grey(0.0f)), white = core::make_diffuse(grey(0.8f));
     for (const bool first : {false, true}) {
         const auto blend = core::make_blend(first ? black : white, first ? white : black, grey(0.5f));
@@ -84,7 +84,7 @@ TEST_CASE("a blend whose one part is black reflects all of the other's share", "
             const core::Vec2 u = rng.next_vec2();
             if (const auto s = blend->sample(point, wo, lobe, u, TransportMode::radiance)) sum += s->weight.x;
         }
-        // Half of the draws come back, with weight 0.8 each: four standard errors of 0.4 / sqrt(n).
+        // Half of the samples come back, with weight 0.8 each: four standard errors of 0.4 / sqrt(n).
         CHECK(sum / n == Approx(0.4).margin(4 * 0.4 / std::sqrt(n)));
     }
 }
@@ -102,7 +102,7 @@ TEST_CASE("the chances of sample() are those of straight_passage()", "[materials
                 const auto s = c.bsdf->sample(point, wo, u_lobe, u, TransportMode::radiance);
                 return s && s->delta && s->wi == -wo;
             };
-            // Whatever a vertex draws that was stopped there by chance lies below.
+            // Whatever a vertex samples that was stopped there by chance lies below.
             CHECK_FALSE((passage.stops > 0.0f && straight(core::one_minus_epsilon * passage.stops)));
             CHECK((passage.stops == 1.0f || straight(std::fmax(passage.stops, 0.0f))));
         }

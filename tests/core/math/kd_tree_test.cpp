@@ -21,7 +21,7 @@ std::vector<Vec3> random_points(std::size_t count, std::uint64_t seed, float gri
     return points;
 }
 
-/// Distances of the k nearest, sorted, by looking at every point.
+/// Distances of the k nearest, sorted, by reading every point.
 std::vector<float> nearest_by_force(const std::vector<Vec3>& points, const Vec3& p, std::size_t k,
                                     float limit) {
     std::vector<float> d;
@@ -36,7 +36,7 @@ std::vector<float> nearest_by_force(const std::vector<Vec3>& points, const Vec3&
 
 }  // namespace
 
-TEST_CASE("The k nearest points are those that looking at every point finds", "[kd_tree]") {
+TEST_CASE("The k nearest points are those that reading every point finds", "[kd_tree]") {
     for (const float grid : {0.0f, 0.125f})
         for (const std::size_t count :
              {std::size_t(1), std::size_t(2), std::size_t(37), std::size_t(20000)}) {

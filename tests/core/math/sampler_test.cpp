@@ -94,7 +94,7 @@ TEST_CASE("numbers lie in [0, 1) and repeat from their keys", "[math][sampler]")
                 CHECK(p == point(kind, 9, pass, item, 3));
             }
     CHECK(to_unit_float(0xffffffffu) < 1.0f);
-    // The generator of a path depends on the pass and on what was drawn before.
+    // The generator of a path depends on the pass and on what was sampled before.
     Sampler a(SamplerKind::sobol, 1, 0, 0), b(SamplerKind::sobol, 1, 1, 0), c(SamplerKind::sobol, 1, 0, 0, 1);
     const auto first = a.make_rng().next_u32();
     CHECK(first != b.make_rng().next_u32());
@@ -104,7 +104,7 @@ TEST_CASE("numbers lie in [0, 1) and repeat from their keys", "[math][sampler]")
 }
 
 TEST_CASE("the generator is uniform and its streams differ", "[math][random]") {
-    // 64 bins, 64000 draws of each of 50 neighbouring keys together: chi square by its normal limit.
+    // 64 bins, 64000 samples of each of 50 neighbouring keys together: chi square by its normal limit.
     std::vector<int> bins(64, 0);
     for (std::uint64_t key = 0; key < 50; ++key) {
         Rng rng(key);

@@ -89,7 +89,7 @@ TEST_CASE("A planted two percent shows up as such", "[metrics]") {
     CHECK(m.error == Approx(0.02).epsilon(1e-4));
     CHECK(m.mean_difference == Approx(0.02).epsilon(1e-4));
     CHECK(m.mean_difference_standard_error < 1e-6);
-    CHECK(std::isnan(m.bias_standard_error));  // nobody says how noisy the image is
+    CHECK(std::isnan(m.bias_standard_error));  // the noise of the image is unknown
     CHECK(m.rmse == Approx(0.06).epsilon(1e-4));
     CHECK(compare_images(reference, image, 12, 12).bias == Approx(-0.02 / 1.02).epsilon(1e-4));
 }
@@ -163,7 +163,7 @@ TEST_CASE("What depends on a NaN is NaN, and what does not is not", "[metrics]")
         CHECK(m.non_finite_image == 2);
         CHECK(m.non_finite_reference == 0);
         CHECK(m.non_finite_either == 2);
-        CHECK(m.non_finite_share() == 2.0 / 256);
+        CHECK(m.non_finite_fraction() == 2.0 / 256);
         CHECK(all_nan(m));
         CHECK(std::isnan(m.average_image));
         CHECK(m.average_reference == 1.0);

@@ -90,7 +90,7 @@ TEST_CASE("An error is never below the bias that it contains", "[relative]") {
     }
 }
 
-TEST_CASE("The error knows no scale, and a lamp counts by its pixels", "[relative]") {
+TEST_CASE("The error has no scale, and a lamp counts by its pixels", "[relative]") {
     const auto noisy = [](Picture image) {
         for (std::size_t i = 0; i < image.size(); ++i)
             if (image[i].x < 500.0f) image[i] *= i % 2 ? 1.25f : 0.75f;
@@ -177,7 +177,7 @@ TEST_CASE("Two noisy references add nothing to a bias", "[relative][statistics]"
     CHECK(std::abs(two - 0.02) < 4.0 * error);
 }
 
-TEST_CASE("Two references of 40 % that know no variance judge an error of 5 %", "[relative][statistics]") {
+TEST_CASE("Two references of 40 % without variances judge an error of 5 %", "[relative][statistics]") {
     const Picture truth = scene_picture();
     Picture image = truth;
     Rng image_rng(78);
@@ -231,7 +231,7 @@ TEST_CASE("The noise of a film is the error that it has", "[relative][film][stat
                 CHECK(noises == Approx(std::sqrt(errors)).epsilon(0.12));
             } else {
                 // Independent passes would have several times the error: the blocks must be seen. Their means
-                // are independent, unlike Sobol points', which a trend that ends has to tell: two pairs of
+                // are independent, unlike Sobol points', which a trend that ends has to show: two pairs of
                 // blocks and one of pairs, of 320 pixels, are good to 6 %, their root to 3 %; and the weights
                 // as above.
                 CHECK(of_passes > 2.0 * std::sqrt(errors));

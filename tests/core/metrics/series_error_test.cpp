@@ -47,7 +47,7 @@ ErrorMeasure pair_measure(float deviation, std::span<const std::uint8_t> counted
 
 }  // namespace
 
-TEST_CASE("A series tells bias, what pictures share, and noise apart, free of the references' noise",
+TEST_CASE("A series separates bias, what pictures share, and noise, free of the references' noise",
           "[metrics][series_error]") {
     std::vector<Picture> images;
     for (std::uint64_t seed = 11; seed < 17; ++seed) images.push_back(noisy(truth(), 1.03f, 0.1f, seed));

@@ -1,4 +1,4 @@
-// Limits of memory: read from files that a test writes, and compared with what is asked for.
+// Limits of memory: read from files that a test writes, and compared with what is requested.
 #include <filesystem>
 #include <fstream>
 

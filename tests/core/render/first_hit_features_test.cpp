@@ -164,10 +164,11 @@ TEST_CASE("at an edge, features are means over what is there", "[render][feature
     for_each_pixel([&](int x, int y, std::size_t i) {
         const float left = on_plane(x, 0.0, scale).x, right = on_plane(x + 1, 0.0, scale).x;
         const float from = std::fmax(left, 0.3f);
-        const double share = std::fmax(0.0, double(right - from)) / double(right - left);
+        const double covered = std::fmax(0.0, double(right - from)) / double(right - left);
         const float coverage = (*image.find("Coverage.Y"))[i], depth = (*image.find("Depth.Z"))[i];
-        CHECK(std::fabs(double(coverage) - share) <= 5.0 * std::sqrt(share * (1.0 - share) / 2000.0) + 1e-6);
-        if (share == 0.0) {
+        CHECK(std::fabs(double(coverage) - covered) <=
+              5.0 * std::sqrt(covered * (1.0 - covered) / 2000.0) + 1e-6);
+        if (covered == 0.0) {
             CHECK(std::isinf(depth));
             CHECK(film.mean(layer_of(film, "P"))[i] == Vec3(0.0f));
             CHECK(film.mean(layer_of(film, "Albedo"))[i] == Rgb(0.0f));

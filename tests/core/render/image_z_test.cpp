@@ -141,7 +141,7 @@ TEST_CASE("what passes or holds a planted error writes nothing", "[statistics]")
     CHECK(folder.size() == 0);
 }
 
-TEST_CASE("a failure that cannot be written is still told", "[statistics]") {
+TEST_CASE("a failure that cannot be written is still reported", "[statistics]") {
     const TemporaryFolder folder;
     std::ofstream(folder.file("occupied")) << "a file";
     ::setenv("MOTE_TEST_FAILURES", (folder.file("occupied") + "/below").c_str(), 1);

@@ -50,7 +50,7 @@ RenderResult interrupted_render(const Scene& scene, RenderRequest request, std::
 
 }  // namespace
 
-TEST_CASE("Passes run in index order, as many as asked for", "[driver]") {
+TEST_CASE("Passes run in index order, as many as requested", "[driver]") {
     const auto scene = fake_scene();
     std::vector<std::uint32_t> seen;
     const CountingIntegrator integrator([&](std::uint32_t index) { seen.push_back(index); });
@@ -60,7 +60,7 @@ TEST_CASE("Passes run in index order, as many as asked for", "[driver]") {
     CHECK_FALSE(result.interrupted);
     CHECK(result.film.mean(0)[0] == Rgb(7.0f));  // finish() was called
 
-    RenderRequest by_scene;  // no rule: what the film asks for
+    RenderRequest by_scene;  // no rule: what the film requests
     CHECK(render(*scene, CountingIntegrator(), by_scene).film.pass_count() == 20);
 }
 
@@ -136,7 +136,7 @@ TEST_CASE("Stop rules", "[driver]") {
     CHECK_FALSE(must_stop({{}, 49.1, {}}, s));
     s.seconds = 4.0;
     s.passes = 7;
-    CHECK_FALSE(must_stop({{}, {}, 0.5}, s));  // too few to know the noise
+    CHECK_FALSE(must_stop({{}, {}, 0.5}, s));  // too few for the noise
 
     s.passes = 10;
     CHECK(seconds_left({30, {}, {}}, s) == Approx(20.0));
@@ -157,7 +157,7 @@ TEST_CASE("A time limit ends the render", "[driver]") {
     CHECK(result.film.pass_count() <= 6);
 }
 
-TEST_CASE("Progress is told after every pass", "[driver]") {
+TEST_CASE("Progress is reported after every pass", "[driver]") {
     const auto scene = fake_scene();
     std::vector<RenderProgress> seen;
     RenderRequest request = request_for(12);
@@ -196,7 +196,7 @@ TEST_CASE("Of a first pass that is cut off, finished pixels are kept, and the ot
     };
     RenderRequest request = request_for(3, folder.file("c"));
     request.interrupted = &stop;
-    CHECK(render(*scene, cut_off, request).film.pass_count() == 0);  // only whole passes, unless asked
+    CHECK(render(*scene, cut_off, request).film.pass_count() == 0);  // only whole passes, unless requested
 
     stop = false, request.keep_part_of_first_pass = true;
     const RenderResult part = render(*scene, cut_off, request),
@@ -229,7 +229,7 @@ TEST_CASE("Of a first pass that is cut off, finished pixels are kept, and the ot
     CHECK(bits(two) == bits(render(*scene, CountingIntegrator(), request_for(2))));
 }
 
-TEST_CASE("Work that was asked to stop while building ends the render", "[driver]") {
+TEST_CASE("Work that was cancelled while building ends the render", "[driver]") {
     class Slow final : public Integrator {
       public:
         std::string type() const override { return "slow"; }
@@ -533,7 +533,7 @@ TEST_CASE("an interrupted render has the finished picture where that is quick, a
     CHECK(bits(with) == bits(quick));
     CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(20));  // two, on a quiet machine
 
-    // It goes on from there, and is finished in the end.
+    // It continues from there, and is finished in the end.
     stop = false, request.progress = {}, request.resume = true;
     const RenderResult resumed = render(*scene, FinishingIntegrator(seen, slow), request);
     CHECK(resumed.resumed_at == 4);
@@ -603,21 +603,22 @@ TEST_CASE("the noise that is stated is that of the finished picture", "[driver][
     // least: its standard error is sqrt(2 / 777), half of that for the noise.
     const auto expected = [](std::uint32_t n) { return 0.1 / std::sqrt(12.0 * n); };
     const double within = 5.0 * 0.5 * std::sqrt(2.0 / 777.0);
-    std::vector<double> told;
+    std::vector<double> reported;
     RenderRequest request = request_for(20);
-    request.progress = [&](const RenderProgress& p) { told.push_back(p.noise); };
+    request.progress = [&](const RenderProgress& p) { reported.push_back(p.noise); };
     const RenderResult result = render(*scene, FilteringIntegrator(), request);
     CHECK(result.film.noise() == Approx(expected(20)).epsilon(within));
     CHECK(result.statistics.values.at("noise") == result.film.noise());
     Film passes = result.film;
     passes.exchange_replaced();
     CHECK(passes.noise() == Approx(10.0 * expected(20)).epsilon(within));
-    // Nobody is told the noise of the passes, and what is told does not wait for a preview that is shown.
-    REQUIRE(told.size() == 20);
+    // The noise of the passes is not reported, and what is reported does not wait for a preview that is
+    // shown.
+    REQUIRE(reported.size() == 20);
     for (std::uint32_t i = 1; i < 20; ++i)
-        CHECK((std::isinf(told[i]) || told[i] < 0.5 * 10.0 * expected(i + 1)));
+        CHECK((std::isinf(reported[i]) || reported[i] < 0.5 * 10.0 * expected(i + 1)));
 
-    // The rule looks at it after 8, 10, 12, 14, 16, 20, 24, ... passes, whoever else looked when.
+    // The rule evaluates it after 8, 10, 12, 14, 16, 20, 24, ... passes, whatever else evaluates it.
     RenderRequest rule = request_for(1000);
     const TemporaryFolder folder;
     rule.stop = {{}, {}, expected(31)};

@@ -1,4 +1,4 @@
-// Rays that touch edges and corners of media: whoever goes on to infinity ends outside.
+// Rays that touch edges and corners of media: what continues to infinity ends outside.
 #include "core/geometry/triangle_mesh.h"
 #include "core/math/warp.h"
 #include "core/scene/ray_walk.h"
@@ -36,7 +36,7 @@ Vec3 point_to_touch(const Shape& shape, const Vec3& origin, Rng& rng) {
            radius * std::sqrt(std::max(0.0f, 1.0f - sine * sine)) * across;
 }
 
-/// Where a walk ends that goes on straight to infinity.
+/// Where a walk ends that continues straight to infinity.
 bool ends_inside(const Scene& scene, const Ray& ray, MediumState state, WalkContext& context) {
     PathWeights weights;
     Rgb emitted(0.0f);

@@ -54,32 +54,32 @@ TEST_CASE("The probabilities of all lights add up to 1 for any receiver", "[ligh
     }
 }
 
-TEST_CASE("A light tree draws with the probabilities that it states", "[lights][light_tree]") {
+TEST_CASE("A light tree samples with the probabilities that it states", "[lights][light_tree]") {
     Rng rng(5);
     const LightTree tree(mixed_lights(60, rng));
     const LightReceiver receiver{in_cube(rng), any_direction(rng)};
     const LightSegment segment{in_cube(rng), any_direction(rng), 0.1f, 2.0f};
-    constexpr int draws = 200000;
+    constexpr int samples = 200000;
     const auto check = [&](const auto& where) {
-        std::vector<int> drawn(tree.size());
+        std::vector<int> sampled(tree.size());
         double worst = 0.0;
-        for (int i = 0; i < draws; ++i) {
-            const auto choice = tree.sample(where, (double(i) + double(rng.next_float())) / draws);
-            ++drawn[choice.light];
+        for (int i = 0; i < samples; ++i) {
+            const auto choice = tree.sample(where, (double(i) + double(rng.next_float())) / samples);
+            ++sampled[choice.light];
             worst =
                 std::max(worst, std::abs(choice.probability / tree.probability(where, choice.light) - 1.0));
         }
         CHECK(worst < 1e-9);
-        // One stratum a draw: each light's count is off by less than the strata at its ends, if it draws
+        // One stratum a sample: each light's count is off by less than the strata at its ends, if it samples
         // as it states.
         for (std::uint32_t i = 0; i < tree.size(); ++i)
-            CHECK(std::abs(double(drawn[i]) - draws * tree.probability(where, i)) <= 2.0);
+            CHECK(std::abs(double(sampled[i]) - samples * tree.probability(where, i)) <= 2.0);
     };
     check(receiver);
     check(segment);
 }
 
-TEST_CASE("Lights that shine on a receiver can be drawn there", "[lights][light_tree]") {
+TEST_CASE("Lights that shine on a receiver can be sampled there", "[lights][light_tree]") {
     // Probability of a light that illuminates the receiver: its importance, and those of the clusters that
     // hold it, must not be 0 where one of its points emits towards the receiver.
     Rng rng(7);
@@ -146,7 +146,7 @@ TEST_CASE("Trees deeper than 32 nodes, lights in one place, lights in a row", "[
     CHECK(total(heap, LightReceiver{Vec3(1)}) == Approx(1.0));
 }
 
-TEST_CASE("Light is drawn by the receiver, and from outside the hierarchy by power", "[scene][lights]") {
+TEST_CASE("Light is sampled by the receiver, and from outside the hierarchy by power", "[scene][lights]") {
     const auto scene = load_body(
         "<shape type='sphere'/>"
         "<emitter type='point'><point name='position' x='-4' y='0' z='0'/><rgb name='intensity' "

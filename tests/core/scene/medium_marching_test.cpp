@@ -16,7 +16,7 @@ class Ramp : public Medium {
         t.voxel_size = voxel_size, t.homogeneous = homogeneous;
         return t;
     }
-    const PhaseFunction& phase() const override { throw std::logic_error("not asked for"); }
+    const PhaseFunction& phase() const override { throw std::logic_error("not requested"); }
     MediumCoefficients coefficients(const Vec3& p) const override {
         MediumCoefficients c;
         const float x = homogeneous ? 2.0f : p.x;

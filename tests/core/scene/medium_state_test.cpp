@@ -52,7 +52,7 @@ float transmittance(const Scene& scene, const Vec3& from, const Vec3& to) {
 
 struct TestSphere {
     std::shared_ptr<AnalyticShape> shape = make_sphere(Vec3d(0.0), 1.0, Transform(), false);
-    /// With an exterior of its own it stands for an open wall, which parts the outside.
+    /// With an exterior of its own it represents an open wall, which parts the outside.
     TestSphere(std::uint32_t index, std::shared_ptr<Medium> in, std::shared_ptr<Medium> out = nullptr) {
         shape->index = index, shape->interior = std::move(in), shape->exterior = std::move(out);
         shape->has_medium_boundary = true, shape->parts_the_outside = shape->exterior != nullptr;
@@ -259,7 +259,7 @@ TEST_CASE("A closed room with its normals inwards", "[scene][media]") {
     CHECK(transmittance(*scene, {-2, 0, 0}, {-7, 0, 0}) == Approx(std::exp(-3.0 - 8.0)).epsilon(1e-5));
 }
 
-TEST_CASE("A lamp in a box of smoke tells nothing about the world outside", "[scene][media]") {
+TEST_CASE("A lamp in a box of smoke says nothing about the world outside", "[scene][media]") {
     const std::string lamp = "<shape type='sphere'><float name='radius' value='.1'/><emitter type='area'/>" +
                              outside("a") + "</shape>";
     const auto scene = scene_with_media(box("1", inside("a")) + lamp);
@@ -292,7 +292,7 @@ TEST_CASE("An area light begins outside of its shape", "[scene][media]") {
     CHECK(sigma(scene->emitter_medium_state(lamp, *sample)) == 1);
 }
 
-TEST_CASE("Lights that reach through a boundary are looked at point by point", "[scene][media]") {
+TEST_CASE("Lights that reach through a boundary are tested point by point", "[scene][media]") {
     const auto scene = scene_with_media(
         box("1", inside("a")) +
         "<shape type='rectangle'><transform name='to_world'><rotate x='1' angle='90'/><scale value='2'/>"

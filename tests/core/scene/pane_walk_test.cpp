@@ -1,5 +1,5 @@
 // A path passes a pane by chance. What a walk leaves in its weights: the pane's own tint in the throughput,
-// and the chance where light sampling, which passes for certain, is weighed against it.
+// and the chance where light sampling, which passes for certain, is weighted against it.
 #include "core/scene/ray_walk.h"
 #include "tests/core/scene/scene_fixture.h"
 

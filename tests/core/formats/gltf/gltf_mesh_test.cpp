@@ -133,11 +133,11 @@ TEST_CASE("Numbers that are not there are refused by name", "[gltf]") {
     contains(refusal(b), "asset.version: is '1.0': only glTF 2 is read");
 }
 
-TEST_CASE("Triangles are told apart by how they show a picture", "[gltf]") {
+TEST_CASE("Triangles are distinguished by how they show a picture", "[gltf]") {
     MeshData mesh = gltf_quad();
     CHECK(split_by_handedness(mesh).turned.triangles.empty());
     mesh.positions.emplace_back(-1, 3, 0), mesh.normals.emplace_back(0, 0, 1), mesh.uvs.emplace_back(0, 1);
-    mesh.triangles.push_back({3, 2, 4});  // the picture goes on upside down
+    mesh.triangles.push_back({3, 2, 4});  // the picture continues upside down
     const MeshByHandedness parts = split_by_handedness(mesh);
     CHECK(parts.straight.triangles.size() == 2);
     REQUIRE(parts.turned.triangles.size() == 1);

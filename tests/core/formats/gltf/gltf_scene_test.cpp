@@ -1,5 +1,5 @@
 // glTF scenes: the same picture as the scene that says the same in our language, units, cameras, materials,
-// and what is told of what cannot be said.
+// and reports of what has no counterpart.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -336,7 +336,7 @@ TEST_CASE("Meshes of many glTF nodes are instances", "[gltf]") {
     CHECK(!scene->shapes()[0]->emitter);
 }
 
-TEST_CASE("What glTF says and we cannot is told at once, and left out with leniency", "[gltf]") {
+TEST_CASE("What has no counterpart in glTF files is reported at once, and left out with leniency", "[gltf]") {
     GltfBuilder b;
     json coated = dull({1, 1, 1, 1});
     coated["name"] = "Coat";
@@ -361,7 +361,7 @@ TEST_CASE("What glTF says and we cannot is told at once, and left out with lenie
     contains(scene->parts().warnings[0], "EXT_unheard is not known");
 }
 
-TEST_CASE("A glTF scene knows the files it was read from, and no temporary ones", "[gltf]") {
+TEST_CASE("A glTF scene holds the names of the files it was read from, and no temporary ones", "[gltf]") {
     const TemporaryFolder folder;
     GltfBuilder b;
     json wood = dull({1, 1, 1, 1});

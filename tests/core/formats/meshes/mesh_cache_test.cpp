@@ -36,7 +36,7 @@ const MeshData& loaded(const TemporaryFolder& folder, float x, std::unique_ptr<S
 
 }  // namespace
 
-TEST_CASE("a mesh is kept while it is asked for", "[geometry][mesh_cache]") {
+TEST_CASE("a mesh is kept while it is requested", "[geometry][mesh_cache]") {
     MeshCache cache;
     int made = 0;
     const auto get = [&](const std::string& name) {

@@ -109,7 +109,7 @@ TEST_CASE("serialized files that lie are refused by name", "[assets][serialized]
         CHECK_THROWS_WITH(read(mesh_bytes(4, floats, 1.0, count, 1)), ContainsSubstring("too"));
         CHECK_THROWS_WITH(read(mesh_bytes(4, doubles, 1.0, 3, count)), ContainsSubstring("too"));
     }
-    // A stream that unpacks to more than it weighs by a thousand: 300 MB of zeros in 300 kB.
+    // A stream that unpacks to a thousand times its size: 300 MB of zeros in 300 kB.
     std::string bomb;
     put(bomb, std::uint32_t(floats)), bomb += '\0';
     put(bomb, std::uint64_t(25000000)), put(bomb, std::uint64_t(1));
@@ -165,7 +165,7 @@ TEST_CASE("PLY files carry attributes by Mitsuba's names", "[assets][attributes]
     }
     CHECK_FALSE(attributes->has_attribute("vertex_lone"));
     CHECK(data.attributes.size() == 5);
-    // Integers are shares of 255; the quad became two triangles with the same face's colour.
+    // Integers are fractions of 255; the quad became two triangles with the same face's colour.
     CHECK(attributes->attribute("vertex_color", 0, {0, 0}) == Rgb(1, 0, 0.2f));
     CHECK(attributes->attribute("face_color", 0, {0.3f, 0.3f}) == Rgb(0.1f, 0.2f, 0.3f));
     CHECK(attributes->attribute("face_color", 1, {0.3f, 0.3f}) == Rgb(0.1f, 0.2f, 0.3f));
@@ -173,7 +173,7 @@ TEST_CASE("PLY files carry attributes by Mitsuba's names", "[assets][attributes]
     CHECK(attributes->attribute_range("vertex_heat") == Vec2(7, 10));
     // Weighted by area: two triangles of the quad, and one of the same size.
     CHECK(attributes->attribute_mean("face_color").x == Approx(0.2));
-    // A ray finds the interpolated value; so does a point drawn.
+    // A ray finds the interpolated value; so does a point sampled.
     const std::shared_ptr<Shape> shapes[] = {mesh};
     const RayTracer tracer(shapes);
     const auto hit = tracer.closest(ray({0.25f, 0.75f, 1}, {0, 0, -1}));

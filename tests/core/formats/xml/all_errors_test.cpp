@@ -1,4 +1,4 @@
-// One run tells all that is wrong with a scene, in the order of its lines, and nothing twice.
+// One run reports all that is wrong with a scene, in the order of its lines, and nothing twice.
 #include <fstream>
 
 #include "core/formats/xml/faults.h"

@@ -1,4 +1,4 @@
-// --lenient: what can be loaded is, and every word left out or replaced is told.
+// --lenient: what can be loaded is, and every word left out or replaced is reported.
 #include "core/formats/xml/faults.h"
 #include "core/geometry/shape.h"
 #include "core/materials/bsdf.h"
@@ -65,15 +65,15 @@ TEST_CASE("Unknown BSDFs are grey, unknown shapes left out, unknown values ignor
                                                ": left out",
                                                "test.xml:8: unknown element <mesh>",
                                                ": ignored"};
-    const auto& told = scene.approximations;
+    const auto& notes = scene.approximations;
     for (std::size_t i = 0; i < expected.size(); i += 2) {
         INFO(expected[i]);
-        const auto found = std::find_if(told.begin(), told.end(),
+        const auto found = std::find_if(notes.begin(), notes.end(),
                                         [&](const std::string& t) { return t.starts_with(expected[i]); });
-        REQUIRE(found != told.end());
+        REQUIRE(found != notes.end());
         CHECK(found->ends_with(expected[i + 1]));
     }
-    CHECK(told.size() == expected.size() / 2);
+    CHECK(notes.size() == expected.size() / 2);
 }
 
 TEST_CASE("A value that an object cannot be made with is ignored", "[scene][lenient]") {

@@ -110,7 +110,7 @@ TEST_CASE("-D with a path sets a parameter of an element", "[scene][syntax]") {
     CHECK(error(".", "2") != "");
 }
 
-TEST_CASE("Another integrator keeps the parameters that it knows", "[scene][syntax]") {
+TEST_CASE("Another integrator keeps the parameters that it has", "[scene][syntax]") {
     const std::string xml = scene_xml(
         "<integrator type='fake'><float name='bound' value='2'/><integer name='max_depth' "
         "value='4'/></integrator>");

@@ -1,16 +1,16 @@
 #!/usr/bin/python3
 """Selected virtual point lights and the filter of layers: what is left of the noise of selecting, and what it costs.
 
-Usage: drawn_lights_and_filter.py [--mote build/release/bin/mote] [--size N] [--passes N] [--scene NAME] [--reference N]
+Usage: sampled_lights_and_filter.py [--mote build/release/bin/mote] [--size N] [--passes N] [--scene NAME] [--reference N]
          [--keep FILE] [--quick] [METHOD...]
 A million VPLs shared out among the passes, atrium in haze and smoke room. Eye paths, points along them and VPLs are the
 same for all, so errors are those of selecting alone: the relative RMSE (measure.py), each against a picture of
-`--reference` drawn lights a tile and pass that went through the same filter, or through none; its own noise is not subtracted.
+`--reference` sampled lights a tile and pass that went through the same filter, or through none; its own noise is not subtracted.
 `--keep` keeps references for the next time.
 METHOD: stochastic:LIGHTS, tree:LIGHTS, ris:CANDIDATES:SAMPLES, lightcuts:ERROR:MOST:ANGLE, multidimensional:ERROR:MOST:ANGLE,
-each with @N behind it for an interleaving of N (the pixels that share drawn lights lie so far from each other), ! for no filter,
+each with @N behind it for an interleaving of N (the pixels that share sampled lights lie so far from each other), ! for no filter,
 and more <selection> parameters as +name=value. Seconds are of the processor: of the whole command, and, of a picture of
-512 x 512, those that are more than a single drawn light takes (without eye paths, light paths and filter). --quick: small, two minutes.
+512 x 512, those that are more than a single sampled light takes (without eye paths, light paths and filter). --quick: small, two minutes.
 """
 import argparse
 import re
