@@ -4,7 +4,7 @@
 // gather ray lights and the VPLs on surfaces all along; lights themselves are looked for at a few scattering
 // points of each. The surface gathers ray lights, and VPLs with a bounded geometry term. What the bound takes
 // comes back exactly: the path continues, and where it finds the next surface so near that G > b, that one is
-// a receiver as well, weighed by (G - b)/G, and so on.
+// a receiver as well, weighted by (G - b)/G, and so on.
 #pragma once
 
 #include <array>
