@@ -20,9 +20,12 @@ using core::Ray, core::Rgb, core::Rng;
 
 namespace {
 
+bool is_grey(const Rgb& c) { return c.x == c.y && c.y == c.z; }
+
 double length_of(const Ray& ray) { return double(ray.t_max) - double(ray.t_min); }
 
 Rgb transmittance_over(const Rgb& sigma_t, double length) {
+    if (is_grey(sigma_t)) return Rgb(float(std::exp(-optical_depth(sigma_t.x, length))));
     Rgb t;
     for (int c = 0; c < 3; ++c) t[c] = float(std::exp(-optical_depth(sigma_t[c], length)));
     return t;
@@ -77,6 +80,18 @@ core::MediumTraits HomogeneousMedium::traits() const {
     return t;
 }
 
+/// Multiplies by what the channels have over the hero, with whose density a distance was sampled.
+void HomogeneousMedium::weigh_channels(core::PathWeights& weights, double travelled, bool collides) const {
+    const double sigma_h = sigma_t_[weights.hero];
+    for (int c = 0; c < 3; ++c) {
+        // exp of the difference, so that neither transmittance underflows alone
+        const double ratio =
+            std::exp(optical_depth(sigma_h, travelled) - optical_depth(sigma_t_[c], travelled));
+        weights.throughput[c] *= float(collides ? ratio * sigma_s_[c] / sigma_h : ratio);
+        weights.unidirectional[c] *= float(collides ? ratio * sigma_t_[c] / sigma_h : ratio);
+    }
+}
+
 std::optional<float> HomogeneousMedium::sample_collision(const Ray& ray, core::PathWeights& weights,
                                                          Rgb& emitted, Rng& rng,
                                                          core::TrackingCounters& counters) const {
@@ -92,16 +107,12 @@ std::optional<float> HomogeneousMedium::sample_collision(const Ray& ray, core::P
     const double sigma_h = sigma_t_[weights.hero];
     const double t = sigma_h > 0.0 ? sample_optical_depth(rng) / sigma_h : double(core::infinity);
     const bool collides = t < length;
-    const double travelled = collides ? t : length;
-    for (int c = 0; c < 3; ++c) {
-        // exp of the difference, so that neither transmittance underflows alone
-        const double ratio =
-            std::exp(optical_depth(sigma_h, travelled) - optical_depth(sigma_t_[c], travelled));
-        weights.throughput[c] *= float(collides ? ratio * sigma_s_[c] / sigma_h : ratio);
-        weights.unidirectional[c] *= float(collides ? ratio * sigma_t_[c] / sigma_h : ratio);
-    }
+    if (!is_grey(sigma_t_))
+        weigh_channels(weights, collides ? t : length, collides);
+    else if (collides)
+        weights.throughput *= sigma_s_ / sigma_t_;
     if (!collides) {
-        weights.light *= float(std::exp(optical_depth(sigma_h, length)));
+        if (!core::is_black(weights.light)) weights.light *= float(std::exp(optical_depth(sigma_h, length)));
         return std::nullopt;
     }
     ++counters.collisions;

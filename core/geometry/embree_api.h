@@ -91,6 +91,18 @@ inline void occluded(const int* valid, RTCScene scene, Query& query, RTCRay16& r
     arguments.context = &query.base, arguments.flags = query.flags;
     rtcOccluded16(valid, scene, &rays, &arguments);
 }
+inline void intersect(const int* valid, RTCScene scene, Query& query, RTCRayHit16& rays) {
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.context = &query.base, arguments.flags = query.flags;
+    rtcIntersect16(valid, scene, &rays, &arguments);
+}
+inline void intersect(const int* valid, RTCScene scene, Query& query, RTCRayHit8& rays) {
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.context = &query.base, arguments.flags = query.flags;
+    rtcIntersect8(valid, scene, &rays, &arguments);
+}
 inline void occluded_stream(RTCScene scene, Query& query, RTCRay* rays, unsigned count) {
     for (unsigned i = 0; i < count; ++i) occluded(scene, query, rays[i]);
 }
@@ -115,6 +127,12 @@ inline void intersect_filtered(RTCScene scene, Query& query, RTCRayHit& ray, RTC
 inline void occluded(RTCScene scene, Query& query, RTCRay& ray) { rtcOccluded1(scene, &query.base, &ray); }
 inline void occluded(const int* valid, RTCScene scene, Query& query, RTCRay16& rays) {
     rtcOccluded16(valid, scene, &query.base, &rays);
+}
+inline void intersect(const int* valid, RTCScene scene, Query& query, RTCRayHit16& rays) {
+    rtcIntersect16(valid, scene, &query.base, &rays);
+}
+inline void intersect(const int* valid, RTCScene scene, Query& query, RTCRayHit8& rays) {
+    rtcIntersect8(valid, scene, &query.base, &rays);
 }
 inline void occluded_stream(RTCScene scene, Query& query, RTCRay* rays, unsigned count) {
     rtcOccluded1M(scene, &query.base, rays, count, sizeof(RTCRay));

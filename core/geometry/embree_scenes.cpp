@@ -132,8 +132,8 @@ const ShapeScenes::SharedScenes& ShapeScenes::shared_scenes(const ShapeGroup& gr
     return result;
 }
 
-SurfaceHit ShapeScenes::hit(const Ray& ray, const RawHit& raw) const {
-    SurfaceHit hit;
+void ShapeScenes::fill_hit(const Ray& ray, const RawHit& raw, SurfaceHit& hit) const {
+    hit.primitive = 0;
     if (raw.instance == RTC_INVALID_GEOMETRY_ID) {
         shape_of(raw).fill_hit(ray.origin, ray.direction, raw, hit);
     } else {
@@ -144,7 +144,6 @@ SurfaceHit ShapeScenes::hit(const Ray& ray, const RawHit& raw) const {
         placed.to_world(hit);
     }
     hit.t = raw.t;
-    return hit;
 }
 
 }  // namespace mote::core::embree

@@ -44,7 +44,7 @@ class ShapeScenes {
         if (raw.instance == RTC_INVALID_GEOMETRY_ID) return *entries_[raw.geometry].shape;
         return entries_[raw.instance].shared->shapes[raw.geometry];
     }
-    SurfaceHit hit(const Ray& ray, const RawHit& raw) const;
+    void fill_hit(const Ray& ray, const RawHit& raw, SurfaceHit& hit) const;
 
   private:
     /// Shared by all instances of a group. Geometries are numbered as the group's shapes are.

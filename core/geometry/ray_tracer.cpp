@@ -96,8 +96,59 @@ std::optional<SurfaceHit> RayTracer::closest(const Ray& ray, Group group) const 
     RTCRayHit r = embree_ray_hit(ray, impl_->scenes.unit());
     embree::intersect(impl_->scene(group), query, r);
     if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-    return impl_->scenes.hit(ray,
-                             {r.ray.tfar, r.hit.u, r.hit.v, r.hit.geomID, r.hit.primID, r.hit.instID[0]});
+    std::optional<SurfaceHit> hit(std::in_place);
+    impl_->scenes.fill_hit(ray, {r.ray.tfar, r.hit.u, r.hit.v, r.hit.geomID, r.hit.primID, r.hit.instID[0]},
+                           *hit);
+    return hit;
+}
+
+namespace {
+
+/// Traces up to as many rays as a packet of Embree's has lanes.
+template <typename Packet>
+void closest_of_packet(const embree::ShapeScenes& scenes, embree::Query& query, float max_origin,
+                       std::span<const HitQuery> rays) {
+    constexpr std::size_t width = std::size(Packet{}.ray.org_x);
+    alignas(64) int valid[width];
+    Packet p;
+    const float unit = scenes.unit().per_metre;
+    for (std::size_t i = 0; i < width; ++i) {
+        valid[i] = 0;
+        p.hit.geomID[i] = p.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+        if (i >= rays.size()) continue;
+        const Ray& ray = *rays[i].ray;
+        const Vec3 o = unit * ray.origin, d = unit * ray.direction;
+        valid[i] = -int(traceable(ray, max_origin));
+        p.ray.org_x[i] = o.x, p.ray.org_y[i] = o.y, p.ray.org_z[i] = o.z, p.ray.tnear[i] = ray.t_min;
+        p.ray.dir_x[i] = d.x, p.ray.dir_y[i] = d.y, p.ray.dir_z[i] = d.z, p.ray.tfar[i] = ray.t_max;
+        p.ray.time[i] = 0.0f, p.ray.mask[i] = 0xffffffffu, p.ray.id[i] = unsigned(i), p.ray.flags[i] = 0;
+    }
+    embree::intersect(valid, scenes.surfaces(), query, p);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        SurfaceHit& hit = *rays[i].hit;
+        hit.shape = nullptr;
+        if (p.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+        scenes.fill_hit(
+            *rays[i].ray,
+            {p.ray.tfar[i], p.hit.u[i], p.hit.v[i], p.hit.geomID[i], p.hit.primID[i], p.hit.instID[0][i]},
+            hit);
+    }
+}
+
+}  // namespace
+
+void RayTracer::closest(std::span<const HitQuery> rays, bool coherent) const {
+    embree::Query query;
+    if (coherent) embree::use_coherent_rays(query);
+    const float max_origin = impl_->scenes.max_ray_origin();
+    while (!rays.empty()) {
+        const auto part = rays.first(std::min<std::size_t>(rays.size(), coherent ? 16 : 8));
+        if (part.size() > 8)
+            closest_of_packet<RTCRayHit16>(impl_->scenes, query, max_origin, part);
+        else
+            closest_of_packet<RTCRayHit8>(impl_->scenes, query, max_origin, part);
+        rays = rays.subspan(part.size());
+    }
 }
 
 bool RayTracer::occluded(const Ray& ray) const {
@@ -181,8 +232,11 @@ void RayTracer::visit_hits(const Ray& ray, Group group, Visitor visitor, const v
     const auto end = std::unique(raw.begin(), raw.end(), [&](auto& a, auto& b) { return key(a) == key(b); });
     // Hits at one distance stay in the order of their keys.
     std::sort(raw.begin(), end, [&](auto& a, auto& b) { return a.t != b.t ? a.t < b.t : key(a) < key(b); });
-    for (auto h = raw.begin(); h != end; ++h)
-        if (!visitor(visit, impl_->scenes.hit(ray, *h))) return;
+    for (auto h = raw.begin(); h != end; ++h) {
+        SurfaceHit hit;
+        impl_->scenes.fill_hit(ray, *h, hit);
+        if (!visitor(visit, hit)) return;
+    }
 }
 
 }  // namespace mote::core

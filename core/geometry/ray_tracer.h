@@ -17,6 +17,12 @@
 
 namespace mote::core {
 
+/// A ray of many, and where its first hit goes.
+struct HitQuery {
+    const Ray* ray;
+    SurfaceHit* hit;  ///< its shape is null where there is none
+};
+
 class RayTracer {
   public:
     enum class Group { surfaces, boundaries };
@@ -34,6 +40,8 @@ class RayTracer {
 
     /// Closest hit in one group within (t_min, t_max).
     std::optional<SurfaceHit> closest(const Ray& ray, Group group = Group::surfaces) const;
+    /// The same for many rays; `coherent`: neighbours go the same way.
+    void closest(std::span<const HitQuery> rays, bool coherent) const;
     /// True if a surface lies within (t_min, t_max).
     bool occluded(const Ray& ray) const;
     /// First hits of sixteen rays at once.

@@ -17,28 +17,22 @@ namespace {
 /// largest met in 3e8 rays leaving random triangles of all shapes and scales is 4.6.
 constexpr double plane_error_factor = 12.0;
 
-struct Corners {
-    Vec3d p0, e1, e2, cross;  // cross = e1 x e2, twice the area long
-    double length, inverse;   // of cross
-
-    explicit Corners(const std::array<Vec3, 3>& corner) {
-        p0 = Vec3d(corner[0]), e1 = Vec3d(corner[1]) - p0, e2 = Vec3d(corner[2]) - p0;
-        cross = glm::cross(e1, e2);
-        length = glm::length(cross);
-        inverse = 1.0 / length;
-    }
-    Vec3 point(float u, float v) const { return Vec3(p0 + double(u) * e1 + double(v) * e2); }
-    Vec3 normal() const { return Vec3(cross * inverse); }
-
-    float error(const Vec3& point, const Vec3& normal) const {
-        const Vec3d zero(0.0);
-        const Vec3d extent = glm::max(glm::max(e1, e2), zero) - glm::min(glm::min(e1, e2), zero);
-        const double plane = plane_error_factor * half_ulp * (extent.x * extent.y * extent.z) * inverse;
-        return quantization_error(point, normal) + float(plane);
-    }
-};
+/// Twice the area long, along the normal.
+Vec3d cross_of(const std::array<Vec3, 3>& corners) {
+    const Vec3d p0(corners[0]);
+    return glm::cross(Vec3d(corners[1]) - p0, Vec3d(corners[2]) - p0);
+}
+double area_of(const std::array<Vec3, 3>& corners) { return 0.5 * glm::length(cross_of(corners)); }
 
 }  // namespace
+
+TriangleMesh::Triangle::Triangle(const std::array<Vec3, 3>& c) : corners(c) {
+    const Vec3d cross = cross_of(corners), zero(0.0), p0(c[0]), e1 = Vec3d(c[1]) - p0, e2 = Vec3d(c[2]) - p0;
+    const double inverse = 1.0 / glm::length(cross);
+    const Vec3d extent = glm::max(glm::max(e1, e2), zero) - glm::min(glm::min(e1, e2), zero);
+    normal = Vec3(cross * inverse);
+    plane_error = float(plane_error_factor * half_ulp * (extent.x * extent.y * extent.z) * inverse);
+}
 
 TriangleMesh::TriangleMesh(MeshData given) {
     const auto built = std::make_shared<Built>();
@@ -53,14 +47,14 @@ TriangleMesh::TriangleMesh(MeshData given) {
     // Embree reads 16 bytes for every vertex, so four bytes behind the last one must be ours.
     data.positions.reserve(data.positions.size() + 1);
 
-    built->corners.reserve(data.triangles.size());
+    built->triangles.reserve(data.triangles.size());
     for (const auto& [a, b, c] : data.triangles)
-        built->corners.push_back({data.positions[a], data.positions[b], data.positions[c]});
+        built->triangles.push_back(Triangle({data.positions[a], data.positions[b], data.positions[c]}));
     std::vector<float> areas;
     areas.reserve(data.triangles.size());
     double sum = 0.0, largest = 0.0;
     for (std::uint32_t i = 0; i < data.triangles.size(); ++i) {
-        const double area = 0.5 * Corners(built->corners[i]).length;
+        const double area = area_of(built->triangles[i].corners);
         sum += area, largest = std::max(largest, area);
         for (const std::uint32_t vertex : data.triangles[i]) built->bounds.extend(data.positions[vertex]);
     }
@@ -69,16 +63,17 @@ TriangleMesh::TriangleMesh(MeshData given) {
         throw InputError("the area of the mesh is out of range");
     // Relative to the largest, so that tiny triangles do not underflow.
     for (std::uint32_t i = 0; i < data.triangles.size(); ++i)
-        areas.push_back(float(0.5 * Corners(built->corners[i]).length / largest));
+        areas.push_back(float(area_of(built->triangles[i].corners) / largest));
     built->area_distribution = Distribution1D(areas);
+    built->halves = find_halves(built->triangles);
     built_ = built;
 }
 
 void TriangleMesh::fill_hit(std::uint32_t primitive, float u, float v, SurfaceHit& hit) const {
-    const Corners corners(built_->corners[primitive]);
-    hit.position = corners.point(u, v);
-    hit.geometric_normal = corners.normal();
-    hit.error = corners.error(hit.position, hit.geometric_normal);
+    const Triangle& triangle = built_->triangles[primitive];
+    hit.position = triangle.point(u, v);
+    hit.geometric_normal = triangle.normal;
+    hit.error = triangle.error(hit.position);
     const Vec3 n = shading_normal(primitive, u, v, hit.geometric_normal);
     if (tangent_matters) fill_derivatives(primitive, hit);
     hit.shading = tangent_matters ? Frame(n, hit.dp_du) : Frame(n);
@@ -89,13 +84,13 @@ void TriangleMesh::fill_hit(std::uint32_t primitive, float u, float v, SurfaceHi
 
 DirectionCone TriangleMesh::normals() const {
     Vec3d sum(0.0);  // twice the area's vector; zero for closed meshes
-    for (const auto& corner : built_->corners) sum += Corners(corner).cross;
+    for (const Triangle& triangle : built_->triangles) sum += cross_of(triangle.corners);
     const double length = glm::length(sum);
     if (!(length > 1e-3 * double(built_->area))) return DirectionCone::all();
     const Vec3 axis(sum / length);
     float least = 1.0f;
-    for (const auto& corner : built_->corners)
-        least = std::min(least, glm::dot(axis, Corners(corner).normal()));
+    for (const Triangle& triangle : built_->triangles)
+        least = std::min(least, glm::dot(axis, triangle.normal));
     return {axis, AngleOf::cosine(least).in_radians()};
 }
 
@@ -121,8 +116,9 @@ Vec3 TriangleMesh::shading_normal(std::uint32_t primitive, float u, float v, con
 }
 
 void TriangleMesh::fill_derivatives(std::uint32_t primitive, SurfaceHit& hit) const {
-    const Corners corners(built_->corners[primitive]);
-    hit.dp_du = Vec3(corners.e1), hit.dp_dv = Vec3(corners.e2);  // by barycentric coordinates
+    const auto& corners = built_->triangles[primitive].corners;
+    const Vec3d p0(corners[0]), e1 = Vec3d(corners[1]) - p0, e2 = Vec3d(corners[2]) - p0;
+    hit.dp_du = Vec3(e1), hit.dp_dv = Vec3(e2);  // by barycentric coordinates
     if (built_->data.uvs.empty()) return;
     const Frame any(hit.geometric_normal);
     hit.dp_du = any.s, hit.dp_dv = any.t;
@@ -131,8 +127,8 @@ void TriangleMesh::fill_derivatives(std::uint32_t primitive, SurfaceHit& hit) co
                                                uv2 = glm::dvec2(built_->data.uvs[c]) - uv0;
     // Derivatives of p = p0 + b1 e1 + b2 e2 and uv = uv0 + b1 uv1 + b2 uv2.
     const double determinant = uv1.x * uv2.y - uv1.y * uv2.x;
-    const Vec3 dp_du((uv2.y * corners.e1 - uv1.y * corners.e2) / determinant);
-    const Vec3 dp_dv((uv1.x * corners.e2 - uv2.x * corners.e1) / determinant);
+    const Vec3 dp_du((uv2.y * e1 - uv1.y * e2) / determinant);
+    const Vec3 dp_dv((uv1.x * e2 - uv2.x * e1) / determinant);
     if (is_finite(dp_du) && is_finite(dp_dv)) hit.dp_du = dp_du, hit.dp_dv = dp_dv;
 }
 
@@ -148,14 +144,47 @@ TextureCoordinates TriangleMesh::texture_coordinates(std::uint32_t primitive, fl
     return result;
 }
 
+std::optional<TriangleMesh::Halves> TriangleMesh::find_halves(std::span<const Triangle> triangles) {
+    if (triangles.size() != 2) return std::nullopt;
+    const auto corner = [&](std::size_t triangle, int i) {
+        return triangles[triangle].corners[std::size_t(i) % 3];
+    };
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) {
+            const Vec3 a = corner(0, i + 1), b = corner(0, i + 2), c = corner(1, j + 1), d = corner(1, j + 2);
+            if (!(a == c && b == d) && !(a == d && b == c)) continue;
+            // Off by no more than the corners themselves are rounded.
+            const Vec3d gap = Vec3d(corner(0, i)) + Vec3d(corner(1, j)) - Vec3d(a) - Vec3d(b);
+            const Vec3d size = glm::abs(Vec3d(a)) + glm::abs(Vec3d(b));
+            if (glm::all(glm::lessThanEqual(glm::abs(gap), 2.0 * half_ulp * size)))
+                return Halves{i, j, a == c};
+        }
+    return std::nullopt;
+}
+
+/// A point of the unit square beyond its diagonal lies in the second triangle.
+TriangleMesh::Place TriangleMesh::sample_place(const Vec2& u) const {
+    if (!built_->halves) {
+        const auto chosen = built_->area_distribution.sample_discrete(u.x);
+        return {std::uint32_t(chosen.index), square_to_triangle({chosen.remapped, u.y})};
+    }
+    const auto& [first, second, turned] = *built_->halves;
+    const bool beyond = u.x + u.y > 1.0f;
+    std::array<float, 3> weights;  // of the corners
+    const auto corner = std::size_t(beyond ? second : first);
+    const float a = beyond ? 1.0f - u.y : u.x, b = beyond ? 1.0f - u.x : u.y;
+    const bool swapped = beyond && !turned;
+    weights[corner] = 1.0f - a - b;
+    weights[(corner + 1) % 3] = swapped ? b : a, weights[(corner + 2) % 3] = swapped ? a : b;
+    return {std::uint32_t(beyond), {weights[1], weights[2]}};
+}
+
 ShapeSample TriangleMesh::sample_area(const Vec2& u) const {
-    const auto chosen = built_->area_distribution.sample_discrete(u.x);
-    const auto primitive = std::uint32_t(chosen.index);
-    const Vec2 b = square_to_triangle({chosen.remapped, u.y});
-    const Corners corners(built_->corners[primitive]);
-    const Vec3 position = corners.point(b.x, b.y), normal = corners.normal();
-    return {position, normal, texture_coordinates(primitive, b.x, b.y), 1.0f / built_->area,
-            corners.error(position, normal)};
+    const auto [primitive, b] = sample_place(u);
+    const Triangle& triangle = built_->triangles[primitive];
+    const Vec3 position = triangle.point(b.x, b.y);
+    return {position, triangle.normal, texture_coordinates(primitive, b.x, b.y), 1.0f / built_->area,
+            triangle.error(position)};
 }
 
 }  // namespace mote::core

@@ -68,6 +68,12 @@ struct BsdfPoint {
     float peak_limit = infinity;
 };
 
+/// A BSDF and its density in one pair of directions.
+struct BsdfValue {
+    Rgb value;              ///< eval() [1/sr]
+    float pdf_solid_angle;  ///< pdf_solid_angle() [1/sr]
+};
+
 /// Scattering of light by a surface; see the top of this file for directions.
 class Bsdf : public Object {
   public:
@@ -92,6 +98,12 @@ class Bsdf : public Object {
     /// the local frame stays where it is; indices of refraction are taken from the side that wo is on.
     virtual float pdf_solid_angle(const BsdfPoint& p, const Vec3& wo, const Vec3& wi,
                                   TransportMode mode) const = 0;
+
+    /// eval() and pdf_solid_angle() at once, for BSDFs that share work between them.
+    virtual BsdfValue eval_and_pdf(const BsdfPoint& p, const Vec3& wo, const Vec3& wi,
+                                   TransportMode mode) const {
+        return {eval(p, wo, wi, mode), pdf_solid_angle(p, wo, wi, mode)};
+    }
 
     /// Samples wi given wo. `u_lobe` chooses among lobes, `u` the direction. Nothing when absorbed.
     virtual std::optional<BsdfSample> sample(const BsdfPoint& p, const Vec3& wo, float u_lobe, const Vec2& u,

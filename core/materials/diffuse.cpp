@@ -25,6 +25,10 @@ class Diffuse final : public Bsdf {
     float pdf_solid_angle(const BsdfPoint&, const Vec3& wo, const Vec3& wi, TransportMode) const override {
         return wo.z > 0.0f ? cosine_hemisphere_pdf(wi) : 0.0f;
     }
+    BsdfValue eval_and_pdf(const BsdfPoint& p, const Vec3& wo, const Vec3& wi, TransportMode) const override {
+        if (!(wo.z > 0.0f && wi.z > 0.0f)) return {Rgb(0.0f), 0.0f};
+        return {reflectance_.eval(p.uv) * inv_pi, wi.z * inv_pi};
+    }
     std::optional<BsdfSample> sample(const BsdfPoint& p, const Vec3& wo, float, const Vec2& u,
                                      TransportMode) const override {
         if (!(wo.z > 0.0f)) return std::nullopt;

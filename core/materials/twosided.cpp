@@ -41,6 +41,11 @@ class TwoSided final : public Bsdf {
         if (wo.z > 0.0f) return front_->pdf_solid_angle(p, wo, wi, mode);
         return back_->pdf_solid_angle(p, mirrored(wo), mirrored(wi), mode);
     }
+    BsdfValue eval_and_pdf(const BsdfPoint& p, const Vec3& wo, const Vec3& wi,
+                           TransportMode mode) const override {
+        if (wo.z > 0.0f) return front_->eval_and_pdf(p, wo, wi, mode);
+        return back_->eval_and_pdf(p, mirrored(wo), mirrored(wi), mode);
+    }
     std::optional<BsdfSample> sample(const BsdfPoint& p, const Vec3& wo, float u_lobe, const Vec2& u,
                                      TransportMode mode) const override {
         if (wo.z > 0.0f) return front_->sample(p, wo, u_lobe, u, mode);

@@ -26,6 +26,16 @@ struct Bounds3 {
     }
 };
 
+/// Where a ray from a point of the box leaves it.
+inline float exit_distance(const Bounds3& box, const Ray& ray) {
+    float exit = infinity;
+    for (int axis = 0; axis < 3; ++axis) {
+        const float d = ray.direction[axis], side = d < 0.0f ? box.lower[axis] : box.upper[axis];
+        exit = std::fmin(exit, (side - ray.origin[axis]) / d);  // NaN along the side, which fmin passes over
+    }
+    return exit;
+}
+
 /// A part of a ray.
 struct Interval {
     float t0, t1;  ///< its ends along the ray [m]

@@ -34,18 +34,21 @@ std::uint32_t pascal_matrix_times(std::uint32_t v) {
 
 }  // namespace
 
-Vec2 Sampler::sobol(std::uint32_t dimension) const {
-    const std::uint64_t h = mix_bits(key_ + 0x9e3779b97f4a7c15ull * (dimension + 1ull));
-    const auto shuffle_seed = std::uint32_t(h);
-    const auto scramble_seed = std::uint32_t(h >> 32);
-    // Nested uniform scrambling is reverse, permute, reverse. Shuffling the index by it keeps the pairs of
-    // dimensions independent of each other: it permutes the points within every power-of-two block of passes.
-    const std::uint32_t index = reverse_bits(laine_karras_permutation(reverse_bits(pass_), shuffle_seed));
-    // Both dimensions are reversed indices, and reversing twice is nothing: one reversal remains of each.
-    const std::uint32_t x = reverse_bits(laine_karras_permutation(index, scramble_seed));
-    const std::uint32_t y =
-        reverse_bits(laine_karras_permutation(pascal_matrix_times(index), scramble_seed ^ 0x5bd1e995u));
-    return {to_unit_float(x), to_unit_float(y)};
+void Sampler::make_sobol(std::uint32_t first) {
+    for (std::uint32_t i = 0; i < block; ++i) {
+        const std::uint64_t h = mix_bits(key_ + 0x9e3779b97f4a7c15ull * (first + i + 1ull));
+        const auto shuffle_seed = std::uint32_t(h);
+        const auto scramble_seed = std::uint32_t(h >> 32);
+        // Nested uniform scrambling is reverse, permute, reverse. Shuffling the index by it keeps the pairs
+        // of dimensions independent of each other: it permutes the points within every power-of-two block of
+        // passes.
+        const std::uint32_t index = reverse_bits(laine_karras_permutation(reverse_bits(pass_), shuffle_seed));
+        // Both dimensions are reversed indices, and reversing twice is nothing: one reversal remains of each.
+        const std::uint32_t x = reverse_bits(laine_karras_permutation(index, scramble_seed));
+        const std::uint32_t y =
+            reverse_bits(laine_karras_permutation(pascal_matrix_times(index), scramble_seed ^ 0x5bd1e995u));
+        x_[i] = to_unit_float(x), y_[i] = to_unit_float(y);
+    }
 }
 
 }  // namespace mote::core

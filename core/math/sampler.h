@@ -3,6 +3,7 @@
 // Two kinds: independent numbers, and Owen-scrambled Sobol points. The latter follow Burley 2020 ("Practical
 // hash-based Owen scrambling"): pairs of dimensions are padded, each with its own shuffle of the pass index
 // and its own nested uniform scramble, so that the passes of one pixel form a (0,2)-sequence in every pair.
+// Eight pairs are made at once, in vector instructions, when the first of them is wanted.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +27,9 @@ class Sampler {
     /// The next point in [0, 1)^2.
     Vec2 next_2d() {
         const std::uint32_t d = dimension_++;
-        return kind_ == SamplerKind::sobol ? sobol(d) : independent(d);
+        if (kind_ == SamplerKind::independent) return independent(d);
+        if (d % block == 0) make_sobol(d);
+        return {x_[d % block], y_[d % block]};
     }
     /// A generator for an unbounded number of numbers (tracking), independent of the dimensions used before.
     Rng make_rng() const { return Rng(hash_keys(key_, pass_, 0x7261636bull, dimension_)); }
@@ -36,12 +39,15 @@ class Sampler {
         const std::uint64_t h = hash_keys(key_, pass_, dimension);
         return {to_unit_float(std::uint32_t(h)), to_unit_float(std::uint32_t(h >> 32))};
     }
-    Vec2 sobol(std::uint32_t dimension) const;
+    /// Fills the points of the dimensions from `first` on.
+    void make_sobol(std::uint32_t first);
 
+    static constexpr std::uint32_t block = 8;  ///< points that are made at once
     SamplerKind kind_;
     std::uint32_t pass_;
     std::uint32_t dimension_ = 0;
     std::uint64_t key_;
+    float x_[block] = {}, y_[block] = {};  ///< of the dimensions around dimension_, once the first was wanted
 };
 
 }  // namespace mote::core

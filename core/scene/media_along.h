@@ -23,6 +23,12 @@ inline bool connect_through(const StraightPassage& pane, PathWeights& weights) {
     weights.unidirectional *= pane.probability();
     return !is_black(weights.throughput);
 }
+/// False for segments within the scene's open space.
+inline bool may_meet_boundaries(const RayQueries& scene, const Ray& ray) {
+    if (!scene.has_boundaries()) return false;
+    const Bounds3& open = scene.open_space();
+    return !open.contains(ray.at(ray.t_min)) || !(ray.t_max <= exit_distance(open, ray));
+}
 /// RayQueries::connect() for methods that do not see media: panes alone.
 inline void connect_through_panes(const RayQueries& scene, const Ray& ray, PathWeights& weights) {
     if (!scene.has_panes()) return;
@@ -45,7 +51,7 @@ std::optional<MediumState> for_each_part(const RayQueries& scene, const Ray& ray
         t = boundary.t;
         return continues;
     };
-    if (scene.has_boundaries()) scene.for_each_boundary(ray, cross);
+    if (may_meet_boundaries(scene, ray)) scene.for_each_boundary(ray, cross);
     if (!continues || !part(t, ray.t_max, state)) return std::nullopt;
     return state;
 }

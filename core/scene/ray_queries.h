@@ -47,6 +47,12 @@ class RayQueries {
 
     /// True if there are surfaces that light passes straight.
     virtual bool has_boundaries() const = 0;
+    /// A box that no boundary reaches into, empty where none was found: between points in it nothing need be
+    /// queried.
+    virtual const Bounds3& open_space() const {
+        static const Bounds3 none;
+        return none;
+    }
     /// All boundaries within (t_min, t_max), sorted by distance. Clears `hits` first. What lies between them
     /// is found by for_each_part() (media_along.h).
     virtual void boundaries_along(const Ray& ray, std::vector<SurfaceHit>& hits) const = 0;

@@ -56,68 +56,110 @@ WalkEvent collision_at(float t, const Medium* medium, float surface_distance) {
 }
 
 /// `cross(t0, t1)` goes through a segment of one medium and returns the distance of a collision, if any.
-template <bool Media, typename Cross>
-WalkEvent follow(const RayQueries& scene, const Ray& ray, MediumState& state, PathWeights& weights,
-                 WalkContext& context, const Cross& cross) {
-    context.cancelled.check();
-    ++context.rays.closest;
-    const auto hit = scene.first_hit(ray);
-    const float t_end = hit ? hit->t : ray.t_max;
+/// `event` is the first surface on the ray, or none; what the path meets before takes its place. `splits`: a
+/// segment may be crossed in two parts.
+template <bool Media, bool splits, typename Cross>
+void follow(const RayQueries& scene, const Ray& ray, MediumState& state, PathWeights& weights,
+            WalkEvent& event, WalkContext& context, const Cross& cross) {
+    const bool hit = event.kind == WalkEvent::Kind::surface;
+    const float t_end = hit ? event.hit.t : ray.t_max;
     float t = ray.t_min;
+    event.distance = hit ? t_end : infinity, event.surface_distance = t_end;
+    if (!(Media ? scene.has_boundaries() : scene.has_panes())) {
+        if constexpr (Media)
+            if (const auto c = cross(t, t_end))
+                event = collision_at(kept_between(nullptr, *c, hit ? &event.hit : nullptr, ray),
+                                     state.current(), t_end);
+        return;
+    }
+    // In open space a path ends or collides as a rule, before it can meet a boundary.
+    const Bounds3& open = scene.open_space();
+    const float t_open = open.contains(ray.at(t)) ? exit_distance(open, ray) : t;
+    const bool ends = t_end <= t_open;
+    context.boundary_hits.clear();
+    if (ends || (splits && !context.all_boundaries && t_open > t)) {
+        if constexpr (Media)
+            if (const auto c = cross(t, ends ? t_end : t_open)) {
+                event = collision_at(kept_between(nullptr, *c, ends && hit ? &event.hit : nullptr, ray),
+                                     state.current(), t_end);
+                return;
+            }
+        if (ends) return;
+        t = t_open;
+    }
+    Ray boundary_ray = ray;
+    boundary_ray.t_min = t, boundary_ray.t_max = t_end;
+    ++context.rays.boundary;
+    scene.boundaries_along(boundary_ray, context.boundary_hits);
     [[maybe_unused]] const SurfaceHit* before = nullptr;  // the boundary at t
-    if constexpr (Media) context.boundary_hits.clear();
-    if (Media ? scene.has_boundaries() : scene.has_panes()) {
-        Ray boundary_ray = ray;
-        boundary_ray.t_max = t_end;
-        ++context.rays.boundary;
-        scene.boundaries_along(boundary_ray, context.boundary_hits);
-        for (const SurfaceHit& boundary : context.boundary_hits) {
-            if constexpr (Media)
-                if (const auto c = cross(t, boundary.t))
-                    return collision_at(kept_between(before, *c, &boundary, ray), state.current(), t_end);
-            if (is_pane(boundary))
-                if (const StraightPassage pane = passage_through(boundary, ray.direction);
-                    !passes(pane, weights, context.rng))
-                    return reflected_at(boundary, pane.stops, t_end);
-            if constexpr (Media) state.cross(*boundary.shape, boundary.geometric_normal, ray.direction);
-            t = boundary.t, before = &boundary;
-        }
+    for (const SurfaceHit& boundary : context.boundary_hits) {
+        if constexpr (Media)
+            if (const auto c = cross(t, boundary.t)) {
+                event = collision_at(kept_between(before, *c, &boundary, ray), state.current(), t_end);
+                return;
+            }
+        if (is_pane(boundary))
+            if (const StraightPassage pane = passage_through(boundary, ray.direction);
+                !passes(pane, weights, context.rng)) {
+                event = reflected_at(boundary, pane.stops, t_end);
+                return;
+            }
+        if constexpr (Media) state.cross(*boundary.shape, boundary.geometric_normal, ray.direction);
+        t = boundary.t, before = &boundary;
     }
     if constexpr (Media)
         if (const auto c = cross(t, t_end))
-            return collision_at(kept_between(before, *c, hit ? &*hit : nullptr, ray), state.current(), t_end);
+            event = collision_at(kept_between(before, *c, hit ? &event.hit : nullptr, ray), state.current(),
+                                 t_end);
+}
+
+/// The first surface on the ray, and nothing yet of what lies before it.
+WalkEvent first_surface(const RayQueries& scene, const Ray& ray, WalkContext& context) {
+    context.cancelled.check();
+    ++context.rays.closest;
     WalkEvent event;
-    event.surface_distance = ray.t_max;
-    if (hit) {
-        event.kind = WalkEvent::Kind::surface, event.hit = *hit;
-        event.distance = event.surface_distance = hit->t;
-    }
+    if (const auto hit = scene.first_hit(ray)) event.kind = WalkEvent::Kind::surface, event.hit = *hit;
     return event;
 }
 
 }  // namespace
 
 template <bool Media>
-WalkEvent walk(const RayQueries& scene, const Ray& ray, MediumState& state, PathWeights& weights,
-               Rgb& emitted, WalkContext& context) {
-    return follow<Media>(scene, ray, state, weights, context, [&](float t0, float t1) {
+void walk_before(const RayQueries& scene, const Ray& ray, WalkEvent& event, MediumState& state,
+                 PathWeights& weights, Rgb& emitted, WalkContext& context) {
+    follow<Media, true>(scene, ray, state, weights, event, context, [&](float t0, float t1) {
         return cross_segment(state, ray, t0, t1, weights, emitted, context);
     });
 }
 
+template <bool Media>
+WalkEvent walk(const RayQueries& scene, const Ray& ray, MediumState& state, PathWeights& weights,
+               Rgb& emitted, WalkContext& context) {
+    WalkEvent event = first_surface(scene, ray, context);
+    walk_before<Media>(scene, ray, event, state, weights, emitted, context);
+    return event;
+}
+
 WalkEvent walk_to_surface(const RayQueries& scene, const Ray& ray, MediumState& state, PathWeights& weights,
                           Rgb& emitted, ScatteringPoints& points, WalkContext& context) {
-    return follow<true>(scene, ray, state, weights, context, [&](float t0, float t1) -> std::optional<float> {
-        if (const Medium* medium = state.current(); medium && t0 < t1) {
-            points.begin_part(state);
-            medium->scatter_along({ray.origin, ray.direction, t0, t1}, weights, emitted, points, context.rng,
-                                  context.tracking);
-        }
-        return std::nullopt;
-    });
+    WalkEvent event = first_surface(scene, ray, context);
+    follow<true, false>(scene, ray, state, weights, event, context,
+                        [&](float t0, float t1) -> std::optional<float> {
+                            if (const Medium* medium = state.current(); medium && t0 < t1) {
+                                points.begin_part(state);
+                                medium->scatter_along({ray.origin, ray.direction, t0, t1}, weights, emitted,
+                                                      points, context.rng, context.tracking);
+                            }
+                            return std::nullopt;
+                        });
+    return event;
 }
 
 template WalkEvent walk<true>(const RayQueries&, const Ray&, MediumState&, PathWeights&, Rgb&, WalkContext&);
 template WalkEvent walk<false>(const RayQueries&, const Ray&, MediumState&, PathWeights&, Rgb&, WalkContext&);
+template void walk_before<true>(const RayQueries&, const Ray&, WalkEvent&, MediumState&, PathWeights&, Rgb&,
+                                WalkContext&);
+template void walk_before<false>(const RayQueries&, const Ray&, WalkEvent&, MediumState&, PathWeights&, Rgb&,
+                                 WalkContext&);
 
 }  // namespace mote::core

@@ -21,7 +21,8 @@ struct WalkContext {
     RayCounters rays;
     TrackingCounters tracking;
     std::vector<SurfaceHit> boundary_hits;  ///< up to the first surface on the last ray; reused between rays
-    CancelToken cancelled;                  ///< walk() tests it, and throws
+    bool all_boundaries = true;  ///< false: boundary_hits may leave out those behind a collision, unseen
+    CancelToken cancelled;       ///< walk() tests it, and throws
 };
 
 /// The channel that drives the distances of a path, sampled once a path (PathWeights::hero).
@@ -46,6 +47,12 @@ template <bool Media>
 WalkEvent walk(const RayQueries& scene, const Ray& ray, MediumState& state, PathWeights& weights,
                Rgb& emitted, WalkContext& context);
 
+/// walk() once the first surface on the ray is known: `event` is that (kind and hit), or escaped, and becomes
+/// the event that the path meets. Throws nothing.
+template <bool Media>
+void walk_before(const RayQueries& scene, const Ray& ray, WalkEvent& event, MediumState& state,
+                 PathWeights& weights, Rgb& emitted, WalkContext& context);
+
 /// Continues to the first surface, or to a pane that reflects the path, or outside: media on the way scatter
 /// at `points` and let the rest through (Medium::scatter_along). For paths whose `weights.light` is black.
 WalkEvent walk_to_surface(const RayQueries& scene, const Ray& ray, MediumState& state, PathWeights& weights,
@@ -55,5 +62,10 @@ extern template WalkEvent walk<true>(const RayQueries&, const Ray&, MediumState&
                                      WalkContext&);
 extern template WalkEvent walk<false>(const RayQueries&, const Ray&, MediumState&, PathWeights&, Rgb&,
                                       WalkContext&);
+
+extern template void walk_before<true>(const RayQueries&, const Ray&, WalkEvent&, MediumState&, PathWeights&,
+                                       Rgb&, WalkContext&);
+extern template void walk_before<false>(const RayQueries&, const Ray&, WalkEvent&, MediumState&, PathWeights&,
+                                        Rgb&, WalkContext&);
 
 }  // namespace mote::core

@@ -24,6 +24,14 @@ Rgb ScatteringVertex::eval_cos(const Vec3& wi, TransportMode mode, float peak_li
     return eval(wi, mode, peak_limit) * shading_cosine(wi);
 }
 
+ScatteringValue ScatteringVertex::eval_cos_and_pdf(const Vec3& wi, TransportMode mode) const {
+    if (phase) return {phase->eval(wo, wi), phase->pdf_solid_angle(wo, wi)};
+    if (!sides_agree(hit, wo, wi)) return {Rgb(0.0f), 0.0f};
+    const BsdfValue f =
+        bsdf->eval_and_pdf(bsdf_point(), hit.shading.to_local(wo), hit.shading.to_local(wi), mode);
+    return {f.value * (shading_cosine(wi) / stop_chance), f.pdf_solid_angle / stop_chance};
+}
+
 float ScatteringVertex::pdf_solid_angle(const Vec3& wi, TransportMode mode) const {
     if (phase) return phase->pdf_solid_angle(wo, wi);
     return bsdf->pdf_solid_angle(bsdf_point(), hit.shading.to_local(wo), hit.shading.to_local(wi), mode) /

@@ -24,6 +24,12 @@ struct ScatterSample {
     bool delta = false, transmitted = false;  ///< of a delta part; to the other side of the surface
 };
 
+/// What a vertex scatters from one direction to another.
+struct ScatteringValue {
+    Rgb f_cos;              ///< f* C*
+    float pdf_solid_angle;  ///< of ScatteringVertex::sample()
+};
+
 /// A point where a path scatters.
 struct ScatteringVertex {
     Vec3 position;                         ///< [m]
@@ -43,6 +49,8 @@ struct ScatteringVertex {
     Rgb eval(const Vec3& wi, TransportMode mode, float peak_limit = infinity) const;
     /// f*(wo, wi) times the shading cosine of wi (1 in a medium).
     Rgb eval_cos(const Vec3& wi, TransportMode mode, float peak_limit = infinity) const;
+    /// eval_cos() and pdf_solid_angle(); the density is of no use where the value is black.
+    ScatteringValue eval_cos_and_pdf(const Vec3& wi, TransportMode mode) const;
     /// Density of sample() choosing wi, per solid angle.
     float pdf_solid_angle(const Vec3& wi, TransportMode mode) const;
     /// Samples a direction; nothing where the path ends.

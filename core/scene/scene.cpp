@@ -45,6 +45,7 @@ Scene::Scene(Parts parts) : parts_(std::move(parts)) {
     check_extent(bounds_, parts_.file);
     check_instances();
     find_boundaries();
+    find_open_space();
     find_outermost_medium();
     add_medium_lights();
     build_light_tables();

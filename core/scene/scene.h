@@ -70,12 +70,15 @@ class Scene final : public LitScene {
     const RayTracer& rays() const { return *rays_; }          ///< its shapes in Embree
 
     std::optional<SurfaceHit> first_hit(const Ray& ray) const override;
+    /// first_hit() of many rays; `coherent`: neighbours go the same way.
+    void first_hits(std::span<const HitQuery> rays, bool coherent) const { rays_->closest(rays, coherent); }
     bool visible(const Ray& segment) const override;
     void find_occluded(std::span<ShadowPacket> packets) const override;
     bool attenuates() const override { return has_media() || has_panes(); }
     bool has_boundaries() const override;
     bool has_panes() const override;
     bool has_coloured_panes() const override;
+    const Bounds3& open_space() const override { return open_space_; }
     void boundaries_along(const Ray& ray, std::vector<SurfaceHit>& hits) const override;
     void visit_boundaries(const Ray& ray, BoundaryVisitor visitor, const void* visit) const override;
     Bounds3 medium_extent(const Medium& medium) const override;
@@ -111,6 +114,7 @@ class Scene final : public LitScene {
     void collect_media();
     void find_bounds();
     void check_instances() const;
+    void find_open_space();
     void add_medium_lights();
     void build_light_tables();
     float probability_of(std::size_t light, const LightReceiver& receiver) const;
@@ -134,10 +138,11 @@ class Scene final : public LitScene {
 
     Parts parts_;
     std::unique_ptr<RayTracer> rays_;
-    Bounds3 bounds_;
+    Bounds3 bounds_, open_space_;
     const Emitter* environment_ = nullptr;
     /// Probabilities of each light without the hierarchy, and the hierarchy as the last entry; of particles.
     Distribution1D direct_lights_, particle_lights_;
+    const Emitter* only_light_ = nullptr;  ///< that receivers can choose; null: there are several, or none
     std::unique_ptr<const LightTree> light_tree_;
     static constexpr std::uint32_t no_tree = 0xffffffffu;
     std::vector<std::uint32_t> tree_lights_, tree_index_;  ///< light of the hierarchy to emitter, and back

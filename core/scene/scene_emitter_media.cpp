@@ -1,7 +1,6 @@
 // Media that surround the lights: found once for every light that does not reach through a boundary.
 #include <algorithm>
 
-#include "core/geometry/triangle_mesh.h"
 #include "core/objects/error.h"
 #include "core/scene/scene.h"
 
@@ -20,24 +19,6 @@ MediumState Scene::area_light_state(const Emitter& emitter, const Shape& shape, 
 
 namespace {
 
-/// True if a boundary may pass through the box, so that its two ends lie in different media. Triangles are
-/// compared by their bounds; of analytic shapes the bounds of the whole are all that is known.
-bool may_cross(const Shape& boundary, const Bounds3& box) {
-    const auto overlap = [&](const Bounds3& b) {
-        return glm::all(glm::lessThanEqual(b.lower, box.upper)) &&
-               glm::all(glm::greaterThanEqual(b.upper, box.lower));
-    };
-    if (!overlap(boundary.bounds())) return false;
-    const auto* mesh = dynamic_cast<const TriangleMesh*>(&boundary);
-    if (!mesh) return true;
-    const MeshData& data = mesh->data();
-    return std::any_of(data.triangles.begin(), data.triangles.end(), [&](const auto& triangle) {
-        Bounds3 b;
-        for (const std::uint32_t vertex : triangle) b.extend(data.positions[vertex]);
-        return overlap(b);
-    });
-}
-
 /// True if no light comes through the medium from infinity.
 bool blocks_infinity(const Medium& medium) {
     const Bounds3 box = medium.bounds();
@@ -55,11 +36,6 @@ void Scene::check_light_from_infinity(const Emitter& emitter, const Medium* arou
         "no light from infinity comes through the medium around the scene, which has no end: make it the "
         "interior of a shape, or use lights inside the scene",
         outermost_where_);
-}
-
-bool Scene::any_boundary_in(const Bounds3& box, const Shape* except) const {
-    return std::any_of(boundaries_.begin(), boundaries_.end(),
-                       [&](const Boundary& b) { return b.shape != except && may_cross(*b.shape, box); });
 }
 
 void Scene::find_emitter_states() {

@@ -68,6 +68,9 @@ void Scene::build_light_tables() {
     light_tree_ = std::make_unique<const LightTree>(bounds);
     mixed.push_back(float(in_tree));
     direct_lights_ = Distribution1D(mixed);
+    const auto chosen = [](const auto& emitter) { return emitter->traits().direct; };
+    if (std::count_if(parts_.emitters.begin(), parts_.emitters.end(), chosen) == 1 && !direct_lights_.empty())
+        only_light_ = std::find_if(parts_.emitters.begin(), parts_.emitters.end(), chosen)->get();
     for (std::size_t i = 0; i < power.size(); ++i)
         if (tree_index_[i] == no_tree)
             parts_.emitters[i]->set_direct_probability(direct_lights_.probability(i));
@@ -75,6 +78,7 @@ void Scene::build_light_tables() {
 }
 
 LightChoice Scene::choose_light(const LightReceiver& receiver, float u) const {
+    if (only_light_) return {only_light_, 1.0f};
     if (direct_lights_.empty()) return {nullptr, 0.0f};
     const auto sampled = direct_lights_.sample_discrete(u);
     std::size_t light = sampled.index;
@@ -88,6 +92,7 @@ LightChoice Scene::choose_light(const LightReceiver& receiver, float u) const {
 }
 
 float Scene::light_probability(const LightReceiver& receiver, const Emitter* emitter) const {
+    if (only_light_) return emitter == only_light_ ? 1.0f : 0.0f;
     const auto it = emitter_index_.find(emitter);
     return it == emitter_index_.end() ? 0.0f : probability_of(it->second, receiver);
 }

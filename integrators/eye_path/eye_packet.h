@@ -87,9 +87,25 @@ class EyePacket {
     }
     /// Next-event estimation at all vertices that can be connected, where it is wanted.
     void sample_lights(const lights::LightSampling& how = {}) {
-        for_each([&](int, Lane& lane) {
-            if (!lane.alive || !lane.path->vertex().connectable() || !lane.path->wants_connection()) return;
-            lane.sum[lane.path->layer_of_connection()] += lane.path->sample_light(walk_, how);
+        core::ShadowPacket shadows;
+        shadows.clear();
+        std::array<bool, width> connected{};
+        std::size_t rays = 0;
+        for (int i = 0; i < width; ++i) {
+            Lane& lane = lanes_[std::size_t(i)];
+            lights::LightConnection& c = connections_[std::size_t(i)];
+            const bool begun = lane.advanced && lane.alive && lane.path->vertex().connectable() &&
+                               lane.path->wants_connection() && lane.path->begin_light(c, how);
+            const bool traced = begun && !c.map;
+            connected[std::size_t(i)] = begun, rays += traced;
+            shadows.set(i, c.shadow.origin, c.shadow.direction, traced ? c.shadow.t_max : -1.0f);
+        }
+        walk_.rays.occlusion += rays;
+        if (rays > 0) scene_.find_occluded({&shadows, 1});
+        for_each([&](int i, Lane& lane) {
+            const lights::LightConnection& c = connections_[std::size_t(i)];
+            if (!connected[std::size_t(i)] || (!c.map && shadows.occluded(i))) return;
+            lane.sum[lane.path->layer_of_connection()] += lane.path->finish_light(c, walk_, how);
         });
     }
 
@@ -106,29 +122,49 @@ class EyePacket {
         if (any) next_segments(on_segment);
         return any;
     }
+    /// All paths leave their vertices, find their first surfaces together, and arrive there or before.
     template <typename OnSegment>
     void next_segments(const OnSegment& on_segment) {
+        walk_.cancelled.check();
+        std::array<core::HitQuery, width> rays;
+        std::size_t count = 0;
+        bool from_camera = true;
         for_each([&](int i, Lane& lane) {
-            EyePath<Media>& path = *lane.path;
-            lane.alive = next_segment(lane, [&](const EyeSegment& s) { on_segment(i, lane, s); });
-            if (settings_.records_seen && lane.alive && path.depth() == 1) {
-                lane.seen = see_first_segment(scene_, path, lane.film);
-                if (!path.vertex().connectable()) lane.seen.share_nothing();
+            from_camera &= lane.path->depth() == 0;
+            if (takes_points(lane)) return;
+            lane.alive = lane.path->leave(walk_);
+            if (lane.alive) rays[count++] = {&lane.path->ray(), &events_[std::size_t(i)].hit};
+        });
+        walk_.rays.closest += count;
+        scene_.first_hits(std::span(rays).first(count), from_camera);
+        for_each([&](int i, Lane& lane) {
+            const auto seen = [&](const EyeSegment& s) { on_segment(i, lane, s); };
+            if (takes_points(lane))
+                lane.alive = lane.path->advance_to_surface(walk_, lane.sum, *lane.points, seen);
+            else if (lane.alive)
+                lane.alive = lane.path->arrive(event_of(i), walk_, lane.sum, seen);
+            if (settings_.records_seen && lane.alive && lane.path->depth() == 1) {
+                lane.seen = see_first_segment(scene_, *lane.path, lane.film);
+                if (!lane.path->vertex().connectable()) lane.seen.share_nothing();
             }
         });
     }
-
-    template <typename OnSegment>
-    bool next_segment(Lane& lane, const OnSegment& on_segment) {
-        if constexpr (Media)
-            if (lane.points) return lane.path->advance_to_surface(walk_, lane.sum, *lane.points, on_segment);
-        return lane.path->advance(walk_, lane.sum, on_segment);
+    bool takes_points(const Lane& lane) const { return Media && lane.points; }
+    /// After first_hits().
+    core::WalkEvent& event_of(int lane) {
+        using Kind = core::WalkEvent::Kind;
+        core::WalkEvent& event = events_[std::size_t(lane)];
+        event.kind = event.hit.shape ? Kind::surface : Kind::escaped;
+        event.reflected = false, event.stop_chance = 1.0f, event.medium = nullptr;
+        return event;
     }
 
     const core::Scene& scene_;
     EyePacketSettings settings_;
     core::WalkContext& walk_;
     std::array<Lane, width> lanes_;
+    std::array<core::WalkEvent, width> events_;               ///< by lane, while they take a segment
+    std::array<lights::LightConnection, width> connections_;  ///< by lane, while they look for light
 };
 
 }  // namespace mote::integrators

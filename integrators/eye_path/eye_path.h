@@ -6,6 +6,8 @@
 // (max_scatterings = 1): what its direction then finds is the other technique for direct light.
 #pragma once
 
+#include <utility>
+
 #include "core/scene/scattering_points.h"
 #include "core/scene/scattering_vertex.h"
 #include "integrators/eye_path/eye_path_limits.h"
@@ -57,7 +59,21 @@ class EyePath {
     /// weights() to the end of ray().
     template <typename Walker, typename OnSegment>
     bool advance_by(Walker&& walker, core::WalkContext& context, TransportSum& sum,
-                    const OnSegment& on_segment);
+                    const OnSegment& on_segment) {
+        if (!leave(context)) return false;
+        core::WalkEvent event;
+        const auto walk = [&](core::Rgb& emitted) { event = walker(emitted, context); };
+        return arrive_by(walk, event, sum, on_segment);
+    }
+
+    // The two halves of advance(), between which a packet finds the first surfaces of many paths at once:
+    /// Leaves the vertex, or the camera, along ray(). Returns false where the path ends instead.
+    bool leave(core::WalkContext& context);
+    /// Goes along ray(), of which `event` is the first surface or none (core::walk_before()), and arrives at
+    /// the next vertex as advance() does.
+    template <typename OnSegment>
+    bool arrive(core::WalkEvent& event, core::WalkContext& context, TransportSum& sum,
+                const OnSegment& on_segment);
 
     /// advance() that continues to surfaces until the path has scattered: media on the segment scatter at
     /// `points`, and let the rest through. Those of the segment are chosen from `points` afterwards, whether
@@ -81,6 +97,16 @@ class EyePath {
     core::Rgb sample_light(core::WalkContext& context, const lights::LightSampling& how = {}) {
         return lights::sample_light<Media>(lights_, vertex_, weights_, state_, choices_.x, sampler_.next_2d(),
                                            context, how);
+    }
+    /// The two halves of sample_light(), between which a packet traces the shadow rays of many paths. False:
+    /// no light arrives.
+    bool begin_light(lights::LightConnection& connection, const lights::LightSampling& how) {
+        return lights::begin_connection(vertex_, lights_.choose_light(vertex_.light_receiver(), choices_.x),
+                                        sampler_.next_2d(), how, Media, connection);
+    }
+    core::Rgb finish_light(const lights::LightConnection& connection, core::WalkContext& context,
+                           const lights::LightSampling& how) {
+        return lights::finish_connection<Media>(lights_, vertex_, weights_, state_, connection, context, how);
     }
     /// The vertex at a scattering point of the last segment.
     core::ScatteringVertex vertex_at(const core::Vec3& position, const core::MediumState& state) const {
@@ -127,6 +153,9 @@ class EyePath {
     core::WalkEvent next_event(core::Rgb& emitted, core::WalkContext& context) {
         return core::walk<Media>(scene_, ray_, state_, weights_, emitted, context);
     }
+    template <typename Walk, typename OnSegment>
+    bool arrive_by(const Walk& walk, const core::WalkEvent& event, TransportSum& sum,
+                   const OnSegment& on_segment);
     bool scatter(core::WalkContext& context);
     bool wants_more() const;
     /// Lights that the camera does not see: the first segment continues behind them.
@@ -150,18 +179,37 @@ class EyePath {
 };
 
 template <bool Media>
-template <typename Walker, typename OnSegment>
-bool EyePath<Media>::advance_by(Walker&& walker, core::WalkContext& context, TransportSum& sum,
-                                const OnSegment& on_segment) {
+bool EyePath<Media>::leave(core::WalkContext& context) {
     if (depth_ > 0 && !scatter(context)) return false;
     ++depth_;
+    return true;
+}
+
+template <bool Media>
+template <typename OnSegment>
+bool EyePath<Media>::arrive(core::WalkEvent& event, core::WalkContext& context, TransportSum& sum,
+                            const OnSegment& on_segment) {
+    bool first = true;  // behind a hidden light the path looks for a surface of its own
+    const auto walk = [&](core::Rgb& emitted) {
+        if (std::exchange(first, false))
+            core::walk_before<Media>(scene_, ray_, event, state_, weights_, emitted, context);
+        else
+            event = next_event(emitted, context);
+    };
+    return arrive_by(walk, event, sum, on_segment);
+}
+
+/// walk(emitted) sets `event`.
+template <bool Media>
+template <typename Walk, typename OnSegment>
+bool EyePath<Media>::arrive_by(const Walk& walk, const core::WalkEvent& event, TransportSum& sum,
+                               const OnSegment& on_segment) {
     core::Rgb& found = sum[layer_of_emission()];
-    core::WalkEvent event;
     const auto go = [&] {
         const core::MediumState start = state_;
         const core::PathWeights before = weights_;
         core::Rgb emitted(0.0f);
-        event = walker(emitted, context);
+        walk(emitted);
         if constexpr (Media) found += emitted;
         on_segment(EyeSegment{ray_, event, start, before});
     };

@@ -1,7 +1,6 @@
 #include "integrators/path_tracing/path_estimator.h"
 
-#include "integrators/eye_path/counters.h"
-#include "integrators/eye_path/eye_ray.h"
+#include "integrators/eye_path/image_loop.h"
 
 namespace mote::integrators {
 
@@ -9,39 +8,26 @@ using namespace core;
 
 namespace {
 
-constexpr int tile_size = 16;
-
 template <bool Media>
 class PathEstimator final : public Estimator {
   public:
     PathEstimator(const Scene& scene, const RenderOptions& options, const PathSettings& settings)
-        : scene_(scene), options_(options), settings_(settings) {
+        : scene_(scene), settings_(settings), loop_(scene, options) {
         settings_.limits.wanted = options.cells;
     }
 
     bool pass(const PassContext& context, PassImage& image) override {
-        return for_each_tile(options_.width, options_.height, tile_size, context.cancelled,
-                             [&](int x0, int y0, int x1, int y1) {
-                                 WalkContext walk;
-                                 walk.cancelled = context.cancelled;
-                                 for (int y = y0; y < y1; ++y)
-                                     for (int x = x0; x < x1; ++x) render_pixel(context, image, x, y, walk);
-                                 counters_.add(walk.rays, walk.tracking);
-                             });
+        return loop_.run(context, image, {settings_.limits}, [&](EyeTask<Media>& task) {
+            task.walk().all_boundaries = settings_.equiangular != nullptr;
+            task.for_each([&](const PacketPixels&) { trace_paths(scene_, settings_, task.packet()); });
+        });
     }
-    void add_statistics(Statistics& statistics) const override { counters_.report(statistics, Media); }
+    void add_statistics(Statistics& statistics) const override { loop_.add_statistics(statistics); }
 
   private:
-    void render_pixel(const PassContext& context, PassImage& image, int x, int y, WalkContext& walk) const {
-        const EyeRay eye = make_eye_ray(scene_, options_, context, x, y);
-        walk.rng = eye.rng;
-        store(trace_path<Media>(scene_, settings_, eye, walk), image, x, y, Media);
-    }
-
     const Scene& scene_;
-    RenderOptions options_;
     PathSettings settings_;
-    SharedCounters counters_;
+    ImageLoop<Media> loop_;
 };
 
 }  // namespace

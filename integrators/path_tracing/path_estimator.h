@@ -2,7 +2,7 @@
 #pragma once
 
 #include "integrators/eye_path/eye_path_parameters.h"
-#include "integrators/path_tracing/trace_path.h"
+#include "integrators/path_tracing/trace_paths.h"
 
 namespace mote::integrators {
 

@@ -4,7 +4,7 @@
 // the channel that drives tracking, light and scattering directions combined at every vertex. On a scene
 // without media it is `path`, compiled from the same kernel.
 //
-// `vpl_bound` renders the transport that VPLs with a bounded geometry term estimate (see trace_path.h).
+// `vpl_bound` renders the transport that VPLs with a bounded geometry term estimate (see trace_paths.h).
 #include <fmt/format.h>
 
 #include "integrators/path_tracing/path_estimator.h"

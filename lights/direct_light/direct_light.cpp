@@ -27,30 +27,28 @@ bool march_to_light(const LitScene& scene, const Ray& ray, const MediumState& st
     return for_each_part(scene, ray, state, medium, pane).has_value();
 }
 
-/// By a shadow ray and the transmittance along it. Returns whether the light is seen.
+/// The transmittance along a connection without surfaces. Returns false where nothing comes through.
 template <bool Media>
-bool reaches_light(const LitScene& scene, const ScatteringVertex& vertex, const DirectSample& light,
-                   const MediumState& state, PathWeights& connection, WalkContext& context,
-                   const LightSampling& how) {
-    Ray shadow{vertex.ray_origin(light.wi), light.wi};
-    shadow.t_max = light.distance * (light.inside ? 1.0f : shadow_fraction);
-    ++context.rays.occlusion;
-    if (!scene.visible(shadow)) return false;
-    if (light.delta) shadow.t_max = light.distance;  // there is no surface at its end
+bool come_through(const LitScene& scene, const ScatteringVertex& vertex, const LightConnection& c,
+                  const MediumState& state, PathWeights& weights, WalkContext& context,
+                  const LightSampling& how) {
+    Ray ray = c.shadow;
+    if (c.light.delta) ray.t_max = c.light.distance;  // there is no surface at its end
     if constexpr (Media) {
-        connection.light = connection.unidirectional;
-        if (how.marched_voxels > 0.0f && light.delta)
-            return march_to_light(scene, shadow, vertex.state_towards(state, light.wi), how.marched_voxels,
-                                  connection, context);
-        const Medium* there = scene.connect(shadow, vertex.state_towards(state, light.wi), connection,
+        weights.light = weights.unidirectional;
+        if (how.marched_voxels > 0.0f && c.light.delta)
+            return march_to_light(scene, ray, vertex.state_towards(state, c.light.wi), how.marched_voxels,
+                                  weights, context);
+        const Medium* there = scene.connect(ray, vertex.state_towards(state, c.light.wi), weights,
                                             context.rng, context.tracking);
-        return !light.inside || there == light.inside;
+        return !c.light.inside || there == c.light.inside;
     } else {
-        connection.unidirectional = connection.light = Rgb(1.0f);
-        connect_through_panes(scene, shadow, connection);
-        return !is_black(connection.throughput);
+        weights.unidirectional = weights.light = Rgb(1.0f);
+        connect_through_panes(scene, ray, weights);
+        return !is_black(weights.throughput);
     }
 }
+
 }  // namespace
 
 template <bool Media>
@@ -61,36 +59,54 @@ Rgb sample_light(const LitScene& scene, const ScatteringVertex& vertex, const Pa
                                 scene.choose_light(vertex.light_receiver(), u_light), u, context, how);
 }
 
-template <bool Media>
-Rgb connect_light(const LitScene& scene, const ScatteringVertex& vertex, const PathWeights& weights,
-                  const MediumState& state, const LightChoice& choice, const Vec2& u, WalkContext& context,
-                  const LightSampling& how) {
-    if (!choice.emitter) return Rgb(0.0f);
-    if (how.lit_along && !vertex.on_surface() && choice.emitter->traits().delta_position) return Rgb(0.0f);
+bool begin_connection(const ScatteringVertex& vertex, const LightChoice& choice, const Vec2& u,
+                      const LightSampling& how, bool media, LightConnection& c) {
+    if (!choice.emitter) return false;
+    if (how.lit_along && !vertex.on_surface() && choice.emitter->traits().delta_position) return false;
     const auto light = choice.emitter->sample_direct(vertex.position, u);
-    if (!light) return Rgb(0.0f);
-    const Rgb f_cos = vertex.eval_cos(light->wi, TransportMode::radiance);
-    if (is_black(f_cos)) return Rgb(0.0f);
+    if (!light) return false;
+    const ScatteringValue f = vertex.eval_cos_and_pdf(light->wi, TransportMode::radiance);
+    if (is_black(f.f_cos)) return false;
+    c.light = *light, c.f_cos = f.f_cos;
+    c.pdf_light = choice.probability * (light->delta ? 1.0f : light->pdf_solid_angle);
+    c.pdf_scatter = light->delta ? 0.0f : f.pdf_solid_angle * light->line_density;
+    c.map =
+        media && how.maps && !vertex.on_surface() && light->delta ? how.maps->of(*choice.emitter) : nullptr;
+    c.shadow = {vertex.ray_origin(light->wi), light->wi, 0.0f,
+                light->distance * (light->inside ? 1.0f : shadow_fraction)};
+    return true;
+}
 
+template <bool Media>
+Rgb finish_connection(const LitScene& scene, const ScatteringVertex& vertex, const PathWeights& weights,
+                      const MediumState& state, const LightConnection& c, WalkContext& context,
+                      const LightSampling& how) {
     PathWeights connection = weights;
-    const VolumetricShadowMap* map =
-        Media && how.maps && !vertex.on_surface() && light->delta ? how.maps->of(*choice.emitter) : nullptr;
-    if (map) {
+    if (Media && c.map) {
         connection.light = weights.unidirectional;
-        connection.throughput *= map->transmittance(vertex.position);
-    } else if (!reaches_light<Media>(scene, vertex, *light, state, connection, context, how)) {
+        connection.throughput *= c.map->transmittance(vertex.position);
+    } else if (!come_through<Media>(scene, vertex, c, state, connection, context, how)) {
         return Rgb(0.0f);
     }
     // f = throughput f* C* T L_e over the sum of both techniques' pdfs: the balance heuristic (Veach 1997,
     // Eq. 9.8), averaged over channels. A delta light is found by this one alone.
-    const float pdf_light = choice.probability * (light->delta ? 1.0f : light->pdf_solid_angle);
-    const float pdf_scatter =
-        light->delta ? 0.0f
-                     : vertex.pdf_solid_angle(light->wi, TransportMode::radiance) * light->line_density;
-    const Rgb radiance = light->weight * (light->delta ? 1.0f : light->pdf_solid_angle);
-    const Rgb pdfs = connection.light * pdf_light + connection.unidirectional * pdf_scatter;
+    const Rgb radiance = c.light.weight * (c.light.delta ? 1.0f : c.light.pdf_solid_angle);
+    const Rgb pdfs = connection.light * c.pdf_light + connection.unidirectional * c.pdf_scatter;
     const float pdf = channel_average<Media>(pdfs);
-    return pdf > 0.0f ? connection.throughput * f_cos * radiance / pdf : Rgb(0.0f);
+    return pdf > 0.0f ? connection.throughput * c.f_cos * radiance / pdf : Rgb(0.0f);
+}
+
+template <bool Media>
+Rgb connect_light(const LitScene& scene, const ScatteringVertex& vertex, const PathWeights& weights,
+                  const MediumState& state, const LightChoice& choice, const Vec2& u, WalkContext& context,
+                  const LightSampling& how) {
+    LightConnection connection;
+    if (!begin_connection(vertex, choice, u, how, Media, connection)) return Rgb(0.0f);
+    if (!connection.map) {
+        ++context.rays.occlusion;
+        if (!scene.visible(connection.shadow)) return Rgb(0.0f);
+    }
+    return finish_connection<Media>(scene, vertex, weights, state, connection, context, how);
 }
 
 template <bool Media>
@@ -125,6 +141,12 @@ template Rgb connect_light<true>(const LitScene&, const ScatteringVertex&, const
 template Rgb connect_light<false>(const LitScene&, const ScatteringVertex&, const PathWeights&,
                                   const MediumState&, const LightChoice&, const Vec2&, WalkContext&,
                                   const LightSampling&);
+template Rgb finish_connection<true>(const LitScene&, const ScatteringVertex&, const PathWeights&,
+                                     const MediumState&, const LightConnection&, WalkContext&,
+                                     const LightSampling&);
+template Rgb finish_connection<false>(const LitScene&, const ScatteringVertex&, const PathWeights&,
+                                      const MediumState&, const LightConnection&, WalkContext&,
+                                      const LightSampling&);
 template Rgb found_light<true>(const LitScene&, const WalkEvent&, const Ray&, const PathWeights&,
                                const LightReceiver*);
 template Rgb found_light<false>(const LitScene&, const WalkEvent&, const Ray&, const PathWeights&,

@@ -44,6 +44,25 @@ core::Rgb sample_light(const core::LitScene& scene, const core::ScatteringVertex
                        const core::PathWeights& weights, const core::MediumState& state, float u_light,
                        const core::Vec2& u, core::WalkContext& context, const LightSampling& how = {});
 
+/// A light sampled for a vertex, of which only the way to it is not known yet.
+struct LightConnection {
+    core::DirectSample light{};
+    core::Ray shadow;          ///< the segment that has to be free of surfaces
+    core::Rgb f_cos{0.0f};     ///< what the vertex scatters from there
+    float pdf_light = 0.0f;    ///< of this sample
+    float pdf_scatter = 0.0f;  ///< of the direction by the other technique; 0: that cannot find this light
+    const VolumetricShadowMap* map = nullptr;  ///< knows visibility and transmittance: no ray is needed
+};
+/// Samples a light as sample_light() does. Returns false where no light arrives, whatever lies between.
+bool begin_connection(const core::ScatteringVertex& vertex, const core::LightChoice& choice,
+                      const core::Vec2& u, const LightSampling& how, bool media, LightConnection& connection);
+/// The light that arrives by a connection whose shadow ray is free.
+template <bool Media>
+core::Rgb finish_connection(const core::LitScene& scene, const core::ScatteringVertex& vertex,
+                            const core::PathWeights& weights, const core::MediumState& state,
+                            const LightConnection& connection, core::WalkContext& context,
+                            const LightSampling& how);
+
 /// sample_light() for a given choice of the light, divided by its probability.
 template <bool Media>
 core::Rgb connect_light(const core::LitScene& scene, const core::ScatteringVertex& vertex,

@@ -1,4 +1,4 @@
-// One path from the eye: the random walk that `path` and `volpath` share.
+// Paths from the eye: the random walk that `path` and `volpath` share, sixteen paths at a time.
 //
 // Next-event estimation and scattering directions are combined by multiple importance sampling at every
 // vertex; distances in media come from delta tracking; Russian roulette ends paths. Unbiased.
@@ -9,7 +9,7 @@
 // tested against.
 #pragma once
 
-#include "integrators/eye_path/eye_path.h"
+#include "integrators/eye_path/eye_packet.h"
 #include "integrators/path_tracing/equiangular.h"
 
 namespace mote::integrators {
@@ -22,9 +22,9 @@ struct PathSettings {
     std::shared_ptr<const EquiangularLights> equiangular{};
 };
 
-/// Radiance along the eye ray, by layer. `context` holds the path's generator.
+/// Follows the paths of a packet, which were started, to their ends: Lane::sum is the radiance along each eye
+/// ray, by layer.
 template <bool Media>
-TransportSum trace_path(const core::Scene& scene, const PathSettings& settings, const EyeRay& eye,
-                        core::WalkContext& context);
+void trace_paths(const core::Scene& scene, const PathSettings& settings, EyePacket<Media>& packet);
 
 }  // namespace mote::integrators
