@@ -6,6 +6,8 @@ using Intersect = RTCIntersectArguments;
 using Occluded = RTCOccludedArguments;
 extern "C" {
 void __real_rtcIntersect1(RTCScene scene, RTCRayHit* ray, Intersect* arguments);
+void __real_rtcIntersect8(const int* valid, RTCScene scene, RTCRayHit8* rays, Intersect* arguments);
+void __real_rtcIntersect16(const int* valid, RTCScene scene, RTCRayHit16* rays, Intersect* arguments);
 void __real_rtcOccluded1(RTCScene scene, RTCRay* ray, Occluded* arguments);
 void __real_rtcOccluded16(const int* valid, RTCScene scene, RTCRay16* rays, Occluded* arguments);
 }
@@ -14,6 +16,8 @@ using Intersect = RTCIntersectContext;
 using Occluded = RTCIntersectContext;
 extern "C" {
 void __real_rtcIntersect1(RTCScene scene, Intersect* context, RTCRayHit* ray);
+void __real_rtcIntersect8(const int* valid, RTCScene scene, Intersect* context, RTCRayHit8* rays);
+void __real_rtcIntersect16(const int* valid, RTCScene scene, Intersect* context, RTCRayHit16* rays);
 void __real_rtcOccluded1(RTCScene scene, Occluded* context, RTCRay* ray);
 void __real_rtcOccluded16(const int* valid, RTCScene scene, Occluded* context, RTCRay16* rays);
 void __real_rtcOccluded1M(RTCScene scene, Occluded* context, RTCRay* rays, unsigned count,
@@ -33,14 +37,15 @@ RayLog*& open_log() {
 void log_ray(RTCScene scene, const RTCRay& ray, bool occlusion) {
     if (RayLog* log = open_log()) log->rays.push_back({ray, scene, occlusion});
 }
-void log_packet(const int* valid, RTCScene scene, const RTCRay16& p) {
-    for (int i = 0; i < 16; ++i) {
+template <typename Packet>
+void log_packet(const int* valid, RTCScene scene, const Packet& p, bool occlusion) {
+    for (std::size_t i = 0; i < std::size(p.org_x); ++i) {
         if (!valid[i]) continue;
         RTCRay ray{};
         ray.org_x = p.org_x[i], ray.org_y = p.org_y[i], ray.org_z = p.org_z[i], ray.tnear = p.tnear[i];
         ray.dir_x = p.dir_x[i], ray.dir_y = p.dir_y[i], ray.dir_z = p.dir_z[i], ray.tfar = p.tfar[i];
         ray.time = p.time[i], ray.mask = p.mask[i];
-        log_ray(scene, ray, true);
+        log_ray(scene, ray, occlusion);
     }
 }
 
@@ -93,12 +98,20 @@ void __wrap_rtcIntersect1(RTCScene scene, RTCRayHit* ray, Intersect* arguments) 
     mote::benchmarks::log_ray(scene, ray->ray, false);
     __real_rtcIntersect1(scene, ray, arguments);
 }
+void __wrap_rtcIntersect8(const int* valid, RTCScene scene, RTCRayHit8* rays, Intersect* arguments) {
+    mote::benchmarks::log_packet(valid, scene, rays->ray, false);
+    __real_rtcIntersect8(valid, scene, rays, arguments);
+}
+void __wrap_rtcIntersect16(const int* valid, RTCScene scene, RTCRayHit16* rays, Intersect* arguments) {
+    mote::benchmarks::log_packet(valid, scene, rays->ray, false);
+    __real_rtcIntersect16(valid, scene, rays, arguments);
+}
 void __wrap_rtcOccluded1(RTCScene scene, RTCRay* ray, Occluded* arguments) {
     mote::benchmarks::log_ray(scene, *ray, true);
     __real_rtcOccluded1(scene, ray, arguments);
 }
 void __wrap_rtcOccluded16(const int* valid, RTCScene scene, RTCRay16* rays, Occluded* arguments) {
-    mote::benchmarks::log_packet(valid, scene, *rays);
+    mote::benchmarks::log_packet(valid, scene, *rays, true);
     __real_rtcOccluded16(valid, scene, rays, arguments);
 }
 #else
@@ -106,12 +119,20 @@ void __wrap_rtcIntersect1(RTCScene scene, Intersect* context, RTCRayHit* ray) {
     mote::benchmarks::log_ray(scene, ray->ray, false);
     __real_rtcIntersect1(scene, context, ray);
 }
+void __wrap_rtcIntersect8(const int* valid, RTCScene scene, Intersect* context, RTCRayHit8* rays) {
+    mote::benchmarks::log_packet(valid, scene, rays->ray, false);
+    __real_rtcIntersect8(valid, scene, context, rays);
+}
+void __wrap_rtcIntersect16(const int* valid, RTCScene scene, Intersect* context, RTCRayHit16* rays) {
+    mote::benchmarks::log_packet(valid, scene, rays->ray, false);
+    __real_rtcIntersect16(valid, scene, context, rays);
+}
 void __wrap_rtcOccluded1(RTCScene scene, Occluded* context, RTCRay* ray) {
     mote::benchmarks::log_ray(scene, *ray, true);
     __real_rtcOccluded1(scene, context, ray);
 }
 void __wrap_rtcOccluded16(const int* valid, RTCScene scene, Occluded* context, RTCRay16* rays) {
-    mote::benchmarks::log_packet(valid, scene, *rays);
+    mote::benchmarks::log_packet(valid, scene, *rays, true);
     __real_rtcOccluded16(valid, scene, context, rays);
 }
 void __wrap_rtcOccluded1M(RTCScene scene, Occluded* context, RTCRay* rays, unsigned count,
