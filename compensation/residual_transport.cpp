@@ -106,6 +106,12 @@ bool within(const Bounds3& box, const Vec3& p, float distance) {
     return !box.empty() && glm::dot(nearest - p, nearest - p) <= distance * distance;
 }
 
+/// Volume that the box has in common with the cube around p whose half edge is `radius` [m^3].
+float common_volume(const Bounds3& box, const Vec3& p, float radius) {
+    const Vec3 edges = glm::min(box.upper, p + radius) - glm::max(box.lower, p - radius);
+    return edges.x * edges.y * edges.z;
+}
+
 }  // namespace
 
 ResidualTransport::ResidualTransport(const RayQueries& scene, float bound,
@@ -139,13 +145,19 @@ bool ResidualTransport::by_free_path() const {
            settings_.transmittance == LocalTransmittance::exact;
 }
 
-/// Mean extinction of all media within the bounding radius [1/m]; nothing where there is none.
+/// Mean extinction of all media within the bounding radius [1/m], each with the volume that it may have
+/// there; nothing where there is none.
 void ResidualTransport::find_mean_extinction(ResidualPath& path) const {
     const Vec3 p = path.vertex.position;
     path.mean_extinction.reset();
-    for (const LocalMedium& m : media_)
-        if (within(m.extent, p, radius_))
-            path.mean_extinction = path.mean_extinction.value_or(Rgb(0.0f)) + m.mean.mean(p, radius_);
+    float sum = 0.0f;
+    for (const LocalMedium& m : media_) {
+        if (!within(m.extent, p, radius_)) continue;
+        const Rgb before = path.mean_extinction.value_or(Rgb(0.0f)), mean = m.mean.mean(p, radius_);
+        const float volume = common_volume(m.extent, p, radius_);
+        sum += volume;
+        path.mean_extinction = before + (mean - before) * (sum > 0.0f ? volume / sum : 1.0f);
+    }
     path.mean_known = true;
 }
 
@@ -178,8 +190,11 @@ bool ResidualTransport::sample_in_mean_medium(ResidualPath& path, const Ray& ray
 
     const Ray part{ray.origin, ray.direction, 0.0f, p.distance};
     const MediumState start = path.state;
-    if (look) path.state = state_at_end(scene_, part, start, context);
     const Vec3 z = ray.at(p.distance);
+    // Without rays a medium ends at its box alone, and another one may begin there.
+    const Medium* here = start.current();
+    const bool left = here && media_.size() > 1 && !may_hold(*here, z);
+    if (look || left) path.state = state_at_end(scene_, part, start, context);
     WalkEvent event;
     event.distance = p.distance;
     if (p.at_surface) {
