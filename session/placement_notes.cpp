@@ -52,10 +52,24 @@ void note_overlap(const core::Medium& medium, const core::Scene& scene, std::vec
                     name_of(medium), text_of(grid), text_of(holder), 100.0 * both / of_grid));
 }
 
+/// Single precision has seven digits: what the distance from the origin takes of them is lost to shapes.
+void note_distance(const core::Scene& scene, std::vector<std::string>& notes) {
+    constexpr double far_away = 1000.0;  ///< times the scene's size: a digit is left below shadow_fraction
+    const Bounds3 box = scene.bounds();
+    const double reach = core::max_component(glm::max(-box.lower, box.upper));
+    const double size = core::max_component(box.diagonal());
+    if (!(size > 0.0) || !(reach > far_away * size)) return;
+    notes.push_back(
+        fmt::format("the scene, {:.3g} m wide, lies {:.3g} m from the origin of its coordinates, which are "
+                    "rounded to {:.2g} m there: light may be lost or leak; move it to the origin",
+                    size, reach, reach * 0x1p-24));
+}
+
 }  // namespace
 
 std::vector<std::string> placement_notes(const core::Scene& scene) {
     std::vector<std::string> notes;
+    note_distance(scene, notes);
     for (const auto& medium : scene.media()) note_overlap(*medium, scene, notes);
     const core::Medium* around = scene.camera_medium_state().current();
     if (around && !scene.camera().medium)

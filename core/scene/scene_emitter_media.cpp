@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "core/objects/error.h"
+#include "core/scene/light_from_infinity.h"
 #include "core/scene/scene.h"
 
 namespace mote::core {
@@ -16,16 +17,6 @@ MediumState Scene::area_light_state(const Emitter& emitter, const Shape& shape, 
     const Medium* declared = emitter.medium ? emitter.medium : shape.exterior.get();
     return medium_state_near(start, declared, &shape);
 }
-
-namespace {
-
-/// True if no light comes through the medium from infinity.
-bool blocks_infinity(const Medium& medium) {
-    const Bounds3 box = medium.bounds();
-    return medium.majorant() > 0.0f && !(is_finite(box.lower) && is_finite(box.upper));
-}
-
-}  // namespace
 
 /// Transmittance over an infinite distance is zero: paths from the eye would find nothing of a light at
 /// infinity, and particles, which start at the scene's bounds, would find something. Open walls may have
@@ -52,6 +43,8 @@ void Scene::find_emitter_states() {
         MediumState state;
         state.set_outside(outside_is_parted_ && emitter->medium ? emitter->medium : outermost_);
         check_light_from_infinity(*emitter, state.current());
+        // Particles come from all directions, and open walls part what is there: found particle by particle.
+        if (traits.infinite && outside_is_parted_ && !emitter->medium) continue;
         if (!traits.infinite) {
             const auto position = light_position(*emitter);
             if (!position) continue;

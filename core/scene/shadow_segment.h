@@ -1,10 +1,22 @@
 // Extent of a shadow ray towards its target.
 #pragma once
 
+#include <algorithm>
+
+#include "core/math/vec.h"
+
 namespace mote::core {
 
 /// Shadow rays stop at this fraction of the segment: rounding must not let them hit the surface at their own
 /// end.
 inline constexpr float shadow_fraction = 0.9999f;
+
+/// End of a shadow ray of unit direction towards a surface at `distance` [m]. Far from the origin of
+/// coordinates the rounding of both ends exceeds the share above: units in the last place of the coordinates
+/// are left out, as many as reach a surface that is met at 3 degrees.
+inline float shadow_end(const Vec3& origin, float distance) {
+    constexpr float rounding = 20.0f * 0x1p-23f;
+    return std::min(shadow_fraction * distance, distance - rounding * max_component(glm::abs(origin)));
+}
 
 }  // namespace mote::core

@@ -212,11 +212,12 @@ void EyeBundles::connect_lights(TileLight& indirect) {
         }
         light[i] = value * weight;
         Ray shadow{y.vertex.ray_origin(sample->wi), sample->wi};
-        shadow.t_max = sample->distance * (sample->delta ? 1.0f : shadow_fraction);
+        const float end = shadow_end(shadow.origin, sample->distance);
+        shadow.t_max = sample->delta ? sample->distance : end;
         PathWeights panes;
         connect_through_panes(pass_.scene, shadow, panes);
         light[i] *= panes.throughput;
-        shadow_.set(i, shadow.origin, sample->wi, sample->distance * shadow_fraction);
+        shadow_.set(i, shadow.origin, sample->wi, end);
         any = true, ++walk_.rays.occlusion;
     }
     if (!any) return;

@@ -26,7 +26,8 @@ TexelLightSample sample_light(const LitScene& lights, SurfaceHit hit, const Vec3
     const Vec3 normal = glm::dot(hit.shading.n, outside) < 0.0f ? -hit.shading.n : hit.shading.n;
     const float cosine = glm::dot(normal, light->wi);
     if (!(cosine > 0.0f)) return none;
-    const Ray shadow{offset_origin(hit, light->wi), light->wi, 0.0f, light->distance * shadow_fraction};
+    const Vec3 origin = offset_origin(hit, light->wi);
+    const Ray shadow{origin, light->wi, 0.0f, shadow_end(origin, light->distance)};
     if (!lights.visible(shadow)) return none;
     return {light->wi, light->weight * cosine / choice.probability};
 }

@@ -1,5 +1,6 @@
 #include "integrators/bidirectional/strategies.h"
 
+#include "core/scene/light_from_infinity.h"
 #include "core/scene/shadow_segment.h"
 
 namespace mote::integrators {
@@ -27,6 +28,7 @@ bool Strategies<Media>::start_light_path(Sampler& sampler, SubpathWalk<Media>& w
     if constexpr (Media) {
         weights.hero = sample_hero(context_.rng);
         state = scene_.emitter_medium_state(*choice.emitter, *emission);
+        if (!reaches_scene(*choice.emitter, state)) return false;
     }
     walk.start({emission->origin, emission->direction}, start.receiver, light_start_.infinite(), weights,
                state);
@@ -182,9 +184,10 @@ Contribution Strategies<Media>::draw_light(std::size_t t, float u_light, const V
     };
     const float chance = worth_a_ray(weight_with(1.0));
     if (!(chance > 0.0f)) return {};
-    const Ray ray{v.ray_origin(light->wi), light->wi, 0.0f,
-                  light->distance * (light->delta ? 1.0f : shadow_fraction)};
-    const Rgb seen = between(ray, v, z.state, light->distance * shadow_fraction);
+    const Vec3 origin = v.ray_origin(light->wi);
+    const float end = shadow_end(origin, light->distance);
+    const Ray ray{origin, light->wi, 0.0f, light->delta ? light->distance : end};
+    const Rgb seen = between(ray, v, z.state, end);
     if (is_black(seen)) return {};
     const float w = weight_with(edge_along(ray, v, z.state));
     return {z.weight * f * light->weight * seen * (w / (choice.probability * chance)), layer_of(1, t), 1,
@@ -228,7 +231,7 @@ Contribution Strategies<Media>::test(const Connection& c, std::size_t t) {
     const float chance = worth_a_ray(weight_of(c, t, 1.0));
     if (!(chance > 0.0f)) return {};
     const Ray segment = segment_between(z.scattering, y.scattering, c.wi);
-    const Rgb seen = between(segment, z.scattering, z.state, segment.t_max * shadow_fraction);
+    const Rgb seen = between(segment, z.scattering, z.state, shadow_end(segment.origin, segment.t_max));
     if (is_black(seen)) return {};
     const float w = weight_of(c, t, edge_along(segment, z.scattering, z.state));
     return {c.light * seen * (w / chance), layer_of(c.s, t), int(c.s), int(t), w};

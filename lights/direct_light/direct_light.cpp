@@ -72,8 +72,8 @@ bool begin_connection(const ScatteringVertex& vertex, const LightChoice& choice,
     c.pdf_scatter = light->delta ? 0.0f : f.pdf_solid_angle * light->line_density;
     c.map =
         media && how.maps && !vertex.on_surface() && light->delta ? how.maps->of(*choice.emitter) : nullptr;
-    c.shadow = {vertex.ray_origin(light->wi), light->wi, 0.0f,
-                light->distance * (light->inside ? 1.0f : shadow_fraction)};
+    c.shadow = {vertex.ray_origin(light->wi), light->wi};
+    c.shadow.t_max = light->inside ? light->distance : shadow_end(c.shadow.origin, light->distance);
     return true;
 }
 

@@ -11,6 +11,7 @@
 
 #include "core/math/sampler.h"
 #include "core/objects/memory_budget.h"
+#include "core/scene/light_from_infinity.h"
 #include "core/scene/lit_scene.h"
 #include "core/scene/russian_roulette.h"
 #include "core/scene/scattering_vertex.h"
@@ -61,6 +62,7 @@ void follow_particle(const core::LitScene& scene, const LightPathSettings& setti
         weights.hero = core::sample_hero(context.rng);
         state = scene.emitter_medium_state(emitter, emission);
         if (emission.inside && state.current() != emission.inside) return;
+        if (!core::reaches_scene(emitter, state)) return;
     }
     core::Ray ray{emission.origin, emission.direction};
     for (int depth = 1; settings.max_vertices < 0 || depth <= settings.max_vertices; ++depth) {
