@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/scene/scene.h"
+#include "integrators/eye_path/plan_coarse_voxels.h"
 #include "integrators/register_parts.h"
 #include "integrators/single_scattering/single_scattering_estimator.h"
 
@@ -46,6 +47,11 @@ std::vector<LayerMethod> choose_layer_methods(const Scene& scene, const Requirem
     if (!r.any_media())
         return {{make_path(limits), near, "one scattering: light and BSDF sampling"},
                 {far(), Transport::indirect, reason}};
+    if (depth_of_marching_step(scene, 1.0f) > thick_step) {
+        const std::string why = "; voxels are too dense to be marched";
+        if (!by_lights) return {{far(), near | single | twice, reason + why}};
+        return {{make_volpath(limits, equiangular), near | single, "paths" + why}, {far(), twice, reason}};
+    }
     const std::size_t lights = positional_lights(scene).size();
     const bool marched = r.media_scattering && lights > 0 && lights <= max_marched_lights &&
                          (limits.max_depth < 0 || limits.max_depth > 1);
