@@ -14,6 +14,7 @@ class Method:
     bias: float = 0.0
     takes_depth: bool = True
     sees_media: bool = True
+    shrinks: bool = False
     reason: str = ""
 
 
@@ -28,4 +29,4 @@ def read_methods(names):
 
 def method_of(row):
     return Method(row.get("xml", ""), row.get("passes", 8), tuple(row.get("cells", ())), row.get("bias", 0.0),
-                  row.get("depth", True), row.get("media", True), row.get("reason", ""))
+                  row.get("depth", True), row.get("media", True), row.get("shrinks", False), row.get("reason", ""))

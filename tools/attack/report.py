@@ -63,10 +63,14 @@ def summary(records):
     new = [f for f in findings if not f["known"]]
     compared = sum(len(r["compared"]) for r in records)
     renders = sum(len(r["seconds"]) for r in records)
+    unfinished = Counter(name.split()[0] for r in records for name in r["unfinished"] if " at " not in name)
+    early = sum(" at " in name for r in records for name in r["unfinished"])
     page = [f"{len(records)} scenes, {renders} pairs of scene and integrator, {compared} means compared: {len(findings)} findings, "
-            f"{len(findings) - len(new)} of them known"]
+            f"{len(findings) - len(new)} of them known; {sum(unfinished.values())} pairs not finished in their time, {early} comparisons ended early, "
+            f"{sum(len(r['tails']) for r in records)} differences that did not stay; {sum(r['processor'] or 0 for r in records) / 60:.1f} min of the processor"]
     for (what, integrator), count in sorted(Counter((f["what"], f["integrator"]) for f in new).items()):
         page.append(f"  {count:5}  {what:10} {integrator}")
+    page.append("not finished: " + ", ".join(f"{name} {count}" for name, count in unfinished.most_common()))
     refusals = Counter((shape_of(text)) for r in records for text in r["refused"].values())
     page.append(f"refusals: {sum(refusals.values())}")
     page += [f"  {count:5}  {text}" for text, count in refusals.most_common(30)]

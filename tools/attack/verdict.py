@@ -1,6 +1,8 @@
 """What pictures of several seeds say: whether means agree with the reference's, and whether stated noise is the spread."""
 import importlib
 import math
+import statistics
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -8,6 +10,7 @@ from student import welch
 
 FALSE_ALARMS = 0.01  # probability of any in a whole run, of means whose distribution is near normal
 STAGES = (4, 8, 16, 32)
+STAYS, STAYS_WHOLE = 0.01, 0.8  # a difference stays if its p with more passes is below, and what is left of it above: it was known to a tenth
 CONTINUE = 0.1  # a pair whose smallest p is above this is not rendered again
 # Spread between seeds over stated noise that is a finding, by the number of seeds: even if all pixels of a picture share one normal
 # error, chi-square with n - 1 degrees of freedom exceeds (n - 1) ratio^2 with a probability below 3e-7. Below 2 it is none.
@@ -24,19 +27,32 @@ def regions(picture):
     return [float(np.mean(part, dtype=np.float64)) for part in parts]
 
 
+@dataclass
+class Difference:
+    """Of the means of one region; p has Bonferroni's correction for the number of regions that were looked at."""
+    p: float
+    t: float
+    text: str
+    relative: float
+    absolute: float
+    region: int
+
+
 def compare_means(pictures, reference, bias, region=None):
-    """(p, text, relative difference, region) of the region that differs most, or of a given one; p has Bonferroni's correction for the number of regions.
-    The allowed bias is relative to the region or, since blur brings light from elsewhere, to the whole picture."""
+    """The region that differs most, or a given one. The allowed bias is relative to the region or, since blur brings light from elsewhere, to the
+    whole picture."""
     ours, theirs = ([regions(p) for p in series] for series in (pictures, reference))
     names = ("picture", "top left", "top right", "bottom left", "bottom right")
     rows, whole = [], abs(np.mean([means[0] for means in theirs]))
-    for name, a, b in zip(names, zip(*ours), zip(*theirs)):
+    for index, (name, a, b) in enumerate(zip(names, zip(*ours), zip(*theirs))):
         t, p, relative = welch(a, b, bias * max(abs(np.mean(b)), whole))
-        rows.append((p, -t, f"{name}: mean {np.mean(a):.4g} against {np.mean(b):.4g} ({100 * relative:+.3g} %, t {t:.1f}, {len(a)} seeds)",
-                     relative))
-    p, _, text, relative = min(rows) if region is None else rows[region]
-    index = [row[2] for row in rows].index(text)
-    return min(1.0, p * len(rows)), text, relative, index
+        text = f"{name}: mean {np.mean(a):.4g} against {np.mean(b):.4g} ({100 * relative:+.3g} %, t {t:.1f}, {len(a)} seeds)"
+        rows.append(Difference(p, t, text, relative, np.mean(a) - np.mean(b), index))
+    if region is not None:
+        return rows[region]
+    worst = min(rows, key=lambda row: (row.p, -row.t))
+    worst.p = min(1.0, worst.p * len(rows))
+    return worst
 
 
 def threshold(stage, pairs):
@@ -51,7 +67,7 @@ def noise_lies(pictures, noises):
         return None
     mote = importlib.import_module("mote")
     spread = mote.series_error(pictures, np.mean(pictures, axis=0, dtype=np.float64).astype(np.float32))["noise"]
-    stated = float(np.median(known))
+    stated = math.sqrt(statistics.fmean(n * n for n in known))  # variances are what is estimated
     if not math.isfinite(spread) or spread < 1e-5:
         return None
     return spread / max(stated, 1e-9), f"stated noise {stated:.3g}, spread between {len(pictures)} seeds {spread:.3g}"

@@ -1,7 +1,7 @@
-"""The process that renders: a line of JSON in, lines of JSON out. When it crashes or stays, its parent continues without it.
+"""The process that renders: a line of JSON in, lines of JSON out; the first says that it is ready. When it crashes or stays, its parent continues without it.
 
-Request: {"scene", "integrator", "passes", "seeds", "cells", "define", "folder"}. Answers: {"refused"} or {"fault"} with a text, or for
-each seed {"picture", "noise", "seconds", "memory", "wrong"}; at the end {"done"}.
+Request: {"scene", "integrator", "passes", "seeds", "cells", "define", "folder", "seconds"}. Answers: {"refused"} or {"fault"} with a text, or for
+each seed {"picture", "noise", "seconds", "memory", "wrong"}; {"unfinished"} where the next one would exceed the seconds; at the end {"done"}.
 """
 import json
 import math
@@ -49,13 +49,18 @@ def answers(mote, request, draw=render):
     """The answers to a request; `draw` is render(), or in the test of the attack one with planted faults."""
     import numpy as np
     forget_peak()
+    begin, longest = time.process_time(), 0.0
     try:
         scene = mote.load(request["scene"], integrator=request["integrator"], define=request["define"])
         for seed in request["seeds"]:
             start = time.process_time()
+            if start - begin + longest > request["seconds"]:
+                yield {"unfinished": f"{longest:.3g} s a picture"}
+                break
             picture = draw(mote, scene, request, seed)
             path = os.path.join(request["folder"], f"{request['integrator']}_{request['passes']}_{seed}.npy")
             np.save(path, light_of(picture, request["cells"]))
+            longest = max(longest, time.process_time() - start)
             yield {"picture": path, "noise": picture.noise if math.isfinite(picture.noise) else None,
                    "seconds": time.process_time() - start, "memory": peak_memory(), "wrong": wrong_pixels(picture)}
     except mote.Error as error:
@@ -71,6 +76,7 @@ def main(draw=render):
     out = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)  # what libraries print is no answer
     import mote
+    print(json.dumps({"ready": True}), file=out, flush=True)
     for line in sys.stdin:
         for answer in answers(mote, json.loads(line), draw):
             print(json.dumps(answer), file=out, flush=True)
