@@ -54,7 +54,7 @@ const ParameterList<VplFile>& vpl_rows() {
         nested("visibility", &S::visibility, Category::visibility, "traced",
                "Visibility between VPLs and receivers: traced, shadow_map, imperfect_shadow_map."),
         nested("selection", &S::selection, Category::selection, "all",
-               "VPLs that light each receiver: all, lightcuts, multidimensional_lightcuts, "
+               "VPLs that light each receiver: all, uniform, lightcuts, multidimensional_lightcuts, "
                "stochastic_lightcuts, light_tree, resampling, matrix."),
         row("scattering_points", &S::scattering_points, between(0, 64),
             "Points in media where the light of each eye ray is gathered, besides the surface behind them: "

@@ -16,6 +16,7 @@ void register_selection(core::Registry& registry) {
                   {},
                   R"(<selection type="all"/>)"},
                  [](const core::Properties&) { return all_vpls(); });
+    register_uniform_selection(registry);
     register_lightcuts(registry);
     register_stochastic_selection(registry);
     register_resampling_selection(registry);

@@ -7,7 +7,9 @@ class Registry;
 
 namespace mote::lights {
 
-/// all, lightcuts, multidimensional_lightcuts, stochastic_lightcuts, light_tree, resampling, matrix.
+/// all, uniform, lightcuts, multidimensional_lightcuts, stochastic_lightcuts, light_tree, resampling, matrix.
 void register_selection(core::Registry& registry);
+
+void register_uniform_selection(core::Registry& registry);
 
 }  // namespace mote::lights

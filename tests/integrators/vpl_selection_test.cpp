@@ -79,12 +79,13 @@ TEST_CASE("selected VPLs have the mean of volpath", "[vpl][selection][equality]"
         fog("0.8, 1.0, 1.3", R"(<phase type="hg"><float name="g" value="0.5"/></phase>)");
     for (const Case& c :
          {Case{"",
-               {sampled("light_tree", 8), sampled("stochastic_lightcuts", 8), matrix(32, 9, 2), resampled()},
+               {sampled("uniform", 8), sampled("light_tree", 8), sampled("stochastic_lightcuts", 8),
+                matrix(32, 9, 2), resampled()},
                1.15},
           Case{haze,
-               {sampled("light_tree", 6) + apart, sampled("stochastic_lightcuts", 6) + two,
-                cut("multidimensional_lightcuts", 0.0) + two, matrix(32, 9, 2) + apart, resampled() + apart,
-                resampled() + two},
+               {sampled("uniform", 6) + two, sampled("light_tree", 6) + apart,
+                sampled("stochastic_lightcuts", 6) + two, cut("multidimensional_lightcuts", 0.0) + two,
+                matrix(32, 9, 2) + apart, resampled() + apart, resampled() + two},
                1.25}}) {
         const auto scene = scene_from(box(c.medium.empty() ? mixed : grey, c.medium), 8);
         const auto reference = render_statistics(
