@@ -35,7 +35,7 @@ void add_auxiliary(ImageChannels& image, const Film& film, std::size_t i) {
     // Nothing was hit, so it is as far away as can be.
     if (name == "Depth") std::replace(mean.begin(), mean.end(), Rgb(0.0f), Rgb(infinity));
     add_auxiliary(image, name, name, mean);
-    if (film.has_squares(i) && film.pass_count() >= 2)
+    if (film.has_squares(i) && film.pass_count(film.layers()[i].part) >= 2)
         add_auxiliary(image, "Variance." + name, name, film.layer_variance_of_mean(i));
 }
 
@@ -59,7 +59,8 @@ ImageChannels film_image(const Film& film) {
             image.add_rgb(film.layers()[i].name, means[i]);
         means[i] = {};
     }
-    if (film.pass_count() >= 2) image.add_rgb("Variance", film.beauty_variance_of_mean());
+    // A part with a single pass has a variance that is not known, and not one of zero.
+    if (film.has_passes(2)) image.add_rgb("Variance", film.beauty_variance_of_mean());
     return image;
 }
 

@@ -43,6 +43,10 @@ FilteredLayer filter_layer(const FilterFeatures& features, const LayerToFilter& 
         const Rgb m = modulation(features, layer.kind, i);
         result.variance[i] += average(m * m) * of_gains[i];
     }
+    // Regression extrapolates, also below zero.
+    for (std::size_t i = 0; i < features.pixels(); ++i)
+        if (planes.weight[i] > 0.0f || features.kind[i] == PixelKind::mixed)
+            result.mean[i] = glm::max(result.mean[i], glm::min(layer.mean[i], Rgb(0.0f)));
     return result;
 }
 

@@ -40,8 +40,9 @@ struct FilteredLayer {
     std::vector<float> variance;
 };
 
-/// Pixels that are not finite, have no surface or medium, or lie on a mirror stay as they are. The same for
-/// any number of threads. Throws std::invalid_argument when sizes differ, and Cancelled.
+/// Nowhere negative where the layer is not. Pixels that are not finite, have no surface or medium, or lie on
+/// a mirror stay as they are. The same for any number of threads. Throws std::invalid_argument when sizes
+/// differ, and Cancelled.
 FilteredLayer filter_layer(const FilterFeatures& features, const LayerToFilter& layer,
                            const LayerFilterSettings& settings, core::CancelToken cancelled = {});
 

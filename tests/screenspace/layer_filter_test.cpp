@@ -77,6 +77,25 @@ void fill_with_fog(Seen& seen) {
 
 }  // namespace
 
+TEST_CASE("A filtered layer is nowhere negative where the layer is not", "[layer_filter]") {
+    for (const auto& see : {see_wall, see_corner, see_step})
+        for (const LayerKind kind : {LayerKind::surface, LayerKind::volume}) {
+            FilterView view = make_view(40, 30, kind, see);
+            if (kind == LayerKind::volume)
+                std::fill(view.features.scattering.begin(), view.features.scattering.end(), Rgb(0.5f));
+            // At the border regression extrapolates light that rises ever faster from zero.
+            for (std::size_t i = 0; i < view.truth.size(); ++i) {
+                const float x = std::max(0.0f, float(i % 40) - 3.0f);
+                view.truth[i] = Rgb(x * x * x * x);
+            }
+            for (const Rgb& c : smooth_all(view, kind).mean) {
+                REQUIRE(c.x >= 0.0f);
+                REQUIRE(c.y >= 0.0f);
+                REQUIRE(c.z >= 0.0f);
+            }
+        }
+}
+
 TEST_CASE("A layer without noise stays what it is, to the bit", "[layer_filter]") {
     for (const auto& see : {see_wall, see_corner, see_step})
         for (const LayerKind kind : {LayerKind::surface, LayerKind::volume}) {

@@ -269,6 +269,15 @@ TEST_CASE("Channels of a film's picture bear the names that other programs use",
     CHECK(film_image(film).find("Variance.G") != nullptr);
 }
 
+TEST_CASE("A picture states no variance while a part of it has a single pass", "[film][exr]") {
+    Film film(2, 1, {{"direct", ""}, {"indirect", "", false, false, "", {}, 1}});
+    for (int i = 0; i < 3; ++i) film.add_pass(PassImage(2, 1, 1), 0);
+    film.add_pass(PassImage(2, 1, 1), 1);
+    CHECK(film_image(film).find("Variance.G") == nullptr);
+    film.add_pass(PassImage(2, 1, 1), 1);
+    CHECK(film_image(film).find("Variance.G") != nullptr);
+}
+
 TEST_CASE("parts of a film have passes, variances and work of their own", "[film]") {
     const std::vector<Layer> in_parts{{"a", ""}, {"b", "", false, false, "", {}, 1}, {"c", ""}};
     const auto pass = [](std::size_t count, float value) {
