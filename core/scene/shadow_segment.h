@@ -12,7 +12,7 @@ namespace mote::core {
 inline constexpr float shadow_fraction = 0.9999f;
 
 /// End of a shadow ray of unit direction towards a surface at `distance` [m]. Far from the origin of
-/// coordinates the rounding of both ends exceeds the share above: units in the last place of the coordinates
+/// coordinates the rounding of both ends exceeds that fraction: units in the last place of the coordinates
 /// are left out, as many as reach a surface that is met at 3 degrees.
 inline float shadow_end(const Vec3& origin, float distance) {
     constexpr float rounding = 20.0f * 0x1p-23f;
