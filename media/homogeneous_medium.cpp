@@ -81,7 +81,8 @@ core::MediumTraits HomogeneousMedium::traits() const {
 }
 
 /// Multiplies by what the channels have over the hero, with whose density a distance was sampled.
-void HomogeneousMedium::weigh_channels(core::PathWeights& weights, double travelled, bool collides) const {
+void HomogeneousMedium::update_channel_weights(core::PathWeights& weights, double travelled,
+                                               bool collides) const {
     const double sigma_h = sigma_t_[weights.hero];
     for (int c = 0; c < 3; ++c) {
         // exp of the difference, so that neither transmittance underflows alone
@@ -108,7 +109,7 @@ std::optional<float> HomogeneousMedium::sample_collision(const Ray& ray, core::P
     const double t = sigma_h > 0.0 ? sample_optical_depth(rng) / sigma_h : double(core::infinity);
     const bool collides = t < length;
     if (!is_grey(sigma_t_))
-        weigh_channels(weights, collides ? t : length, collides);
+        update_channel_weights(weights, collides ? t : length, collides);
     else if (collides)
         weights.throughput *= sigma_s_ / sigma_t_;
     if (!collides) {

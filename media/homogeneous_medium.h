@@ -44,7 +44,7 @@ class HomogeneousMedium final : public core::Medium {
     float marching_step(float, float) const override { return core::infinity; }
 
   private:
-    void weigh_channels(core::PathWeights& weights, double travelled, bool collides) const;
+    void update_channel_weights(core::PathWeights& weights, double travelled, bool collides) const;
 
     core::Rgb sigma_t_, sigma_s_, emission_;  // emission_ = sigma_a * L_e
     bool absorbs_alone_;                      // sigma_s is zero

@@ -40,7 +40,7 @@ class RayTracer {
 
     /// Closest hit in one group within (t_min, t_max).
     std::optional<SurfaceHit> closest(const Ray& ray, Group group = Group::surfaces) const;
-    /// The same for many rays; `coherent`: neighbours go the same way.
+    /// Closest hits of many rays; `coherent`: neighbours have similar directions.
     void closest(std::span<const HitQuery> rays, bool coherent) const;
     /// True if a surface lies within (t_min, t_max).
     bool occluded(const Ray& ray) const;

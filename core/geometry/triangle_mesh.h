@@ -70,7 +70,7 @@ class TriangleMesh final : public Shape, private SurfaceAttributes {
     const MeshAttribute* find_attribute(std::string_view name) const;
     Rgb attribute_at(const MeshAttribute& attribute, std::uint32_t primitive, const Vec2& b) const;
 
-    /// What a hit needs to know of a triangle: one cache miss instead of two that wait for each other.
+    /// Data of a triangle that fill a hit: one cache miss instead of two dependent ones.
     struct alignas(64) Triangle {
         std::array<Vec3, 3> corners;  ///< [m]
         Vec3 normal;                  ///< geometric, unit

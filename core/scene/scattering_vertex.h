@@ -24,7 +24,7 @@ struct ScatterSample {
     bool delta = false, transmitted = false;  ///< of a delta part; to the other side of the surface
 };
 
-/// What a vertex scatters from one direction to another.
+/// Scattering function of a vertex for two directions.
 struct ScatteringValue {
     Rgb f_cos;              ///< f* C*
     float pdf_solid_angle;  ///< of ScatteringVertex::sample()

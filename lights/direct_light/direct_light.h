@@ -51,7 +51,7 @@ struct LightConnection {
     core::Rgb f_cos{0.0f};     ///< what the vertex scatters from there
     float pdf_light = 0.0f;    ///< of this sample
     float pdf_scatter = 0.0f;  ///< of the direction by the other technique; 0: that cannot find this light
-    const VolumetricShadowMap* map = nullptr;  ///< knows visibility and transmittance: no ray is needed
+    const VolumetricShadowMap* map = nullptr;  ///< holds visibility and transmittance: no ray is needed
 };
 /// Samples a light as sample_light() does. Returns false where no light arrives, whatever lies between.
 bool begin_connection(const core::ScatteringVertex& vertex, const core::LightChoice& choice,

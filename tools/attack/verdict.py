@@ -29,7 +29,7 @@ def regions(picture):
 
 @dataclass
 class Difference:
-    """Of the means of one region; p has Bonferroni's correction for the number of regions that were looked at."""
+    """Of the means of one region; p has Bonferroni's correction for the number of regions that were compared."""
     p: float
     t: float
     text: str

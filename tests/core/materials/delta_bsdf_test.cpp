@@ -72,6 +72,5 @@ TEST_CASE("equal indices make a dielectric invisible", "[materials]") {
         const auto s = same->sample(point, wo, 0.0f, {}, TransportMode::radiance);
         CHECK((s && s->transmitted && glm::length(s->wi + wo) < 1e-6f && s->weight == core::Rgb(1.0f)));
     }
-    CHECK_THROWS_AS(core::make_rough_dielectric({1.4f, 1.4f}, beckmann(0.1f)),
-                    core::InputError);
+    CHECK_THROWS_AS(core::make_rough_dielectric({1.4f, 1.4f}, beckmann(0.1f)), core::InputError);
 }
