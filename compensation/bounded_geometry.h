@@ -20,13 +20,13 @@ namespace mote::compensation {
 /// B*, below Eq. 10.11 (on surfaces in Eq. 4.7): the fraction of the light between two points that a bound
 /// `bound` [1/m^2] takes away, 0 to 1. `cosines` is C* C*, `distance` in metres. A bound of 0 takes
 /// everything, an infinite one nothing. Without cosines there is no light to distribute: 0.
-inline float residual_fraction(float cosines, float distance, float bound) {
+inline float residual_factor(float cosines, float distance, float bound) {
     const float x = bound * distance * distance;
     return std::isfinite(bound) && x < cosines ? 1.0f - x / cosines : 0.0f;
 }
 
 /// G_b / G* = min(G*, b) / G* = 1 - B*: what the bound leaves.
-inline float bounded_fraction(float cosines, float distance, float bound) {
+inline float bounded_factor(float cosines, float distance, float bound) {
     const float x = bound * distance * distance;
     return std::isfinite(bound) && x < cosines ? x / cosines : 1.0f;
 }

@@ -240,7 +240,7 @@ bool ResidualTransport::step(ResidualPath& path, WalkContext& context) const {
     // B*(y,z), below Eq. 10.11, and on surfaces the factor of Eq. 4.7. C* with the shading normal at the
     // receiver and the geometric one at the other end, as VPLs are gathered.
     path.weights.throughput *=
-        residual_fraction(cosine * path.vertex.geometric_cosine(path.vertex.wo), distance, bound_);
+        residual_factor(cosine * path.vertex.geometric_cosine(path.vertex.wo), distance, bound_);
     const float remaining = max_component(glm::abs(path.throughput()));
     if (!(remaining > 0.0f)) return false;
     if (remaining < before) {

@@ -28,7 +28,7 @@ void trace_paths(const Scene& scene, const PathSettings& settings, EyePacket<Med
         path.end_at_delta(vpl_edge);
         if (!vpl_edge) return;
         const float cosines = path.first_cosine() * path.vertex().geometric_cosine(path.vertex().wo);
-        path.scale(compensation::bounded_fraction(cosines, path.segment_length(), settings.bound));
+        path.scale(compensation::bounded_factor(cosines, path.segment_length(), settings.bound));
     };
     const auto step = [&] {
         if (bounded) packet.for_each(bound_edge);

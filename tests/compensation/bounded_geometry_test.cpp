@@ -18,8 +18,8 @@ TEST_CASE("bounded and residual fractions add up to one", "[compensation][bound]
         const float cosines = rng.next_float();
         const float distance = std::pow(10.0f, 40.0f * rng.next_float() - 20.0f);
         const float bound = std::pow(10.0f, 76.0f * rng.next_float() - 38.0f);
-        const float kept = bounded_fraction(cosines, distance, bound);
-        const float taken = residual_fraction(cosines, distance, bound);
+        const float kept = bounded_factor(cosines, distance, bound);
+        const float taken = residual_factor(cosines, distance, bound);
         REQUIRE(kept >= 0.0f);
         REQUIRE(kept <= 1.0f);
         REQUIRE(taken >= 0.0f);
@@ -34,7 +34,7 @@ TEST_CASE("fractions agree with the definition of the bound in double precision"
         const float bound = 10.0f * rng.next_float();
         const double g = double(cosines) / (double(distance) * double(distance));
         const double residual = g > 0.0 ? std::max(0.0, g - double(bound)) / g : 0.0;
-        REQUIRE(residual_fraction(cosines, distance, bound) == Approx(residual).margin(1e-5));
+        REQUIRE(residual_factor(cosines, distance, bound) == Approx(residual).margin(1e-5));
         // G* B* without the bound subtracted, as Eq. 10.10 prints it, is another number.
         if (g > 2.0 * double(bound) && bound > 0.1f) REQUIRE(residual < 1.0);
     }
@@ -42,16 +42,16 @@ TEST_CASE("fractions agree with the definition of the bound in double precision"
 
 TEST_CASE("limits of the bound", "[compensation][bound]") {
     for (const float d : {0.0f, 1e-20f, 1.0f, 1e15f}) {
-        CHECK(residual_fraction(1.0f, d, 0.0f) == 1.0f);
-        CHECK(residual_fraction(1.0f, d, core::infinity) == 0.0f);
-        CHECK(bounded_fraction(1.0f, d, core::infinity) == 1.0f);
-        CHECK(residual_fraction(0.0f, d, 1.0f) == 0.0f);
+        CHECK(residual_factor(1.0f, d, 0.0f) == 1.0f);
+        CHECK(residual_factor(1.0f, d, core::infinity) == 0.0f);
+        CHECK(bounded_factor(1.0f, d, core::infinity) == 1.0f);
+        CHECK(residual_factor(0.0f, d, 1.0f) == 0.0f);
     }
-    CHECK(residual_fraction(0.5f, 0.0f, 4.0f) == 1.0f);
+    CHECK(residual_factor(0.5f, 0.0f, 4.0f) == 1.0f);
     CHECK(bounding_radius(4.0f) == 0.5f);
     // The region's edge: inside something is taken, outside nothing.
-    CHECK(residual_fraction(1.0f, 0.499f, 4.0f) > 0.0f);
-    CHECK(residual_fraction(1.0f, 0.501f, 4.0f) == 0.0f);
+    CHECK(residual_factor(1.0f, 0.499f, 4.0f) > 0.0f);
+    CHECK(residual_factor(1.0f, 0.501f, 4.0f) == 0.0f);
 }
 
 TEST_CASE("the expected loss is the integral that it represents", "[compensation][loss]") {
