@@ -21,10 +21,11 @@ std::string interleaved(int n) { return fmt::format(R"(<integer name="interleavi
 
 /// The mean picture of a layer after so many passes, filtered where the integrator does.
 std::vector<core::Rgb> picture(const core::Scene& scene, const std::string& integrator,
-                               const std::string& layer, int passes, core::Statistics* statistics = nullptr) {
+                               const std::string& layer, int passes, core::Statistics* statistics = nullptr,
+                               std::uint64_t seed = 3) {
     const auto method = integrator_from(integrator);
     core::Film film(scene.film().width, scene.film().height, method->layers(scene));
-    core::PassRunner runner(scene, *method, 3, film);
+    core::PassRunner runner(scene, *method, seed, film);
     const std::atomic<bool> cancelled = false;
     for (int i = 0; i < passes; ++i) REQUIRE(runner.run_pass(cancelled));
     runner.estimator().finish(film, {});
@@ -104,11 +105,18 @@ TEST_CASE("the filter takes the noise of interleaving away, and leaves the mean"
     const std::string four = interleaved(4), filter = R"(<boolean name="filter" value="true"/>)";
     for (const std::string layer : {"indirect_bounded", "multiple_scattering_bounded"}) {
         const auto exact = picture(*scene, vpl("", 64), layer, 12);
-        const auto plain = picture(*scene, vpl(four), layer, 8),
-                   smooth = picture(*scene, vpl(four + filter), layer, 8);
-        INFO(layer << ": " << squared_error(plain, exact) << " to " << squared_error(smooth, exact));
-        CHECK(squared_error(smooth, exact) < 0.35 * squared_error(plain, exact));
+        // Sums over seeds: few VPLs hold most of the error of one.
+        double of_plain = 0.0, of_smooth = 0.0, bias = 0.0;
+        for (std::uint64_t seed = 4; seed < 12; ++seed) {
+            const auto plain = picture(*scene, vpl(four), layer, 8, nullptr, seed),
+                       smooth = picture(*scene, vpl(four + filter), layer, 8, nullptr, seed);
+            UNSCOPED_INFO(layer << ": " << squared_error(plain, exact) << " to "
+                                << squared_error(smooth, exact));
+            of_plain += squared_error(plain, exact), of_smooth += squared_error(smooth, exact);
+            bias += core::sqr(mean_of(smooth) - mean_of(plain));
+        }
+        CHECK(of_smooth < 0.35 * of_plain);
         // Bias of smoothing, mostly missing outliers, is a small part of the remaining error.
-        CHECK(core::sqr(mean_of(smooth) - mean_of(plain)) < 0.1 * squared_error(smooth, exact));
+        CHECK(bias < 0.1 * of_smooth);
     }
 }

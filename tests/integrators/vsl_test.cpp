@@ -117,7 +117,10 @@ TEST_CASE("spherical lights have less error than points on glossy surfaces", "[v
     const auto scene = scene_from(xml, 12);
     const auto reference = reference_of(*scene, 1, 4000);
     const std::string paths = number("integer", "paths", 400);
-    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    // Points have a long tail: one seed may miss the brightest splotches, so that errors are summed over
+    // seeds.
+    double error_of_points = 0.0, error_of_spheres = 0.0, noise_of_points = 0.0, noise_of_spheres = 0.0;
+    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
         const RenderSpec spec{1, 8, seed};
         const Difference points = difference(
             render_statistics(
@@ -128,11 +131,14 @@ TEST_CASE("spherical lights have less error than points on glossy surfaces", "[v
             "indirect", reference);
         const Difference spheres =
             difference(render_statistics(*scene, *vsl(paths), spec), "indirect_spherical", reference);
-        INFO(fmt::format("seed {}: squared error and noise of points {:.4g} {:.4g}, of spheres {:.4g} {:.4g}",
-                         seed, points.squared, points.noise, spheres.squared, spheres.noise));
-        CHECK(2.0 * spheres.squared < points.squared);
-        CHECK(3.0 * spheres.noise < points.noise);
+        UNSCOPED_INFO(
+            fmt::format("seed {}: squared error and noise of points {:.4g} {:.4g}, of spheres {:.4g} {:.4g}",
+                        seed, points.squared, points.noise, spheres.squared, spheres.noise));
+        error_of_points += points.squared, noise_of_points += points.noise;
+        error_of_spheres += spheres.squared, noise_of_spheres += spheres.noise;
     }
+    CHECK(2.0 * error_of_spheres < error_of_points);
+    CHECK(3.0 * noise_of_spheres < noise_of_points);
 }
 
 TEST_CASE("mote_vsl refuses media and wrong settings", "[vsl][input]") {
