@@ -32,16 +32,35 @@ const ParameterList<LayerFilterParameters>& layer_filter_rows() {
     return list;
 }
 
+LayerFilter::LayerFilter(const Scene& scene, const RenderOptions& options, const FeatureSettings& features,
+                         bool knows_variance, MakeFilter make)
+    : scene_(scene),
+      options_(options),
+      feature_settings_(features),
+      knows_variance_(knows_variance),
+      make_(std::move(make)) {}
+
 LayerFilter::LayerFilter(const Scene& scene, const RenderOptions& options,
                          const LayerFilterParameters& parameters)
-    : scene_(scene), options_(options), parameters_(parameters) {}
+    : LayerFilter(scene, options, parameters.features, true,
+                  [settings = parameters.filter](const screenspace::FilterFeatures& features) {
+                      return screenspace::make_own_filter(features, settings);
+                  }) {}
+
+LayerFilter::LayerFilter(const Scene& scene, const RenderOptions& options, const FeatureSettings& features,
+                         std::shared_ptr<const screenspace::OidnLibrary> library)
+    : LayerFilter(scene, options, features, false,
+                  [library = std::move(library)](const screenspace::FilterFeatures& found) {
+                      return screenspace::make_oidn_filter(found, library);
+                  }) {}
 
 void LayerFilter::find_features(CancelToken cancelled) {
-    if (features_) return;
+    if (filter_) return;
     options_.cancelled = cancelled;
     const auto start = Clock::now();
     features_ = std::make_unique<screenspace::FilterFeatures>(
-        find_filter_features(scene_, options_, parameters_.features));
+        find_filter_features(scene_, options_, feature_settings_));
+    filter_ = make_(*features_);
     feature_seconds_ += seconds_since(start);
 }
 
@@ -56,8 +75,7 @@ void LayerFilter::apply(Film& film, std::span<const Choice> layers, CancelToken 
                       {});  // of the passes: an earlier call, for a preview, may have replaced it
         const std::vector<Rgb> mean = film.mean(choice.layer);
         const std::vector<Rgb> variance = film.layer_variance_of_mean(choice.layer);
-        auto filtered = screenspace::filter_layer(*features_, {mean, variance, choice.kind},
-                                                  parameters_.filter, cancelled);
+        auto filtered = filter_->filtered({mean, variance, choice.kind}, cancelled);
         film.set_mean(choice.layer, filtered.mean, filtered.variance);
         variances_.push_back(std::move(filtered.variance));
     }

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
 
 #include "core/film/film.h"
 #include "core/math/random.h"
@@ -38,13 +37,12 @@ std::string shares_wanted(std::size_t parts) {
 class LayersEstimator final : public Estimator {
   public:
     LayersEstimator(const Scene& scene, const RenderOptions& options, const LayerChoice& choice,
-                    const LayerFilterParameters& filter, std::vector<LayerFilter::Choice> filtered,
+                    std::unique_ptr<LayerFilter> filter, std::vector<LayerFilter::Choice> filtered,
                     const std::vector<std::uint32_t>& shares)
-        : filtered_(std::move(filtered)) {
+        : filtered_(std::move(filtered)), filter_(std::move(filter)) {
         for (std::size_t part = 0; part < shares.size(); ++part)
             round_.insert(round_.end(), shares[part], part);
 
-        if (!filtered_.empty()) filter_.emplace(scene, options, filter);
         for (std::size_t i = 0; i < choice.methods.size(); ++i) {
             const LayerMethod& method = choice.methods[i];
             RenderOptions own = options;
@@ -54,7 +52,8 @@ class LayersEstimator final : public Estimator {
             const auto layers = std::count_if(filtered_.begin(), filtered_.end(), [&](const auto& f) {
                 return choice.layers[f.layer].part == i;
             });
-            left_.push_back(std::size_t(layers) == method.kept.size() ? left_by_filter : 1.0);
+            left_.push_back(std::size_t(layers) == method.kept.size() && changes_noise() ? left_by_filter
+                                                                                         : 1.0);
         }
     }
 
@@ -82,7 +81,7 @@ class LayersEstimator final : public Estimator {
         if (filter_ && film.has_passes(2)) filter_->apply(film, filtered_, cancelled);
     }
 
-    bool changes_noise() const override { return filter_.has_value(); }
+    bool changes_noise() const override { return filter_ && filter_->knows_variance(); }
 
     void add_statistics(Statistics& statistics) const override {
         for (const Part& part : parts_) part.estimator->add_statistics(statistics);
@@ -101,17 +100,18 @@ class LayersEstimator final : public Estimator {
     std::vector<double> left_;        ///< of the variance of each part, after filtering
     std::vector<std::size_t> round_;  ///< the part of each pass of a round; empty: next_part() of the film
     std::vector<LayerFilter::Choice> filtered_;
-    std::optional<LayerFilter> filter_;
+    std::unique_ptr<LayerFilter> filter_;  ///< null: pixels stay as they are
 };
 
 }  // namespace
 
 std::unique_ptr<Estimator> make_layers_estimator(const Scene& scene, const RenderOptions& options,
                                                  const LayerChoice& choice,
-                                                 const LayerFilterParameters& filter,
+                                                 std::unique_ptr<LayerFilter> filter,
                                                  std::vector<LayerFilter::Choice> filtered,
                                                  const std::vector<std::uint32_t>& shares) {
-    return std::make_unique<LayersEstimator>(scene, options, choice, filter, std::move(filtered), shares);
+    return std::make_unique<LayersEstimator>(scene, options, choice, std::move(filter), std::move(filtered),
+                                             shares);
 }
 
 }  // namespace mote::integrators

@@ -9,13 +9,13 @@
 
 namespace mote::integrators {
 
-/// `filtered`: layers of the film that are filtered in image space, by `filter`. `shares`: passes of each
-/// part in a round; empty: as many as reduce the error fastest. Part 0 has the seed of the render, the others
-/// have seeds of their own: parts are independent.
+/// `filtered`: layers of the film that are filtered in image space, by `filter`; null without any. `shares`:
+/// passes of each part in a round; empty: as many as reduce the error fastest. Part 0 has the seed of the
+/// render, the others have seeds of their own: parts are independent.
 std::unique_ptr<core::Estimator> make_layers_estimator(const core::Scene& scene,
                                                        const core::RenderOptions& options,
                                                        const LayerChoice& choice,
-                                                       const LayerFilterParameters& filter,
+                                                       std::unique_ptr<LayerFilter> filter,
                                                        std::vector<LayerFilter::Choice> filtered,
                                                        const std::vector<std::uint32_t>& shares);
 

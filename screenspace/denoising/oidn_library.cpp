@@ -1,6 +1,6 @@
 // The declarations below are those of the public C interface of OpenImageDenoise 2
 // (https://www.openimagedenoise.org/documentation.html, "C99 API").
-#include "session/denoise/oidn_library.h"
+#include "screenspace/denoising/oidn_library.h"
 
 #include <dlfcn.h>
 
@@ -12,7 +12,7 @@
 
 #include "core/objects/error.h"
 
-namespace mote::session {
+namespace mote::screenspace {
 
 using core::InputError, core::Rgb;
 
@@ -143,6 +143,8 @@ OidnLibrary::~OidnLibrary() {
 
 void OidnLibrary::look_everywhere(std::string package) {
     if (const char* named = std::getenv("MOTE_OIDN"); named && *named) {
+        if (std::string_view(named) == "off")
+            throw InputError("OpenImageDenoise is not loaded: MOTE_OIDN is 'off'");
         std::filesystem::path path = named;
         std::error_code ignored;
         if (std::filesystem::is_directory(path, ignored)) path /= file_name;
@@ -208,4 +210,4 @@ std::vector<Rgb> OidnLibrary::denoised_feature(Feature which, int width, int hei
     return result;
 }
 
-}  // namespace mote::session
+}  // namespace mote::screenspace

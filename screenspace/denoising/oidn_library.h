@@ -9,14 +9,14 @@
 
 #include "core/math/vec.h"
 
-namespace mote::session {
+namespace mote::screenspace {
 
 class OidnLibrary {
   public:
-    /// Where MOTE_OIDN is set it names the library's file, or the folder that holds it, and nothing else is
-    /// tried; else the loader's own path, then Python's package pyoidn in the folder `package`, or "": where
-    /// the Python of MOTE_PYTHON, of the active environment (VIRTUAL_ENV), or else `python3` has it.
-    /// `threads` 0: as many as it likes. Throws InputError, which says how to install it.
+    /// Where MOTE_OIDN is set it names the library's file, or the folder that holds it, or is 'off', and
+    /// nothing else is tried; else the loader's own path, then Python's package pyoidn in the folder
+    /// `package`, or "": where the Python of MOTE_PYTHON, of the active environment (VIRTUAL_ENV), or else
+    /// `python3` has it. `threads` 0: as many as it likes. Throws InputError, which says how to install it.
     explicit OidnLibrary(int threads = 0, const std::string& package = "");
     ~OidnLibrary();
     OidnLibrary(const OidnLibrary&) = delete;
@@ -47,4 +47,4 @@ class OidnLibrary {
     std::string version_;
 };
 
-}  // namespace mote::session
+}  // namespace mote::screenspace
