@@ -1,8 +1,6 @@
 // Extent of a shadow ray towards its target.
 #pragma once
 
-#include <algorithm>
-
 #include "core/math/vec.h"
 
 namespace mote::core {
@@ -14,9 +12,14 @@ inline constexpr float shadow_fraction = 0.9999f;
 /// End of a shadow ray of unit direction towards a surface at `distance` [m]. Far from the origin of
 /// coordinates the rounding of both ends exceeds that fraction: units in the last place of the coordinates
 /// are left out, as many as reach a surface that is met at 3 degrees.
-inline float shadow_end(const Vec3& origin, float distance) {
+/// `reach`: the largest coordinate of its origin [m].
+inline float shadow_end(float reach, float distance) {
     constexpr float rounding = 20.0f * 0x1p-23f;
-    return std::min(shadow_fraction * distance, distance - rounding * max_component(glm::abs(origin)));
+    const float shorter = shadow_fraction * distance, rounded = distance - rounding * reach;
+    return rounded < shorter ? rounded : shorter;
+}
+inline float shadow_end(const Vec3& origin, float distance) {
+    return shadow_end(max_component(glm::abs(origin)), distance);
 }
 
 }  // namespace mote::core
