@@ -17,7 +17,7 @@
 
 namespace mote::integrators {
 
-/// What the wavefronts of a render share.
+/// Scene, limits and tables that the wavefronts of a render have in common.
 struct WavefrontScene {
     WavefrontScene(const core::Scene& s, const EyePathLimits& l);
     /// False where paths need what a wavefront does not have: panes, lights that eye rays pass, a bound.
