@@ -7,6 +7,7 @@
 #include <chrono>
 #include <iterator>
 
+#include "core/film/film_image.h"
 #include "core/objects/error.h"
 #include "core/objects/memory_error.h"
 #include "core/render/checkpoint.h"
@@ -39,8 +40,14 @@ std::vector<std::string> layers_without_passes(const core::Film& film) {
     return names;
 }
 
-core::ImageChannels beauty_of(const core::Film& film) {
+core::ImageChannels preview_of(const core::Film& film, bool with_layers) {
     core::ImageChannels image;
+    if (with_layers) {
+        image = core::film_image(film);
+        image.metadata["passes"] = std::to_string(film.pass_count());
+        image.metadata["noise"] = fmt::format("{:.6g}", film.noise());
+        return image;
+    }
     image.width = film.width(), image.height = film.height();
     image.add_rgb("", film.beauty());
     return image;
@@ -95,12 +102,20 @@ class RenderWork {
             watched_.report(why + "; it is tried again");
         };
         r.progress = [this](const core::RenderProgress& p) { watched_.report(p); };
-        if (wants_previews_) r.preview = [this](const core::Film& film) { watched_.report(beauty_of(film)); };
+        r.abandoned = &watched_.abandoned();
+        const RenderObserver& observer = watched_.observer();
+        r.preview_every_seconds = observer.preview_every_seconds();
+        r.preview_is_seen = [&observer] { return observer.preview_is_seen(); };
+        if (wants_previews_)
+            r.preview = [this, &observer](const core::Film& film) {
+                watched_.report(preview_of(film, observer.wants_layers()));
+            };
         return r;
     }
 
     Rendered render_here() {
         core::RenderResult result = core::render(scene_.scene(), scene_.integrator(), request());
+        if (watched_.abandoned()) return {};
         result.statistics.seconds["load"] = scene_.load_seconds();
         if (settings_.begin_with) add_statistics(result.statistics, settings_.begin_with->statistics);
         if (result.film.pass_count() == 0 && !watched_.cancelled())

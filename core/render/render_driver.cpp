@@ -41,6 +41,7 @@ class PassLoop {
     /// Estimator::finish() of the picture.
     void finish_picture(const std::string& type) {
         if (result_.film.pass_count() == 0 || !result_.finished_pixels.empty() || request_.range) return;
+        if (request_.abandoned && request_.abandoned->load()) return;
         const Clock::time_point begin = Clock::now();
         try {
             if (!result_.interrupted)
@@ -166,15 +167,17 @@ class PassLoop {
     void show_preview() {
         // The noise in reports of progress is that of the picture that a preview would show.
         const bool for_the_noise = request_.progress && !stop_.noise && runner_.estimator().changes_noise();
-        if ((!request_.preview && !for_the_noise) || is_done()) return;
+        const bool seen = request_.preview && (!request_.preview_is_seen || request_.preview_is_seen());
+        if ((!seen && !for_the_noise) || is_done()) return;
         // After this time a preview is shown though some part of the picture is still black.
         constexpr double patience = 2.5;
         if (!result_.film.has_passes(1) && seconds_since(start_) < patience) return;
-        if (previews_ > 0 && seconds_since(preview_time_) < std::max(1.0, 20.0 * preview_seconds_)) return;
+        const double wait = std::max(seen ? request_.preview_every_seconds : 1.0, 20.0 * preview_seconds_);
+        if (previews_ > 0 && seconds_since(preview_time_) < wait) return;
         const Clock::time_point begin = Clock::now();
         try {
             finish_for_now([&] {
-                if (request_.preview) request_.preview(result_.film);
+                if (seen) request_.preview(result_.film);
             });
         } catch (const Cancelled&) {
         }
