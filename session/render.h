@@ -33,7 +33,7 @@ class RenderObserver {
     /// metadata.
     virtual bool wants_layers() const { return false; }
     virtual double preview_every_seconds() const { return 1.0; }  ///< shortest time between two previews
-    /// Called in the thread of the passes: false spares the work of a preview that nobody would see.
+    /// Called in the thread of the passes: false spares the work of a preview.
     virtual bool preview_is_seen() const { return true; }
     virtual void warning(const std::string&) {}  ///< at once: a checkpoint that could not be written
     /// Called in the thread of the passes, before the first one: from now on an end loses something.

@@ -32,7 +32,7 @@ class WatchedWork {
     const std::atomic<bool>& stop() const { return stop_; }
     const std::atomic<bool>& time_is_over() const { return time_is_over_; }
     bool cancelled() const { return cancelled_; }  ///< by the caller
-    /// True where the observer threw: nobody receives what the work makes.
+    /// True where the observer threw: what the work makes is discarded.
     const std::atomic<bool>& abandoned() const { return abandoned_; }
     const RenderObserver& observer() const { return observer_; }
     void begin_passes();  ///< the limit in time is now that of the last pass

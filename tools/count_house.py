@@ -14,7 +14,7 @@ sys.path[:0] = [str(HERE / "tests/floors"), str(HERE / "tests/pages")]
 import check_floors  # noqa: E402
 import check_words  # noqa: E402
 
-PRODUCT = ["core", "media", "lights", "compensation", "screenspace", "gathering", "integrators", "session", "apps", "trade",
+PRODUCT = ["core", "media", "lights", "compensation", "screenspace", "gathering", "integrators", "session", "apps", "trade", "viewer",
            "python", "plugins"]
 CPP = {".h", ".cpp", ".c"}
 GOAL_LINES, GOAL_PARAMETERS = 76000, 12

@@ -20,7 +20,7 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Nobody waits for this render any more.
+/// A newer wish replaces this render.
 struct Superseded {};
 
 const std::string of_integrator = "integrator.";
@@ -180,27 +180,44 @@ void LiveRender::show(const Wish& wish, std::uint64_t change) {
     }
 }
 
-/// One pass over fewer pixels; as many as take about a tenth of a second.
+/// One pass over fewer pixels, as many as take about a tenth of a second; then four times as many, where a
+/// whole pass takes longer than one likes to wait.
 void LiveRender::show_coarse(const Wish& wish, std::uint64_t change) {
-    const Clock::time_point start = Clock::now();
+    constexpr double patience = 1.0;
     std::optional<LoadedScene> loaded;
     {
         const std::lock_guard lock(scene_mutex_);
         loaded = scene_;
     }
     const core::FilmSettings& film = loaded->scene().film();
-    const double fraction = double(coarse_pixels_) / (double(film.width) * double(film.height));
+    double fraction = double(coarse_pixels_) / (double(film.width) * double(film.height));
     if (fraction >= 1.0 && !wish.moving) return;
-    const double factor = std::sqrt(std::min(1.0, fraction));
-    const auto shrunk = [&](int size) { return std::max(1, int(std::lround(factor * size))); };
-    const SceneChanges changes = at_size(wish.changes, shrunk(film.width), shrunk(film.height));
-    coarse_scene_ = changed(coarse_scene_ ? *coarse_scene_ : *loaded, changes);
+    for (bool first = true;; first = false, fraction *= 4.0) {
+        const double factor = std::sqrt(std::min(1.0, fraction));
+        const auto shrunk = [&](int size) { return std::max(1, int(std::lround(factor * size))); };
+        const double seconds = show_at_size(wish, change, *loaded, shrunk(film.width), shrunk(film.height));
+        if (first) adapt(seconds);
+        if (wish.moving || is_superseded(change) || fraction > 0.2 || seconds / fraction < patience) return;
+    }
+}
+
+/// Returns the time that it took [s].
+double LiveRender::show_at_size(const Wish& wish, std::uint64_t change, const LoadedScene& loaded, int width,
+                                int height) {
+    const Clock::time_point start = Clock::now();
+    const SceneChanges changes = at_size(wish.changes, width, height);
+    coarse_scene_ = changed(coarse_scene_ ? *coarse_scene_ : loaded, changes);
     const LoadedScene scene = with_integrator(*coarse_scene_, changes);
     session::RenderSettings settings;
     settings.seed = wish.seed, settings.threads = wish.threads, settings.stop.passes = 1;
     Observer observer(*this, wish, change, true);
-    report(session::render(scene, settings, observer), wish, change, true, seconds_since(start));
+    session::Rendered rendered = session::render(scene, settings, observer);
     const double seconds = seconds_since(start);
+    report(std::move(rendered), wish, change, true, seconds);
+    return seconds;
+}
+
+void LiveRender::adapt(double seconds) {
     constexpr std::size_t min_pixels = 512, max_pixels = std::size_t(1) << 20;
     if (seconds > 0.15) coarse_pixels_ = std::max(min_pixels, coarse_pixels_ / 2);
     if (seconds < 0.05) coarse_pixels_ = std::min(max_pixels, coarse_pixels_ * 2);
@@ -213,17 +230,17 @@ void LiveRender::show_full(const Wish& wish, std::uint64_t change) {
     settings.seed = wish.seed, settings.threads = wish.threads;
     settings.stop.passes = wish.passes > 0 ? wish.passes : std::uint32_t(scene.scene().film().sample_count);
     Observer observer(*this, wish, change, false);
-    report(session::render(scene, settings, observer), wish, change, false, seconds_since(start));
+    session::Rendered rendered = session::render(scene, settings, observer);
+    report(std::move(rendered), wish, change, false, seconds_since(start));
 }
 
-SharedPicture LiveRender::report(session::Rendered&& rendered, const Wish& wish, std::uint64_t change,
-                                 bool coarse, double seconds) const {
+void LiveRender::report(session::Rendered&& rendered, const Wish& wish, std::uint64_t change, bool coarse,
+                        double seconds) const {
     auto picture = std::make_shared<LivePicture>();
     picture->image = std::move(rendered.image), picture->wish = wish, picture->passes = rendered.passes;
     picture->noise = rendered.noise, picture->coarse = coarse, picture->seconds = seconds;
     picture->finished = !rendered.interrupted && !coarse, picture->change = change;
     if (!picture->image.names.empty()) reports_.picture(picture);
-    return picture;
 }
 
 }  // namespace mote::viewer

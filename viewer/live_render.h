@@ -69,15 +69,18 @@ class LiveRender {
     void run();
     void show(const Wish& wish, std::uint64_t change);
     void show_coarse(const Wish& wish, std::uint64_t change);
+    double show_at_size(const Wish& wish, std::uint64_t change, const session::LoadedScene& loaded, int width,
+                        int height);
+    void adapt(double seconds);
     void show_full(const Wish& wish, std::uint64_t change);
-    SharedPicture report(session::Rendered&& rendered, const Wish& wish, std::uint64_t change, bool coarse,
-                         double seconds) const;
+    void report(session::Rendered&& rendered, const Wish& wish, std::uint64_t change, bool coarse,
+                double seconds) const;
     bool is_superseded(std::uint64_t change) const { return change_.load() != change; }
 
     Reports reports_;
     std::mutex scene_mutex_;
     std::optional<session::LoadedScene> scene_;         ///< of the last load; guarded
-    std::size_t coarse_pixels_ = 16384;                 ///< adapts to the time that they take
+    std::size_t coarse_pixels_ = 8192;                  ///< adapts to the time that they take
     std::optional<session::LoadedScene> coarse_scene_;  ///< of the last coarse picture
     std::mutex mutex_;
     std::condition_variable changed_;

@@ -1,4 +1,4 @@
-// What can be turned in a scene: declared parameters of its integrator, media and lights, each with the path
+// Knobs of a scene: declared parameters of its integrator, media and lights, each with the path
 // by which `-D` sets it.
 #pragma once
 

@@ -126,7 +126,7 @@ class Server::Impl {
             server_.sockets_.erase(client_);
             server_.events_->left(client_);
         }
-        void end() { joined_ = false; }  ///< nobody is told
+        void end() { joined_ = false; }  ///< without an event
 
         void start(const Request& request) {
             beast::get_lowest_layer(stream_).expires_never();

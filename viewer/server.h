@@ -1,6 +1,6 @@
 // The viewer's server: its page by HTTP, and messages by WebSocket, on one thread.
 //
-// It listens on the loopback address unless told otherwise, and answers nothing whose path does not begin
+// It listens on the loopback address by default, and answers nothing whose path does not begin
 // with a random token, whose Host is another one (a page elsewhere that has rebound its name), or whose
 // Origin is another page. No file is read: the page is part of the program. Every client has bounds: bytes of
 // a header and of a message, messages a second, bytes that wait for it, seconds of silence before its first

@@ -1,4 +1,4 @@
-// What the page is a view of: a scene that is rendered while its parameters change, or pictures from files.
+// Content of the page: a scene that is rendered while its parameters change, or pictures from files.
 //
 // The page sends JSON (docs/viewer.md lists the messages), and so is every answer; pictures follow as binary
 // messages (frame.h). A client gets the next frame of a picture once it has confirmed the one before: a slow
@@ -47,18 +47,18 @@ class View {
 
     void join(int client);
     void leave(int client);
-    /// Answers, and never throws: what is wrong with a message is told to its sender.
+    /// Answers, and never throws: the sender of a wrong message receives the reason.
     void receive(int client, std::string_view text);
     /// The last picture of this name; null: none yet.
     SharedPicture picture(const std::string& name) const;
 
   private:
-    /// A picture that clients can look at.
+    /// A picture that clients can see.
     struct Shown {
         std::optional<Wish> wish;  ///< of a render; none: of a file
         SharedPicture picture;     ///< null: none yet
         std::uint64_t version = 0;
-        SharedMessage frame;  ///< of this version; null: nobody has asked for it
+        SharedMessage frame;  ///< of this version; null: not encoded yet
     };
     struct Client {
         std::map<std::string, std::uint64_t> sent;       ///< version of each picture

@@ -60,13 +60,13 @@ struct RenderRequest {
     /// be empty.
     std::function<void(const Film&)> preview;
     double preview_every_seconds = 1.0;     ///< shortest time between two of them
-    std::function<bool()> preview_is_seen;  ///< false: nobody would see one now; empty: always true
+    std::function<bool()> preview_is_seen;  ///< false: a preview would have no use now; empty: always true
     std::function<void(const std::string&)> checkpoint_failed;  ///< called at once; retried later
     std::function<void()> building_is_over;           ///< called before the first pass; may be empty
     std::function<void()> passes_are_over;            ///< called before Estimator::finish; may be empty
     const std::atomic<bool>* interrupted = nullptr;   ///< set by Ctrl-C, and when the time is over
     const std::atomic<bool>* time_is_over = nullptr;  ///< set before `interrupted`: it was not Ctrl-C
-    /// Set before `interrupted`: nobody receives the picture, so it is not finished.
+    /// Set before `interrupted`: the picture is discarded, so it is not finished.
     const std::atomic<bool>* abandoned = nullptr;
     /// Wall time that the command took before: what stop.seconds is for begins there.
     double seconds_before = 0.0;

@@ -20,3 +20,4 @@ class Socket {
 }
 
 window.moteView = start(document.getElementById("mote"), new Socket());
+window.moteView.stage.focus();  // for the keys
