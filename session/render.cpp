@@ -44,7 +44,7 @@ core::ImageChannels preview_of(const core::Film& film, bool with_layers) {
     core::ImageChannels image;
     if (with_layers) {
         image = core::film_image(film);
-        image.metadata["passes"] = std::to_string(film.pass_count());
+        image.metadata["passes"] = std::to_string(film.has_passes(1) ? film.pass_count() : 0);
         image.metadata["noise"] = fmt::format("{:.6g}", film.noise());
         return image;
     }

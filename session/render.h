@@ -29,8 +29,8 @@ class RenderObserver {
     /// The picture so far, its beauty alone, from the first pass on. Now and then, so that it takes a
     /// twentieth of the time at most.
     virtual void preview(const core::ImageChannels&) {}
-    /// True: preview() receives every layer and variance, as a file has them, and "passes" and "noise" as
-    /// metadata.
+    /// True: preview() receives every layer and variance, as a file has them, and "passes" (0: a part of the
+    /// first ones is missing) and "noise" as metadata.
     virtual bool wants_layers() const { return false; }
     virtual double preview_every_seconds() const { return 1.0; }  ///< shortest time between two previews
     /// Called in the thread of the passes: false spares the work of a preview.

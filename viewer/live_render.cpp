@@ -237,7 +237,9 @@ void LiveRender::show_full(const Wish& wish, std::uint64_t change) {
 void LiveRender::report(session::Rendered&& rendered, const Wish& wish, std::uint64_t change, bool coarse,
                         double seconds) const {
     auto picture = std::make_shared<LivePicture>();
-    picture->image = std::move(rendered.image), picture->wish = wish, picture->passes = rendered.passes;
+    picture->image = std::move(rendered.image), picture->wish = wish,
+    // Passes by which `mote render` makes the same bits; 0: none does.
+        picture->passes = rendered.finished_for ? 0 : rendered.passes;
     picture->noise = rendered.noise, picture->coarse = coarse, picture->seconds = seconds;
     picture->finished = !rendered.interrupted && !coarse, picture->change = change;
     if (!picture->image.names.empty()) reports_.picture(picture);

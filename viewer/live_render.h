@@ -34,7 +34,7 @@ struct Wish {
 struct LivePicture {
     core::ImageChannels image;  ///< as a file has it
     Wish wish;
-    std::uint32_t passes = 0, passes_wanted = 0;
+    std::uint32_t passes = 0;  ///< that `mote render` makes the same bits with; 0: none
     double seconds = 0.0;      ///< of this render, since its change
     double noise = 0.0;        ///< infinity: not known
     bool coarse = false;       ///< of fewer pixels than the film has

@@ -254,6 +254,15 @@ json View::scene_message() const {
     return message;
 }
 
+/// The page changes nothing else: no file can be named by it. Throws InputError.
+void View::require_knob(const std::string& path, const Wish& wish) const {
+    if (path == "film.width" || path == "film.height") return;
+    for (const json& group : scene_knobs(elements_of(wish), scene_->registry()))
+        for (const json& knob : group["knobs"])
+            if (knob["path"] == path) return;
+    throw InputError("'" + core::printable(path, 60) + "' is no knob");
+}
+
 core::Element View::elements_of(const Wish& wish) const { return changed_elements(*scene_, wish.changes); }
 
 void View::receive(int client, std::string_view text) {
@@ -311,9 +320,11 @@ void View::set_values(const json& message) {
             if (shown.wish) wishes[other] = *shown.wish;
         if (message.contains("integrator"))
             set_integrator(wishes.at(name).changes, member<std::string>(message, "integrator"));
-        for (const auto& [path, value] : defines.items())
+        for (const auto& [path, value] : defines.items()) {
+            if (!value.is_null()) require_knob(path, wishes.at(name));
             for (auto& [other, wish] : wishes)
                 if (other == name || !is_of_integrator(path)) set_define(wish.changes, path, value);
+        }
         for (auto& [other, wish] : wishes) {
             if (message.contains("seed")) wish.seed = member<std::uint64_t>(message, "seed");
             if (message.contains("passes")) wish.passes = member<std::uint32_t>(message, "passes");

@@ -88,6 +88,7 @@ class View {
     nlohmann::json frame_header(const std::string& name, const LivePicture& picture) const;
     const Shown& find(const std::string& name) const;
     core::Element elements_of(const Wish& wish) const;
+    void require_knob(const std::string& path, const Wish& wish) const;
     std::vector<std::string> command_of(const Wish& wish, std::uint32_t passes) const;
     void work();
     void later(int client, std::function<void()> task);

@@ -66,8 +66,8 @@ def message():
 
 def frame(payload):
     """A frame, most of them as the protocol wants it."""
-    broken = rng.randrange(8)
-    opcode = rng.choice([1, 1, 1, 1, 2, 0, 8, 9, 10, 3, 15])
+    broken = rng.randrange(40)
+    opcode = rng.choice([1] * 40 + [2, 0, 8, 9, 10, 3, 15])
     first = (0x80 if broken != 1 else rng.randrange(256)) | opcode
     mask = os.urandom(4) if broken != 2 else b""
     size = len(payload) if broken != 3 else rng.choice([0, 5, 2 ** 40, 2 ** 63])
@@ -104,11 +104,17 @@ def request(parts):
     return bytes(data)
 
 
-def drain(connection):
-    """Discards what has arrived. False: the connection has ended."""
-    while select.select([connection], [], [], 0)[0]:
+refusals = 0
+
+
+def drain(connection, seconds=0.0):
+    """Discards what has arrived, and counts refusals. False: the connection has ended."""
+    global refusals
+    while select.select([connection], [], [], seconds)[0]:
         try:
-            if not connection.recv(1 << 20):
+            data = connection.recv(1 << 20)
+            refusals += data.count(b'"refused"')
+            if not data:
                 return False
         except OSError:
             return False
@@ -136,14 +142,15 @@ def throw_messages(program, count):
             client = program.connect()
         try:
             client.socket.sendall(frame(message()))
-            if not drain(client.socket):
+            if not drain(client.socket, 0.002):
                 raise OSError
         except OSError:
             client.close()
             client = None
         if i % 150 == 149:
-            time.sleep(0.2)  # no more than the server takes in a second
+            time.sleep(1.0)  # no more than the server takes in a second
     if client:
+        drain(client.socket, 0.5)
         client.close()
 
 
@@ -172,8 +179,12 @@ def main():
                 print("FAILED  the program has ended", program.process.returncode)
                 sys.exit(1)
             sizes.append(program.resident_bytes() // 2 ** 20)
-        print(f"{2 * rounds * each} malformed requests and messages: alive, slowest answer to a new client {slowest:.2f} s, "
+        print(f"{2 * rounds * each} malformed requests and messages: alive, {refusals} refused with a sentence, "
+              f"slowest answer to a new client {slowest:.2f} s, "
               f"resident {sizes} MB")
+        if refusals < arguments.count // 20:
+            print("FAILED  too few messages arrived")
+            sys.exit(1)
         growth = sizes[-1] - sizes[rounds // 2]
         if growth > 64:
             print(f"FAILED  the program grew by {growth} MB in the second half")

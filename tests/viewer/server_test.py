@@ -56,7 +56,8 @@ def main():
         client.wait_for(lambda h: h["type"] == "scene")
         client.frame(lambda h: h["finished"])
         for bad in ("", "{", "[]", "null", '{"type": 3}', '{"type": "nothing"}', '{"type": "set", "define": []}',
-                    '{"type": "set", "define": {"a": "b"}}', '{"type": "set", "picture": "Z"}',
+                    '{"type": "set", "define": {"a": "b"}}', '{"type": "set", "define": {"shape:1.filename": "/etc/passwd"}}',
+                    '{"type": "set", "define": {"integrator.filename": "x"}}', '{"type": "set", "picture": "Z"}',
                     '{"type": "camera", "view": [1, 2]}', '{"type": "camera", "view": [1, 2, 3, 4, 5, 6, 7, 8, 1e999]}',
                     '{"type": "pixel", "picture": "A", "x": -1, "y": 2}', '{"type": "save", "picture": "C"}'):
             client.send(bad)
