@@ -11,6 +11,7 @@
 #include "core/formats/gltf/scratch_folder.h"
 #include "core/formats/pictures/image_file.h"
 #include "core/objects/error.h"
+#include "session/layers.h"
 #include "session/output_files.h"
 #include "session/render_report.h"
 #include "viewer/frame.h"
@@ -412,14 +413,19 @@ void View::answer_pixel(int client, const json& message) {
         if (shown.wish) render = renders_.at(first).get();
     }
     later(client, [this, client, name, x, y, shown, render] {
-        json answer = {{"type", "pixel"}, {"picture", name}, {"x", x}, {"y", y}, {"values", json::object()}};
+        json answer = {{"type", "pixel"}, {"picture", name}, {"x", x}, {"y", y}, {"values", json::array()}};
         if (shown.picture && !shown.picture->coarse) {
             const core::ImageChannels& image = shown.picture->image;
             if (x < 0 || y < 0 || x >= image.width || y >= image.height)
                 throw InputError("the pixel is outside of the image");
             const std::size_t p = std::size_t(y) * std::size_t(image.width) + std::size_t(x);
-            for (std::size_t k = 0; k < image.names.size(); ++k)
-                answer["values"][image.names[k]] = number_or_null(double(image.channels[k][p]));
+            for (const session::LayerChannels& layer : session::layers_of(image)) {
+                json values = json::array();
+                for (const std::size_t plane : layer.planes)
+                    values.push_back(number_or_null(double(image.channels[plane][p])));
+                answer["values"].push_back(
+                    {{"layer", layer.name}, {"channels", layer.channels}, {"values", values}});
+            }
         }
         if (shown.wish) {
             const session::LoadedScene scene = render->scene_for(shown.wish->changes);

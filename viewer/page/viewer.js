@@ -495,11 +495,8 @@ class Viewer {
   takePixel(message) {
     this.light = message.light ? message : null;
     const info = [make("div", {}, `pixel ${message.x}, ${message.y} of ${message.picture}`)];
-    const shares = Object.entries(message.values).filter(([name]) => !name.startsWith("Variance."));
-    const names = [...new Set(shares.map(([name]) => (name.length === 1 ? "" : name.slice(0, name.lastIndexOf(".")))))];
-    info.push(make("table", {}, ...names.map((name) => make("tr", {}, make("th", {}, name || BEAUTY),
-      ...shares.filter(([n]) => (n.length === 1 ? "" : n.slice(0, n.lastIndexOf("."))) === name)
-        .map(([, v]) => make("td", {}, short(v)))))));
+    info.push(make("table", {}, ...message.values.map(({ layer, channels, values }) => make("tr", {},
+      make("th", { title: channels.join(", ") }, layer), ...values.map((v) => make("td", {}, short(v)))))));
     if (message.light) info.push(...this.lightInfo(message.light));
     this.pixelInfo.replaceChildren(...info);
     this.drawOverlay();
