@@ -152,11 +152,11 @@ class Picture(Mapping):
     def show(self, layer: str = "beauty", against: Optional[Picture] = None, exposure: Optional[float] = None) -> Shown:
         """A layer for a notebook to display. against: the signed difference to the same layer of another picture: red where
         this one is brighter, blue where it is darker, white where they agree; full colour is a difference of
-        2^-exposure (none: twice the root mean square of the difference)."""
+        2^-exposure (none: four times the mean absolute difference)."""
         if against is None:
             return Shown(self.png(layer, exposure), f"{layer}")
         difference = np.asarray(self[layer], np.float64).mean(axis=2) - np.asarray(against[layer], np.float64).mean(axis=2)
-        full = 2.0 * math.sqrt(float((difference ** 2).mean())) or 1.0 if exposure is None else 2.0 ** -exposure
+        full = 4.0 * float(np.abs(difference).mean()) or 1.0 if exposure is None else 2.0 ** -exposure
         strength = np.clip(np.abs(difference) / full, 0.0, 1.0)[:, :, np.newaxis]
         end = np.where(difference[:, :, np.newaxis] > 0.0, (0.5, 0.0, 0.0), (0.0, 0.03, 0.5))
         colours = Picture({"beauty": 1.0 + strength * (end - 1.0)})

@@ -27,11 +27,11 @@ nlohmann::json find(const nlohmann::json& groups, const std::string& path) {
 TEST_CASE("Knobs are the declared parameters, and their paths set them", "[viewer][knobs]") {
     const session::LoadedScene scene = box();
     const session::SceneChanges changes{
-        "mote_vpl", {{"integrator.paths", "77"}, {"integrator.compensation", "exact"}}, false};
+        "mote_vpl", {{"integrator.paths", "77"}, {"integrator.compensation", "approximate"}}, false};
     const core::Element elements = viewer::changed_elements(scene, changes);
     const nlohmann::json knobs = viewer::scene_knobs(elements, scene.registry());
     CHECK(find(knobs, "integrator.paths")["value"] == "77");
-    CHECK(find(knobs, "integrator.compensation")["value"] == "exact");
+    CHECK(find(knobs, "integrator.compensation")["value"] == "approximate");
     CHECK(!find(knobs, "integrator.compensation.depth").is_null());
     CHECK(find(knobs, "emitter:1.radiance")["unit"] == "W/(m^2 sr)");
     CHECK(box({"", {{"emitter:1.radiance", "1 2 3"}}, false}).scene().emitters().size() == 1);
