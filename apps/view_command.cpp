@@ -24,7 +24,6 @@ namespace {
 class Clients final : public viewer::ServerEvents {
   public:
     explicit Clients(viewer::View& view) : view_(view) {}
-    void joined(int client) override { view_.join(client); }
     void left(int client) override { view_.leave(client); }
     void received(int client, std::string_view text) override { view_.receive(client, text); }
 

@@ -147,7 +147,6 @@ class Server::Impl {
         void join() {
             joined_ = true;
             server_.sockets_[client_] = this->weak_from_this();
-            server_.events_->joined(client_);
             read();
         }
         void drop() { beast::get_lowest_layer(stream_).close(); }

@@ -19,7 +19,6 @@ namespace mote::viewer {
 class ServerEvents {
   public:
     virtual ~ServerEvents() = default;
-    virtual void joined(int client) = 0;
     virtual void left(int client) = 0;
     virtual void received(int client, std::string_view text) = 0;
 };

@@ -126,7 +126,8 @@ void View::set_reference(const std::string& name, const core::ImageChannels& ima
     show_picture(name, image);
 }
 
-void View::join(int client) {
+/// A page that begins, perhaps again.
+void View::greet(int client) {
     {
         const std::lock_guard lock(mutex_);
         clients_[client] = {};
@@ -284,7 +285,7 @@ void View::receive(int client, std::string_view text) {
 void View::handle(int client, const json& message) {
     const auto type = member<std::string>(message, "type");
     if (type == "got") return confirm(client, message);
-    if (type == "hello") return send_(client, text_message(scene_message()));
+    if (type == "hello") return greet(client);
     if (type == "pixel") return answer_pixel(client, message);
     if (!scene_) throw InputError("pictures from files have nothing to change");
     if (type == "set") return set_values(message);

@@ -45,9 +45,9 @@ class View {
     /// finite.
     void set_reference(const std::string& name, const core::ImageChannels& image);
 
-    void join(int client);
     void leave(int client);
-    /// Answers, and never throws: the sender of a wrong message receives the reason.
+    /// Answers, pictures from "hello" on, and never throws: the sender of a wrong message receives the
+    /// reason.
     void receive(int client, std::string_view text);
     /// The last picture of this name; null: none yet.
     SharedPicture picture(const std::string& name) const;
@@ -71,6 +71,7 @@ class View {
     };
 
     LiveRender::Reports reports_of(const std::string& name);
+    void greet(int client);
     void handle(int client, const nlohmann::json& message);
     void set_values(const nlohmann::json& message);
     void move_camera(const nlohmann::json& message);

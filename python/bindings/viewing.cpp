@@ -25,11 +25,9 @@ class WidgetView {
         settings.passes = passes, settings.seed = seed, settings.threads = threads;
         const nb::gil_scoped_release without_gil;
         view_->show_scene(scene, settings);
-        view_->join(widget);
     }
     void show_picture(const std::string& name, const Picture& picture) {
         view_->show_picture(name, picture.rendered.image);
-        view_->join(widget);
     }
     void set_reference(const std::string& name, const Picture& picture) {
         view_->set_reference(name, picture.rendered.image);

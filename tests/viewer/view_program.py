@@ -13,7 +13,9 @@ class Program:
             raise RuntimeError(f"mote view printed no address: {self.url!r}")
 
     def connect(self, **options):
-        return Client(self.url.replace("http:", "ws:") + "socket", **options)
+        client = Client(self.url.replace("http:", "ws:") + "socket", **options)
+        client.send({"type": "hello"})
+        return client
 
     def is_alive(self):
         return self.process.poll() is None
