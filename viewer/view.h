@@ -46,7 +46,7 @@ class View {
     void set_reference(const std::string& name, const core::ImageChannels& image);
 
     void leave(int client);
-    /// Answers, pictures from "hello" on, and never throws: the sender of a wrong message receives the
+    /// Answers; pictures follow from "hello" on. Never throws: the sender of a wrong message receives the
     /// reason.
     void receive(int client, std::string_view text);
     /// The last picture of this name; null: none yet.
