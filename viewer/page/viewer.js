@@ -16,7 +16,8 @@ function make(tag, properties = {}, ...children) {
 }
 const row = (...children) => make("div", { className: "row" }, ...children);
 const percent = (x) => `${(100 * x).toPrecision(2)} %`;
-const short = (x) => (x === null || x === undefined ? "unknown" : Number(x).toPrecision(4));
+const short = (x) => (x === null || x === undefined ? "unknown"
+  : x !== 0 && Math.abs(x) < 1e-3 ? x.toExponential(2) : x.toPrecision(4));
 const triple = (v) => v.map(short).join(" ");
 
 const add = (a, b, k = 1) => a.map((x, i) => x + k * b[i]);
