@@ -1,7 +1,7 @@
 #include "integrators/bidirectional/strategies.h"
 
+#include "core/geometry/shadow_segment.h"
 #include "core/scene/light_from_infinity.h"
-#include "core/scene/shadow_segment.h"
 
 namespace mote::integrators {
 
