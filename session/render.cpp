@@ -62,6 +62,11 @@ class RenderWork {
                         : make_denoiser(settings.denoise, threads_, false, settings.oidn_package)),
           plan_(scene.plan()),
           hash_(render_hash(scene, settings)) {
+        if (settings.stop.noise && !settings.stop.passes && !settings.stop.seconds &&
+            !plan_.noise_unknown.empty())
+            throw core::InputError(
+                "the noise of this image is not known, and a limit on it would not end the render: " +
+                plan_.noise_unknown + "; give a number of passes or a time");
         if (settings.begin_with && settings.begin_with->scene_hash != hash_)
             throw core::InputError(
                 "the passes that this render begins with are of another one: the scene, a file that it "
@@ -86,6 +91,7 @@ class RenderWork {
         const core::FilmSettings& size = scene_.scene().film();
         r.memory = settings_.memory.without(
             settings_.auxiliary ? center_bytes * double(size.width) * double(size.height) : 0.0);
+        r.noise_is_known = plan_.noise_unknown.empty();
         r.content_hash = hash_, r.features = features_of(scene_, settings_);
         r.interrupted = &watched_.stop(), r.time_is_over = &watched_.time_is_over();
         r.keep_part_of_first_pass = !settings_.range;

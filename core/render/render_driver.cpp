@@ -56,25 +56,40 @@ class PassLoop {
     void state_noise() {
         const Film::GainAndNoise found = result_.film.gain_and_noise();
         result_.statistics.values["noise"] = known(found.noise);
-        if (found.noise < known(found.noise))
+        if (found.noise == 0.0 && found_no_light())
             result_.statistics.warnings.emplace_back(
                 "no pass found any light but that of lights in view: how noisy the picture is, is not known");
         result_.statistics.values["varianceGain"] = found.gain;
     }
 
   private:
-    /// Passes that have found no light yet, but that of lights in view, agree with each other and say
-    /// nothing: infinity.
+    /// The noise, or infinity where the passes do not show it.
     double known(double noise) const {
-        if (noise > 0.0) return noise;
+        const bool shown =
+            request_.noise_is_known && !has_few_samples() && (noise > 0.0 || !found_no_light());
+        return shown ? noise : infinity;
+    }
+    /// The variance of 64 normal samples has a relative standard error of sqrt(2 / 63), a sixth; that of
+    /// fewer, or of light that few paths meet, may say nothing.
+    bool has_few_samples() const {
+        constexpr double min_samples = 64.0;
+        const Film& film = result_.film;
+        std::uint32_t passes = film.pass_count();
+        for (const Layer& layer : film.layers())
+            if (!layer.auxiliary) passes = std::min(passes, film.pass_count(layer.part));
+        return double(passes) * double(film.width()) * double(film.height()) < min_samples;
+    }
+    /// Passes that have found no light yet, but that of lights in view, agree with each other and say
+    /// nothing.
+    bool found_no_light() const {
         const Film& film = result_.film;
         for (std::size_t i = 0; i < film.layers().size(); ++i) {
             const Layer& layer = film.layers()[i];
             if (layer.auxiliary || layer.transport == TransportSet(Transport::emission)) continue;
             const std::vector<Rgb> mean = film.mean(i);
-            if (std::ranges::any_of(mean, [](const Rgb& c) { return c != Rgb(0.0f); })) return noise;
+            if (std::ranges::any_of(mean, [](const Rgb& c) { return c != Rgb(0.0f); })) return false;
         }
-        return infinity;
+        return true;
     }
     /// After an interruption: reuses the last preview's result of every step that would take too long.
     void finish_in_a_hurry() {

@@ -53,6 +53,7 @@ struct RenderRequest {
     bool all_squares = false;          ///< the film keeps variances of all layers
     std::vector<HitFeature> features;  ///< become layers of the film, behind those of the integrator
     MemoryBudget memory;               ///< of the film, and of what the integrator builds
+    bool noise_is_known = true;        ///< false: none is stated (Plan::noise_unknown)
     std::function<bool(const Film&)> enough;  ///< a rule of the caller's, tested with the noise rule
     std::function<void(const RenderProgress&)> progress;  ///< called after every pass; may be empty
     /// Shown the picture so far, as Estimator::finish() leaves it, as soon as every part has a pass, after

@@ -137,6 +137,7 @@ Plan MoteLayers::plan(const Scene& scene, const Requirements& requirements) cons
         const Plan own = method.integrator->plan(scene, wanted);
         add_entries(plan.runs, own.runs, method.integrator->type());
         add_entries(plan.missing, own.missing, method.integrator->type());
+        if (plan.noise_unknown.empty()) plan.noise_unknown = own.noise_unknown;
         plan.costly.insert(plan.costly.end(), own.costly.begin(), own.costly.end());
     }
     return plan;

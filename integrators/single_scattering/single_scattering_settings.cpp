@@ -4,6 +4,7 @@
 #include "core/parameters/nested.h"
 #include "integrators/eye_path/eye_path_parameters.h"
 #include "integrators/eye_path/plan_coarse_voxels.h"
+#include "integrators/eye_path/plan_narrow_phases.h"
 #include "integrators/register_parts.h"
 #include "integrators/single_scattering/single_scattering_estimator.h"
 
@@ -116,6 +117,7 @@ void plan_single_scattering(Plan& plan, const Scene& scene, const Requirements& 
         plan.run("transmittance", fmt::format("marched in steps of {} voxels", s.march.voxels),
                  "deterministic, so that neighbouring rays can be interpolated; biased by the step");
     plan_coarse_voxels(plan, scene, s.march.voxels);
+    plan_narrow_phases(plan, scene);
     if (!r.media_scattering) {
         plan.leave_out("single scattering", "nothing is marched", "no medium scatters");
         return;

@@ -14,10 +14,12 @@ using namespace mote::tests;
 
 namespace {
 
-/// A closed room of 4 m with a block, a ball and a lamp below its ceiling. Offsets of whole metres, and powers of
-/// two as sizes, change no digit of a vertex.
+/// A closed room of 4 m with a block, a ball and a lamp below its ceiling, turned so that no plane is exact
+/// in single precision.
+const std::string turned = R"(<rotate x="0.3" y="1" z="0.2" angle="17"/>)";
 std::string room(double x, double y, double z) {
-    const std::string place = fmt::format(R"(<translate x="{}" y="{}" z="{}"/></transform>)", x, y, z);
+    const std::string place =
+        turned + fmt::format(R"(<translate x="{}" y="{}" z="{}"/></transform>)", x, y, z);
     const auto shape = [&](const std::string& type, const std::string& transform, const std::string& rest) {
         return fmt::format(R"(<shape type="{}"><transform name="to_world">{}{}{}</shape>)", type, transform,
                            place, rest);
@@ -33,8 +35,8 @@ std::string room(double x, double y, double z) {
                  R"(<emitter type="area"><rgb name="radiance" value="10, 8, 6"/></emitter>)");
     return R"(<scene version="3.0.0">)" + xml +
            fmt::format(R"(<sensor type="perspective"><float name="fov" value="60"/><transform name="to_world">
-           <lookat origin="{0}, {1}, {2}" target="{0}, {1}, {3}" up="0, 1, 0"/></transform></sensor></scene>)",
-                       x, y, z + 1.875, z);
+           <lookat origin="0, 0, 1.9" target="0, 0, 0" up="0, 1, 0"/>{}</sensor></scene>)",
+                       place);
 }
 
 /// Means of a picture of each seed.
@@ -56,10 +58,13 @@ std::vector<double> means(const core::Scene& scene, const core::Integrator& inte
 TEST_CASE("a room twelve kilometres from the origin has the light that it has there, in every integrator",
           "[scale][shadow]") {
     constexpr int seeds = 16;
-    const auto near = scene_from(room(0, 0, 0), 8), far = scene_from(room(8192, 7168, -4096), 8);
+    const auto near = scene_from(room(0, 0, 0), 8), far = scene_from(room(10000, 7000, -4000), 8);
     std::vector<std::string> all;
     for (const std::string& type : registry().types(core::Category::integrator))
-        all.push_back(fmt::format(R"(<integrator type="{}">{}</integrator>)", type, quick_settings(type)));
+        // Rounding cuts the ball into more charts than an atlas of few texels holds.
+        all.push_back(fmt::format(R"(<integrator type="{}">{}</integrator>)", type,
+                                  type == "mote_ray_bundles" ? R"(<integer name="directions" value="32"/>)"
+                                                             : quick_settings(type)));
     all.push_back(R"(<integrator type="mote_vpl"><integer name="paths" value="40"/>
         <selection name="selection" type="resampling"/></integrator>)");
     for (const std::string& xml : all) {
@@ -68,13 +73,13 @@ TEST_CASE("a room twelve kilometres from the origin has the light that it has th
         const auto a = means(*near, *integrator, seeds), b = means(*far, *integrator, seeds);
         double mean = 0.0, difference = 0.0, squares = 0.0;
         for (int i = 0; i < seeds; ++i)
-            mean += a[i] / seeds, difference += (b[i] - a[i]) / seeds, squares += (b[i] - a[i]) * (b[i] - a[i]);
+            mean += a[i] / seeds, difference += (b[i] - a[i]) / seeds,
+                squares += (b[i] - a[i]) * (b[i] - a[i]);
         const double error = std::sqrt((squares / seeds - difference * difference) / (seeds - 1));
         INFO(difference / mean << " +- " << error / mean);
         // Pairs of one seed: most random numbers lead to the same paths. Half a percent is what rounding to
         // a millimetre takes from a room of 4 m.
         CHECK(std::fabs(difference) < 0.005 * mean + 5.0 * error);
         CHECK(error < 0.02 * mean);
-        std::fprintf(stderr, "%.60s %.5f +- %.5f\n", xml.c_str(), difference / mean, error / mean);
     }
 }
