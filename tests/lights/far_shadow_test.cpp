@@ -33,7 +33,7 @@ TEST_CASE("a light is seen from a floor that lies thousands of its sizes from th
             Ray shadow{offset_origin(at.position, at.normal, at.error, light->wi), light->wi};
             shadow.t_max = shadow_end(shadow.origin, light->distance);
             hidden += !scene->visible(shadow);
-            shadow.t_max = shadow_fraction * light->distance;
+            shadow.t_max = 0.9999f * light->distance;
             hidden_by_fraction += !scene->visible(shadow);
         }
         INFO(offset << ": " << hidden << " hidden, " << hidden_by_fraction << " by the fraction alone");
