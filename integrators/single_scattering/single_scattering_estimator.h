@@ -74,6 +74,8 @@ void plan_single_scattering(core::Plan& plan, const core::Scene& scene,
                             const core::Requirements& requirements, const ScatteringSettings& settings);
 /// Lights that are marched: those with a position, not black.
 std::vector<const core::Emitter*> positional_lights(const core::Scene& scene);
+/// Refuses thousands of lights, each of which every pass would march. Throws InputError.
+void require_few_lights(const core::Scene& scene, const ScatteringSettings& settings, std::size_t lights);
 /// True if anything else lights the media.
 bool has_other_lights(const core::Scene& scene);
 
