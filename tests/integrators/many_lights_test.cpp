@@ -127,7 +127,7 @@ TEST_CASE("thousands of lights are refused where every one is marched", "[many_l
     mote::core::RenderRequest request;
     request.stop.passes = 1;
     CHECK_THROWS_WITH(
-        core::render(*scene, *integrator_from(R"(<integrator type="mote_epipolar"/>)"), request),
+        mote::core::render(*scene, *integrator_from(R"(<integrator type="mote_epipolar"/>)"), request),
         ContainsSubstring("5000 lights"));
     CHECK_NOTHROW(mote::core::render(*scene, *integrator_from(R"(<integrator type="volpath"/>)"), request));
 }
