@@ -117,6 +117,8 @@ def hostile_scene(source, folder, methods, registry):
 
 
 def contents(text):
-    """Facts of scenes with media that vary, and with surfaces that are not diffuse."""
+    """Facts of scenes with media that vary, with surfaces that are not diffuse, and with a lamp twice at one place."""
+    lamps = [line for line in text.splitlines() if line.startswith("<shape") and '<emitter type="area"' in line]
     kinds = set(re.findall(r'<bsdf type="(\w+)"', text)) - {"diffuse", "twosided", "null", "mask", "bumpmap", "normalmap"}
-    return {"grids": "yes" if 'type="heterogeneous"' in text else "no", "lobes": "yes" if kinds else "no"}
+    return {"grids": "yes" if 'type="heterogeneous"' in text else "no", "lobes": "yes" if kinds else "no",
+            "lamps": "coincide" if len(set(lamps)) < len(lamps) else "apart"}
