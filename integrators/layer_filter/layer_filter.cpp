@@ -33,8 +33,8 @@ const ParameterList<LayerFilterParameters>& layer_filter_rows() {
 }
 
 LayerFilter::LayerFilter(const Scene& scene, const RenderOptions& options,
-                         const LayerFilterParameters& parameters)
-    : scene_(scene), options_(options), parameters_(parameters) {}
+                         const LayerFilterParameters& parameters, std::vector<Choice> layers)
+    : scene_(scene), options_(options), parameters_(parameters), layers_(std::move(layers)) {}
 
 void LayerFilter::find_features(CancelToken cancelled) {
     if (features_) return;
@@ -45,13 +45,15 @@ void LayerFilter::find_features(CancelToken cancelled) {
     feature_seconds_ += seconds_since(start);
 }
 
-void LayerFilter::apply(Film& film, std::span<const Choice> layers, CancelToken cancelled) {
+void LayerFilter::apply(Film& film, CancelToken cancelled) {
+    for (const Choice& choice : layers_)
+        if (!film.has_squares(choice.layer))
+            throw std::invalid_argument("a filtered layer needs its squares");
+    if (layers_.empty() || !film.has_passes(2)) return;
     variances_.clear();
     find_features(cancelled);
     const auto start = Clock::now();
-    for (const Choice& choice : layers) {
-        if (!film.has_squares(choice.layer))
-            throw std::invalid_argument("a filtered layer needs its squares");
+    for (const Choice& choice : layers_) {
         film.set_mean(choice.layer,
                       {});  // of the passes: an earlier call, for a preview, may have replaced it
         const std::vector<Rgb> mean = film.mean(choice.layer);
@@ -62,6 +64,12 @@ void LayerFilter::apply(Film& film, std::span<const Choice> layers, CancelToken 
         variances_.push_back(std::move(filtered.variance));
     }
     filter_seconds_ += seconds_since(start);
+}
+
+void LayerFilter::add_statistics(Statistics& statistics) const {
+    if (layers_.empty()) return;
+    statistics.seconds["filter_features"] = feature_seconds_;
+    statistics.seconds["filter"] = filter_seconds_;
 }
 
 }  // namespace mote::integrators

@@ -29,18 +29,20 @@ class LayerFilter {
         screenspace::LayerKind kind;
     };
 
-    /// The scene must outlive this; size, seed and sampler are those of the render.
+    /// The scene must outlive this; size, seed and sampler are those of the render. `layers` may be empty:
+    /// then nothing is filtered.
     LayerFilter(const core::Scene& scene, const core::RenderOptions& options,
-                const LayerFilterParameters& parameters);
+                const LayerFilterParameters& parameters, std::vector<Choice> layers);
 
-    /// Sets the means of these layers to the filtered ones. A film of fewer than two passes has no variance
+    /// Sets the means of the layers to the filtered ones. A film of fewer than two passes has no variance
     /// and stays as it is. Throws std::invalid_argument where a layer has no squares, and Cancelled.
-    void apply(core::Film& film, std::span<const Choice> layers, core::CancelToken cancelled = {});
+    void apply(core::Film& film, core::CancelToken cancelled = {});
 
+    const std::vector<Choice>& layers() const { return layers_; }
     /// Remaining variance of each layer of the last apply(), mean over channels, in its order.
     const std::vector<std::vector<float>>& variances() const { return variances_; }
-    double feature_seconds() const { return feature_seconds_; }  ///< wall time
-    double filter_seconds() const { return filter_seconds_; }    ///< of all calls
+    /// Wall time of features and of all calls, where there are layers.
+    void add_statistics(core::Statistics& statistics) const;
 
   private:
     void find_features(core::CancelToken cancelled);
@@ -48,6 +50,7 @@ class LayerFilter {
     const core::Scene& scene_;
     core::RenderOptions options_;
     LayerFilterParameters parameters_;
+    std::vector<Choice> layers_;
     std::unique_ptr<screenspace::FilterFeatures> features_;
     std::vector<std::vector<float>> variances_;
     double feature_seconds_ = 0.0, filter_seconds_ = 0.0;

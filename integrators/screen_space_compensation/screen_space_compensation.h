@@ -3,11 +3,7 @@
 // combination that Sec. 10.6 names as future work.
 #pragma once
 
-#include "compensation/compensation_settings.h"
-#include "core/film/film.h"
-#include "core/render/plan.h"
-#include "core/scene/requirements.h"
-#include "core/scene/scene.h"
+#include "compensation/compensation.h"
 #include "screenspace/ssbc/ssbc.h"
 
 namespace mote::integrators {
@@ -16,45 +12,30 @@ struct ScreenSpaceSettings {
     screenspace::SsbcSettings ssbc;  ///< but for the bound, which is that of the render
     int layers = 1;                  ///< of surfaces along a ray; 1: what the picture shows
     int vpl_share = 4;               ///< at each hidden point: one VPL of so many, in turn
-
-    /// Auxiliary layers of the light that hidden sides reflect (hidden_light.h).
-    std::vector<core::Layer> film_layers() const;
 };
 
-/// A nested <compensation type="screen_space"> of a scene file.
-class ScreenSpaceCompensation : public core::Object {
+class ScreenSpaceCompensation final : public compensation::Residual {
   public:
-    ScreenSpaceCompensation(const ScreenSpaceSettings& settings, compensation::CompensationSettings media)
-        : settings_(settings), media_(media) {}
-    const ScreenSpaceSettings& settings() const { return settings_; }
-    /// Compensation of receivers in media alone.
-    const compensation::CompensationSettings& media() const { return media_; }
+    /// `media`: compensation of receivers in media alone, in the passes.
+    ScreenSpaceCompensation(const ScreenSpaceSettings& settings,
+                            std::shared_ptr<const compensation::Residual> media)
+        : settings_(settings), media_(std::move(media)) {}
+
+    std::unique_ptr<compensation::PreparedResidual> prepare(
+        const compensation::ResidualView& view) const override;
+    /// Those of compensation, and auxiliary ones of the light that hidden sides reflect (hidden_light.h).
+    std::vector<core::Layer> layers(bool media) const override;
+    bool in_passes(bool surface) const override { return !surface && media_->restores(); }
+    bool works_on_mean() const override { return true; }
+    bool shares_vpls() const override { return media_->shares_vpls(); }
+    int eye_samples() const override { return media_->eye_samples(); }
+    void plan(core::Plan& plan, const core::Scene& scene, const core::Requirements& requirements,
+              float bound) const override;
 
   private:
     ScreenSpaceSettings settings_;
-    compensation::CompensationSettings media_;
+    std::shared_ptr<const compensation::Residual> media_;
 };
-
-struct ScreenSpaceCost {
-    std::uint64_t samples = 0;  ///< nodes of the hierarchy and pixels that were added up
-    double seconds = 0.0;       ///< G-buffers and all steps
-    double cpu_seconds = 0.0;   ///< the same, of all threads
-};
-
-/// Layers of the film that a compensation reads and writes.
-struct ScreenSpaceLayers {
-    std::span<const std::size_t> reflected;  ///< light that surfaces send to the eye, direct and indirect
-    std::size_t target;                      ///< filled with what the bound took from it
-    std::size_t hidden;                      ///< the first of hidden sides, where there are several layers
-};
-
-/// `bound` is b [1/m^2].
-ScreenSpaceCost add_screen_space_compensation(const core::Scene& scene, const ScreenSpaceSettings& settings,
-                                              float bound, const ScreenSpaceLayers& layers,
-                                              core::CancelToken cancelled, core::Film& film);
-
-void plan_screen_space(core::Plan& plan, const core::Requirements& requirements,
-                       const ScreenSpaceSettings& settings);
 
 void register_screen_space_compensation(core::Registry& registry);
 

@@ -5,7 +5,7 @@
 #include <ctime>
 
 #include "core/render/render_driver.h"
-#include "integrators/virtual_point_lights/vpl_eye_tile.h"
+#include "integrators/virtual_point_lights/vpl_gatherer.h"
 
 namespace mote::studies {
 

@@ -18,25 +18,24 @@ class TileLightcuts final : public TileSelector {
                   const LightcutSettings& settings, bool multidimensional)
         : cut_(vpls, lights, bound, settings), multidimensional_(multidimensional) {}
 
-    bool records() const override { return multidimensional_; }
+    std::size_t max_points() const override {
+        return multidimensional_ ? std::size_t(-1) : TileSelector::max_points();
+    }
     TileLight gather(const GatherContext& context, ReceiverTile& receivers, const VplRange&, BatchVisibility&,
                      Rng& rng) override {
+        if (multidimensional_) {
+            for (const ReceiverKind kind : {ReceiverKind::surface, ReceiverKind::medium})
+                points_.add(lanes_of(receivers, kind), kind);
+            return {};
+        }
         if (!receivers.any_active) return {};
         const ReceiverKind kind = kind_of(receivers);
         points_.clear();
         points_.add(receivers, kind);
-        return gather_recorded(context, rng)[std::size_t(kind)];
+        return gather_points(context, rng)[std::size_t(kind)];
     }
-    void record(const ReceiverTile& receivers) override {
-        for (const ReceiverKind kind : {ReceiverKind::surface, ReceiverKind::medium})
-            points_.add(lanes_of(receivers, kind), kind);
-    }
-    LightByKind gather_recorded(const GatherContext& context, Rng& rng) override {
-        Rng choices = choices_of(rng);
-        points_.build(choices);
-        const LightByKind light = cut_.gather(context, points_, choices);
-        points_.clear();
-        return light;
+    LightByKind gather_copied(const GatherContext& context, Rng& rng) override {
+        return multidimensional_ ? gather_points(context, rng) : LightByKind{};
     }
     void add_statistics(Statistics& statistics) const override {
         const LightcutCounters& c = cut_.counters();
@@ -49,6 +48,14 @@ class TileLightcuts final : public TileSelector {
     }
 
   private:
+    LightByKind gather_points(const GatherContext& context, Rng& rng) {
+        Rng choices = choices_of(rng);
+        points_.build(choices);
+        const LightByKind light = cut_.gather(context, points_, choices);
+        points_.clear();
+        return light;
+    }
+
     GatherPoints points_;
     Lightcut cut_;
     bool multidimensional_;
@@ -94,6 +101,12 @@ const ParameterList<LightcutSettings> parameters{
 std::unique_ptr<VplSelector> LightcutsSelection::prepare(const SelectionPass& pass) const {
     check_memory(pass);
     return std::make_unique<LightcutsSelector>(pass, settings_, multidimensional_);
+}
+
+std::string LightcutsSelection::excludes(const GatherOptions& options) const {
+    if (options.interleaving) return "interleaving";  // neighbouring pixels are needed in one tile
+    const std::string other = Selection::excludes(options);
+    return other.empty() && options.imperfect_shadow_maps ? "imperfect shadow maps" : other;
 }
 
 std::size_t LightcutsSelection::memory_bytes(std::size_t vpls) const {

@@ -16,8 +16,7 @@ class LightcutsSelection final : public Selection {
     LightcutsSelection(const LightcutSettings& settings, bool multidimensional)
         : settings_(settings), multidimensional_(multidimensional) {}
     std::unique_ptr<VplSelector> prepare(const SelectionPass& pass) const override;
-    bool traces() const override { return true; }
-    bool interleaves() const override { return false; }
+    std::string excludes(const GatherOptions& options) const override;
     std::size_t memory_bytes(std::size_t vpls) const override;
     void plan(core::Plan& plan, const SelectionSize& size) const override;
 

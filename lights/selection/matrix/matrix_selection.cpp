@@ -14,11 +14,6 @@ using namespace core;
 
 namespace {
 
-/// Eye paths that look for receivers: every stratum of a slice has several to choose from.
-std::size_t eye_paths_for(const MatrixSettings& settings) {
-    return std::max<std::size_t>(2048, 4 * settings.slices * settings.rows_a_slice());
-}
-
 class TileMatrix final : public SamplingSelector {
   public:
     TileMatrix(const VplSet& vpls, const MatrixClusters& clusters, float bound)
@@ -38,14 +33,13 @@ class MatrixSelector final : public VplSelector {
   public:
     MatrixSelector(const SelectionPass& pass, const MatrixSettings& settings)
         : vpls_(pass.vpls), bound_(pass.bound) {
-        const std::vector<PathReceiver> receivers = pass.sample_receivers(eye_paths_for(settings));
         const BuildStatistics timer(pass.statistics, "matrix");
         clusters_ = MatrixClusters(
             {pass.scene, vpls_, bound_, settings.visibility, pass.rays, pass.tracking, pass.cancelled},
-            receivers, settings, pass.key);
+            pass.receivers, settings, pass.key);
         timer.built(clusters_.memory_bytes());
         pass.statistics.values["matrix_slices"] = double(clusters_.slices());
-        pass.statistics.values["matrix_receivers"] += double(receivers.size());
+        pass.statistics.values["matrix_receivers"] += double(pass.receivers.size());
     }
     std::unique_ptr<TileSelector> for_task() const override {
         return std::make_unique<TileMatrix>(vpls_, clusters_, bound_);
@@ -75,6 +69,11 @@ const ParameterList<MatrixSettings> parameters{
 };
 
 }  // namespace
+
+/// Every stratum of a slice has several receivers to choose from.
+std::size_t MatrixSelection::receiver_paths() const {
+    return std::max<std::size_t>(2048, 4 * settings_.slices * settings_.rows_a_slice());
+}
 
 std::unique_ptr<VplSelector> MatrixSelection::prepare(const SelectionPass& pass) const {
     check_memory(pass);

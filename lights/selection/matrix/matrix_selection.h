@@ -14,6 +14,7 @@ class MatrixSelection final : public Selection {
   public:
     explicit MatrixSelection(const MatrixSettings& settings) : settings_(settings) {}
     std::unique_ptr<VplSelector> prepare(const SelectionPass& pass) const override;
+    std::size_t receiver_paths() const override;
     std::size_t memory_bytes(std::size_t vpls) const override { return settings_.bytes(vpls); }
     void plan(core::Plan& plan, const SelectionSize& size) const override;
 

@@ -29,11 +29,9 @@ class TileResampling final : public TileSelector {
                    std::uint32_t samples)
         : vpls_(vpls), tree_(tree), bound_(bound), count_(candidates), resampling_(vpls, bound, samples) {}
 
-    bool records() const override { return true; }
-    TileLight gather(const GatherContext&, ReceiverTile&, const VplRange&, BatchVisibility&, Rng&) override {
-        return {};
-    }
-    void record(const ReceiverTile& receivers) override {
+    std::size_t max_points() const override { return std::size_t(-1); }
+    TileLight gather(const GatherContext&, ReceiverTile& receivers, const VplRange&, BatchVisibility&,
+                     Rng&) override {
         for (const ReceiverKind kind : {ReceiverKind::surface, ReceiverKind::medium}) {
             const ReceiverTile tile = lanes_of(receivers, kind);
             if (!tile.any_active) continue;
@@ -41,8 +39,9 @@ class TileResampling final : public TileSelector {
             if (points.used == points.tiles.size()) points.tiles.emplace_back();
             points.tiles[points.used++].copy(tile);
         }
+        return {};
     }
-    LightByKind gather_recorded(const GatherContext& context, Rng& rng) override {
+    LightByKind gather_copied(const GatherContext& context, Rng& rng) override {
         Rng choices = choices_of(rng);
         LightByKind light{};
         all_.clear(), bounds_.clear();
@@ -153,6 +152,11 @@ const ParameterList<ResamplingSettings> parameters{
 std::unique_ptr<VplSelector> ResamplingSelection::prepare(const SelectionPass& pass) const {
     check_memory(pass);
     return std::make_unique<ResamplingSelector>(pass, candidates_, samples_);
+}
+
+std::string ResamplingSelection::excludes(const GatherOptions& options) const {
+    const std::string other = Selection::excludes(options);
+    return other.empty() && options.imperfect_shadow_maps ? "imperfect shadow maps" : other;
 }
 
 std::size_t ResamplingSelection::memory_bytes(std::size_t vpls) const {

@@ -18,7 +18,7 @@ class ResamplingSelection final : public Selection {
     ResamplingSelection(std::uint32_t candidates, std::uint32_t samples)
         : candidates_(candidates), samples_(samples) {}
     std::unique_ptr<VplSelector> prepare(const SelectionPass& pass) const override;
-    bool traces() const override { return true; }
+    std::string excludes(const GatherOptions& options) const override;
     std::size_t memory_bytes(std::size_t vpls) const override;
     void plan(core::Plan& plan, const SelectionSize& size) const override;
 

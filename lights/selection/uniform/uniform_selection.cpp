@@ -39,25 +39,13 @@ class TileUniform final : public SamplingSelector {
     std::vector<WeightedVpl> samples_;
 };
 
-class UniformSelector final : public VplSelector {
-  public:
-    UniformSelector(const VplSet& vpls, float bound, std::uint32_t samples)
-        : vpls_(vpls), bound_(bound), samples_(samples) {}
-    std::unique_ptr<TileSelector> for_task() const override {
-        return std::make_unique<TileUniform>(vpls_, bound_, samples_);
-    }
-
-  private:
-    const VplSet& vpls_;
-    float bound_;
-    std::uint32_t samples_;
-};
-
 class UniformSelection final : public Selection {
   public:
     explicit UniformSelection(const UniformSettings& settings) : samples_(settings.samples) {}
     std::unique_ptr<VplSelector> prepare(const SelectionPass& pass) const override {
-        return std::make_unique<UniformSelector>(pass.vpls, pass.bound, samples_);
+        return selector_by([&vpls = pass.vpls, bound = pass.bound, samples = samples_] {
+            return std::make_unique<TileUniform>(vpls, bound, samples);
+        });
     }
     std::size_t memory_bytes(std::size_t) const override { return 0; }
     void plan(Plan& plan, const SelectionSize&) const override {

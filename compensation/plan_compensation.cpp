@@ -1,4 +1,4 @@
-#include "integrators/virtual_point_lights/plan_compensation.h"
+#include "compensation/plan_compensation.h"
 
 #include <fmt/format.h>
 
@@ -6,10 +6,9 @@
 #include "compensation/expected_loss.h"
 #include "core/math/random.h"
 
-namespace mote::integrators {
+namespace mote::compensation {
 
 using namespace core;
-using compensation::CompensationSettings, compensation::LocalTransmittance, compensation::Placement;
 
 namespace {
 
@@ -53,7 +52,7 @@ bool surface_within_reach(const Scene& scene, float radius) {
 
 /// Extinction and scattering where light scatters: averages weighted with the extinction itself. The chord is
 /// that of the largest medium's box.
-compensation::ExpectedMedium typical_medium(const Scene& scene) {
+ExpectedMedium typical_medium(const Scene& scene) {
     double sum = 0.0, squares = 0.0, scattering = 0.0, chord = 0.0;
     Rng rng(1);
     for (const auto& medium : scene.media()) {
@@ -76,11 +75,10 @@ compensation::ExpectedMedium typical_medium(const Scene& scene) {
 
 }  // namespace
 
-void plan_expected_loss(Plan& plan, const Scene& scene, const CompensationSettings& s, float bound) {
+void plan_expected_loss(Plan& plan, const Scene& scene, int steps, float bound) {
     if (!scene.has_media() || !std::isfinite(bound)) return;
-    const compensation::ExpectedMedium medium = typical_medium(scene);
-    const int steps = s.enabled && s.media ? s.depth : 0;
-    const double loss = compensation::expected_loss(medium, double(bound), steps);
+    const ExpectedMedium medium = typical_medium(scene);
+    const double loss = expected_loss(medium, double(bound), steps);
     plan.run("expected loss", fmt::format("{:.2g} % of the light between points of the media", 100.0 * loss),
              fmt::format("beta^(k+1) / beta_all after k steps; beta = {:.2g}, beta_all = {:.2g} at sigma_t = "
                          "{:.3g} /m",
@@ -89,7 +87,7 @@ void plan_expected_loss(Plan& plan, const Scene& scene, const CompensationSettin
     if (loss <= target) return;
     const double radius = double(scene.rays().bounds().radius());
     const auto suggestion = [&](int k) {
-        const double b = compensation::bound_for_loss(medium, k, target);
+        const double b = bound_for_loss(medium, k, target);
         return fmt::format("{} step(s), bound {:.3g}, {:.0f} light paths", k, b,
                            std::ceil(b * radius * radius));
     };
@@ -103,7 +101,7 @@ void plan_compensation(Plan& plan, const Scene& scene, const Requirements& r, co
         plan.leave_out("compensation", "all of it", "nothing bounds the geometry term here");
         return;
     }
-    const float radius = compensation::bounding_radius(bound);
+    const float radius = bounding_radius(bound);
     plan.run("compensation", how(s), fmt::format("inside {:.4g} m of every receiver", radius));
     if (!r.any_media()) {
         plan.leave_out("compensation in media", "volume vertices, mean extinction", "there are no media");
@@ -125,4 +123,4 @@ void plan_compensation(Plan& plan, const Scene& scene, const Requirements& r, co
                        fmt::format("no surface lies within {:.4g} m of a medium", radius));
 }
 
-}  // namespace mote::integrators
+}  // namespace mote::compensation
