@@ -26,8 +26,8 @@ enum class ScatteringLights : std::uint8_t { all, positional, other };
 struct ScatteringSettings {
     ScatteringLights lights = ScatteringLights::all;
     AlongRay in_scattering = AlongRay::exact;
-    std::shared_ptr<Visibility> visibility;  ///< null: traced
-    int rays = 32;                           ///< of an eye path through mirrors and glass
+    std::shared_ptr<const lights::Visibility> visibility = lights::traced_visibility();
+    int rays = 32;  ///< of an eye path through mirrors and glass
     EyeSettings eye;
     screenspace::MarchSettings march;
     ScatteringSampling sampling = ScatteringSampling::full;
@@ -37,7 +37,7 @@ struct ScatteringSettings {
     bool show_samples = false;  ///< a layer that counts the marched rays of every pixel
 
     AccelerationSettings accelerations() const {
-        return {in_scattering == AlongRay::exact, visibility ? visibility->settings() : VisibilitySettings()};
+        return {in_scattering == AlongRay::exact, visibility->light_maps()};
     }
 };
 

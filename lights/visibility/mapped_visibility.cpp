@@ -38,10 +38,10 @@ class TileStore final : public TileVisibility {
     ReceiverStore& store_;
 };
 
-class MappedVisibility final : public PreparedVisibility {
+class PreparedShadowMaps final : public PreparedVisibility {
   public:
-    MappedVisibility(const LitScene& scene, const MappedVisibilitySettings& settings,
-                     const MemoryBudget& memory);
+    PreparedShadowMaps(const LitScene& scene, const MappedVisibilitySettings& settings,
+                       const MemoryBudget& memory);
     void begin(const VisibilityPass& pass) override {
         stores_.clear(), stores_.resize(pass.tasks);
         pass.image.finish_late();
@@ -73,16 +73,12 @@ class MappedVisibility final : public PreparedVisibility {
     RayCounters rays_;
 };
 
-MappedVisibility::MappedVisibility(const LitScene& scene, const MappedVisibilitySettings& settings,
-                                   const MemoryBudget& memory)
+PreparedShadowMaps::PreparedShadowMaps(const LitScene& scene, const MappedVisibilitySettings& settings,
+                                       const MemoryBudget& memory)
     : scene_(scene), settings_(settings), maps_(std::size_t(settings.maps)) {
-    const bool chromatic = needs_chromatic_maps(scene);
-    for (const int edge : {settings.size, settings.light_size}) try {
-            if (edge > 0) settings.map.check(edge, chromatic);
-        } catch (const InputError& error) {
-            throw InputError(error.what(), settings.where);
-        }
-    require_shadow_maps(memory, settings.map, maps_.size(), settings.size, chromatic);
+    for (const int edge : {settings.size, settings.light_size})
+        check_map(scene, settings.map, edge, settings.where);
+    require_shadow_maps(memory, settings.map, maps_.size(), settings.size, needs_chromatic_maps(scene));
     if (settings.light_size == 0) return;
     const Stopwatch stopwatch(build_seconds_);
     lights_.emplace(scene, settings.light_size, settings.map, memory);
@@ -90,7 +86,7 @@ MappedVisibility::MappedVisibility(const LitScene& scene, const MappedVisibility
     rays_.add(lights_->rays());
 }
 
-bool MappedVisibility::finish(const VisibilityPass& pass) {
+bool PreparedShadowMaps::finish(const VisibilityPass& pass) {
     std::size_t bytes = 0;
     for (const ReceiverStore& store : stores_) receivers_ += store.receivers(), bytes += store.memory_bytes();
     receiver_bytes_ = std::max(receiver_bytes_, bytes);
@@ -109,7 +105,7 @@ bool MappedVisibility::finish(const VisibilityPass& pass) {
     return !pass.cancelled;
 }
 
-void MappedVisibility::build(const VisibilityPass& pass, std::span<const Entry> batch) {
+void PreparedShadowMaps::build(const VisibilityPass& pass, std::span<const Entry> batch) {
     const Stopwatch stopwatch(build_seconds_);
     tbb::parallel_for(std::size_t(0), batch.size(), [&](std::size_t i) {
         const MediumState state = pass.vpls.state_towards(batch[i].vpl, batch[i].view.frame.n);
@@ -119,7 +115,7 @@ void MappedVisibility::build(const VisibilityPass& pass, std::span<const Entry> 
     built_ += batch.size();
 }
 
-void MappedVisibility::gather(const VisibilityPass& pass, std::span<const Entry> batch) {
+void PreparedShadowMaps::gather(const VisibilityPass& pass, std::span<const Entry> batch) {
     const Stopwatch stopwatch(gather_seconds_);
     const CancelToken cancelled = pass.cancelled;
     std::vector<MappedVpl> mapped;
@@ -140,7 +136,7 @@ void MappedVisibility::gather(const VisibilityPass& pass, std::span<const Entry>
     for (const ShadowMapGather& g : gathers) lookups_ += g.lookups();
 }
 
-void MappedVisibility::add_statistics(Statistics& statistics) const {
+void PreparedShadowMaps::add_statistics(Statistics& statistics) const {
     std::size_t bytes = 0;
     for (const VolumetricShadowMap& map : maps_) bytes += map.memory_bytes();
     auto& values = statistics.values;
@@ -158,10 +154,18 @@ void MappedVisibility::add_statistics(Statistics& statistics) const {
 
 }  // namespace
 
+void check_map(const LitScene& scene, const ShadowMapSettings& map, int edge, const SourceLocation& where) {
+    try {
+        if (edge > 0) map.check(edge, needs_chromatic_maps(scene));
+    } catch (const InputError& error) {
+        throw InputError(error.what(), where);
+    }
+}
+
 std::unique_ptr<PreparedVisibility> prepare_mapped_visibility(const LitScene& scene,
                                                               const MappedVisibilitySettings& settings,
                                                               const MemoryBudget& memory) {
-    return std::make_unique<MappedVisibility>(scene, settings, memory);
+    return std::make_unique<PreparedShadowMaps>(scene, settings, memory);
 }
 
 }  // namespace mote::lights

@@ -18,6 +18,10 @@ struct MappedVisibilitySettings {
     core::SourceLocation where;
 };
 
+/// Throws InputError with its place when a map of `edge` * `edge` texels would be larger than the limit.
+void check_map(const core::LitScene& scene, const ShadowMapSettings& map, int edge,
+               const core::SourceLocation& where);
+
 /// Builds the maps of the lights. Throws InputError when a map would be larger than its limit, OutOfMemory
 /// when all of them are larger than `memory`.
 std::unique_ptr<PreparedVisibility> prepare_mapped_visibility(const core::LitScene& scene,

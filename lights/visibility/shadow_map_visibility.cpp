@@ -77,6 +77,9 @@ class ShadowMaps final : public Visibility {
         if (!scene.has_media()) return std::make_unique<ShadowMapsWithoutMedia>();
         return prepare_mapped_visibility(scene, settings_, memory);
     }
+    std::optional<LightMapSettings> light_maps() const override {
+        return LightMapSettings{settings_.light_size, settings_.map, settings_.where};
+    }
     void declare(GatherOptions& options) const override { options.shadow_maps = true; }
     void plan(Plan& plan, const LitScene& scene, double receivers) const override {
         const MappedVisibilitySettings& s = settings_;

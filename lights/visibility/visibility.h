@@ -7,6 +7,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "core/film/pass_image.h"
 #include "core/objects/memory_budget.h"
@@ -64,12 +65,21 @@ class PreparedVisibility {
     virtual void add_statistics(core::Statistics&) const {}
 };
 
+/// Maps of the primary lights.
+struct LightMapSettings {
+    int size = 256;  ///< texels along an edge; 0: lights are traced
+    ShadowMapSettings map;
+    core::SourceLocation where;  ///< in the scene file, of the size
+};
+
 /// A nested <visibility> of a scene file.
 class Visibility : public core::Object {
   public:
     /// Throws InputError where a map of this scene would be larger than its limit, OutOfMemory.
     virtual std::unique_ptr<PreparedVisibility> prepare(const core::LitScene& scene, std::uint64_t seed,
                                                         const core::MemoryBudget& memory) const = 0;
+    /// Maps of lights, for methods that have no VPLs; nothing: lights are traced.
+    virtual std::optional<LightMapSettings> light_maps() const { return std::nullopt; }
     /// Says so where shadow maps are used, for options that do not go with them.
     virtual void declare(GatherOptions&) const {}
     /// `receivers`: of one pass, about.
