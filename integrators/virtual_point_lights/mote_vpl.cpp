@@ -16,7 +16,6 @@
 #include "integrators/register_parts.h"
 #include "integrators/virtual_point_lights/plan_selection.h"
 #include "integrators/virtual_point_lights/vpl_estimator.h"
-#include "lights/selection/resampling/resampling_selection.h"
 
 namespace mote::integrators {
 
@@ -230,7 +229,7 @@ std::shared_ptr<const Integrator> make_sampled_vpls(const EyePathLimits& limits)
     VplSettings s;
     s.eye = limits, s.eye.max_scatterings = 1;
     s.paths = 20000, s.scattering_points = 1, s.interleaving = 4;
-    s.selection = std::make_shared<lights::ResamplingSelection>(256, 16);
+    s.selection = lights::resampled_vpls(256, 16);
     return std::make_shared<MoteVpl>(s);
 }
 

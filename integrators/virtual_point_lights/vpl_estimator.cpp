@@ -39,11 +39,11 @@ class VplEstimator final : public Estimator {
     bool pass(const PassContext& context, PassImage& image) override {
         if (context.cancelled) return false;
         const lights::VplSet vpls = trace(context);
-        const auto selector = select(vpls, context);
+        const lights::VplSelector selector = select(vpls, context);
         const lights::VisibilityPass visible{
             vpls, bound_, hash_keys(options_.seed, context.index), loop_.tasks(), context.cancelled, image};
         visibility_->begin(visible), residual_->begin(image);
-        const VplPass shared{vpls, *selector, *visibility_, *residual_};
+        const VplPass shared{vpls, selector, *visibility_, *residual_};
         const auto gather = [&](EyeTask<Media>& task) {
             VplGatherer<Media> gatherer(scene_, settings_, shared, task.packet(), task.index());
             task.for_each([&](const PacketPixels& pixels) { gatherer.run(pixels); },
@@ -87,7 +87,7 @@ class VplEstimator final : public Estimator {
         return vpls;
     }
 
-    std::unique_ptr<lights::VplSelector> select(const lights::VplSet& vpls, const PassContext& context) {
+    lights::VplSelector select(const lights::VplSet& vpls, const PassContext& context) {
         const std::uint64_t key = hash_keys(options_.seed, context.index, selection_stream);
         WalkContext walk;
         walk.cancelled = context.cancelled;

@@ -25,7 +25,7 @@ class VplGatherer final : public EyeReceivers<Media> {
         : Base(settings, packet, pass.visibility.of_lights()),
           scratch_(std::make_unique<lights::GatherScratch>()),
           context_{scene, *scratch_, walk_.rays, walk_.tracking, walk_.cancelled},
-          selector_(pass.selector.for_task()),
+          selector_(pass.selector()),
           visibility_(pass.visibility.for_task(task)),
           residual_(pass.residual.for_task(pass.vpls, *scratch_, walk_)) {}
 

@@ -21,22 +21,12 @@ class AllTileSelector final : public TileSelector {
     BoundedGeometry bound_;
 };
 
-class UnpreparedSelector final : public VplSelector {
-  public:
-    explicit UnpreparedSelector(std::function<std::unique_ptr<TileSelector>()> make)
-        : make_(std::move(make)) {}
-    std::unique_ptr<TileSelector> for_task() const override { return make_(); }
-
-  private:
-    std::function<std::unique_ptr<TileSelector>()> make_;
-};
-
 class AllVpls final : public Selection {
   public:
-    std::unique_ptr<VplSelector> prepare(const SelectionPass& pass) const override {
-        return selector_by([&vpls = pass.vpls, bound = pass.bound] {
+    VplSelector prepare(const SelectionPass& pass) const override {
+        return [&vpls = pass.vpls, bound = pass.bound] {
             return std::make_unique<AllTileSelector>(vpls, bound);
-        });
+        };
     }
     bool takes_all() const override { return true; }
     std::string excludes(const GatherOptions&) const override { return ""; }
@@ -63,10 +53,6 @@ ReceiverTile TileSelector::lanes_of(const ReceiverTile& receivers, ReceiverKind 
         else
             tile.max_vpl_depth[i] = 0, tile.directional[i] = nullptr;
     return tile;
-}
-
-std::unique_ptr<VplSelector> selector_by(std::function<std::unique_ptr<TileSelector>()> make) {
-    return std::make_unique<UnpreparedSelector>(std::move(make));
 }
 
 std::string Selection::excludes(const GatherOptions& options) const {

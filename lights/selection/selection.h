@@ -80,15 +80,9 @@ class TileSelector {
     }
 };
 
-/// A selection prepared for the VPLs of one pass.
-class VplSelector {
-  public:
-    virtual ~VplSelector() = default;
-    /// For one task; safe from many threads. The selector outlives it.
-    virtual std::unique_ptr<TileSelector> for_task() const = 0;
-};
-/// A selector that has nothing to prepare: `make` makes those of the tasks.
-std::unique_ptr<VplSelector> selector_by(std::function<std::unique_ptr<TileSelector>()> make);
+/// A selection prepared for the VPLs of one pass: makes the selector of a task, which it outlives. Safe from
+/// many threads.
+using VplSelector = std::function<std::unique_ptr<TileSelector>()>;
 
 /// Options of a many-light pass that not every selection goes with.
 struct GatherOptions {
@@ -106,7 +100,7 @@ struct SelectionSize {
 class Selection : public core::Object {
   public:
     /// Throws core::InputError where memory_bytes() exceeds max_bytes, core::Cancelled.
-    virtual std::unique_ptr<VplSelector> prepare(const SelectionPass& pass) const = 0;
+    virtual VplSelector prepare(const SelectionPass& pass) const = 0;
     /// If true, every receiver takes all VPLs, which points and pixels may share out.
     virtual bool takes_all() const { return false; }
     /// Name of an option that this selection does not go with; empty where there is none.
@@ -131,5 +125,7 @@ class Selection : public core::Object {
 
 /// All VPLs at every receiver.
 std::shared_ptr<Selection> all_vpls();
+/// Resampled importance sampling: of `candidates` from a cut each pixel chooses `samples`.
+std::shared_ptr<Selection> resampled_vpls(std::uint32_t candidates, std::uint32_t samples);
 
 }  // namespace mote::lights

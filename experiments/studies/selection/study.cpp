@@ -110,7 +110,7 @@ Pixels Study::render(std::size_t index, const Method& method, TileCost& cost) co
     EyePacket<true> packet(*scene_, EyeReceivers<true>::packet_settings(settings), walk);
     const auto visibility = lights::prepare_traced_visibility();
     compensation::PreparedResidual residual;
-    VplGatherer<true> gatherer(*scene_, settings, {vpls_, *method.selector, *visibility, residual}, packet);
+    VplGatherer<true> gatherer(*scene_, settings, {vpls_, method.selector, *visibility, residual}, packet);
     const std::atomic<bool> cancelled = false;
     const core::PassContext pass{0, *filter_, cancelled};
     const glm::ivec2 wanted = tiles_[index], task = wanted / 16 * 16;

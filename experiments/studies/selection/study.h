@@ -46,7 +46,7 @@ class Study {
     /// A selection for the VPLs of the study.
     struct Method {
         std::shared_ptr<const lights::Selection> selection;
-        std::unique_ptr<lights::VplSelector> selector;
+        lights::VplSelector selector;
         bool learns;  ///< from the tiles before
     };
     Method prepare(const std::string& text) const;
