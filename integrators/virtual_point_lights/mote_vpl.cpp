@@ -15,7 +15,7 @@
 #include "integrators/eye_path/transport_layers.h"
 #include "integrators/register_parts.h"
 #include "integrators/virtual_point_lights/plan_selection.h"
-#include "integrators/virtual_point_lights/vpl_estimator.h"
+#include "integrators/virtual_point_lights/vpl_settings.h"
 
 namespace mote::integrators {
 

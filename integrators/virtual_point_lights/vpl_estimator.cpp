@@ -1,5 +1,3 @@
-#include "integrators/virtual_point_lights/vpl_estimator.h"
-
 #include <mutex>
 
 #include "integrators/virtual_point_lights/path_receivers.h"

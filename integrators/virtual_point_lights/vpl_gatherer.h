@@ -26,7 +26,8 @@ class VplGatherer final : public EyeReceivers<Media> {
           scratch_(std::make_unique<lights::GatherScratch>()),
           context_{scene, *scratch_, walk_.rays, walk_.tracking, walk_.cancelled},
           selector_(pass.selector()),
-          visibility_(pass.visibility.for_task(task)),
+          visibility_(pass.visibility),
+          task_(task),
           residual_(pass.residual.for_task(pass.vpls, *scratch_, walk_)) {}
 
     /// Gathers at one of the eye samples of these pixels, with their share of the VPLs. Selected VPLs are not
@@ -78,8 +79,8 @@ class VplGatherer final : public EyeReceivers<Media> {
     /// The sum over VPLs of Eqs. 10.4 and 10.5, with min(G*, b), and compensation, at all receivers.
     void gather(const lights::VplRange& range, float vpl_scale) override {
         const lights::TileLight light =
-            visibility_->gather({*selector_, context_, receivers_, range, walk_.rng, first_.x, first_.y,
-                                 settings_.interleaving, vpl_scale * light_scale_});
+            visibility_.gather(task_, {*selector_, context_, receivers_, range, walk_.rng, first_.x, first_.y,
+                                       settings_.interleaving, vpl_scale * light_scale_});
         const lights::TileLight restored = residual_->run(range, vpl_scale);
         for (std::size_t i = 0; i < light.size(); ++i) {
             const bool surface = kinds_[i] == lights::ReceiverKind::surface;
@@ -94,7 +95,8 @@ class VplGatherer final : public EyeReceivers<Media> {
     std::unique_ptr<lights::GatherScratch> scratch_;
     lights::GatherContext context_;
     std::unique_ptr<lights::TileSelector> selector_;
-    std::unique_ptr<lights::TileVisibility> visibility_;
+    lights::PreparedVisibility& visibility_;
+    std::size_t task_;
     std::unique_ptr<compensation::TileResidual> residual_;
     glm::ivec2 first_{0};       ///< pixel of the first lane
     float light_scale_ = 1.0f;  ///< of an eye sample

@@ -71,4 +71,9 @@ struct VplSettings {
     }
 };
 
+/// The passes of `mote_vpl`: a fresh set of light paths each, gathered at the eye path of every pixel.
+std::unique_ptr<core::Estimator> make_vpl_estimator(const core::Scene& scene,
+                                                    const core::RenderOptions& options,
+                                                    const VplSettings& settings);
+
 }  // namespace mote::integrators

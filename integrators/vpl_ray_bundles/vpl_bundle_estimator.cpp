@@ -1,5 +1,3 @@
-#include "integrators/vpl_ray_bundles/vpl_bundle_estimator.h"
-
 #include <mutex>
 
 #include "integrators/layer_filter/layer_filter.h"

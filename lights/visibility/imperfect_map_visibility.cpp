@@ -14,22 +14,6 @@ using namespace core;
 
 namespace {
 
-class TileImperfect final : public TileVisibility {
-  public:
-    TileImperfect(const ImperfectShadowMaps& maps, std::atomic<std::uint64_t>& lookups)
-        : maps_(maps), lookups_(lookups) {}
-    TileLight gather(const TileGather& g) override {
-        ImperfectVisibility visibility(g.context, g.receivers, maps_);
-        const TileLight light = g.selector.gather(g.context, g.receivers, g.range, visibility, g.rng);
-        lookups_ += visibility.lookups();
-        return light;
-    }
-
-  private:
-    const ImperfectShadowMaps& maps_;
-    std::atomic<std::uint64_t>& lookups_;
-};
-
 class PreparedImperfect final : public PreparedVisibility {
   public:
     PreparedImperfect(const LitScene& scene, const ImperfectMapSettings& settings, std::uint64_t seed)
@@ -40,8 +24,11 @@ class PreparedImperfect final : public PreparedVisibility {
         maps_.build(points_, pass.vpls, settings_, pass.key, pass.cancelled);
         seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     }
-    std::unique_ptr<TileVisibility> for_task(std::size_t) override {
-        return std::make_unique<TileImperfect>(maps_, lookups_);
+    TileLight gather(std::size_t, const TileGather& g) override {
+        ImperfectVisibility visibility(g.context, g.receivers, maps_);
+        const TileLight light = g.selector.gather(g.context, g.receivers, g.range, visibility, g.rng);
+        lookups_ += visibility.lookups();
+        return light;
     }
     void add_statistics(Statistics& statistics) const override {
         statistics.seconds["imperfect_shadow_maps"] = seconds_;

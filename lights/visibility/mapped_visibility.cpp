@@ -25,19 +25,6 @@ class Stopwatch {
     std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-/// Stores the receivers of one task. A pixel's receivers are all in one store.
-class TileStore final : public TileVisibility {
-  public:
-    explicit TileStore(ReceiverStore& store) : store_(store) {}
-    TileLight gather(const TileGather& g) override {
-        store_.add(g.receivers, g.column, g.row, g.spacing, g.range, g.light_scale);
-        return {};
-    }
-
-  private:
-    ReceiverStore& store_;
-};
-
 class PreparedShadowMaps final : public PreparedVisibility {
   public:
     PreparedShadowMaps(const LitScene& scene, const MappedVisibilitySettings& settings,
@@ -46,8 +33,10 @@ class PreparedShadowMaps final : public PreparedVisibility {
         stores_.clear(), stores_.resize(pass.tasks);
         pass.image.finish_late();
     }
-    std::unique_ptr<TileVisibility> for_task(std::size_t task) override {
-        return std::make_unique<TileStore>(stores_[task]);
+    /// Stores the receivers. All of a pixel are in one store.
+    TileLight gather(std::size_t task, const TileGather& g) override {
+        stores_[task].add(g.receivers, g.column, g.row, g.spacing, g.range, g.light_scale);
+        return {};
     }
     /// Adds to the layers `indirect` and `multiple_scattering`.
     bool finish(const VisibilityPass& pass) override;

@@ -60,7 +60,7 @@ void plan_lights(Plan& plan, const LitScene& scene, const MappedVisibilitySettin
 /// Surfaces alone are cheaper by shadow rays.
 class ShadowMapsWithoutMedia final : public PreparedVisibility {
   public:
-    std::unique_ptr<TileVisibility> for_task(std::size_t task) override { return traced_->for_task(task); }
+    TileLight gather(std::size_t task, const TileGather& g) override { return traced_->gather(task, g); }
     void add_statistics(Statistics& statistics) const override {
         statistics.warnings.push_back("visibility 'shadow_map' has no effect: there are no media");
     }

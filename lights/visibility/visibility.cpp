@@ -8,17 +8,12 @@ using namespace core;
 
 namespace {
 
-class TileTraced final : public TileVisibility {
+class PreparedTraced final : public PreparedVisibility {
   public:
-    TileLight gather(const TileGather& g) override {
+    TileLight gather(std::size_t, const TileGather& g) override {
         TracedVisibility visibility(g.context, g.receivers);
         return g.selector.gather(g.context, g.receivers, g.range, visibility, g.rng);
     }
-};
-
-class PreparedTraced final : public PreparedVisibility {
-  public:
-    std::unique_ptr<TileVisibility> for_task(std::size_t) override { return std::make_unique<TileTraced>(); }
 };
 
 class Traced final : public Visibility {

@@ -1,8 +1,8 @@
 // Visibility between VPLs and receivers: what lies between them, by shadow rays or by maps.
 //
 // A scene file names a Visibility by a nested <visibility>. It is prepared once for a scene, and once a pass
-// for its VPLs; every task has a TileVisibility of its own, which gathers at one tile of sixteen receivers
-// after the other. Calls are virtual per tile, never per pair. A kind of visibility is a file that
+// for its VPLs; tasks then gather at one tile of sixteen receivers after the other. Calls are virtual per
+// tile, never per pair. A kind of visibility is a file that
 // register_visibility() names.
 #pragma once
 
@@ -32,14 +32,6 @@ struct TileGather {
     float light_scale;  ///< of what is added to the image later
 };
 
-/// Gathers for one task.
-class TileVisibility {
-  public:
-    virtual ~TileVisibility() = default;
-    /// Light of the VPLs that the selector chooses; none where PreparedVisibility::finish() adds it.
-    virtual TileLight gather(const TileGather& gather) = 0;
-};
-
 /// A pass, as visibility sees it.
 struct VisibilityPass {
     const VplSet& vpls;  ///< outlive the pass
@@ -56,8 +48,9 @@ class PreparedVisibility {
     virtual ~PreparedVisibility() = default;
     /// Before the tasks of a pass.
     virtual void begin(const VisibilityPass&) {}
-    /// For one task of the pass; safe from many threads.
-    virtual std::unique_ptr<TileVisibility> for_task(std::size_t task) = 0;
+    /// Light of the VPLs that the selector chooses; none where finish() adds it. Safe from many threads, of
+    /// which each has tasks of its own.
+    virtual TileLight gather(std::size_t task, const TileGather& gather) = 0;
     /// After all tasks: adds light to the image that waited for all receivers. Returns false when cancelled.
     virtual bool finish(const VisibilityPass&) { return true; }
     /// Maps of the primary lights; null where these are traced.
