@@ -1,6 +1,6 @@
 #include "compensation/compensation.h"
 
-#include <mutex>
+#include <atomic>
 
 #include "compensation/light_compensation.h"
 #include "compensation/plan_compensation.h"
@@ -16,14 +16,8 @@ namespace {
 
 /// Cost of compensation, summed by tasks.
 struct CompensationCost {
-    std::uint64_t vertices = 0;
-    double seconds = 0.0;  ///< of processor time, all threads
-    std::mutex mutex;
-
-    void add(std::uint64_t more_vertices, double more_seconds) {
-        const std::lock_guard lock(mutex);
-        vertices += more_vertices, seconds += more_seconds;
-    }
+    std::atomic<std::uint64_t> vertices{0};
+    std::atomic<double> seconds{0.0};  ///< of processor time, all threads
 };
 
 template <bool Media>
@@ -35,11 +29,13 @@ class TileCompensation final : public TileResidual {
         : scene_(scene),
           settings_(settings),
           transport_(transport),
-          total_(cost),
+          cost_(cost),
           vpls_(vpls),
           gather_scratch_(gather_scratch),
           walk_(walk) {}
-    ~TileCompensation() override { total_.add(vertices_ + scratch_.vertices, seconds_); }
+    ~TileCompensation() override {
+        cost_.vertices += vertices_ + scratch_.vertices, cost_.seconds += seconds_;
+    }
 
     void add(int lane, const ScatteringVertex& vertex, const Rgb& throughput, const MediumState& state,
              std::int32_t max_vpl_depth) override {
@@ -83,7 +79,7 @@ class TileCompensation final : public TileResidual {
     const Scene& scene_;
     const CompensationSettings& settings_;
     const ResidualTransport& transport_;
-    CompensationCost& total_;
+    CompensationCost& cost_;
     const lights::VplSet& vpls_;
     lights::GatherScratch& gather_scratch_;
     WalkContext& walk_;
@@ -105,8 +101,8 @@ class PreparedCompensation final : public PreparedResidual {
                                                          walk);
     }
     void add_statistics(Statistics& statistics) const override {
-        statistics.values["compensation_vertices"] += double(cost_.vertices);
-        statistics.values["compensation_thread_seconds"] += cost_.seconds;
+        statistics.values["compensation_vertices"] += double(cost_.vertices.load());
+        statistics.values["compensation_thread_seconds"] += cost_.seconds.load();
         statistics.values["compensation_bytes"] = double(transport_.memory_bytes());
     }
 

@@ -1,21 +1,12 @@
 #include "integrators/layer_filter/layer_filter.h"
 
-#include <chrono>
 #include <stdexcept>
+
+#include "core/render/cpu_clock.h"
 
 namespace mote::integrators {
 
 using namespace core;
-
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-}  // namespace
 
 const ParameterList<LayerFilterParameters>& layer_filter_rows() {
     using S = LayerFilterParameters;
@@ -39,10 +30,9 @@ LayerFilter::LayerFilter(const Scene& scene, const RenderOptions& options,
 void LayerFilter::find_features(CancelToken cancelled) {
     if (features_) return;
     options_.cancelled = cancelled;
-    const auto start = Clock::now();
+    const Stopwatch stopwatch(feature_seconds_);
     features_ = std::make_unique<screenspace::FilterFeatures>(
         find_filter_features(scene_, options_, parameters_.features));
-    feature_seconds_ += seconds_since(start);
 }
 
 void LayerFilter::apply(Film& film, CancelToken cancelled) {
@@ -52,7 +42,7 @@ void LayerFilter::apply(Film& film, CancelToken cancelled) {
     if (layers_.empty() || !film.has_passes(2)) return;
     variances_.clear();
     find_features(cancelled);
-    const auto start = Clock::now();
+    const Stopwatch stopwatch(filter_seconds_);
     for (const Choice& choice : layers_) {
         film.set_mean(choice.layer,
                       {});  // of the passes: an earlier call, for a preview, may have replaced it
@@ -63,7 +53,6 @@ void LayerFilter::apply(Film& film, CancelToken cancelled) {
         film.set_mean(choice.layer, filtered.mean, filtered.variance);
         variances_.push_back(std::move(filtered.variance));
     }
-    filter_seconds_ += seconds_since(start);
 }
 
 void LayerFilter::add_statistics(Statistics& statistics) const {

@@ -1,6 +1,5 @@
 #include "integrators/screen_space_compensation/screen_space_compensation.h"
 
-#include <chrono>
 #include <optional>
 
 #include "compensation/plan_compensation.h"
@@ -110,8 +109,7 @@ class PreparedScreenSpace final : public compensation::PreparedResidual {
 
 /// Fills the layer of what the bound took from light that surfaces send to the eye, direct and indirect.
 void PreparedScreenSpace::finish(Film& film, CancelToken cancelled) {
-    const auto begin = std::chrono::steady_clock::now();
-    const double cpu_begin = process_cpu_seconds();
+    const double begin = wall_seconds(), cpu_begin = process_cpu_seconds();
     const Scene& scene = view_.scene;
     const auto buffers =
         screenspace::make_g_buffers(scene, scene.camera(), film.width(), film.height(), settings_.layers);
@@ -130,8 +128,7 @@ void PreparedScreenSpace::finish(Film& film, CancelToken cancelled) {
     const screenspace::SsbcResult result =
         screenspace::compensate(screenspace::ssbc_surfaces(buffers[0]), light, hidden, ssbc);
     film.set_mean(view_.layer, result.compensation);
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
-    samples_ = result.counts.samples, seconds_ = seconds.count();
+    samples_ = result.counts.samples, seconds_ = wall_seconds() - begin;
     cpu_seconds_ = process_cpu_seconds() - cpu_begin;
 }
 

@@ -67,7 +67,7 @@ struct VplSettings {
                                                       const core::MemoryBudget& memory = {}) const {
         return reflective_maps > 0
                    ? lights::reflective_light_source(scene, reflective_maps, light_paths(memory))
-                   : lights::traced_light_source(scene, light_paths(memory));
+                   : std::make_unique<lights::LightSource>(scene, light_paths(memory));
     }
 };
 

@@ -57,7 +57,7 @@ namespace {
 class ReflectiveLightSource final : public LightSource {
   public:
     ReflectiveLightSource(const LitScene& scene, int size, const LightPathSettings& settings)
-        : scene_(scene), size_(size), settings_(settings), maps_(scene, size, settings.paths) {
+        : LightSource(scene, settings), size_(size), maps_(scene, size, settings.paths) {
         settings_.paths = maps_.paths();
     }
     VplSet trace(std::uint64_t seed, std::uint32_t pass, SamplerKind sampler,
@@ -69,13 +69,11 @@ class ReflectiveLightSource final : public LightSource {
                  std::to_string(maps_.maps()) + " of " + std::to_string(size_) + "^2 texels",
                  maps_.maps() > 0 ? "each texel begins a light path, its flux is intensity times solid angle"
                                   : "no light is a point, a cone or parallel");
-        traced_light_source(scene_, settings_)->plan(plan);
+        LightSource::plan(plan);
     }
 
   private:
-    const LitScene& scene_;
     int size_;
-    LightPathSettings settings_;
     ReflectiveShadowMaps maps_;
 };
 

@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 
 #include <atomic>
-#include <chrono>
 
 #include "core/parameters/add_type.h"
+#include "core/render/cpu_clock.h"
 #include "lights/imperfect_shadow_maps/imperfect_visibility.h"
 #include "lights/visibility/visibility.h"
 
@@ -20,9 +20,8 @@ class PreparedImperfect final : public PreparedVisibility {
         : settings_(settings), points_(sample_surfaces(scene, std::size_t(settings.all_points), seed)) {}
 
     void begin(const VisibilityPass& pass) override {
-        const auto begin = std::chrono::steady_clock::now();
+        const Stopwatch stopwatch(seconds_);
         maps_.build(points_, pass.vpls, settings_, pass.key, pass.cancelled);
-        seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     }
     TileLight gather(std::size_t, const TileGather& g) override {
         ImperfectVisibility visibility(g.context, g.receivers, maps_);

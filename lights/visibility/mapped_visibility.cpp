@@ -4,9 +4,9 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <chrono>
 #include <optional>
 
+#include "core/render/cpu_clock.h"
 #include "lights/shadow_maps/shadow_map_gather.h"
 
 namespace mote::lights {
@@ -14,16 +14,6 @@ namespace mote::lights {
 using namespace core;
 
 namespace {
-
-class Stopwatch {
-  public:
-    explicit Stopwatch(double& sum) : sum_(sum) {}
-    ~Stopwatch() { sum_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
-
-  private:
-    double& sum_;
-    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-};
 
 class PreparedShadowMaps final : public PreparedVisibility {
   public:
