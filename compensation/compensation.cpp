@@ -1,4 +1,6 @@
-#include "compensation/compensation.h"
+// Bias compensation in the passes, exact or approximate, from the primary lights and from the VPLs
+// (Kollig and Keller 2006; Raab et al. 2008; Engelhardt 2013, Sec. 10.2).
+#include "compensation/residual.h"
 
 #include <atomic>
 
@@ -159,6 +161,32 @@ ParameterList<CompensationFile> approximate_rows() {
                     "Inside the bounding region: from the mean extinction there, or exact."))}};
 }
 
+class Compensation final : public Residual {
+  public:
+    explicit Compensation(const CompensationSettings& settings) : settings_(settings) {}
+    std::unique_ptr<PreparedResidual> prepare(const ResidualView& view) const override {
+        if (!std::isfinite(view.bound)) return Residual::prepare(view);
+        if (view.scene.has_media()) return std::make_unique<PreparedCompensation<true>>(view, settings_);
+        return std::make_unique<PreparedCompensation<false>>(view, settings_);
+    }
+    std::shared_ptr<const Residual> for_media() const override {
+        const auto media = std::make_shared<Compensation>(settings_);
+        media->settings_.surfaces = false;
+        return media;
+    }
+    std::vector<Layer> layers(bool media) const override { return compensation_layers(media); }
+    bool in_passes(bool) const override { return true; }
+    bool shares_vpls() const override { return settings_.strategy == Strategy::one_to_one; }
+    int eye_samples() const override { return shares_vpls() ? 4 : 1; }
+    void plan(Plan& plan, const Scene& scene, const Requirements& r, float bound) const override {
+        plan_compensation(plan, scene, r, settings_, bound);
+        plan_expected_loss(plan, scene, settings_.media ? settings_.depth : 0, bound);
+    }
+
+  private:
+    CompensationSettings settings_;
+};
+
 std::shared_ptr<Compensation> make(const CompensationFile& file) {
     CompensationSettings s = file.settings;
     s.strategy = file.joining == Joining::one_to_n   ? Strategy::one_to_n
@@ -171,17 +199,6 @@ std::shared_ptr<Compensation> make(const CompensationFile& file) {
 }
 
 }  // namespace
-
-std::unique_ptr<PreparedResidual> Compensation::prepare(const ResidualView& view) const {
-    if (!std::isfinite(view.bound)) return Residual::prepare(view);
-    if (view.scene.has_media()) return std::make_unique<PreparedCompensation<true>>(view, settings_);
-    return std::make_unique<PreparedCompensation<false>>(view, settings_);
-}
-
-void Compensation::plan(Plan& plan, const Scene& scene, const Requirements& r, float bound) const {
-    plan_compensation(plan, scene, r, settings_, bound);
-    plan_expected_loss(plan, scene, settings_.media ? settings_.depth : 0, bound);
-}
 
 std::string CompensationSettings::strategy_name() const {
     if (strategy == Strategy::one_to_one && placement == Placement::in_region)

@@ -1,5 +1,5 @@
-// What the bound on the geometry term took, and what is done about it: nothing, compensation in the passes,
-// exact or approximate, or in image space after the last one.
+// Light that the bound on the geometry term took, and its restoration: none, compensation in the passes, exact
+// or approximate, or in image space after the last one.
 //
 // A scene file names a Residual by a nested <compensation>. It is prepared once for a view; every task has a
 // TileResidual of its own. Calls are virtual per receiver, never per pair.
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/film/film.h"
+#include "core/objects/registry.h"
 #include "core/render/integrator.h"
 #include "core/scene/ray_walk.h"
 #include "core/scene/scattering_vertex.h"
@@ -65,6 +66,8 @@ class Residual : public core::Object {
     virtual std::unique_ptr<PreparedResidual> prepare(const ResidualView&) const {
         return std::make_unique<PreparedResidual>();
     }
+    /// The method for receivers in media alone; null where it restores no light in the passes.
+    virtual std::shared_ptr<const Residual> for_media() const { return std::make_shared<Residual>(); }
     /// Layers of the film that it fills: of light first scattered by surfaces, then in media. None: it
     /// restores nothing.
     virtual std::vector<core::Layer> layers(bool /*media*/) const { return {}; }
@@ -84,5 +87,8 @@ class Residual : public core::Object {
     /// The two layers of compensation.
     static std::vector<core::Layer> compensation_layers(bool media);
 };
+
+/// none, exact, approximate.
+void register_compensation(core::Registry& registry);
 
 }  // namespace mote::compensation

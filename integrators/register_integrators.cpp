@@ -1,8 +1,7 @@
 #include "integrators/register_integrators.h"
 
-#include "compensation/compensation.h"
+#include "compensation/residual.h"
 #include "integrators/register_parts.h"
-#include "integrators/screen_space_compensation/screen_space_compensation.h"
 #include "lights/selection/register_selection.h"
 #include "lights/visibility/visibility.h"
 
