@@ -100,7 +100,7 @@ ScatteringAccelerations::ScatteringAccelerations(const Scene& scene, const Accel
     if (settings.exact && AnalyticCounts(scene).any()) space_.emplace(scene.shapes());
     if (!settings.light_maps || !scene.has_media() || settings.light_maps->size == 0) return;
     const lights::LightMapSettings& s = *settings.light_maps;
-    lights::check_map(scene, s.map, s.size, s.where);
+    lights::check_map(scene, s, s.size);
     maps_.emplace(scene, s.size, s.map, memory);
 }
 

@@ -5,7 +5,6 @@
 // apart. Here every VPL is a sphere that reaches to its k-th nearest neighbour, so that nothing has to be
 // bounded, also between glossy surfaces. In return light is blurred over the spheres: a bias that more passes
 // do not reduce, since each has spheres of the same size; more light paths a pass do.
-
 #include "compensation/spherical_lights.h"
 #include "integrators/eye_path/eye_path_parameters.h"
 #include "integrators/eye_path/image_loop.h"

@@ -10,6 +10,8 @@
 // around VPLs together with the light that travels short distances; unbounded, the mean is right but its
 // variance is infinite. Paths that cross a delta surface between the VPL and the receiver cannot be connected
 // and are missing.
+#include <fmt/format.h>
+
 #include "integrators/eye_path/eye_path_parameters.h"
 #include "integrators/eye_path/plan_narrow_phases.h"
 #include "integrators/eye_path/transport_layers.h"
@@ -152,35 +154,29 @@ void MoteVpl::plan_bound(Plan& plan, const Bounds3& surfaces) const {
         return;
     }
     const float bound = settings_.bound_for(surfaces);
-    const std::string choice =
-        std::to_string(bound) + " /m^2, radius " + std::to_string(1.0f / std::sqrt(bound)) + " m";
-    plan.run("bound", choice,
-             settings_.bound ? "requested"
-                             : "automatic: light paths / R^2, with R = " + std::to_string(surfaces.radius()) +
-                                   " m the radius of all shapes");
+    plan.run("bound", fmt::format("{:f} /m^2, radius {:f} m", bound, 1.0f / std::sqrt(bound)),
+             settings_.bound
+                 ? "requested"
+                 : fmt::format("automatic: light paths / R^2, with R = {:f} m the radius of all shapes",
+                               surfaces.radius()));
 }
 
 void MoteVpl::plan_image_space(Plan& plan) const {
     const int n = settings_.interleaving;
     if (n > 1 && !settings_.selection->takes_all())
-        plan.run("interleaving",
-                 "the 4 x 4 pixels that share selected VPLs lie " + std::to_string(n) + " apart",
+        plan.run("interleaving", fmt::format("the 4 x 4 pixels that share selected VPLs lie {} apart", n),
                  "unbiased: noise differs from pixel to pixel");
     else if (n > 1)
-        plan.run("interleaving",
-                 std::to_string(n * n) + " shares of the VPLs, for pixels of " + std::to_string(n) + " x " +
-                     std::to_string(n),
+        plan.run("interleaving", fmt::format("{} shares of the VPLs, for pixels of {} x {}", n * n, n, n),
                  "unbiased: noise differs from pixel to pixel, and less work is done");
     if (const int m = settings_.upsampling; m > 1)
         plan.run("upsampling",
-                 "VPLs at one pixel of " + std::to_string(m) + " x " + std::to_string(m) +
-                     ", between by what neighbours see",
+                 fmt::format("VPLs at one pixel of {} x {}, between by what neighbours see", m, m),
                  "biased by what light does between them; pixels without a neighbour alike gather their own");
     if (settings_.filters)
         plan.run("filter", "light of VPLs in image space",
                  "biased by what it smoothes, less with every pass. The noise that is stated, and --noise, "
-                 "are those of "
-                 "the passes before it");
+                 "are those of the passes before it");
 }
 
 Plan MoteVpl::plan(const Scene& scene, const Requirements& r) const {
@@ -189,12 +185,10 @@ Plan MoteVpl::plan(const Scene& scene, const Requirements& r) const {
     settings_.light_source(scene)->plan(plan);
     plan_bound(plan, scene.rays().bounds());
     const bool directional = r.any_glossy() || (r.media_anisotropic && r.media_scattering);
-    if (directional)
-        plan.run("light per VPL", "64 bytes, and the vertex where f* depends on direction",
-                 "there are glossy surfaces or anisotropic media");
-    else
-        plan.run("light per VPL", "64 bytes, one colour",
-                 "every surface is diffuse and every medium isotropic");
+    plan.run("light per VPL",
+             directional ? "64 bytes, and the vertex where f* depends on direction" : "64 bytes, one colour",
+             directional ? "there are glossy surfaces or anisotropic media"
+                         : "every surface is diffuse and every medium isotropic");
     const double pixels = double(scene.film().width) * double(scene.film().height);
     settings_.visibility->plan(plan, scene, pixels * settings_.eye_paths());
     plan_choice_of_vpls(plan, scene, r);
@@ -205,11 +199,11 @@ Plan MoteVpl::plan(const Scene& scene, const Requirements& r) const {
     if (r.any_media() && settings_.scattering_points > 0)
         plan.run(
             "eye rays",
-            std::to_string(settings_.scattering_points) + " scattering points, and the surface behind them",
+            fmt::format("{} scattering points, and the surface behind them", settings_.scattering_points),
             "one walk a pixel and pass; VPLs are shared out among the points");
     settings_.residual->plan(plan, scene, r, settings_.bound_for(scene.rays().bounds()));
     if (settings_.eye_paths() > 1)
-        plan.run("eye paths", std::to_string(settings_.eye_paths()) + " a pixel and pass",
+        plan.run("eye paths", fmt::format("{} a pixel and pass", settings_.eye_paths()),
                  settings_.vpls_shared_out() ? "VPLs are shared out among them" : "each meets all VPLs");
     plan_image_space(plan);
     if (settings_.clamping.enabled)

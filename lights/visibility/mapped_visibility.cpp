@@ -55,12 +55,12 @@ class PreparedShadowMaps final : public PreparedVisibility {
 PreparedShadowMaps::PreparedShadowMaps(const LitScene& scene, const MappedVisibilitySettings& settings,
                                        const MemoryBudget& memory)
     : scene_(scene), settings_(settings), maps_(std::size_t(settings.maps)) {
-    for (const int edge : {settings.size, settings.light_size})
-        check_map(scene, settings.map, edge, settings.where);
-    require_shadow_maps(memory, settings.map, maps_.size(), settings.size, needs_chromatic_maps(scene));
-    if (settings.light_size == 0) return;
+    for (const int edge : {settings.size, settings.lights.size}) check_map(scene, settings.lights, edge);
+    require_shadow_maps(memory, settings.lights.map, maps_.size(), settings.size,
+                        needs_chromatic_maps(scene));
+    if (settings.lights.size == 0) return;
     const Stopwatch stopwatch(build_seconds_);
-    lights_.emplace(scene, settings.light_size, settings.map, memory);
+    lights_.emplace(scene, settings.lights.size, settings.lights.map, memory);
     built_ += lights_->count();
     rays_.add(lights_->rays());
 }
@@ -88,7 +88,7 @@ void PreparedShadowMaps::build(const VisibilityPass& pass, std::span<const Entry
     const Stopwatch stopwatch(build_seconds_);
     tbb::parallel_for(std::size_t(0), batch.size(), [&](std::size_t i) {
         const MediumState state = pass.vpls.state_towards(batch[i].vpl, batch[i].view.frame.n);
-        maps_[i].build(scene_, batch[i].view, state, settings_.map, pass.cancelled);
+        maps_[i].build(scene_, batch[i].view, state, settings_.lights.map, pass.cancelled);
     });
     for (std::size_t i = 0; i < batch.size(); ++i) rays_.add(maps_[i].rays());
     built_ += batch.size();
@@ -133,11 +133,11 @@ void PreparedShadowMaps::add_statistics(Statistics& statistics) const {
 
 }  // namespace
 
-void check_map(const LitScene& scene, const ShadowMapSettings& map, int edge, const SourceLocation& where) {
+void check_map(const LitScene& scene, const LightMapSettings& settings, int edge) {
     try {
-        if (edge > 0) map.check(edge, needs_chromatic_maps(scene));
+        if (edge > 0) settings.map.check(edge, needs_chromatic_maps(scene));
     } catch (const InputError& error) {
-        throw InputError(error.what(), where);
+        throw InputError(error.what(), settings.where);
     }
 }
 

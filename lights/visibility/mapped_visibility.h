@@ -11,16 +11,13 @@
 namespace mote::lights {
 
 struct MappedVisibilitySettings {
-    int size = 64;         ///< texels along an edge of a VPL's map
-    int light_size = 256;  ///< of the lights' own maps; 0: none, they are traced
-    int maps = 4;          ///< kept at once
-    ShadowMapSettings map;
-    core::SourceLocation where;
+    int size = 64;            ///< texels along an edge of a VPL's map
+    int maps = 4;             ///< kept at once
+    LightMapSettings lights;  ///< of the lights' own maps; what is not the size is that of all
 };
 
 /// Throws InputError with its place when a map of `edge` * `edge` texels would be larger than the limit.
-void check_map(const core::LitScene& scene, const ShadowMapSettings& map, int edge,
-               const core::SourceLocation& where);
+void check_map(const core::LitScene& scene, const LightMapSettings& settings, int edge);
 
 /// Builds the maps of the lights. Throws InputError when a map would be larger than its limit, OutOfMemory
 /// when all of them are larger than `memory`.

@@ -24,11 +24,14 @@ const ParameterList<ShadowMapFile>& shadow_map_rows() {
     using Map = ShadowMapSettings;
     static const ParameterList<S> list{
         row("size", &S::size, between(4, 8192), "Texels along an edge of a VPL's map."),
-        row("light_size", &S::light_size, between(0, 8192),
-            "Texels along an edge of the maps of point, spot and directional lights, at vertices in media; "
-            "0: traced."),
-        within(&S::map, row("intervals", &Map::intervals, between(1, 4096), "Intervals along a ray."),
-               row("step", &Map::step, between(1e-3, 1e3, "voxels"), "Step of ray marching.")),
+        within(&S::lights,
+               row("light_size", &LightMapSettings::size, between(0, 8192),
+                   "Texels along an edge of the maps of point, spot and directional lights, at vertices in "
+                   "media; "
+                   "0: traced."),
+               within(&LightMapSettings::map,
+                      row("intervals", &Map::intervals, between(1, 4096), "Intervals along a ray."),
+                      row("step", &Map::step, between(1e-3, 1e3, "voxels"), "Step of ray marching."))),
         row("max_megabytes", &S::max_megabytes, between(1e-6, 1e6, "MB"),
             "Memory of one map; a larger one is refused."),
         row("maps", &S::maps, between(1, 1024), "Maps kept at once, whatever the number of VPLs.")};
@@ -44,16 +47,16 @@ std::size_t mapped_lights(const LitScene& scene) {
 }
 
 void plan_lights(Plan& plan, const LitScene& scene, const MappedVisibilitySettings& s, bool chromatic) {
-    const std::size_t count = s.light_size > 0 ? mapped_lights(scene) : 0;
+    const std::size_t count = s.lights.size > 0 ? mapped_lights(scene) : 0;
     if (count == 0) {
         plan.run("visibility of lights", "traced",
-                 s.light_size > 0 ? "no light is a point, a cone or parallel" : "light_size is 0");
+                 s.lights.size > 0 ? "no light is a point, a cone or parallel" : "light_size is 0");
         return;
     }
     plan.run(
         "visibility of lights",
-        fmt::format("{} shadow map(s) of {}^2 for vertices in media, {}", count, s.light_size,
-                    megabytes(count * s.map.bytes(s.light_size, chromatic))),
+        fmt::format("{} shadow map(s) of {}^2 for vertices in media, {}", count, s.lights.size,
+                    megabytes(count * s.lights.map.bytes(s.lights.size, chromatic))),
         "built once, biased; direct light on surfaces and of lights with an extent or at infinity is traced");
 }
 
@@ -77,9 +80,7 @@ class ShadowMaps final : public Visibility {
         if (!scene.has_media()) return std::make_unique<ShadowMapsWithoutMedia>();
         return prepare_mapped_visibility(scene, settings_, memory);
     }
-    std::optional<LightMapSettings> light_maps() const override {
-        return LightMapSettings{settings_.light_size, settings_.map, settings_.where};
-    }
+    std::optional<LightMapSettings> light_maps() const override { return settings_.lights; }
     void declare(GatherOptions& options) const override { options.shadow_maps = true; }
     void plan(Plan& plan, const LitScene& scene, double receivers) const override {
         const MappedVisibilitySettings& s = settings_;
@@ -91,14 +92,14 @@ class ShadowMaps final : public Visibility {
         }
         const bool chromatic = needs_chromatic_maps(scene);
         const double texels = double(s.size) * double(s.size), even = receivers_per_texel * texels;
-        const std::size_t bytes = s.map.bytes(s.size, chromatic);
-        plan.run(
-            "visibility",
-            fmt::format("shadow maps of {}^2 texels, {} intervals each, biased", s.size, s.map.intervals),
-            "requested; traced is exact");
+        const std::size_t bytes = s.lights.map.bytes(s.size, chromatic);
+        plan.run("visibility",
+                 fmt::format("shadow maps of {}^2 texels, {} intervals each, biased", s.size,
+                             s.lights.map.intervals),
+                 "requested; traced is exact");
         plan.run("memory of shadow maps",
                  fmt::format("{} of {}, whatever the number of VPLs{}", s.maps, megabytes(bytes),
-                             bytes > s.map.max_bytes ? "; refused: above max_megabytes" : ""),
+                             bytes > s.lights.map.max_bytes ? "; refused: above max_megabytes" : ""),
                  fmt::format("receivers take about {} more",
                              megabytes(std::size_t(receivers / 16.0 * sizeof(ReceiverStore::Tile)))));
         plan.run(
@@ -126,8 +127,8 @@ void register_shadow_map_visibility(Registry& registry) {
              shadow_map_rows(),
              R"(<visibility type="shadow_map"><integer name="size" value="32"/></visibility>)",
              [](ShadowMapFile s, const Properties& p) {
-                 s.map.max_bytes = std::size_t(1e6 * s.max_megabytes);
-                 s.where = p.where_of("size");
+                 s.lights.map.max_bytes = std::size_t(1e6 * s.max_megabytes);
+                 s.lights.where = p.where_of("size");
                  return std::make_shared<ShadowMaps>(s);
              });
 }
