@@ -29,6 +29,7 @@ std::shared_ptr<const lights::Selection> selection_of(const std::string& text) {
     const Names cut{"threshold", "max_cut", "error", "shared_angle"}, samples{"samples"};
     static const std::map<std::string, std::pair<std::string, Names>> types{
         {"all", {"all", {}}},
+        {"uniform", {"uniform", samples}},
         {"lightcuts", {"lightcuts", cut}},
         {"multidimensional", {"multidimensional_lightcuts", cut}},
         {"stochastic", {"stochastic_lightcuts", samples}},
@@ -90,7 +91,8 @@ Study::Study(const Arguments& a) : arguments_(a), scene_(load(a)) {
 }
 
 Study::Method Study::prepare(const std::string& text) const {
-    Method method{selection_of(text), nullptr, !text.starts_with("all") && !text.starts_with("matrix")};
+    Method method{selection_of(text), nullptr,
+                  !text.starts_with("all") && !text.starts_with("uniform") && !text.starts_with("matrix")};
     core::RayCounters rays;
     core::TrackingCounters tracking;
     core::Statistics statistics;

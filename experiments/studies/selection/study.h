@@ -24,7 +24,7 @@ struct Arguments {
 double now(clockid_t clock);
 
 /// "all", "lightcuts:THRESHOLD:MAX_CUT:ERROR:ANGLE" and "multidimensional:..." alike, where
-/// numbers left out have their defaults, "stochastic:N", "tree:N", "ris:CANDIDATES:SAMPLES",
+/// numbers left out have their defaults, "uniform:N", "stochastic:N", "tree:N", "ris:CANDIDATES:SAMPLES",
 /// "matrix:ROWS:COLUMNS:SLICES:rays|shadow_map".
 std::shared_ptr<const lights::Selection> selection_of(const std::string& text);
 
