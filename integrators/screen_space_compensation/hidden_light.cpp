@@ -5,6 +5,8 @@
 #include <optional>
 
 #include "core/render/cpu_clock.h"
+#include "core/scene/scattering_vertex.h"
+#include "core/scene/scene.h"
 #include "integrators/eye_path/scattered_light.h"
 #include "lights/virtual_lights/vpl_gather.h"
 #include "screenspace/g_buffer/g_buffer.h"

@@ -1,7 +1,6 @@
 // Screen-space bias compensation at the end of a render (Engelhardt 2013, Ch. 11), for the light that
 // surfaces reflect; light first scattered in media may be compensated by another method in the passes: the
 // combination that Sec. 10.6 names as future work.
-
 #include "compensation/plan_compensation.h"
 #include "compensation/residual.h"
 #include "core/parameters/add_type.h"
