@@ -1,5 +1,5 @@
-// Light that the bound on the geometry term took, and its restoration: none, compensation in the passes, exact
-// or approximate, or in image space after the last one.
+// Light that the bound on the geometry term took, and its restoration: none, compensation in the passes,
+// exact or approximate, or in image space after the last one.
 //
 // A scene file names a Residual by a nested <compensation>. It is prepared once for a view; every task has a
 // TileResidual of its own. Calls are virtual per receiver, never per pair.
