@@ -159,6 +159,29 @@ void add_export(CLI::App& app, ExportArguments& a, std::function<int()>& action)
     command.callback([&a, &action] { action = [&a] { return export_command(a); }; });
 }
 
+void add_view(CLI::App& app, ViewArguments& a, std::function<int()>& action) {
+    CLI::App& command = *app.add_subcommand("view", "Show a scene, or pictures, in the browser");
+    command.add_option("FILE", a.files, "A scene file, or EXR files")->required();
+    add_lenient(command, a.scene.lenient);
+    command.add_option("--integrator", a.scene.integrator, "Render with this type instead of the scene's")
+        ->type_name("TYPE");
+    add_defines(command, a.scene.defines,
+                "Set a $parameter of the scene file, or a value such as integrator.paths (repeatable)");
+    command.add_option("--reference", a.reference,
+                       "An EXR file that is taken for right: the view draws error against time");
+    command.add_option("--passes", a.passes, "Passes of a picture (default: the scene's sample_count)")
+        ->check(whole_number(1, std::uint64_t(1) << 30));
+    command.add_option("--seed", a.seed, "Another seed gives another, independent picture")
+        ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()));
+    add_threads(command, a.threads);
+    command.add_option("--port", a.port, "Listen on this port (default: one that is free)")
+        ->check(whole_number(0, 65535));
+    command.add_option("--bind", a.bind, "Listen on this address instead of 127.0.0.1; needs --token");
+    command.add_option("--token", a.token, "Part of the address (default: a random one)");
+    command.add_flag("--no-browser", a.no_browser, "Print the address, and open no browser");
+    command.callback([&a, &action] { action = [&a] { return view_command(a); }; });
+}
+
 // Nearest command or option to one that is not there, else the message of CLI11.
 std::string usage_message(const CLI::App& app, int argc, char** argv, const CLI::ParseError& error) {
     if (argc < 2) return error.what();
@@ -251,6 +274,9 @@ int parse_and_run(int argc, char** argv) {
 
     ExportArguments export_arguments;
     add_export(app, export_arguments, action);
+
+    ViewArguments view;
+    add_view(app, view, action);
 
     CLI::App& formats_app = *app.add_subcommand("formats", "Print the scene language as Markdown");
     formats_app.callback([&] { action = [] { return formats_command(); }; });

@@ -107,6 +107,18 @@ struct ExportArguments {
     std::uint64_t max_grid_megabytes = 2000;
 };
 
+struct ViewArguments {
+    std::vector<std::string> files;  ///< a scene, or pictures
+    SceneArguments scene;            ///< without its file
+    std::string reference;           ///< a picture; "": none
+    std::uint64_t seed = 0;
+    std::uint32_t passes = 0;  ///< 0: the scene's sample_count
+    int threads = 0;
+    unsigned short port = 0;  ///< 0: one that is free
+    std::string bind, token;  ///< "": the loopback address, a random token
+    bool no_browser = false;
+};
+
 /// Throws UsageError for a malformed definition.
 SceneChanges scene_changes(const SceneArguments& arguments);
 /// Values of a repeatable option, as names and values. Throws UsageError for a malformed one.
@@ -133,5 +145,6 @@ int convert_scene(const ConvertArguments& arguments);
 int compare_command(const CompareArguments& arguments);
 int export_command(const ExportArguments& arguments);
 int formats_command();
+int view_command(const ViewArguments& arguments);
 
 }  // namespace mote::apps

@@ -2,9 +2,8 @@
 // alone (Engelhardt 2013, Sec. 10.2).
 #pragma once
 
+#include <cstdint>
 #include <string>
-
-#include "core/parameters/add_type.h"
 
 namespace mote::compensation {
 
@@ -28,7 +27,6 @@ enum class LocalTransmittance : std::uint8_t {
 };
 
 struct CompensationSettings {
-    bool enabled = false;                                          ///< else the bound's loss stays
     bool surfaces = true, media = true;                            ///< of receivers on surfaces; in media
     Strategy strategy = Strategy::one_to_n;                        ///< how VPLs meet vertices
     Placement placement = Placement::free_path;                    ///< of vertices in media
@@ -40,17 +38,11 @@ struct CompensationSettings {
 
     /// If true, the mean of the estimate is the whole light.
     bool exact() const {
-        return enabled && surfaces && media && depth < 0 && local_visibility &&
+        return surfaces && media && depth < 0 && local_visibility &&
                transmittance == LocalTransmittance::exact;
     }
     /// As in scene files.
     std::string strategy_name() const;
 };
-
-/// A nested <compensation> of a scene file.
-using Compensation = core::SettingsObject<CompensationSettings>;
-
-/// none, exact, approximate.
-void register_compensation(core::Registry& registry);
 
 }  // namespace mote::compensation

@@ -2,10 +2,10 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-#include "core/scene/shadow_segment.h"
 
 #include <algorithm>
 
+#include "core/geometry/shadow_segment.h"
 #include "core/math/kd_tree.h"
 #include "core/scene/media_along.h"
 
@@ -96,7 +96,7 @@ class Gatherer {
     /// Visibility of a segment times the transmittance of its panes; there are no media.
     Rgb free(const Vec3& origin, const Vec3& direction, float distance) const {
         ++rays_.occlusion;
-        const Ray segment{origin, direction, 0.0f, distance * shadow_fraction};
+        const Ray segment{origin, direction, 0.0f, shadow_end(origin, distance)};
         if (!scene_.visible(segment)) return Rgb(0.0f);
         PathWeights passes;
         connect_through_panes(scene_, segment, passes);

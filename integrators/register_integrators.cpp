@@ -1,17 +1,16 @@
 #include "integrators/register_integrators.h"
 
-#include "compensation/compensation_settings.h"
+#include "compensation/residual.h"
 #include "integrators/register_parts.h"
-#include "integrators/screen_space_compensation/screen_space_compensation.h"
-#include "integrators/virtual_point_lights/vpl_visibility.h"
 #include "lights/selection/register_selection.h"
+#include "lights/visibility/visibility.h"
 
 namespace mote::integrators {
 
 void register_integrators(core::Registry& registry) {
     compensation::register_compensation(registry);
     register_screen_space_compensation(registry);
-    register_visibility(registry);
+    lights::register_visibility(registry);
     lights::register_selection(registry);
     register_mote_layers(registry);
     register_path(registry);

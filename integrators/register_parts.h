@@ -10,6 +10,7 @@
 
 namespace mote::integrators {
 
+void register_screen_space_compensation(core::Registry& registry);
 void register_mote_layers(core::Registry& registry);
 void register_path(core::Registry& registry);
 void register_volpath(core::Registry& registry);

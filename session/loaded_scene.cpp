@@ -62,34 +62,55 @@ LoadedScene LoadedScene::from_file(const std::string& path, const SceneChanges& 
 LoadedScene LoadedScene::from_file(const std::string& path, const SceneChanges& changes,
                                    std::shared_ptr<const core::Registry> registry) {
     LoadedScene loaded;
-    loaded.registry_ = std::move(registry);
+    loaded.registry_ = registry;
     loaded.load(changes, [&](const core::LoadOptions& options) {
         return core::load_scene(path, *loaded.registry_, options);
     });
+    loaded.reload_ = [path, registry](const SceneChanges& others) {
+        return from_file(path, others, registry);
+    };
     return loaded;
 }
 
 LoadedScene LoadedScene::from_text(const std::string& xml, const std::string& folder,
                                    const SceneChanges& changes, const std::string& name) {
+    return from_text(xml, folder, changes, name, std::make_shared<const core::Registry>(make_registry()));
+}
+
+LoadedScene LoadedScene::from_text(const std::string& xml, const std::string& folder,
+                                   const SceneChanges& changes, const std::string& name,
+                                   std::shared_ptr<const core::Registry> registry) {
     LoadedScene loaded;
-    loaded.registry_ = std::make_shared<const core::Registry>(make_registry());
+    loaded.registry_ = registry;
     loaded.source_ = fmt::format("{:016x}", core::checksum(std::as_bytes(std::span(xml))));
     loaded.load(changes, [&](const core::LoadOptions& options) {
         return core::load_scene_from_string(xml, folder, *loaded.registry_, options, name);
     });
+    loaded.reload_ = [xml, folder, name, registry](const SceneChanges& others) {
+        return from_text(xml, folder, others, name, registry);
+    };
     return loaded;
 }
 
 LoadedScene LoadedScene::from_tree(const SceneTree& tree, const SceneChanges& changes) {
-    LoadedScene loaded;
     core::Registry registry = make_registry();
     register_arrays(registry, tree.array_store());
-    loaded.registry_ = std::make_shared<const core::Registry>(std::move(registry));
-    loaded.source_ = tree.checksum();
+    return from_tree(std::make_shared<const SceneTree>(tree), changes,
+                     std::make_shared<const core::Registry>(std::move(registry)));
+}
+
+LoadedScene LoadedScene::from_tree(std::shared_ptr<const SceneTree> tree, const SceneChanges& changes,
+                                   std::shared_ptr<const core::Registry> registry) {
+    LoadedScene loaded;
+    loaded.registry_ = registry;
+    loaded.source_ = tree->checksum();
     loaded.load(changes, [&](const core::LoadOptions& options) {
         core::SceneDefines defines(options.defines);
-        return core::make_scene(tree.document(), defines, *loaded.registry_, options, tree.name());
+        return core::make_scene(tree->document(), defines, *loaded.registry_, options, tree->name());
     });
+    loaded.reload_ = [tree, registry](const SceneChanges& others) {
+        return from_tree(tree, others, registry);
+    };
     return loaded;
 }
 

@@ -1,6 +1,7 @@
 // A scene with the parts that it was made of: from a file, from text, or built in memory.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -52,6 +53,10 @@ class LoadedScene {
     const core::Registry& registry() const { return *registry_; }  ///< the types that it was loaded with
     const core::LoadReport& report() const { return report_; }     ///< approximations
     const SceneChanges& changes() const { return changes_; }       ///< with which it was loaded
+    /// Text of the scene, in today's words, with every change applied.
+    const core::Element& elements() const { return *report_.elements; }
+    /// Loads the same file, text or elements with other changes; meshes that stay are not read again.
+    LoadedScene reloaded(const SceneChanges& changes) const { return reload_(changes); }
     /// Throws InputError where the scene names none.
     const core::Integrator& integrator() const;
     /// A copy that another integrator renders; `settings` are what determines its pictures besides its type.
@@ -71,6 +76,11 @@ class LoadedScene {
 
   private:
     LoadedScene() = default;
+    static LoadedScene from_text(const std::string& xml, const std::string& folder,
+                                 const SceneChanges& changes, const std::string& name,
+                                 std::shared_ptr<const core::Registry> registry);
+    static LoadedScene from_tree(std::shared_ptr<const SceneTree> tree, const SceneChanges& changes,
+                                 std::shared_ptr<const core::Registry> registry);
     template <typename Load>
     void load(const SceneChanges& changes, const Load& load_now);
 
@@ -82,6 +92,7 @@ class LoadedScene {
     SceneChanges changes_;
     std::string source_;  ///< hash of what was loaded where there is no file
     double load_seconds_ = 0.0;
+    std::function<LoadedScene(const SceneChanges&)> reload_;
 };
 
 /// The integrator of a scene. Throws InputError that lists those there are when the scene names none.

@@ -54,7 +54,7 @@ void note_overlap(const core::Medium& medium, const core::Scene& scene, std::vec
 
 /// Single precision has seven digits: what the distance from the origin takes of them is lost to shapes.
 void note_distance(const core::Scene& scene, std::vector<std::string>& notes) {
-    constexpr double far_away = 1000.0;  ///< times the scene's size: a digit is left below shadow_fraction
+    constexpr double far_away = 1000.0;  ///< times the scene's size: a digit is left below shadow_fraction()
     const Bounds3 box = scene.bounds();
     const double reach = core::max_component(glm::max(-box.lower, box.upper));
     const double size = core::max_component(box.diagonal());

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <iterator>
 
+#include "core/film/film_image.h"
 #include "core/objects/error.h"
 #include "core/objects/memory_error.h"
 #include "core/render/checkpoint.h"
@@ -39,8 +40,14 @@ std::vector<std::string> layers_without_passes(const core::Film& film) {
     return names;
 }
 
-core::ImageChannels beauty_of(const core::Film& film) {
+core::ImageChannels preview_of(const core::Film& film, bool with_layers) {
     core::ImageChannels image;
+    if (with_layers) {
+        image = core::film_image(film);
+        image.metadata["passes"] = std::to_string(film.has_passes(1) ? film.pass_count() : 0);
+        image.metadata["noise"] = fmt::format("{:.6g}", film.noise());
+        return image;
+    }
     image.width = film.width(), image.height = film.height();
     image.add_rgb("", film.beauty());
     return image;
@@ -62,6 +69,11 @@ class RenderWork {
                         : make_denoiser(settings.denoise, threads_, false, settings.oidn_package)),
           plan_(scene.plan()),
           hash_(render_hash(scene, settings)) {
+        if (settings.stop.noise && !settings.stop.passes && !settings.stop.seconds &&
+            !plan_.noise_unknown.empty())
+            throw core::InputError(
+                "the noise of this image is not known, and a limit on it would not end the render: " +
+                plan_.noise_unknown + "; give a number of passes or a time");
         if (settings.begin_with && settings.begin_with->scene_hash != hash_)
             throw core::InputError(
                 "the passes that this render begins with are of another one: the scene, a file that it "
@@ -86,6 +98,7 @@ class RenderWork {
         const core::FilmSettings& size = scene_.scene().film();
         r.memory = settings_.memory.without(
             settings_.auxiliary ? center_bytes * double(size.width) * double(size.height) : 0.0);
+        r.noise_is_known = plan_.noise_unknown.empty();
         r.content_hash = hash_, r.features = features_of(scene_, settings_);
         r.interrupted = &watched_.stop(), r.time_is_over = &watched_.time_is_over();
         r.keep_part_of_first_pass = !settings_.range;
@@ -95,12 +108,20 @@ class RenderWork {
             watched_.report(why + "; it is tried again");
         };
         r.progress = [this](const core::RenderProgress& p) { watched_.report(p); };
-        if (wants_previews_) r.preview = [this](const core::Film& film) { watched_.report(beauty_of(film)); };
+        r.abandoned = &watched_.abandoned();
+        const RenderObserver& observer = watched_.observer();
+        r.preview_every_seconds = observer.preview_every_seconds();
+        r.preview_is_seen = [&observer] { return observer.preview_is_seen(); };
+        if (wants_previews_)
+            r.preview = [this, &observer](const core::Film& film) {
+                watched_.report(preview_of(film, observer.wants_layers()));
+            };
         return r;
     }
 
     Rendered render_here() {
         core::RenderResult result = core::render(scene_.scene(), scene_.integrator(), request());
+        if (watched_.abandoned()) return {};
         result.statistics.seconds["load"] = scene_.load_seconds();
         if (settings_.begin_with) add_statistics(result.statistics, settings_.begin_with->statistics);
         if (result.film.pass_count() == 0 && !watched_.cancelled())

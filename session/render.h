@@ -19,7 +19,7 @@
 namespace mote::session {
 
 /// Receives what a render reports, twenty times a second at most. An exception from any function ends the
-/// render, and leaves render().
+/// render, whose picture is not finished, and leaves render().
 class RenderObserver {
   public:
     virtual ~RenderObserver() = default;
@@ -29,6 +29,12 @@ class RenderObserver {
     /// The picture so far, its beauty alone, from the first pass on. Now and then, so that it takes a
     /// twentieth of the time at most.
     virtual void preview(const core::ImageChannels&) {}
+    /// True: preview() receives every layer and variance, as a file has them, and "passes" (0: a part of the
+    /// first ones is missing) and "noise" as metadata.
+    virtual bool wants_layers() const { return false; }
+    virtual double preview_every_seconds() const { return 1.0; }  ///< shortest time between two previews
+    /// Called in the thread of the passes: false spares the work of a preview.
+    virtual bool preview_is_seen() const { return true; }
     virtual void warning(const std::string&) {}  ///< at once: a checkpoint that could not be written
     /// Called in the thread of the passes, before the first one: from now on an end loses something.
     virtual void building_is_over() {}

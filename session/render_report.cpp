@@ -112,6 +112,8 @@ std::map<std::string, std::string> picture_metadata(const RenderReport& r) {
     if (const auto bound = values.find("bound"); bound != values.end())
         metadata["bound"] = fmt::format("{:.9g}", bound->second);  // for mote ssbc
     if (std::isfinite(noise)) metadata["noise"] = fmt::format("{:.6g}", noise);
+    for (const core::PlanEntry& e : r.plan.runs)
+        if (e.topic == "filter") metadata["filter"] = e.choice;  // with the version of a library
     for (const core::PlanEntry& e : r.plan.missing)
         metadata["leavesOut"] += (metadata["leavesOut"].empty() ? "" : ", ") + e.topic;
     for (const std::string& text : r.approximations)

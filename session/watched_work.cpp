@@ -53,6 +53,7 @@ Rendered WatchedWork::run(const std::function<Rendered()>& work) {
         watch();
     } catch (...) {
         of_observer = std::current_exception();
+        abandoned_ = true;
         cancel();
     }
     if (thread.joinable()) thread.join();

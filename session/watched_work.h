@@ -32,8 +32,11 @@ class WatchedWork {
     const std::atomic<bool>& stop() const { return stop_; }
     const std::atomic<bool>& time_is_over() const { return time_is_over_; }
     bool cancelled() const { return cancelled_; }  ///< by the caller
-    void begin_passes();                           ///< the limit in time is now that of the last pass
-    void end_passes();                             ///< no limit in time any more
+    /// True where the observer threw: what the work makes is discarded.
+    const std::atomic<bool>& abandoned() const { return abandoned_; }
+    const RenderObserver& observer() const { return observer_; }
+    void begin_passes();  ///< the limit in time is now that of the last pass
+    void end_passes();    ///< no limit in time any more
     void report(const core::RenderProgress& progress);
     void report(core::ImageChannels preview);
     void report(const std::string& warning);
@@ -57,7 +60,7 @@ class WatchedWork {
     const std::optional<double> seconds_;
     RenderObserver& observer_;
     const Clock::time_point start_ = Clock::now();
-    std::atomic<bool> stop_{false}, time_is_over_{false}, cancelled_{false};
+    std::atomic<bool> stop_{false}, time_is_over_{false}, cancelled_{false}, abandoned_{false};
     bool alone_ = false;  ///< no thread was granted
     std::mutex mutex_;
     std::condition_variable change_;

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Measures of how plain the source is: lines, parameters, repeated declarations, twins, comments, words, error measures.
+"""Measures of how plain the source is: lines, parameters, structure of the methods, repeated declarations, twins, comments, words,
+error measures.
 
 Usage: count_house.py [--where] [ROOT]
 Counts the committed files of the checkout ROOT (default: the one that holds this script). The goal stands beside each
@@ -14,10 +15,10 @@ sys.path[:0] = [str(HERE / "tests/floors"), str(HERE / "tests/pages")]
 import check_floors  # noqa: E402
 import check_words  # noqa: E402
 
-PRODUCT = ["core", "media", "lights", "compensation", "screenspace", "gathering", "integrators", "session", "apps", "trade",
+PRODUCT = ["core", "media", "lights", "compensation", "screenspace", "gathering", "integrators", "session", "apps", "trade", "viewer",
            "python", "plugins"]
 CPP = {".h", ".cpp", ".c"}
-GOAL_LINES, GOAL_PARAMETERS = 76000, 12
+GOAL_LINES, GOAL_PARAMETERS, GOAL_ESTIMATOR = 76000, 12, 150
 NESTED = {"compensation", "visibility", "selection", "integrator"}  # types of rows that hold a type with rows of its own
 
 GETTER = re.compile(r"(?:\.|->)(?:get|require)_(?:bool|int|int_in|float|float_in|string|rgb|rgb_in|vec3|transform|choice|file)\(")
@@ -28,6 +29,14 @@ TYPE = (r'"(?:boolean|integer|float|string|rgb|point|vector|transform|texture|vo
 ROW = re.compile(rf'\{{\s*"[a-z_0-9]+",\s*{TYPE},\s*(?:"[^"\n]*"|[^",{{}}]+),(?!\s*{TYPE})')
 COMMENT = re.compile(r"(?P<code>.*?)(?P<mark>//[/!]?<?)\s*(?P<text>.*)")
 OPENING = re.compile(r"(?:Of|Whether|The same|What|Who|Whose|Whoever)\b")
+
+# Structure of the methods, in integrators/ and lights/selection/.
+ESTIMATOR = re.compile(r"\bclass \w+ final : public (?:core::)?Estimator \{")
+STRUCTURE = {  # name: (pattern, goal)
+    "packets of eye paths": (r"\bstd::optional<EyePath<\w+>> \w+;", 1),
+    "image loops": (r"\bfor \(int x = x0; x < x1;", 1),
+    "enums of selection": (r"\benum class \w*(?:Selection|SelectedBy)\w*\b", 0),
+}
 
 # Files that hold the words that are searched for.
 HOLD_WORDS = {"tests/pages/check_words.py", "tests/pages/self_check.py", "tools/count_house.py", "tests/floors/count_house_check.py",
@@ -112,6 +121,16 @@ class House:
         return {name: (sum(t not in NESTED for t in types(body)), sum(t in NESTED for t in types(body)))
                 for name, body in re.findall(r"^### `(\w+)`\n(.*?)(?=^### |\Z)", section.group(1) if section else "", re.M | re.S)}
 
+    def structure(self):
+        """By name: how often it stands in the methods."""
+        paths = [p for p in self.cpp(PRODUCT) if self.name(p).startswith(("integrators/", "lights/selection/"))]
+        return {name: self.find(name, pattern, paths) for name, (pattern, _) in STRUCTURE.items()}
+
+    def estimators(self):
+        """By file that holds an estimator's passes: its lines."""
+        texts = {self.name(p): p.read_text("utf-8", "replace") for p in self.cpp(["integrators"])}
+        return {name: text.count("\n") for name, text in texts.items() if ESTIMATOR.search(text)}
+
     def circles(self):
         places = self.places["circles of subfolders"] = list(check_floors.circles(self.root, self.files))
         return len(places)
@@ -177,10 +196,14 @@ def report(root, where=False):
     """The page as text."""
     house = House(root)
     lines, parameters, twins = house.lines_by_folder(), house.parameters(), house.twins()
+    estimators, structure = house.estimators(), house.structure()
     rows = [("product C++ [lines]", sum(lines.values()), f"at most {GOAL_LINES}")]
     rows += [(f"  {folder}", count, "") for folder, count in lines.items()]
     rows += [("most parameters of an integrator", max((own for own, _ in parameters.values()), default=0), f"at most {GOAL_PARAMETERS}")]
     rows += [(f"  {name}", own, f"and {nested} nested types" if nested else "") for name, (own, nested) in parameters.items()]
+    rows += [("longest file of an estimator [lines]", max(estimators.values(), default=0), f"at most {GOAL_ESTIMATOR}")]
+    rows += [(f"  {name.removeprefix('integrators/')}", count, "") for name, count in estimators.items()]
+    rows += [(name, count, str(STRUCTURE[name][1])) for name, count in structure.items()]
     rows += [("getters and rows stated apart", house.getters() + house.rows(), "0")]
     rows += [(f"  {what}", len(house.places[what]), "") for what in ("getters", "rows")]
     rows += [("circles of subfolders", house.circles(), "0")]

@@ -4,6 +4,7 @@
 #   tools/install_packages.sh          install what is missing (with sudo when not root)
 #   tools/install_packages.sh --list   print the names and end
 #   tools/install_packages.sh --fuzz   also what the long campaign of tools/fuzz/run is built with
+#   tools/install_packages.sh --browser  also chromium (411 MB), in which the viewer's page is tested
 #   pip install pyoidn                 not from Debian and not needed: OpenImageDenoise, for --denoise (docs/guide.md)
 #   MOTE_SKIP_PACKAGES=1               believe that everything is there, on systems without dpkg
 set -euo pipefail
@@ -14,6 +15,7 @@ packages=(
   libopenvdb-dev libnanovdb-dev                       # smoke and clouds
   zlib1g-dev                                          # Mitsuba's serialized meshes
   libblosc-dev libboost-iostreams-dev                 # what OpenVDB's CMake module asks for, and zlib
+  libboost-dev                                        # Boost.Beast, headers: the viewer's server
   libopenexr-dev libimath-dev python3-imath           # EXR; Imath's CMake config names a Python library
   libopenimageio-dev openimageio-tools                # textures and PNG; its CMake config names its tools
   libassimp-dev                                       # mesh files
@@ -29,6 +31,9 @@ packages=(
 
 if [[ "${1:-}" == --fuzz ]]; then
   packages+=(clang-14 libclang-rt-14-dev)
+fi
+if [[ "${1:-}" == --browser ]]; then
+  packages+=(chromium)
 fi
 if [[ "${1:-}" == --list ]]; then
   printf '%s\n' "${packages[@]}"

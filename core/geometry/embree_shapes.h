@@ -37,6 +37,7 @@ class TracedShape {
     TracedShape(const Shape& shape, TracingUnit unit);
 
     const Shape& shape() const { return *shape_; }
+    const TriangleMesh* mesh() const { return mesh_; }  ///< null: it is none
     Geometry make_geometry(RTCDevice device) const;
     /// Fills a hit except t. The direction need not have unit length.
     void fill_hit(const Vec3& origin, const Vec3& direction, const RawHit& raw, SurfaceHit& hit) const;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "core/geometry/embree_scenes.h"
+#include "core/geometry/embree_batch.h"
 
 namespace mote::core {
 namespace {
@@ -42,20 +42,11 @@ void scale(ShadowPacket& p, embree::TracingUnit unit) {
         for (int lane = 0; lane < ShadowPacket::width; ++lane) numbers[lane] *= unit.per_metre;
 }
 
-/// Some builds of Embree (Debian's) abort on rays that are not finite or start beyond what it can trace, in
-/// the space of an instance too (ShapeScenes::max_ray_origin): those hit nothing.
-inline bool traceable(const Vec3& origin, const Vec3& direction, float t_min, float t_max, float max_origin) {
-    const auto below = [](const Vec3& v, float limit) {
-        return std::fabs(v.x) < limit && std::fabs(v.y) < limit && std::fabs(v.z) < limit;
-    };
-    return below(origin, max_origin) && below(direction, largest_coordinate) && std::fabs(t_min) < infinity &&
-           t_max >= t_min;
-}
 bool traceable(const Ray& r, float max_origin) {
-    return traceable(r.origin, r.direction, r.t_min, r.t_max, max_origin);
+    return embree::traceable(r.origin, r.direction, r.t_min, r.t_max, max_origin);
 }
 bool traceable(const ShadowPacket& p, int i, float max_origin) {
-    return traceable(p.origin(i), p.direction(i), p.t_min[i], p.t_max[i], max_origin);
+    return embree::traceable(p.origin(i), p.direction(i), p.t_min[i], p.t_max[i], max_origin);
 }
 
 RTCRayHit embree_ray_hit(const Ray& ray, embree::TracingUnit unit) {
@@ -149,6 +140,16 @@ void RayTracer::closest(std::span<const HitQuery> rays, bool coherent) const {
             closest_of_packet<RTCRayHit8>(impl_->scenes, query, max_origin, part);
         rays = rays.subspan(part.size());
     }
+}
+
+void RayTracer::closest(const RayBatch& rays, bool coherent, HitBatch& hits) const {
+    embree::closest(impl_->scenes, rays, coherent, hits);
+}
+
+SurfaceHit RayTracer::surface_hit(const RayBatch& rays, const HitBatch& hits, int i) const {
+    SurfaceHit hit;
+    impl_->scenes.fill_hit(rays.ray(i), embree::raw_hit(hits, i), hit);
+    return hit;
 }
 
 bool RayTracer::occluded(const Ray& ray) const {

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "core/geometry/ray_batch.h"
 #include "core/geometry/shadow_packet.h"
 #include "core/geometry/shape.h"
 #include "core/math/ray.h"
@@ -42,6 +43,10 @@ class RayTracer {
     std::optional<SurfaceHit> closest(const Ray& ray, Group group = Group::surfaces) const;
     /// Closest hits of many rays; `coherent`: neighbours have similar directions.
     void closest(std::span<const HitQuery> rays, bool coherent) const;
+    /// Closest hits of a batch of rays.
+    void closest(const RayBatch& rays, bool coherent, HitBatch& hits) const;
+    /// All of a hit of the batch. Precondition: the ray met a surface.
+    SurfaceHit surface_hit(const RayBatch& rays, const HitBatch& hits, int i) const;
     /// True if a surface lies within (t_min, t_max).
     bool occluded(const Ray& ray) const;
     /// First hits of sixteen rays at once.

@@ -4,7 +4,7 @@
 #include <concepts>
 #include <cstdint>
 
-#include "core/math/vec.h"
+#include "core/geometry/shadow_segment.h"
 
 namespace mote::core {
 
@@ -32,6 +32,12 @@ struct alignas(64) ShadowPacket {
         origin_x[lane] = origin.x, origin_y[lane] = origin.y, origin_z[lane] = origin.z;
         direction_x[lane] = direction.x, direction_y[lane] = direction.y, direction_z[lane] = direction.z;
         t_min[lane] = 0.0f, t_max[lane] = end;
+    }
+    /// A lane's segment between two points [m], up to the surface at its end.
+    template <std::integral Lane>
+    void set_segment(Lane lane, const Vec3& from, const Vec3& to) {
+        const Vec3 segment = to - from;
+        set(lane, from, segment, shadow_fraction(from, 1.0f / glm::length(segment)));
     }
     template <std::integral Lane>
     Vec3 origin(Lane lane) const {

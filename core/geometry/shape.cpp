@@ -23,17 +23,4 @@ float Shape::pdf_visible(const Vec3& p, const Vec3& wi, const SurfaceHit& hit) c
                                glm::dot(hit.geometric_normal, wi));
 }
 
-Vec3 offset_origin(const Vec3& position, const Vec3& geometric_normal, float error, const Vec3& direction) {
-    // On a plane through the origin nothing is rounded and the error is 0, but a ray that starts on the plane
-    // itself meets it at t = 0.
-    constexpr double min_offset = 1e-18;
-    const double size = std::fmax(double(error), min_offset);
-    const double distance = glm::dot(direction, geometric_normal) < 0.0f ? -size : size;
-    Vec3 origin;
-    for (int axis = 0; axis < 3; ++axis)
-        origin[axis] =
-            round_away(double(position[axis]) + distance * double(geometric_normal[axis]), position[axis]);
-    return origin;
-}
-
 }  // namespace mote::core

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/geometry/rounding.h"
 #include "core/materials/texture_coordinates.h"
 #include "core/math/bounds.h"
 #include "core/math/direction_cone.h"
@@ -86,9 +87,6 @@ class Shape : public Object {
     virtual const SurfaceAttributes* attributes() const { return nullptr; }
 };
 
-/// The origin for a ray leaving `position` in `direction`, moved off the surface to the direction's side far
-/// enough that the ray cannot hit the surface it starts on.
-Vec3 offset_origin(const Vec3& position, const Vec3& geometric_normal, float error, const Vec3& direction);
 /// The origin for a ray leaving a hit.
 inline Vec3 offset_origin(const SurfaceHit& hit, const Vec3& direction) {
     return offset_origin(hit.position, hit.geometric_normal, hit.error, direction);

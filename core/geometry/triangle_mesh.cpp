@@ -103,8 +103,8 @@ float TriangleMesh::support(const Vec3& direction) const {
     return farthest;
 }
 
-Vec3 TriangleMesh::shading_normal(std::uint32_t primitive, float u, float v, const Vec3& geometric) const {
-    if (built_->data.normals.empty()) return geometric;
+Vec3 TriangleMesh::interpolated_normal(std::uint32_t primitive, float u, float v,
+                                       const Vec3& geometric) const {
     const auto& corner = built_->data.triangles[primitive];
     const Vec3 n = (1.0f - u - v) * built_->data.normals[corner[0]] + u * built_->data.normals[corner[1]] +
                    v * built_->data.normals[corner[2]];
@@ -163,7 +163,7 @@ std::optional<TriangleMesh::Halves> TriangleMesh::find_halves(std::span<const Tr
 }
 
 /// A point of the unit square beyond its diagonal lies in the second triangle.
-TriangleMesh::Place TriangleMesh::sample_place(const Vec2& u) const {
+TriangleMesh::Point TriangleMesh::sample_point(const Vec2& u) const {
     if (!built_->halves) {
         const auto chosen = built_->area_distribution.sample_discrete(u.x);
         return {std::uint32_t(chosen.index), square_to_triangle({chosen.remapped, u.y})};
@@ -179,8 +179,16 @@ TriangleMesh::Place TriangleMesh::sample_place(const Vec2& u) const {
     return {std::uint32_t(beyond), {weights[1], weights[2]}};
 }
 
+std::optional<Parallelogram> TriangleMesh::parallelogram() const {
+    if (!built_->halves) return std::nullopt;
+    const Triangle& triangle = built_->triangles[0];
+    const auto corner = [&](int i) { return triangle.corners[std::size_t(built_->halves->first + i) % 3]; };
+    return Parallelogram{corner(0), corner(1) - corner(0), corner(2) - corner(0), triangle.normal,
+                         built_->area};
+}
+
 ShapeSample TriangleMesh::sample_area(const Vec2& u) const {
-    const auto [primitive, b] = sample_place(u);
+    const auto [primitive, b] = sample_point(u);
     const Triangle& triangle = built_->triangles[primitive];
     const Vec3 position = triangle.point(b.x, b.y);
     return {position, triangle.normal, texture_coordinates(primitive, b.x, b.y), 1.0f / built_->area,

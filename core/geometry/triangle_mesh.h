@@ -27,6 +27,19 @@ struct MeshData {
     std::vector<MeshAttribute> attributes = {};           ///< that textures may read
 };
 
+/// The point of a triangle with barycentric coordinates u and v of its second and third corner.
+inline Vec3 triangle_point(const Vec3& a, const Vec3& b, const Vec3& c, float u, float v) {
+    const Vec3d p0(a);
+    return Vec3(p0 + double(u) * (Vec3d(b) - p0) + double(v) * (Vec3d(c) - p0));
+}
+
+/// Points corner + u.x first + u.y second of u in the unit square.
+struct Parallelogram {
+    Vec3 corner, first, second;  ///< [m]
+    Vec3 normal;                 ///< geometric, unit
+    float area;                  ///< [m^2]
+};
+
 /// Triangles as one shape; its data does not change.
 class TriangleMesh final : public Shape, private SurfaceAttributes {
   public:
@@ -57,8 +70,28 @@ class TriangleMesh final : public Shape, private SurfaceAttributes {
         return built_->data.attributes.empty() ? nullptr : this;
     }
 
+    /// Data of a triangle that fill a hit: one cache miss instead of two dependent ones.
+    struct alignas(64) Triangle {
+        std::array<Vec3, 3> corners;  ///< [m]
+        Vec3 normal;                  ///< geometric, unit
+        float plane_error;            ///< of Embree's test on which side a ray starts, along the normal [m]
+
+        explicit Triangle(const std::array<Vec3, 3>& corners);
+        Vec3 point(float u, float v) const {
+            return triangle_point(corners[0], corners[1], corners[2], u, v);
+        }
+        float error(const Vec3& point) const { return quantization_error(point, normal) + plane_error; }
+    };
+    const Triangle& triangle(std::uint32_t primitive) const { return built_->triangles[primitive]; }
+    /// Interpolated, on the side of the geometric normal; that one itself where vertices have none.
+    Vec3 shading_normal(std::uint32_t primitive, float u, float v, const Vec3& geometric) const {
+        return built_->data.normals.empty() ? geometric : interpolated_normal(primitive, u, v, geometric);
+    }
+    /// The parallelogram that its two triangles form, or nothing.
+    std::optional<Parallelogram> parallelogram() const;
+
   private:
-    Vec3 shading_normal(std::uint32_t primitive, float u, float v, const Vec3& geometric) const;
+    Vec3 interpolated_normal(std::uint32_t primitive, float u, float v, const Vec3& geometric) const;
     /// dp/du and dp/dv; across the geometric normal where the texture coordinates do not define them.
     void fill_derivatives(std::uint32_t primitive, SurfaceHit& hit) const;
     TextureCoordinates texture_coordinates(std::uint32_t primitive, float u, float v) const;
@@ -70,25 +103,11 @@ class TriangleMesh final : public Shape, private SurfaceAttributes {
     const MeshAttribute* find_attribute(std::string_view name) const;
     Rgb attribute_at(const MeshAttribute& attribute, std::uint32_t primitive, const Vec2& b) const;
 
-    /// Data of a triangle that fill a hit: one cache miss instead of two dependent ones.
-    struct alignas(64) Triangle {
-        std::array<Vec3, 3> corners;  ///< [m]
-        Vec3 normal;                  ///< geometric, unit
-        float plane_error;            ///< of Embree's test on which side a ray starts, along the normal [m]
-
-        explicit Triangle(const std::array<Vec3, 3>& corners);
-        Vec3 point(float u, float v) const {
-            const Vec3d p0(corners[0]);
-            return Vec3(p0 + double(u) * (Vec3d(corners[1]) - p0) + double(v) * (Vec3d(corners[2]) - p0));
-        }
-        float error(const Vec3& point) const { return quantization_error(point, normal) + plane_error; }
-    };
-    /// A triangle and barycentric coordinates of its second and third corner.
-    struct Place {
+    struct Point {
         std::uint32_t primitive;
-        Vec2 barycentric;
+        Vec2 barycentric;  ///< coordinates of the triangle's second and third corner
     };
-    Place sample_place(const Vec2& u) const;
+    Point sample_point(const Vec2& u) const;
     /// Two triangles that form a parallelogram: their corners opposite to the diagonal that they share.
     struct Halves {
         int first, second;  ///< 0 to 2

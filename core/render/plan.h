@@ -20,6 +20,9 @@ struct Plan {
     std::vector<PlanEntry> left_out;  ///< code and data that this scene does not need
     std::vector<PlanEntry> missing;   ///< transport that this integrator cannot compute in this scene
     std::vector<std::string> costly;  ///< sentences on what takes very long in this scene, with its size
+    /// The light that is found so rarely that the spread between passes misses it: no noise is stated. ""
+    /// where the spread shows all.
+    std::string noise_unknown;
 
     void run(std::string topic, std::string choice, std::string reason);
     void leave_out(std::string topic, std::string choice, std::string reason);

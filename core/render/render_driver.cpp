@@ -41,6 +41,7 @@ class PassLoop {
     /// Estimator::finish() of the picture.
     void finish_picture(const std::string& type) {
         if (result_.film.pass_count() == 0 || !result_.finished_pixels.empty() || request_.range) return;
+        if (request_.abandoned && request_.abandoned->load()) return;
         const Clock::time_point begin = Clock::now();
         try {
             if (!result_.interrupted)
@@ -56,25 +57,40 @@ class PassLoop {
     void state_noise() {
         const Film::GainAndNoise found = result_.film.gain_and_noise();
         result_.statistics.values["noise"] = known(found.noise);
-        if (found.noise < known(found.noise))
+        if (found.noise == 0.0 && found_no_light())
             result_.statistics.warnings.emplace_back(
                 "no pass found any light but that of lights in view: how noisy the picture is, is not known");
         result_.statistics.values["varianceGain"] = found.gain;
     }
 
   private:
-    /// Passes that have found no light yet, but that of lights in view, agree with each other and say
-    /// nothing: infinity.
+    /// The noise, or infinity where the passes do not show it.
     double known(double noise) const {
-        if (noise > 0.0) return noise;
+        const bool shown =
+            request_.noise_is_known && !has_few_samples() && (noise > 0.0 || !found_no_light());
+        return shown ? noise : infinity;
+    }
+    /// The variance of 64 normal samples has a relative standard error of sqrt(2 / 63), a sixth; that of
+    /// fewer, or of light that few paths meet, may say nothing.
+    bool has_few_samples() const {
+        constexpr double min_samples = 64.0;
+        const Film& film = result_.film;
+        std::uint32_t passes = film.pass_count();
+        for (const Layer& layer : film.layers())
+            if (!layer.auxiliary) passes = std::min(passes, film.pass_count(layer.part));
+        return double(passes) * double(film.width()) * double(film.height()) < min_samples;
+    }
+    /// Passes that have found no light yet, but that of lights in view, agree with each other and say
+    /// nothing.
+    bool found_no_light() const {
         const Film& film = result_.film;
         for (std::size_t i = 0; i < film.layers().size(); ++i) {
             const Layer& layer = film.layers()[i];
             if (layer.auxiliary || layer.transport == TransportSet(Transport::emission)) continue;
             const std::vector<Rgb> mean = film.mean(i);
-            if (std::ranges::any_of(mean, [](const Rgb& c) { return c != Rgb(0.0f); })) return noise;
+            if (std::ranges::any_of(mean, [](const Rgb& c) { return c != Rgb(0.0f); })) return false;
         }
-        return infinity;
+        return true;
     }
     /// After an interruption: reuses the last preview's result of every step that would take too long.
     void finish_in_a_hurry() {
@@ -166,15 +182,17 @@ class PassLoop {
     void show_preview() {
         // The noise in reports of progress is that of the picture that a preview would show.
         const bool for_the_noise = request_.progress && !stop_.noise && runner_.estimator().changes_noise();
-        if ((!request_.preview && !for_the_noise) || is_done()) return;
+        const bool seen = request_.preview && (!request_.preview_is_seen || request_.preview_is_seen());
+        if ((!seen && !for_the_noise) || is_done()) return;
         // After this time a preview is shown though some part of the picture is still black.
         constexpr double patience = 2.5;
         if (!result_.film.has_passes(1) && seconds_since(start_) < patience) return;
-        if (previews_ > 0 && seconds_since(preview_time_) < std::max(1.0, 20.0 * preview_seconds_)) return;
+        const double wait = std::max(seen ? request_.preview_every_seconds : 1.0, 20.0 * preview_seconds_);
+        if (previews_ > 0 && seconds_since(preview_time_) < wait) return;
         const Clock::time_point begin = Clock::now();
         try {
             finish_for_now([&] {
-                if (request_.preview) request_.preview(result_.film);
+                if (seen) request_.preview(result_.film);
             });
         } catch (const Cancelled&) {
         }

@@ -53,17 +53,22 @@ struct RenderRequest {
     bool all_squares = false;          ///< the film keeps variances of all layers
     std::vector<HitFeature> features;  ///< become layers of the film, behind those of the integrator
     MemoryBudget memory;               ///< of the film, and of what the integrator builds
+    bool noise_is_known = true;        ///< false: none is stated (Plan::noise_unknown)
     std::function<bool(const Film&)> enough;  ///< a rule of the caller's, tested with the noise rule
     std::function<void(const RenderProgress&)> progress;  ///< called after every pass; may be empty
     /// Shown the picture so far, as Estimator::finish() leaves it, as soon as every part has a pass, after
     /// some seconds those that have one, and then now and then: it takes a twentieth of the time at most. May
     /// be empty.
     std::function<void(const Film&)> preview;
+    double preview_every_seconds = 1.0;     ///< shortest time between two of them
+    std::function<bool()> preview_is_seen;  ///< false: a preview would have no use now; empty: always true
     std::function<void(const std::string&)> checkpoint_failed;  ///< called at once; retried later
     std::function<void()> building_is_over;           ///< called before the first pass; may be empty
     std::function<void()> passes_are_over;            ///< called before Estimator::finish; may be empty
     const std::atomic<bool>* interrupted = nullptr;   ///< set by Ctrl-C, and when the time is over
     const std::atomic<bool>* time_is_over = nullptr;  ///< set before `interrupted`: it was not Ctrl-C
+    /// Set before `interrupted`: the picture is discarded, so it is not finished.
+    const std::atomic<bool>* abandoned = nullptr;
     /// Wall time that the command took before: what stop.seconds is for begins there.
     double seconds_before = 0.0;
     /// Where no pass becomes complete: the pixels of the first that did (RenderResult::finished_pixels).

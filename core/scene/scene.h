@@ -88,6 +88,8 @@ class Scene final : public LitScene {
     /// By the light hierarchy; see scene_lights.cpp.
     LightChoice choose_light(const LightReceiver& receiver, float u) const override;
     float light_probability(const LightReceiver& receiver, const Emitter* emitter) const override;
+    /// The light that choose_light() returns with certainty; null: there are several, or none.
+    const Emitter* only_light() const { return only_light_; }
     const LightTree& light_tree() const { return *light_tree_; }  ///< the hierarchy of lights with a place
     /// Proportional to power.
     LightChoice choose_emitter_by_power(float u, float* remapped = nullptr) const override;

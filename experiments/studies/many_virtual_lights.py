@@ -28,7 +28,7 @@ from origin import Origin
 SHARED = "multidimensional:0.02:1000:0:0.2:0.2"
 TO_TWO_PERCENT = "multidimensional:0.018:1100:0:0.25:0.25"  # in the smoke room
 METHODS = ["lightcuts:0.02:1000", "multidimensional:0.02:1000", SHARED, TO_TWO_PERCENT, "multidimensional:0.02:1000:0:5:5",
-           "stochastic:64", "stochastic:256", "ris:128:16", "ris:256:32", "ris:512:64"]
+           "uniform:64", "uniform:256", "stochastic:64", "stochastic:256", "ris:128:16", "ris:256:32", "ris:512:64"]
 # Methods that the estimated error ends, not their thresholds.
 BY_ERROR = [f"multidimensional:0.002:4000:{error}:0.2:0.2" for error in (0.08, 0.04, 0.02)]
 GROWTH = "multidimensional:0.002:4000:0.04:0.2:0.2"

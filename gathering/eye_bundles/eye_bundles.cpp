@@ -1,9 +1,9 @@
 #include "gathering/eye_bundles/eye_bundles.h"
 
+#include "core/geometry/shadow_segment.h"
 #include "core/math/frame.h"
 #include "core/math/warp.h"
 #include "core/scene/media_along.h"
-#include "core/scene/shadow_segment.h"
 
 namespace mote::gathering {
 

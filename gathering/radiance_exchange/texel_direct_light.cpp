@@ -1,7 +1,7 @@
 #include "gathering/radiance_exchange/texel_direct_light.h"
 
 #include <tbb/parallel_for.h>
-#include "core/scene/shadow_segment.h"
+#include "core/geometry/shadow_segment.h"
 
 #include "core/math/sampler.h"
 #include "gathering/atlas/surface_place.h"

@@ -1,7 +1,8 @@
 #include "integrators/bidirectional/strategies.h"
 
+#include "core/geometry/shadow_segment.h"
+#include "core/scene/emission_ray.h"
 #include "core/scene/light_from_infinity.h"
-#include "core/scene/shadow_segment.h"
 
 namespace mote::integrators {
 
@@ -30,7 +31,7 @@ bool Strategies<Media>::start_light_path(Sampler& sampler, SubpathWalk<Media>& w
         state = scene_.emitter_medium_state(*choice.emitter, *emission);
         if (!reaches_scene(*choice.emitter, state)) return false;
     }
-    walk.start({emission->origin, emission->direction}, start.receiver, light_start_.infinite(), weights,
+    walk.start(emission_ray(*choice.emitter, *emission), start.receiver, light_start_.infinite(), weights,
                state);
     return true;
 }

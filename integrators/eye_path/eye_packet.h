@@ -98,7 +98,10 @@ class EyePacket {
                                lane.path->wants_connection() && lane.path->begin_light(c, how);
             const bool traced = begun && !c.map;
             connected[std::size_t(i)] = begun, rays += traced;
-            shadows.set(i, c.shadow.origin, c.shadow.direction, traced ? c.shadow.t_max : -1.0f);
+            if (traced)
+                shadows.set(i, c.shadow.origin, c.shadow.direction, c.shadow.t_max);
+            else
+                shadows.set(i, core::Vec3(0.0f), core::Vec3(0.0f), -1.0f);
         }
         walk_.rays.occlusion += rays;
         if (rays > 0) scene_.find_occluded({&shadows, 1});

@@ -84,10 +84,26 @@ class EyeTask {
         for_each(render, [](const PacketPixels&) {});
     }
 
+    /// For methods with paths of their own, one a pixel: calls start(EyeRay) for all pixels of the task, and
+    /// stores sum(number) of each, a TransportSum, after run().
+    template <typename Paths>
+    void trace_all(Paths& paths) {
+        paths.clear();
+        for_each_pixel([&](int x, int y) { paths.start(make_eye_ray(scene_, options_, context_, x, y)); });
+        paths.run();
+        int number = 0;
+        for_each_pixel([&](int x, int y) { store(paths.sum(number++), *image_, x, y, Media); });
+    }
+
   private:
     template <bool>
     friend class ImageLoop;
 
+    template <typename Visit>
+    void for_each_pixel(const Visit& visit) const {
+        for (const PacketPixels& packet : packets_)
+            packet.for_each([&](std::size_t, int x, int y) { visit(x, y); });
+    }
     /// Eye paths are numbered on from pass to pass.
     void start(const PacketPixels& pixels) {
         const core::PassContext eye{context_.index * std::uint32_t(samples_) + std::uint32_t(pixels.sample),

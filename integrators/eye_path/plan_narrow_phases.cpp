@@ -31,6 +31,7 @@ void plan_narrow_phases(core::Plan& plan, const core::Scene& scene) {
         fmt::format("one connection in {:.2g} carries it: few passes are too dark, and their noise does "
                     "not show it; volpath and mote_bdpt sample the phase function",
                     connections));
+    plan.noise_unknown = "few connections meet the peak of its narrow phase functions";
 }
 
 }  // namespace mote::integrators

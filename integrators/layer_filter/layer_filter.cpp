@@ -1,21 +1,12 @@
 #include "integrators/layer_filter/layer_filter.h"
 
-#include <chrono>
 #include <stdexcept>
+
+#include "core/render/cpu_clock.h"
 
 namespace mote::integrators {
 
 using namespace core;
-
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-}  // namespace
 
 const ParameterList<LayerFilterParameters>& layer_filter_rows() {
     using S = LayerFilterParameters;
@@ -32,36 +23,61 @@ const ParameterList<LayerFilterParameters>& layer_filter_rows() {
     return list;
 }
 
+LayerFilter::LayerFilter(const Scene& scene, const RenderOptions& options, const FeatureSettings& features,
+                         std::vector<Choice> layers, bool has_variance, MakeFilter make)
+    : scene_(scene),
+      options_(options),
+      feature_settings_(features),
+      layers_(std::move(layers)),
+      has_variance_(has_variance),
+      make_(std::move(make)) {}
+
 LayerFilter::LayerFilter(const Scene& scene, const RenderOptions& options,
-                         const LayerFilterParameters& parameters)
-    : scene_(scene), options_(options), parameters_(parameters) {}
+                         const LayerFilterParameters& parameters, std::vector<Choice> layers)
+    : LayerFilter(scene, options, parameters.features, std::move(layers), true,
+                  [settings = parameters.filter](const screenspace::FilterFeatures& features) {
+                      return screenspace::make_own_filter(features, settings);
+                  }) {}
+
+LayerFilter::LayerFilter(const Scene& scene, const RenderOptions& options, const FeatureSettings& features,
+                         std::shared_ptr<const screenspace::OidnLibrary> library, std::vector<Choice> layers)
+    : LayerFilter(scene, options, features, std::move(layers), false,
+                  [library = std::move(library)](const screenspace::FilterFeatures& found) {
+                      return screenspace::make_oidn_filter(found, library);
+                  }) {}
 
 void LayerFilter::find_features(CancelToken cancelled) {
-    if (features_) return;
+    if (filter_) return;
     options_.cancelled = cancelled;
-    const auto start = Clock::now();
+    const Stopwatch stopwatch(feature_seconds_);
     features_ = std::make_unique<screenspace::FilterFeatures>(
-        find_filter_features(scene_, options_, parameters_.features));
-    feature_seconds_ += seconds_since(start);
+        find_filter_features(scene_, options_, feature_settings_));
+    filter_ = make_(*features_);
 }
 
-void LayerFilter::apply(Film& film, std::span<const Choice> layers, CancelToken cancelled) {
-    variances_.clear();
-    find_features(cancelled);
-    const auto start = Clock::now();
-    for (const Choice& choice : layers) {
+void LayerFilter::apply(Film& film, CancelToken cancelled) {
+    for (const Choice& choice : layers_)
         if (!film.has_squares(choice.layer))
             throw std::invalid_argument("a filtered layer needs its squares");
+    if (layers_.empty() || !film.has_passes(2)) return;
+    variances_.clear();
+    find_features(cancelled);
+    const Stopwatch stopwatch(filter_seconds_);
+    for (const Choice& choice : layers_) {
         film.set_mean(choice.layer,
                       {});  // of the passes: an earlier call, for a preview, may have replaced it
         const std::vector<Rgb> mean = film.mean(choice.layer);
         const std::vector<Rgb> variance = film.layer_variance_of_mean(choice.layer);
-        auto filtered = screenspace::filter_layer(*features_, {mean, variance, choice.kind},
-                                                  parameters_.filter, cancelled);
+        auto filtered = filter_->filtered({mean, variance, choice.kind}, cancelled);
         film.set_mean(choice.layer, filtered.mean, filtered.variance);
         variances_.push_back(std::move(filtered.variance));
     }
-    filter_seconds_ += seconds_since(start);
+}
+
+void LayerFilter::add_statistics(Statistics& statistics) const {
+    if (layers_.empty()) return;
+    statistics.seconds["filter_features"] = feature_seconds_;
+    statistics.seconds["filter"] = filter_seconds_;
 }
 
 }  // namespace mote::integrators

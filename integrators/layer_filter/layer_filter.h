@@ -1,8 +1,8 @@
-// Layers of a film filtered in image space (screenspace/layer_filter/layer_filter.h): for
-// Estimator::finish(), or for a preview, as often as one likes. The features of the view are found on first
-// use.
+// Layers of a film filtered in image space (screenspace/layer_filter/view_filter.h): for Estimator::finish(),
+// or for a preview, as often as one likes. The features of the view are found on first use.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -10,7 +10,7 @@
 #include "core/film/film.h"
 #include "core/parameters/add_type.h"
 #include "integrators/layer_filter/scene_features.h"
-#include "screenspace/layer_filter/layer_filter.h"
+#include "screenspace/layer_filter/view_filter.h"
 
 namespace mote::integrators {
 
@@ -29,26 +29,42 @@ class LayerFilter {
         screenspace::LayerKind kind;
     };
 
-    /// The scene must outlive this; size, seed and sampler are those of the render.
+    /// Our own filter. The scene must outlive this; size, seed and sampler are those of the render. `layers`
+    /// may be empty: then nothing is filtered.
     LayerFilter(const core::Scene& scene, const core::RenderOptions& options,
-                const LayerFilterParameters& parameters);
+                const LayerFilterParameters& parameters, std::vector<Choice> layers);
+    /// OpenImageDenoise.
+    LayerFilter(const core::Scene& scene, const core::RenderOptions& options, const FeatureSettings& features,
+                std::shared_ptr<const screenspace::OidnLibrary> library, std::vector<Choice> layers);
 
-    /// Sets the means of these layers to the filtered ones. A film of fewer than two passes has no variance
+    /// Sets the means of the layers to the filtered ones. A film of fewer than two passes has no variance
     /// and stays as it is. Throws std::invalid_argument where a layer has no squares, and Cancelled.
-    void apply(core::Film& film, std::span<const Choice> layers, core::CancelToken cancelled = {});
+    void apply(core::Film& film, core::CancelToken cancelled = {});
 
-    /// Remaining variance of each layer of the last apply(), mean over channels, in its order.
+    const std::vector<Choice>& layers() const { return layers_; }
+    /// True if layers are filtered, and the filter says what variance it leaves: our own.
+    bool has_variance() const { return has_variance_ && !layers_.empty(); }
+    /// Remaining variance of each layer of the last apply(), mean over channels, in its order; empty:
+    /// unknown.
     const std::vector<std::vector<float>>& variances() const { return variances_; }
-    double feature_seconds() const { return feature_seconds_; }  ///< wall time
-    double filter_seconds() const { return filter_seconds_; }    ///< of all calls
+    /// Wall time of features and of all calls, where there are layers.
+    void add_statistics(core::Statistics& statistics) const;
 
   private:
+    using MakeFilter =
+        std::function<std::unique_ptr<screenspace::ViewFilter>(const screenspace::FilterFeatures&)>;
+    LayerFilter(const core::Scene& scene, const core::RenderOptions& options, const FeatureSettings& features,
+                std::vector<Choice> layers, bool has_variance, MakeFilter make);
     void find_features(core::CancelToken cancelled);
 
     const core::Scene& scene_;
     core::RenderOptions options_;
-    LayerFilterParameters parameters_;
+    FeatureSettings feature_settings_;
+    std::vector<Choice> layers_;
+    bool has_variance_;
+    MakeFilter make_;
     std::unique_ptr<screenspace::FilterFeatures> features_;
+    std::unique_ptr<screenspace::ViewFilter> filter_;  ///< from the features
     std::vector<std::vector<float>> variances_;
     double feature_seconds_ = 0.0, filter_seconds_ = 0.0;
 };

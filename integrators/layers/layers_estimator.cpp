@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
 
 #include "core/film/film.h"
 #include "core/math/random.h"
@@ -38,23 +37,22 @@ std::string shares_wanted(std::size_t parts) {
 class LayersEstimator final : public Estimator {
   public:
     LayersEstimator(const Scene& scene, const RenderOptions& options, const LayerChoice& choice,
-                    const LayerFilterParameters& filter, std::vector<LayerFilter::Choice> filtered,
-                    const std::vector<std::uint32_t>& shares)
-        : filtered_(std::move(filtered)) {
+                    LayerFilter filter, const std::vector<std::uint32_t>& shares)
+        : filter_(std::move(filter)) {
         for (std::size_t part = 0; part < shares.size(); ++part)
             round_.insert(round_.end(), shares[part], part);
 
-        if (!filtered_.empty()) filter_.emplace(scene, options, filter);
         for (std::size_t i = 0; i < choice.methods.size(); ++i) {
             const LayerMethod& method = choice.methods[i];
             RenderOptions own = options;
             own.seed = seed_of_part(options.seed, i), own.cells = method.cells;
             parts_.push_back({method.integrator->prepare(scene, own), method.kept,
                               PassImage(options.width, options.height, method.layers.size())});
-            const auto layers = std::count_if(filtered_.begin(), filtered_.end(), [&](const auto& f) {
-                return choice.layers[f.layer].part == i;
-            });
-            left_.push_back(std::size_t(layers) == method.kept.size() ? left_by_filter : 1.0);
+            const auto layers =
+                std::count_if(filter_.layers().begin(), filter_.layers().end(),
+                              [&](const auto& f) { return choice.layers[f.layer].part == i; });
+            left_.push_back(std::size_t(layers) == method.kept.size() && changes_noise() ? left_by_filter
+                                                                                         : 1.0);
         }
     }
 
@@ -78,17 +76,13 @@ class LayersEstimator final : public Estimator {
         return true;
     }
 
-    void finish(Film& film, CancelToken cancelled) override {
-        if (filter_ && film.has_passes(2)) filter_->apply(film, filtered_, cancelled);
-    }
+    void finish(Film& film, CancelToken cancelled) override { filter_.apply(film, cancelled); }
 
-    bool changes_noise() const override { return filter_.has_value(); }
+    bool changes_noise() const override { return filter_.has_variance(); }
 
     void add_statistics(Statistics& statistics) const override {
         for (const Part& part : parts_) part.estimator->add_statistics(statistics);
-        if (!filter_) return;
-        statistics.seconds["filter_features"] = filter_->feature_seconds();
-        statistics.seconds["filter"] = filter_->filter_seconds();
+        filter_.add_statistics(statistics);
     }
 
   private:
@@ -100,18 +94,15 @@ class LayersEstimator final : public Estimator {
     std::vector<Part> parts_;
     std::vector<double> left_;        ///< of the variance of each part, after filtering
     std::vector<std::size_t> round_;  ///< the part of each pass of a round; empty: next_part() of the film
-    std::vector<LayerFilter::Choice> filtered_;
-    std::optional<LayerFilter> filter_;
+    LayerFilter filter_;
 };
 
 }  // namespace
 
 std::unique_ptr<Estimator> make_layers_estimator(const Scene& scene, const RenderOptions& options,
-                                                 const LayerChoice& choice,
-                                                 const LayerFilterParameters& filter,
-                                                 std::vector<LayerFilter::Choice> filtered,
+                                                 const LayerChoice& choice, LayerFilter filter,
                                                  const std::vector<std::uint32_t>& shares) {
-    return std::make_unique<LayersEstimator>(scene, options, choice, filter, std::move(filtered), shares);
+    return std::make_unique<LayersEstimator>(scene, options, choice, std::move(filter), shares);
 }
 
 }  // namespace mote::integrators

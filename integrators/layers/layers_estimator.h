@@ -9,14 +9,12 @@
 
 namespace mote::integrators {
 
-/// `filtered`: layers of the film that are filtered in image space, by `filter`. `shares`: passes of each
-/// part in a round; empty: as many as reduce the error fastest. Part 0 has the seed of the render, the others
-/// have seeds of their own: parts are independent.
+/// `filter`: of layers of the film, in image space. `shares`: passes of each part in a round; empty: as many
+/// as reduce the error fastest. Part 0 has the seed of the render, the others have seeds of their own: parts
+/// are independent.
 std::unique_ptr<core::Estimator> make_layers_estimator(const core::Scene& scene,
                                                        const core::RenderOptions& options,
-                                                       const LayerChoice& choice,
-                                                       const LayerFilterParameters& filter,
-                                                       std::vector<LayerFilter::Choice> filtered,
+                                                       const LayerChoice& choice, LayerFilter filter,
                                                        const std::vector<std::uint32_t>& shares);
 
 }  // namespace mote::integrators

@@ -4,8 +4,10 @@
 // needs. Nested integrators fill the cells that their names list; without any the scene's requirements
 // choose.
 #include <fmt/format.h>
+#include <tbb/task_arena.h>
 
 #include <charconv>
+#include <mutex>
 
 #include "core/objects/number_text.h"
 #include "integrators/eye_path/eye_path_parameters.h"
@@ -18,24 +20,53 @@ using namespace core;
 
 namespace {
 
-/// Kind of filter for a layer; nothing for one that stays as it is. Indirect light is smooth but where
-/// surfaces and media are not, which features show; so is light of large lights scattered in media, and
-/// shafts of others show as soon as noise is below them.
-std::optional<screenspace::LayerKind> filtered_kind(const Layer& layer) {
-    if (layer.auxiliary) return std::nullopt;
-    if (layer.transport == Transport::indirect) return screenspace::LayerKind::surface;
-    if (layer.transport == Transport::multiple_scattering ||
-        layer.transport == Transport::single_scattering ||
-        layer.transport == TransportSet::other_scattering())
-        return screenspace::LayerKind::volume;
-    return std::nullopt;
+screenspace::LayerKind kind_of(const Layer& layer) {
+    constexpr TransportSet of_surfaces = Transport::emission | Transport::direct | Transport::indirect;
+    return (layer.transport & of_surfaces).empty() ? screenspace::LayerKind::volume
+                                                   : screenspace::LayerKind::surface;
 }
+
+/// True for the layers that our own filter smooths. Indirect light is smooth but where surfaces and media are
+/// not, which features show; so is light of large lights scattered in media, and shafts of others show as
+/// soon as noise is below them.
+bool is_smooth(const Layer& layer) {
+    return layer.transport == Transport::indirect || layer.transport == Transport::multiple_scattering ||
+           layer.transport == Transport::single_scattering ||
+           layer.transport == TransportSet::other_scattering();
+}
+
+enum class FilterChoice : std::uint8_t { automatic, oidn, own, none };
+
+/// OpenImageDenoise for a filter of this choice, looked for on first use.
+class FilterLibrary {
+  public:
+    explicit FilterLibrary(FilterChoice choice) : choice_(choice) {}
+    /// Nothing where the filter is another. Throws InputError where the library was requested by name and is
+    /// not installed.
+    const std::shared_ptr<const screenspace::OidnLibrary>& get() {
+        std::call_once(looked_, [&] {
+            if (choice_ == FilterChoice::own || choice_ == FilterChoice::none) return;
+            try {
+                library_ =
+                    std::make_shared<const screenspace::OidnLibrary>(tbb::this_task_arena::max_concurrency());
+            } catch (const InputError&) {
+                if (choice_ == FilterChoice::oidn) throw;
+            }
+        });
+        return library_;
+    }
+
+  private:
+    FilterChoice choice_;
+    std::once_flag looked_;
+    std::shared_ptr<const screenspace::OidnLibrary> library_;
+};
 
 /// The parameters of a scene file.
 struct LayersSettings {
     EyePathLimits limits;
     LayerFilterParameters filter;
-    bool filters = true;
+    FilterChoice filters = FilterChoice::automatic;
     FarLight far_light = FarLight::paths;
     std::string shares;
     std::vector<Nested<const Integrator>> integrators;
@@ -44,7 +75,11 @@ struct LayersSettings {
 class MoteLayers final : public Integrator {
   public:
     MoteLayers(const LayersSettings& s, const Properties& properties)
-        : limits_(s.limits), filter_(s.filter), filters_(s.filters), far_light_(s.far_light) {
+        : limits_(s.limits),
+          filter_(s.filter),
+          filters_(s.filters),
+          library_(std::make_unique<FilterLibrary>(s.filters)),
+          far_light_(s.far_light) {
         read_shares(s.shares);
         for (const auto& [name, integrator, where] : s.integrators) {
             if (integrator->works_on_mean())
@@ -68,13 +103,14 @@ class MoteLayers final : public Integrator {
     std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
         const LayerChoice choice = choose(scene);
         std::vector<LayerFilter::Choice> filtered;
-        for (std::size_t i = 0; i < choice.layers.size(); ++i)
-            if (choice.layers[i].squares) filtered.push_back({i, *filtered_kind(choice.layers[i])});
+        for (const std::size_t i : filtered_layers(choice))
+            filtered.push_back({i, kind_of(choice.layers[i])});
         if (!shares_.empty() && shares_.size() != choice.methods.size())
             throw InputError(
                 fmt::format("mote_layers: shares has {} numbers, and there are {} methods (see 'mote plan')",
                             shares_.size(), choice.methods.size()));
-        return make_layers_estimator(scene, options, choice, filter_, std::move(filtered), shares_);
+        return make_layers_estimator(scene, options, choice, make_filter(scene, options, std::move(filtered)),
+                                     shares_);
     }
 
   private:
@@ -95,12 +131,32 @@ class MoteLayers final : public Integrator {
             scene, nested_.empty()
                        ? choose_layer_methods(scene, find_requirements(scene), limits_, far_light_)
                        : nested_);
-        for (Layer& layer : choice.layers) layer.squares = filters_ && filtered_kind(layer);
+        // With and without the library the film is the same, so that machines can share a render.
+        for (Layer& layer : choice.layers)
+            layer.squares =
+                !layer.auxiliary &&
+                (filters_ == FilterChoice::own ? is_smooth(layer) : filters_ != FilterChoice::none);
         return choice;
     }
+    /// The library takes all layers, our own filter the smooth ones.
+    std::vector<std::size_t> filtered_layers(const LayerChoice& choice) const {
+        std::vector<std::size_t> filtered;
+        for (std::size_t i = 0; i < choice.layers.size(); ++i)
+            if (choice.layers[i].squares && (is_smooth(choice.layers[i]) || library_->get()))
+                filtered.push_back(i);
+        return filtered;
+    }
+    LayerFilter make_filter(const Scene& scene, const RenderOptions& options,
+                            std::vector<LayerFilter::Choice> layers) const {
+        if (const auto& library = library_->get())
+            return {scene, options, filter_.features, library, std::move(layers)};
+        return {scene, options, filter_, std::move(layers)};
+    }
+    void plan_filter(const LayerChoice& choice, Plan& plan) const;
     EyePathLimits limits_;
     LayerFilterParameters filter_;
-    bool filters_;
+    FilterChoice filters_;
+    std::unique_ptr<FilterLibrary> library_;
     FarLight far_light_;
     std::vector<std::uint32_t> shares_;  ///< of passes, one a method; empty: as many as each needs
     std::vector<LayerMethod> nested_;
@@ -113,6 +169,23 @@ void add_entries(std::vector<PlanEntry>& all, const std::vector<PlanEntry>& more
     }
 }
 
+void MoteLayers::plan_filter(const LayerChoice& choice, Plan& plan) const {
+    std::string names;
+    for (const std::size_t i : filtered_layers(choice))
+        names += (names.empty() ? "" : ", ") + choice.layers[i].name;
+    if (names.empty()) return;
+    if (const auto& library = library_->get()) {
+        plan.run("filter", "OpenImageDenoise " + library->version() + " on " + names,
+                 "biased by what it smoothes, less with every pass; filter=none leaves the noise. The noise "
+                 "that is stated, and --noise, are those of the passes, before the denoiser");
+        return;
+    }
+    plan.run("filter", "our own on " + names,
+             std::string(filters_ == FilterChoice::automatic ? "OpenImageDenoise is not installed; " : "") +
+                 "biased by what it smoothes, less with every pass; filter=none leaves the noise. The noise "
+                 "that is stated, and --noise, are what the filter leaves, without that bias");
+}
+
 Plan MoteLayers::plan(const Scene& scene, const Requirements& requirements) const {
     Plan plan;
     plan.integrator = type();
@@ -122,13 +195,7 @@ Plan MoteLayers::plan(const Scene& scene, const Requirements& requirements) cons
     plan.run("passes", fmt::format("shared out among {} methods", choice.methods.size()),
              shares_.empty() ? "to the one whose next pass takes the most error for its rays and lookups"
                              : "shares says how many each has in a round");
-    std::string filtered;
-    for (const Layer& layer : choice.layers)
-        if (layer.squares) filtered += (filtered.empty() ? "" : ", ") + layer.name;
-    if (!filtered.empty())
-        plan.run("filter", filtered + " in image space",
-                 "biased by what it smoothes, less with every pass; filter=false leaves the noise. The noise "
-                 "that is stated, and --noise, are what the filter leaves, without that bias");
+    plan_filter(choice, plan);
     for (const std::string& cell : transport_names(choice.unfilled(requirements.any_media())))
         plan.miss(cell, "no method fills it", "none of the nested integrators has it in its name");
     for (const LayerMethod& method : choice.methods) {
@@ -137,6 +204,7 @@ Plan MoteLayers::plan(const Scene& scene, const Requirements& requirements) cons
         const Plan own = method.integrator->plan(scene, wanted);
         add_entries(plan.runs, own.runs, method.integrator->type());
         add_entries(plan.missing, own.missing, method.integrator->type());
+        if (plan.noise_unknown.empty()) plan.noise_unknown = own.noise_unknown;
         plan.costly.insert(plan.costly.end(), own.costly.begin(), own.costly.end());
     }
     return plan;
@@ -152,8 +220,13 @@ void register_mote_layers(Registry& registry) {
         "default where a scene names no integrator.",
         {within(&S::limits, eye_path_rows()),
          row("filter", &S::filters,
-             "Smooth indirect light and multiple scattering in image space, as far as noise explains their "
-             "detail."),
+             {{"automatic", FilterChoice::automatic},
+              {"oidn", FilterChoice::oidn},
+              {"own", FilterChoice::own},
+              {"none", FilterChoice::none}},
+             "What denoises the layers: OpenImageDenoise, all of them, guided by noise-free features; our "
+             "own "
+             "filter, indirect light and scattering in media; automatic: the former where it is installed."),
          within(&S::filter, layer_filter_rows()),
          row("far_light", &S::far_light, {{"paths", FarLight::paths}, {"lights", FarLight::lights}},
              "Indirect light and multiple scattering where the scene chooses: by paths, unbiased, or by "

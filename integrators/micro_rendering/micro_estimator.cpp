@@ -1,5 +1,3 @@
-#include "integrators/micro_rendering/micro_estimator.h"
-
 #include "core/render/cpu_clock.h"
 #include "integrators/micro_rendering/micro_eye_tile.h"
 

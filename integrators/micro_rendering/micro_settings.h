@@ -1,6 +1,7 @@
 // Settings of mote_micro_rendering.
 #pragma once
 
+#include "core/render/integrator.h"
 #include "gathering/stored_light/lit_points.h"
 #include "integrators/eye_path/eye_path_parameters.h"
 
@@ -24,5 +25,11 @@ struct MicroSettings {
 };
 
 const core::ParameterList<MicroSettings>& micro_parameters();
+
+/// Passes of `mote_micro_rendering`: fresh points with fresh light each, shared by all pixels. Precondition:
+/// the scene has no media.
+std::unique_ptr<core::Estimator> make_micro_estimator(const core::Scene& scene,
+                                                      const core::RenderOptions& options,
+                                                      const MicroSettings& settings);
 
 }  // namespace mote::integrators

@@ -7,7 +7,7 @@
 // point, and over a texel.
 #include <fmt/format.h>
 
-#include "integrators/micro_rendering/micro_estimator.h"
+#include "integrators/micro_rendering/micro_settings.h"
 #include "integrators/register_parts.h"
 
 namespace mote::integrators {

@@ -1,6 +1,7 @@
 #include "integrators/path_tracing/path_estimator.h"
 
 #include "integrators/eye_path/image_loop.h"
+#include "integrators/path_tracing/wavefront.h"
 
 namespace mote::integrators {
 
@@ -14,10 +15,16 @@ class PathEstimator final : public Estimator {
     PathEstimator(const Scene& scene, const RenderOptions& options, const PathSettings& settings)
         : scene_(scene), settings_(settings), loop_(scene, options) {
         settings_.limits.wanted = options.cells;
+        if (!Media && WavefrontScene::suits(scene, settings_)) wavefront_.emplace(scene, settings_.limits);
     }
 
     bool pass(const PassContext& context, PassImage& image) override {
         return loop_.run(context, image, {settings_.limits}, [&](EyeTask<Media>& task) {
+            if (wavefront_) {
+                Wavefront paths(*wavefront_, task.walk());
+                task.trace_all(paths);
+                return;
+            }
             task.walk().all_boundaries = settings_.equiangular != nullptr;
             task.for_each([&](const PacketPixels&) { trace_paths(scene_, settings_, task.packet()); });
         });
@@ -27,6 +34,7 @@ class PathEstimator final : public Estimator {
   private:
     const Scene& scene_;
     PathSettings settings_;
+    std::optional<WavefrontScene> wavefront_;  ///< for scenes that it suits
     ImageLoop<Media> loop_;
 };
 

@@ -6,6 +6,10 @@
 // directions lack.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <map>
+
+#include "core/objects/error.h"
 #include "integrators/eye_path/counters.h"
 #include "integrators/ray_bundles/atlas_eye_path.h"
 #include "integrators/ray_bundles/ray_bundle_settings.h"
@@ -39,6 +43,26 @@ gathering::AtlasSettings atlas_settings(const RayBundleSettings& settings, const
     return atlas;
 }
 
+/// Refuses scenes one shape of which takes all texels: rays of a bundle are a texel apart, and miss what is
+/// smaller.
+void require_resolved(const gathering::SurfaceAtlas& atlas) {
+    constexpr double min_texels = 1e-3;  ///< of all other shapes together
+    std::map<std::uint32_t, double> areas;
+    for (const gathering::AtlasTexel& texel : atlas.texels())
+        areas[atlas.surfaces().shape[texel.triangle]] += double(texel.area);
+    double sum = 0.0, largest = 0.0;
+    for (const auto& [shape, area] : areas) sum += area, largest = std::max(largest, area);
+    double others = 0.0;  // not sum - largest, which rounds
+    for (const auto& [shape, area] : areas) others += area < largest ? area : 0.0;
+    const double edge = 1.0 / double(atlas.texels_per_metre());
+    if (others > 0.0 && others < min_texels * edge * edge)
+        throw InputError(
+            fmt::format("mote_ray_bundles: a shape of {:.2g} m^2 takes all texels, which are {:.2g} m wide; "
+                        "the others, {:.2g} "
+                        "m^2 together, would be missed by all rays: leave it out, or use another integrator",
+                        largest, edge, others));
+}
+
 class RayBundleEstimator final : public Estimator {
   public:
     RayBundleEstimator(const Scene& scene, const RenderOptions& options, const RayBundleSettings& settings)
@@ -52,6 +76,7 @@ class RayBundleEstimator final : public Estimator {
           locator_(surfaces_),
           tracer_(surfaces_),
           others_(scene, lights_of_bundles(scene)) {
+        require_resolved(atlas_);
         settings_.eye.wanted = options.cells;
         eye_.limits = settings_.eye;
         eye_.sample_direct = !settings.exchange.lights;
@@ -170,7 +195,11 @@ Plan MoteRayBundles::plan(const Scene& scene, const Requirements& r) const {
              "fresh ones every pass; a direction serves all surfaces and both ways");
     plan.run(
         "bounces", interleaved ? "all at once" : fmt::format("one at a time, {} of them", e.bounces),
-        interleaved ? "what a batch of directions received is sent by the next" : "transfer is 'one_bounce'");
+        interleaved
+            ? fmt::format("what a batch of directions received is sent by the next: light of more than {} "
+                          "reflections is missing",
+                          e.directions / e.batch)
+            : "transfer is 'one_bounce'");
     const bool hit = r.lights_area + r.lights_infinite > 0;
     if (hit)
         plan.run("area lights and environment", e.lights ? "by bundles" : "sampled at texels and pixels",

@@ -8,6 +8,7 @@
 
 #include "integrators/eye_path/eye_path_parameters.h"
 #include "integrators/eye_path/plan_narrow_phases.h"
+#include "integrators/ray_lights/plan_thick_cells.h"
 #include "integrators/ray_lights/ray_light_tile.h"
 #include "integrators/register_parts.h"
 
@@ -115,6 +116,7 @@ Plan MoteRayLights::plan(const Scene& scene, const Requirements& r) const {
     plan.run("light paths", fmt::format("{} a pass", settings_.paths), "a fresh set every pass");
     plan_media(plan, r);
     plan_narrow_phases(plan, scene);
+    plan_thick_cells(plan, scene);
     if (r.media_scattering)
         plan_lines(plan);
     else

@@ -2,10 +2,12 @@
 
 #include <array>
 #include <limits>
+#include <optional>
 
 #include "core/render/cpu_clock.h"
+#include "core/scene/scattering_vertex.h"
+#include "core/scene/scene.h"
 #include "integrators/eye_path/scattered_light.h"
-#include "integrators/screen_space_compensation/hidden_vertex.h"
 #include "lights/virtual_lights/vpl_gather.h"
 #include "screenspace/g_buffer/g_buffer.h"
 #include "screenspace/ssbc/ssbc_receivers.h"
@@ -19,6 +21,64 @@ namespace {
 constexpr int width = lights::ReceiverTile::width;
 constexpr std::uint32_t first_stream = 0x68696464;  ///< of samplers, one a side; eye paths have 0
 
+/// A point on a side of a surface, and the media there.
+struct HiddenVertex {
+    ScatteringVertex vertex;
+    MediumState state;
+};
+
+/// Surfaces and media along the ray of one pixel, kept while its sides follow each other.
+class PixelRay {
+  public:
+    PixelRay(const Scene& scene, int layers, WalkContext& walk)
+        : scene_(scene), layers_(layers), walk_(walk) {}
+
+    void aim(std::uint32_t pixel, int columns) {
+        if (pixel == pixel_) return;
+        pixel_ = pixel;
+        const Vec2 film(float(pixel % std::uint32_t(columns)) + 0.5f,
+                        float(pixel / std::uint32_t(columns)) + 0.5f);
+        ray_ = scene_.camera().sample_ray(film, Vec2(0.5f));
+        screenspace::peel(scene_, ray_, layers_, hits_);
+        walk_.rays.closest += std::uint64_t(layers_);
+        if (!scene_.has_media()) return;
+        state_ = scene_.eye_medium_state(ray_);
+        scene_.boundaries_along(ray_, walk_.boundary_hits);
+        ++walk_.rays.boundary;
+    }
+    /// Side 2 k is behind layer k, and 2 k - 1 before it. Nothing where rounding lost it.
+    std::optional<HiddenVertex> vertex(std::uint32_t side) const {
+        const std::size_t layer = (side + 1) / 2;
+        const bool behind = side % 2 == 0;
+        if (hits_.size() <= layer) return std::nullopt;
+        HiddenVertex result;
+        ScatteringVertex& v = result.vertex;
+        v.hit = hits_[layer], v.position = v.hit.position, v.bsdf = v.hit.shape->bsdf.get();
+        v.wo = behind ? ray_.direction : -ray_.direction;
+        if (!scene_.has_media()) return result;
+        result.state = state_;
+        const auto cross = [&](const SurfaceHit& hit) {
+            result.state.cross(*hit.shape, hit.geometric_normal, ray_.direction);
+        };
+        std::size_t b = 0;
+        for (std::size_t k = 0; k <= layer; ++k) {
+            for (; b < walk_.boundary_hits.size() && walk_.boundary_hits[b].t < hits_[k].t; ++b)
+                cross(walk_.boundary_hits[b]);
+            if (k < layer || behind) cross(hits_[k]);
+        }
+        return result;
+    }
+
+  private:
+    const Scene& scene_;
+    int layers_;
+    WalkContext& walk_;
+    std::uint32_t pixel_ = ~std::uint32_t(0);
+    Ray ray_;
+    MediumState state_;  ///< where the ray begins
+    std::vector<SurfaceHit> hits_;
+};
+
 }  // namespace
 
 HiddenLight::HiddenLight(const Scene& scene, const RenderOptions& options,
@@ -29,6 +89,7 @@ HiddenLight::HiddenLight(const Scene& scene, const RenderOptions& options,
       max_depth_(max_depth),
       share_(std::uint32_t(settings.vpl_share)),
       bound_(bound) {
+    if (!any()) return;
     screenspace::SsbcSettings ssbc = settings.ssbc;
     ssbc.bound = bound;
     const auto buffers =
@@ -44,13 +105,15 @@ HiddenLight::HiddenLight(const Scene& scene, const RenderOptions& options,
             if (matter[side][pixel]) points_.push_back({pixel, side});
 }
 
-template <bool Media>
 bool HiddenLight::pass(const PassContext& context, const lights::VplSet& vpls, std::size_t first_layer,
                        PassImage& image) {
-    if (max_depth_ >= 0 && max_depth_ < 2) return !context.cancelled;
+    if (!any() || (max_depth_ >= 0 && max_depth_ < 2)) return !context.cancelled;
     const auto some = [&](int begin, int, int end, int) {
-        gather<Media>(context, vpls, first_layer,
-                      std::span(points_).subspan(std::size_t(begin), std::size_t(end - begin)), image);
+        const auto points = std::span(points_).subspan(std::size_t(begin), std::size_t(end - begin));
+        if (scene_.has_media())
+            gather<true>(context, vpls, first_layer, points, image);
+        else
+            gather<false>(context, vpls, first_layer, points, image);
     };
     return for_each_tile(int(points_.size()), 1, 8 * width, context.cancelled, some);
 }
@@ -102,13 +165,11 @@ void HiddenLight::gather(const PassContext& context, const lights::VplSet& vpls,
 }
 
 void HiddenLight::add_statistics(Statistics& statistics) const {
+    if (!any()) return;
     statistics.values["hidden_points"] = double(points_.size());
     statistics.values["hidden_points_without_effect"] = double(candidates_ - points_.size());
     statistics.values["hidden_thread_seconds"] += seconds_;
     counters_.report(statistics, scene_.has_media());
 }
-
-template bool HiddenLight::pass<true>(const PassContext&, const lights::VplSet&, std::size_t, PassImage&);
-template bool HiddenLight::pass<false>(const PassContext&, const lights::VplSet&, std::size_t, PassImage&);
 
 }  // namespace mote::integrators

@@ -16,10 +16,16 @@
 #include "core/render/integrator.h"
 #include "core/scene/ray_walk.h"
 #include "integrators/eye_path/counters.h"
-#include "integrators/screen_space_compensation/screen_space_compensation.h"
 #include "lights/virtual_lights/virtual_point_light.h"
+#include "screenspace/ssbc/ssbc.h"
 
 namespace mote::integrators {
+
+struct ScreenSpaceSettings {
+    screenspace::SsbcSettings ssbc;  ///< but for the bound, which is that of the render
+    int layers = 1;                  ///< of surfaces along a ray; 1: what the picture shows
+    int vpl_share = 4;               ///< at each hidden point: one VPL of so many, in turn
+};
 
 class HiddenLight {
   public:
@@ -28,8 +34,8 @@ class HiddenLight {
     HiddenLight(const core::Scene& scene, const core::RenderOptions& options,
                 const ScreenSpaceSettings& settings, int max_depth, float bound);
 
+    bool any() const { return layers_ > 1; }
     /// Adds an estimate to the layers from `first_layer` on, one for each side. Returns false when cancelled.
-    template <bool Media>
     bool pass(const core::PassContext& context, const lights::VplSet& vpls, std::size_t first_layer,
               core::PassImage& image);
 

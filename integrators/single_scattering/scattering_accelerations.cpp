@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "integrators/single_scattering/single_scattering_estimator.h"
+#include "lights/visibility/mapped_visibility.h"
 
 namespace mote::integrators {
 
@@ -50,7 +51,7 @@ void plan_exact(Plan& plan, const AnalyticCounts& analytic, const AccelerationSe
                     analytic.all_media),
         "where one homogeneous medium lies between light and ray; no steps and no shadow rays where nothing "
         "is in the way");
-    if (settings.visibility.shadow_maps)
+    if (settings.light_maps)
         plan.run("behind occluders", fmt::format("{} steps a ray", steps), "looked up in shadow maps");
     else
         plan.run("behind occluders", fmt::format("{} shadow rays a ray", steps),
@@ -61,25 +62,26 @@ void plan_exact(Plan& plan, const AnalyticCounts& analytic, const AccelerationSe
                  "their intensity varies: a texture, or a cone that is mostly rim or wider than 90 degrees");
 }
 
-void plan_maps(Plan& plan, const Scene& scene, const VisibilitySettings& s, int steps) {
-    if (!s.shadow_maps) {
+void plan_maps(Plan& plan, const Scene& scene, const AccelerationSettings& settings, int steps) {
+    if (!settings.light_maps) {
         plan.run("visibility", "shadow rays", "exact");
         return;
     }
+    const lights::LightMapSettings& s = *settings.light_maps;
     std::size_t count = 0;
     for (const auto& light : scene.emitters())
         count += lights::shadow_map_view_of(scene, *light, 1).has_value();
-    if (s.light_size == 0 || count == 0) {
+    if (s.size == 0 || count == 0) {
         plan.run("visibility", "shadow rays",
-                 s.light_size == 0 ? "light_size is 0" : "no light is a point, a cone or parallel");
+                 s.size == 0 ? "light_size is 0" : "no light is a point, a cone or parallel");
         return;
     }
-    const std::size_t bytes = s.map.bytes(s.light_size, lights::needs_chromatic_maps(scene));
-    const double texels = double(s.light_size) * double(s.light_size);
+    const std::size_t bytes = s.map.bytes(s.size, lights::needs_chromatic_maps(scene));
+    const double texels = double(s.size) * double(s.size);
     const double pixels = double(scene.film().width) * double(scene.film().height);
     plan.run("visibility",
              fmt::format("{} shadow map{} of {}^2 texels, {:.1f} MB each, built once", count,
-                         count == 1 ? "" : "s", s.light_size, double(bytes) * 1e-6),
+                         count == 1 ? "" : "s", s.size, double(bytes) * 1e-6),
              "requested, biased; at march steps alone: surfaces are traced");
     plan.run("cost of shadow maps",
              fmt::format("{:.0f} texels a light, against up to {:.0f} steps a pass", texels, pixels * steps),
@@ -96,10 +98,10 @@ void plan_maps(Plan& plan, const Scene& scene, const VisibilitySettings& s, int 
 ScatteringAccelerations::ScatteringAccelerations(const Scene& scene, const AccelerationSettings& settings,
                                                  const MemoryBudget& memory) {
     if (settings.exact && AnalyticCounts(scene).any()) space_.emplace(scene.shapes());
-    const VisibilitySettings& visibility = settings.visibility;
-    if (!visibility.used_in(scene) || visibility.light_size == 0) return;
-    visibility.check(scene);
-    maps_.emplace(scene, visibility.light_size, visibility.map, memory);
+    if (!settings.light_maps || !scene.has_media() || settings.light_maps->size == 0) return;
+    const lights::LightMapSettings& s = *settings.light_maps;
+    lights::check_map(scene, s, s.size);
+    maps_.emplace(scene, s.size, s.map, memory);
 }
 
 void ScatteringAccelerations::add_statistics(Statistics& statistics) const {
@@ -117,7 +119,7 @@ void plan_scattering_accelerations(Plan& plan, const Scene& scene, const Acceler
                                    int steps) {
     const AnalyticCounts analytic(scene);
     if (analytic.all_lights > 0) plan_exact(plan, analytic, settings, steps);
-    plan_maps(plan, scene, settings.visibility, steps);
+    plan_maps(plan, scene, settings, steps);
 }
 
 }  // namespace mote::integrators

@@ -5,15 +5,14 @@
 #include "core/render/plan.h"
 #include "core/render/statistics.h"
 #include "core/scene/requirements.h"
-#include "integrators/virtual_point_lights/vpl_visibility.h"
-#include "lights/shadow_maps/light_shadow_maps.h"
+#include "lights/visibility/visibility.h"
 #include "screenspace/in_scattering/in_scattering.h"
 
 namespace mote::integrators {
 
 struct AccelerationSettings {
-    bool exact = true;  ///< integrals instead of steps, where there can be
-    VisibilitySettings visibility;
+    bool exact = true;                                     ///< integrals instead of steps, where there can be
+    std::optional<lights::LightMapSettings> light_maps{};  ///< nothing: lights are traced
 };
 
 class ScatteringAccelerations {

@@ -28,6 +28,8 @@ class SingleScatteringEstimator final : public Estimator {
             settings_.eye.connected = positional_, settings_.eye.others = &*others_;
         }
         if (!Media) return;
+        if (settings_.lights != ScatteringLights::other)
+            require_few_lights(scene, settings_, positional_.size());
         accelerations_.emplace(scene, settings.accelerations(), options.memory);
         settings_.eye.maps = accelerations_->maps();
         settings_.eye.voxels = settings.march.voxels;

@@ -26,8 +26,8 @@ enum class ScatteringLights : std::uint8_t { all, positional, other };
 struct ScatteringSettings {
     ScatteringLights lights = ScatteringLights::all;
     AlongRay in_scattering = AlongRay::exact;
-    std::shared_ptr<Visibility> visibility;  ///< null: traced
-    int rays = 32;                           ///< of an eye path through mirrors and glass
+    std::shared_ptr<const lights::Visibility> visibility = lights::traced_visibility();
+    int rays = 32;  ///< of an eye path through mirrors and glass
     EyeSettings eye;
     screenspace::MarchSettings march;
     ScatteringSampling sampling = ScatteringSampling::full;
@@ -37,7 +37,7 @@ struct ScatteringSettings {
     bool show_samples = false;  ///< a layer that counts the marched rays of every pixel
 
     AccelerationSettings accelerations() const {
-        return {in_scattering == AlongRay::exact, visibility ? visibility->settings() : VisibilitySettings()};
+        return {in_scattering == AlongRay::exact, visibility->light_maps()};
     }
 };
 
@@ -74,6 +74,8 @@ void plan_single_scattering(core::Plan& plan, const core::Scene& scene,
                             const core::Requirements& requirements, const ScatteringSettings& settings);
 /// Lights that are marched: those with a position, not black.
 std::vector<const core::Emitter*> positional_lights(const core::Scene& scene);
+/// Refuses thousands of lights, each of which every pass would march. Throws InputError.
+void require_few_lights(const core::Scene& scene, const ScatteringSettings& settings, std::size_t lights);
 /// True if anything else lights the media.
 bool has_other_lights(const core::Scene& scene);
 

@@ -1,9 +1,11 @@
 // Settings, layers and plan entries that `mote_single_scattering` and `mote_epipolar` share.
 #include <fmt/format.h>
 
+#include "core/objects/error.h"
 #include "core/parameters/nested.h"
 #include "integrators/eye_path/eye_path_parameters.h"
 #include "integrators/eye_path/plan_coarse_voxels.h"
+#include "integrators/eye_path/plan_narrow_phases.h"
 #include "integrators/register_parts.h"
 #include "integrators/single_scattering/single_scattering_estimator.h"
 
@@ -77,13 +79,33 @@ bool has_other_lights(const Scene& scene) {
 
 namespace {
 
+/// Rays that a pass marches for one light, at least.
+double rays_of_light(const Scene& scene, const ScatteringSettings& s) {
+    const double pixels = double(scene.film().width) * double(scene.film().height);
+    return s.sampling == ScatteringSampling::full       ? pixels
+           : s.sampling == ScatteringSampling::epipolar ? double(s.lines) * s.line.initial
+                                                        : pixels / sqr(double(s.spacing));
+}
+
+}  // namespace
+
+void require_few_lights(const Scene& scene, const ScatteringSettings& s, std::size_t lights) {
+    constexpr std::size_t many = 1000;
+    constexpr double max_rays = 5e7;  ///< ten minutes of one processor
+    const double of_light = rays_of_light(scene, s);
+    if (lights > many && double(lights) * of_light > max_rays)
+        throw InputError(fmt::format(
+            "{} lights with a position are too many to be marched: {:.0f} million rays a pass, {:.0f} for "
+            "each; volpath and mote_layers sample one light a ray",
+            lights, 1e-6 * double(lights) * of_light, of_light));
+}
+
+namespace {
+
 /// Every light is marched in every pass, whatever it adds: a pass of thousands takes minutes and more.
 void warn_of_many_lights(Plan& plan, const Scene& scene, const ScatteringSettings& s, std::size_t lights) {
     constexpr double patience = 1e7;  ///< rays: two minutes of one processor
-    const double pixels = double(scene.film().width) * double(scene.film().height);
-    const double of_light = s.sampling == ScatteringSampling::full       ? pixels
-                            : s.sampling == ScatteringSampling::epipolar ? double(s.lines) * s.line.initial
-                                                                         : pixels / sqr(double(s.spacing));
+    const double of_light = rays_of_light(scene, s);
     constexpr std::size_t few = 16;
     if (lights <= few || double(lights) * of_light < patience) return;
     plan.costly.push_back(
@@ -116,6 +138,7 @@ void plan_single_scattering(Plan& plan, const Scene& scene, const Requirements& 
         plan.run("transmittance", fmt::format("marched in steps of {} voxels", s.march.voxels),
                  "deterministic, so that neighbouring rays can be interpolated; biased by the step");
     plan_coarse_voxels(plan, scene, s.march.voxels);
+    plan_narrow_phases(plan, scene);
     if (!r.media_scattering) {
         plan.leave_out("single scattering", "nothing is marched", "no medium scatters");
         return;

@@ -5,12 +5,9 @@
 // apart. Here every VPL is a sphere that reaches to its k-th nearest neighbour, so that nothing has to be
 // bounded, also between glossy surfaces. In return light is blurred over the spheres: a bias that more passes
 // do not reduce, since each has spheres of the same size; more light paths a pass do.
-#include <limits>
-
 #include "compensation/spherical_lights.h"
-#include "integrators/eye_path/counters.h"
-#include "integrators/eye_path/eye_path.h"
 #include "integrators/eye_path/eye_path_parameters.h"
+#include "integrators/eye_path/image_loop.h"
 #include "integrators/register_parts.h"
 #include "lights/virtual_lights/particle_tracer.h"
 
@@ -48,33 +45,36 @@ struct SphereSet {
 class VslEstimator final : public Estimator {
   public:
     VslEstimator(const Scene& scene, const RenderOptions& options, const VslSettings& settings)
-        : scene_(scene), options_(options), settings_(settings) {
+        : scene_(scene), options_(options), settings_(settings), loop_(scene, options) {
         settings_.eye.wanted = options.cells;
     }
 
     bool pass(const PassContext& context, PassImage& image) override {
         if (context.cancelled) return false;
         const SphereSet spheres(scene_, settings_, options_, context.index, context.cancelled);
-        counters_.add(spheres.vpls.rays, spheres.vpls.tracking);
+        loop_.counters().add(spheres.vpls.rays, spheres.vpls.tracking);
         vpls_ += spheres.radii.size(), paths_ += spheres.vpls.paths;
         bytes_ = std::max(bytes_, spheres.memory_bytes());
         for (const float r : spheres.radii) radius_sum_ += double(r);
-        return for_each_tile(options_.width, options_.height, 16, context.cancelled,
-                             [&](int x0, int y0, int x1, int y1) {
-                                 WalkContext walk;
-                                 walk.cancelled = context.cancelled;
-                                 for (int y = y0; y < y1; ++y)
-                                     for (int x = x0; x < x1; ++x) {
-                                         if (context.cancelled) return;  // a tile of many VSLs takes long
-                                         const EyeRay eye = make_eye_ray(scene_, options_, context, x, y);
-                                         store(trace(eye, spheres, walk), image, x, y, false);
-                                     }
-                                 counters_.add(walk.rays, walk.tracking);
-                             });
+        return loop_.run(context, image, {.limits = settings_.eye}, [&](EyeTask<false>& task) {
+            EyePacket<false>& packet = task.packet();
+            task.for_each([&](const PacketPixels&) {
+                packet.run([&] {
+                    packet.sample_lights();
+                    packet.for_each([&](int, auto& lane) {
+                        if (lane.alive && lane.path->vertex().connectable() &&
+                            settings_.eye.wanted[Transport::indirect])
+                            lane.sum[Transport::indirect] +=
+                                lane.path->throughput() *
+                                gather(lane.path->vertex(), lane.path->depth(), spheres, task.walk());
+                    });
+                });
+            });
+        });
     }
 
     void add_statistics(Statistics& statistics) const override {
-        counters_.report(statistics, false);
+        loop_.add_statistics(statistics);
         statistics.values["vpls"] += double(vpls_);
         statistics.values["light_paths"] += double(paths_);
         statistics.values["vpl_bytes_peak"] = double(bytes_);
@@ -82,32 +82,15 @@ class VslEstimator final : public Estimator {
     }
 
   private:
-    TransportSum trace(const EyeRay& eye, const SphereSet& spheres, WalkContext& walk) const {
-        walk.rng = eye.rng;
-        TransportSum sum;
-        EyePath<false> path(scene_, settings_.eye, eye, walk);
-        while (path.advance(walk, sum)) {
-            if (!path.vertex().connectable()) continue;
-            if (path.wants_connection()) sum[Transport::direct] += path.sample_light(walk);
-            if (!settings_.eye.wanted[Transport::indirect]) continue;
-            sum[Transport::indirect] +=
-                path.throughput() * gather(path.vertex(), path.depth(), spheres, walk);
-        }
-        return sum;
-    }
-
     Rgb gather(const ScatteringVertex& vertex, int depth, const SphereSet& spheres, WalkContext& walk) const {
-        const int max_depth = settings_.eye.max_depth;
-        const std::int32_t vpl_depth =
-            max_depth < 0 ? std::numeric_limits<std::int32_t>::max() : max_depth - depth - 1;
         return compensation::gather_spheres(scene_, spheres.vpls, spheres.radii, settings_.gather, vertex,
-                                            vpl_depth, walk.rng, walk.rays);
+                                            settings_.eye.light_depth(depth), walk.rng, walk.rays);
     }
 
     const Scene& scene_;
     RenderOptions options_;
     VslSettings settings_;
-    SharedCounters counters_;
+    ImageLoop<false> loop_;
     std::uint64_t vpls_ = 0, paths_ = 0;
     std::size_t bytes_ = 0;
     double radius_sum_ = 0.0;

@@ -10,27 +10,27 @@
 // around VPLs together with the light that travels short distances; unbounded, the mean is right but its
 // variance is infinite. Paths that cross a delta surface between the VPL and the receiver cannot be connected
 // and are missing.
+#include <fmt/format.h>
+
 #include "integrators/eye_path/eye_path_parameters.h"
 #include "integrators/eye_path/plan_narrow_phases.h"
 #include "integrators/eye_path/transport_layers.h"
 #include "integrators/register_parts.h"
-#include "integrators/virtual_point_lights/plan_compensation.h"
 #include "integrators/virtual_point_lights/plan_selection.h"
-#include "integrators/virtual_point_lights/vpl_estimator.h"
-#include "lights/reflective_shadow_maps/reflective_shadow_maps.h"
-#include "lights/selection/resampling/resampling_selection.h"
+#include "integrators/virtual_point_lights/vpl_settings.h"
 
 namespace mote::integrators {
 
 using namespace core;
 
-VplSettings::VplSettings() : selection(lights::all_vpls()) {}
+VplSettings::VplSettings()
+    : selection(lights::all_vpls()),
+      visibility(lights::traced_visibility()),
+      residual(std::make_shared<compensation::Residual>()) {}
 
 namespace {
 
-/// Settings with what only scene files give.
 struct VplFile : VplSettings {
-    std::shared_ptr<Object> restored;       ///< <compensation>; null: none
     VplFile() { eye.max_scatterings = 1; }  // from then on virtual lights take over
 };
 
@@ -49,7 +49,7 @@ const ParameterList<VplFile>& vpl_rows() {
             "Bound b on the geometry term; lower: less noise, and more energy is removed. automatic: light "
             "paths / R^2 with the radius R of all shapes. Without a bound the mean is right, with infinite "
             "variance near VPLs."),
-        nested("compensation", &S::restored, Category::compensation, "none",
+        nested("compensation", &S::residual, Category::compensation, "none",
                "Method that restores the energy that the bound removes."),
         nested("visibility", &S::visibility, Category::visibility, "traced",
                "Visibility between VPLs and receivers: traced, shadow_map, imperfect_shadow_map."),
@@ -80,51 +80,40 @@ const ParameterList<VplFile>& vpl_rows() {
     return list;
 }
 
-void read_compensation(VplFile& file) {
-    if (const auto* passes = dynamic_cast<const compensation::Compensation*>(file.restored.get()))
-        file.compensation = passes->settings();
-    if (const auto* after = dynamic_cast<const ScreenSpaceCompensation*>(file.restored.get()))
-        file.screen_space = after->settings(), file.compensation = after->media();
+/// Options of which not all go together.
+lights::GatherOptions gather_options(const VplSettings& s) {
+    lights::GatherOptions options{.interleaving = s.interleaving > 1,
+                                  .compensation = s.residual->restores(),
+                                  .roughness_clamping = s.clamping.enabled};
+    s.visibility->declare(options);
+    return options;
 }
 
-void check_compensation(const VplSettings& s, const Properties& properties) {
-    if (s.compensates() && !s.bounded())
+void check(const VplSettings& s, const Properties& properties) {
+    const lights::GatherOptions options = gather_options(s);
+    if (options.compensation && !s.bounded())
         throw InputError("compensation brings back what a bound takes: bound must not be -1 (no bound)",
                          properties.where_of("bound"));
-}
-
-void check_upsampling(const VplSettings& s, const Properties& properties) {
+    if (const std::string against = s.selection->excludes(options); !against.empty())
+        throw InputError("a selection of VPLs does not go together with " + against, s.selection->where);
     if (s.upsampling == 1) return;
-    const char* against = s.interleaving > 1         ? "interleaving"
-                          : s.eye_paths() > 1        ? "eye_samples above 1"
-                          : s.visibility.shadow_maps ? "shadow maps"
-                                                     : nullptr;
+    const char* against = options.interleaving  ? "interleaving"
+                          : s.eye_paths() > 1   ? "eye_samples above 1"
+                          : options.shadow_maps ? "shadow maps"
+                                                : nullptr;
     if (against)
         throw InputError(std::string("upsampling does not go together with ") + against,
                          properties.where_of("upsampling"));
-}
-
-void check_selection(const VplSettings& settings) {
-    const lights::Selection& s = *settings.selection;
-    if (s.takes_all()) return;
-    const char* against = settings.interleaving > 1 && !s.interleaves() ? "interleaving"
-                          : settings.compensates()                      ? "compensation"
-                          : settings.clamping.enabled                   ? "roughness_clamping"
-                          : settings.visibility.shadow_maps             ? "shadow maps"
-                          : settings.visibility.imperfect && s.traces() ? "imperfect shadow maps"
-                                                                        : nullptr;
-    if (against)
-        throw InputError(std::string("a selection of VPLs does not go together with ") + against, s.where);
 }
 
 class MoteVpl final : public Integrator {
   public:
     explicit MoteVpl(const VplSettings& settings) : settings_(settings) {}
     std::string type() const override { return "mote_vpl"; }
-    bool works_on_mean() const override { return settings_.screen_space.has_value() || settings_.filters; }
+    bool works_on_mean() const override { return settings_.residual->works_on_mean() || settings_.filters; }
     std::vector<Layer> layers(const Scene& scene) const override {
         auto layers = transport_layers(scene.has_media(), settings_.bounded() ? "_bounded" : "");
-        if (settings_.compensates()) add_compensation_layers(scene, layers);
+        for (Layer& layer : settings_.residual->layers(scene.has_media())) layers.push_back(std::move(layer));
         for (Layer& layer : layers)
             layer.squares = settings_.filters && (layer.transport == Transport::indirect ||
                                                   layer.transport == Transport::multiple_scattering);
@@ -136,21 +125,8 @@ class MoteVpl final : public Integrator {
     }
 
   private:
-    void add_compensation_layers(const Scene& scene, std::vector<Layer>& layers) const {
-        layers.push_back(
-            {"compensation_surface", "what the bound took from light first scattered by a surface"});
-        layers.back().transport = Transport::indirect;
-        if (scene.has_media()) {
-            layers.push_back(
-                {"compensation_volume", "what the bound took from light first scattered in a medium"});
-            layers.back().transport = Transport::multiple_scattering;
-        }
-        if (settings_.screen_space)
-            for (Layer& layer : settings_.screen_space->film_layers()) layers.push_back(std::move(layer));
-    }
     void plan_choice_of_vpls(Plan& plan, const Scene& scene, const Requirements& r) const;
     void plan_bound(Plan& plan, const Bounds3& surfaces) const;
-    void plan_light_paths(Plan& plan, const Scene& scene) const;
     void plan_image_space(Plan& plan) const;
     VplSettings settings_;
 };
@@ -172,70 +148,49 @@ void MoteVpl::plan_choice_of_vpls(Plan& plan, const Scene& scene, const Requirem
     plan_selection_advice(plan, size);
 }
 
-void MoteVpl::plan_light_paths(Plan& plan, const Scene& scene) const {
-    std::uint32_t paths = settings_.paths;
-    if (const int size = settings_.reflective_maps; size > 0) {
-        const lights::ReflectiveShadowMaps maps(scene, size, settings_.paths);
-        paths = maps.paths();
-        plan.run("reflective shadow maps",
-                 std::to_string(maps.maps()) + " of " + std::to_string(size) + "^2 texels",
-                 maps.maps() > 0 ? "each texel begins a light path, its flux is intensity times solid angle"
-                                 : "no light is a point, a cone or parallel");
-    }
-    plan.run("light paths", std::to_string(paths) + " a pass", "a fresh set every pass");
-}
-
 void MoteVpl::plan_bound(Plan& plan, const Bounds3& surfaces) const {
     if (!settings_.bounded()) {
         plan.run("bound", "none", "bound is -1: right in the mean, with splotches around VPLs");
         return;
     }
     const float bound = settings_.bound_for(surfaces);
-    const std::string choice =
-        std::to_string(bound) + " /m^2, radius " + std::to_string(1.0f / std::sqrt(bound)) + " m";
-    plan.run("bound", choice,
-             settings_.bound ? "requested"
-                             : "automatic: light paths / R^2, with R = " + std::to_string(surfaces.radius()) +
-                                   " m the radius of all shapes");
+    plan.run("bound", fmt::format("{:f} /m^2, radius {:f} m", bound, 1.0f / std::sqrt(bound)),
+             settings_.bound
+                 ? "requested"
+                 : fmt::format("automatic: light paths / R^2, with R = {:f} m the radius of all shapes",
+                               surfaces.radius()));
 }
 
 void MoteVpl::plan_image_space(Plan& plan) const {
     const int n = settings_.interleaving;
     if (n > 1 && !settings_.selection->takes_all())
-        plan.run("interleaving",
-                 "the 4 x 4 pixels that share selected VPLs lie " + std::to_string(n) + " apart",
+        plan.run("interleaving", fmt::format("the 4 x 4 pixels that share selected VPLs lie {} apart", n),
                  "unbiased: noise differs from pixel to pixel");
     else if (n > 1)
-        plan.run("interleaving",
-                 std::to_string(n * n) + " shares of the VPLs, for pixels of " + std::to_string(n) + " x " +
-                     std::to_string(n),
+        plan.run("interleaving", fmt::format("{} shares of the VPLs, for pixels of {} x {}", n * n, n, n),
                  "unbiased: noise differs from pixel to pixel, and less work is done");
     if (const int m = settings_.upsampling; m > 1)
         plan.run("upsampling",
-                 "VPLs at one pixel of " + std::to_string(m) + " x " + std::to_string(m) +
-                     ", between by what neighbours see",
+                 fmt::format("VPLs at one pixel of {} x {}, between by what neighbours see", m, m),
                  "biased by what light does between them; pixels without a neighbour alike gather their own");
     if (settings_.filters)
         plan.run("filter", "light of VPLs in image space",
                  "biased by what it smoothes, less with every pass. The noise that is stated, and --noise, "
-                 "are those of "
-                 "the passes before it");
+                 "are those of the passes before it");
 }
 
 Plan MoteVpl::plan(const Scene& scene, const Requirements& r) const {
     Plan plan;
     plan.integrator = type();
-    plan_light_paths(plan, scene);
+    settings_.light_source(scene)->plan(plan);
     plan_bound(plan, scene.rays().bounds());
     const bool directional = r.any_glossy() || (r.media_anisotropic && r.media_scattering);
-    if (directional)
-        plan.run("light per VPL", "64 bytes, and the vertex where f* depends on direction",
-                 "there are glossy surfaces or anisotropic media");
-    else
-        plan.run("light per VPL", "64 bytes, one colour",
-                 "every surface is diffuse and every medium isotropic");
+    plan.run("light per VPL",
+             directional ? "64 bytes, and the vertex where f* depends on direction" : "64 bytes, one colour",
+             directional ? "there are glossy surfaces or anisotropic media"
+                         : "every surface is diffuse and every medium isotropic");
     const double pixels = double(scene.film().width) * double(scene.film().height);
-    plan_visibility(plan, scene, settings_.visibility, pixels * settings_.eye_paths());
+    settings_.visibility->plan(plan, scene, pixels * settings_.eye_paths());
     plan_choice_of_vpls(plan, scene, r);
     plan_media(plan, r);
     plan_narrow_phases(plan, scene);
@@ -244,18 +199,11 @@ Plan MoteVpl::plan(const Scene& scene, const Requirements& r) const {
     if (r.any_media() && settings_.scattering_points > 0)
         plan.run(
             "eye rays",
-            std::to_string(settings_.scattering_points) + " scattering points, and the surface behind them",
+            fmt::format("{} scattering points, and the surface behind them", settings_.scattering_points),
             "one walk a pixel and pass; VPLs are shared out among the points");
-    if (settings_.bounded() && !settings_.compensates())
-        plan.miss("short distances", "light between points closer than the bound's radius is darkened",
-                  "the bound removes it; <compensation> brings it back");
-    if (settings_.screen_space) plan_screen_space(plan, r, *settings_.screen_space);
-    if (settings_.compensation.enabled)
-        plan_compensation(plan, scene, r, settings_.compensation, settings_.bound_for(scene.rays().bounds()));
-    if (settings_.bounded())
-        plan_expected_loss(plan, scene, settings_.compensation, settings_.bound_for(scene.rays().bounds()));
+    settings_.residual->plan(plan, scene, r, settings_.bound_for(scene.rays().bounds()));
     if (settings_.eye_paths() > 1)
-        plan.run("eye paths", std::to_string(settings_.eye_paths()) + " a pixel and pass",
+        plan.run("eye paths", fmt::format("{} a pixel and pass", settings_.eye_paths()),
                  settings_.vpls_shared_out() ? "VPLs are shared out among them" : "each meets all VPLs");
     plan_image_space(plan);
     if (settings_.clamping.enabled)
@@ -275,7 +223,7 @@ std::shared_ptr<const Integrator> make_sampled_vpls(const EyePathLimits& limits)
     VplSettings s;
     s.eye = limits, s.eye.max_scatterings = 1;
     s.paths = 20000, s.scattering_points = 1, s.interleaving = 4;
-    s.selection = std::make_shared<lights::ResamplingSelection>(256, 16);
+    s.selection = lights::resampled_vpls(256, 16);
     return std::make_shared<MoteVpl>(s);
 }
 
@@ -284,10 +232,7 @@ void register_mote_vpl(Registry& registry) {
              "Virtual point lights on surfaces and in media, with a bounded geometry term.", vpl_rows(),
              R"(<integrator type="mote_vpl"><integer name="paths" value="512"/></integrator>)",
              [](VplFile file, const Properties& properties) {
-                 read_compensation(file);
-                 check_compensation(file, properties);
-                 check_selection(file);
-                 check_upsampling(file, properties);
+                 check(file, properties);
                  return std::make_shared<MoteVpl>(file);
              });
 }

@@ -3,13 +3,9 @@
 #pragma once
 
 #include <cmath>
-#include <span>
 #include <vector>
 
-#include "core/render/integrator.h"
-#include "core/scene/scene.h"
-#include "integrators/eye_path/eye_ray.h"
-#include "lights/selection/selection.h"
+#include "integrators/virtual_point_lights/eye_receivers.h"
 
 namespace mote::integrators {
 
@@ -31,30 +27,45 @@ inline std::vector<glm::ivec2> spread_pixels(int width, int height, std::size_t 
     return pixels;
 }
 
-/// Receivers on the eye paths of these pixels, on surfaces and in media. `tile` is an EyeTile over `packet`,
-/// and records receivers from then on.
-template <typename Packet, typename Tile>
-std::vector<lights::PathReceiver> sample_path_receivers(const core::Scene& scene,
-                                                        const core::RenderOptions& options,
-                                                        const core::PassContext& pass,
-                                                        std::span<const glm::ivec2> pixels, Packet& packet,
-                                                        Tile& tile) {
+/// Keeps the receivers of eye paths; nothing is gathered at them.
+template <bool Media>
+class ReceiverRecorder final : public EyeReceivers<Media> {
+  public:
+    ReceiverRecorder(const VplSettings& settings, EyePacket<Media>& packet)
+        : EyeReceivers<Media>(settings, packet, nullptr) {}
     std::vector<lights::PathReceiver> receivers;
-    tile.record_receivers(receivers);
+
+  private:
+    void add(int, const core::ScatteringVertex& vertex, const core::Rgb& throughput,
+             const core::MediumState& state, std::int32_t depth) override {
+        receivers.push_back({vertex, throughput, state, depth});
+    }
+    void gather(const lights::VplRange&, float) override {}
+};
+
+/// Receivers on about `paths` eye paths, on surfaces and in media. `key` chooses their pixels; `walk` counts.
+template <bool Media>
+std::vector<lights::PathReceiver> sample_path_receivers(const core::Scene& scene, const VplSettings& settings,
+                                                        const core::RenderOptions& options,
+                                                        const core::PassContext& pass, std::size_t paths,
+                                                        std::uint64_t key, core::WalkContext& walk) {
+    if (paths == 0) return {};
+    EyePacket<Media> packet(scene, EyeReceivers<Media>::packet_settings(settings), walk);
+    ReceiverRecorder<Media> recorder(settings, packet);
     core::RenderOptions own = options;
     own.seed = core::hash_keys(options.seed, selection_stream);
+    const auto pixels = spread_pixels(options.width, options.height, paths, key);
     constexpr std::size_t lanes = lights::ReceiverTile::width;
-    for (std::size_t first = 0; first < pixels.size(); first += lanes) {
-        if (pass.cancelled) break;
+    for (std::size_t first = 0; first < pixels.size() && !pass.cancelled; first += lanes) {
         for (std::size_t i = 0; i < lanes; ++i)
             if (first + i < pixels.size())
                 packet.start(int(i),
                              make_eye_ray(scene, own, pass, pixels[first + i].x, pixels[first + i].y));
             else
                 packet.stop(int(i));
-        tile.run({}, 1.0f);
+        recorder.follow({}, 1.0f);
     }
-    return receivers;
+    return std::move(recorder.receivers);
 }
 
 }  // namespace mote::integrators

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <optional>
 
+#include "compensation/residual.h"
 #include "compensation/roughness_clamping.h"
 #include "integrators/eye_path/eye_path_limits.h"
 #include "integrators/layer_filter/layer_filter.h"
-#include "integrators/screen_space_compensation/screen_space_compensation.h"
-#include "integrators/virtual_point_lights/vpl_visibility.h"
 #include "lights/selection/selection.h"
-#include "lights/virtual_lights/light_path.h"
+#include "lights/virtual_lights/light_source.h"
+#include "lights/visibility/visibility.h"
 
 namespace mote::integrators {
 
@@ -23,12 +23,11 @@ struct VplSettings {
 
     EyePathLimits eye;  ///< max_depth counts the whole path from light to eye
     std::uint32_t paths = 256;
-    std::optional<float> bound;                       ///< b [1/m^2] or no_bound; nothing: automatic
-    compensation::CompensationSettings compensation;  ///< in the passes
-    std::optional<ScreenSpaceSettings> screen_space;  ///< after the last pass, on surfaces
-    std::optional<int> eye_samples;                   ///< eye paths a pixel and pass; see eye_paths()
-    VisibilitySettings visibility;
+    std::optional<float> bound;      ///< b [1/m^2] or no_bound; nothing: automatic
+    std::optional<int> eye_samples;  ///< eye paths a pixel and pass; see eye_paths()
     std::shared_ptr<const lights::Selection> selection;
+    std::shared_ptr<const lights::Visibility> visibility;
+    std::shared_ptr<const compensation::Residual> residual;
     compensation::RoughnessClamping clamping;
     /// Points in media where the light along an eye ray is gathered, besides the surface behind them; 0: one
     /// collision or the surface, by chance.
@@ -45,14 +44,9 @@ struct VplSettings {
     LayerFilterParameters filter;
 
     bool bounded() const { return bound != no_bound; }
-    bool compensates() const { return compensation.enabled || screen_space.has_value(); }
     /// VPLs are shared out among the eye paths of a pixel, instead of all of them meeting every one.
-    bool vpls_shared_out() const {
-        if (!selection->takes_all()) return false;
-        return !compensation.enabled || compensation.strategy == compensation::Strategy::one_to_one;
-    }
-    /// Eye paths a pixel and pass: 1-to-1 compensation needs several receivers.
-    int eye_paths() const { return eye_samples.value_or(compensation.enabled && vpls_shared_out() ? 4 : 1); }
+    bool vpls_shared_out() const { return selection->takes_all() && residual->shares_vpls(); }
+    int eye_paths() const { return eye_samples.value_or(residual->eye_samples()); }  ///< a pixel and pass
 
     /// b from the size of the shapes and the number of light paths: inside r = b^(-1/2) a VPL represents the
     /// light of the paths around it, and N paths spread over a scene of radius R are about R / sqrt(N) apart.
@@ -69,6 +63,17 @@ struct VplSettings {
         s.max_vertices = eye.max_depth < 0 ? -1 : std::max(0, eye.max_depth - 2);
         return s;
     }
+    std::unique_ptr<lights::LightSource> light_source(const core::LitScene& scene,
+                                                      const core::MemoryBudget& memory = {}) const {
+        return reflective_maps > 0
+                   ? lights::reflective_light_source(scene, reflective_maps, light_paths(memory))
+                   : std::make_unique<lights::LightSource>(scene, light_paths(memory));
+    }
 };
+
+/// The passes of `mote_vpl`: a fresh set of light paths each, gathered at the eye path of every pixel.
+std::unique_ptr<core::Estimator> make_vpl_estimator(const core::Scene& scene,
+                                                    const core::RenderOptions& options,
+                                                    const VplSettings& settings);
 
 }  // namespace mote::integrators

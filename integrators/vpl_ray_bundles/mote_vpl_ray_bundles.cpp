@@ -11,7 +11,7 @@
 #include "integrators/eye_path/eye_path_parameters.h"
 #include "integrators/eye_path/transport_layers.h"
 #include "integrators/register_parts.h"
-#include "integrators/vpl_ray_bundles/vpl_bundle_estimator.h"
+#include "integrators/vpl_ray_bundles/vpl_bundle_settings.h"
 
 namespace mote::integrators {
 

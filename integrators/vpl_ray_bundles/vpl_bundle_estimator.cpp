@@ -1,5 +1,3 @@
-#include "integrators/vpl_ray_bundles/vpl_bundle_estimator.h"
-
 #include <mutex>
 
 #include "integrators/layer_filter/layer_filter.h"
@@ -15,6 +13,11 @@ int eye_paths(const VplBundleSettings& settings, TransportSet wanted) {
     return wanted[Transport::direct] || wanted[Transport::emission] ? settings.direct_paths() : 1;
 }
 
+std::vector<LayerFilter::Choice> filtered_layers(const VplBundleSettings& settings) {
+    if (!settings.filters) return {};
+    return {{std::size_t(Transport::indirect), screenspace::LayerKind::surface}};
+}
+
 class VplBundleEstimator final : public Estimator {
   public:
     VplBundleEstimator(const Scene& scene, const RenderOptions& options, const VplBundleSettings& settings)
@@ -22,7 +25,8 @@ class VplBundleEstimator final : public Estimator {
           options_(options),
           settings_(settings),
           loop_(scene, options,
-                {.interleaving = settings.interleaving, .eye_samples = eye_paths(settings, options.cells)}) {
+                {.interleaving = settings.interleaving, .eye_samples = eye_paths(settings, options.cells)}),
+          filter_(scene, options, {}, filtered_layers(settings)) {
         settings_.eye.wanted = options.cells;
         settings_.sky = settings_.sky && settings_.has_bundles() && scene.environment();
         if (settings_.imperfect_links && settings_.has_bundles())
@@ -30,15 +34,6 @@ class VplBundleEstimator final : public Estimator {
                 scene.shapes(),
                 gathering::ImperfectLinkSettings{.memory_budget = options.memory.at_most(
                                                      gathering::ImperfectLinkSettings().memory_budget)});
-        if (settings_.filters) filter_.emplace(scene, options, LayerFilterParameters());
-    }
-
-    void finish(Film& film, CancelToken cancelled) override {
-        if (filter_ && film.has_passes(2))
-            filter_->apply(film,
-                           std::array{LayerFilter::Choice{std::size_t(Transport::indirect),
-                                                          screenspace::LayerKind::surface}},
-                           cancelled);
     }
 
     bool pass(const PassContext& context, PassImage& image) override {
@@ -61,6 +56,8 @@ class VplBundleEstimator final : public Estimator {
         });
     }
 
+    void finish(Film& film, CancelToken cancelled) override { filter_.apply(film, cancelled); }
+
     void add_statistics(Statistics& statistics) const override {
         loop_.add_statistics(statistics);
         statistics.values["vpls"] += double(vpls_);
@@ -71,10 +68,7 @@ class VplBundleEstimator final : public Estimator {
         statistics.values["eye_path_cpu_seconds"] += time_.eye;
         statistics.values["vpl_cpu_seconds"] += time_.vpls;
         statistics.values["bundle_cpu_seconds"] += time_.bundles;
-        if (filter_) {
-            statistics.seconds["filter_features"] = filter_->feature_seconds();
-            statistics.seconds["filter"] = filter_->filter_seconds();
-        }
+        filter_.add_statistics(statistics);
     }
 
   private:
@@ -83,7 +77,7 @@ class VplBundleEstimator final : public Estimator {
     VplBundleSettings settings_;
     ImageLoop<false> loop_;
     std::unique_ptr<const gathering::ImperfectLinks> links_;  ///< null: rays are traced
-    std::optional<LayerFilter> filter_;                       ///< nothing: pixels stay as they are
+    LayerFilter filter_;
     std::mutex time_mutex_;
     VplBundleTime time_;
     double light_seconds_ = 0.0;

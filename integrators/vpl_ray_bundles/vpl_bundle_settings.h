@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/render/integrator.h"
 #include "gathering/eye_bundles/eye_bundles.h"
 #include "integrators/eye_path/eye_path_parameters.h"
 #include "lights/virtual_lights/light_path.h"
@@ -83,5 +84,11 @@ struct VplBundleSettings {
         return s;
     }
 };
+
+/// The passes of `mote_vpl_ray_bundles`: fresh light paths and directions each, which all pixels share, or
+/// all pixels of one place in blocks of n x n. Precondition: the scene has no media.
+std::unique_ptr<core::Estimator> make_vpl_bundle_estimator(const core::Scene& scene,
+                                                           const core::RenderOptions& options,
+                                                           const VplBundleSettings& settings);
 
 }  // namespace mote::integrators

@@ -1,7 +1,7 @@
 #include "lights/direct_light/direct_light.h"
 
+#include "core/geometry/shadow_segment.h"
 #include "core/scene/media_along.h"
-#include "core/scene/shadow_segment.h"
 
 namespace mote::lights {
 

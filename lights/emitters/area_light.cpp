@@ -6,13 +6,14 @@
 #include "core/math/warp.h"
 #include "lights/emitters/emitters.h"
 #include "lights/emitters/light_values.h"
+#include "lights/emitters/parallelogram_light.h"
 
 namespace mote::lights {
 namespace {
 
 using namespace core;
 
-class AreaLight final : public Emitter {
+class AreaLight final : public Emitter, public ParallelogramLight {
   public:
     /// `scale` multiplies the texture.
     AreaLight(const Rgb& radiance, TexturePtr texture, SourceLocation location = {}, float scale = 1.0f)
@@ -74,6 +75,11 @@ class AreaLight final : public Emitter {
                                  const Vec3& direction) const override {
         if (!shape_ || !(shape_->area() > 0.0f)) return {};
         return {1.0f / shape_->area(), std::fmax(0.0f, glm::dot(normal, direction)) * inv_pi};
+    }
+    std::optional<LitParallelogram> parallelogram() const override {
+        const auto* mesh = texture_ ? nullptr : dynamic_cast<const TriangleMesh*>(shape_);
+        const auto shape = mesh ? mesh->parallelogram() : std::nullopt;
+        return shape ? std::optional(LitParallelogram{*shape, radiance_}) : std::nullopt;
     }
     std::optional<LightBounds> bounds() const override {
         if (!shape_) return std::nullopt;

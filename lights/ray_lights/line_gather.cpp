@@ -21,7 +21,7 @@ Vec2 spread(const Vec2& start, std::size_t n) {
 }
 
 void set_lane(ShadowPacket& packet, LaneLight& light, int i, const LineConnection& c, float weight) {
-    packet.set(i, c.from, c.to - c.from, shadow_fraction);
+    packet.set_segment(i, c.from, c.to);
     light.r[i] = weight * c.value.x, light.g[i] = weight * c.value.y, light.b[i] = weight * c.value.z;
 }
 

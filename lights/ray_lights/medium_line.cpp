@@ -63,8 +63,7 @@ Rgb sample_cell(MediumLine& line, double t0, double t1, Rng& rng, TrackingCounte
 
 std::optional<MediumLine> varying_line(MediumLine line, float voxel, Rng& rng, TrackingCounters& counters) {
     if (!std::isfinite(line.length)) return std::nullopt;
-    const float wanted = line.length / (voxels_per_cell * voxel);
-    line.cells = std::uint32_t(std::clamp(std::ceil(wanted), 1.0f, float(max_cells)));
+    line.cells = count_cells(line.length, voxel);
     line.transmittance[0] = Rgb(1.0f);
     float sum = 0.0f, rest = 0.0f;
     for (std::uint32_t i = 0; i < line.cells; ++i) {
@@ -92,6 +91,10 @@ std::optional<MediumLine> varying_line(MediumLine line, float voxel, Rng& rng, T
 }
 
 }  // namespace
+
+std::uint32_t count_cells(float length, float voxel) {
+    return std::uint32_t(std::clamp(std::ceil(length / (voxels_per_cell * voxel)), 1.0f, float(max_cells)));
+}
 
 std::size_t MediumLine::cell_of(double t) const {
     return std::min(std::size_t(std::max(t / double(length) * double(cells), 0.0)), std::size_t(cells) - 1);

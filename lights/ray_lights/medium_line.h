@@ -44,6 +44,9 @@ class ScatteringMedia {
     std::vector<MediumKind> kinds_;
 };
 
+/// Number of cells of a line through a medium of voxels [m].
+std::uint32_t count_cells(float length, float voxel);
+
 /// In one medium.
 struct MediumLine {
     core::Vec3 origin{0.0f}, direction{0, 0, 1};  ///< unit direction

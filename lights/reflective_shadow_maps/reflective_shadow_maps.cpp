@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "lights/virtual_lights/light_source.h"
+
 namespace mote::lights {
 
 using namespace core;
@@ -48,6 +50,38 @@ std::optional<LightPathStart> ReflectiveShadowMaps::of_other_light(Sampler& samp
     if (!emission) return std::nullopt;
     return LightPathStart{choice.emitter, *emission,
                           emission->weight / (choice.probability * float(other_paths_))};
+}
+
+namespace {
+
+class ReflectiveLightSource final : public LightSource {
+  public:
+    ReflectiveLightSource(const LitScene& scene, int size, const LightPathSettings& settings)
+        : LightSource(scene, settings), size_(size), maps_(scene, size, settings.paths) {
+        settings_.paths = maps_.paths();
+    }
+    VplSet trace(std::uint64_t seed, std::uint32_t pass, SamplerKind sampler,
+                 CancelToken cancelled) const override {
+        return trace_light_paths(scene_, settings_, seed, pass, sampler, cancelled, &maps_);
+    }
+    void plan(Plan& plan) const override {
+        plan.run("reflective shadow maps",
+                 std::to_string(maps_.maps()) + " of " + std::to_string(size_) + "^2 texels",
+                 maps_.maps() > 0 ? "each texel begins a light path, its flux is intensity times solid angle"
+                                  : "no light is a point, a cone or parallel");
+        LightSource::plan(plan);
+    }
+
+  private:
+    int size_;
+    ReflectiveShadowMaps maps_;
+};
+
+}  // namespace
+
+std::unique_ptr<LightSource> reflective_light_source(const LitScene& scene, int size,
+                                                     const LightPathSettings& settings) {
+    return std::make_unique<ReflectiveLightSource>(scene, size, settings);
 }
 
 }  // namespace mote::lights

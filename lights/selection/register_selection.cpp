@@ -1,12 +1,5 @@
 #include "lights/selection/register_selection.h"
 
-#include "core/objects/registry.h"
-#include "lights/selection/lightcuts/lightcuts_selection.h"
-#include "lights/selection/matrix/matrix_selection.h"
-#include "lights/selection/resampling/resampling_selection.h"
-#include "lights/selection/selection.h"
-#include "lights/selection/stochastic/stochastic_selection.h"
-
 namespace mote::lights {
 
 void register_selection(core::Registry& registry) {

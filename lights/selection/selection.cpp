@@ -11,7 +11,6 @@ namespace {
 class AllTileSelector final : public TileSelector {
   public:
     AllTileSelector(const VplSet& vpls, float bound) : vpls_(vpls), bound_{bound} {}
-    bool takes_ranges() const override { return true; }
     TileLight gather(const GatherContext& context, ReceiverTile& receivers, const VplRange& range,
                      BatchVisibility& visibility, Rng&) override {
         return gather_with(context, vpls_, range, bound_, receivers, visibility);
@@ -22,24 +21,15 @@ class AllTileSelector final : public TileSelector {
     BoundedGeometry bound_;
 };
 
-class AllSelector final : public VplSelector {
-  public:
-    AllSelector(const VplSet& vpls, float bound) : vpls_(vpls), bound_(bound) {}
-    std::unique_ptr<TileSelector> for_task() const override {
-        return std::make_unique<AllTileSelector>(vpls_, bound_);
-    }
-
-  private:
-    const VplSet& vpls_;
-    float bound_;
-};
-
 class AllVpls final : public Selection {
   public:
-    std::unique_ptr<VplSelector> prepare(const SelectionPass& pass) const override {
-        return std::make_unique<AllSelector>(pass.vpls, pass.bound);
+    VplSelector prepare(const SelectionPass& pass) const override {
+        return [&vpls = pass.vpls, bound = pass.bound] {
+            return std::make_unique<AllTileSelector>(vpls, bound);
+        };
     }
     bool takes_all() const override { return true; }
+    std::string excludes(const GatherOptions&) const override { return ""; }
     std::size_t memory_bytes(std::size_t) const override { return 0; }
     void plan(Plan& plan, const SelectionSize&) const override {
         plan.run("selection", "all VPLs at every receiver", "exact, time grows with the number of VPLs");
@@ -63,6 +53,13 @@ ReceiverTile TileSelector::lanes_of(const ReceiverTile& receivers, ReceiverKind 
         else
             tile.max_vpl_depth[i] = 0, tile.directional[i] = nullptr;
     return tile;
+}
+
+std::string Selection::excludes(const GatherOptions& options) const {
+    return options.compensation         ? "compensation"
+           : options.roughness_clamping ? "roughness_clamping"
+           : options.shadow_maps        ? "shadow maps"
+                                        : "";
 }
 
 void Selection::check_memory(const SelectionPass& pass) const {

@@ -9,6 +9,7 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -45,9 +46,8 @@ struct SelectionPass {
     core::TrackingCounters& tracking;
     core::Statistics& statistics;  ///< of all passes
     core::CancelToken cancelled;
-    /// Receivers on about so many eye paths, spread over the image, of random numbers that the pass does not
-    /// use.
-    std::function<std::vector<PathReceiver>(std::size_t paths)> sample_receivers;
+    /// On about Selection::receiver_paths() eye paths, spread over the image.
+    std::span<const PathReceiver> receivers = {};
     core::MemoryBudget memory = {};  ///< of the selector
 };
 
@@ -56,19 +56,16 @@ class TileSelector {
   public:
     virtual ~TileSelector() = default;
 
-    /// If true, all points of a pixel are gathered at once: record() takes them, gather_recorded() gathers.
-    virtual bool records() const { return false; }
-    /// If true, gather() takes the VPLs of a range, so that points and pixels can share out the VPLs.
-    virtual bool takes_ranges() const { return false; }
-
-    /// Light of the VPLs at the receivers, by lane. `range`: the VPLs meant, where takes_ranges(). `rng`
-    /// chooses.
+    /// Light of the VPLs at the receivers, by lane. `range`: the VPLs meant, where the selection shares them
+    /// out. `rng` chooses. Receivers that are to be gathered together are only copied, with the vertices that
+    /// they refer to.
     virtual TileLight gather(const GatherContext& context, ReceiverTile& receivers, const VplRange& range,
                              BatchVisibility& visibility, core::Rng& rng) = 0;
-    /// Copies receivers, with the vertices that they refer to.
-    virtual void record(const ReceiverTile&) {}
-    /// Light at all receivers since the last call.
-    virtual LightByKind gather_recorded(const GatherContext&, core::Rng&) { return {}; }
+    /// Light at all receivers that were copied since the last call; called once a pixel and pass.
+    virtual LightByKind gather_copied(const GatherContext&, core::Rng&) { return {}; }
+    /// Scattering points of an eye ray that are receivers. More take memory and compensation, and gain little
+    /// where they meet no more VPLs (docs/media.md).
+    virtual std::size_t max_points() const { return 2; }
     /// Adds what was counted since the selector was made.
     virtual void add_statistics(core::Statistics&) const {}
 
@@ -83,12 +80,14 @@ class TileSelector {
     }
 };
 
-/// A selection prepared for the VPLs of one pass.
-class VplSelector {
-  public:
-    virtual ~VplSelector() = default;
-    /// For one task; safe from many threads. The selector outlives it.
-    virtual std::unique_ptr<TileSelector> for_task() const = 0;
+/// A selection prepared for the VPLs of one pass: makes the selector of a task, which it outlives. Safe from
+/// many threads.
+using VplSelector = std::function<std::unique_ptr<TileSelector>()>;
+
+/// Options of a many-light pass that not every selection goes with.
+struct GatherOptions {
+    bool interleaving = false, compensation = false, roughness_clamping = false;
+    bool shadow_maps = false, imperfect_shadow_maps = false;
 };
 
 /// Sizes that a plan states costs by.
@@ -101,13 +100,13 @@ struct SelectionSize {
 class Selection : public core::Object {
   public:
     /// Throws core::InputError where memory_bytes() exceeds max_bytes, core::Cancelled.
-    virtual std::unique_ptr<VplSelector> prepare(const SelectionPass& pass) const = 0;
+    virtual VplSelector prepare(const SelectionPass& pass) const = 0;
     /// If true, every receiver takes all VPLs, which points and pixels may share out.
     virtual bool takes_all() const { return false; }
-    /// If true, shadow rays are traced whatever visibility the scene names.
-    virtual bool traces() const { return false; }
-    /// If false, neighbouring pixels are needed in one tile.
-    virtual bool interleaves() const { return true; }
+    /// Name of an option that this selection does not go with; empty where there is none.
+    virtual std::string excludes(const GatherOptions& options) const;
+    /// Eye paths whose receivers prepare() evaluates.
+    virtual std::size_t receiver_paths() const { return 0; }
     /// Largest size in memory while the selector is built, besides the VPLs, and of what stays.
     virtual std::size_t memory_bytes(std::size_t vpls) const = 0;
     virtual void plan(core::Plan& plan, const SelectionSize& size) const = 0;
@@ -126,5 +125,7 @@ class Selection : public core::Object {
 
 /// All VPLs at every receiver.
 std::shared_ptr<Selection> all_vpls();
+/// Resampled importance sampling: of `candidates` from a cut each pixel chooses `samples`.
+std::shared_ptr<Selection> resampled_vpls(std::uint32_t candidates, std::uint32_t samples);
 
 }  // namespace mote::lights

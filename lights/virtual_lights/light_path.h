@@ -11,6 +11,7 @@
 
 #include "core/math/sampler.h"
 #include "core/objects/memory_budget.h"
+#include "core/scene/emission_ray.h"
 #include "core/scene/light_from_infinity.h"
 #include "core/scene/lit_scene.h"
 #include "core/scene/russian_roulette.h"
@@ -64,7 +65,7 @@ void follow_particle(const core::LitScene& scene, const LightPathSettings& setti
         if (emission.inside && state.current() != emission.inside) return;
         if (!core::reaches_scene(emitter, state)) return;
     }
-    core::Ray ray{emission.origin, emission.direction};
+    core::Ray ray = core::emission_ray(emitter, emission);
     for (int depth = 1; settings.max_vertices < 0 || depth <= settings.max_vertices; ++depth) {
         core::Rgb emitted(0.0f);
         // tau / p(t): sigma_s / sigma_t at a collision, 1 at a surface.

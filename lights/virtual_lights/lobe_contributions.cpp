@@ -69,7 +69,8 @@ bool contributions(const ReceiverLanes& x, const ReceiverLobes& lobes, const Vir
         const float b = x.weight_b[i] * ib * weighted;
         out.r[i] = r, out.g[i] = g, out.b[i] = b;
         const bool lit = max_of(r, max_of(g, b)) > 0.0f;
-        packet.set(i, x.position(i), {dx, dy, dz}, lit ? shadow_fraction : -1.0f);
+        const float end = shadow_fraction(x.position(i), inv_d);
+        packet.set(i, x.position(i), {dx, dy, dz}, lit ? end : -1.0f);
     }
     for (int i = 0; i < lobe_lanes; ++i) brightest = max_of(brightest, packet.t_max[i]);
     return brightest > 0.0f;

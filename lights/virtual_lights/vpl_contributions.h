@@ -6,7 +6,6 @@
 #pragma once
 
 #include "core/math/vectorize.h"
-#include "core/scene/shadow_segment.h"
 #include "lights/virtual_lights/geometry_weights.h"
 #include "lights/virtual_lights/virtual_point_light.h"
 #include "lights/virtual_lights/vpl_choice.h"
@@ -60,7 +59,8 @@ bool plain_contributions(const ReceiverLanes& x, const VirtualPointLight& y, flo
         const float b = x.weight_b[i] * ib * weighted;
         out.r[i] = r, out.g[i] = gr, out.b[i] = b;
         const float lit = core::max_of(r, core::max_of(gr, b));
-        packet.set(i, x.position(i), {dx, dy, dz}, lit > 0.0f ? core::shadow_fraction : -1.0f);
+        const float end = core::shadow_fraction(x.position(i), inv_d);
+        packet.set(i, x.position(i), {dx, dy, dz}, lit > 0.0f ? end : -1.0f);
     }
     for (int i = 0; i < ReceiverLanes::width; ++i) brightest = core::max_of(brightest, packet.t_max[i]);
     return brightest > 0.0f;
@@ -92,7 +92,7 @@ bool general_contributions(const ReceiverLanes& x, const VplSet& vpls, const Vir
             c.value * weighted_geometry(weight, g, c.distance_squared, c.cos_x, c.cos_y, i);
         if (!(core::max_component(value) > 0.0f)) continue;
         out.r[i] = value.x, out.g[i] = value.y, out.b[i] = value.z;
-        packet.set(i, c.origin, c.target - c.origin, core::shadow_fraction);
+        packet.set_segment(i, c.origin, c.target);
         any = true;
     }
     return any;

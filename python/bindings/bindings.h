@@ -39,5 +39,6 @@ void bind_errors(nb::module_& m);
 void bind_scenes(nb::module_& m);
 void bind_pictures(nb::module_& m);
 void bind_rendering(nb::module_& m);
+void bind_viewing(nb::module_& m);
 
 }  // namespace mote::python

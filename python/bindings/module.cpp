@@ -67,4 +67,5 @@ NB_MODULE(_mote, m) {
     python::bind_scenes(m);
     python::bind_pictures(m);
     python::bind_rendering(m);
+    python::bind_viewing(m);
 }

@@ -24,7 +24,8 @@ else:
     from ._measuring import compare, denoise, denoise_sequence, metric_definitions, pixel_errors, series_error, ssbc
     from ._trade import trade
     from ._transform import ScalarTransform4f, Transform
+    from ._view import view
 
     __all__ = ["Error", "Manual", "Picture", "ScalarTransform4f", "Scene", "Transform", "compare", "denoise",
                "denoise_sequence", "load", "load_string", "manual", "metric_definitions", "pixel_errors", "render",
-               "series_error", "ssbc", "trade"]
+               "series_error", "ssbc", "trade", "view"]

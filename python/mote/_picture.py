@@ -1,6 +1,8 @@
 """Pictures: layers by name as NumPy arrays."""
 from __future__ import annotations
 
+import base64
+import html
 import json
 import math
 from collections.abc import Mapping
@@ -11,6 +13,23 @@ import numpy as np
 
 from . import _errors, _mote  # noqa: F401  (errors are registered first)
 from ._paths import path_text
+
+
+def _image(png: bytes, width: int) -> str:
+    return f'<img width="{width}" src="data:image/png;base64,{base64.b64encode(png).decode()}">'
+
+
+class Shown:
+    """What Picture.show() returns: a PNG and its caption."""
+
+    def __init__(self, png: bytes, caption: str) -> None:
+        self.png, self.caption = png, caption
+
+    def _repr_png_(self) -> bytes:
+        return self.png
+
+    def _repr_html_(self) -> str:
+        return f"<figure>{_image(self.png, 480)}<figcaption>{html.escape(self.caption)}</figcaption></figure>"
 
 
 class Picture(Mapping):
@@ -130,8 +149,31 @@ class Picture(Mapping):
         """A PNG file of a layer. `exposure` in stops; none: it adapts to the picture."""
         return self._picture.png(layer, exposure)
 
+    def show(self, layer: str = "beauty", against: Optional[Picture] = None, exposure: Optional[float] = None) -> Shown:
+        """A layer for a notebook to display. against: the signed difference to the same layer of another picture: red where
+        this one is brighter, blue where it is darker, white where they agree; full colour is a difference of
+        2^-exposure (none: four times the mean absolute difference)."""
+        if against is None:
+            return Shown(self.png(layer, exposure), f"{layer}")
+        difference = np.asarray(self[layer], np.float64).mean(axis=2) - np.asarray(against[layer], np.float64).mean(axis=2)
+        full = 4.0 * float(np.abs(difference).mean()) or 1.0 if exposure is None else 2.0 ** -exposure
+        strength = np.clip(np.abs(difference) / full, 0.0, 1.0)[:, :, np.newaxis]
+        end = np.where(difference[:, :, np.newaxis] > 0.0, (0.5, 0.0, 0.0), (0.0, 0.03, 0.5))
+        colours = Picture({"beauty": 1.0 + strength * (end - 1.0)})
+        return Shown(colours.png(exposure=0.0), f"{layer}, difference: red {full:+.3g}, white 0, blue {-full:+.3g} W/(m^2 sr)")
+
     def _repr_png_(self) -> Optional[bytes]:
         return self.png() if "beauty" in self else None
+
+    def _repr_html_(self) -> Optional[str]:
+        """The picture, and every layer of colours as a small one."""
+        if "beauty" not in self:
+            return None
+        small = [(name, self.png(name)) for name, channels in self.channels.items()
+                 if channels == ["R", "G", "B"] and name != "beauty" and not name.startswith("Variance")]
+        figures = "".join(f'<figure style="display:inline-block;margin:4px">{_image(png, 160)}'
+                          f'<figcaption>{html.escape(name)}</figcaption></figure>' for name, png in small)
+        return f"<div>{_image(self.png(), self.width)}<br>{figures}<br>{html.escape(repr(self))}</div>"
 
     def __repr__(self) -> str:
         noise = f", noise {100 * self.noise:.2g} %" if math.isfinite(self.noise) else ""

@@ -1,6 +1,7 @@
 """Scenes: from a file, from text, from a dictionary."""
 from __future__ import annotations
 
+import html
 import os
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, Optional, Union
@@ -84,6 +85,10 @@ class Scene:
     def hash(self) -> str:
         """Of all that determines a picture besides seed and passes: the `sceneHash` of its metadata."""
         return self._scene.hash
+
+    def _repr_html_(self) -> str:
+        """What it is, and what will run."""
+        return f"<b>{html.escape(repr(self))}</b><pre>{html.escape(str(self.plan()))}</pre>"
 
     def __repr__(self) -> str:
         return f"<mote.Scene {self.path or 'of a dictionary'}: {self.width} x {self.height}, {self.integrator}>"

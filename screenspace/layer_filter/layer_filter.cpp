@@ -2,6 +2,7 @@
 
 #include "screenspace/layer_filter/mixed_pixels.h"
 #include "screenspace/layer_filter/shrinkage.h"
+#include "screenspace/layer_filter/view_filter.h"
 
 namespace mote::screenspace {
 
@@ -18,6 +19,19 @@ std::vector<float> variance_of(const FilterChannels& probes, const FilterChannel
             result[i] += per_plane * sqr(probes.planes[c][i] + change.planes[c][i]);
     return result;
 }
+
+class OwnFilter final : public ViewFilter {
+  public:
+    OwnFilter(const FilterFeatures& features, const LayerFilterSettings& settings)
+        : features_(features), settings_(settings) {}
+    FilteredLayer filtered(const LayerToFilter& layer, CancelToken cancelled) const override {
+        return filter_layer(features_, layer, settings_, cancelled);
+    }
+
+  private:
+    const FilterFeatures& features_;
+    LayerFilterSettings settings_;
+};
 
 }  // namespace
 
@@ -48,6 +62,11 @@ FilteredLayer filter_layer(const FilterFeatures& features, const LayerToFilter& 
         if (planes.weight[i] > 0.0f || features.kind[i] == PixelKind::mixed)
             result.mean[i] = glm::max(result.mean[i], glm::min(layer.mean[i], Rgb(0.0f)));
     return result;
+}
+
+std::unique_ptr<ViewFilter> make_own_filter(const FilterFeatures& features,
+                                            const LayerFilterSettings& settings) {
+    return std::make_unique<OwnFilter>(features, settings);
 }
 
 }  // namespace mote::screenspace

@@ -7,6 +7,7 @@
 namespace mote::session {
 
 using core::ImageChannels, core::Rgb;
+using screenspace::OidnLibrary;
 
 void add_denoised_layer(ImageChannels& image, const OidnLibrary& library) {
     const std::vector<Rgb> beauty = image.rgb("");

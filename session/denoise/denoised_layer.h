@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/film/image_channels.h"
-#include "session/denoise/oidn_library.h"
+#include "screenspace/denoising/oidn_library.h"
 
 namespace mote::session {
 
@@ -18,7 +18,7 @@ inline const std::string denoised_layer = "denoised";
 /// is. Where the layers do not add up to the beauty, as in pictures of other programs, it is denoised as a
 /// whole. Throws InputError where there is no beauty, where the picture has such a layer already, and where
 /// the library fails.
-void add_denoised_layer(core::ImageChannels& image, const OidnLibrary& library);
+void add_denoised_layer(core::ImageChannels& image, const screenspace::OidnLibrary& library);
 
 /// Adds the layer to one picture after the other.
 using Denoiser = std::function<void(core::ImageChannels&)>;

@@ -69,7 +69,7 @@ TEST_CASE("a step has the weight of Eq. 10.11, however its vertex is placed", "[
             for (const LocalTransmittance t : {LocalTransmittance::exact, LocalTransmittance::mean})
                 for (const bool look : {true, false}) {
                     CompensationSettings settings;
-                    settings.enabled = true, settings.placement = placement;
+                    settings.placement = placement;
                     settings.transmittance = t, settings.local_visibility = look;
                     const ResidualTransport transport(*scene, 0.25f, settings);
                     CHECK(transport.radius() == 2.0f);
@@ -95,7 +95,6 @@ TEST_CASE("a step has the weight of Eq. 10.11, however its vertex is placed", "[
 TEST_CASE("no compensation where the bound takes nothing", "[compensation][step]") {
     const auto scene = scene_from(ball_of_fog("1, 1, 1"));
     CompensationSettings settings;
-    settings.enabled = true;
     CHECK(measure(*scene, ResidualTransport(*scene, 1e12f, settings), 2000).mean.x < 1e-4);
     settings.placement = Placement::in_region;
     CHECK(measure(*scene, ResidualTransport(*scene, 1e30f, settings), 2000).mean.x < 1e-4);
@@ -113,7 +112,6 @@ TEST_CASE("light emitted inside the region is direct light, not compensation", "
             <bsdf type="diffuse"><rgb name="reflectance" value="0"/></bsdf><emitter type="area"/></shape>
         <sensor type="perspective"/></scene>)");
     CompensationSettings settings;
-    settings.enabled = true;
     const ResidualTransport transport(*scene, 1.0f, settings);
     core::WalkContext context;
     const core::Ray ray{Vec3(0.1f, 0.1f, 0.1f), Vec3(0, 0, -1)};

@@ -64,7 +64,7 @@ TEST_CASE("Two blocks of fog that touch count as one block of the same fog", "[c
                  {LocalTransmittance::exact, LocalTransmittance::mean})
                 for (const bool look : {true, false}) {
                     CompensationSettings settings;
-                    settings.enabled = true, settings.placement = placement;
+                    settings.placement = placement;
                     settings.transmittance = transmittance, settings.local_visibility = look;
                     const Weight expected = weight_of_step(*one, x, settings);
                     const Weight found = weight_of_step(*two, x, settings);

@@ -19,7 +19,7 @@ FLOORS = [
     ["compensation", "screenspace", "gathering"],
     ["integrators"],
     ["session"],
-    ["trade"],
+    ["trade", "viewer"],
     ["apps", "python", "plugins"],
     ["experiments"],
 ]

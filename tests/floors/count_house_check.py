@@ -22,6 +22,7 @@ PAGE = """## Shapes
 ### `all`
 | `y` | integer | 1 | y |
 """
+ESTIMATOR = "class A final : public Estimator {\n"
 CUT = "std::pop_heap(cut_.begin(), cut_.end());\n"
 BOX = "const float x = max_of(max_of(x0, -x1), 0.0f);\n"
 SHADOW_RAY = "lanes.origin_x[i] = x;\n"
@@ -66,6 +67,14 @@ CASES = [
     ("lights/a.h", "class LightTree {\nclass LightTree {\n", {"lines": 2, "twins": 1}),
     ("lights/a.h", "struct SurfacePoints {\nclass SurfacePoints {\n", {"lines": 2, "twins": 1}),
     ("lights/a.h", "class TracedVisibility {\nclass TracedVisibility final : public X {\n", {"lines": 2, "twins": 1}),
+    ("integrators/a.cpp", ESTIMATOR + "1\n2\n", {"lines": 3, "estimator": 3}),
+    ("integrators/a.cpp", "class A : public X {\n", {"lines": 1}),
+    ("lights/a.cpp", ESTIMATOR, {"lines": 1}),
+    ("integrators/a.h", "std::optional<EyePath<Media>> path;\n", {"lines": 1, "packets of eye paths": 1}),
+    ("integrators/a.h", "for (int x = x0; x < x1; ++x)\n// for (int x = x0; x < x1; ++x)\n", {"lines": 2, "image loops": 1}),
+    ("lights/selection/a.h", "enum class SelectedBy : std::uint8_t { all };\nenum class VplSelection {};\n",
+     {"lines": 2, "enums of selection": 2}),
+    ("lights/a.h", "enum class ReceiverKind {};\n", {"lines": 1}),
     ("core/metrics/a.h", "x\n", {"lines": 1, "errors": 1}),
     ("experiments/a.py", "e = np.mean((x - r) ** 2)\n", {"errors": 1}),
     ("experiments/a.py", "e = (found - exact.mean(axis=0)) ** 2 - v\n", {"errors": 1}),
@@ -94,6 +103,7 @@ def count(files):
         numbers = {"lines": sum(house.lines_by_folder().values()), "apart": house.getters() + house.rows(),
                    "parameters": max((own for own, _ in house.parameters().values()), default=0), "circles": house.circles(),
                    "openings": house.openings(True), "openings_elsewhere": house.openings(False),
+                   "estimator": max(house.estimators().values(), default=0), **house.structure(),
                    "words": house.words(), "twins": sum(house.twins().values()), "errors": house.error_measures()}
     return {name: number for name, number in numbers.items() if number}
 

@@ -10,7 +10,7 @@ import re
 import sys
 from pathlib import Path
 
-FOLDERS = ["media", "lights", "compensation", "screenspace", "gathering", "integrators", "trade", "apps", "python", "plugins"]
+FOLDERS = ["media", "lights", "compensation", "screenspace", "gathering", "integrators", "trade", "viewer", "apps", "python", "plugins"]
 
 # idea: (pattern, {file: calls})
 IDEAS = {

@@ -1,4 +1,5 @@
-// Voxels too dense to be marched: the default integrator does not march them, and marching methods say so.
+// Voxels too dense to be marched, or for lines: the default integrator does not march them, and marching
+// methods and ray lights say so.
 #include "integrators/eye_path/plan_coarse_voxels.h"
 
 #include <fmt/format.h>
@@ -66,6 +67,13 @@ TEST_CASE("voxels of many optical depths are not marched by default, and marchin
         CHECK_FALSE(warns(plan_of(marching, *thin)));
         CHECK(warns(plan_of(marching, *thick)));
     }
+    // A line has a cell for two voxels: 5000 optical depths, which one connection in 2.5e7 meets.
+    const Plan thin_lines = plan_of("mote_ray_lights", *thin),
+               thick_lines = plan_of("mote_ray_lights", *thick);
+    CHECK(thin_lines.noise_unknown.empty());
+    CHECK_FALSE(thick_lines.noise_unknown.empty());
+    CHECK(thick_lines.to_text().find("most light of dense media") != std::string::npos);
+    CHECK(plan_of("volpath", *thick).noise_unknown.empty());
     CHECK(plan_of("mote_layers", *thin).to_text().find("mote_epipolar") != std::string::npos);
     const std::string layers = plan_of("mote_layers", *thick).to_text();
     CHECK(layers.find("mote_epipolar") == std::string::npos);

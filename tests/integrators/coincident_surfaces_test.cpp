@@ -68,3 +68,26 @@ TEST_CASE("media reach up to the surfaces that coincide with their boundaries, i
     }
     CHECK(compared >= 9);
 }
+
+TEST_CASE("A light on a ceiling does not light the ceiling where it stands, in any integrator",
+          "[coincident]") {
+    const auto scene = scene_from(R"(<scene version="3.0.0"><sensor type="perspective">
+        <float name="fov" value="45"/><transform name="to_world">
+        <lookat origin="0, 1, 4" target="0, 1, 0" up="0, 1, 0"/></transform></sensor><shape type="cube">
+        <transform name="to_world"><scale value="3"/><translate y="1" z="2"/></transform>)" +
+                                      grey + R"(</shape><emitter type="point">
+        <point name="position" x="0" y="4" z="1"/></emitter></scene>)",
+                                  8);
+    const auto picture = [&](const std::string& xml, std::uint32_t passes) {
+        return render_statistics(*scene, *integrator_from(xml), {4, passes, 3});
+    };
+    const auto reference = picture(R"(<integrator type="volpath"/>)", 256);
+    for (const char* xml :
+         {R"(<integrator type="mote_bdpt"/>)", R"(<integrator type="mote_vpl">
+            <integer name="paths" value="40"/><compensation type="exact"/></integrator>)",
+          R"(<integrator type="mote_ray_lights"><integer name="paths" value="40"/></integrator>)",
+          R"(<integrator type="mote_vpl_ray_bundles"><integer name="paths" value="40"/></integrator>)"}) {
+        INFO(xml);
+        check_same_mean(picture(xml, 64), "beauty", reference, "beauty");
+    }
+}

@@ -124,15 +124,15 @@ TEST_CASE("A filtered render has less noise, and filtering it again changes noth
         {layer_called(film, "multiple_scattering"), LayerKind::volume}};
     std::vector<std::vector<Rgb>> before, once;
     for (const auto& c : choices) before.push_back(film.mean(c.layer));
-    LayerFilter filter(*scene, options_of(*scene), {});
-    filter.apply(film, choices);
+    LayerFilter filter(*scene, options_of(*scene), {}, choices);
+    filter.apply(film);
     for (std::size_t k = 0; k < choices.size(); ++k) {
         once.push_back(film.mean(choices[k].layer));
         const std::vector<Rgb> truth = reference.mean(choices[k].layer);
         CAPTURE(film.layers()[choices[k].layer].name);
         CHECK(squared_error(once[k], truth) < squared_error(before[k], truth) / 4.0);
     }
-    filter.apply(film, choices);
+    filter.apply(film);
     for (std::size_t k = 0; k < choices.size(); ++k) CHECK(film.mean(choices[k].layer) == once[k]);
     CHECK(filter.variances().size() == choices.size());
 }
@@ -140,9 +140,8 @@ TEST_CASE("A filtered render has less noise, and filtering it again changes noth
 TEST_CASE("What cannot be filtered is said", "[layer_filter]") {
     const auto scene = scene_from(box(grey, ""), 8);
     Film film(8, 8, {{"indirect", ""}});
-    LayerFilter filter(*scene, options_of(*scene), {});
-    const LayerFilter::Choice choice{0, LayerKind::surface};
-    CHECK_THROWS_AS(filter.apply(film, {&choice, 1}), std::invalid_argument);
+    LayerFilter filter(*scene, options_of(*scene), {}, {{0, LayerKind::surface}});
+    CHECK_THROWS_AS(filter.apply(film), std::invalid_argument);
     const std::atomic<bool> stop{true};
     RenderOptions options = options_of(*scene);
     options.cancelled = stop;

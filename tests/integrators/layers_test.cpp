@@ -10,6 +10,7 @@
 #include "integrators/layers/pass_schedule.h"
 #include "tests/integrators/test_scenes.h"
 #include "tests/support/catch.h"
+#include "tests/support/environment.h"
 #include "tests/support/render_statistics.h"
 #include "tests/support/temporary_folder.h"
 
@@ -317,4 +318,52 @@ TEST_CASE("light that is marched to through smoke in small steps has volpath's m
         return s.whole[s.layer("direct")][1].variance_of_mean;
     };
     CHECK(variance(marched) < 0.8 * variance(tracked));
+}
+
+TEST_CASE("the filter is the library where it is installed, our own elsewhere, and named in the plan",
+          "[mote_layers]") {
+    const auto scene = foggy_box();
+    const auto layers = [](const std::string& filter) {
+        return integrator_from(fmt::format(
+            "<integrator type='mote_layers'><string name='filter' value='{}'/></integrator>", filter));
+    };
+    struct Render {
+        std::string choice;  ///< of the plan
+        std::vector<Rgb> picture, passes;
+        double noise = 0.0;
+    };
+    const auto render_with = [&](const std::string& filter) {
+        const auto integrator = layers(filter);
+        Render result;
+        for (const PlanEntry& e : integrator->plan(*scene, find_requirements(*scene)).runs)
+            if (e.topic == "filter") result.choice = e.choice;
+        RenderRequest request;
+        request.stop.passes = 12;
+        RenderResult rendered = render(*scene, *integrator, request);
+        result.noise = rendered.statistics.values.at("noise");
+        result.picture = rendered.film.beauty();
+        rendered.film.exchange_replaced();
+        result.passes = rendered.film.beauty();
+        CHECK((filter != "none" || result.noise == rendered.film.noise()));
+        return result;
+    };
+    const Render none = render_with("none");
+    CHECK(none.choice.empty());
+    CHECK(none.picture == none.passes);
+    Render own, absent;
+    {
+        const Environment off("MOTE_OIDN", "off");
+        own = render_with("own"), absent = render_with("automatic");
+        CHECK_THROWS_WITH(render_with("oidn"), ContainsSubstring("MOTE_OIDN"));
+    }
+    CHECK(own.picture == absent.picture);
+    CHECK(own.choice == absent.choice);
+    CHECK(own.noise < none.noise);
+    const Environment named("MOTE_OIDN", MOTE_BINARY_DIR "/stand_ins");
+    const Render oidn = render_with("oidn"), automatic = render_with("automatic");
+    CHECK_THAT(oidn.choice, ContainsSubstring("OpenImageDenoise 9.8.7"));
+    CHECK(oidn.picture == automatic.picture);
+    CHECK(oidn.picture != oidn.passes);
+    CHECK(oidn.passes == none.passes);  // passes are shared out by the noise before filters
+    CHECK(oidn.noise == none.noise);    // what the library leaves is not known
 }

@@ -1,6 +1,7 @@
 // Many lights at once give the sum of the pictures that each gives alone, where there is nothing to choose.
 #include <fmt/format.h>
 
+#include "core/render/render_driver.h"
 #include "core/scene/requirements.h"
 #include "tests/integrators/test_scenes.h"
 #include "tests/support/catch.h"
@@ -113,4 +114,20 @@ TEST_CASE("plans say that lights are chosen by a hierarchy, and why", "[many_lig
         CHECK(plan_of(all[0] + all[1] + sky, type).find("1 without a place") != std::string::npos);
         CHECK(plan_of(all[0], type).find("choice of lights") == std::string::npos);
     }
+}
+
+TEST_CASE("thousands of lights are refused where every one is marched", "[many_lights]") {
+    std::string lights;
+    for (int i = 0; i < 5000; ++i)
+        lights += fmt::format(
+            R"(<emitter type="point"><point name="position" x="{}" y="0.1" z="0.2"/></emitter>)", 1e-4 * i);
+    std::string xml = box(grey, fog("1, 1, 1", ""));
+    xml.insert(xml.find("<sensor"), lights);
+    const auto scene = scene_from(xml, 4);
+    mote::core::RenderRequest request;
+    request.stop.passes = 1;
+    CHECK_THROWS_WITH(
+        mote::core::render(*scene, *integrator_from(R"(<integrator type="mote_epipolar"/>)"), request),
+        ContainsSubstring("5000 lights"));
+    CHECK_NOTHROW(mote::core::render(*scene, *integrator_from(R"(<integrator type="volpath"/>)"), request));
 }

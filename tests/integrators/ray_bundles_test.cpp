@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "core/objects/error.h"
+#include "core/render/render_driver.h"
 #include "tests/integrators/test_scenes.h"
 #include "tests/support/catch.h"
 #include "tests/support/render_statistics.h"
@@ -160,5 +161,25 @@ TEST_CASE("what ray-bundles cannot do is in the plan, and wrong words are named"
     CHECK(refused(number("directions", 8)).find("'directions' is 8 but must lie between 16 and") !=
           std::string::npos);
     CHECK(refused(R"(<float name="texels_per_metre" value="-1"/>)").find("-1 but must lie between 0 and") !=
+          std::string::npos);
+}
+
+TEST_CASE("a shape that takes all texels is refused, and the plan has the number of reflections",
+          "[ray_bundles][refusal]") {
+    const auto planet = [](double radius) {
+        std::string xml = box(grey, "");
+        xml.insert(xml.find("<sensor"), fmt::format(R"(<shape type="sphere"><float name="radius" value="{0}"/>
+            <point name="center" x="0" y="-{1}" z="0"/></shape>)",
+                                                    radius, 2.0 * radius));
+        return scene_from(xml, 4);
+    };
+    core::RenderRequest request;
+    request.stop.passes = 1;
+    const auto integrator = integrator_from(bundles(number("directions", 64)));
+    CHECK_THROWS_WITH(core::render(*planet(1e11), *integrator, request),
+                      ContainsSubstring("takes all texels"));
+    CHECK_NOTHROW(core::render(*planet(10.0), *integrator, request));
+    const auto room = scene_from(box(grey, ""), 4);
+    CHECK(integrator->plan(*room, core::find_requirements(*room)).to_text().find("more than 4 reflections") !=
           std::string::npos);
 }

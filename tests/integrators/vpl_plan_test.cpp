@@ -4,10 +4,7 @@
 #include "core/render/pass_runner.h"
 #include "core/scene/requirements.h"
 #include "integrators/virtual_point_lights/plan_selection.h"
-#include "lights/selection/lightcuts/lightcuts_selection.h"
-#include "lights/selection/matrix/matrix_selection.h"
-#include "lights/selection/resampling/resampling_selection.h"
-#include "lights/selection/stochastic/stochastic_selection.h"
+#include "lights/selection/register_selection.h"
 #include "tests/integrators/test_scenes.h"
 #include "tests/support/catch.h"
 #include "tests/support/render_statistics.h"
@@ -42,6 +39,18 @@ std::string said(const core::Plan& plan, const std::string& topic) {
 
 std::string advice(const core::Scene& scene, int paths, const std::string& settings = "") {
     return said(plan_of(scene, vpl(paths, settings)), "selection for this scene");
+}
+
+/// A selection as a scene file names it.
+std::shared_ptr<lights::Selection> selection_of(const std::string& type,
+                                                const std::map<std::string, std::int64_t>& values = {}) {
+    core::Registry registry;
+    lights::register_selection(registry);
+    core::Properties properties;
+    properties.category = core::Category::selection, properties.type = type;
+    for (const auto& [name, value] : values) properties.values[name].value = value;
+    return std::dynamic_pointer_cast<lights::Selection>(
+        registry.factory(core::Category::selection, type)(properties));
 }
 
 }  // namespace
@@ -157,21 +166,16 @@ TEST_CASE("A selection from 2^24 VPLs is within its memory, or refused before it
           "[vpl][selection][extremes]") {
     constexpr std::size_t count = std::size_t(1) << 24;
     CHECK(lights::all_vpls()->memory_bytes(count) == 0);
-    CHECK(lights::LightcutsSelection({}, false).memory_bytes(count) < 150 * count);
-    CHECK(lights::StochasticSelection(64, false).memory_bytes(count) < 150 * count);
-    CHECK(lights::ResamplingSelection(256, 32).memory_bytes(count) < 150 * count);
+    for (const char* type : {"lightcuts", "light_tree", "resampling"})
+        CHECK(selection_of(type)->memory_bytes(count) < 150 * count);
     lights::VplSet vpls;
     vpls.lights.resize(100000);
     core::RayCounters rays;
     core::TrackingCounters tracking;
     core::Statistics statistics;
     const auto scene = scene_from(box(grey, ""), 8);
-    lights::MatrixSettings many;
-    many.slices = 4096;
-    CHECK_THROWS_WITH(
-        lights::MatrixSelection(many).prepare({*scene, vpls, 1.0f, 1, rays, tracking, statistics, {}, {}}),
-        ContainsSubstring("100000 virtual point lights takes 4925 MB"));
-    lights::MatrixSettings few;
-    few.rows = 64;
-    CHECK(lights::MatrixSelection(few).memory_bytes(count) < lights::Selection::max_bytes);
+    CHECK_THROWS_WITH(selection_of("matrix", {{"slices", 4096}})
+                          ->prepare({*scene, vpls, 1.0f, 1, rays, tracking, statistics, {}, {}}),
+                      ContainsSubstring("100000 virtual point lights takes 4925 MB"));
+    CHECK(selection_of("matrix", {{"rows", 64}})->memory_bytes(count) < lights::Selection::max_bytes);
 }

@@ -12,7 +12,7 @@ namespace {
 
 /// The light that a bound leaves out of a wall-less floor: nothing is near enough to scatter it back.
 bool compensation_is_dark(const AnalyticScene& scene, FloorUnderLight& at) {
-    const compensation::ResidualTransport transport(scene, 100.0f, {.enabled = true});
+    const compensation::ResidualTransport transport(scene, 100.0f, {});
     core::WalkContext walk;
     compensation::CompensatedTile receivers;
     for (std::size_t i = 0; i < receivers.size(); ++i) {

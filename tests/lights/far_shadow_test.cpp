@@ -1,6 +1,6 @@
 // Shadow rays far from the origin of coordinates, where rounding moves both of their ends.
 #include "core/geometry/shape.h"
-#include "core/scene/shadow_segment.h"
+#include "core/geometry/shadow_segment.h"
 #include "tests/support/catch.h"
 #include "tests/support/render_statistics.h"
 
@@ -33,7 +33,7 @@ TEST_CASE("a light is seen from a floor that lies thousands of its sizes from th
             Ray shadow{offset_origin(at.position, at.normal, at.error, light->wi), light->wi};
             shadow.t_max = shadow_end(shadow.origin, light->distance);
             hidden += !scene->visible(shadow);
-            shadow.t_max = shadow_fraction * light->distance;
+            shadow.t_max = 0.9999f * light->distance;
             hidden_by_fraction += !scene->visible(shadow);
         }
         INFO(offset << ": " << hidden << " hidden, " << hidden_by_fraction << " by the fraction alone");

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -193,6 +194,37 @@ TEST_CASE("Two renders at once have the bits that each has alone", "[session][th
     at_once[0] = session::render(scene, passes(3));
     other.join();
     for (const Rendered& r : at_once) CHECK(r.image.channels == alone.image.channels);
+}
+
+TEST_CASE("A noise that passes cannot show is unknown, and ends no render", "[session][noise]") {
+    const auto fog = [](const std::string& integrator, const std::string& g) {
+        return LoadedScene::from_text(R"(<scene version="3.0.0"><integrator type=")" + integrator + R"("/>
+            <sensor type="perspective"><film type="hdrfilm"><integer name="width" value="8"/>
+            <integer name="height" value="8"/></film><transform name="to_world">
+            <lookat origin="0, 0, 4" target="0, 0, 0" up="0, 1, 0"/></transform></sensor>
+            <shape type="sphere"><bsdf type="null"/><medium type="homogeneous" name="interior">
+            <rgb name="sigma_t" value="1"/><phase type="hg"><float name="g" value=")" +
+                                          g + R"("/></phase></medium></shape>
+            <emitter type="point"><point name="position" x="0.2" y="0.3" z="0.1"/></emitter></scene>)",
+                                      "");
+    };
+    for (const char* connecting :
+         {"mote_vpl", "mote_ray_lights", "mote_photon_map", "mote_single_scattering"})
+        for (const char* g : {"0.999", "-0.999"}) {
+            INFO(connecting << ", g " << g);
+            CHECK_FALSE(std::isfinite(session::render(fog(connecting, g), passes(8)).noise));
+        }
+    CHECK(std::isfinite(session::render(fog("mote_vpl", "0.5"), passes(8)).noise));
+    CHECK(std::isfinite(session::render(fog("volpath", "0.999"), passes(8)).noise));
+    RenderSettings until;
+    until.stop.noise = 0.05;
+    CHECK_THROWS_WITH(session::render(fog("mote_vpl", "0.999"), until),
+                      ContainsSubstring("number of passes"));
+    // One pixel of sixteen passes, which mote_layers shares out among its methods.
+    for (const char* integrator : {"path", "mote_layers"}) {
+        CHECK_FALSE(std::isfinite(session::render(scene_of(integrator, 1), passes(16)).noise));
+        CHECK(std::isfinite(session::render(scene_of(integrator, 16), passes(16)).noise));
+    }
 }
 
 TEST_CASE("A noise that no passes have shown is unknown, not zero", "[session][noise]") {

@@ -122,6 +122,8 @@ class Attack:
         if {name, REFERENCE} & set(scene.watched) or (media and not self.methods[name].sees_media):
             return []
         cells = self.methods[name].cells
+        if not cells and not self.methods[name].takes_depth and scene.facts.get("max_depth", -1) > 0:
+            return self.stated_noise(find, series)  # the reference's paths end, this one's do not
         ours = reference if not cells else self.series(scene, REFERENCE, 1, reference.allowance, cells=cells)
         return self.means(find, series, ours, record) + self.stated_noise(find, series)
 
@@ -138,12 +140,17 @@ class Attack:
             if difference.p < threshold(stage, self.pairs):
                 stays, after = self.with_more_passes(series, reference, difference)
                 if stays:
-                    return [find("mean", f"{difference.text}, {after}")]
+                    return [find("mean", f"{difference.text}, {after}{self.unknown_noise(series)}")]
                 record["tails"].append(f"{series.integrator}: {difference.text}, {after}")
                 return []
             if difference.p > CONTINUE:
                 break
         return []
+
+    @staticmethod
+    def unknown_noise(series):
+        """A difference that the method announces: it states no noise, and its plan says why."""
+        return ", its noise is unknown" if all(n is None for n in series.noises) else ""
 
     def with_more_passes(self, series, reference, difference):
         """(True, text) where a difference stays with more passes and other seeds: a bias does; a tail moves, or shows in the spread; a kernel shrinks."""

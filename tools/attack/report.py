@@ -9,7 +9,8 @@ from attack import Finding
 
 
 def read_known():
-    """Entries of known.toml: `integrator` and `what` are patterns, `where` holds ranges or words of facts, `reason` says why."""
+    """Entries of known.toml: `integrator` and `what` are patterns, `where` holds ranges or words of facts, `text` is a pattern
+    within the finding's text, `reason` says why."""
     path = Path(__file__).with_name("known.toml")
     return tomllib.loads(path.read_text(encoding="utf-8")).get("known", []) if path.is_file() else []
 
@@ -18,6 +19,8 @@ def holds(facts, condition):
     """True where each fact lies in its range [low, high], or is one of the words."""
     for name, wanted in condition.items():
         fact = facts.get(name)
+        if fact is None:
+            return False
         if isinstance(fact, (int, float)) and not isinstance(fact, bool):
             if not wanted[0] <= abs(fact) <= wanted[1]:
                 return False
@@ -31,7 +34,7 @@ def mark_known(record, known):
     for finding in record["findings"]:
         for entry in known:
             if (re.fullmatch(entry["integrator"], finding["integrator"]) and re.fullmatch(entry["what"], finding["what"])
-                    and holds(record["facts"], entry.get("where", {}))):
+                    and re.search(entry.get("text", ""), finding["text"]) and holds(record["facts"], entry.get("where", {}))):
                 finding["known"] = entry["reason"]
 
 

@@ -102,7 +102,7 @@ def write_scene(seed, n, folder, methods, registry):
     path.write_text(text)
     watched = {"integrator": (end[1],), "selection": ("mote_vpl",), "compensation": ("mote_vpl",),
                "visibility": ("mote_vpl",)}.get(end[0], ()) if end else ()
-    return Scene(str(n), path, {**axes.facts(), "end": " ".join(end) if end else "", **grids(text)}, watched=watched)
+    return Scene(str(n), path, {**axes.facts(), "end": " ".join(end) if end else "", **contents(text)}, watched=watched)
 
 
 def hostile_scene(source, folder, methods, registry):
@@ -113,9 +113,12 @@ def hostile_scene(source, folder, methods, registry):
     blocks = "\n".join([f'<path value="{source.parent.resolve()}"/>', *integrators(methods, registry, -1)])
     path = folder / "scene.xml"
     path.write_text(re.sub(r"(<scene[^>]*>)", lambda m: m[1] + "\n" + blocks, text, count=1))
-    return Scene(source.stem, path, {"file": source.stem, **grids(text)})
+    return Scene(source.stem, path, {"file": source.stem, **contents(text)})
 
 
-def grids(text):
-    """A fact of scenes with media that vary."""
-    return {"grids": "yes" if 'type="heterogeneous"' in text else "no"}
+def contents(text):
+    """Facts of scenes with media that vary, with surfaces that are not diffuse, and with a lamp twice at one place."""
+    lamps = [line for line in text.splitlines() if line.startswith("<shape") and '<emitter type="area"' in line]
+    kinds = set(re.findall(r'<bsdf type="(\w+)"', text)) - {"diffuse", "twosided", "null", "mask", "bumpmap", "normalmap"}
+    return {"grids": "yes" if 'type="heterogeneous"' in text else "no", "lobes": "yes" if kinds else "no",
+            "lamps": "coincide" if len(set(lamps)) < len(lamps) else "apart"}

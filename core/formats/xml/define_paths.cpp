@@ -1,13 +1,18 @@
 // -D with a path: "integrator.paths=4096", "sensor.film.width=64", "left_wall.reflectance=0.2".
 //
 // Each word but the last chooses an element by id, else by name, tag or type, and of those that are nested in
-// each other the outermost, and of several integrators of a scene the first; the last is a parameter. Where
-// that parameter is a nested object, the value is its type: "integrator.compensation=approximate", and then
-// "integrator.compensation.depth=2".
+// each other the outermost, and of several integrators of a scene the first; the last is a parameter.
+// "emitter:2" is the second of the elements that the word chooses. Where the parameter is a nested object,
+// the value is its type: "integrator.compensation=approximate", and then "integrator.compensation.depth=2". A
+// transform is sixteen numbers, a matrix row by row, or nine: origin, target and up of a lookat.
+#include <algorithm>
+#include <array>
+#include <charconv>
 #include <sstream>
 
 #include "core/formats/xml/element_checks.h"
 #include "core/formats/xml/scene_defines.h"
+#include "core/formats/xml/scene_values.h"
 #include "core/objects/registry.h"
 
 namespace mote::core {
@@ -56,14 +61,27 @@ void known_words(const Element& parent, std::vector<std::string>& words) {
     }
 }
 
+/// The elements that "word:2" means: the second one of matches(), or none.
+std::vector<Element*> numbered_match(Element& parent, const std::string& word) {
+    const auto colon = word.rfind(':');
+    if (colon == std::string::npos) return {};
+    std::size_t number = 0;
+    const char* const end = word.data() + word.size();
+    const auto read = std::from_chars(word.data() + colon + 1, end, number);
+    const std::vector<Element*> all = matches(parent, word.substr(0, colon));
+    if (read.ec != std::errc() || read.ptr != end || number < 1 || number > all.size()) return {};
+    return {all[number - 1]};
+}
+
 Element& find_one(Element& parent, const std::string& word, const SourceLocation& where) {
-    const std::vector<Element*> found = matches(parent, word);
+    std::vector<Element*> found = matches(parent, word);
+    if (found.empty()) found = numbered_match(parent, word);
     if (found.size() == 1) return *found.front();
     // The first integrator of a scene renders; the others are found by their types.
     if (found.size() > 1 && parent.tag == "scene" && word == "integrator") return *found.front();
     if (found.size() > 1)
         throw InputError("'" + printable(word) + "' fits " + std::to_string(found.size()) +
-                             " elements; give the id of one",
+                             " elements; give the id of one, or '" + printable(word) + ":1' for the first",
                          where);
     std::vector<std::string> words;
     known_words(parent, words);
@@ -94,6 +112,34 @@ void set_nested(Element& element, const Parameter& parameter, const std::string&
     element.children.push_back(fresh);
 }
 
+/// <transform name="name"> of sixteen numbers, or nine.
+Element transform_element(const Element& element, const std::string& name, const std::string& value,
+                          const SourceLocation& where) {
+    const std::vector<double> numbers = parse_numbers(value, where);
+    if (numbers.size() != 9 && numbers.size() != 16)
+        throw InputError("'" + name +
+                             "': expected 16 numbers, a matrix row by row, or 9, the origin, target " +
+                             "and up of a lookat; not " + std::to_string(numbers.size()),
+                         where);
+    std::vector<std::string> words;
+    std::string text = value;
+    std::replace(text.begin(), text.end(), ',', ' ');
+    std::istringstream stream(text);
+    for (std::string word; stream >> word;) words.push_back(word);
+    Element transform, step;
+    transform.tag = "transform", step.tag = numbers.size() == 16 ? "matrix" : "lookat";
+    transform.where = step.where = where, transform.folder = step.folder = element.folder;
+    transform.set("name", name);
+    if (numbers.size() == 16)
+        step.set("value", value);
+    else
+        for (std::size_t i = 0; i < 3; ++i)
+            step.set(std::array{"origin", "target", "up"}[i],
+                     words[3 * i] + " " + words[3 * i + 1] + " " + words[3 * i + 2]);
+    transform.children.push_back(step);
+    return transform;
+}
+
 void set_parameter(Element& element, const std::string& name, const std::string& value,
                    const Registry& registry, const SourceLocation& where) {
     if (name == "type") {
@@ -105,10 +151,12 @@ void set_parameter(Element& element, const std::string& name, const std::string&
     const Parameter& parameter = require_parameter(manual, name, where);
     const std::string tag = tag_for(parameter.type, value);
     if (tag.empty() && find_category(parameter.type)) return set_nested(element, parameter, value, where);
-    if (tag.empty())
+    const bool is_transform = parameter.type == "transform";
+    if (tag.empty() && !is_transform)
         throw InputError("'" + name + "' is a " + parameter.type + " and cannot be set on the command line",
                          where);
-    Element changed = element.make_value(tag, name, value);
+    Element changed =
+        is_transform ? transform_element(element, name, value, where) : element.make_value(tag, name, value);
     changed.where = where;
     if (Element* old = element.child(name))
         *old = changed;

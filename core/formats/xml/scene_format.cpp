@@ -88,7 +88,8 @@ in the file it is defined; `name` on the reference says what it is used for, as 
 - `<default name="size" value="512"/>` defines a parameter; `$size` in any later attribute is its value.
 - `-D size=64` on the command line overrides the default. A `-D` that nothing uses is an error.
 - `-D film.width=64` sets a parameter without the file's help: the words before the last dot choose an element by
-  id, tag or type, the last word is the parameter. `-D integrator.type=volpath` changes a type.
+  id, tag or type, the last word is the parameter. `-D integrator.type=volpath` changes a type. `emitter:2` is the
+  second of several. A transform is 16 numbers, or 9: origin, target and up, as in `-D 'sensor.to_world=0 1 5 0 1 0 0 1 0'`.
 
 ## Files of version 0.x
 

@@ -81,7 +81,9 @@ std::unique_ptr<Scene> make_scene(SceneDocument document, SceneDefines& defines,
     Scene::Parts parts = make_parts(document, registry, file, options.lenient, faults);
     if (finish) finish(parts);
     auto scene = std::make_unique<Scene>(std::move(parts));
-    if (options.report) *options.report = {document.approximations, document.features};
+    if (options.report)
+        *options.report = {document.approximations, document.features,
+                           std::make_shared<const Element>(std::move(document.scene))};
     return scene;
 }
 

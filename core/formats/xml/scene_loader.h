@@ -23,6 +23,7 @@ namespace mote::core {
 struct LoadReport {
     std::vector<std::string> approximations;  ///< left out or replaced by leniency, and why
     std::vector<std::string> features;        ///< layers of the first hit that the file requests
+    std::shared_ptr<const Element> elements;  ///< of the scene, in today's words, with every -D applied
 };
 
 /// Changes of a scene by the caller, and how strictly it is read.

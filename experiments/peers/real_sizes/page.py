@@ -2,10 +2,12 @@
 import csv
 from html import escape
 
-from times import TARGETS, noise_alone, time_to
+from times import TARGETS, noise_alone, time_to, variance_time
 
 COLUMNS = ("scene", "method", "version", "settings", "passes", "seed", "wall_s", "cpu_s", "build_s", "error", "error_se",
-           "bias", "bias_se", "mean", "mean_se", "non_finite")
+           "bias", "bias_se", "mean", "mean_se", "non_finite", "samples_per_s")
+SPEED_COLUMNS = ("scene", "method", "version", "settings", "passes", "wall_s", "million_samples_per_s", "variance_time_s",
+                 "variance_time_se")
 MARKS = {"measured": "", "below": "≤ ", "by 1/sqrt(t)": "≈ "}
 
 
@@ -30,6 +32,40 @@ def seconds_text(value, how):
     return MARKS[how] + digits
 
 
+def variance_time_of(m):
+    """Of unbiased methods, of peers without what their model differs."""
+    if not m["unbiased"]:
+        return None
+    systematic = m["systematic"] if m["peer"] and m["systematic"][0] > 3 * m["systematic"][1] else (0.0, 0.0)
+    return variance_time(m["runs"], systematic)
+
+
+def variance_time_text(m):
+    found = variance_time_of(m)
+    return "-" if found is None else f"{found[0]:.3g} ± {found[1]:.2g}"
+
+
+def write_speed(folder, facts, scenes):
+    """speed.csv and speed.md: samples a second, and variance times time, of the unbiased methods of all scenes."""
+    lines = [["scene", "method", "M samples/s", "variance x time [s]"], ["---"] * 4]
+    with open(folder / "speed.csv", "w", newline="", encoding="utf-8") as file:
+        for key, value in facts.items():
+            file.write(f"# {key}: {value}\n")
+        table = csv.DictWriter(file, SPEED_COLUMNS)
+        table.writeheader()
+        for scene, methods in scenes:
+            for m in (m for m in methods if m["unbiased"]):
+                last, (value, error) = m["runs"][-1], variance_time_of(m)
+                rate = f"{last['samples_per_s'] / 1e6:.3g}"
+                table.writerow({"scene": scene, "method": m["name"], "version": m["version"], "settings": m["settings"],
+                                "passes": last["passes"], "wall_s": f"{last['wall_s']:.4g}", "million_samples_per_s": rate,
+                                "variance_time_s": f"{value:.4g}", "variance_time_se": f"{error:.2g}"})
+                lines.append([scene, m["name"], rate, variance_time_text(m)])
+    text = "\n".join("| " + " | ".join(cells) + " |" for cells in lines) + "\n"
+    (folder / "speed.md").write_text(text, encoding="utf-8")
+    return text
+
+
 def row(m):
     """Row of the table: name, times to the targets (wall, and processor seconds in brackets), the last image, bias."""
     runs = noise_alone(m["runs"], m["systematic"]) if m["peer"] else m["runs"]
@@ -40,11 +76,12 @@ def row(m):
         cells.append(seconds_text(*wall) + (f" ({seconds_text(*cpu)})" if cpu[0] is not None else ""))
     last = m["runs"][-1]
     percent = lambda value, error, sign="": f"{100 * value:{sign}.2f} ± {100 * error:.2f} %"
+    cells += [f"{last['samples_per_s'] / 1e6:.2f}", variance_time_text(m)]
     return cells + [f"{last['passes']} in {last['wall_s']:.1f} s: {percent(last['error'], last['error_se'])}",
                     percent(last["bias"], last["bias_se"], "+"), percent(*m["systematic"]) if len(runs) > 1 else "-", f"{m['build_s']:.1f} s"]
 
 
-HEAD = ("method", *(f"s to {100 * t:.0f} %" for t in TARGETS), "last picture", "bias", "systematic", "loading")
+HEAD = ("method", *(f"s to {100 * t:.0f} %" for t in TARGETS), "M samples/s", "variance x time [s]", "last picture", "bias", "systematic", "loading")
 
 
 def markdown(methods):
@@ -63,7 +100,8 @@ No mark: between two measured pictures; ≈: by 1/sqrt(t) from the last one; ≤
 The error is the relative RMSE of docs/testing.md, "Error and noise", Eq. 1 and 2, measured with two independent references
 so that it is free of their noise. Bias: signed, of the last picture. Systematic: what two
 independent pictures have in common, without noise; where it is below its
-standard error it is 0. For other renderers the systematic part is taken off the times: there it is a difference of models."""
+standard error it is 0. Variance x time: the square of the last picture's error times its seconds, for unbiased methods.
+For other renderers the systematic part is taken off the times: there it is a difference of models."""
 
 
 def write_page(path, facts, scenes):

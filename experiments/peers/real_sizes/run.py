@@ -4,6 +4,7 @@
     experiments/trade/run --peers [SCENE...]           640 x 400, into out/peers/: some four minutes a scene
     experiments/trade/run --peers --quick [SCENE...]   80 x 50, into out/peers_quick/: some three minutes in all
     experiments/trade/run --peers --references         the references alone, where they are missing
+    experiments/trade/run --peers --paths [SCENE...]   path tracers alone, ours and Mitsuba's, into out/peers_paths/
     experiments/trade/run --peers --match [SCENE...]   means of the peers against volpath, 64 x 40: a table
 
 Scenes: cornell_box smoke_room fog_grille cloud atrium city; settings.json has their settings. Two references a scene,
@@ -25,7 +26,7 @@ import measure  # noqa: E402
 from match import match  # noqa: E402
 from mote_runs import Mote, beauty_and_variance, filter_of, found_references, make_reference  # noqa: E402
 from origin import commit  # noqa: E402
-from page import markdown, write_csv, write_page  # noqa: E402
+from page import markdown, write_csv, write_page, write_speed  # noqa: E402
 from peer_runs import export, pictures, run_cycles, run_mitsuba  # noqa: E402
 from plot import svg  # noqa: E402
 from times import References, judged  # noqa: E402
@@ -35,6 +36,7 @@ def arguments():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("scenes", nargs="*")
     parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--paths", action="store_true", help="our path tracer and Mitsuba's alone")
     parser.add_argument("--match", action="store_true")
     parser.add_argument("--references", action="store_true")
     parser.add_argument("--fresh", action="store_true")
@@ -47,9 +49,12 @@ def arguments():
         parser.error(f"no scene {unknown[0]}: there are {' '.join(settings['scenes'])}")
     if options.quick:
         settings.update(settings["quick"])
+    settings["peers"] = ["mitsuba"] if options.paths else ["mitsuba", "cycles"]
+    if options.paths:
+        settings["ours"] = [method for method in settings["ours"] if method.get("unbiased")]
     settings["budget"] = options.budget or settings["budget"]
     settings["reference_time"] = float(os.environ.get("REFERENCE_TIME", settings["reference_time"]))
-    options.output = ROOT / "out" / ("peers_quick" if options.quick else "peers")
+    options.output = ROOT / "out" / ("peers" + "_paths" * options.paths + "_quick" * options.quick)
     folders = os.environ.get("MOTE_REFERENCES", str(ROOT / "out" / "references")).split(os.pathsep)
     options.folders = [options.output / "references"] if options.quick else [Path(f) for f in folders]
     return options, settings
@@ -82,6 +87,8 @@ def methods_of(mote, scene, settings, options, output):
         yield method["name"], text, False, method.get("unbiased", False), folder, log
     notes = export(mote, scene["integrator"], exported)
     for index, (name, action) in enumerate((("mitsuba", run_mitsuba), ("cycles", run_cycles))):
+        if name not in settings["peers"]:
+            continue
         folder, s = output / name, settings[name]
         log = measured(folder, options.fresh, [*setup, s], lambda f: action(mote, s, exported, f, budget, 1000 * (index + 1)))
         if log is None:
@@ -159,6 +166,7 @@ def main():
             pages += [page] if page else []
         if pages:
             write_page(options.output / "peers.html", facts_of(settings, options), pages)
+            print(write_speed(options.output, facts_of(settings, options), [(p[0], p[2]) for p in pages]))
             print(options.output / "peers.html")
     except (RuntimeError, OSError) as error:
         print(f"run.py: {error}", file=sys.stderr)

@@ -43,6 +43,7 @@ def judged(references, runs, pictures):
         plain = measure.module().compare(picture, mean)
         run["mean"], run["mean_se"] = plain["mean_difference"], plain["mean_difference_standard_error"]
         run["non_finite"] = int(np.count_nonzero(~np.isfinite(picture)))
+        run["samples_per_s"] = run["passes"] * picture.shape[0] * picture.shape[1] / run["wall_s"]
     if len(runs) < 2:
         return 0.0, float("nan")
     shared = references.series_error(pictures[-2:])
@@ -53,6 +54,14 @@ def noise_alone(runs, systematic):
     """Copies of the runs whose errors are without the systematic one: for other renderers, where it is the difference of
     two models, not an error."""
     return [{**run, "error": float(np.sqrt(max(0.0, run["error"]**2 - systematic[0]**2)))} for run in runs]
+
+
+def variance_time(runs, systematic):
+    """Relative variance times seconds of the last image, and its standard error [s]: the seconds to an error of 100 %, by
+    which unbiased methods compare whatever their time. `systematic`, (value, standard error), is taken off."""
+    last = runs[-1]
+    variance = max(0.0, last["error"]**2 - systematic[0]**2)
+    return variance * last["wall_s"], 2 * last["error"] * last["error_se"] * last["wall_s"]
 
 
 def time_to(target, runs, seconds, systematic=(0.0, 0.0)):

@@ -85,7 +85,7 @@ int main(int argc, char** argv) try {
     CLI::App app{"Error and cost of selecting virtual point lights, as CSV"};
     app.add_option("scene", a.scene, "scene file, with media")->required();
     app.add_option("methods", a.methods,
-                   "all lightcuts:T:N multidimensional:T:N stochastic:N tree:N "
+                   "all uniform:N lightcuts:T:N multidimensional:T:N stochastic:N tree:N "
                    "ris:CANDIDATES:SAMPLES matrix:ROWS:COLUMNS:SLICES:VISIBILITY");
     app.add_option("--paths", a.paths, "light paths");
     app.add_option("--tiles", a.tiles, "of 4 x 4 pixels");

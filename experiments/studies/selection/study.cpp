@@ -29,6 +29,7 @@ std::shared_ptr<const lights::Selection> selection_of(const std::string& text) {
     const Names cut{"threshold", "max_cut", "error", "shared_angle"}, samples{"samples"};
     static const std::map<std::string, std::pair<std::string, Names>> types{
         {"all", {"all", {}}},
+        {"uniform", {"uniform", samples}},
         {"lightcuts", {"lightcuts", cut}},
         {"multidimensional", {"multidimensional_lightcuts", cut}},
         {"stochastic", {"stochastic_lightcuts", samples}},
@@ -90,21 +91,17 @@ Study::Study(const Arguments& a) : arguments_(a), scene_(load(a)) {
 }
 
 Study::Method Study::prepare(const std::string& text) const {
-    Method method{selection_of(text), nullptr, !text.starts_with("all") && !text.starts_with("matrix")};
+    Method method{selection_of(text), nullptr,
+                  !text.starts_with("all") && !text.starts_with("uniform") && !text.starts_with("matrix")};
     core::RayCounters rays;
     core::TrackingCounters tracking;
     core::Statistics statistics;
-    lights::SelectionPass pass{*scene_, vpls_, arguments_.bound, 1, rays, tracking, statistics, {}, {}};
-    const auto all = lights::all_vpls()->prepare(pass);
-    pass.sample_receivers = [&](std::size_t paths) {
-        core::WalkContext walk;
-        EyePacket<true> packet(*scene_, EyeTile<true>::packet_settings(settings_), walk);
-        EyeTile<true> eye(*scene_, settings_, vpls_, *all, nullptr, packet);
-        const std::atomic<bool> cancelled = false;
-        const auto pixels = spread_pixels(options_.width, options_.height, paths, 1);
-        return sample_path_receivers(*scene_, options_, {0, *filter_, cancelled}, pixels, packet, eye);
-    };
-    method.selector = method.selection->prepare(pass);
+    core::WalkContext walk;
+    const std::atomic<bool> cancelled = false;
+    const auto receivers = sample_path_receivers<true>(*scene_, settings_, options_, {0, *filter_, cancelled},
+                                                       method.selection->receiver_paths(), 1, walk);
+    method.selector = method.selection->prepare(
+        {*scene_, vpls_, arguments_.bound, 1, rays, tracking, statistics, {}, receivers});
     return method;
 }
 
@@ -112,8 +109,10 @@ Pixels Study::render(std::size_t index, const Method& method, TileCost& cost) co
     VplSettings settings = settings_;
     settings.selection = method.selection;
     core::WalkContext walk;
-    EyePacket<true> packet(*scene_, EyeTile<true>::packet_settings(settings), walk);
-    EyeTile<true> eye(*scene_, settings, vpls_, *method.selector, nullptr, packet);
+    EyePacket<true> packet(*scene_, EyeReceivers<true>::packet_settings(settings), walk);
+    const auto visibility = lights::prepare_traced_visibility();
+    compensation::PreparedResidual residual;
+    VplGatherer<true> gatherer(*scene_, settings, {vpls_, method.selector, *visibility, residual}, packet);
     const std::atomic<bool> cancelled = false;
     const core::PassContext pass{0, *filter_, cancelled};
     const glm::ivec2 wanted = tiles_[index], task = wanted / 16 * 16;
@@ -121,7 +120,7 @@ Pixels Study::render(std::size_t index, const Method& method, TileCost& cost) co
         const double begin = now(CLOCK_THREAD_CPUTIME_ID);
         for (int lane = 0; lane < 16; ++lane)
             packet.start(lane, make_eye_ray(*scene_, options_, pass, tile.x + lane % 4, tile.y + lane / 4));
-        eye.run({}, 1.0f), eye.gather_recorded();
+        gatherer.follow({}, 1.0f), gatherer.gather_copied();
         cost.seconds += now(CLOCK_THREAD_CPUTIME_ID) - begin, ++cost.tiles;
         Pixels light;
         for (int lane = 0; lane < 16; ++lane) {
@@ -140,7 +139,7 @@ Pixels Study::render(std::size_t index, const Method& method, TileCost& cost) co
             render_tile(tile);
     }
     cost.rays += double(walk.rays.occlusion);
-    eye.selector().add_statistics(cost.selection);
+    gatherer.add_statistics(cost.selection);
     return light;
 }
 

@@ -5,7 +5,7 @@
 #include <ctime>
 
 #include "core/render/render_driver.h"
-#include "integrators/virtual_point_lights/vpl_eye_tile.h"
+#include "integrators/virtual_point_lights/vpl_gatherer.h"
 
 namespace mote::studies {
 
@@ -24,7 +24,7 @@ struct Arguments {
 double now(clockid_t clock);
 
 /// "all", "lightcuts:THRESHOLD:MAX_CUT:ERROR:ANGLE" and "multidimensional:..." alike, where
-/// numbers left out have their defaults, "stochastic:N", "tree:N", "ris:CANDIDATES:SAMPLES",
+/// numbers left out have their defaults, "uniform:N", "stochastic:N", "tree:N", "ris:CANDIDATES:SAMPLES",
 /// "matrix:ROWS:COLUMNS:SLICES:rays|shadow_map".
 std::shared_ptr<const lights::Selection> selection_of(const std::string& text);
 
@@ -46,7 +46,7 @@ class Study {
     /// A selection for the VPLs of the study.
     struct Method {
         std::shared_ptr<const lights::Selection> selection;
-        std::unique_ptr<lights::VplSelector> selector;
+        lights::VplSelector selector;
         bool learns;  ///< from the tiles before
     };
     Method prepare(const std::string& text) const;

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <string>
 
+#include "core/render/cpu_clock.h"
 #include "core/render/statistics.h"
 
 namespace mote::lights {
@@ -16,8 +16,7 @@ class BuildStatistics {
     BuildStatistics(core::Statistics& statistics, std::string name)
         : statistics_(statistics), name_(std::move(name)) {}
     void built(std::size_t bytes) const {
-        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin_;
-        statistics_.seconds[name_] += seconds.count();
+        statistics_.seconds[name_] += core::wall_seconds() - begin_;
         double& largest = statistics_.values[name_ + "_bytes"];
         largest = std::max(largest, double(bytes));
     }
@@ -25,7 +24,7 @@ class BuildStatistics {
   private:
     core::Statistics& statistics_;
     std::string name_;
-    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+    double begin_ = core::wall_seconds();
 };
 
 }  // namespace mote::lights

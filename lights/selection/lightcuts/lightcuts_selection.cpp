@@ -1,10 +1,10 @@
-#include "lights/selection/lightcuts/lightcuts_selection.h"
-
+// Lightcuts (Walter et al. 2005) and multidimensional lightcuts (Walter et al. 2006) as selections.
 #include <fmt/format.h>
 
-#include "core/parameters/add_type.h"
 #include "lights/selection/hierarchy/build_statistics.h"
 #include "lights/selection/hierarchy/vertex_bounds.h"
+#include "lights/selection/lightcuts/lightcut.h"
+#include "lights/selection/register_selection.h"
 
 namespace mote::lights {
 
@@ -18,25 +18,24 @@ class TileLightcuts final : public TileSelector {
                   const LightcutSettings& settings, bool multidimensional)
         : cut_(vpls, lights, bound, settings), multidimensional_(multidimensional) {}
 
-    bool records() const override { return multidimensional_; }
+    std::size_t max_points() const override {
+        return multidimensional_ ? std::size_t(-1) : TileSelector::max_points();
+    }
     TileLight gather(const GatherContext& context, ReceiverTile& receivers, const VplRange&, BatchVisibility&,
                      Rng& rng) override {
+        if (multidimensional_) {
+            for (const ReceiverKind kind : {ReceiverKind::surface, ReceiverKind::medium})
+                points_.add(lanes_of(receivers, kind), kind);
+            return {};
+        }
         if (!receivers.any_active) return {};
         const ReceiverKind kind = kind_of(receivers);
         points_.clear();
         points_.add(receivers, kind);
-        return gather_recorded(context, rng)[std::size_t(kind)];
+        return gather_points(context, rng)[std::size_t(kind)];
     }
-    void record(const ReceiverTile& receivers) override {
-        for (const ReceiverKind kind : {ReceiverKind::surface, ReceiverKind::medium})
-            points_.add(lanes_of(receivers, kind), kind);
-    }
-    LightByKind gather_recorded(const GatherContext& context, Rng& rng) override {
-        Rng choices = choices_of(rng);
-        points_.build(choices);
-        const LightByKind light = cut_.gather(context, points_, choices);
-        points_.clear();
-        return light;
+    LightByKind gather_copied(const GatherContext& context, Rng& rng) override {
+        return multidimensional_ ? gather_points(context, rng) : LightByKind{};
     }
     void add_statistics(Statistics& statistics) const override {
         const LightcutCounters& c = cut_.counters();
@@ -49,30 +48,24 @@ class TileLightcuts final : public TileSelector {
     }
 
   private:
+    LightByKind gather_points(const GatherContext& context, Rng& rng) {
+        Rng choices = choices_of(rng);
+        points_.build(choices);
+        const LightByKind light = cut_.gather(context, points_, choices);
+        points_.clear();
+        return light;
+    }
+
     GatherPoints points_;
     Lightcut cut_;
     bool multidimensional_;
 };
 
-class LightcutsSelector final : public VplSelector {
-  public:
-    LightcutsSelector(const SelectionPass& pass, const LightcutSettings& settings, bool multidimensional)
-        : vpls_(pass.vpls), bound_(pass.bound), settings_(settings), multidimensional_(multidimensional) {
-        const BuildStatistics timer(pass.statistics, "light_hierarchy");
-        lights_ = LightHierarchy(leaves_);
-        timer.built(lights_.memory_bytes());
-    }
-    std::unique_ptr<TileSelector> for_task() const override {
-        return std::make_unique<TileLightcuts>(vpls_, lights_, bound_, settings_, multidimensional_);
-    }
-
-  private:
-    const VplSet& vpls_;
-    float bound_;
-    LightcutSettings settings_;
-    bool multidimensional_;
-    VplLeaves leaves_{vpls_};
-    LightHierarchy lights_;
+/// The hierarchy of a pass.
+struct VplHierarchy {
+    explicit VplHierarchy(const VplSet& vpls) : leaves(vpls), lights(leaves) {}
+    VplLeaves leaves;
+    LightHierarchy lights;
 };
 
 const ParameterList<LightcutSettings> parameters{
@@ -89,44 +82,56 @@ const ParameterList<LightcutSettings> parameters{
         "shadow ray: 0.2 halves the time and adds a tenth of the error. 0: none do."),
 };
 
+class LightcutsSelection final : public Selection {
+  public:
+    /// `multidimensional`: one cut for all points of a pixel, else one for each.
+    LightcutsSelection(const LightcutSettings& settings, bool multidimensional)
+        : settings_(settings), multidimensional_(multidimensional) {}
+    VplSelector prepare(const SelectionPass& pass) const override {
+        check_memory(pass);
+        const BuildStatistics timer(pass.statistics, "light_hierarchy");
+        const auto hierarchy = std::make_shared<const VplHierarchy>(pass.vpls);
+        timer.built(hierarchy->lights.memory_bytes());
+        return [hierarchy, &vpls = pass.vpls, bound = pass.bound, *this] {
+            return std::make_unique<TileLightcuts>(vpls, hierarchy->lights, bound, settings_,
+                                                   multidimensional_);
+        };
+    }
+    std::string excludes(const GatherOptions& options) const override {
+        if (options.interleaving) return "interleaving";  // neighbouring pixels are needed in one tile
+        const std::string other = Selection::excludes(options);
+        return other.empty() && options.imperfect_shadow_maps ? "imperfect shadow maps" : other;
+    }
+    std::size_t memory_bytes(std::size_t vpls) const override {
+        return vpls * (LightHierarchy::bytes_a_light + LightHierarchy::building_bytes_a_light);
+    }
+    void plan(Plan& plan, const SelectionSize& size) const override {
+        plan.run("selection",
+                 fmt::format("{}lightcuts, threshold {:g} %, at most {} clusters",
+                             multidimensional_ ? "multidimensional " : "",
+                             100.0 * double(settings_.threshold), settings_.max_cut),
+                 "biased by at most the threshold for each cluster; one cut a tile of 4 x 4");
+        plan_memory(plan, "memory of the light hierarchy", size);
+    }
+
+  private:
+    LightcutSettings settings_;
+    bool multidimensional_;
+};
+
 }  // namespace
 
-std::unique_ptr<VplSelector> LightcutsSelection::prepare(const SelectionPass& pass) const {
-    check_memory(pass);
-    return std::make_unique<LightcutsSelector>(pass, settings_, multidimensional_);
-}
-
-std::size_t LightcutsSelection::memory_bytes(std::size_t vpls) const {
-    return vpls * (LightHierarchy::bytes_a_light + LightHierarchy::building_bytes_a_light);
-}
-
-void LightcutsSelection::plan(Plan& plan, const SelectionSize& size) const {
-    plan.run("selection",
-             fmt::format("{}lightcuts, threshold {:g} %, at most {} clusters",
-                         multidimensional_ ? "multidimensional " : "", 100.0 * double(settings_.threshold),
-                         settings_.max_cut),
-             "biased by at most the threshold for each cluster; one cut a tile of 4 x 4");
-    plan_memory(plan, "memory of the light hierarchy", size);
-}
-
 void register_lightcuts(Registry& registry) {
-    const auto add = [&](const std::string& type, const std::string& summary, bool multidimensional) {
-        add_type(registry, Category::selection, type, summary, parameters,
-                 "<selection type=\"" + type + "\"/>",
-                 [multidimensional](const LightcutSettings& settings, const Properties& properties) {
-                     const auto selection = std::make_shared<LightcutsSelection>(settings, multidimensional);
-                     selection->where = properties.where;
-                     return selection;
-                 });
-    };
-    add("lightcuts",
+    add_selection<LightcutsSelection>(
+        registry, "lightcuts",
         "Lightcuts (Walter et al. 2005): clusters of VPLs, each by its representative, refined until their "
         "largest error bound is below a threshold.",
-        false);
-    add("multidimensional_lightcuts",
+        parameters, false);
+    add_selection<LightcutsSelection>(
+        registry, "multidimensional_lightcuts",
         "Lightcuts over all points of a pixel at once (Walter et al. 2006): along its eye rays through "
         "media, on the surface behind them, and of all its eye paths.",
-        true);
+        parameters, true);
 }
 
 }  // namespace mote::lights

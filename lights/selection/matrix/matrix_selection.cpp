@@ -1,11 +1,11 @@
-#include "lights/selection/matrix/matrix_selection.h"
-
+// Matrix row-column sampling (Hasan et al. 2007) with slices (Ou and Pellacini 2011) as a selection.
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "core/parameters/add_type.h"
 #include "lights/selection/hierarchy/build_statistics.h"
+#include "lights/selection/matrix/matrix_clusters.h"
+#include "lights/selection/register_selection.h"
 #include "lights/selection/sampling_selector.h"
 
 namespace mote::lights {
@@ -13,11 +13,6 @@ namespace mote::lights {
 using namespace core;
 
 namespace {
-
-/// Eye paths that look for receivers: every stratum of a slice has several to choose from.
-std::size_t eye_paths_for(const MatrixSettings& settings) {
-    return std::max<std::size_t>(2048, 4 * settings.slices * settings.rows_a_slice());
-}
 
 class TileMatrix final : public SamplingSelector {
   public:
@@ -32,29 +27,6 @@ class TileMatrix final : public SamplingSelector {
   private:
     const MatrixClusters& clusters_;
     std::vector<WeightedVpl> samples_;
-};
-
-class MatrixSelector final : public VplSelector {
-  public:
-    MatrixSelector(const SelectionPass& pass, const MatrixSettings& settings)
-        : vpls_(pass.vpls), bound_(pass.bound) {
-        const std::vector<PathReceiver> receivers = pass.sample_receivers(eye_paths_for(settings));
-        const BuildStatistics timer(pass.statistics, "matrix");
-        clusters_ = MatrixClusters(
-            {pass.scene, vpls_, bound_, settings.visibility, pass.rays, pass.tracking, pass.cancelled},
-            receivers, settings, pass.key);
-        timer.built(clusters_.memory_bytes());
-        pass.statistics.values["matrix_slices"] = double(clusters_.slices());
-        pass.statistics.values["matrix_receivers"] += double(receivers.size());
-    }
-    std::unique_ptr<TileSelector> for_task() const override {
-        return std::make_unique<TileMatrix>(vpls_, clusters_, bound_);
-    }
-
-  private:
-    const VplSet& vpls_;
-    float bound_;
-    MatrixClusters clusters_;
 };
 
 using RowKind = RowVisibilitySettings::Kind;
@@ -74,38 +46,55 @@ const ParameterList<MatrixSettings> parameters{
                "view, faster in media, or rays: only the probabilities of VPLs depend on it.")),
 };
 
+class MatrixSelection final : public Selection {
+  public:
+    explicit MatrixSelection(const MatrixSettings& settings) : settings_(settings) {}
+    VplSelector prepare(const SelectionPass& pass) const override {
+        check_memory(pass);
+        const BuildStatistics timer(pass.statistics, "matrix");
+        const auto clusters = std::make_shared<const MatrixClusters>(
+            RowContext{pass.scene, pass.vpls, pass.bound, settings_.visibility, pass.rays, pass.tracking,
+                       pass.cancelled},
+            pass.receivers, settings_, pass.key);
+        timer.built(clusters->memory_bytes());
+        pass.statistics.values["matrix_slices"] = double(clusters->slices());
+        pass.statistics.values["matrix_receivers"] += double(pass.receivers.size());
+        return [clusters, &vpls = pass.vpls, bound = pass.bound] {
+            return std::make_unique<TileMatrix>(vpls, *clusters, bound);
+        };
+    }
+    /// Every stratum of a slice has several receivers to choose from.
+    std::size_t receiver_paths() const override {
+        return std::max<std::size_t>(2048, 4 * settings_.slices * settings_.rows_a_slice());
+    }
+    std::size_t memory_bytes(std::size_t vpls) const override { return settings_.bytes(vpls); }
+    void plan(Plan& plan, const SelectionSize& size) const override {
+        plan.run(
+            "selection",
+            fmt::format("matrix row-column sampling, {} rows, {} columns for each of {} slices of receivers",
+                        settings_.rows_a_slice() * settings_.slices, settings_.columns, settings_.slices),
+            "unbiased; the same VPLs for a tile of 4 x 4");
+        plan_memory(plan, "memory of the matrix", size);
+        const double rows = double(settings_.rows_a_slice() * settings_.slices);
+        plan.run("rows of the matrix",
+                 settings_.visibility.kind == RowKind::rays ? "by rays" : "by shadow maps of receivers",
+                 fmt::format("{:.2g} pairs a pass, of receivers on surfaces and in media; the gather of an "
+                             "image has {:.2g}",
+                             rows * size.vpls, size.pairs * double(settings_.columns)));
+    }
+
+  private:
+    MatrixSettings settings_;
+};
+
 }  // namespace
 
-std::unique_ptr<VplSelector> MatrixSelection::prepare(const SelectionPass& pass) const {
-    check_memory(pass);
-    return std::make_unique<MatrixSelector>(pass, settings_);
-}
-
-void MatrixSelection::plan(Plan& plan, const SelectionSize& size) const {
-    plan.run("selection",
-             fmt::format("matrix row-column sampling, {} rows, {} columns for each of {} slices of receivers",
-                         settings_.rows_a_slice() * settings_.slices, settings_.columns, settings_.slices),
-             "unbiased; the same VPLs for a tile of 4 x 4");
-    plan_memory(plan, "memory of the matrix", size);
-    const double rows = double(settings_.rows_a_slice() * settings_.slices);
-    plan.run(
-        "rows of the matrix",
-        settings_.visibility.kind == RowKind::rays ? "by rays" : "by shadow maps of receivers",
-        fmt::format(
-            "{:.2g} pairs a pass, of receivers on surfaces and in media; the gather of an image has {:.2g}",
-            rows * size.vpls, size.pairs * double(settings_.columns)));
-}
-
 void register_matrix_selection(Registry& registry) {
-    add_type(registry, Category::selection, "matrix",
-             "Matrix row-column sampling (Hasan et al. 2007): clusters of VPLs that send alike to a few "
-             "receivers, for each slice of the image, and one VPL sampled from each for each tile: unbiased.",
-             parameters, R"(<selection type="matrix"/>)",
-             [](const MatrixSettings& settings, const Properties& properties) {
-                 const auto selection = std::make_shared<MatrixSelection>(settings);
-                 selection->where = properties.where;
-                 return selection;
-             });
+    add_selection<MatrixSelection>(
+        registry, "matrix",
+        "Matrix row-column sampling (Hasan et al. 2007): clusters of VPLs that send alike to a few "
+        "receivers, for each slice of the image, and one VPL sampled from each for each tile: unbiased.",
+        parameters);
 }
 
 }  // namespace mote::lights

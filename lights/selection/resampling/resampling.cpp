@@ -54,7 +54,7 @@ void Resampling::fill(std::size_t round, ShadowPacket& packet, Samples& samples)
         s.value = weight / (pair.weight * (visibilities_.empty() ? 1.0f : visibilities_[pair.candidate]));
         s.active = c.value > 0.0f;
         if (!s.active) continue;
-        packet.set(i, c.origin, c.target - c.origin, shadow_fraction);
+        packet.set_segment(i, c.origin, c.target);
         ++counters_.chosen;
     }
 }

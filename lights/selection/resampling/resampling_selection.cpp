@@ -1,14 +1,14 @@
-#include "lights/selection/resampling/resampling_selection.h"
-
+// Resampled importance sampling (Talbot et al. 2005) as a selection: candidates from a cut, a few VPLs for
+// each pixel.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <deque>
 
 #include "core/math/morton.h"
-#include "core/parameters/add_type.h"
 #include "lights/selection/hierarchy/build_statistics.h"
 #include "lights/selection/hierarchy/vertex_bounds.h"
+#include "lights/selection/register_selection.h"
 #include "lights/selection/resampling/recorded_receivers.h"
 #include "lights/selection/resampling/resampling.h"
 #include "lights/selection/stochastic/light_sampler.h"
@@ -29,11 +29,9 @@ class TileResampling final : public TileSelector {
                    std::uint32_t samples)
         : vpls_(vpls), tree_(tree), bound_(bound), count_(candidates), resampling_(vpls, bound, samples) {}
 
-    bool records() const override { return true; }
-    TileLight gather(const GatherContext&, ReceiverTile&, const VplRange&, BatchVisibility&, Rng&) override {
-        return {};
-    }
-    void record(const ReceiverTile& receivers) override {
+    std::size_t max_points() const override { return std::size_t(-1); }
+    TileLight gather(const GatherContext&, ReceiverTile& receivers, const VplRange&, BatchVisibility&,
+                     Rng&) override {
         for (const ReceiverKind kind : {ReceiverKind::surface, ReceiverKind::medium}) {
             const ReceiverTile tile = lanes_of(receivers, kind);
             if (!tile.any_active) continue;
@@ -41,8 +39,9 @@ class TileResampling final : public TileSelector {
             if (points.used == points.tiles.size()) points.tiles.emplace_back();
             points.tiles[points.used++].copy(tile);
         }
+        return {};
     }
-    LightByKind gather_recorded(const GatherContext& context, Rng& rng) override {
+    LightByKind gather_copied(const GatherContext& context, Rng& rng) override {
         Rng choices = choices_of(rng);
         LightByKind light{};
         all_.clear(), bounds_.clear();
@@ -117,25 +116,6 @@ class TileResampling final : public TileSelector {
     Resampling resampling_;
 };
 
-class ResamplingSelector final : public VplSelector {
-  public:
-    ResamplingSelector(const SelectionPass& pass, std::uint32_t candidates, std::uint32_t samples)
-        : vpls_(pass.vpls), bound_(pass.bound), candidates_(candidates), samples_(samples) {
-        const BuildStatistics timer(pass.statistics, "light_hierarchy");
-        tree_ = WideLightTree(VplLeaves(vpls_));
-        timer.built(tree_.memory_bytes());
-    }
-    std::unique_ptr<TileSelector> for_task() const override {
-        return std::make_unique<TileResampling>(vpls_, tree_, bound_, candidates_, samples_);
-    }
-
-  private:
-    const VplSet& vpls_;
-    float bound_;
-    std::uint32_t candidates_, samples_;
-    WideLightTree tree_;
-};
-
 struct ResamplingSettings {
     std::uint32_t candidates = 256, samples = 32;
 };
@@ -148,34 +128,49 @@ const ParameterList<ResamplingSettings> parameters{
         "VPLs of them that each pixel chooses: shadow rays, and most of the time."),
 };
 
+class ResamplingSelection final : public Selection {
+  public:
+    explicit ResamplingSelection(const ResamplingSettings& settings) : settings_(settings) {}
+    VplSelector prepare(const SelectionPass& pass) const override {
+        check_memory(pass);
+        const BuildStatistics timer(pass.statistics, "light_hierarchy");
+        const auto tree = std::make_shared<const WideLightTree>(VplLeaves(pass.vpls));
+        timer.built(tree->memory_bytes());
+        return [tree, &vpls = pass.vpls, bound = pass.bound, s = settings_] {
+            return std::make_unique<TileResampling>(vpls, *tree, bound, s.candidates, s.samples);
+        };
+    }
+    std::string excludes(const GatherOptions& options) const override {
+        const std::string other = Selection::excludes(options);
+        return other.empty() && options.imperfect_shadow_maps ? "imperfect shadow maps" : other;
+    }
+    std::size_t memory_bytes(std::size_t vpls) const override {
+        return vpls * (WideLightTree::bytes_a_light + WideLightTree::building_bytes_a_light);
+    }
+    void plan(Plan& plan, const SelectionSize& size) const override {
+        plan.run("selection",
+                 fmt::format("resampling, {} of {} candidates from a cut", settings_.samples,
+                             settings_.candidates),
+                 "unbiased; tiles of 4 x 4 share their candidates, each pixel chooses its own");
+        plan_memory(plan, "memory of the light tree", size);
+    }
+
+  private:
+    ResamplingSettings settings_;
+};
+
 }  // namespace
 
-std::unique_ptr<VplSelector> ResamplingSelection::prepare(const SelectionPass& pass) const {
-    check_memory(pass);
-    return std::make_unique<ResamplingSelector>(pass, candidates_, samples_);
-}
-
-std::size_t ResamplingSelection::memory_bytes(std::size_t vpls) const {
-    return vpls * (WideLightTree::bytes_a_light + WideLightTree::building_bytes_a_light);
-}
-
-void ResamplingSelection::plan(Plan& plan, const SelectionSize& size) const {
-    plan.run("selection", fmt::format("resampling, {} of {} candidates from a cut", samples_, candidates_),
-             "unbiased; tiles of 4 x 4 share their candidates, each pixel chooses its own");
-    plan_memory(plan, "memory of the light tree", size);
+std::shared_ptr<Selection> resampled_vpls(std::uint32_t candidates, std::uint32_t samples) {
+    return std::make_shared<ResamplingSelection>(ResamplingSettings{candidates, samples});
 }
 
 void register_resampling_selection(Registry& registry) {
-    add_type(registry, Category::selection, "resampling",
-             "Resampled importance sampling (Talbot et al. 2005): a few VPLs for each pixel, chosen among "
-             "many candidates from a cut by their unoccluded light: unbiased.",
-             parameters, R"(<selection type="resampling"/>)",
-             [](const ResamplingSettings& settings, const Properties& properties) {
-                 const auto selection =
-                     std::make_shared<ResamplingSelection>(settings.candidates, settings.samples);
-                 selection->where = properties.where;
-                 return selection;
-             });
+    add_selection<ResamplingSelection>(
+        registry, "resampling",
+        "Resampled importance sampling (Talbot et al. 2005): a few VPLs for each pixel, chosen among many "
+        "candidates from a cut by their unoccluded light: unbiased.",
+        parameters);
 }
 
 }  // namespace mote::lights

@@ -1,10 +1,9 @@
-#include "lights/selection/stochastic/stochastic_selection.h"
-
+// Stochastic lightcuts (Yuksel 2019) and sampling by a light tree (Estevez and Kulla 2018) as selections.
 #include <fmt/format.h>
 
-#include "core/parameters/add_type.h"
 #include "lights/selection/hierarchy/build_statistics.h"
 #include "lights/selection/hierarchy/vertex_bounds.h"
+#include "lights/selection/register_selection.h"
 #include "lights/selection/sampling_selector.h"
 #include "lights/selection/stochastic/light_sampler.h"
 
@@ -39,26 +38,6 @@ class TileStochastic final : public SamplingSelector {
     std::array<LearnedImportance, 2> learned_;  ///< by ReceiverKind
 };
 
-class StochasticSelector final : public VplSelector {
-  public:
-    StochasticSelector(const SelectionPass& pass, std::uint32_t samples, bool by_cut)
-        : vpls_(pass.vpls), bound_(pass.bound), samples_(samples), by_cut_(by_cut) {
-        const BuildStatistics timer(pass.statistics, "light_hierarchy");
-        tree_ = WideLightTree(VplLeaves(vpls_));
-        timer.built(tree_.memory_bytes());
-    }
-    std::unique_ptr<TileSelector> for_task() const override {
-        return std::make_unique<TileStochastic>(vpls_, tree_, bound_, samples_, by_cut_);
-    }
-
-  private:
-    const VplSet& vpls_;
-    float bound_;
-    std::uint32_t samples_;
-    bool by_cut_;
-    WideLightTree tree_;
-};
-
 struct StochasticSettings {
     std::uint32_t samples = 64;
 };
@@ -69,42 +48,48 @@ const ParameterList<StochasticSettings> parameters{
         "inversely."),
 };
 
+class StochasticSelection final : public Selection {
+  public:
+    /// VPLs from the clusters of a cut, or each from the root of the tree.
+    StochasticSelection(const StochasticSettings& settings, bool by_cut)
+        : samples_(settings.samples), by_cut_(by_cut) {}
+    VplSelector prepare(const SelectionPass& pass) const override {
+        check_memory(pass);
+        const BuildStatistics timer(pass.statistics, "light_hierarchy");
+        const auto tree = std::make_shared<const WideLightTree>(VplLeaves(pass.vpls));
+        timer.built(tree->memory_bytes());
+        return [tree, &vpls = pass.vpls, bound = pass.bound, samples = samples_, by_cut = by_cut_] {
+            return std::make_unique<TileStochastic>(vpls, *tree, bound, samples, by_cut);
+        };
+    }
+    std::size_t memory_bytes(std::size_t vpls) const override {
+        return vpls * (WideLightTree::bytes_a_light + WideLightTree::building_bytes_a_light);
+    }
+    void plan(Plan& plan, const SelectionSize& size) const override {
+        plan.run("selection",
+                 by_cut_ ? fmt::format("stochastic lightcuts, {} VPLs a tile", samples_)
+                         : fmt::format("{} VPLs a tile, sampled by the light tree", samples_),
+                 "unbiased; the same VPLs for a tile of 4 x 4");
+        plan_memory(plan, "memory of the light tree", size);
+    }
+
+  private:
+    std::uint32_t samples_;
+    bool by_cut_;
+};
+
 }  // namespace
 
-std::unique_ptr<VplSelector> StochasticSelection::prepare(const SelectionPass& pass) const {
-    check_memory(pass);
-    return std::make_unique<StochasticSelector>(pass, samples_, by_cut_);
-}
-
-std::size_t StochasticSelection::memory_bytes(std::size_t vpls) const {
-    return vpls * (WideLightTree::bytes_a_light + WideLightTree::building_bytes_a_light);
-}
-
-void StochasticSelection::plan(Plan& plan, const SelectionSize& size) const {
-    plan.run("selection",
-             by_cut_ ? fmt::format("stochastic lightcuts, {} VPLs a tile", samples_)
-                     : fmt::format("{} VPLs a tile, sampled by the light tree", samples_),
-             "unbiased; the same VPLs for a tile of 4 x 4");
-    plan_memory(plan, "memory of the light tree", size);
-}
-
 void register_stochastic_selection(Registry& registry) {
-    const auto add = [&](const std::string& type, const std::string& summary, bool by_cut) {
-        add_type(registry, Category::selection, type, summary, parameters,
-                 "<selection type=\"" + type + "\"/>",
-                 [by_cut](const StochasticSettings& settings, const Properties& properties) {
-                     const auto selection = std::make_shared<StochasticSelection>(settings.samples, by_cut);
-                     selection->where = properties.where;
-                     return selection;
-                 });
-    };
-    add("stochastic_lightcuts",
+    add_selection<StochasticSelection>(
+        registry, "stochastic_lightcuts",
         "Stochastic lightcuts (Yuksel 2019): one VPL sampled from each cluster of a cut for each tile, "
         "unbiased.",
-        true);
-    add("light_tree",
+        parameters, true);
+    add_selection<StochasticSelection>(
+        registry, "light_tree",
         "VPLs sampled by a light tree in proportion to their importance (Estevez and Kulla 2018): unbiased.",
-        false);
+        parameters, false);
 }
 
 }  // namespace mote::lights

@@ -5,7 +5,6 @@
 // considered.
 #include <fmt/format.h>
 
-#include "core/parameters/add_type.h"
 #include "lights/selection/register_selection.h"
 #include "lights/selection/sampling_selector.h"
 
@@ -39,25 +38,13 @@ class TileUniform final : public SamplingSelector {
     std::vector<WeightedVpl> samples_;
 };
 
-class UniformSelector final : public VplSelector {
-  public:
-    UniformSelector(const VplSet& vpls, float bound, std::uint32_t samples)
-        : vpls_(vpls), bound_(bound), samples_(samples) {}
-    std::unique_ptr<TileSelector> for_task() const override {
-        return std::make_unique<TileUniform>(vpls_, bound_, samples_);
-    }
-
-  private:
-    const VplSet& vpls_;
-    float bound_;
-    std::uint32_t samples_;
-};
-
 class UniformSelection final : public Selection {
   public:
     explicit UniformSelection(const UniformSettings& settings) : samples_(settings.samples) {}
-    std::unique_ptr<VplSelector> prepare(const SelectionPass& pass) const override {
-        return std::make_unique<UniformSelector>(pass.vpls, pass.bound, samples_);
+    VplSelector prepare(const SelectionPass& pass) const override {
+        return [&vpls = pass.vpls, bound = pass.bound, samples = samples_] {
+            return std::make_unique<TileUniform>(vpls, bound, samples);
+        };
     }
     std::size_t memory_bytes(std::size_t) const override { return 0; }
     void plan(Plan& plan, const SelectionSize&) const override {
@@ -72,17 +59,13 @@ class UniformSelection final : public Selection {
 }  // namespace
 
 void register_uniform_selection(Registry& registry) {
-    add_type(registry, Category::selection, "uniform",
-             "VPLs sampled uniformly: unbiased, the baseline that other selections are measured against.",
-             ParameterList<UniformSettings>{
-                 row("samples", &UniformSettings::samples, between(1, 1 << 20),
-                     "VPLs sampled for each tile of 4 x 4 pixels: time is in proportion to it, the variance "
-                     "inversely.")},
-             R"(<selection type="uniform"/>)", [](const UniformSettings& s, const Properties& properties) {
-                 const auto selection = std::make_shared<UniformSelection>(s);
-                 selection->where = properties.where;
-                 return selection;
-             });
+    add_selection<UniformSelection>(
+        registry, "uniform",
+        "VPLs sampled uniformly: unbiased, the baseline that other selections are measured against.",
+        ParameterList<UniformSettings>{
+            row("samples", &UniformSettings::samples, between(1, 1 << 20),
+                "VPLs sampled for each tile of 4 x 4 pixels: time is in proportion to it, the variance "
+                "inversely.")});
 }
 
 }  // namespace mote::lights

@@ -86,7 +86,9 @@ TEST_CASE("-D with a path sets a parameter of an element", "[scene][syntax]") {
                                    {"sensor.film.height", "32"},
                                    {"sensor.fov", "30"},
                                    {"sampler.sample_count", "5"},
-                                   {"wall.reflectance", "0.2"}},
+                                   {"wall.reflectance", "0.2"},
+                                   {"bsdf:2.reflectance", "0.3"},
+                                   {"sensor.to_world", "1, 2, 3  1, 2, 4  0, 1, 0"}},
                                   ""});
     CHECK(value_of<double>(integrator_of(*scene), "bound") == 0.5);
     CHECK(value_of<int>(integrator_of(*scene), "max_depth") == 9);
@@ -94,6 +96,7 @@ TEST_CASE("-D with a path sets a parameter of an element", "[scene][syntax]") {
     CHECK(scene->film().width == 64);
     CHECK(scene->film().height == 32);
     CHECK(scene->film().sample_count == 5);
+    CHECK(scene->camera().position() == Vec3(1, 2, 3));
     const auto error = [&](const char* path, const char* value) {
         return load_error(xml, {{{path, value}}, ""});
     };
@@ -102,10 +105,12 @@ TEST_CASE("-D with a path sets a parameter of an element", "[scene][syntax]") {
     CHECK(error("integrtor.bound", "1") ==
           "-D integrtor.bound=1: the scene has no element 'integrtor' (did you mean 'integrator'?)");
     CHECK(error("bsdf.reflectance", "1") ==
-          "-D bsdf.reflectance=1: 'bsdf' fits 2 elements; give the id of one");
+          "-D bsdf.reflectance=1: 'bsdf' fits 2 elements; give the id of one, or 'bsdf:1' for the first");
+    CHECK(error("bsdf:3.reflectance", "1").find("has no element 'bsdf:3'") != std::string::npos);
     CHECK(error("integrator.max_depth", "two") == "-D integrator.max_depth=two: 'two' is not an integer");
     CHECK(error("integrator.to_world", "2") ==
-          "-D integrator.to_world=2: 'to_world' is a transform and cannot be set on the command line");
+          "-D integrator.to_world=2: 'to_world': expected 16 numbers, a matrix row by row, or 9, the origin, "
+          "target and up of a lookat; not 1");
     CHECK(error("film.", "2") != "");
     CHECK(error(".", "2") != "");
 }

@@ -1,0 +1,50 @@
+// OpenImageDenoise (https://www.openimagedenoise.org), found and loaded at run time: the few functions of its
+// C interface that a picture needs. mote is built and runs without it.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/math/vec.h"
+
+namespace mote::screenspace {
+
+class OidnLibrary {
+  public:
+    /// Where MOTE_OIDN is set it names the library's file, or the folder that holds it, or is 'off', and
+    /// nothing else is tried; else the loader's own path, then Python's package pyoidn in the folder
+    /// `package`, or "": where the Python of MOTE_PYTHON, of the active environment (VIRTUAL_ENV), or else
+    /// `python3` has it. `threads` 0: as many as it likes. Throws InputError, which says how to install it.
+    explicit OidnLibrary(int threads = 0, const std::string& package = "");
+    ~OidnLibrary();
+    OidnLibrary(const OidnLibrary&) = delete;
+    OidnLibrary& operator=(const OidnLibrary&) = delete;
+
+    const std::string& version() const { return version_; }  ///< "2.5.1"
+
+    /// Features of the pixels; empty: none.
+    struct Picture {
+        int width = 0, height = 0;
+        std::span<const core::Rgb> colour;          ///< radiance
+        std::span<const core::Rgb> albedo, normal;  ///< without noise: those of denoised_feature()
+    };
+    /// Throws InputError where the library fails.
+    std::vector<core::Rgb> denoised(const Picture& picture) const;
+    enum class Feature { albedo, normal };
+    std::vector<core::Rgb> denoised_feature(Feature which, int width, int height,
+                                            std::span<const core::Rgb> values) const;
+
+  private:
+    struct Functions;
+    void look_everywhere(std::string package);
+    void make_device(int threads);
+    void check(const std::string& what) const;
+
+    std::unique_ptr<Functions> functions_;
+    void *library_ = nullptr, *device_ = nullptr;
+    std::string version_;
+};
+
+}  // namespace mote::screenspace

@@ -1,0 +1,69 @@
+#include <algorithm>
+
+#include "screenspace/denoising/variance_blend.h"
+#include "screenspace/layer_filter/view_filter.h"
+
+namespace mote::screenspace {
+
+using namespace core;
+
+namespace {
+
+/// The noisy mean shows more than noise where it does over windows of 11 x 11 pixels, at two standard deviations.
+constexpr int blend_radius = 5;
+constexpr float blend_deviations = 2.0f;
+
+std::vector<Rgb> between_0_and_1(std::vector<Rgb> values) {
+    for (Rgb& v : values) v = is_finite(v) ? glm::clamp(v, Rgb(0.0f), Rgb(1.0f)) : Rgb(0.0f);
+    return values;
+}
+
+bool is_zero(std::span<const Rgb> values) {
+    return std::ranges::all_of(values, [](const Rgb& v) { return v == Rgb(0.0f); });
+}
+
+class OidnFilter final : public ViewFilter {
+  public:
+    OidnFilter(const FilterFeatures& f, std::shared_ptr<const OidnLibrary> library)
+        : library_(std::move(library)), width_(f.width), height_(f.height) {
+        using Feature = OidnLibrary::Feature;
+        const auto clean = [&](Feature which, const std::vector<Rgb>& values) {
+            return is_zero(values) ? values : library_->denoised_feature(which, width_, height_, values);
+        };
+        reflected_ = clean(Feature::albedo, between_0_and_1(f.reflected));
+        scattering_ = clean(Feature::albedo, between_0_and_1(f.scattering));
+        normal_ = clean(Feature::normal, f.shading_normal);
+    }
+
+    FilteredLayer filtered(const LayerToFilter& layer, CancelToken cancelled) const override {
+        FilteredLayer result{{layer.mean.begin(), layer.mean.end()}, {}};
+        if (is_zero(layer.variance)) return result;
+        cancelled.check();
+        std::vector<Rgb> colour = result.mean;
+        for (Rgb& c : colour)
+            if (!is_finite(c)) c = Rgb(0.0f);
+        const std::vector<Rgb>& albedo = layer.kind == LayerKind::surface ? reflected_ : scattering_;
+        const std::vector<Rgb> denoised =
+            blend_by_variance(width_, height_, library_->denoised({width_, height_, colour, albedo, normal_}),
+                              colour, layer.variance, blend_radius, blend_deviations);
+        for (std::size_t i = 0; i < denoised.size(); ++i)
+            if (is_finite(layer.mean[i]) && is_finite(denoised[i]))
+                result.mean[i] = glm::max(denoised[i], glm::min(layer.mean[i], Rgb(0.0f)));
+        return result;
+    }
+
+  private:
+    std::shared_ptr<const OidnLibrary> library_;
+    int width_, height_;
+    /// Guides of the library: light that surfaces reflect and media scatter towards the eye, and normals.
+    std::vector<Rgb> reflected_, scattering_, normal_;
+};
+
+}  // namespace
+
+std::unique_ptr<ViewFilter> make_oidn_filter(const FilterFeatures& features,
+                                             std::shared_ptr<const OidnLibrary> library) {
+    return std::make_unique<OidnFilter>(features, std::move(library));
+}
+
+}  // namespace mote::screenspace

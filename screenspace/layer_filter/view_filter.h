@@ -1,0 +1,30 @@
+// A filter of the layers of one view, made from the features of that view.
+#pragma once
+
+#include <memory>
+
+#include "screenspace/denoising/oidn_library.h"
+#include "screenspace/layer_filter/layer_filter.h"
+
+namespace mote::screenspace {
+
+class ViewFilter {
+  public:
+    virtual ~ViewFilter() = default;
+    /// Nowhere negative where the layer is not; pixels that are not finite stay as they are. The variance is
+    /// empty where it is not known. Throws Cancelled, and std::invalid_argument when sizes differ.
+    virtual FilteredLayer filtered(const LayerToFilter& layer, core::CancelToken cancelled) const = 0;
+};
+
+/// filter_layer() with these settings. The features must outlive it.
+std::unique_ptr<ViewFilter> make_own_filter(const FilterFeatures& features,
+                                            const LayerFilterSettings& settings);
+
+/// OpenImageDenoise, combined with the noisy mean as far as that shows more than noise (variance_blend.h):
+/// with many passes the picture converges to the mean. The features are denoised first, so that lenses and
+/// edges leave no noise in them. A layer without variance stays as it is. Throws InputError, here and from
+/// filtered(), where the library fails.
+std::unique_ptr<ViewFilter> make_oidn_filter(const FilterFeatures& features,
+                                             std::shared_ptr<const OidnLibrary> library);
+
+}  // namespace mote::screenspace
