@@ -111,7 +111,7 @@ def check_examples(build, prefix):
     room, box = work / "room.exr", arguments.source / "scenes/cornell_box.xml"
     run(prefix / "bin/mote", "render", arguments.source / "examples/ssbc/room.xml", "--passes", 4, "--auxiliary",
         "--quiet", "-o", room)
-    for folder in sorted(p for p in (arguments.source / "examples").iterdir() if p.is_dir()):
+    for folder in sorted(p for p in (arguments.source / "examples").iterdir() if p.is_dir() and p.name != "notebook"):
         more = {"ssbc": [room, work / "compensated.exr"],
                 "render_scene": [box, work / "box.exr", 1, "film.width=32", "film.height=24"],
                 "render_from_c": [box, work / "box_of_c.exr", 1, "film.width", 32, "film.height", 24]}.get(folder.name, [])
