@@ -75,14 +75,14 @@ class TriangleMesh final : public Shape, private SurfaceAttributes {
         std::array<Vec3, 3> corners;  ///< [m]
         Vec3 normal;                  ///< geometric, unit
         float plane_error;            ///< of Embree's test on which side a ray starts, along the normal [m]
-
+        /// From its corners, in order [m].
         explicit Triangle(const std::array<Vec3, 3>& corners);
         Vec3 point(float u, float v) const {
             return triangle_point(corners[0], corners[1], corners[2], u, v);
-        }
-        float error(const Vec3& point) const { return quantization_error(point, normal) + plane_error; }
+        }  ///< at the barycentric coordinates u and v [m]
+        float error(const Vec3& at) const { return quantization_error(at, normal) + plane_error; }  ///< [m]
     };
-    const Triangle& triangle(std::uint32_t primitive) const { return built_->triangles[primitive]; }
+    const Triangle& triangle(std::uint32_t i) const { return built_->triangles[i]; }  ///< of primitive i
     /// Interpolated, on the side of the geometric normal; that one itself where vertices have none.
     Vec3 shading_normal(std::uint32_t primitive, float u, float v, const Vec3& geometric) const {
         return built_->data.normals.empty() ? geometric : interpolated_normal(primitive, u, v, geometric);

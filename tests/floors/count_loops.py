@@ -38,7 +38,10 @@ IDEAS = {
         "integrators/eye_path/eye_path.h": 1,
         "lights/direct_light/direct_light.h": 1,
     }),
-    "Russian roulette of eye paths": (r"\bsurvives<\w+>\(", {"integrators/eye_path/eye_path.h": 1}),
+    "Russian roulette of eye paths": (r"\bsurvives<\w+>\(", {
+        "integrators/eye_path/eye_path.h": 1,
+        "integrators/path_tracing/wavefront.cpp": 1,      # lanes of surfaces alone, in structures of arrays
+    }),
     "the light of virtual lights at receivers": (r"(?<!bool )\bcontributions_of\(", {
         "lights/virtual_lights/vpl_gather.h": 1,
         "lights/virtual_lights/lobe_contributions.cpp": 1,    # pairs of groups, each remembered by itself
