@@ -4,8 +4,8 @@
 // square error, b^2 v / (b^2 + v), for g = b^2 / (b^2 + v): never above v nor b^2. Over a window
 // sum (x - y)^2 has the mean sum b^2 + sum v (noise that y shares with x aside), so
 //   g = max(0, 1 - sum v / sum (x - y)^2).                                                               (1)
-// That sum is noise itself, of a variance near 2 sum v^2, so what lies within `deviations` standard deviations
-// counts for nothing:
+// That sum is noise itself, of a variance near 2 sum v^2, so what lies within `deviations` standard
+// deviations counts for nothing:
 //   g = max(0, 1 - (sum v + deviations sqrt(2 sum v^2)) / sum (x - y)^2).                                (2)
 // With many passes v vanishes, g becomes 1 and the picture converges to the mean,
 // whatever the denoiser does.

@@ -9,7 +9,8 @@ using namespace core;
 
 namespace {
 
-/// The noisy mean shows more than noise where it does over windows of 11 x 11 pixels, at two standard deviations.
+/// The noisy mean shows more than noise where it does over windows of 11 x 11 pixels, at two standard
+/// deviations.
 constexpr int blend_radius = 5;
 constexpr float blend_deviations = 2.0f;
 

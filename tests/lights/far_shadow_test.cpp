@@ -1,6 +1,6 @@
 // Shadow rays far from the origin of coordinates, where rounding moves both of their ends.
-#include "core/geometry/shape.h"
 #include "core/geometry/shadow_segment.h"
+#include "core/geometry/shape.h"
 #include "tests/support/catch.h"
 #include "tests/support/render_statistics.h"
 
