@@ -343,7 +343,7 @@ TEST_CASE("every integrator gives the same bits on one thread, and on many after
                              [&](const std::string& text) { return text.find(why) != std::string::npos; });
     };
     CHECK(count("mote_layers: shares has") == 4);  // two methods, or three, and other numbers of shares
-    CHECK(count("'media' is an object of the wrong kind") == 1);
+    CHECK(count("'media' is compensated in the passes: none, exact or approximate") == 1);
     // mote_vsl, mote_vpl_ray_bundles and mote_micro_rendering, alone and in mote_layers
     CHECK(count("renders surfaces only") == 6);
     // Selections of mote_vpl with compensation and with two kinds of maps
