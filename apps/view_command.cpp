@@ -1,12 +1,9 @@
 // mote view: a scene, or pictures, in the browser.
-#include <fmt/format.h>
 #include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 
 #include "apps/command.h"
 #include "apps/subcommands.h"
@@ -15,6 +12,7 @@
 #include "session/output_files.h"
 #include "viewer/server.h"
 #include "viewer/view.h"
+#include "viewer/wish_changes.h"
 
 namespace mote::apps {
 
@@ -53,10 +51,9 @@ void show(viewer::View& view, const ViewArguments& a) {
     }
     if (a.files.size() > 1) throw UsageError("a view is of one scene, or of pictures (.exr)");
     viewer::ViewSettings settings{scene_changes(a.scene), a.seed, a.passes, a.threads};
-    SceneArguments plain = a.scene;  // changes to the integrator are made to the scene that is loaded
-    plain.scene = a.files.front(), plain.integrator.clear();
-    std::erase_if(plain.defines, [](const std::string& d) { return d.starts_with("integrator."); });
-    const LoadedScene scene = load(plain);
+    // Changes to the integrator are made to the scene that is loaded.
+    const LoadedScene scene =
+        LoadedScene::from_file(a.files.front(), viewer::outside_integrator(settings.changes));
     warn_about(scene);
     view.show_scene(scene, settings);
 }

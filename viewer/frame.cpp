@@ -1,11 +1,14 @@
 #include "viewer/frame.h"
 
+#include <half.h>
+
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "session/denoise/beauty_layers.h"
+#include "session/denoise/denoised_layer.h"
 #include "session/layers.h"
 
 namespace mote::viewer {
@@ -13,15 +16,6 @@ namespace mote::viewer {
 namespace {
 
 const std::string deviation_layer = "standard deviation";
-
-/// Layers that are no light of the sum, by the names that film_image() and make_picture() give.
-bool is_light(const std::string& name) {
-    static const char* const others[] = {"Variance", "Albedo",        "DiffuseAlbedo",
-                                         "denoised", "Transmittance", "InScattered",
-                                         "Center",   "Mirrored",      "MotionVector"};
-    return std::ranges::none_of(
-        others, [&](const std::string& other) { return name == other || name.starts_with(other + "."); });
-}
 
 bool is_rgb(const session::LayerChannels& layer) {
     return layer.channels == std::vector<std::string>{"R", "G", "B"};
@@ -41,24 +35,19 @@ float scale_of(const core::ImageChannels& image, const session::LayerChannels& l
 }  // namespace
 
 std::uint16_t to_half(float value) {
-    const auto bits = std::bit_cast<std::uint32_t>(value);
-    const std::uint32_t sign = bits >> 16 & 0x8000u, magnitude = bits & 0x7fffffffu;
-    if (magnitude > 0x7f800000u) return std::uint16_t(sign | 0x7e00u);
-    constexpr std::uint32_t max_half = 0x477fe000u;  // 65504
-    if (magnitude >= max_half) return std::uint16_t(sign | 0x7bffu);
-    constexpr std::uint32_t min_normal = 0x38800000u;  // 2^-14
-    if (magnitude < min_normal)
-        return std::uint16_t(sign | std::uint32_t(std::lrintf(std::fabs(value) * 0x1p24f)));
-    return std::uint16_t(sign | ((magnitude - (112u << 23) + 0xfffu + (magnitude >> 13 & 1u)) >> 13));
+    constexpr float max_half = HALF_MAX;
+    return half(std::clamp(value, -max_half, max_half)).bits();
 }
 
 std::vector<FrameLayer> frame_layers(const core::ImageChannels& image) {
+    const std::vector<std::string> light = session::layers_of_beauty(image);
     std::vector<FrameLayer> layers;
     bool variance = false;
     for (const session::LayerChannels& layer : session::layers_of(image)) {
         if (layer.name == "Variance" && is_rgb(layer)) variance = true;
         if (!is_rgb(layer) || layer.name == "Variance") continue;
-        layers.push_back({layer.name, layer.name != session::beauty_layer && is_light(layer.name)});
+        const bool of_sum = std::ranges::find(light, layer.name) != light.end();
+        layers.push_back({layer.name, of_sum && layer.name != session::denoised_layer});
     }
     std::ranges::stable_sort(layers, {}, [](const FrameLayer& l) {
         return l.name == session::beauty_layer ? 0 : l.of_sum ? 1 : 2;

@@ -1,36 +1,23 @@
 #include "viewer/live_render.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "core/formats/xml/integrator_maker.h"
 #include "core/formats/xml/scene_element.h"
 #include "core/objects/error.h"
 #include "core/objects/memory_error.h"
+#include "core/render/cpu_clock.h"
+#include "viewer/wish_changes.h"
 
 namespace mote::viewer {
 
 namespace {
 
 using session::LoadedScene, session::SceneChanges;
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// A newer wish replaces this render.
 struct Superseded {};
-
-const std::string of_integrator = "integrator.";
-
-/// The changes without those of the integrator.
-SceneChanges outside_integrator(SceneChanges changes) {
-    changes.integrator.clear();
-    std::erase_if(changes.defines, [](const auto& d) { return d.first.starts_with(of_integrator); });
-    return changes;
-}
 
 bool same(const SceneChanges& a, const SceneChanges& b) {
     return a.defines == b.defines && a.lenient == b.lenient && a.integrator == b.integrator;
@@ -54,8 +41,8 @@ LoadedScene with_integrator(const LoadedScene& scene, const SceneChanges& change
     std::vector<core::IntegratorSetting> settings;
     std::string type = changes.integrator;
     for (const auto& [path, value] : changes.defines) {
-        if (!path.starts_with(of_integrator)) continue;
-        const std::string name = path.substr(of_integrator.size());
+        if (!is_of_integrator(path)) continue;
+        const std::string name = path.substr(path.find('.') + 1);
         if (name == "type")
             type = value;
         else
@@ -103,13 +90,13 @@ class LiveRender::Observer : public session::RenderObserver {
         rendered.passes = std::uint32_t(std::stoul(image.metadata.at("passes")));
         rendered.noise = std::stod(image.metadata.at("noise"));
         rendered.interrupted = true;
-        render_.report(std::move(rendered), wish_, change_, false, seconds_since(start_));
+        render_.report(std::move(rendered), wish_, change_, false, core::wall_seconds() - start_);
     }
     /// A coarse picture is made to its end unless it takes long: while the camera moves, every picture would
     /// be superseded otherwise.
     bool cancelled() override {
         constexpr double patience = 0.4;
-        if (render_.is_superseded(change_) && (!coarse_ || seconds_since(start_) > patience))
+        if (render_.is_superseded(change_) && (!coarse_ || core::wall_seconds() - start_ > patience))
             throw Superseded();
         return !coarse_ && render_.stop_;
     }
@@ -119,7 +106,7 @@ class LiveRender::Observer : public session::RenderObserver {
     const Wish& wish_;
     std::uint64_t change_;
     bool coarse_;
-    const Clock::time_point start_ = Clock::now();
+    const double start_ = core::wall_seconds();
 };
 
 LiveRender::LiveRender(const LoadedScene& scene, Reports reports)
@@ -204,7 +191,7 @@ void LiveRender::show_coarse(const Wish& wish, std::uint64_t change) {
 /// Returns the time that it took [s].
 double LiveRender::show_at_size(const Wish& wish, std::uint64_t change, const LoadedScene& loaded, int width,
                                 int height) {
-    const Clock::time_point start = Clock::now();
+    const double start = core::wall_seconds();
     const SceneChanges changes = at_size(wish.changes, width, height);
     coarse_scene_ = changed(coarse_scene_ ? *coarse_scene_ : loaded, changes);
     const LoadedScene scene = with_integrator(*coarse_scene_, changes);
@@ -212,7 +199,7 @@ double LiveRender::show_at_size(const Wish& wish, std::uint64_t change, const Lo
     settings.seed = wish.seed, settings.threads = wish.threads, settings.stop.passes = 1;
     Observer observer(*this, wish, change, true);
     session::Rendered rendered = session::render(scene, settings, observer);
-    const double seconds = seconds_since(start);
+    const double seconds = core::wall_seconds() - start;
     report(std::move(rendered), wish, change, true, seconds);
     return seconds;
 }
@@ -224,22 +211,22 @@ void LiveRender::adapt(double seconds) {
 }
 
 void LiveRender::show_full(const Wish& wish, std::uint64_t change) {
-    const Clock::time_point start = Clock::now();
+    const double start = core::wall_seconds();
     const LoadedScene scene = scene_for(wish.changes);
     session::RenderSettings settings;
     settings.seed = wish.seed, settings.threads = wish.threads;
     settings.stop.passes = wish.passes > 0 ? wish.passes : std::uint32_t(scene.scene().film().sample_count);
     Observer observer(*this, wish, change, false);
     session::Rendered rendered = session::render(scene, settings, observer);
-    report(std::move(rendered), wish, change, false, seconds_since(start));
+    report(std::move(rendered), wish, change, false, core::wall_seconds() - start);
 }
 
 void LiveRender::report(session::Rendered&& rendered, const Wish& wish, std::uint64_t change, bool coarse,
                         double seconds) const {
     auto picture = std::make_shared<LivePicture>();
-    picture->image = std::move(rendered.image), picture->wish = wish,
-    // Passes by which `mote render` makes the same bits; 0: none does.
-        picture->passes = rendered.finished_for ? 0 : rendered.passes;
+    picture->image = std::move(rendered.image), picture->wish = wish;
+    // A filter of fewer passes, as after an interruption, is not what `mote render` makes.
+    picture->passes = rendered.finished_for ? 0 : rendered.passes;
     picture->noise = rendered.noise, picture->coarse = coarse, picture->seconds = seconds;
     picture->finished = !rendered.interrupted && !coarse, picture->change = change;
     if (!picture->image.names.empty()) reports_.picture(picture);

@@ -17,6 +17,7 @@
 #include "viewer/frame.h"
 #include "viewer/pixel_light.h"
 #include "viewer/scene_knobs.h"
+#include "viewer/wish_changes.h"
 
 namespace mote::viewer {
 
@@ -27,7 +28,7 @@ using nlohmann::json;
 
 /// The names of renders.
 const std::string first = "A", second = "B";
-constexpr std::size_t max_tasks = 16, max_define = 400, max_defines = 200;
+constexpr std::size_t max_tasks = 16;
 
 json number_or_null(double value) { return std::isfinite(value) ? json(value) : json(); }
 
@@ -43,28 +44,6 @@ T member(const json& message, const char* name) {
     }
 }
 
-/// Sets, replaces or (null) removes a definition. A nested object's own go with its type.
-void set_define(session::SceneChanges& changes, const std::string& path, const json& value) {
-    if (path.size() > max_define || path.find('.') == std::string::npos)
-        throw InputError("'" + core::printable(path, 60) + "' is no path of a parameter");
-    std::erase_if(changes.defines,
-                  [&](const auto& d) { return d.first == path || d.first.starts_with(path + "."); });
-    if (value.is_null()) return;
-    if (!value.is_string() || value.get_ref<const std::string&>().size() > max_define)
-        throw InputError("the value of '" + path + "' is no text of " + std::to_string(max_define) +
-                         " characters at most");
-    if (changes.defines.size() >= max_defines) throw InputError("there are too many changes");
-    changes.defines.emplace_back(path, value.get<std::string>());
-}
-
-bool is_of_integrator(const std::string& path) { return path.starts_with("integrator."); }
-
-/// Another integrator keeps no changes of the one before.
-void set_integrator(session::SceneChanges& changes, const std::string& type) {
-    changes.integrator = type;
-    std::erase_if(changes.defines, [](const auto& d) { return is_of_integrator(d.first); });
-}
-
 json changes_json(const Wish& wish) {
     json defines = json::object();
     for (const auto& [path, value] : wish.changes.defines) defines[path] = value;
@@ -72,11 +51,6 @@ json changes_json(const Wish& wish) {
             {"defines", defines},
             {"seed", wish.seed},
             {"passes", wish.passes}};
-}
-
-session::SceneChanges without_integrator(session::SceneChanges changes) {
-    set_integrator(changes, "");
-    return changes;
 }
 
 }  // namespace
@@ -94,7 +68,7 @@ View::~View() {
 }
 
 void View::show_scene(const session::LoadedScene& scene, const ViewSettings& settings) {
-    const session::SceneChanges plain = without_integrator(settings.changes);
+    const session::SceneChanges plain = outside_integrator(settings.changes);
     scene_ = scene.changes().integrator.empty() && scene.changes().defines == plain.defines
                  ? scene
                  : scene.reloaded(plain);

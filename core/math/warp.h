@@ -6,8 +6,8 @@
 
 namespace mote::core {
 
-// Sine and cosine of |x| <= pi / 4 within an ulp: series that end where single precision does. Without a
-// branch or a call, as vector code has them.
+// Sine and cosine of |x| <= pi / 4 within an ulp, by the polynomials of Cephes (S. Moshier, sinf.c). Without
+// a branch or a call, as vector code has them.
 inline float sin_of_octant(float x) {
     const float s = x * x;
     return x + x * s * (-1.6666654611e-1f + s * (8.3321608736e-3f + s * -1.9515295891e-4f));

@@ -7,7 +7,9 @@
 #include <tbb/task_arena.h>
 
 #include <charconv>
+#include <cstdlib>
 #include <mutex>
+#include <tuple>
 
 #include "core/objects/number_text.h"
 #include "integrators/eye_path/eye_path_parameters.h"
@@ -37,29 +39,41 @@ bool is_smooth(const Layer& layer) {
 
 enum class FilterChoice : std::uint8_t { automatic, oidn, own, none };
 
-/// OpenImageDenoise for a filter of this choice, looked for on first use.
+/// OpenImageDenoise for the integrators of a registry. It is looked for on first use, which may start a
+/// Python, and again where another one is meant.
 class FilterLibrary {
   public:
-    explicit FilterLibrary(FilterChoice choice) : choice_(choice) {}
     /// Nothing where the filter is another. Throws InputError where the library was requested by name and is
     /// not installed.
-    const std::shared_ptr<const screenspace::OidnLibrary>& get() {
-        std::call_once(looked_, [&] {
-            if (choice_ == FilterChoice::own || choice_ == FilterChoice::none) return;
-            try {
-                library_ =
-                    std::make_shared<const screenspace::OidnLibrary>(tbb::this_task_arena::max_concurrency());
-            } catch (const InputError&) {
-                if (choice_ == FilterChoice::oidn) throw;
-            }
-        });
+    std::shared_ptr<const screenspace::OidnLibrary> get(FilterChoice choice) {
+        if (choice == FilterChoice::own || choice == FilterChoice::none) return nullptr;
+        const std::lock_guard lock(mutex_);
+        Wanted wanted{variable("MOTE_OIDN"), variable("MOTE_PYTHON"),
+                      tbb::this_task_arena::max_concurrency()};
+        if (wanted != found_for_) look(std::move(wanted));
+        if (!library_ && choice == FilterChoice::oidn) throw InputError(problem_);
         return library_;
     }
 
   private:
-    FilterChoice choice_;
-    std::once_flag looked_;
+    using Wanted = std::tuple<std::string, std::string, int>;  ///< library, Python, threads
+    static std::string variable(const char* name) {
+        const char* const value = std::getenv(name);
+        return value ? value : "";
+    }
+    void look(Wanted wanted) {
+        library_.reset();
+        try {
+            library_ = std::make_shared<const screenspace::OidnLibrary>(std::get<int>(wanted));
+        } catch (const InputError& error) {
+            problem_ = error.what();
+        }
+        found_for_ = std::move(wanted);
+    }
+    std::mutex mutex_;
+    Wanted found_for_{"", "", 0};  ///< no number of threads is 0
     std::shared_ptr<const screenspace::OidnLibrary> library_;
+    std::string problem_;
 };
 
 /// The parameters of a scene file.
@@ -74,11 +88,11 @@ struct LayersSettings {
 
 class MoteLayers final : public Integrator {
   public:
-    MoteLayers(const LayersSettings& s, const Properties& properties)
+    MoteLayers(const LayersSettings& s, const Properties& properties, std::shared_ptr<FilterLibrary> library)
         : limits_(s.limits),
           filter_(s.filter),
           filters_(s.filters),
-          library_(std::make_unique<FilterLibrary>(s.filters)),
+          library_(std::move(library)),
           far_light_(s.far_light) {
         read_shares(s.shares);
         for (const auto& [name, integrator, where] : s.integrators) {
@@ -142,13 +156,13 @@ class MoteLayers final : public Integrator {
     std::vector<std::size_t> filtered_layers(const LayerChoice& choice) const {
         std::vector<std::size_t> filtered;
         for (std::size_t i = 0; i < choice.layers.size(); ++i)
-            if (choice.layers[i].squares && (is_smooth(choice.layers[i]) || library_->get()))
+            if (choice.layers[i].squares && (is_smooth(choice.layers[i]) || library_->get(filters_)))
                 filtered.push_back(i);
         return filtered;
     }
     LayerFilter make_filter(const Scene& scene, const RenderOptions& options,
                             std::vector<LayerFilter::Choice> layers) const {
-        if (const auto& library = library_->get())
+        if (const auto& library = library_->get(filters_))
             return {scene, options, filter_.features, library, std::move(layers)};
         return {scene, options, filter_, std::move(layers)};
     }
@@ -156,7 +170,7 @@ class MoteLayers final : public Integrator {
     EyePathLimits limits_;
     LayerFilterParameters filter_;
     FilterChoice filters_;
-    std::unique_ptr<FilterLibrary> library_;
+    std::shared_ptr<FilterLibrary> library_;
     FarLight far_light_;
     std::vector<std::uint32_t> shares_;  ///< of passes, one a method; empty: as many as each needs
     std::vector<LayerMethod> nested_;
@@ -174,7 +188,7 @@ void MoteLayers::plan_filter(const LayerChoice& choice, Plan& plan) const {
     for (const std::size_t i : filtered_layers(choice))
         names += (names.empty() ? "" : ", ") + choice.layers[i].name;
     if (names.empty()) return;
-    if (const auto& library = library_->get()) {
+    if (const auto& library = library_->get(filters_)) {
         plan.run("filter", "OpenImageDenoise " + library->version() + " on " + names,
                  "biased by what it smoothes, less with every pass; filter=none leaves the noise. The noise "
                  "that is stated, and --noise, are those of the passes, before the denoiser");
@@ -242,7 +256,9 @@ void register_mote_layers(Registry& registry) {
     <integrator type="mote_epipolar" name="emission, direct, single_scattering"/>
     <integrator type="volpath" name="indirect, multiple_scattering"/>
 </integrator>)",
-        [](const S& s, const Properties& p) { return std::make_shared<MoteLayers>(s, p); });
+        [library = std::make_shared<FilterLibrary>()](const S& s, const Properties& p) {
+            return std::make_shared<MoteLayers>(s, p, library);
+        });
 }
 
 }  // namespace mote::integrators
