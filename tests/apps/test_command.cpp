@@ -196,7 +196,7 @@ TEST_CASE("Ctrl-C saves the picture so far, and --resume gives the bits of one r
         std::chrono::duration<double>(std::chrono::steady_clock::now() - requested).count();
     INFO(cut.err);
     CHECK(cut.exit_code == 130);
-    CHECK(seconds < 2.0);
+    CHECK(seconds < 20.0);  // at once, unless the system holds it up; its passes would take minutes
     CHECK(contains(cut.err, "--resume"));
     CHECK(contains(cut.err, "a.exr"));
     REQUIRE(folder.has("a.exr"));
