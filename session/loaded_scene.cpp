@@ -11,6 +11,7 @@
 #include "core/render/render_driver.h"
 #include "session/borrowed_arena.h"
 #include "session/placement_notes.h"
+#include "session/plugins.h"
 #include "session/reference_metadata.h"
 #include "session/registry.h"
 
@@ -34,6 +35,7 @@ std::vector<std::string> render_settings(const SceneChanges& changes, const std:
     std::vector<std::string> settings = {MOTE_VERSION, integrator, changes.integrator};
     for (const std::string& define : define_texts(changes)) settings.push_back(define);
     if (changes.lenient) settings.emplace_back("--lenient");
+    for (std::string& plugin : plugin_settings(changes.plugins)) settings.push_back(std::move(plugin));
     return settings;
 }
 
@@ -56,7 +58,7 @@ void LoadedScene::load(const SceneChanges& changes, const Load& load_now) {
 }
 
 LoadedScene LoadedScene::from_file(const std::string& path, const SceneChanges& changes) {
-    return from_file(path, changes, std::make_shared<const core::Registry>(make_registry()));
+    return from_file(path, changes, std::make_shared<const core::Registry>(make_registry(changes.plugins)));
 }
 
 LoadedScene LoadedScene::from_file(const std::string& path, const SceneChanges& changes,
@@ -74,7 +76,8 @@ LoadedScene LoadedScene::from_file(const std::string& path, const SceneChanges& 
 
 LoadedScene LoadedScene::from_text(const std::string& xml, const std::string& folder,
                                    const SceneChanges& changes, const std::string& name) {
-    return from_text(xml, folder, changes, name, std::make_shared<const core::Registry>(make_registry()));
+    return from_text(xml, folder, changes, name,
+                     std::make_shared<const core::Registry>(make_registry(changes.plugins)));
 }
 
 LoadedScene LoadedScene::from_text(const std::string& xml, const std::string& folder,
@@ -93,7 +96,7 @@ LoadedScene LoadedScene::from_text(const std::string& xml, const std::string& fo
 }
 
 LoadedScene LoadedScene::from_tree(const SceneTree& tree, const SceneChanges& changes) {
-    core::Registry registry = make_registry();
+    core::Registry registry = make_registry(changes.plugins);
     register_arrays(registry, tree.array_store());
     return from_tree(std::make_shared<const SceneTree>(tree), changes,
                      std::make_shared<const core::Registry>(std::move(registry)));

@@ -22,6 +22,7 @@ struct SceneChanges {
     std::vector<std::pair<std::string, std::string>> defines;  ///< -D name=value
     bool lenient = false;                                      ///< leave out or approximate what is wrong
     std::optional<int> frame = {};                             ///< of a sequence: the number in file names
+    std::vector<std::string> plugins = {};  ///< files, besides those of MOTE_PLUGINS (session/plugins.h)
 };
 
 /// The options of the loader for them. A scene without an integrator gets `mote_layers`.

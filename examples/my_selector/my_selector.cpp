@@ -1,0 +1,98 @@
+// A plugin with a selection of virtual point lights: each receiver tile samples them by their intensity.
+//
+//   mote render scene.xml --plugin my_selector.so --integrator mote_vpl -D integrator.selection=by_intensity
+//
+// Of N VPLs n are sampled with replacement, VPL j with p_j = I_j / sum I, and weigh 1 / (n p_j): unbiased,
+// and the lights' distances and normals are not looked at. Every VPL keeps a share of uniform probability,
+// since one that looks dark from its own side may be bright at a receiver (a directional VPL's intensity is
+// not in I_j).
+#include <mote/core/objects/plugin.h>
+#include <mote/lights/selection/register_selection.h>
+#include <mote/lights/selection/sampling_selector.h>
+
+#include <algorithm>
+
+using namespace mote;
+
+namespace {
+
+struct Settings {
+    std::uint32_t samples = 64;
+    float uniform = 0.1f;
+};
+
+/// p_j as running sums, of one pass.
+std::vector<double> running_sums(const lights::VplSet& vpls, double uniform) {
+    std::vector<double> sums;
+    double total = 0.0;
+    for (const lights::VirtualPointLight& light : vpls.lights)
+        total += core::mean_of_channels(light.intensity);
+    const double even = 1.0 / double(vpls.lights.size());
+    double sum = 0.0;
+    for (const lights::VirtualPointLight& light : vpls.lights) {
+        const double bright = total > 0.0 ? core::mean_of_channels(light.intensity) / total : even;
+        sums.push_back(sum += uniform * even + (1.0 - uniform) * bright);
+    }
+    return sums;
+}
+
+class TileByIntensity final : public lights::SamplingSelector {
+  public:
+    TileByIntensity(const lights::VplSet& vpls, float bound, std::shared_ptr<const std::vector<double>> sums,
+                    std::uint32_t samples)
+        : SamplingSelector(vpls, bound), sums_(std::move(sums)), chosen_(samples) {}
+
+  protected:
+    std::span<const lights::WeightedVpl> sample(const lights::ReceiverLanes&, core::Rng& rng) override {
+        if (sums_->empty()) return {};
+        const double n = double(chosen_.size());
+        for (std::size_t i = 0; i < chosen_.size(); ++i) {
+            // Stratified: the i-th of n even parts of the unit interval.
+            const double u = (double(i) + double(rng.next_float())) / n * sums_->back();
+            const auto found = std::upper_bound(sums_->begin(), sums_->end(), u);
+            const std::size_t j = std::min(std::size_t(found - sums_->begin()), sums_->size() - 1);
+            const double p = ((*sums_)[j] - (j > 0 ? (*sums_)[j - 1] : 0.0)) / sums_->back();
+            chosen_[i] = {j, float(1.0 / (n * p))};
+        }
+        return chosen_;
+    }
+
+  private:
+    std::shared_ptr<const std::vector<double>> sums_;
+    std::vector<lights::WeightedVpl> chosen_;
+};
+
+class ByIntensity final : public lights::Selection {
+  public:
+    explicit ByIntensity(const Settings& settings) : settings_(settings) {}
+    lights::VplSelector prepare(const lights::SelectionPass& pass) const override {
+        check_memory(pass);
+        auto sums =
+            std::make_shared<const std::vector<double>>(running_sums(pass.vpls, double(settings_.uniform)));
+        return [&vpls = pass.vpls, bound = pass.bound, sums, samples = settings_.samples] {
+            return std::make_unique<TileByIntensity>(vpls, bound, sums, samples);
+        };
+    }
+    std::size_t memory_bytes(std::size_t vpls) const override { return vpls * sizeof(double); }
+    void plan(core::Plan& plan, const lights::SelectionSize& size) const override {
+        plan.run("selection", std::to_string(settings_.samples) + " VPLs a tile, sampled by intensity",
+                 "unbiased");
+        plan_memory(plan, "selection: memory", size);
+    }
+
+  private:
+    Settings settings_;
+};
+
+void register_types(core::Registry& registry) {
+    lights::add_selection<ByIntensity>(
+        registry, "by_intensity", "VPLs sampled by their intensity: unbiased.",
+        core::ParameterList<Settings>{core::row("samples", &Settings::samples, core::between(1, 1 << 20),
+                                                "VPLs sampled for each tile."),
+                                      core::row("uniform", &Settings::uniform, core::between(1e-6, 1),
+                                                "Share of the probability that all VPLs have alike.")});
+}
+
+}  // namespace
+
+MOTE_PLUGIN(register_types)
