@@ -26,11 +26,11 @@ std::vector<double> running_sums(const lights::VplSet& vpls, double uniform) {
     std::vector<double> sums;
     double total = 0.0;
     for (const lights::VirtualPointLight& light : vpls.lights)
-        total += core::mean_of_channels(light.intensity);
+        total += core::average(light.intensity);
     const double even = 1.0 / double(vpls.lights.size());
     double sum = 0.0;
     for (const lights::VirtualPointLight& light : vpls.lights) {
-        const double bright = total > 0.0 ? core::mean_of_channels(light.intensity) / total : even;
+        const double bright = total > 0.0 ? core::average(light.intensity) / total : even;
         sums.push_back(sum += uniform * even + (1.0 - uniform) * bright);
     }
     return sums;
