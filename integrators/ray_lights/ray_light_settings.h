@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/math/bounds.h"
+#include "core/render/integrator.h"
 #include "integrators/eye_path/eye_path_limits.h"
 #include "lights/virtual_lights/light_path.h"
 
@@ -37,5 +38,10 @@ struct RayLightSettings {
         return s;
     }
 };
+
+/// The passes of `mote_ray_lights`: a fresh set of light paths each.
+std::unique_ptr<core::Estimator> make_ray_light_estimator(const core::Scene& scene,
+                                                          const core::RenderOptions& options,
+                                                          const RayLightSettings& settings);
 
 }  // namespace mote::integrators
