@@ -29,9 +29,9 @@ void require_resolved(const gathering::SurfaceAtlas& atlas) {
     std::map<std::uint32_t, double> areas;
     for (const gathering::AtlasTexel& texel : atlas.texels())
         areas[atlas.surfaces().shape[texel.triangle]] += double(texel.area);
-    double sum = 0.0, largest = 0.0;
-    for (const auto& [shape, area] : areas) sum += area, largest = std::max(largest, area);
-    double others = 0.0;  // not sum - largest, which rounds
+    double largest = 0.0;
+    for (const auto& [shape, area] : areas) largest = std::max(largest, area);
+    double others = 0.0;
     for (const auto& [shape, area] : areas) others += area < largest ? area : 0.0;
     const double edge = 1.0 / double(atlas.texels_per_metre());
     if (others > 0.0 && others < min_texels * edge * edge)

@@ -11,6 +11,7 @@
 #include "integrators/ray_lights/plan_thick_cells.h"
 #include "integrators/ray_lights/ray_light_settings.h"
 #include "integrators/register_parts.h"
+#include "lights/ray_lights/ray_light.h"
 
 namespace mote::integrators {
 
