@@ -3,7 +3,7 @@
 
 #include "core/render/integrator.h"
 #include "gathering/photon_maps/photon_tracer.h"
-#include "integrators/eye_path/eye_path_limits.h"
+#include "integrators/eye_path/light_path_limits.h"
 
 namespace mote::integrators {
 
@@ -16,8 +16,7 @@ struct PhotonMapSettings {
 
     gathering::PhotonSettings photons(const core::MemoryBudget& memory) const {
         gathering::PhotonSettings s;
-        s.paths.memory = memory, s.paths.paths = paths, s.paths.rr_depth = eye.rr_depth;
-        s.paths.max_vertices = eye.max_depth < 0 ? -1 : std::max(0, eye.max_depth - 1);
+        s.paths = light_path_settings(paths, eye, memory, 1);
         s.first_in_medium = single_scattering ? 1 : 2;
         s.max_photons = max_photons;
         return s;

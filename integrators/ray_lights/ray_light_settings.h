@@ -6,8 +6,7 @@
 
 #include "core/math/bounds.h"
 #include "core/render/integrator.h"
-#include "integrators/eye_path/eye_path_limits.h"
-#include "lights/virtual_lights/light_path.h"
+#include "integrators/eye_path/light_path_limits.h"
 
 namespace mote::integrators {
 
@@ -32,10 +31,7 @@ struct RayLightSettings {
     }
     std::size_t candidate_count() const { return connections == 0 ? 0 : candidates; }
     lights::LightPathSettings light_paths(const core::MemoryBudget& memory = {}) const {
-        lights::LightPathSettings s;
-        s.memory = memory, s.paths = paths, s.rr_depth = eye.rr_depth;
-        s.max_vertices = eye.max_depth < 0 ? -1 : std::max(0, eye.max_depth - 2);
-        return s;
+        return light_path_settings(paths, eye, memory);
     }
 };
 

@@ -1,4 +1,4 @@
-// What selections by the light tree of a pass's VPLs have in common: they build it, and hold its memory.
+// The common part of selections by the light tree of a pass's VPLs: its construction, and its memory.
 #pragma once
 
 #include "lights/selection/hierarchy/build_statistics.h"
