@@ -87,19 +87,17 @@ def welch(a, b):
     return np.sign(t) * (8 * n + 1) / (8 * n + 3) * np.sqrt(n * np.log1p(t * t / n))
 
 
-def log_variance(pixels, valid):
-    """Mean over pixels of the log of their variance between seeds, and its values without each seed."""
-    mean = lambda x: np.log(np.maximum(x.var(axis=0, ddof=1)[valid], 1e-30)).mean()
+def log_variance(pixels, floor):
+    """Mean over pixels of the log of their variance between seeds, and its values without each seed. `floor`, added to
+    variances, keeps pixels that few seeds light from ruling the mean."""
+    mean = lambda x: np.log(x.var(axis=0, ddof=1) + floor).mean()
     return mean(pixels), np.array([mean(np.delete(pixels, i, axis=0)) for i in range(len(pixels))])
 
 
 def variance_ratio(a, b):
-    """Ratio of the variance of b to that of a, as its log and the standard error of it; nothing for images without noise."""
-    noisy = lambda x: x.std(axis=0, ddof=1) > 1e-4 * np.abs(x).mean()
-    valid = noisy(a) & noisy(b)
-    if valid.sum() < 0.1 * valid.size:
-        return None
-    (log_a, without_a), (log_b, without_b) = log_variance(a, valid), log_variance(b, valid)
+    """Ratio of the variance of b to that of a, as its log and the standard error of it."""
+    floor = np.square(0.05 * (a.mean() + b.mean()) / 2)
+    (log_a, without_a), (log_b, without_b) = log_variance(a, floor), log_variance(b, floor)
     error = sum((len(w) - 1) * w.var() for w in (without_a, without_b))
     return log_b - log_a, math.sqrt(error)
 
@@ -120,8 +118,8 @@ def compared(old, new):
     ratio = variance_ratio(a, b)
     return {"difference": mb.mean() / ma.mean() - 1, "error": error / ma.mean(),
             "blocks": np.abs(welch(blocks(a), blocks(b))).max(), "layers": worst[0], "layer": worst[1] or "all",
-            "tests": blocks(a).shape[1] + len(layers) + (ratio is not None),
-            "variance": math.exp(ratio[0]) if ratio else 1.0, "deviate": abs(ratio[0]) / ratio[1] if ratio else 0.0}
+            "tests": blocks(a).shape[1] + len(layers) + 1,
+            "variance": math.exp(ratio[0]), "deviate": abs(ratio[0]) / ratio[1]}
 
 
 def main():
