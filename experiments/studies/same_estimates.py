@@ -26,31 +26,32 @@ from exr import read_exr  # noqa: E402
 from origin import ROOT  # noqa: E402
 
 SCENES = ["cornell_box", "smoke_room", "fog_grille", "cloud", "atrium", "city"]
-METHODS = {  # name: (integrator, its settings)
-    "path": ("path", {}),
-    "volpath": ("volpath", {}),
-    "bdpt": ("mote_bdpt", {}),
-    "vpl": ("mote_vpl", {"paths": 64}),
-    "vpl exact": ("mote_vpl", {"paths": 64, "compensation": "exact"}),
-    "vpl resampling": ("mote_vpl", {"paths": 256, "selection": "resampling"}),
-    "vpl lightcuts": ("mote_vpl", {"paths": 256, "selection": "stochastic_lightcuts"}),
-    "vpl interleaving": ("mote_vpl", {"paths": 256, "interleaving": 2}),
-    "ray lights": ("mote_ray_lights", {"paths": 64}),
-    "vpl ray bundles": ("mote_vpl_ray_bundles", {"paths": 16, "directions": 2}),
-    "vsl": ("mote_vsl", {"paths": 64}),
-    "photons": ("mote_photon_map", {"photon_paths": 10000}),
-    "micro-rendering": ("mote_micro_rendering", {"points": 4096, "micro_buffer": 8}),
+METHODS = {  # name: (integrator, its settings, passes of a render)
+    "path": ("path", {}, 64),
+    "volpath": ("volpath", {}, 64),
+    "bdpt": ("mote_bdpt", {}, 16),
+    "vpl": ("mote_vpl", {"paths": 64}, 16),
+    "vpl exact": ("mote_vpl", {"paths": 64, "compensation": "exact"}, 8),
+    "vpl resampling": ("mote_vpl", {"paths": 256, "selection": "resampling"}, 16),
+    "vpl lightcuts": ("mote_vpl", {"paths": 256, "selection": "stochastic_lightcuts"}, 16),
+    "vpl interleaving": ("mote_vpl", {"paths": 256, "interleaving": 2}, 8),
+    "ray lights": ("mote_ray_lights", {"paths": 64}, 8),
+    "vpl ray bundles": ("mote_vpl_ray_bundles", {"paths": 16, "directions": 2}, 8),
+    "vsl": ("mote_vsl", {"paths": 64}, 8),
+    "photons": ("mote_photon_map", {"photon_paths": 10000}, 8),
+    "micro-rendering": ("mote_micro_rendering", {"points": 4096, "micro_buffer": 8}, 4),
 }
-WIDTH, HEIGHT, BLOCK, PASSES, LEVEL = 24, 16, 4, 4, 0.01
+WIDTH, HEIGHT, BLOCK, LEVEL = 24, 16, 4, 0.01
 
 
 def rendered(program, path, scene, method, seed, options):
     """Layers of a render; nothing where the program refuses the scene."""
     if not (options.redraw and path.is_file()):
-        kind, settings = METHODS[method]
+        kind, settings, passes = METHODS[method]
+        sizes = {"film.width": WIDTH, "film.height": HEIGHT}
         command = [program, "render", ROOT / "scenes" / f"{scene}.xml", "-o", path, "--quiet", "--integrator", kind,
-                   "--passes", str(PASSES), "--seed", str(seed), "--threads", str(options.threads)]
-        for name, value in {"film.width": WIDTH, "film.height": HEIGHT, **{f"integrator.{k}": v for k, v in settings.items()}}.items():
+                   "--passes", str(passes), "--seed", str(seed), "--threads", str(options.threads)]
+        for name, value in (sizes | {f"integrator.{k}": v for k, v in settings.items()}).items():
             command += ["-D", f"{name}={value}"]
         run = subprocess.run(command, capture_output=True, text=True)
         if run.returncode == 1:
