@@ -5,7 +5,7 @@
 //   MOTE_PLUGIN(register_types)
 //
 // It is linked with mote's static libraries: it shares no state with the program, and the layouts of types
-// alone must agree. MOTE_INTERFACE stands for them: the version, and a checksum of the installed headers.
+// alone must agree. MOTE_INTERFACE represents them: the version, and a checksum of the installed headers.
 #pragma once
 
 #include <mote/interface.h>
@@ -16,9 +16,10 @@ namespace mote::core {
 
 /// Names of the two functions that a plugin has.
 inline constexpr const char* plugin_interface_name = "mote_plugin_interface";
-inline constexpr const char* plugin_register_name = "mote_register_plugin";
-/// The interface that it was compiled for, as in MOTE_INTERFACE; and what adds its types.
+inline constexpr const char* plugin_register_name = "mote_register_plugin";  ///< see plugin_interface_name
+/// The interface that it was compiled for, as in MOTE_INTERFACE.
 using PluginInterface = const char*();
+/// Adds its types.
 using PluginRegister = void(Registry*);
 
 }  // namespace mote::core

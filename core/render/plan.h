@@ -14,9 +14,10 @@ struct PlanEntry {
     std::string cure;    ///< of what is missing by choice: "integrator.compensation.depth=-1"; "" where none
 };
 
+/// What an integrator will do for a scene, and why.
 struct Plan {
-    std::string integrator;
-    std::vector<PlanEntry> runs;
+    std::string integrator;           ///< its type
+    std::vector<PlanEntry> runs;      ///< techniques
     std::vector<PlanEntry> left_out;  ///< code and data that this scene does not need
     std::vector<PlanEntry> missing;   ///< transport that this integrator cannot compute in this scene
     std::vector<std::string> costly;  ///< sentences on what takes very long in this scene, with its size
@@ -24,8 +25,11 @@ struct Plan {
     /// where the spread shows all.
     std::string noise_unknown;
 
+    /// Adds to `runs`.
     void run(std::string topic, std::string choice, std::string reason);
+    /// Adds to `left_out`.
     void leave_out(std::string topic, std::string choice, std::string reason);
+    /// Adds to `missing`.
     void miss(std::string topic, std::string choice, std::string reason, std::string cure = "");
     /// Messages for the user: a warning for each thing that takes very long or that this integrator cannot
     /// compute, and one line with the switches of a topic for what it leaves out by choice.

@@ -2,10 +2,10 @@
 //
 //   mote render scene.xml --plugin my_selector.so --integrator mote_vpl -D integrator.selection=by_intensity
 //
-// Of N VPLs n are sampled with replacement, VPL j with p_j = I_j / sum I, and weigh 1 / (n p_j): unbiased,
-// and the lights' distances and normals are not looked at. Every VPL keeps a share of uniform probability,
-// since one that looks dark from its own side may be bright at a receiver (a directional VPL's intensity is
-// not in I_j).
+// Of N VPLs n are sampled with replacement, VPL j with p_j = I_j / sum I, and weighted by 1 / (n p_j):
+// unbiased, and the lights' distances and normals are not considered. Every VPL keeps a share of uniform
+// probability, since one that looks dark from its own side may be bright at a receiver (a directional VPL's
+// intensity is not in I_j).
 #include <mote/core/objects/plugin.h>
 #include <mote/lights/selection/register_selection.h>
 #include <mote/lights/selection/sampling_selector.h>
@@ -25,8 +25,7 @@ struct Settings {
 std::vector<double> running_sums(const lights::VplSet& vpls, double uniform) {
     std::vector<double> sums;
     double total = 0.0;
-    for (const lights::VirtualPointLight& light : vpls.lights)
-        total += core::average(light.intensity);
+    for (const lights::VirtualPointLight& light : vpls.lights) total += core::average(light.intensity);
     const double even = 1.0 / double(vpls.lights.size());
     double sum = 0.0;
     for (const lights::VirtualPointLight& light : vpls.lights) {

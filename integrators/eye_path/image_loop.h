@@ -50,20 +50,23 @@ struct PacketPixels {
 
 /// Rows of the image from `begin` to before `end`.
 struct PixelRows {
-    int begin = 0, end = std::numeric_limits<int>::max();
+    int begin = 0;                              ///< the first
+    int end = std::numeric_limits<int>::max();  ///< after the last
 };
 
 /// A part of the image that one thread renders.
 template <bool Media>
 class EyeTask {
   public:
+    /// ImageLoop makes it; what it is given must outlive it.
     EyeTask(const core::Scene& scene, const core::RenderOptions& options, const core::PassContext& context,
             const EyePacketSettings& settings, int samples)
         : scene_(scene), options_(options), context_(context), settings_(settings), samples_(samples) {
         walk_.cancelled = context.cancelled;
     }
 
-    core::WalkContext& walk() { return walk_; }
+    core::WalkContext& walk() { return walk_; }  ///< generator and counters of the task
+    /// Sixteen eye paths, made on first use.
     EyePacket<Media>& packet() {
         if (!packet_) packet_ = std::make_unique<EyePacket<Media>>(scene_, settings_, walk_);
         return *packet_;
@@ -87,6 +90,7 @@ class EyeTask {
             stored(std::as_const(pixels));
         }
     }
+    /// Without.
     template <typename Render>
     void for_each(const Render& render) {
         for_each(render, [](const PacketPixels&) {});
@@ -170,10 +174,11 @@ class EyeTask {
 /// The pixels of an image in packets, whatever the template of the eye paths.
 class PacketLayout {
   public:
+    /// For an image of this size.
     PacketLayout(const core::RenderOptions& options, const ImageLoopSettings& settings);
     int tile_size() const { return tile_size_; }  ///< pixels along an edge of a task
-    int columns() const { return (width_ + tile_size_ - 1) / tile_size_; }
-    int rows() const { return (height_ + tile_size_ - 1) / tile_size_; }
+    int columns() const { return (width_ + tile_size_ - 1) / tile_size_; }  ///< of tasks
+    int rows() const { return (height_ + tile_size_ - 1) / tile_size_; }    ///< of tasks
     /// The lattice of upsampling goes round from pass to pass.
     screenspace::ShadedLattice lattice(std::uint32_t pass) const;
     /// Packets of the pixels from (x0, y0) to before (x1, y1). `lattice`: pixels that gather; null: all.
@@ -193,9 +198,11 @@ class PacketLayout {
 void for_each_range(std::span<const std::uint32_t> pixels, const std::atomic<bool>& cancelled,
                     const std::function<void(std::span<const std::uint32_t>)>& task);
 
+/// The loop; `Media`: eye paths see media.
 template <bool Media>
 class ImageLoop {
   public:
+    /// The scene must outlive it.
     ImageLoop(const core::Scene& scene, const core::RenderOptions& options, ImageLoopSettings settings = {})
         : scene_(scene), options_(options), settings_(std::move(settings)), layout_(options, settings_) {}
 
@@ -226,8 +233,10 @@ class ImageLoop {
         return !shared || upsample(context, *shared, image, render);
     }
 
+    /// Upper bound of EyeTask::index().
     std::size_t tasks() const { return std::size_t(layout_.columns()) * std::size_t(layout_.rows()); }
-    SharedCounters& counters() { return counters_; }
+    SharedCounters& counters() { return counters_; }  ///< of all tasks so far
+    /// Rays and lookups, for Estimator::add_statistics().
     void add_statistics(core::Statistics& statistics) const {
         counters_.report(statistics, Media);
         if (settings_.upsampling > 1) statistics.values["pixels_shaded_again"] += double(shaded_again_);
