@@ -22,7 +22,7 @@ namespace mote::core {
 /// as Rgb.
 using PropertyValue = std::variant<bool, std::int64_t, double, std::string, Rgb, Vec3d, Transform>;
 
-/// What an element of a scene file holds.
+/// Contents of an element of a scene file.
 class Properties {
   public:
     /// A parameter.

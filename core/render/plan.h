@@ -14,7 +14,7 @@ struct PlanEntry {
     std::string cure;    ///< of what is missing by choice: "integrator.compensation.depth=-1"; "" where none
 };
 
-/// What an integrator will do for a scene, and why.
+/// Techniques of an integrator for a scene, with reasons.
 struct Plan {
     std::string integrator;           ///< its type
     std::vector<PlanEntry> runs;      ///< techniques
