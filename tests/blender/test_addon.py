@@ -72,7 +72,7 @@ def test(words, mote, source):
         archive = folder / "mote_render.zip"
         subprocess.run([sys.executable, "-B", str(source / "plugins" / "blender" / "make_zip.py"), str(archive), str(page)],
                        check=True)
-        for what in ("pictures", "parts"):
+        for what in ("pictures", "parts", "live"):
             finish(start(words, mote, folder, archive, what), "checked: all")
         cancel(start(words, mote, folder, archive, "cancel"))
 
