@@ -90,6 +90,14 @@ trade::Record record_of(const ComparedMethod& m, const trade::Method& method, co
     return r;
 }
 
+/// The beauty alone: files that are read have attributes of other programs.
+core::ImageChannels beauty_of(const core::ImageChannels& image) {
+    core::ImageChannels beauty;
+    beauty.width = image.width, beauty.height = image.height;
+    beauty.add_rgb("", image.rgb(""));
+    return beauty;
+}
+
 /// Points whose times differ by a tenth, and the last one.
 std::vector<ErrorPoint> thinned(const std::vector<ErrorPoint>& points) {
     std::vector<ErrorPoint> kept;
@@ -117,9 +125,9 @@ std::vector<std::pair<std::string, std::string>> TradePage::files(const Comparis
             record.final = m.picture->finished && &p == &points.back();
             folder.add(record);
         }
-        core::write_exr(folder.file(methods[i].slug + ".exr"), m.picture->image);
+        core::write_exr(folder.file(methods[i].slug + ".exr"), beauty_of(m.picture->image));
     }
-    core::write_exr(folder.file("reference.exr"), comparison.reference.image());
+    core::write_exr(folder.file("reference.exr"), beauty_of(comparison.reference.image()));
     trade::draw(folder, page_width);
     return {{"trade.html", folder.read("trade.html")}, {"trade.csv", folder.read("trade.csv")}};
 }

@@ -110,7 +110,9 @@ void View::answer_reproduce(int client, const json& message) {
 
 void View::answer_save(int client, const json& message) {
     const auto name = member<std::string>(message, "picture");
-    const SharedPicture picture = shown(name).picture;
+    const Shown shown = this->shown(name);
+    if (!shown.wish) throw InputError("a picture from a file is saved already");
+    const SharedPicture picture = shown.picture;
     if (!picture || picture->coarse) throw InputError("there is no picture of a whole pass yet");
     later(client, [this, client, name, picture] {
         send_(client, binary_message({{"type", "file"}, {"name", "view.exr"}, {"picture", name}},

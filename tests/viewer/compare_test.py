@@ -48,6 +48,7 @@ def main():
             for name in ("A", "B"):
                 last[name] = client.frame(lambda h: h["picture"] == name and h["finished"] and h["passes"] == 30)[0]
             found = files(client)
+            check(isinstance(found, dict), f"page and records arrive: {found if isinstance(found, str) else list(found)}")
             records = list(csv.DictReader(io.StringIO(found["trade.csv"])))
             for name, method in (("A", "A: path"), ("B", "B: mote_vpl")):
                 own = [r for r in records if r["method"] == method]
