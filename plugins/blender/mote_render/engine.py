@@ -14,7 +14,6 @@ class MoteEngine(bpy.types.RenderEngine):
     bl_use_preview = False
     bl_use_eevee_viewport = True
     bl_use_shading_nodes_custom = False
-    view, problem = None, ""  # of the viewport: a Viewport, and why it shows nothing
 
     def render(self, depsgraph):
         render = depsgraph.scene.render
@@ -61,26 +60,15 @@ class MoteEngine(bpy.types.RenderEngine):
 
     def view_update(self, context, depsgraph):
         """The scene has changed, or is shown for the first time."""
-        self.problem = ""
-        if self.view is not None:
-            self.view.stop()
+        viewport.of(self).stop()
 
     def view_draw(self, context, depsgraph):
-        try:
-            if self.view is None:
-                self.view = viewport.Viewport(self)
-            if not self.problem:
-                self.view.follow(depsgraph, context)
-            self.view.draw(depsgraph.scene, (context.region.width, context.region.height))
-            self.problem = self.problem or (self.view.live.problem if self.view.live else "")
-        except (RuntimeError, ValueError, OSError) as error:
-            self.problem = str(error)
-        self.update_stats("mote", self.problem or "")
+        shown = viewport.of(self)
+        shown.draw(depsgraph, context)
+        self.update_stats("mote", shown.problem)
 
     def __del__(self):
-        view = getattr(self, "view", None)
-        if view is not None:
-            view.close()
+        viewport.forget(id(self))
 
     def update_render_passes(self, scene, view_layer):
         """Layers of the last picture: which there are the integrator decides."""
