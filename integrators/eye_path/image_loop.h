@@ -11,6 +11,7 @@
 // the same for paths one by one, and for_each_pixel() for methods that write to the image themselves.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <memory>
 
@@ -40,6 +41,11 @@ struct PacketPixels {
     bool gathers = true;                ///< false: between the lattice; receivers are only recorded
     int sample = 0;                     ///< eye path of each pixel
 
+    /// Lane of a pixel; -1: it is none of these.
+    int lane_of(int x, int y) const {
+        const auto found = std::ranges::find(pixels, glm::ivec2(x, y));
+        return found == pixels.end() ? -1 : int(found - pixels.begin());
+    }
     /// Calls visit(lane, x, y) for the pixels that there are.
     template <typename Visit>
     void for_each(const Visit& visit) const {
@@ -179,6 +185,10 @@ class PacketLayout {
     int tile_size() const { return tile_size_; }  ///< pixels along an edge of a task
     int columns() const { return (width_ + tile_size_ - 1) / tile_size_; }  ///< of tasks
     int rows() const { return (height_ + tile_size_ - 1) / tile_size_; }    ///< of tasks
+    /// Index of the task of a pixel.
+    std::size_t task_of(int x, int y) const {
+        return std::size_t(y / tile_size_ * columns() + x / tile_size_);
+    }
     /// The lattice of upsampling goes round from pass to pass.
     screenspace::ShadedLattice lattice(std::uint32_t pass) const;
     /// Packets of the pixels from (x0, y0) to before (x1, y1). `lattice`: pixels that gather; null: all.
@@ -218,19 +228,32 @@ class ImageLoop {
         }
         eye.records_seen = shared.has_value();
         const auto render = [&](std::vector<PacketPixels> packets, std::size_t index, SharedPixels* seen) {
-            EyeTask<Media> own(scene_, options_, context, eye, settings_.eye_samples);
-            own.packets_ = std::move(packets), own.index_ = index, own.image_ = &image, own.shared_ = seen;
-            task(own);
-            counters_.add(own.walk_.rays, own.walk_.tracking);
+            run_task(context, image, eye, std::move(packets), index, seen, task);
         };
         const int size = layout_.tile_size(), count = std::min(rows.end, options_.height) - rows.begin;
         const auto tile = [&](int x0, int y0, int x1, int y1) {
             y0 += rows.begin, y1 += rows.begin;
             render(layout_.packets(x0, y0, x1, y1, context.index, shared ? &shared->lattice() : nullptr),
-                   std::size_t(y0 / size * layout_.columns() + x0 / size), shared ? &*shared : nullptr);
+                   layout_.task_of(x0, y0), shared ? &*shared : nullptr);
         };
         if (!core::for_each_tile(options_.width, count, size, context.cancelled, tile)) return false;
         return !shared || upsample(context, *shared, image, render);
+    }
+
+    /// Renders a pixel's packet, after those before it in its task, from which selectors learn. Where pixels
+    /// are upsampled, the ones between the lattice gather nothing.
+    template <typename Task>
+    void run_pixel(const core::PassContext& context, core::PassImage& image, const EyePacketSettings& eye,
+                   int x, int y, const Task& task) {
+        const int size = layout_.tile_size(), x0 = x / size * size, y0 = y / size * size;
+        const screenspace::ShadedLattice lattice = layout_.lattice(context.index);
+        std::vector<PacketPixels> packets =
+            layout_.packets(x0, y0, std::min(x0 + size, options_.width), std::min(y0 + size, options_.height),
+                            context.index, settings_.upsampling > 1 ? &lattice : nullptr);
+        const auto own =
+            std::ranges::find_if(packets, [&](const PacketPixels& p) { return p.lane_of(x, y) >= 0; });
+        packets.erase(own + 1, packets.end());
+        run_task(context, image, eye, std::move(packets), layout_.task_of(x, y), nullptr, task);
     }
 
     /// Upper bound of EyeTask::index().
@@ -243,6 +266,15 @@ class ImageLoop {
     }
 
   private:
+    template <typename Task>
+    void run_task(const core::PassContext& context, core::PassImage& image, const EyePacketSettings& eye,
+                  std::vector<PacketPixels> packets, std::size_t index, SharedPixels* seen,
+                  const Task& task) {
+        EyeTask<Media> own(scene_, options_, context, eye, settings_.eye_samples);
+        own.packets_ = std::move(packets), own.index_ = index, own.image_ = &image, own.shared_ = seen;
+        task(own);
+        counters_.add(own.walk_.rays, own.walk_.tracking);
+    }
     /// Pixels between the lattice: those without similar neighbours once more, with lights of their own, the
     /// others by neighbours.
     template <typename Render>

@@ -32,6 +32,10 @@ class MotePhotonMap final : public Integrator {
     std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
         return make_photon_map_estimator(scene, options, settings_);
     }
+    std::unique_ptr<PointLights> point_lights(const Scene& scene,
+                                              const RenderOptions& options) const override {
+        return make_photon_point_lights(scene, options, settings_);
+    }
 
   private:
     PhotonMapSettings settings_;

@@ -27,5 +27,9 @@ struct PhotonMapSettings {
 std::unique_ptr<core::Estimator> make_photon_map_estimator(const core::Scene& scene,
                                                            const core::RenderOptions& options,
                                                            const PhotonMapSettings& settings);
+/// The photons of its passes.
+std::unique_ptr<core::PointLights> make_photon_point_lights(const core::Scene& scene,
+                                                            const core::RenderOptions& options,
+                                                            const PhotonMapSettings& settings);
 
 }  // namespace mote::integrators

@@ -73,5 +73,9 @@ struct VplSettings {
 std::unique_ptr<core::Estimator> make_vpl_estimator(const core::Scene& scene,
                                                     const core::RenderOptions& options,
                                                     const VplSettings& settings);
+/// Its VPLs, connected as in the passes, but by shadow rays whatever the visibility is.
+std::unique_ptr<core::PointLights> make_vpl_point_lights(const core::Scene& scene,
+                                                         const core::RenderOptions& options,
+                                                         VplSettings settings);
 
 }  // namespace mote::integrators

@@ -36,6 +36,14 @@ struct PathReceiver {
     std::int32_t max_vpl_depth = 0;  ///< of the VPLs that it may be connected to
 };
 
+/// A VPL that a selector connected with a receiver.
+struct ChosenVpl {
+    std::size_t vpl;          ///< its index
+    float weight;             ///< 1/p
+    std::size_t cluster = 0;  ///< VPLs that it represents; 0: not one of a cluster
+    core::Rgb light{0.0f};    ///< at the receiver
+};
+
 /// A pass, as selectors see it.
 struct SelectionPass {
     const core::RayQueries& scene;     ///< where they are
@@ -66,6 +74,9 @@ class TileSelector {
     /// Scattering points of an eye ray that are receivers. More take memory and compensation, and gain little
     /// where they meet no more VPLs (docs/media.md).
     virtual std::size_t max_points() const { return 2; }
+    /// VPLs that brought a lane the light of the last gather() or gather_copied(), for selectors that connect
+    /// them without the BatchVisibility: until the next call.
+    virtual std::vector<ChosenVpl> chosen(int /*lane*/) const { return {}; }
     /// Adds what was counted since the selector was made.
     virtual void add_statistics(core::Statistics&) const {}
 

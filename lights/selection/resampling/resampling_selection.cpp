@@ -67,6 +67,7 @@ class TileResampling final : public TileSelector {
         points_[0].used = points_[1].used = 0;
         return light;
     }
+    std::vector<ChosenVpl> chosen(int lane) const override { return resampling_.chosen(lane); }
     void add_statistics(Statistics& statistics) const override {
         statistics.values["resampling_candidates"] += double(resampling_.counters().candidates);
         statistics.values["resampling_chosen"] += double(resampling_.counters().chosen);
