@@ -93,7 +93,7 @@ class Film:
         self.command, self.path = command, path
         self.scratch = tempfile.TemporaryDirectory(prefix=path.name + ".", dir=path.parent)
         self.folder = Path(self.scratch.name)
-        self.passes, self.noise, self.content = 0, None, None
+        self.passes, self.noise, self.content, self.seed = 0, None, None, None
 
     def add(self, parts):
         """Adds the films that follow; without any reads what is there."""
@@ -104,7 +104,7 @@ class Film:
         said = json.loads(stats.read_text())
         if said["first_pass"] != 0:
             raise ClusterError(f"'{self.path}' does not begin with pass 0")
-        self.passes, self.noise, self.content = said["passes"], said["noise"], said["content"]
+        self.passes, self.noise, self.content, self.seed = said["passes"], said["noise"], said["content"], said["seed"]
 
 
 def pilot_shares(command, render, parts):
@@ -254,7 +254,7 @@ def render(scene, output, scheduler, *, passes=None, noise=None, block=USUAL_BLO
         if not film.path.is_file() or film.path.open("rb").read(len(FILM_MAGIC)) != FILM_MAGIC:
             raise ClusterError(f"'{film.path}' is no partial film of mote, and is not replaced")
         film.add([])
-        if film.content != ours["content"]:
+        if (film.content, film.seed) != (ours["content"], ours["seed"]):
             raise ClusterError(f"'{film.path}' is of another render, and is neither resumed nor replaced")
         if not resume:
             film.path.unlink()
