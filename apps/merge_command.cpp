@@ -26,6 +26,7 @@ void write_statistics(const std::string& path, const MergedFilm& m) {
                               {"first_pass", m.first},
                               {"noise", number_or_null(m.film->noise())},
                               {"content", m.content_hash},
+                              {"seed", m.render.seed},
                               {"rays", m.statistics.rays},
                               {"lookups", m.statistics.lookups},
                               {"seconds", m.statistics.seconds}};

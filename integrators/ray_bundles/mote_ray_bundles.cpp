@@ -6,6 +6,8 @@
 // directions lack.
 #include <fmt/format.h>
 
+#include "core/objects/error.h"
+#include "integrators/eye_path/few_reflections.h"
 #include "integrators/ray_bundles/ray_bundle_settings.h"
 #include "integrators/register_parts.h"
 
@@ -23,10 +25,19 @@ class MoteRayBundles final : public Integrator {
     std::vector<Layer> layers(const Scene&) const override { return transport_layers(false); }
     Plan plan(const Scene& scene, const Requirements& requirements) const override;
     std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
+        require(scene);
         return make_ray_bundle_estimator(scene, options, settings_);
     }
 
   private:
+    /// Throws InputError where a pass follows too few reflections.
+    void require(const Scene& scene) const {
+        const gathering::ExchangeSettings& e = settings_.exchange;
+        const bool interleaved = e.transfer == gathering::LightTransfer::interleaved;
+        require_reflections(scene, int(interleaved ? e.directions / e.batch : e.bounces), type(),
+                            fmt::format("more {} follow more; path and mote_bdpt follow them all",
+                                        interleaved ? "directions" : "bounces"));
+    }
     void plan_missing(Plan& plan, const Scene& scene, const Requirements& r) const;
     RayBundleSettings settings_;
 };
@@ -60,6 +71,11 @@ Plan MoteRayBundles::plan(const Scene& scene, const Requirements& r) const {
     plan.run("view", "the atlas", "on diffuse surfaces; paths scatter on from all others");
     plan_choice_of_lights(plan, scene);
     plan_missing(plan, scene, r);
+    try {
+        require(scene);
+    } catch (const InputError& error) {
+        plan.miss("the whole picture", "refused", error.what());
+    }
     return plan;
 }
 
