@@ -33,6 +33,7 @@ class RenderObserver {
     /// first ones is missing) and "noise" as metadata.
     virtual bool wants_layers() const { return false; }
     virtual double preview_every_seconds() const { return 1.0; }  ///< shortest time between two previews
+    virtual double preview_share() const { return 0.05; }  ///< of the time, that previews take at most
     /// Called in the thread of the passes: false spares the work of a preview.
     virtual bool preview_is_seen() const { return true; }
     virtual void warning(const std::string&) {}  ///< at once: a checkpoint that could not be written
