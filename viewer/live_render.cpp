@@ -83,6 +83,8 @@ class LiveRender::Observer : public session::RenderObserver {
     bool wants_previews() const override { return !coarse_; }
     bool wants_layers() const override { return true; }
     double preview_every_seconds() const override { return 0.2; }
+    /// Someone watches: denoising may take a fifth of the time.
+    double preview_share() const override { return 0.2; }
     bool preview_is_seen() const override { return render_.reports_.is_seen(); }
     void preview(const core::ImageChannels& image) override {
         session::Rendered rendered;

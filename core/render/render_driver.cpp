@@ -187,7 +187,10 @@ class PassLoop {
         // After this time a preview is shown though some part of the picture is still black.
         constexpr double patience = 2.5;
         if (!result_.film.has_passes(1) && seconds_since(start_) < patience) return;
-        const double wait = std::max(seen ? request_.preview_every_seconds : 1.0, 20.0 * preview_seconds_);
+        // The first one also builds what all others need.
+        const double expected = previews_ == 1 ? 0.25 * preview_seconds_ : preview_seconds_;
+        const double wait =
+            std::max(seen ? request_.preview_every_seconds : 1.0, expected / request_.preview_share);
         if (previews_ > 0 && seconds_since(preview_time_) < wait) return;
         const Clock::time_point begin = Clock::now();
         try {
