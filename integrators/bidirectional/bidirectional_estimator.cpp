@@ -13,6 +13,10 @@ namespace {
 constexpr int rows_at_once = 512;
 constexpr std::uint32_t light_path_stream = 0x62647074u;
 
+/// With x_{s,t} the path of s vertices from a light and t from the camera, of contribution f and density
+/// p_{s,t},
+///   L = sum over s, t of w_{s,t}(x_{s,t}) f(x_{s,t}) / p_{s,t}(x_{s,t})    (Veach 1997, Sec. 10.1)
+/// for one light path and one eye path a pixel; those with t = 1 are splats on any pixel.
 template <bool Media>
 class BidirectionalEstimator final : public Estimator {
   public:
@@ -77,14 +81,10 @@ class BidirectionalEstimator final : public Estimator {
 
 }  // namespace
 
-template <bool Media>
 std::unique_ptr<Estimator> make_bidirectional_estimator(const Scene& scene, const RenderOptions& options,
                                                         const BidirectionalSettings& settings) {
-    return std::make_unique<BidirectionalEstimator<Media>>(scene, options, settings);
+    if (scene.has_media()) return std::make_unique<BidirectionalEstimator<true>>(scene, options, settings);
+    return std::make_unique<BidirectionalEstimator<false>>(scene, options, settings);
 }
-template std::unique_ptr<Estimator> make_bidirectional_estimator<true>(const Scene&, const RenderOptions&,
-                                                                       const BidirectionalSettings&);
-template std::unique_ptr<Estimator> make_bidirectional_estimator<false>(const Scene&, const RenderOptions&,
-                                                                        const BidirectionalSettings&);
 
 }  // namespace mote::integrators
