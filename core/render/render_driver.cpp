@@ -6,6 +6,7 @@
 #include <new>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include "core/film/film_memory.h"
 #include "core/objects/error.h"
@@ -205,12 +206,15 @@ class PassLoop {
     /// Shows the finished picture to `look`; the film is afterwards as it was. Throws Cancelled.
     template <typename Look>
     void finish_for_now(const Look& look) {
+        const Clock::time_point begin = Clock::now();
         try {
             runner_.estimator().finish(result_.film, cancelled_flag());
         } catch (const Cancelled&) {
             result_.film.exchange_replaced();
             throw;
         }
+        // The first call also builds what all later ones use: about half of it.
+        state_.seconds_to_finish = (std::exchange(finished_before_, true) ? 1.0 : 0.5) * seconds_since(begin);
         look();
         const double finished = runner_.estimator().changes_noise() ? result_.film.noise() : 0.0;
         preview_means_ = result_.film.exchange_replaced(), preview_passes_ = state_.passes;
@@ -249,6 +253,7 @@ class PassLoop {
     std::uint32_t preview_passes_ = 0;
     /// Noise of the picture when it was finished last, and relative to the noise of its passes.
     double finished_noise_ = infinity, left_of_noise_ = infinity;
+    bool finished_before_ = false;  ///< for a preview or the noise
     Clock::time_point preview_time_ = Clock::now();
     double noise_seconds_ = 0.0;  ///< cost of the last evaluation of the noise
     const Clock::time_point start_ = Clock::now();

@@ -18,9 +18,10 @@ namespace mote::core {
 /// passes.
 struct StopRule {
     std::optional<std::uint32_t> passes;  ///< this many in all, those of a checkpoint included
-    std::optional<double> seconds;  ///< wall time from RenderRequest::seconds_before on: ends as near to it
-                                    ///< as whole passes allow, after one at least
-    std::optional<double> noise;    ///< Film::noise() of the finished picture, tested from 8 passes on
+    /// Wall time from RenderRequest::seconds_before on, finishing included once a preview has shown how long
+    /// that takes: ends as near to it as whole passes allow, after one at least.
+    std::optional<double> seconds;
+    std::optional<double> noise;  ///< Film::noise() of the finished picture, tested from 8 passes on
 };
 
 /// Passes first .. end - 1 of a picture, counted over all parts: one share of a render on several machines.
