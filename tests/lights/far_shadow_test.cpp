@@ -46,7 +46,7 @@ TEST_CASE("a light is seen from a floor that lies thousands of its sizes from th
 }
 
 // VPLs are moved off their surface by its rounding, so that a constant fraction of the segment serves as well
-// as shadow_fraction() where single precision tells walls apart at all.
+// as shadow_fraction() where single precision distinguishes walls at all.
 TEST_CASE("shadow rays end before the surface of a VPL, wherever the room is and however small",
           "[vpl][shadow]") {
     struct Place {
