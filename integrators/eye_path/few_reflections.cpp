@@ -2,10 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "core/geometry/bsdf_point.h"
 #include "core/geometry/shape.h"
 #include "core/materials/bsdf.h"
+#include "core/math/frame.h"
+#include "core/math/random.h"
+#include "core/math/warp.h"
 #include "core/objects/error.h"
 #include "core/scene/emitter.h"
 
@@ -16,26 +21,50 @@ using namespace core;
 namespace {
 
 constexpr double max_missing = 0.5;  ///< of the light between surfaces
+constexpr std::size_t rays_of_all = 8192;
+constexpr std::size_t max_shapes = 1024;  ///< that rays start from; more are left out evenly
 
-/// Mean albedo of a shape, at a grid of points.
-double mean_albedo(const Shape& shape) {
-    constexpr int side = 4;
-    double sum = 0.0;
-    for (int i = 0; i < side * side; ++i) {
-        const Vec2 u((float(i % side) + 0.5f) / float(side), (float(i / side) + 0.5f) / float(side));
-        BsdfPoint point;
-        point.uv = shape.sample_area(u).uv;
-        sum += double(average(shape.bsdf->albedo(point, Vec3(0.0f, 0.0f, 1.0f))));
-    }
-    return sum / double(side * side);
+/// True where the surface reflects all that it does not absorb, and not in one direction alone: mirrors and
+/// glass are passed by eye paths and light paths.
+bool reflects(const Shape& shape) {
+    const BsdfTraits traits = shape.bsdf->traits();
+    return !traits.null && !traits.transmissive && traits.smooth;
 }
 
+/// Albedo of a shape at the end of a ray, 0 where the light is lost.
+double albedo_at(const Scene& scene, const Ray& ray) {
+    const auto hit = scene.first_hit(ray);
+    if (!hit || !reflects(*hit->shape)) return 0.0;
+    return double(average(hit->shape->bsdf->albedo(bsdf_point(*hit), hit->shading.to_local(-ray.direction))));
+}
+
+/// Mean of what surfaces reflect of the light that leaves a shape by the cosine, on the side where that is
+/// more: a board may reflect on one side only.
+double next_albedo(const Scene& scene, const Shape& shape, std::size_t rays, std::uint64_t key) {
+    double sides[2] = {0.0, 0.0};
+    Rng rng(key);
+    for (std::size_t i = 0; i < rays; ++i) {
+        const ShapeSample from = shape.sample_area({rng.next_float(), rng.next_float()});
+        const Vec3 up = square_to_cosine_hemisphere({rng.next_float(), rng.next_float()});
+        for (const int side : {0, 1}) {
+            const Vec3 direction = Frame(side == 0 ? from.normal : -from.normal).to_world(up);
+            sides[side] += albedo_at(
+                scene, {offset_origin(from.position, from.normal, from.error, direction), direction});
+        }
+    }
+    return std::max(sides[0], sides[1]) / double(rays);
+}
+
+/// Share of the light between surfaces that the next surface reflects: by rays from all of them, by area.
 double mean_reflectance(const Scene& scene) {
     double area = 0.0, reflecting = 0.0;
-    for (const auto& shape : scene.shapes()) {
-        const double own = double(shape->area());
-        if (shape->bsdf->traits().null || !(own > 0.0) || !std::isfinite(own)) continue;
-        area += own, reflecting += own * mean_albedo(*shape);
+    const auto& shapes = scene.shapes();
+    const std::size_t stride = std::max<std::size_t>(1, shapes.size() / max_shapes);
+    const std::size_t rays = rays_of_all / std::min(std::max<std::size_t>(1, shapes.size()), max_shapes);
+    for (std::size_t i = 0; i < shapes.size(); i += stride) {
+        const double own = double(shapes[i]->area());
+        if (!reflects(*shapes[i]) || !(own > 0.0) || !std::isfinite(own)) continue;
+        area += own, reflecting += own * next_albedo(scene, *shapes[i], rays, hash_keys(0x7265666cull, i));
     }
     return area > 0.0 ? reflecting / area : 0.0;
 }
@@ -43,9 +72,7 @@ double mean_reflectance(const Scene& scene) {
 }  // namespace
 
 double light_of_more_reflections(const Scene& scene, int reflections) {
-    for (const auto& emitter : scene.emitters())
-        if (emitter->traits().infinite) return 0.0;
-    return std::pow(mean_reflectance(scene), double(reflections));
+    return std::pow(std::min(mean_reflectance(scene), 1.0), double(reflections));
 }
 
 void require_reflections(const Scene& scene, int reflections, const std::string& integrator,

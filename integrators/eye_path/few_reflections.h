@@ -7,8 +7,9 @@
 
 namespace mote::integrators {
 
-/// Fraction of the light between surfaces that is reflected more than `reflections` times, about: in a closed
-/// room of mean reflectance r it is r^reflections. 0 in scenes with light from infinity, which are open.
+/// Fraction of the light between surfaces that is reflected more than `reflections` times, about:
+/// r^reflections, where r is what the next surface reflects, on average, of the light that leaves a surface;
+/// light that meets none, glass or a mirror counts as lost.
 double light_of_more_reflections(const core::Scene& scene, int reflections);
 
 /// Throws InputError where more than half of the light would be missing; `remedy` names what renders it.
