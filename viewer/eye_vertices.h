@@ -1,4 +1,4 @@
-// What the eye sees through a pixel: its first hit, and the vertices of its eye path.
+// Through a pixel: the first hit of its ray, and the vertices of its eye path.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -112,7 +112,7 @@ json light_points(const session::LoadedScene& loaded, std::uint64_t seed) {
     json result = pass.header();
     result["count"] = points.size(), result["points"] = json::array();
     const std::size_t step =
-        std::max<std::size_t>(1, (points.size() + max_drawn_points - 1) / max_drawn_points);
+        std::max<std::size_t>(1, (points.size() + max_shown_points - 1) / max_shown_points);
     for (std::size_t i = 0; i < points.size(); i += step) {
         const auto film = scene.camera().project(points[i].position, 0.0f);
         if (!film || !is_seen(scene, points[i].position, *film)) continue;

@@ -9,8 +9,8 @@
 
 namespace mote::viewer {
 
-/// Points that are listed or drawn at most.
-inline constexpr std::size_t max_listed_lights = 100, max_drawn_points = 2000;
+/// Points that are listed, and shown over the image, at most.
+inline constexpr std::size_t max_listed_lights = 100, max_shown_points = 2000;
 
 /// {"first": position, depth, normals, shape of what the ray through the pixel's centre hits, or null;
 ///  "path": vertices of the eye path, with position, film position, throughput;

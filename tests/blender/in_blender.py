@@ -208,7 +208,7 @@ def check_alive(view, end):
 
 
 def window(folder):
-    """In a window: the viewport draws the render, and what it draws is no grey. Runs after this script, as events do."""
+    """In a window: the viewport shows the render. Runs after this script, as events do."""
     bpy.context.preferences.view.show_splash = False
     bpy.app.timers.register(lambda: show_room(folder), first_interval=1)
 

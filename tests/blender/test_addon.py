@@ -37,7 +37,7 @@ def blenders(built):
 
 
 def in_window(words):
-    """The program in a window of a virtual display, drawn by the processor; None where there is no such thing."""
+    """The program in a window of a virtual display, by software; None where there is no such thing."""
     display = shutil.which("xvfb-run", path=PATH)
     if "-b" not in words or not display:
         return None

@@ -1,4 +1,4 @@
-// What is drawn over the image: values of pixels, lights, legends.
+// The overlay of the image: values of pixels, lights, legends.
 
 export function drawOverlay(viewer) {
   const c = viewer.overlay.getContext("2d"), place = viewer.place(), picture = viewer.picture(viewer.shown);

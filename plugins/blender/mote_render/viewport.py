@@ -1,4 +1,4 @@
-"""The viewport: a live render of the scene as it is seen there, drawn as a texture."""
+"""The viewport: a live render of the scene as it is seen there, as a texture."""
 import atexit
 import shutil
 import tempfile
@@ -14,7 +14,7 @@ from .live_view import LiveView
 
 
 def require_drawing():
-    """RuntimeError where nothing can be drawn."""
+    """RuntimeError where there is no drawing context."""
     if bpy.app.background:
         raise RuntimeError("the viewport needs a drawing context, which Blender without a window does not have: render with F12")
 
