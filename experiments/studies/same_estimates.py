@@ -126,6 +126,8 @@ def main():
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--redraw", action="store_true", help="take the images that there are")
     options = parser.parse_args()
+    if options.seeds < 3:
+        parser.error("--seeds: the variance of variances needs three")
     rows = {}
     for scene in (s for s in SCENES if re.search(options.scenes, s)):
         for method in (m for m in METHODS if re.search(options.methods, m)):
