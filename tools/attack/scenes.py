@@ -117,9 +117,9 @@ def hostile_scene(source, folder, methods, registry):
 
 
 def contents(text):
-    """Facts of scenes with media that vary, with surfaces that are not diffuse, or let light through, and with a lamp twice at one place."""
+    """Facts of scenes with media that vary, with surfaces that are not diffuse, or mirror light, and with a lamp twice at one place."""
     lamps = [line for line in text.splitlines() if line.startswith("<shape") and '<emitter type="area"' in line]
     kinds = set(re.findall(r'<bsdf type="(\w+)"', text)) - {"diffuse", "twosided", "null", "mask", "bumpmap", "normalmap"}
-    glass = {"dielectric", "thindielectric", "roughdielectric", "principled", "principledthin", "conductor", "plastic"}
+    glass = {"dielectric", "conductor", "plastic"}
     return {"glass": "yes" if kinds & glass else "no", "grids": "yes" if 'type="heterogeneous"' in text else "no", "lobes": "yes" if kinds else "no",
             "lamps": "coincide" if len(set(lamps)) < len(lamps) else "apart"}
