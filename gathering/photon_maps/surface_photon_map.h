@@ -16,7 +16,7 @@ struct DensityEstimate {
 
 /// For estimates whose sum alone is wanted.
 struct IgnoreTerms {
-    void operator()(std::uint32_t /*photon*/, const core::Rgb& /*light*/) const {}
+    void operator()(std::uint32_t /*photon*/, const core::Rgb& /*light*/) const {}  ///< nothing
 };
 
 /// Photons on surfaces, ordered for estimates.
@@ -48,8 +48,8 @@ class SurfacePhotonMap {
         return sum * kappa;
     }
 
-    std::span<const Photon> photons() const { return photons_; }
-    std::size_t size() const { return photons_.size(); }  ///< how many photons
+    std::span<const Photon> photons() const { return photons_; }  ///< by index
+    std::size_t size() const { return photons_.size(); }          ///< how many photons
     /// [B]
     std::size_t memory_bytes() const { return photons_.capacity() * sizeof(Photon) + tree_.memory_bytes(); }
 

@@ -54,8 +54,8 @@ class VolumePhotonMap {
         return sum;
     }
 
-    std::span<const Photon> photons() const { return photons_; }
-    std::size_t size() const { return photons_.size(); }  ///< how many photons
+    std::span<const Photon> photons() const { return photons_; }  ///< by index
+    std::size_t size() const { return photons_.size(); }          ///< how many photons
     /// [B]
     std::size_t memory_bytes() const { return photons_.capacity() * sizeof(Photon) + discs_.memory_bytes(); }
 

@@ -450,14 +450,14 @@ class ModuleTest(unittest.TestCase):
         """MOTE_PLUGINS holds for the module too, with the bits of the command."""
         os.environ["MOTE_PLUGINS"] = str(Path(MOTE).parent / "stand_ins" / "my_integrator.so")
         try:
-            ours = mote.render(self.path, integrator="my_ambient_occlusion", passes=2, seed=5)
+            ours = mote.render(mote.load(self.path, integrator="my_ambient_occlusion"), passes=2, seed=5)
             theirs = self.command("--integrator", "my_ambient_occlusion", "--passes", "2", "--seed", "5")
         finally:
             del os.environ["MOTE_PLUGINS"]
         self.assertTrue(same_bits(ours, theirs))
         self.assertIn("indirect_ambient", ours)
         with self.assertRaisesRegex(mote.Error, "my_ambient_occlusion"):
-            mote.render(self.path, integrator="my_ambient_occlusion", passes=1)
+            mote.load(self.path, integrator="my_ambient_occlusion")
 
     def reference(self):
         path = Path(self.folder.name) / "reference.exr"
