@@ -61,7 +61,7 @@ struct RenderRequest {
     /// some seconds those that have one, and then now and then. May be empty.
     std::function<void(const Film&)> preview;
     double preview_every_seconds = 1.0;     ///< shortest time between two of them
-    double preview_share = 0.05;            ///< of the time, that they take at most
+    double preview_share = 0.05;            ///< of the time that they take at most
     std::function<bool()> preview_is_seen;  ///< false: a preview would have no use now; empty: always true
     std::function<void(const std::string&)> checkpoint_failed;  ///< called at once; retried later
     std::function<void()> building_is_over;           ///< called before the first pass; may be empty
