@@ -31,6 +31,15 @@ std::vector<std::string> define_texts(const SceneChanges& changes) {
     return texts;
 }
 
+std::vector<std::string> command_options(const SceneChanges& changes) {
+    std::vector<std::string> options;
+    if (!changes.integrator.empty()) options.insert(options.end(), {"--integrator", changes.integrator});
+    for (const std::string& define : define_texts(changes)) options.insert(options.end(), {"-D", define});
+    if (changes.lenient) options.emplace_back("--lenient");
+    for (const std::string& plugin : changes.plugins) options.insert(options.end(), {"--plugin", plugin});
+    return options;
+}
+
 std::vector<std::string> render_settings(const SceneChanges& changes, const std::string& integrator) {
     std::vector<std::string> settings = {MOTE_VERSION, integrator, changes.integrator};
     for (const std::string& define : define_texts(changes)) settings.push_back(define);

@@ -29,6 +29,8 @@ struct SceneChanges {
 core::LoadOptions load_options(const SceneChanges& changes);
 /// "name=value" of each definition.
 std::vector<std::string> define_texts(const SceneChanges& changes);
+/// The options of `mote render` that make these changes.
+std::vector<std::string> command_options(const SceneChanges& changes);
 /// Settings that determine the bits of a picture besides the contents of the scene's files: for
 /// core::content_hash().
 std::vector<std::string> render_settings(const SceneChanges& changes, const std::string& integrator);

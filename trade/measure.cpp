@@ -156,8 +156,7 @@ void check_inputs(const Settings& s, const MethodsFile& file, const core::Scene&
 
 std::vector<std::string> render_command_of(const Settings& s) {
     std::vector<std::string> command = {"mote", "render", s.scene};
-    for (const std::string& define : define_texts(s.changes)) command.insert(command.end(), {"-D", define});
-    for (const std::string& plugin : s.changes.plugins) command.insert(command.end(), {"--plugin", plugin});
+    for (std::string& option : command_options(s.changes)) command.push_back(std::move(option));
     return command;
 }
 

@@ -6,7 +6,7 @@
 
 #include "core/formats/xml/integrator_maker.h"
 #include "core/objects/error.h"
-#include "core/render/render_driver.h"
+#include "core/render/pass_runner.h"
 #include "viewer/eye_vertices.h"
 
 namespace mote::viewer {
@@ -21,9 +21,8 @@ class FirstPass {
   public:
     FirstPass(const session::LoadedScene& scene, std::uint64_t seed)
         : scene_(scene.scene()),
-          options_(render_options(scene_, seed)),
-          filter_(core::make_pixel_filter(scene_.film().filter, scene_.film().filter_radius,
-                                          scene_.film().filter_stddev)),
+          options_(core::render_options(scene_, seed)),
+          filter_(core::film_filter(scene_)),
           method_(scene.integrator().type()),
           lights_(scene.integrator().point_lights(scene_, options_)) {
         if (lights_) return;
@@ -39,12 +38,6 @@ class FirstPass {
     json header() const { return {{"kind", lights_->kind()}, {"method", method_}}; }
 
   private:
-    static core::RenderOptions render_options(const core::Scene& scene, std::uint64_t seed) {
-        const core::FilmSettings& film = scene.film();
-        return {seed, film.width, film.height,
-                film.sampler == "sobol" ? core::SamplerKind::sobol : core::SamplerKind::independent};
-    }
-
     const core::Scene& scene_;
     core::RenderOptions options_;
     std::unique_ptr<core::PixelFilter> filter_;

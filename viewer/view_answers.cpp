@@ -86,11 +86,7 @@ void View::answer_lights(int client, const json& message) {
 
 std::vector<std::string> View::command_of(const Wish& wish, std::optional<std::uint32_t> passes) const {
     std::vector<std::string> words = {"mote", "render", scene_->scene().parts().file};
-    if (!wish.changes.integrator.empty())
-        words.insert(words.end(), {"--integrator", wish.changes.integrator});
-    for (const std::string& define : session::define_texts(wish.changes))
-        words.insert(words.end(), {"-D", define});
-    if (wish.changes.lenient) words.emplace_back("--lenient");
+    for (std::string& option : session::command_options(wish.changes)) words.push_back(std::move(option));
     words.insert(words.end(), {"--seed", std::to_string(wish.seed)});
     if (passes) words.insert(words.end(), {"--passes", std::to_string(*passes), "-o", "view.exr"});
     return words;

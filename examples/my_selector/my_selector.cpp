@@ -6,11 +6,10 @@
 // unbiased, and the lights' distances and normals are not considered. Every VPL keeps a share of uniform
 // probability, since one that looks dark from its own side may be bright at a receiver (a directional VPL's
 // intensity is not in I_j).
+#include <mote/core/math/distribution.h>
 #include <mote/core/objects/plugin.h>
 #include <mote/lights/selection/register_selection.h>
 #include <mote/lights/selection/sampling_selector.h>
-
-#include <algorithm>
 
 using namespace mote;
 
@@ -21,43 +20,40 @@ struct Settings {
     float uniform = 0.1f;
 };
 
-/// p_j as running sums, of one pass.
-std::vector<double> running_sums(const lights::VplSet& vpls, double uniform) {
-    std::vector<double> sums;
+/// p_j of a pass.
+core::Distribution1D probabilities(const lights::VplSet& vpls, float uniform) {
+    std::vector<float> weights;
     double total = 0.0;
-    for (const lights::VirtualPointLight& light : vpls.lights) total += core::average(light.intensity);
+    for (const lights::VirtualPointLight& light : vpls.lights)
+        total += double(core::average(light.intensity));
     const double even = 1.0 / double(vpls.lights.size());
-    double sum = 0.0;
     for (const lights::VirtualPointLight& light : vpls.lights) {
-        const double bright = total > 0.0 ? core::average(light.intensity) / total : even;
-        sums.push_back(sum += uniform * even + (1.0 - uniform) * bright);
+        const double bright = total > 0.0 ? double(core::average(light.intensity)) / total : even;
+        weights.push_back(float(double(uniform) * even + (1.0 - double(uniform)) * bright));
     }
-    return sums;
+    return core::Distribution1D(weights);
 }
 
 class TileByIntensity final : public lights::SamplingSelector {
   public:
-    TileByIntensity(const lights::VplSet& vpls, float bound, std::shared_ptr<const std::vector<double>> sums,
+    TileByIntensity(const lights::VplSet& vpls, float bound, std::shared_ptr<const core::Distribution1D> p,
                     std::uint32_t samples)
-        : SamplingSelector(vpls, bound), sums_(std::move(sums)), chosen_(samples) {}
+        : SamplingSelector(vpls, bound), probabilities_(std::move(p)), chosen_(samples) {}
 
   protected:
     std::span<const lights::WeightedVpl> sample(const lights::ReceiverLanes&, core::Rng& rng) override {
-        if (sums_->empty()) return {};
-        const double n = double(chosen_.size());
+        if (probabilities_->empty()) return {};
+        const float n = float(chosen_.size());
         for (std::size_t i = 0; i < chosen_.size(); ++i) {
             // Stratified: the i-th of n even parts of the unit interval.
-            const double u = (double(i) + double(rng.next_float())) / n * sums_->back();
-            const auto found = std::upper_bound(sums_->begin(), sums_->end(), u);
-            const std::size_t j = std::min(std::size_t(found - sums_->begin()), sums_->size() - 1);
-            const double p = ((*sums_)[j] - (j > 0 ? (*sums_)[j - 1] : 0.0)) / sums_->back();
-            chosen_[i] = {j, float(1.0 / (n * p))};
+            const auto j = probabilities_->sample_discrete((float(i) + rng.next_float()) / n);
+            chosen_[i] = {j.index, 1.0f / (n * j.probability)};
         }
         return chosen_;
     }
 
   private:
-    std::shared_ptr<const std::vector<double>> sums_;
+    std::shared_ptr<const core::Distribution1D> probabilities_;
     std::vector<lights::WeightedVpl> chosen_;
 };
 
@@ -66,13 +62,15 @@ class ByIntensity final : public lights::Selection {
     explicit ByIntensity(const Settings& settings) : settings_(settings) {}
     lights::VplSelector prepare(const lights::SelectionPass& pass) const override {
         check_memory(pass);
-        auto sums =
-            std::make_shared<const std::vector<double>>(running_sums(pass.vpls, double(settings_.uniform)));
-        return [&vpls = pass.vpls, bound = pass.bound, sums, samples = settings_.samples] {
-            return std::make_unique<TileByIntensity>(vpls, bound, sums, samples);
+        const auto p =
+            std::make_shared<const core::Distribution1D>(probabilities(pass.vpls, settings_.uniform));
+        return [&vpls = pass.vpls, bound = pass.bound, p, samples = settings_.samples] {
+            return std::make_unique<TileByIntensity>(vpls, bound, p, samples);
         };
     }
-    std::size_t memory_bytes(std::size_t vpls) const override { return vpls * sizeof(double); }
+    std::size_t memory_bytes(std::size_t vpls) const override {
+        return vpls * (sizeof(double) + sizeof(float));
+    }
     void plan(core::Plan& plan, const lights::SelectionSize& size) const override {
         plan.run("selection", std::to_string(settings_.samples) + " VPLs a tile, sampled by intensity",
                  "unbiased");

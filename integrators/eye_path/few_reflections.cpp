@@ -12,7 +12,6 @@
 #include "core/math/random.h"
 #include "core/math/warp.h"
 #include "core/objects/error.h"
-#include "core/scene/emitter.h"
 
 namespace mote::integrators {
 

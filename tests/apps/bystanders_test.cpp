@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <set>
 
+#include "tests/apps/ball_under_sky.h"
 #include "tests/apps/run_mote.h"
 #include "tests/support/catch.h"
 
@@ -13,11 +14,7 @@ namespace {
 /// A scene, and bystanders that say what they are.
 struct Folder : TemporaryFolder {
     Folder() {
-        write_file(file("scene.xml"), R"(<scene version="3.0.0"><integrator type="path"/>
-            <sensor type="perspective"><film type="hdrfilm"><integer name="width" value="8"/>
-            <integer name="height" value="8"/></film><transform name="to_world">
-            <lookat origin="0, 0, 4" target="0, 0, 0" up="0, 1, 0"/></transform></sensor>
-            <shape type="sphere"><bsdf type="diffuse"/></shape><emitter type="constant"/></scene>)");
+        write_file(file("scene.xml"), ball_under_sky(8, 8));
         write_file(file("methods.json"),
                    R"({"passes": 2, "methods": [{"name": "one", "integrator": "path"}]})");
     }

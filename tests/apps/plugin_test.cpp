@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "core/formats/pictures/image_file.h"
+#include "tests/apps/ball_under_sky.h"
 #include "tests/apps/run_mote.h"
 #include "tests/support/catch.h"
 
@@ -13,13 +14,7 @@ namespace {
 const std::string plugin = MOTE_BINARY_DIR "/stand_ins/my_integrator.so";
 
 struct Folder : TemporaryFolder {
-    Folder() {
-        write_file(file("scene.xml"), R"(<scene version="3.0.0"><integrator type="path"/>
-            <sensor type="perspective"><film type="hdrfilm"><integer name="width" value="24"/>
-            <integer name="height" value="16"/></film><transform name="to_world">
-            <lookat origin="0, 0, 4" target="0, 0, 0" up="0, 1, 0"/></transform></sensor>
-            <shape type="sphere"><bsdf type="diffuse"/></shape><emitter type="constant"/></scene>)");
-    }
+    Folder() { write_file(file("scene.xml"), ball_under_sky(24, 16)); }
     RunResult run(std::vector<std::string> arguments, const std::string& plugins = "") const {
         return run_mote(*this, std::move(arguments), [&] {
             if (!plugins.empty()) ::setenv("MOTE_PLUGINS", plugins.c_str(), 1);

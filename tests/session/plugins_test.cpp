@@ -5,6 +5,7 @@
 
 #include "core/formats/xml/scene_loader.h"
 #include "core/objects/error.h"
+#include "session/loaded_scene.h"
 #include "session/registry.h"
 #include "tests/support/catch.h"
 #include "tests/support/render_statistics.h"
@@ -100,4 +101,13 @@ TEST_CASE("What is no plugin of this mote is refused with its file", "[session][
     refuses(plugin("clashing_plugin"), "integrator 'path' is registered twice");
     CHECK(registry.types(core::Category::integrator) ==
           session::make_registry().types(core::Category::integrator));
+}
+
+TEST_CASE("Changes to a scene have their options of the command line", "[session][plugins]") {
+    session::SceneChanges changes{"path", {{"film.width", "8"}}, true};
+    changes.plugins = {"my.so"};
+    CHECK(session::command_options(changes) == std::vector<std::string>{"--integrator", "path", "-D",
+                                                                        "film.width=8", "--lenient",
+                                                                        "--plugin", "my.so"});
+    CHECK(session::command_options({}).empty());
 }
