@@ -20,9 +20,10 @@ def panels(*pictures, layer="beauty", difference=None, scale=None):
     count = len(arrays) + (difference is not None)
     height, width = arrays[0][1].shape[:2]
     figure, axes = plt.subplots(1, count, figsize=(3.2 * count, 3.2 * height / width + 0.35), dpi=110, layout="constrained", squeeze=False)
-    key = np.exp(np.log(np.maximum(arrays[-1][1] @ LUMINANCE, 1e-6)).mean())
+    luminance = arrays[-1][1] @ LUMINANCE
+    key = np.minimum(luminance, np.percentile(luminance, 98)).mean()  # lamps do not darken the rest
     for ax, (title, array) in zip(axes[0], arrays):
-        ax.imshow(filmic(array * 0.9 / (key * 5.0)), interpolation="nearest")
+        ax.imshow(filmic(0.18 * array / key), interpolation="nearest")
         ax.set_title(title, fontsize=10)
     if difference is not None:
         first, second = (arrays[i][1] @ LUMINANCE for i in difference)
