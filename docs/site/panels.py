@@ -20,7 +20,7 @@ def panels(*pictures, layer="beauty", difference=None, scale=None):
     count = len(arrays) + (difference is not None)
     height, width = arrays[0][1].shape[:2]
     figure, axes = plt.subplots(1, count, figsize=(3.2 * count, 3.2 * height / width + 0.35), dpi=110, layout="constrained", squeeze=False)
-    luminance = arrays[-1][1] @ LUMINANCE
+    luminance = arrays[difference[1] if difference else -1][1] @ LUMINANCE
     key = np.minimum(luminance, np.percentile(luminance, 98)).mean()  # lamps do not darken the rest
     for ax, (title, array) in zip(axes[0], arrays):
         ax.imshow(filmic(0.18 * array / key), interpolation="nearest")

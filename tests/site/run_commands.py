@@ -11,6 +11,7 @@ PYTHON: an interpreter that has the module mote; without it what begins with pyt
 """
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -20,7 +21,6 @@ PAGES = ("README.md", "docs/guide.md", "docs/howto/trade.md")
 COMMANDS = ("mote ", "scenes/generate", "python -c")
 OTHERS = {
     "mote view": "tests/viewer",
-    "scenes/generate": "its files are there, or there is no smoke",
     "mote trade scenes/smoke_room.xml": "takes its time with every method that suits the scene",
 }
 PLACEHOLDER = re.compile(r"(?<![-\w])[A-Z]{2,}\b|\b[A-Z]\.exr|\.\.\.|(?<![\w/.])(?:scene|[ab])\.\w+|^mote \w+,")
@@ -36,6 +36,8 @@ if os.environ.get("MOTE_PAGES_SMALL", "1") != "0" and a and a[0] in ("render", "
     for option, most in (("--passes", 4), ("--time", 3), ("--seeds", 2)):
         for i in (i for i, x in enumerate(a) if x == option):
             a[i + 1] = str(min(most + ("--resume" in a), int(a[i + 1])))
+    for i in (i for i, x in enumerate(a) if x == "--resolve"):
+        a[i + 1] = "0.2"
     if a[0] == "render" and not {{"--passes", "--time", "--noise"}} & set(a):
         a += ["--passes", "2"]
     if a[0] == "trade" and "--make-reference" not in a and "--time" not in a and "--redraw" not in a:
@@ -67,19 +69,33 @@ def run(line, folder, environment):
     return done.returncode == 0
 
 
+def copy_scenes(programs, root, folder):
+    """The scenes without what is generated, but for a small grid of smoke, which scenes/generate then leaves as it is."""
+    shutil.copytree(root / "scenes", folder / "scenes", ignore=shutil.ignore_patterns("generated"))
+    (folder / "build/release").mkdir(parents=True)
+    (folder / "build/release/bin").symlink_to(programs)
+    if os.environ.get("MOTE_PAGES_SMALL", "1") != "0":
+        (folder / "scenes/generated").mkdir()
+        subprocess.run([programs / "mote_smoke", "-o", folder / "scenes/generated/smoke.vdb", "--size", "25", "18", "31", "--cell", "0.16", "--steps", "20",
+                        "--haze", "0.012", "--source", "0.7", "0.1", "0.37", "--source-radius", "0.22", "--buoyancy", "4"], check=True,
+                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
 def main(mote, root):
     failed, count = 0, 0
     with tempfile.TemporaryDirectory() as scratch:
         folder, programs = Path(scratch) / "tree", Path(scratch) / "bin"
         (folder / "out").mkdir(parents=True)
         programs.mkdir()
-        for name in ("scenes", "experiments", "examples", "docs"):
+        for name in ("experiments", "examples", "docs"):
             (folder / name).symlink_to(root / name)
+        copy_scenes(mote.parent, root, folder)
         (programs / "mote").write_text(SMALL.format(python=sys.executable, mote=str(mote)), encoding="utf-8")
         (programs / "mote").chmod(0o755)
         python = next((a for a in sys.argv[3:] if not a.startswith("--")), None)
         if python:
-            (programs / "python").symlink_to(python)
+            (programs / "python").write_text(f'#!/bin/sh\nexec {python} "$@"\n', encoding="utf-8")
+            (programs / "python").chmod(0o755)
         module = mote.parent.parent / "python"
         environment = os.environ | {"PATH": f"{programs}:{os.environ['PATH']}", "PYTHONPATH": str(module), "MOTE": str(mote)}
         for page in PAGES:
@@ -92,7 +108,7 @@ def main(mote, root):
                 print(f"{page}: {line}", flush=True)
                 if "--list" not in sys.argv:
                     failed += not run(line, folder, environment)
-        strangers = [str(p.relative_to(folder)) for p in folder.iterdir() if p.name not in ("scenes", "experiments", "examples", "docs", "out", "box.exr") and "trade" not in p.name]
+        strangers = [str(p.relative_to(folder)) for p in folder.iterdir() if p.name not in ("scenes", "experiments", "examples", "docs", "build", "out", "box.exr") and "trade" not in p.name]
         if strangers:
             print(f"written beside out/: {', '.join(strangers)}")
             failed += 1
