@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Counts the words of the pages: what has a letter, outside of blocks of code and comments.
+"""Counts the words of the pages: what has a letter or a digit, outside of blocks of code and comments.
 
 At most MOST words in all but the reference of scenes (docs/scene-format.md) and of the API (docs/api), and at most MOST_INSIDE on the
 page of how mote is built. What is longer hides what matters.
@@ -15,7 +15,7 @@ MOST, MOST_INSIDE, INSIDE = 45000, 5000, "docs/design.md"
 
 
 def words(text):
-    return len(re.findall(r"\S*[A-Za-z]\S*", prose(text)))
+    return len(re.findall(r"\S*[A-Za-z0-9]\S*", prose(text)))
 
 
 def check(root):
