@@ -24,6 +24,7 @@ html_static_path = [os.environ["MOTE_SITE_STATIC"]]
 html_css_files = ["mote.css"]
 html_show_sourcelink = False
 html_copy_source = False
+html_show_search_summary = False  # summaries are fetched, which a browser refuses to pages of a folder
 mathjax_path = "tex-svg.js"  # one file of MathJax 3, with its glyphs: formulas need no network
 
 autodoc_member_order = "bysource"

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Counts the words of the pages: what has a letter or a digit, outside of blocks of code and comments.
 
-At most MOST words in all but the reference of scenes (docs/scene-format.md) and of the API (docs/api), and at most MOST_INSIDE on the
+At most MAX_WORDS words in all but the reference of scenes (docs/scene-format.md) and of the API (docs/api), and at most MAX_INSIDE on the
 page of how mote is built. What is longer hides what matters.
 
     tests/pages/check_length.py ROOT
@@ -11,7 +11,7 @@ import sys
 
 from pages import GENERATED, pages, prose, read, run
 
-MOST, MOST_INSIDE, INSIDE = 45000, 5000, "docs/design.md"
+MAX_WORDS, MAX_INSIDE, INSIDE = 45000, 5000, "docs/design.md"
 
 
 def words(text):
@@ -21,10 +21,10 @@ def words(text):
 def check(root):
     counts = {page: words(read(root, page)) for page in pages(root) if page not in GENERATED and not page.startswith("docs/api/")}
     total = sum(counts.values())
-    if total > MOST:
-        yield f"the pages have {total} words, more than {MOST}"
-    if counts.get(INSIDE, 0) > MOST_INSIDE:
-        yield f"{INSIDE}: {counts[INSIDE]} words, more than {MOST_INSIDE}"
+    if total > MAX_WORDS:
+        yield f"the pages have {total} words, more than {MAX_WORDS}"
+    if counts.get(INSIDE, 0) > MAX_INSIDE:
+        yield f"{INSIDE}: {counts[INSIDE]} words, more than {MAX_INSIDE}"
 
 
 if __name__ == "__main__":

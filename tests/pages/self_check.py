@@ -82,8 +82,8 @@ CASES = [  # check, file, what is replaced by what, what is found
     (check_numbers, "docs/page.md", "docs/gallery/table.csv", "docs/gallery/other.csv", "there is no docs/gallery/other.csv"),
     (check_numbers, "docs/page.md", "<!-- docs/gallery/table.csv", "<!--", "table.csv: no page compares"),
     (check_numbers, "docs/gallery/table.csv", "0123456789ab", "0123456789ab+", ""),
-    (check_length, "docs/page.md", "# Page", "# Page\n" + "long " * check_length.MOST, "the pages have 4"),
-    (check_length, "docs/design.md", "# Design", "# Design\n" + "long " * check_length.MOST_INSIDE, "docs/design.md: 500"),
+    (check_length, "docs/page.md", "# Page", "# Page\n" + "long " * check_length.MAX_WORDS, "the pages have 4"),
+    (check_length, "docs/design.md", "# Design", "# Design\n" + "long " * check_length.MAX_INSIDE, "docs/design.md: 500"),
     (check_numbers, "docs/other.checks", "33 =", "34 =", "34' is not in the text"),
 ]
 LINKED = "\n[table](gallery/table.csv)\n"
