@@ -151,7 +151,7 @@ void add_ssbc(CLI::App& app, SsbcArguments& a, std::function<int()>& action) {
         ->check(whole_number(1, 16));
     command.add_flag("--replace", a.replace, "Take out the compensation that the picture holds");
     add_repeatable(command, "--light", a.channels.light,
-                   "A layer of reflected light (repeatable; default: see docs/ssbc.md)");
+                   "A layer of reflected light (repeatable; default: see docs/methods/compensation.md)");
     command.add_option("--position", a.channels.position, "The layer of positions (default: Center.P or P)");
     command.add_option("--normal", a.channels.normal, "The layer of normals (default: Center.N or N)");
     command.add_option("--albedo", a.channels.reflectance,

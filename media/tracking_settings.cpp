@@ -26,7 +26,7 @@ const ParameterList<TrackingSettings>& tracking_rows() {
             "time, and automatic wherever cells vary), residual_ratio_tracking (exact in constant cells), "
             "ratio_tracking, delta_tracking (most variance), or ray_marching (a small bias, 20 to 80 times "
             "the time); "
-            "docs/media.md has the table."),
+            "docs/methods/media.md has the table."),
         row("marching_tolerance", &S::marching_tolerance, between(1e-6, 1),
             "Relative error of the optical depth that ray_marching aims at.")};
     return list;

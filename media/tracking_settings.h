@@ -1,4 +1,4 @@
-// Estimator of a heterogeneous medium, where there is a choice. docs/media.md says what each one
+// Estimator of a heterogeneous medium, where there is a choice. docs/methods/media.md says what each one
 // costs.
 #pragma once
 

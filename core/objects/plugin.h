@@ -1,5 +1,5 @@
 // A plugin: types of the scene language in a shared library of their own, which the option --plugin and the
-// variable MOTE_PLUGINS load (docs/plugins.md).
+// variable MOTE_PLUGINS load (docs/howto/plugins.md).
 //
 //   void register_types(mote::core::Registry& registry) { registry.add(...); }
 //   MOTE_PLUGIN(register_types)

@@ -24,7 +24,7 @@ LAYER, BLOCK = "compensation_surface", 8
 METHODS = {"exact": compensation("exact"), "screen space": compensation("screen_space", steps=3)}
 PASSES = {"bunny": 32, "sculpture": 32, "atrium": 48}  # of the clean pictures
 PIECES = {"bunny": (0.5, 0.5), "sculpture": (0.5, 0.5), "atrium": (0.7, 0.3)}  # where they begin, as shares of the width and height
-# Most of what is missing in the atrium: docs/ssbc.md, Hidden surfaces.
+# Most of what is missing in the atrium: docs/methods/compensation.md, Hidden surfaces.
 HIDDEN = "backs of columns, balusters and leaves, and floors and leaves thinner than a pixel, are not in the picture"
 
 

@@ -2,7 +2,7 @@
 
 A PNG holds it as text chunks, a CSV file as lines that begin with '# ': the script, whether the run was full, the commit of
 the script and that of the program, what was rendered with which settings, and a digest of the table, which ties the two
-together. tests/gallery compares them with each other and with docs/gallery.md.
+together. tests/gallery compares them with each other and with docs/gallery/index.md.
 """
 import hashlib
 import json

@@ -21,7 +21,7 @@ std::uint64_t seed_of_part(std::uint64_t seed, std::size_t part) {
 }
 
 /// The share of the variance that the filter leaves of a layer whose pixels err independently, about: what it
-/// was measured to leave lies between 0.006 and 0.2 (docs/design.md), and the best schedule goes with its
+/// was measured to leave lies between 0.006 and 0.2 (docs/methods/layers.md), and the best schedule goes with its
 /// root.
 constexpr double left_by_filter = 1.0 / 50.0;
 

@@ -246,7 +246,7 @@ void register_mote_layers(Registry& registry) {
              "Indirect light and multiple scattering where the scene chooses: by paths, unbiased, or by "
              "virtual point lights, resampled, with less noise and without what their bound takes."),
          row("shares", &S::shares,
-             "Passes of each method in a round, such as '3, 1' (docs/cluster.md): passes are known "
+             "Passes of each method in a round, such as '3, 1' (docs/howto/cluster.md): passes are known "
              "beforehand, which several machines need.")
              .when_absent("as many as reduce the error fastest"),
          nested("integrator", &S::integrators, Category::integrator, "chosen by the scene",

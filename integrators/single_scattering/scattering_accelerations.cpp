@@ -15,7 +15,7 @@ using screenspace::AnalyticLight, screenspace::AnalyticMedium;
 
 namespace {
 
-/// Building a texel takes as long as a map saves on so many steps (docs/epipolar.md).
+/// Building a texel takes as long as a map saves on so many steps (docs/methods/epipolar.md).
 constexpr double steps_per_texel = 8.0;
 
 /// Lights and media whose in-scattering can be integrated, and all that scatter.

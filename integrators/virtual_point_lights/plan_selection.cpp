@@ -12,7 +12,7 @@ namespace {
 
 /// Nanoseconds of a shadow ray in a packet, as brute force spends them: for an estimate of its time.
 constexpr double ray_nanoseconds = 60.0;
-// Measured (docs/many_lights.md), each between two numbers of VPLs of which one was tried.
+// Measured (docs/methods/many_lights.md), each between two numbers of VPLs of which one was tried.
 constexpr double few_lights = 500.0;   // a cut evaluates as many
 constexpr double some_lights = 1e4;    // 64 samples leave more error than their gather saves
 constexpr double few_seconds = 1.0;    // of brute force: not worth an error

@@ -30,7 +30,7 @@ enum class BundleTechniques : std::uint8_t {
 struct VplBundleSettings {
     /// Virtual point lights joined to a point that a bundle found. Errors of bundles alone are 71 and 65 %
     /// with 4, 37 and 36 % with 16 in 1.14 times the time; combined, the paths are few that lack others
-    /// (docs/design.md, "Virtual point lights and bundles from the eye").
+    /// (docs/methods/vpl_ray_bundles.md).
     static constexpr std::uint32_t joined = 4;
     /// c, the chance of a bundle's path to continue: 1/2 takes 1.36 times as long for the same error, 0
     /// leaves 5 times the error in the atrium (ibid.).

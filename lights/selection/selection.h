@@ -72,7 +72,7 @@ class TileSelector {
     /// Light at all receivers that were copied since the last call; called once a pixel and pass.
     virtual LightByKind gather_copied(const GatherContext&, core::Rng&) { return {}; }
     /// Scattering points of an eye ray that are receivers. More take memory and compensation, and gain little
-    /// where they meet no more VPLs (docs/media.md).
+    /// where they meet no more VPLs (docs/methods/media.md).
     virtual std::size_t max_points() const { return 2; }
     /// VPLs that brought a lane the light of the last gather() or gather_copied(), for selectors that connect
     /// them without the BatchVisibility: until the next call.

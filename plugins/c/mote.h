@@ -254,7 +254,7 @@ typedef struct mote_ssbc_options {
     int replace;         /* not 0: take out the compensation that the picture holds */
 } mote_ssbc_options;
 
-/* Screen-space bias compensation (docs/ssbc.md): adds what a bound took to the beauty, and as the layer
+/* Screen-space bias compensation (docs/methods/compensation.md): adds what a bound took to the beauty, and as the layer
  * "compensation_surface". The picture holds beauty, P, N and DiffuseAlbedo (or those of Center), and the
  * metadata "worldToCamera" unless positions are in camera space. `options` may be null. */
 MOTE_API mote_status mote_picture_compensate(mote_picture* picture, const mote_ssbc_options* options);
@@ -265,7 +265,7 @@ MOTE_API mote_status mote_picture_compensate(mote_picture* picture, const mote_s
 MOTE_API mote_status mote_picture_denoise(mote_picture* picture, const char* method, int threads);
 
 /* The frames of a sequence, by regression and by what earlier frames show of the same places
- * (docs/denoising.md). */
+ * (docs/methods/denoising.md). */
 typedef struct mote_sequence mote_sequence;
 MOTE_API mote_sequence* mote_sequence_new(void);           /* never null but where memory is out */
 MOTE_API void mote_sequence_free(mote_sequence* sequence); /* null is allowed */
@@ -312,7 +312,7 @@ typedef struct mote_epipolar_options {
     void (*march)(void* user, double x, double y, double distance, float radiance[3]);
 } mote_epipolar_options;
 
-/* Epipolar sampling (docs/epipolar.md): light that media scatter once, over a whole picture, from few rays
+/* Epipolar sampling (docs/methods/epipolar.md): light that media scatter once, over a whole picture, from few rays
  * that `march` is called for. Fills light [height][width][3], room for `count` floats; `marched` (may be
  * null): calls of `march`. */
 MOTE_API mote_status mote_epipolar(const mote_epipolar_options* options, float* light, size_t count,

@@ -91,7 +91,7 @@ def ssbc(picture: Image, *, bound: float = 0.0, steps: int = 2, position: Option
          world_to_camera: Optional[Any] = None, flat: bool = False, half_resolution: bool = False, blur: float = 0.0,
          replace: bool = False) -> Picture:
     """Screen-space bias compensation: a copy of the picture with the light that a bound on the geometry term took,
-    found in the picture itself (docs/ssbc.md), in its beauty and as the layer "compensation_surface".
+    found in the picture itself (docs/methods/compensation.md), in its beauty and as the layer "compensation_surface".
 
     A Picture that was rendered with auxiliary=True holds all that is needed. For an array of reflected radiance
     (height, width, 3), of whatever renderer, give `position` [m], `normal` and diffuse `albedo` in [0, 1], each
@@ -133,7 +133,7 @@ def _with_features(picture: Image, features: Optional[Mapping[str, np.ndarray]])
 
 def denoise_sequence(frames: Iterable[Image], features: Optional[Iterable[Mapping[str, np.ndarray]]] = None) -> Iterator[Picture]:
     """Copies of the frames of a sequence, in their order and one by one as they are requested, each with the layer
-    "denoised": by regression on features, and by what earlier frames show of the same places (docs/denoising.md).
+    "denoised": by regression on features, and by what earlier frames show of the same places (docs/methods/denoising.md).
 
     Frames have one size and the same layers. For arrays of radiance give the features of each frame by name, as denoise()
     takes them. What moved is known from "MotionVector" (height, width, 3) [pixels; x and y, to the place in the frame

@@ -3,7 +3,7 @@
     python -m mote.cluster scene.xml --scheduler tcp://host:8786 -o picture.exr --passes 256
 
 Needs the `mote` command and the scene, under the same paths, here and where the workers run, and the PyPI package
-`distributed`. Workers need nothing else of ours: what they run is sent to them. docs/cluster.md has recipes.
+`distributed`. Workers need nothing else of ours: what they run is sent to them. docs/howto/cluster.md has recipes.
 """
 import argparse
 import json
@@ -108,7 +108,7 @@ class Film:
 
 
 def pilot_shares(command, render, parts):
-    """Passes of each method of mote_layers in a round, from a short render here (docs/cluster.md)."""
+    """Passes of each method of mote_layers in a round, from a short render here (docs/howto/cluster.md)."""
     with tempfile.TemporaryDirectory(prefix="mote_") as folder:
         stats = Path(folder) / "pilot.json"
         run_mote(command, ["render", *render, "--quiet", "--passes", str(max(PILOT_PASSES, 4 * parts)), "-o",

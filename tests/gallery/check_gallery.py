@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 """Is every picture of the gallery the full run of the script beside it, and does the text say what its table says?
 
-For each picture of docs/gallery in a page of docs: it names its script, which the section names too; its run was full; its commit is one
+For each picture of docs/gallery in a page of docs (with the file PAGE.checks beside it): it names its script, which the section names too; its run was full; its commit is one
 of this repository, without changes; its table lies beside it, with the same origin, and is the one that it was plotted from
-(experiments/figures/origin.py), and it is wide enough. Each section ends with a comment of lines such as
+(experiments/figures/origin.py), and it is wide enough. Each section ends with a comment, or has one in PAGE.checks, of lines such as
 
     1.58 ± 0.02 % = bunny; taken_by_the_bound; standard_error
     22.2 ± 0.3 % = claim: clamping darkens
     8.9 ± 0.3 % = method: mote layers, passes: 8; error; error_se
 
-The words before '=' stand in the section or in its row of the first table. Behind it: the first cells of a row of the CSV
+The words before '=' stand in the section or in its row of the index. Behind it: the first cells of a row of the CSV
 file, or cells by the names of their columns, and the columns with the numbers, which must be those of the text as it rounds them; or the
 beginning of a claim, whose measured value holds these numbers in this order. Each row of a table that is measured has such a line. Cells of the text are parted by '|', and each is per
 cent or not. A picture that was not made anew since pictures carry their origin says
@@ -25,7 +25,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent / "experiments" / "figures"))
+sys.path[:0] = [str(Path(__file__).resolve().parent.parent.parent / "experiments" / "figures"), str(Path(__file__).resolve().parent.parent / "pages")]
+import pages
 from origin import csv_text, png_text, table_of
 
 NOT_ANEW = "not made anew since pictures say where they come from"
@@ -36,24 +37,16 @@ NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 def sections(text):
     """By picture: the text of its section, and where it begins."""
     found = {}
-    for part in re.split(r"^#{2,3} ", text, flags=re.MULTILINE)[1:]:
-        picture = re.search(r"!\[[^\]]*\]\(gallery/(\w+)\.png\)", part)
+    for part in re.split(r"^#{1,3} ", text, flags=re.MULTILINE)[1:]:
+        picture = re.search(r"!\[[^\]]*\]\((?:[./]*gallery/)?(\w+)\.png\)", part)
         if picture:
             found[picture.group(1)] = part
     return found
 
 
-def rows_of_first_table(text, name):
-    """The rows that link to the section, and those below that continue them."""
-    rows, inside = [], False
-    for line in text.split("\n"):
-        if line.startswith("| ["):
-            inside = line.startswith(f"| [{name}]")
-        elif not line.startswith("| |"):
-            inside = False
-        if inside:
-            rows.append(line)
-    return "\n".join(rows)
+def rows_of_index(text, name):
+    """The rows of the table of figures that link to the page."""
+    return "\n".join(line for line in text.split("\n") if re.match(rf"\| \[[^\]]*\]\({name}\.md\)", line))
 
 
 def shown(number, value, percent):
@@ -222,11 +215,12 @@ def check_picture(root, name, section, first_rows):
 
 def check(root):
     offences, seen = [], set()
-    for page in sorted((root / "docs").glob("*.md")):
-        text = page.read_text(encoding="utf-8")
+    index = (root / "docs/gallery/index.md").read_text(encoding="utf-8")
+    for page in sorted((root / "docs").rglob("*.md")):
+        text = pages.read(root, str(page.relative_to(root)))
         for name, section in sections(text).items():
             seen.add(name)
-            offences += [f"{name}: {o}" for o in check_picture(root, name, section, rows_of_first_table(text, name))]
+            offences += [f"{name}: {o}" for o in check_picture(root, name, section, rows_of_index(index, name))]
     for path in sorted((root / "docs" / "gallery").glob("*.png")):
         if path.stem not in seen:
             offences.append(f"{path.stem}: no page shows it")

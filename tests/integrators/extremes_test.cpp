@@ -1,6 +1,6 @@
 // Whole pictures of media at the extremes: furnaces from vacuum to lead, grids that no scanner made, scenes
 // from a millimetre to a hundred kilometres, cameras and lights on boundaries and on each other.
-// docs/media.md has the table of what was tried and where it is tested.
+// docs/methods/media.md has the table of what was tried and where it is tested.
 #include <fmt/format.h>
 
 #include <cmath>

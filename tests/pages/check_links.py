@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Finds links that lead nowhere, and pages that neither README.md nor docs/guide.md links to.
+"""Finds links that lead nowhere, and pages that neither README.md nor an index of docs links to.
 
 Files and folders of relative links exist, and so do the headings of their anchors. Links to other hosts are not followed. Sources
 that name a page and a heading, as in docs/testing.md, "Error and noise", name one that is there.
@@ -12,7 +12,7 @@ import sys
 from pages import anchors, pages, read, run, tracked, without_code
 
 LINK = re.compile(r"\]\(([^)\s]+)(?: \"[^\"]*\")?\)")
-BEGINNINGS = ("README.md", "docs/guide.md")  # where a reader comes from
+BEGINNINGS = ("README.md", "docs/guide.md", "docs/index.md", "docs/api/index.md", "docs/methods/index.md", "docs/gallery/index.md")  # where a reader comes from
 APART = ("docs/reference/mainpage.md",)      # the first page of Doxygen's reference
 
 
@@ -34,7 +34,7 @@ def leads_nowhere(root, page, target):
     return None
 
 
-QUOTED = re.compile(r'docs/([a-z_-]+\.md), "([^"]{3,60})"')
+QUOTED = re.compile(r'docs/([a-z_/-]+\.md), "([^"]{3,60})"')
 
 
 def missing_headings(root):

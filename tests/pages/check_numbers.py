@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Compares numbers in pages with the files of docs/gallery that they come from.
 
-A comment in any page that begins with the name of a CSV file, or of a page of a trade, lists numbers of that section:
+A comment in any page, or in the file PAGE.checks beside it below the section's heading, that begins with the name of a CSV file, or of a page of a trade, lists numbers of that section:
 
     <!-- docs/gallery/trade/peers/smoke_room.csv
     8.9 ± 0.3 % = method: mote layers, passes: 8; error; error_se
@@ -110,12 +110,12 @@ def check(root):
     changed = dirty(root)
     for page in pages(root):
         text = read(root, page)
-        compared |= {name for name, _ in SOURCE.findall(text)} | set(re.findall(r"!\[[^\]]*\]\((gallery/\w+)\.png\)", text))
+        compared |= {name for name, _ in SOURCE.findall(text)} | ({f"gallery/{n}" for n in re.findall(r"!\[[^\]]*\]\((?:[./]*gallery/)?(\w+)\.png\)", text)})
         for line, section in sections(text):
             offences += [f"{page}:{line}: {o}" for o in check_section(root, section, files)]
             said = UNCOMMITTED in " ".join(section.split())
             offences += [f"{page}:{line}: {name} has {UNCOMMITTED}, which the section does not say" for name in changed
-                         if re.search(rf"\]\((?:docs/)?{name}\.", section) and not said]
+                         if re.search(rf"\]\([./]*(?:docs/)?{name}\.", section) and not said]
     for table in sorted((root / "docs" / "gallery").rglob("*.csv")):
         if not compared & {str(table.relative_to(root)), f"gallery/{table.stem}"}:
             offences.append(f"{table.relative_to(root)}: no page compares its numbers with it")

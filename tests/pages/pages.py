@@ -25,7 +25,23 @@ def tracked(root):
 
 
 def read(root, name):
-    return (root / name).read_text(encoding="utf-8")
+    """The text of a page; what NAME.checks beside it holds stands at the end of the section whose heading it begins with, or of the page."""
+    path = root / name
+    text = path.read_text(encoding="utf-8")
+    checks = path.with_suffix(".checks")
+    if path.suffix == ".md" and checks.is_file():
+        for heading, comments in re.findall(r"^(#+ [^\n]*\n)?((?:<!--.*?-->\n)+)", checks.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL):
+            text = with_comments(text, heading.strip(), comments)
+    return text
+
+
+def with_comments(text, heading, comments):
+    if not heading:
+        return text + comments
+    for line, section in sections(text):
+        if section.startswith(heading + "\n"):
+            return text.replace(section, section.rstrip("\n") + "\n\n" + comments + "\n", 1)
+    raise ValueError(f"numbers are listed for '{heading}', and the page has no such heading")
 
 
 def blank(match):

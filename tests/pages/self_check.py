@@ -5,6 +5,7 @@ import tempfile
 from pathlib import Path
 
 import check_gifs
+import check_length
 import check_links
 import check_names
 import check_numbers
@@ -14,7 +15,7 @@ from PIL import Image
 
 README = """# mote
 
-Read [the page](docs/page.md#a-heading-with-code) and [the guide](docs/guide.md), [the design](docs/design.md), [formats](docs/scene-format.md).
+Read [the page](docs/page.md#a-heading-with-code) and [the guide](docs/guide.md), [the design](docs/design.md), [formats](docs/scene-format.md), [other](docs/other.md).
 
 `path`, by `mote render` with `--passes 8`.
 """
@@ -45,6 +46,8 @@ TREE = {
     "docs/scene-format.md": "# Formats\n\n## Integrators\n\n### `path`\n\n## Visibility\n\n### `traced`\n",
     "apps/command.cpp": 'app.add_subcommand(\n        "render", "Renders").add_option("--passes");\n',
     "core/math/ray_math.h": "Ray ray_math();\n",
+    "docs/other.md": "# Other\n\n\u2248 33 s\n",
+    "docs/other.checks": "# Other\n<!-- docs/gallery/trade.html\n\u2248 33 = box / path; s to 5 %\n-->\n",
     "docs/references.bib": "@book{Veach1997, title = {x}}\n@book{Keller1997, title = {y}}\n",
     "core/ray.h": "// Rays (docs/page.md,\n// \"A heading\").\nRay make_ray();\n",
     "tests/core/ray_test.cpp": 'TEST_CASE("rays are straight", "[ray]") {}\n',
@@ -79,6 +82,9 @@ CASES = [  # check, file, what is replaced by what, what is found
     (check_numbers, "docs/page.md", "docs/gallery/table.csv", "docs/gallery/other.csv", "there is no docs/gallery/other.csv"),
     (check_numbers, "docs/page.md", "<!-- docs/gallery/table.csv", "<!--", "table.csv: no page compares"),
     (check_numbers, "docs/gallery/table.csv", "0123456789ab", "0123456789ab+", ""),
+    (check_length, "docs/page.md", "# Page", "# Page\n" + "long " * check_length.MAX_WORDS, "the pages have 4"),
+    (check_length, "docs/design.md", "# Design", "# Design\n" + "long " * check_length.MAX_INSIDE, "docs/design.md: 500"),
+    (check_numbers, "docs/other.checks", "33 =", "34 =", "34' is not in the text"),
 ]
 LINKED = "\n[table](gallery/table.csv)\n"
 
@@ -112,7 +118,7 @@ def gif_offences(palette_of):
 
 
 def main():
-    judged = [(f"{check.__name__}: a sound tree", found(check, []), "") for check in (check_links, check_names, check_numbers, check_words)]
+    judged = [(f"{check.__name__}: a sound tree", found(check, []), "") for check in (check_length, check_links, check_names, check_numbers, check_words)]
     judged += [(f"{check.__name__}: {new!r}", found(check, [(file, old, new)]), expected) for check, file, old, new, expected in CASES]
     dirty = ("docs/gallery/table.csv", "0123456789ab", "0123456789ab+")
     judged += [("a table with changes", found(check_numbers, [dirty, ("docs/page.md", "\n<!-- docs/gallery/table", LINKED + "\n<!-- docs/gallery/table")]),

@@ -2,7 +2,7 @@
 """Tests of the computations of experiments/peers; its errors are mote's, which tests/core/metrics tests.
 
 Closed forms of transforms, meshes, boxes and times; white plastic in a furnace against the quadratures of Mitsuba's own
-values in docs/witness.md; broken pixels of references. Exit code 1 and a line for
+values in docs/measurements/peers.md; broken pixels of references. Exit code 1 and a line for
 whatever fails.
 """
 import re
@@ -102,10 +102,10 @@ def boundaries():
 
 
 def furnace():
-    """White rough plastic under light from everywhere, seen from cosine 0.9, as docs/witness.md has it."""
+    """White rough plastic under light from everywhere, seen from cosine 0.9, as docs/measurements/peers.md has it."""
     text = (ROOT / "docs" / "witness.md").read_text(encoding="utf-8")
     table = re.findall(r"^\| ([\d.]+) \| ([\d.]+) \| [\d.]+ \| [\d.]+ \| ([\d.]+) \|", text, re.MULTILINE)
-    check(len(table) == 3, "the table of white plastic in docs/witness.md")
+    check(len(table) == 3, "the table of white plastic in docs/measurements/peers.md")
     for alpha, beckmann, ggx in (map(float, row) for row in table):
         for kind, expected in (("beckmann", beckmann), ("ggx", ggx)):
             interface = RoughInterface(1.49, alpha, kind)

@@ -23,7 +23,7 @@ class Finding:
     integrator: str
     what: str  # signal, time, memory, fault, not_finite, negative, refusal, command, mean, noise
     text: str
-    known: str = ""  # reason, where docs/robustness.md lists it
+    known: str = ""  # reason, where docs/measurements/robustness.md lists it
 
     def line(self):
         known = f" [known: {self.known}]" if self.known else ""

@@ -16,7 +16,7 @@ Results are kept in build/mutants/results.jsonl: what has one is not run again, 
 --at COMMIT      plants them there, not in the last commit
 --list           the faults and their last results
 --quick          nothing is built: does every text still stand in its file exactly once?
---table          the table of docs/testing.md
+--table          the results as a table in Markdown (tools/mutants/found.csv has those of the faults chosen so far)
 """
 import argparse
 import json

@@ -148,7 +148,7 @@ TEST_CASE("albedo() is near the light that sample returns", "[materials][furnace
 
 TEST_CASE("rough white plastic is grey as in Mitsuba, unless it conserves energy", "[materials][furnace]") {
     // Albedos of the installed Mitsuba 3.9.1: quadrature of its eval() over 400 x 400 cosine-weighted
-    // directions, at cosine 0.9 (docs/witness.md).
+    // directions, at cosine 0.9 (docs/measurements/peers.md).
     const struct {
         core::Microfacet facets;
         double mitsuba;

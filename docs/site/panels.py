@@ -1,0 +1,37 @@
+"""Pictures side by side in the pages that the site runs: linear radiance by one exposure, and signed differences in blue and red."""
+import matplotlib.pyplot as plt
+import numpy as np
+
+LUMINANCE = (0.2126, 0.7152, 0.0722)
+
+
+def filmic(radiance):
+    """Radiance relative to white, for the screen: linear in the dark, highlights compressed so that they keep their shape (the curve
+    of Hable 2010), and the transfer curve of sRGB."""
+    curve = lambda x: (x * (0.15 * x + 0.05) + 0.004) / (x * (0.15 * x + 0.5) + 0.06) - 0.02 / 0.3
+    mapped = np.clip(curve(2.0 * np.maximum(radiance, 0.0)) / curve(11.2), 0.0, 1.0)
+    return np.where(mapped <= 0.0031308, 12.92 * mapped, 1.055 * mapped ** (1 / 2.4) - 0.055)
+
+
+def panels(*pictures, layer="beauty", difference=None, scale=None):
+    """Pictures, each (title, picture), and behind them the difference of two of them, given by their indices: the first minus the
+    second, relative to the mean luminance of the second. Blue is too dark, red too bright; scale: full colour."""
+    arrays = [(title, np.asarray(p if isinstance(p, np.ndarray) else p[layer], float)) for title, p in pictures]
+    count = len(arrays) + (difference is not None)
+    height, width = arrays[0][1].shape[:2]
+    figure, axes = plt.subplots(1, count, figsize=(3.2 * count, 3.2 * height / width + 0.35), dpi=110, layout="constrained", squeeze=False)
+    luminance = arrays[difference[1] if difference else -1][1] @ LUMINANCE
+    key = np.minimum(luminance, np.percentile(luminance, 98)).mean()  # lamps do not darken the rest
+    for ax, (title, array) in zip(axes[0], arrays):
+        ax.imshow(filmic(0.18 * array / key), interpolation="nearest")
+        ax.set_title(title, fontsize=10)
+    if difference is not None:
+        first, second = (arrays[i][1] @ LUMINANCE for i in difference)
+        relative = 100 * (first - second) / second.mean()
+        full = scale or np.percentile(np.abs(relative), 98)
+        shown = axes[0][-1].imshow(relative, cmap="RdBu_r", vmin=-full, vmax=full, interpolation="nearest")
+        axes[0][-1].set_title(f"{arrays[difference[0]][0]} - {arrays[difference[1]][0]}", fontsize=10)
+        figure.colorbar(shown, ax=axes[0][-1], shrink=0.9).set_label("difference [% of the mean luminance]", fontsize=8)
+    for ax in axes[0]:
+        ax.set_axis_off()
+    plt.show()
