@@ -118,7 +118,7 @@ set(CPACK_DEBIAN_MOTE_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME mote-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "mote (= ${PROJECT_VERSION}), libembree-dev, libglm-dev, libtbb-dev, libfmt-dev, \
-libpugixml-dev, libopenexr-dev, libimath-dev, python3-imath, libopenimageio-dev, openimageio-tools, libassimp-dev, \
+libpugixml-dev, libopenexr-dev, libimath-dev, python3-imath, libpng-dev, libjpeg-dev, libassimp-dev, \
 zlib1g-dev")
 set(CPACK_COMPONENT_MOTE_DESCRIPTION "The mote command: renders scenes with many-light methods, path tracing and
 participating media, and compares pictures.")

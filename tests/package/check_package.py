@@ -63,7 +63,7 @@ def check_headers(include):
         for line in re.findall(r'#include "([^"]+)"', header.read_text()):
             if not line.startswith("mote/") or not (include / line).exists():
                 fail(f"{header} includes {line}")
-        for private in re.findall(r"#include <((?:fmt|nlohmann|nanovdb|openvdb|OpenEXR|OpenImageIO|pugixml)[^>]*)>",
+        for private in re.findall(r"#include <((?:fmt|nlohmann|nanovdb|openvdb|OpenEXR|png|jpeglib|pugixml)[^>]*)>",
                                   header.read_text()):
             fail(f"{header} includes {private}, which is private")
     stray = [p.name for p in include.iterdir() if p.name != "mote"]
