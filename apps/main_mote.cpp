@@ -1,16 +1,34 @@
 // The entry point: checks the processor, then runs the command.
 //
 // Signals end the program with a line of text from its first instruction on; what has something to lose
-// replaces the handlers (interruption.cpp). Functions of .preinit_array run before the libraries' constructors.
+// replaces the handlers (interruption.cpp). Functions of .preinit_array run before the libraries'
+// constructors.
+//
+// The first thread that TBB cannot start ends the program without a word, so one is tried before.
 //
 // This file is compiled for any x86-64, the rest of the program perhaps for processors with AVX2. The check
 // runs before the constructors of all other files, for these may use such instructions already.
+#include <pthread.h>
 #include <signal.h>
 #include <unistd.h>
 
 #include "apps/command.h"
 
 namespace {
+
+void* end_at_once(void*) { return nullptr; }
+
+void check_threads() {
+    pthread_t thread;
+    if (::pthread_create(&thread, nullptr, end_at_once, nullptr) == 0) {
+        ::pthread_join(thread, nullptr);
+        return;
+    }
+    static const char message[] =
+        "mote: the system grants too few threads to start with (a limit on processes, see 'ulimit -u')\n";
+    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, message, sizeof(message) - 1);
+    ::_exit(3);
+}
 
 extern "C" void end_with_a_line(int number) {
     static const char message[] = "mote: interrupted\n";
@@ -26,6 +44,7 @@ void prepare() {
         action.sa_handler = end_with_a_line;
         ::sigaction(number, &action, nullptr);
     }
+    check_threads();
 }
 
 __attribute__((section(".preinit_array"), used)) void (*const before_libraries)() = prepare;

@@ -65,18 +65,22 @@ Bytes hdr(bool packed) {
 void put(std::string& bytes, std::uint32_t value, int count) {
     for (int i = 0; i < count; ++i) bytes += char(value >> (8 * i) & 255u);
 }
-Bytes bmp(std::uint32_t bits, std::uint32_t compression, const std::string& palette, const std::string& pixels) {
+Bytes bmp(std::uint32_t bits, std::uint32_t compression, const std::string& palette,
+          const std::string& pixels) {
     std::string bytes = "BM";
     put(bytes, std::uint32_t(54 + palette.size() + pixels.size()), 4), put(bytes, 0, 4);
-    put(bytes, std::uint32_t(54 + palette.size()), 4), put(bytes, 40, 4), put(bytes, width, 4), put(bytes, height, 4);
-    put(bytes, 1, 2), put(bytes, bits, 2), put(bytes, compression, 4), put(bytes, std::uint32_t(pixels.size()), 4);
+    put(bytes, std::uint32_t(54 + palette.size()), 4), put(bytes, 40, 4), put(bytes, width, 4),
+        put(bytes, height, 4);
+    put(bytes, 1, 2), put(bytes, bits, 2), put(bytes, compression, 4),
+        put(bytes, std::uint32_t(pixels.size()), 4);
     put(bytes, 0, 8), put(bytes, bits <= 8 ? std::uint32_t(palette.size() / 4) : 0, 4), put(bytes, 0, 4);
     return bytes_of(bytes + palette + pixels);
 }
 
 Bytes targa(char kind, char bits, const std::string& pixels) {
     const bool palette = (kind & 7) == 1;
-    std::string bytes = "\0"s + char(palette) + kind + "\0\0"s + (palette ? "\4\0\30"s : "\0\0\0"s) + "\0\0\0\0\5\0\4\0"s;
+    std::string bytes =
+        "\0"s + char(palette) + kind + "\0\0"s + (palette ? "\4\0\30"s : "\0\0\0"s) + "\0\0\0\0\5\0\4\0"s;
     bytes += bits, bytes += "\0"s;
     return bytes_of(bytes + (palette ? gradient_text(3).substr(0, 12) : "") + pixels);
 }
@@ -92,11 +96,13 @@ std::vector<Bytes> jpeg_seeds() { return {jpeg(3), jpeg(1)}; }
 std::vector<Bytes> hdr_seeds() { return {hdr(false), hdr(true)}; }
 std::vector<Bytes> pnm_seeds() {
     return {bytes_of("P6\n5 4\n255\n" + gradient_text(3)), bytes_of("P5 5 4 65535\n" + gradient_text(2)),
-            bytes_of("P2\n# grey\n2 2\n9\n0 1 2\n9\n"), bytes_of("P1\n5 2\n01010 11100\n"), bytes_of("P4\n5 4\nabcd")};
+            bytes_of("P2\n# grey\n2 2\n9\n0 1 2\n9\n"), bytes_of("P1\n5 2\n01010 11100\n"),
+            bytes_of("P4\n5 4\nabcd")};
 }
 std::vector<Bytes> bmp_seeds() {
     const std::string four_colours = gradient_text(1).substr(0, 16);
-    return {bmp(24, 0, "", std::string(64, 'x')), bmp(32, 0, "", gradient_text(4)),
+    return {bmp(24, 0, "", std::string(64, 'x')),
+            bmp(32, 0, "", gradient_text(4)),
             bmp(16, 3, "\0\xf8\0\0\xe0\7\0\0\37\0\0\0"s, std::string(48, 'y')),
             bmp(8, 0, four_colours, std::string(32, '\2')),
             bmp(8, 1, four_colours, "\5\1\0\0\0\3\0\1\2\0\2\3\0\2\1\1\4\0\0\1"s),
@@ -104,7 +110,11 @@ std::vector<Bytes> bmp_seeds() {
 }
 std::vector<Bytes> targa_seeds() {
     return {targa(2, 24, gradient_text(3)), targa(3, 8, gradient_text(1)), targa(2, 16, gradient_text(2)),
-            targa(10, 32, "\x87" "abcd\x0b"s + gradient_text(4).substr(0, 48)), targa(1, 8, std::string(20, '\3'))};
+            targa(10, 32,
+                  "\x87"
+                  "abcd\x0b"s +
+                      gradient_text(4).substr(0, 48)),
+            targa(1, 8, std::string(20, '\3'))};
 }
 
 }  // namespace mote::fuzz

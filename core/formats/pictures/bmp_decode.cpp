@@ -1,5 +1,6 @@
-// Windows bitmaps (layout: BITMAPFILEHEADER and BITMAPINFOHEADER, learn.microsoft.com): palettes, plain or in runs, and
-// colours of 16, 24 and 32 bits. Header, palette and every pixel are held against each other and the size of the file.
+// Windows bitmaps (layout: BITMAPFILEHEADER and BITMAPINFOHEADER, learn.microsoft.com): palettes, plain or in
+// runs, and colours of 16, 24 and 32 bits. Header, palette and every pixel are held against each other and
+// the size of the file.
 #include <array>
 #include <bit>
 #include <limits>
@@ -133,7 +134,8 @@ class BmpReader {
             }
     }
     static float masked(std::uint32_t value, std::uint32_t mask) {
-        return mask == 0 ? 0.0f : fraction((value & mask) >> std::countr_zero(mask), mask >> std::countr_zero(mask));
+        return mask == 0 ? 0.0f
+                         : fraction((value & mask) >> std::countr_zero(mask), mask >> std::countr_zero(mask));
     }
 
     /// Pairs of bytes: a run of one value, or an escape (0: end of line, 1: end of picture, 2: a step, more:
@@ -155,7 +157,8 @@ class BmpReader {
                 if (y >= found_.height) damaged_bmp("runs beyond its last row");
                 const bool single = count == 0;
                 for (std::int64_t i = 0, n = single ? value : count; i < n; ++i, ++x)
-                    put_colour(x, y, run_value(single ? byte(at + i * found_.bits / 8) : std::uint32_t(value), i));
+                    put_colour(x, y,
+                               run_value(single ? byte(at + i * found_.bits / 8) : std::uint32_t(value), i));
                 if (single) at += ((value * found_.bits + 7) / 8 + 1) / 2 * 2;
             }
         }

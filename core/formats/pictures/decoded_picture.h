@@ -22,8 +22,8 @@ struct PictureFile {
     std::size_t max_pixels = 0;
 };
 
-/// Makes room for a picture. Throws InputError where it is larger than `max_pixels`, or larger than any coder of
-/// these formats could pack into the file.
+/// Makes room for a picture. Throws InputError where it is larger than `max_pixels`, or larger than any coder
+/// of these formats could pack into the file.
 DecodedPicture make_room(const PictureFile& file, std::int64_t width, std::int64_t height, int channels,
                          bool eight_bits);
 /// The same limits without the room.

@@ -1,5 +1,5 @@
-// Radiance pictures (Ward, Real pixels, Graphics Gems II, 1991): three mantissas and one exponent a pixel, plain or
-// run-length encoded by channels.
+// Radiance pictures (Ward, Real pixels, Graphics Gems II, 1991): three mantissas and one exponent a pixel,
+// plain or run-length encoded by channels.
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -22,7 +22,8 @@ void read_run_lengths(PictureBytes& bytes, std::vector<Rgbe>& row) {
             std::uint32_t count = bytes.next();
             const bool run = count > run_mark;
             if (run) count -= run_mark;
-            if (count == 0 || count > row.size() - x) throw InputError("damaged HDR file: a run past its row");
+            if (count == 0 || count > row.size() - x)
+                throw InputError("damaged HDR file: a run past its row");
             std::uint32_t value = bytes.next();
             for (std::uint32_t i = 0; i < count; ++i) {
                 if (i > 0 && !run) value = bytes.next();
@@ -41,7 +42,8 @@ void read_row(PictureBytes& bytes, std::vector<Rgbe>& row) {
         for (std::size_t x = 1; x < row.size(); ++x) row[x] = read();
         return;
     }
-    if ((first[2] << 8 | first[3]) != row.size()) throw InputError("damaged HDR file: a row of another width");
+    if ((first[2] << 8 | first[3]) != row.size())
+        throw InputError("damaged HDR file: a row of another width");
     read_run_lengths(bytes, row);
 }
 
@@ -55,7 +57,8 @@ DecodedPicture decode_hdr(const PictureFile& file) {
     if (!known) throw InputError("HDR file that does not say FORMAT=32-bit_rle_rgbe");
     char sign = 0;
     int width = 0, height = 0;
-    if (std::sscanf(bytes.line().c_str(), "%cY %9d +X %9d", &sign, &height, &width) != 3 || (sign != '-' && sign != '+'))
+    if (std::sscanf(bytes.line().c_str(), "%cY %9d +X %9d", &sign, &height, &width) != 3 ||
+        (sign != '-' && sign != '+'))
         throw InputError("HDR file whose rows run neither down nor up");
     DecodedPicture picture = make_room(file, width, height, 3, false);
     std::vector<Rgbe> row{std::size_t(width)};

@@ -44,7 +44,8 @@ class JpegReader {
         check_picture_size(file_, jpeg_.image_width, jpeg_.image_height, jpeg_.num_components);
         guarded([this] { jpeg_start_decompress(&jpeg_); });
         const int stored = jpeg_.output_components;  // 4: CMYK
-        DecodedPicture picture = make_room(file_, jpeg_.output_width, jpeg_.output_height, stored == 4 ? 3 : stored, true);
+        DecodedPicture picture =
+            make_room(file_, jpeg_.output_width, jpeg_.output_height, stored == 4 ? 3 : stored, true);
         std::vector<JSAMPLE> row(std::size_t(picture.width) * std::size_t(stored));
         JSAMPROW rows[] = {row.data()};
         float* to = picture.values.data();

@@ -27,7 +27,8 @@ class PngReader {
 
     DecodedPicture run() {
         guarded([this] { png_read_info(png_, info_); });
-        const std::int64_t width = png_get_image_width(png_, info_), height = png_get_image_height(png_, info_);
+        const std::int64_t width = png_get_image_width(png_, info_),
+                           height = png_get_image_height(png_, info_);
         check_picture_size(file_, width, height, 1);
         guarded([this] { expand(); });
         const int channels = png_get_channels(png_, info_), bytes = png_get_bit_depth(png_, info_) / 8;
@@ -42,8 +43,9 @@ class PngReader {
             png_read_end(png_, nullptr);
         });
         for (std::size_t i = 0; i < picture.values.size(); ++i)
-            picture.values[i] = bytes == 1 ? fraction(pixels[i], 255)
-                                           : fraction(std::uint32_t(pixels[2 * i] << 8 | pixels[2 * i + 1]), 65535);
+            picture.values[i] = bytes == 1
+                                    ? fraction(pixels[i], 255)
+                                    : fraction(std::uint32_t(pixels[2 * i] << 8 | pixels[2 * i + 1]), 65535);
         return picture;
     }
 

@@ -37,8 +37,8 @@ class PngWriter {
                                std::span<png_text> text) {
         // A jump out of here must not pass a destructor: all that is owned is a member, or the caller's.
         if (setjmp(jump_) != 0) throw InputError("cannot be written: " + printable(message_));
-        png_set_IHDR(png_, info_, png_uint_32(width), png_uint_32(height), 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
-                     PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+        png_set_IHDR(png_, info_, png_uint_32(width), png_uint_32(height), 8, PNG_COLOR_TYPE_RGB,
+                     PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
         png_set_compression_level(png_, compression);
         if (srgb) png_set_sRGB_gAMA_and_cHRM(png_, info_, PNG_sRGB_INTENT_ABSOLUTE);
         png_set_text(png_, info_, text.data(), int(text.size()));

@@ -19,10 +19,12 @@ class PnmReader {
     DecodedPicture run() {
         kind_ = char(bytes_.next());
         const std::int64_t width = number(), height = number();
-        if (kind_ == 'f' || kind_ == 'F') return floats(make_room(file_, width, height, kind_ == 'F' ? 3 : 1, false));
+        if (kind_ == 'f' || kind_ == 'F')
+            return floats(make_room(file_, width, height, kind_ == 'F' ? 3 : 1, false));
         const bool bits = kind_ == '1' || kind_ == '4';
         const std::uint32_t max = bits ? 1 : number();
-        if (max < 1 || max > 65535) throw InputError("damaged PNM file: a largest value of " + std::to_string(max));
+        if (max < 1 || max > 65535)
+            throw InputError("damaged PNM file: a largest value of " + std::to_string(max));
         DecodedPicture picture =
             make_room(file_, width, height, kind_ == '3' || kind_ == '6' ? 3 : 1, max < 256);
         if (kind_ == '4')
@@ -97,7 +99,8 @@ class PnmReader {
             for (std::size_t x = 0; x < stride; ++x) {
                 std::uint32_t bits = 0;
                 for (int i = 0; i < 4; ++i)
-                    bits |= bytes_.next() << (8 * (scale < 0.0f ? i : 3 - i));  // negative: the low byte first
+                    bits |= bytes_.next()
+                            << (8 * (scale < 0.0f ? i : 3 - i));  // negative: the low byte first
                 picture.values[std::size_t(y) * stride + x] = std::bit_cast<float>(bits) * std::abs(scale);
             }
         return picture;

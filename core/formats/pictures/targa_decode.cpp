@@ -44,9 +44,13 @@ class TargaReader {
         encoded_ = (kind & targa_encoded) != 0, kind_ = kind & ~targa_encoded;
         first_colour_ = bytes_.next_16(), colours_ = bytes_.next_16(), palette_bits_ = bytes_.next();
         bytes_.skip(4);  // where a screen would show it
-        width_ = bytes_.next_16(), height_ = bytes_.next_16(), bits_ = bytes_.next(), descriptor_ = bytes_.next();
-        const auto is_colour = [](std::uint32_t bits) { return bits == 15 || bits == 16 || bits == 24 || bits == 32; };
-        const bool sound = kind_ == targa_palette  ? has_palette == 1 && is_colour(palette_bits_) && (bits_ == 8 || bits_ == 16)
+        width_ = bytes_.next_16(), height_ = bytes_.next_16(), bits_ = bytes_.next(),
+        descriptor_ = bytes_.next();
+        const auto is_colour = [](std::uint32_t bits) {
+            return bits == 15 || bits == 16 || bits == 24 || bits == 32;
+        };
+        const bool sound = kind_ == targa_palette
+                               ? has_palette == 1 && is_colour(palette_bits_) && (bits_ == 8 || bits_ == 16)
                            : kind_ == targa_colour ? is_colour(bits_)
                                                    : kind_ == targa_grey && (bits_ == 8 || bits_ == 16);
         if (!sound || has_palette > 1 || (has_palette == 1 && !is_colour(palette_bits_)))
@@ -58,7 +62,8 @@ class TargaReader {
             const std::uint32_t v = bytes_.next_16();
             return {fraction(v >> 10 & 31, 31), fraction(v >> 5 & 31, 31), fraction(v & 31, 31), 1.0f};
         }
-        const float b = fraction(bytes_.next(), 255), g = fraction(bytes_.next(), 255), r = fraction(bytes_.next(), 255);
+        const float b = fraction(bytes_.next(), 255), g = fraction(bytes_.next(), 255),
+                    r = fraction(bytes_.next(), 255);
         return {r, g, b, bits == 32 ? fraction(bytes_.next(), 255) : 1.0f};
     }
     Pixel stored() {
