@@ -6,8 +6,10 @@
 #include <mote/core/materials/textures.h>
 #include <mote/core/scene/callback_scene.h>
 #include <mote/lights/emitters/emitters.h>
+#include <mote/lights/virtual_lights/vpl_gather.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace room {
@@ -46,6 +48,38 @@ struct Room {
         core::WalkEvent arrived;
         arrived.kind = core::WalkEvent::Kind::surface, arrived.hit = *scene.first_hit(ray);
         return core::make_vertex(arrived, ray);
+    }
+};
+
+/// Light at receivers all over the walls, in tiles of sixteen.
+struct Receivers {
+    const Room& room;
+    lights::GatherScratch scratch = {};
+    core::WalkContext walk = {};  // counts rays
+
+    lights::GatherContext context() { return {room.scene, scratch, walk.rays, walk.tracking}; }
+    struct Mean {
+        double irradiance, standard_error;  // [W/m^2]
+    };
+    /// `light(vertices, tile, rng)` is what the receivers of a tile reflect.
+    template <typename Light>
+    Mean irradiance(const Light& light) {
+        constexpr int tiles = 200, lanes = lights::ReceiverLanes::width;
+        core::Rng rng(7);
+        double sum = 0.0, squares = 0.0;
+        for (int i = 0; i < tiles; ++i) {
+            std::array<core::ScatteringVertex, lanes> vertices;
+            lights::ReceiverTile tile;
+            for (int lane = 0; lane < lanes; ++lane) {
+                vertices[std::size_t(lane)] = room.vertex(rng);
+                tile.set(lane, vertices[std::size_t(lane)], core::Rgb(1.0f), {}, rng, 1000);
+            }
+            double mean = 0.0;
+            for (const core::Rgb& l : light(vertices, tile, rng))
+                mean += double(l.x * core::pi / reflectance) / lanes;
+            sum += mean / tiles, squares += mean * mean / tiles;
+        }
+        return {sum, std::sqrt((squares - sum * sum) / tiles)};
     }
 };
 

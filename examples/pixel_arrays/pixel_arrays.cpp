@@ -5,7 +5,6 @@
 #include <mote/screenspace/denoising/block_regression.h>
 #include <mote/screenspace/ssbc/ssbc.h>
 #include <mote/screenspace/upsampling/upsampling.h>
-#include <mote/screenspace/visibility/region_queries.h>
 
 #include <algorithm>
 #include <cmath>
@@ -106,17 +105,5 @@ int main() {
     for (std::size_t i = 0; i < pixels; ++i)
         off = std::max(off, std::fabs(double(light[i].x) - (view[i].item == 0 ? 1.0 : 2.0)));
     expect(off < 1e-3, "largest error of upsampling two planes:", off);
-
-    // Visibility: the pixels of the floor in a rectangle, from sums over the picture.
-    std::vector<std::uint32_t> items;
-    for (const Seen& s : view) items.push_back(s.item);
-    const ss::IdPicture picture{width, height, items};
-    const ss::ItemBounds everywhere{picture.frame()};
-    const ss::RegionQueries queries(picture, std::vector{everywhere, everywhere});
-    const auto counted = queries.pixels({1, {10, 40, 50, 90}});
-    std::uint32_t by_hand = 0;
-    for (int py = 40; py < 90; ++py)
-        for (int px = 10; px < 50; ++px) by_hand += items[std::size_t(py * width + px)] == 1;
-    expect(counted == by_hand, "pixels of the floor in a rectangle:", double(counted));
     return wrong;
 }
