@@ -443,8 +443,36 @@ class ModuleTest(unittest.TestCase):
         summary = mote.trade(self.path, methods, output=Path(self.folder.name) / "trade", passes=2, seeds=1,
                              reference=self.reference(), resolve=0.5)
         self.assertEqual({m["name"] for m in summary["methods"]}, {"paths", "points"})
+        self.figures(Path(self.folder.name) / "trade")
         with self.assertRaisesRegex(mote.Error, "did you mean"):
             mote.trade(self.path, [{"name": "x", "integrator": "paht"}], output=Path(self.folder.name) / "other", passes=1)
+
+    def figures(self, trade):
+        """Figures of a trade, with another renderer among the methods; the bars are those of Student's t."""
+        from mote import plot
+        columns = "method,seed,passes,wall_s,error,final\n"
+        rows = [f"other,{seed},4,{seconds},{error},1\n" for seed, seconds, error in ((1, 1, 0.1), (2, 2, 0.2), (3, 3, 0.3))]
+        (trade / "other.peer.csv").write_text(columns + "".join(rows))
+        point, = plot.curves(trade)["other"]
+        half = 4.303 * 0.1 / 3 ** 0.5
+        self.assertTrue(np.allclose(point, (2, 0.2, 0.2 - half, 0.2 + half, 3)))
+        self.assertTrue(np.allclose(plot.curves(trade, "range")["other"], (2, 0.2, 0.1, 0.3, 3)))
+        style = {"methods": {"paths": {"hide": True}, "other": {"label": "Other 100 %", "color": "#123456"}}, "order": ["other"]}
+        plot.plot(trade, trade / "figure.tex", style)
+        text = (trade / "figure.tex").read_text()
+        self.assertIn("\\definecolor{mote0}{HTML}{123456}", text)
+        self.assertLess(text.index("Other 100 \\%"), text.index("{points}"))
+        self.assertNotIn("{paths}", text)
+        for wrong in ({"colour": 1}, {"methods": {"pahts": {}}}, {"methods": {"paths": {"colour": ""}}}, {"bars": "some"}):
+            with self.assertRaises(ValueError):
+                plot.plot(trade, trade / "none.tex", wrong)
+        try:
+            import matplotlib  # noqa: F401
+        except ImportError:
+            return
+        for name, begin in (("figure.pdf", b"%PDF"), ("figure.svg", b"<?xml")):
+            plot.plot(trade, trade / name, style)
+            self.assertTrue((trade / name).read_bytes().startswith(begin))
 
     def test_trade_of_scenes(self):
         """A scene with its changes, of a file, of text and of a dictionary: the errors of the same renders are the same."""
