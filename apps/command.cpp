@@ -16,6 +16,7 @@
 
 #include "apps/denoise/denoise_command.h"
 #include "apps/interruption.h"
+#include "apps/manual_command.h"
 #include "apps/options.h"
 #include "apps/ssbc_command.h"
 #include "apps/subcommands.h"
@@ -291,6 +292,13 @@ int parse_and_run(int argc, char** argv) {
     std::vector<std::string> format_plugins;
     add_plugins(formats_app, format_plugins);
     formats_app.callback([&] { action = [&] { return formats_command(format_plugins); }; });
+
+    CLI::App& manual_app = *app.add_subcommand("manual", "Write man pages, and completions for bash and zsh");
+    std::string share;
+    manual_app.add_option("FOLDER", share, "The folder to write them below, such as ~/.local/share")
+        ->required();
+    manual_app.callback([&] { action = [&] { return manual_command(app, share); }; });
+    add_examples(app);
 
     try {
         app.parse(argc, argv);

@@ -1,10 +1,10 @@
-// The entry point: checks the threads that the system grants and the processor, then runs the command.
+// The entry point: checks the processor, then runs the command.
 //
 // Signals end the program with a line of text from its first instruction on; what has something to lose
-// replaces the handlers (interruption.cpp).
+// replaces the handlers (interruption.cpp). Functions of .preinit_array run before the libraries'
+// constructors.
 //
-// log4cplus, which Debian's OpenVDB and with it OpenImageIO brings along, starts four threads while it is
-// loaded, and aborts where it gets none. Functions of .preinit_array run before the libraries' constructors.
+// The first thread that TBB cannot start ends the program without a word, so one is tried before.
 //
 // This file is compiled for any x86-64, the rest of the program perhaps for processors with AVX2. The check
 // runs before the constructors of all other files, for these may use such instructions already.
@@ -16,25 +16,14 @@
 
 namespace {
 
-constexpr int threads_of_libraries = 4;
-
-void* wait_for_all(void* mutex) {
-    ::pthread_mutex_lock(static_cast<pthread_mutex_t*>(mutex));
-    ::pthread_mutex_unlock(static_cast<pthread_mutex_t*>(mutex));
-    return nullptr;
-}
+void* end_at_once(void*) { return nullptr; }
 
 void check_threads() {
-    pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
-    pthread_t threads[threads_of_libraries];
-    int started = 0;
-    ::pthread_mutex_lock(&mutex);
-    while (started < threads_of_libraries &&
-           ::pthread_create(&threads[started], nullptr, wait_for_all, &mutex) == 0)
-        ++started;
-    ::pthread_mutex_unlock(&mutex);
-    for (int i = 0; i < started; ++i) ::pthread_join(threads[i], nullptr);
-    if (started == threads_of_libraries) return;
+    pthread_t thread;
+    if (::pthread_create(&thread, nullptr, end_at_once, nullptr) == 0) {
+        ::pthread_join(thread, nullptr);
+        return;
+    }
     static const char message[] =
         "mote: the system grants too few threads to start with (a limit on processes, see 'ulimit -u')\n";
     [[maybe_unused]] const auto written = ::write(STDERR_FILENO, message, sizeof(message) - 1);

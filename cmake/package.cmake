@@ -14,7 +14,7 @@ set(NEEDS_lights media)
 set(NEEDS_picture_lights lights core)
 set(NEEDS_compensation lights)
 set(NEEDS_gathering lights)
-set(NEEDS_screenspace core lights)
+set(NEEDS_screenspace lights)
 set(NEEDS_integrators picture_lights compensation gathering screenspace)
 set(NEEDS_session integrators)
 set(mote_package_folders core media lights compensation gathering screenspace integrators session)
@@ -51,6 +51,7 @@ include(CMakePackageConfigHelpers)
 # ---- The command, and the helper program that the library and the command start
 if(MOTE_BUILD_APPS)
   install(TARGETS mote RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT mote)
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/share/ DESTINATION ${CMAKE_INSTALL_DATAROOTDIR} COMPONENT mote)
 endif()
 set(mote_helper_folder ${CMAKE_INSTALL_LIBEXECDIR}/mote)
 install(TARGETS mote_grid_reader RUNTIME DESTINATION ${mote_helper_folder} COMPONENT mote)
@@ -61,6 +62,43 @@ install(CODE "execute_process(COMMAND ${CMAKE_COMMAND} \"-DSOURCE=${PROJECT_SOUR
   \"-DFOLDERS=${package_folders}\" -DVERSION=${PROJECT_VERSION} -P \"${PROJECT_SOURCE_DIR}/cmake/package_headers.cmake\"
   COMMAND_ERROR_IS_FATAL ANY)" COMPONENT dev)
 install(DIRECTORY ${mote_include} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
+
+# For those without CMake: mote-NAME.pc of each component, and mote.pc of all but the C interface. What static libraries
+# are linked with is private, so `pkg-config --static` names it; a component asks for no more than it uses.
+set(LINKS_core_runtime "-lembree${EMBREE_VERSION_MAJOR} -ltbb -lfmt -pthread")
+set(LINKS_core "-lpugixml -lpng -ljpeg -lassimp -lz")
+set(PACKAGES_core OpenEXR)
+set(LINKS_media "-ldl")
+function(mote_pkg_config component)
+  set(name mote-${component})
+  set(libraries "-L\${libdir} -lmote_${component}")
+  list(TRANSFORM NEEDS_${component} PREPEND mote- OUTPUT_VARIABLE requires)
+  list(JOIN requires " " requires)
+  if(component STREQUAL "all")
+    set(name mote)
+    set(libraries "")
+    set(requires mote-session)
+  endif()
+  set(private "Requires.private: ${PACKAGES_${component}}\nLibs.private: ${LINKS_${component}}")
+  if(MOTE_SHARED)
+    set(private "")
+  endif()
+  file(RELATIVE_PATH prefix ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/pkgconfig/${name}.pc @ONLY CONTENT
+"prefix=\${pcfiledir}/@prefix@
+libdir=\${prefix}/@CMAKE_INSTALL_LIBDIR@
+includedir=\${prefix}/@CMAKE_INSTALL_INCLUDEDIR@
+
+Name: @name@
+Description: @PROJECT_DESCRIPTION@
+Version: @PROJECT_VERSION@
+Requires: @requires@
+Libs: @libraries@
+@private@
+Cflags: -I\${includedir} -DGLM_FORCE_CTOR_INIT
+")
+  install(FILES ${PROJECT_BINARY_DIR}/pkgconfig/${name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)
+endfunction()
 
 set(mote_cmake_folder ${CMAKE_INSTALL_LIBDIR}/cmake/mote)
 set(libraries_component dev)
@@ -91,7 +129,9 @@ foreach(component ${mote_package_components})
   install(EXPORT mote-${component} NAMESPACE mote:: FILE mote-${component}.cmake DESTINATION ${mote_cmake_folder}
           COMPONENT dev)
   string(APPEND mote_package_needs "set(mote_${component}_needs ${NEEDS_${component}})\n")
+  mote_pkg_config(${component})
 endforeach()
+mote_pkg_config(all)
 configure_package_config_file(cmake/mote-config.cmake.in ${PROJECT_BINARY_DIR}/mote-config.cmake
   INSTALL_DESTINATION ${mote_cmake_folder} PATH_VARS mote_helper_folder)
 # While the major version is 0 the minor one counts as major.
@@ -118,7 +158,7 @@ set(CPACK_DEBIAN_MOTE_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME mote-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "mote (= ${PROJECT_VERSION}), libembree-dev, libglm-dev, libtbb-dev, libfmt-dev, \
-libpugixml-dev, libopenexr-dev, libimath-dev, python3-imath, libopenimageio-dev, openimageio-tools, libassimp-dev, \
+libpugixml-dev, libopenexr-dev, libimath-dev, python3-imath, libpng-dev, libjpeg-dev, libassimp-dev, \
 zlib1g-dev")
 set(CPACK_COMPONENT_MOTE_DESCRIPTION "The mote command: renders scenes with many-light methods, path tracing and
 participating media, and compares pictures.")

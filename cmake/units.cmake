@@ -95,6 +95,6 @@ function(mote_headers_alone)
   endforeach()
   add_library(mote_headers_alone OBJECT ${sources})
   target_link_libraries(mote_headers_alone PRIVATE mote_options mote_integrators mote_test_support mote_nanovdb CLI11::CLI11
-                        OpenEXR::OpenEXR OpenImageIO::OpenImageIO pugixml::pugixml assimp::assimp)
+                        OpenEXR::OpenEXR PNG::PNG JPEG::JPEG pugixml::pugixml assimp::assimp)
   target_compile_options(mote_headers_alone PRIVATE -O0)
 endfunction()

@@ -3,6 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <map>
+#include <system_error>
+
 #include "core/parameters/add_type.h"
 #include "media/nano_grid.h"
 #include "media/tracked_medium.h"
@@ -53,8 +57,28 @@ const core::ParameterList<VdbSettings>& vdb_rows() {
     return list;
 }
 
-std::shared_ptr<VdbVolume> make_vdb(const VdbSettings& s, const core::Properties& p) {
-    const auto grid = load_vdb_grid(s.file.path, s.grid, s.options);
+/// Grids that a scene still holds, so that it is loaded again with other settings without reading them. Not
+/// for several threads.
+class KeptGrids {
+  public:
+    std::shared_ptr<const VdbGrid> get(const VdbSettings& s) {
+        std::error_code unknown;  // a file that is not there is the reader's to report
+        const auto written =
+            std::filesystem::last_write_time(s.file.path, unknown).time_since_epoch().count();
+        const auto size = std::filesystem::file_size(s.file.path, unknown);
+        auto& kept = grids_[fmt::format("{} {} {} {} {}", written, size, s.options.clamp_negative, s.grid,
+                                        s.file.path)];
+        std::shared_ptr<const VdbGrid> grid = kept.lock();
+        if (!grid) kept = grid = load_vdb_grid(s.file.path, s.grid, s.options);
+        return grid;
+    }
+
+  private:
+    std::map<std::string, std::weak_ptr<const VdbGrid>> grids_;
+};
+
+std::shared_ptr<VdbVolume> make_vdb(const VdbSettings& s, const core::Properties& p, KeptGrids& kept) {
+    const auto grid = kept.get(s);
     for (const std::string& w : grid->warnings())
         p.warn(fmt::format("{}: grid '{}': {}", s.file.path, grid->name(), w));
     if (!(s.to_world * grid->index_to_world()).valid())
@@ -69,7 +93,9 @@ void register_vdb_volume(core::Registry& registry) {
         registry, core::Category::volume, "vdbvolume",
         "A fog volume of an OpenVDB file (float, half, double, integers): trilinear, its background outside.",
         vdb_rows(), R"(<volume type="vdbvolume"><string name="filename" value="smoke.vdb"/></volume>)",
-        make_vdb);
+        [kept = std::make_shared<KeptGrids>()](const VdbSettings& s, const core::Properties& p) {
+            return make_vdb(s, p, *kept);
+        });
 }
 
 }  // namespace mote::media

@@ -17,7 +17,7 @@ packages=(
   libblosc-dev libboost-iostreams-dev                 # what OpenVDB's CMake module asks for, and zlib
   libboost-dev                                        # Boost.Beast, headers: the viewer's server
   libopenexr-dev libimath-dev python3-imath           # EXR; Imath's CMake config names a Python library
-  libopenimageio-dev openimageio-tools                # textures and PNG; its CMake config names its tools
+  libpng-dev libjpeg-dev                              # textures and previews
   libassimp-dev                                       # mesh files
   libglm-dev libtbb-dev                               # vectors, threads
   libeigen3-dev                                       # columns of light in clusters; what ours is tested against

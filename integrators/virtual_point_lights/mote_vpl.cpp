@@ -150,6 +150,7 @@ void MoteVpl::plan_choice_of_vpls(Plan& plan, const Scene& scene, const Requirem
                           r.media_heterogeneous == 0};
     settings_.selection->plan(plan, {size.vpls, size.receivers * size.points});
     plan_selection_advice(plan, size);
+    if (settings_.selection->takes_all() && settings_.interleaving == 1) warn_of_long_passes(plan, size);
 }
 
 void MoteVpl::plan_bound(Plan& plan, const Bounds3& surfaces) const {

@@ -16,7 +16,11 @@ constexpr double ray_nanoseconds = 60.0;
 constexpr double few_lights = 500.0;   // a cut evaluates as many
 constexpr double some_lights = 1e4;    // 64 samples leave more error than their gather saves
 constexpr double few_seconds = 1.0;    // of brute force: not worth an error
+constexpr double patience = 30.0;      // seconds of brute force that a user should know of
 constexpr double media_decide = 0.45;  // optical depth: the smoke room has 0.57, the atrium 0.34
+
+double rays_of(const GatherSize& size) { return size.vpls * size.receivers * size.points; }
+double seconds_of(const GatherSize& size) { return rays_of(size) * ray_nanoseconds * 1e-9; }
 
 struct Advice {
     std::string best, why;
@@ -26,8 +30,7 @@ struct Advice {
 Advice recommended(const GatherSize& size) {
     if (size.vpls < few_lights)
         return {"all", fmt::format("{:.0f} VPLs are fewer than a hierarchy would evaluate", size.vpls)};
-    const double rays = size.vpls * size.receivers * size.points;
-    const double seconds = rays * ray_nanoseconds * 1e-9;
+    const double rays = rays_of(size), seconds = seconds_of(size);
     const std::string cost = fmt::format(
         "all of about {:.2g} VPLs at {:.2g} receivers are {:.2g} shadow rays, {:.2g} s of processor time",
         size.vpls, size.receivers * size.points, rays, seconds);
@@ -94,6 +97,15 @@ void plan_selection_advice(Plan& plan, const GatherSize& size) {
     const auto [best, why] = recommended(size);
     plan.run("selection for this scene", best, why);
     plan_ray_lights(plan, size);
+}
+
+void warn_of_long_passes(Plan& plan, const GatherSize& size) {
+    if (seconds_of(size) < patience) return;
+    plan.costly.push_back(
+        fmt::format("a pass is about {:.2g} shadow rays, {:.0f} s of processor time at the least, several "
+                    "times as many in media that "
+                    "vary: fewer paths a pass, or the selection {}",
+                    rays_of(size), seconds_of(size), recommended(size).best));
 }
 
 }  // namespace mote::integrators

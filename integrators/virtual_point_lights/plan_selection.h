@@ -24,4 +24,7 @@ double depth_of_media(const core::Scene& scene);
 /// they use before they trace a ray, and that is worth most where most lights are hidden.
 void plan_selection_advice(core::Plan& plan, const GatherSize& size);
 
+/// For receivers that take all VPLs: a warning where a pass takes more than half a minute of one processor.
+void warn_of_long_passes(core::Plan& plan, const GatherSize& size);
+
 }  // namespace mote::integrators

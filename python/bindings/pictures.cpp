@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "core/film/exposure.h"
+#include "core/formats/meshes/text_scanner.h"
 #include "core/formats/pictures/image_file.h"
 #include "core/math/srgb.h"
 #include "core/metrics/series_error.h"
@@ -35,16 +36,33 @@ void write_layer(Picture& picture, const std::string& name, const Pixels& values
                        int(values.shape(2)), std::span(values.data(), values.size()));
 }
 
-nb::bytes png(const Picture& picture, const std::string& layer, std::optional<float> exposure) {
+/// A layer of colours as 8-bit sRGB, row by row; none: the exposure adapts to the picture.
+std::vector<std::uint8_t> srgb_bytes(const Picture& picture, const std::string& layer,
+                                     std::optional<float> exposure) {
     const core::ImageChannels& image = picture.rendered.image;
-    std::vector<core::Rgb> pixels = image.rgb(layer == session::beauty_layer ? "" : layer);
+    const std::vector<core::Rgb> pixels = image.rgb(layer == session::beauty_layer ? "" : layer);
     if (pixels.empty()) throw core::InputError("'" + core::printable(layer) + "' is no layer of R, G and B");
     const float scale = std::exp2(exposure ? *exposure : core::adapted_exposure(pixels));
     std::vector<std::uint8_t> bytes;
     for (const core::Rgb& p : pixels)
         for (int c = 0; c < 3; ++c)
             bytes.push_back(core::encode_srgb(std::isfinite(p[c]) ? scale * p[c] : 0.0f));
-    const std::vector<std::byte> file = core::encode_png(image.width, image.height, bytes, true);
+    return bytes;
+}
+
+nb::object srgb(const Picture& picture, const std::string& layer, std::optional<float> exposure) {
+    auto* bytes = new std::vector<std::uint8_t>(srgb_bytes(picture, layer, exposure));
+    const nb::capsule owner(bytes,
+                            [](void* p) noexcept { delete static_cast<std::vector<std::uint8_t>*>(p); });
+    const core::ImageChannels& image = picture.rendered.image;
+    return nb::cast(nb::ndarray<nb::numpy, std::uint8_t>(
+        bytes->data(), {std::size_t(image.height), std::size_t(image.width), 3}, owner));
+}
+
+nb::bytes png(const Picture& picture, const std::string& layer, std::optional<float> exposure) {
+    const core::ImageChannels& image = picture.rendered.image;
+    const std::vector<std::byte> file =
+        core::encode_png(image.width, image.height, srgb_bytes(picture, layer, exposure), true);
     return nb::bytes(file.data(), file.size());
 }
 
@@ -145,6 +163,15 @@ Picture read_picture(const std::string& path) {
     const nb::gil_scoped_release without_gil;
     Picture picture;
     picture.rendered.image = core::read_exr(path);
+    const auto& known = picture.rendered.image.metadata;
+    const auto number = [&known](const char* name) {
+        const auto found = known.find(name);
+        return found == known.end() ? std::nullopt : core::TextScanner::parse_number(found->second);
+    };
+    if (const auto passes = number("passes"); passes && *passes >= 0.0 && *passes <= 4294967295.0)
+        picture.rendered.passes = std::uint32_t(*passes);
+    if (const auto noise = number("noise"); noise && *noise >= 0.0) picture.rendered.noise = *noise;
+    picture.rendered.interrupted = known.contains("partOfFirstPass");
     return picture;
 }
 
@@ -180,6 +207,7 @@ void bind_pictures(nb::module_& m) {
         .def("layers", &layers)
         .def("read_layer", &read_layer, nb::arg("name"))
         .def("write_layer", &write_layer, nb::arg("name"), nb::arg("values"))
+        .def("srgb", &srgb, nb::arg("layer"), nb::arg("exposure").none())
         .def("png", &png, nb::arg("layer"), nb::arg("exposure").none())
         .def("compensate", &compensate, nb::arg("bound"), nb::arg("steps"), nb::arg("flat"),
              nb::arg("half_resolution"), nb::arg("blur"), nb::arg("replace"))

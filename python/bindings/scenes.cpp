@@ -1,6 +1,7 @@
 // Scenes: building element by element, loading, plans; and the manual pages.
 #include "python/bindings/bindings.h"
 #include "session/registry.h"
+#include "viewer/scene_knobs.h"
 
 namespace mote::python {
 
@@ -44,16 +45,35 @@ void add_grid(SceneTree& tree, const std::string& name, const Floats& values, co
     tree.arrays().add_grid(name, std::move(grid));
 }
 
+using Files = std::vector<std::string>;
 using Defines = std::vector<std::pair<std::string, std::string>>;
 
 /// Loading takes long: other threads of Python run meanwhile.
 template <typename Load>
-LoadedScene load(const std::string& integrator, const Defines& defines, bool lenient, const Load& load_now) {
-    const session::SceneChanges changes{integrator, defines, lenient};
+LoadedScene load(const session::SceneChanges& changes, const Load& load_now) {
     const nb::gil_scoped_release without_gil;
     LoadedScene loaded = load_now(changes);
     loaded.integrator();  // what is missing is said now
     return loaded;
+}
+
+/// An element and all below it: (tag, {attribute: text}, [elements]).
+nb::tuple element(const core::Element& e) {
+    nb::dict attributes;
+    for (const auto& [name, text] : e.attributes) attributes[name.c_str()] = text;
+    nb::list children;
+    for (const core::Element& child : e.children) children.append(element(child));
+    return nb::make_tuple(e.tag, attributes, children);
+}
+
+/// The scene with further definitions; those of the same path take the place of earlier ones.
+LoadedScene changed(const LoadedScene& scene, const Defines& defines) {
+    session::SceneChanges changes = scene.changes();
+    for (const auto& [path, value] : defines) {
+        std::erase_if(changes.defines, [&path = path](const auto& earlier) { return earlier.first == path; });
+        changes.defines.emplace_back(path, value);
+    }
+    return load(changes, [&](const auto& now) { return scene.reloaded(now); });
 }
 
 nb::list entries(const std::vector<core::PlanEntry>& list) {
@@ -116,35 +136,44 @@ void bind_scenes(nb::module_& m) {
     nb::class_<LoadedScene>(m, "LoadedScene", "A scene that is ready to be rendered.")
         .def_static(
             "from_file",
-            [](const std::string& path, const std::string& integrator, const Defines& defines, bool lenient) {
-                return load(integrator, defines, lenient,
+            [](const std::string& path, const std::string& integrator, const Defines& defines, bool lenient,
+               const Files& plugins) {
+                return load({integrator, defines, lenient, {}, plugins},
                             [&](const auto& changes) { return LoadedScene::from_file(path, changes); });
             },
-            nb::arg("path"), nb::arg("integrator"), nb::arg("defines"), nb::arg("lenient"))
+            nb::arg("path"), nb::arg("integrator"), nb::arg("defines"), nb::arg("lenient"),
+            nb::arg("plugins"))
         .def_static(
             "from_text",
             [](const std::string& xml, const std::string& folder, const std::string& name,
-               const std::string& integrator, const Defines& defines, bool lenient) {
-                return load(integrator, defines, lenient, [&](const auto& changes) {
+               const std::string& integrator, const Defines& defines, bool lenient, const Files& plugins) {
+                return load({integrator, defines, lenient, {}, plugins}, [&](const auto& changes) {
                     return LoadedScene::from_text(xml, folder, changes, name);
                 });
             },
             nb::arg("xml"), nb::arg("folder"), nb::arg("name"), nb::arg("integrator"), nb::arg("defines"),
-            nb::arg("lenient"))
+            nb::arg("lenient"), nb::arg("plugins"))
         .def_static(
             "from_tree",
-            [](const SceneTree& tree, const std::string& integrator, const Defines& defines, bool lenient) {
-                return load(integrator, defines, lenient,
+            [](const SceneTree& tree, const std::string& integrator, const Defines& defines, bool lenient,
+               const Files& plugins) {
+                return load({integrator, defines, lenient, {}, plugins},
                             [&](const auto& changes) { return LoadedScene::from_tree(tree, changes); });
             },
-            nb::arg("tree"), nb::arg("integrator"), nb::arg("defines"), nb::arg("lenient"))
+            nb::arg("tree"), nb::arg("integrator"), nb::arg("defines"), nb::arg("lenient"),
+            nb::arg("plugins"))
+        .def("changed", &changed, nb::arg("defines"))
+        .def("elements", [](const LoadedScene& s) { return element(s.elements()); })
+        .def("xml", [](const LoadedScene& s) { return viewer::scene_xml(s.elements()); })
+        .def_prop_ro("defines", [](const LoadedScene& s) { return s.changes().defines; })
+        .def_prop_ro("plugins", [](const LoadedScene& s) { return s.changes().plugins; })
         .def_prop_ro("width", [](const LoadedScene& s) { return s.scene().film().width; })
         .def_prop_ro("height", [](const LoadedScene& s) { return s.scene().film().height; })
         .def_prop_ro("sample_count", [](const LoadedScene& s) { return s.scene().film().sample_count; })
         .def_prop_ro("integrator", [](const LoadedScene& s) { return s.integrator().type(); })
         .def_prop_ro("files", [](const LoadedScene& s) { return s.scene().parts().input_files; })
         .def_prop_ro("warnings", &LoadedScene::warnings)
-        .def_prop_ro("hash", &LoadedScene::scene_hash)
+        .def_prop_ro("hash", [](const LoadedScene& s) { return s.scene_hash(); })
         .def("plan_text", [](const LoadedScene& s) { return s.plan().to_text(); })
         .def("plan", [](const LoadedScene& s) {
             const core::Plan plan = s.plan();

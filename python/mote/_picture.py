@@ -59,13 +59,20 @@ class Picture(Mapping):
 
     @classmethod
     def load(cls, path: Union[str, Path]) -> Picture:
-        """Reads an OpenEXR file. Raises mote.Error."""
+        """Reads an OpenEXR file; of one that mote wrote also passes, noise and the order of the layers. Raises mote.Error."""
         return cls._of(_mote.Picture.read(path_text(path)))
 
     def save(self, path: Union[str, Path], half: bool = False) -> None:
-        """Writes an OpenEXR file, as float32 or (half) float16. Raises mote.Error, also for a name that does not end in
-        .exr: png() makes a PNG."""
-        self._picture.save(path_text(path), half)
+        """Writes all layers to an OpenEXR file, as float32 or (half) float16, or the beauty to a PNG, as png() makes it. Raises
+        mote.Error, also for a name that ends neither in .exr nor in .png."""
+        text = path_text(path)
+        if not text.lower().endswith(".png"):
+            self._picture.save(text, half)
+            return
+        try:
+            Path(text).write_bytes(self.png())
+        except OSError as problem:
+            raise _errors.Error(f"{text}: cannot be written: {problem.strerror}") from problem
 
     def copy(self) -> Picture:
         return Picture._of(self._picture.copy())
@@ -148,6 +155,13 @@ class Picture(Mapping):
     def png(self, layer: str = "beauty", exposure: Optional[float] = None) -> bytes:
         """A PNG file of a layer. `exposure` in stops; none: it adapts to the picture."""
         return self._picture.png(layer, exposure)
+
+    def srgb(self, layer: str = "beauty", exposure: Optional[float] = None) -> np.ndarray:
+        """The pixels of png(): 8-bit sRGB (height, width, 3), as matplotlib's imshow takes them."""
+        return self._picture.srgb(layer, exposure)
+
+    def _ipython_key_completions_(self) -> List[str]:
+        return self.layers
 
     def show(self, layer: str = "beauty", against: Optional[Picture] = None, exposure: Optional[float] = None) -> Shown:
         """A layer for a notebook to display. against: the signed difference to the same layer of another picture: red where

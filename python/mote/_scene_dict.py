@@ -147,7 +147,8 @@ def texts_of(parameters: Mapping[str, Any]) -> List[Tuple[str, str]]:
     def text(value: Any) -> str:
         if isinstance(value, (bool, np.bool_)):
             return "true" if value else "false"
+        value = getattr(value, "matrix", value)  # of a transform
         if isinstance(value, (list, tuple, np.ndarray)):
-            return ", ".join(repr(float(x)) for x in value)
+            return ", ".join(repr(float(x)) for x in np.ravel(value))
         return str(value)
     return [(name.replace("__", "."), text(value)) for name, value in parameters.items()]

@@ -22,7 +22,7 @@ namespace mote::screenspace {
 
 /// First surface or medium along the ray of a pixel.
 struct UpsamplingPoint {
-    core::Vec3 position{0.0f};
+    core::Vec3 position{0.0f};                      ///< [m]
     core::Vec3 normal{0.0f}, shading_normal{0.0f};  ///< unit, towards the viewer
     float footprint = 0.0f;                         ///< of a pixel there, across the ray [m]
     float distance = FilterFeatures::far;           ///< of the surface along the ray [m]; of volumes alone
@@ -33,10 +33,12 @@ struct UpsamplingPoint {
 
 /// Every `spacing`-th pixel in both directions, from (column, row) on.
 struct ShadedLattice {
-    int spacing = 1, column = 0, row = 0;
+    int spacing = 1, column = 0, row = 0;  ///< [pixels]
+    /// True for a pixel of the lattice.
     bool holds(int x, int y) const { return (x - column) % spacing == 0 && (y - row) % spacing == 0; }
 };
 
+/// Weights of the neighbours of every pixel.
 class Upsampling {
   public:
     /// Points row by row from the top; they are kept by reference. Throws std::invalid_argument unless sizes

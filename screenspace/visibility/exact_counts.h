@@ -11,18 +11,22 @@
 
 namespace mote::screenspace {
 
+/// The pixels of an item in a rectangle.
 struct VisibilityQuery {
-    std::uint32_t item = no_item;
-    PixelRectangle rectangle;  ///< what reaches beyond the picture has no pixels
+    std::uint32_t item = no_item;  ///< its number
+    PixelRectangle rectangle;      ///< what reaches beyond the picture has no pixels
 };
 
+/// Runs of pixels by item.
 class ExactCounts {
   public:
     /// A picture of items below `items`, or no_item. Throws std::invalid_argument and std::out_of_range as
     /// ItemHistogram does.
     ExactCounts(const IdPicture& picture, std::uint32_t items);
 
+    /// Number of items.
     std::uint32_t items() const { return std::uint32_t(first_.size() - 1); }
+    /// Pixels in the whole picture.
     std::uint32_t pixels(std::uint32_t item) const { return pixels_[item]; }
     /// Throws std::out_of_range where there is no such item.
     std::uint32_t pixels(const VisibilityQuery& query) const;

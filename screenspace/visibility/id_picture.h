@@ -17,24 +17,30 @@ inline constexpr std::uint32_t no_item = 0xffffffffu;
 
 /// Pixels x0 <= x < x1 and y0 <= y < y1; none where an end is not above its beginning.
 struct PixelRectangle {
-    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  ///< ends
 
+    /// No pixel.
     bool empty() const { return x1 <= x0 || y1 <= y0; }
+    /// Pixels.
     std::int64_t area() const { return empty() ? 0 : std::int64_t(x1 - x0) * (y1 - y0); }
-    bool operator==(const PixelRectangle&) const = default;
+    bool operator==(const PixelRectangle&) const = default;  ///< same ends
 };
 
+/// Pixels of both.
 inline PixelRectangle intersection(const PixelRectangle& a, const PixelRectangle& b) {
     return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
 }
+/// True where they share a pixel.
 inline bool overlap(const PixelRectangle& a, const PixelRectangle& b) { return !intersection(a, b).empty(); }
 
 /// Items row by row from the top. May be empty.
 struct IdPicture {
-    int width = 0, height = 0;
-    std::span<const std::uint32_t> items;
+    int width = 0, height = 0;             ///< [pixels]
+    std::span<const std::uint32_t> items;  ///< by pixel
 
+    /// First item of a row.
     const std::uint32_t* row(int y) const { return items.data() + std::size_t(y) * std::size_t(width); }
+    /// All pixels.
     PixelRectangle frame() const { return {0, 0, width, height}; }
 };
 

@@ -10,10 +10,12 @@
 
 namespace mote::screenspace {
 
+/// Octagon that holds every pixel of an item.
 struct ItemBounds {
-    PixelRectangle rectangle;
-    // Smallest and largest x + y and x - y of the pixels.
+    PixelRectangle rectangle;  ///< that holds them
+    /// Smallest and largest x + y of the pixels.
     int sum0 = std::numeric_limits<int>::min(), sum1 = std::numeric_limits<int>::max();
+    /// Smallest and largest x - y.
     int difference0 = std::numeric_limits<int>::min(), difference1 = std::numeric_limits<int>::max();
 
     /// False only if the octagon has no pixel in `r`, part of its rectangle.

@@ -10,6 +10,7 @@
 
 namespace mote::screenspace {
 
+/// Summed areas of the channels, and the region sets of the items.
 class RegionQueries {
   public:
     /// One entry of `bounds` an item. Throws std::invalid_argument where sizes or settings do not fit, or a
@@ -17,10 +18,11 @@ class RegionQueries {
     RegionQueries(const IdPicture& picture, std::span<const ItemBounds> bounds,
                   const RegionSettings& settings = {});
 
+    /// Regions of every item.
     const RegionSets& sets() const { return sets_; }
     /// In the whole picture, and in a rectangle. The item must exist.
     std::uint32_t pixels(std::uint32_t item) const;
-    std::uint32_t pixels(const VisibilityQuery& query) const;
+    std::uint32_t pixels(const VisibilityQuery& query) const;  ///< in a rectangle
 
   private:
     void paint(const IdPicture& picture);

@@ -97,6 +97,17 @@ TEST_CASE("Plans choose a selection by lights, receivers and media, and say why"
     CHECK(integrators::depth_of_media(*dark) == 0.0);
 }
 
+TEST_CASE("Plans warn of passes that take long, where every receiver takes all VPLs",
+          "[vpl][selection][plan]") {
+    const auto scene = scene_from(box(grey, ""), 512);
+    // 3 VPLs a path at 2^18 receivers, 60 ns a ray: 30 s are 636 paths.
+    CHECK(plan_of(*scene, vpl(600)).costly.empty());
+    const core::Plan slow = plan_of(*scene, vpl(1024));
+    REQUIRE(slow.costly.size() == 1);
+    CHECK_THAT(slow.costly.front(), ContainsSubstring("8.1e+08 shadow rays, 48 s of processor time"));
+    CHECK(plan_of(*scene, vpl(1024, R"(<selection type="stochastic_lightcuts"/>)")).costly.empty());
+}
+
 TEST_CASE("Plans say what is selected, and what it takes", "[vpl][selection][plan]") {
     const auto scene = scene_from(box(grey, fog("0.8, 1.0, 1.3", "")), 64);
     const auto plan_text = [&](const std::string& selection, int paths = 100000) {

@@ -72,7 +72,7 @@ libraries = check_libraries(root / "usr/bin/mote", depends(command))
 libraries += check_libraries(root / "usr/libexec/mote/mote_grid_reader", depends(command))
 config = next(root.rglob("mote-config.cmake")).read_text()
 homes = {"TBB": "libtbb-dev", "glm": "libglm-dev", "embree": "libembree-dev", "fmt": "libfmt-dev",
-         "pugixml": "libpugixml-dev", "OpenEXR": "libopenexr-dev", "OpenImageIO": "libopenimageio-dev",
+         "pugixml": "libpugixml-dev", "OpenEXR": "libopenexr-dev", "PNG": "libpng-dev", "JPEG": "libjpeg-dev",
          "assimp": "libassimp-dev", "ZLIB": "zlib1g-dev"}
 for name in re.findall(r"find_dependency\((\w+)", config):
     if name != "Threads" and homes.get(name) not in depends(dev):

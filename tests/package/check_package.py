@@ -53,6 +53,9 @@ def install():
         shutil.rmtree(work / folder, ignore_errors=True)
     run("cmake", "--install", arguments.build, "--prefix", work / "installed")
     (work / "installed").rename(work / "moved")
+    for written in ("man/man1/mote-render.1", "bash-completion/completions/mote", "zsh/site-functions/_mote"):
+        if not (work / "moved/share" / written).is_file():
+            fail(f"share/{written} is not installed")
     return work / "moved"
 
 
@@ -63,7 +66,7 @@ def check_headers(include):
         for line in re.findall(r'#include "([^"]+)"', header.read_text()):
             if not line.startswith("mote/") or not (include / line).exists():
                 fail(f"{header} includes {line}")
-        for private in re.findall(r"#include <((?:fmt|nlohmann|nanovdb|openvdb|OpenEXR|OpenImageIO|pugixml)[^>]*)>",
+        for private in re.findall(r"#include <((?:fmt|nlohmann|nanovdb|openvdb|OpenEXR|png|jpeglib|pugixml)[^>]*)>",
                                   header.read_text()):
             fail(f"{header} includes {private}, which is private")
     stray = [p.name for p in include.iterdir() if p.name != "mote"]
@@ -118,6 +121,32 @@ def check_examples(build, prefix):
                 "render_scene": [box, work / "box.exr", 1, "film.width=32", "film.height=24"],
                 "render_from_c": [box, work / "box_of_c.exr", 1, "film.width", 32, "film.height", 24]}.get(folder.name, [])
         print(f"{folder.name}: {run(examples / folder.name / folder.name, *more).splitlines()[-1]}")
+
+
+def check_pkg_config(prefix):
+    """Examples by hand, with what the .pc files say; a component names no library that it does not use."""
+    if not shutil.which("pkg-config"):
+        print("no pkg-config: not tested")
+        return
+    environment["PKG_CONFIG_PATH"] = str(next(prefix.glob("lib*/**/pkgconfig")))
+    flags = {name: run("pkg-config", "--static", "--cflags", "--libs", name).split()
+             for name in ("mote", "mote-screenspace", "mote-c")}
+    for unused in ("-lassimp", "-lpng", "-lpugixml", "-lOpenEXR"):
+        if unused in flags["mote-screenspace"] or unused in flags["mote-c"]:
+            fail(f"mote-screenspace.pc or mote-c.pc names {unused}")
+        if not any(flag.startswith(unused) for flag in flags["mote"]):
+            fail(f"mote.pc does not name {unused}")
+    for name, package, compiler in (("epipolar_sampling.cpp", "mote-screenspace", [arguments.compiler, "-std=c++20"]),
+                                    ("render_loop.cpp", "mote", [arguments.compiler, "-std=c++20"]),
+                                    ("render_from_c.c", "mote-c", ["cc"])):
+        source = arguments.source / "examples" / name.split(".")[0] / name
+        program = work / name.split(".")[0]
+        run(*compiler, source, "-o", program, *flags[package])
+        if package == "mote-c":
+            environment["LD_LIBRARY_PATH"] = str(next(prefix.rglob("libmote_c.so")).parent)
+        words = [arguments.source / "scenes/cornell_box.xml", work / "by_hand.exr", 1, "film.width", 32] if package == "mote-c" else []
+        print(f"{name} by hand: {run(program, *words).splitlines()[-1]}")
+    del environment["PKG_CONFIG_PATH"], environment["LD_LIBRARY_PATH"]
 
 
 def check_plugins(build, prefix):
@@ -176,6 +205,7 @@ if version.split()[-1] != layouts.split()[1]:
     fail(f"the command says {version}, the headers {layouts.split()[1]}")
 check_examples(build, prefix)
 check_plugins(build, prefix)
+check_pkg_config(prefix)
 check_helper(build, prefix)
 check_guest()
 if arguments.headers:

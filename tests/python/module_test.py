@@ -274,9 +274,9 @@ class ModuleTest(unittest.TestCase):
             picture.save(str(Path(self.folder.name) / "a\0b.exr"))
         with self.assertRaises(ValueError):
             mote.load("scene\0.xml")
-        with self.assertRaisesRegex(mote.Error, "p.png"):
-            picture.save(Path(self.folder.name) / "p.png")
-        self.assertFalse((Path(self.folder.name) / "p.png").exists())
+        with self.assertRaisesRegex(mote.Error, "p.jpg"):
+            picture.save(Path(self.folder.name) / "p.jpg")
+        self.assertFalse((Path(self.folder.name) / "p.jpg").exists())
         for every in (float("nan"), -1.0, float("inf")):
             with self.assertRaises(ValueError):
                 mote.render(self.scene, passes=1, checkpoint_every=every)
@@ -443,8 +443,128 @@ class ModuleTest(unittest.TestCase):
         summary = mote.trade(self.path, methods, output=Path(self.folder.name) / "trade", passes=2, seeds=1,
                              reference=self.reference(), resolve=0.5)
         self.assertEqual({m["name"] for m in summary["methods"]}, {"paths", "points"})
+        self.figures(Path(self.folder.name) / "trade")
         with self.assertRaisesRegex(mote.Error, "did you mean"):
             mote.trade(self.path, [{"name": "x", "integrator": "paht"}], output=Path(self.folder.name) / "other", passes=1)
+
+    def figures(self, trade):
+        """Figures of a trade, with another renderer among the methods; the bars are those of Student's t."""
+        from mote import plot
+        columns = "method,seed,passes,wall_s,error,final\n"
+        rows = [f"other,{seed},4,{seconds},{error},1\n" for seed, seconds, error in ((1, 1, 0.1), (2, 2, 0.2), (3, 3, 0.3))]
+        (trade / "other.peer.csv").write_text(columns + "".join(rows))
+        point, = plot.curves(trade)["other"]
+        half = 4.303 * 0.1 / 3 ** 0.5
+        self.assertTrue(np.allclose(point, (2, 0.2, 0.2 - half, 0.2 + half, 3)))
+        self.assertTrue(np.allclose(plot.curves(trade, "range")["other"], (2, 0.2, 0.1, 0.3, 3)))
+        style = {"methods": {"paths": {"hide": True}, "other": {"label": "Other 100 %", "color": "#123456"}}, "order": ["other"]}
+        plot.plot(trade, trade / "figure.tex", style)
+        text = (trade / "figure.tex").read_text()
+        self.assertIn("\\definecolor{mote0}{HTML}{123456}", text)
+        self.assertLess(text.index("Other 100 \\%"), text.index("{points}"))
+        self.assertNotIn("{paths}", text)
+        for wrong in ({"colour": 1}, {"methods": {"pahts": {}}}, {"methods": {"paths": {"colour": ""}}}, {"bars": "some"}):
+            with self.assertRaises(ValueError):
+                plot.plot(trade, trade / "none.tex", wrong)
+        try:
+            import matplotlib  # noqa: F401
+        except ImportError:
+            return
+        for name, begin in (("figure.pdf", b"%PDF"), ("figure.svg", b"<?xml")):
+            plot.plot(trade, trade / name, style)
+            self.assertTrue((trade / name).read_bytes().startswith(begin))
+
+    def test_trade_of_scenes(self):
+        """A scene with its changes, of a file, of text and of a dictionary: the errors of the same renders are the same."""
+        files = {}
+        for name, scene in (("file", mote.load(self.path)), ("text", mote.load_string(SCENE)), ("dictionary", mote.Scene(dictionary()))):
+            scene["integrator"]["paths"] = 32
+            output = Path(self.folder.name) / f"trade_{name}"
+            summary = mote.trade(scene, [{"name": "points", "integrator": "mote_vpl"}], output=output, passes=2, seeds=1,
+                                 resolve=1)
+            self.assertEqual(len(summary["methods"]), 1)
+            files[name] = output
+        self.assertNotIn("array", (files["text"] / "scene.xml").read_text())
+        self.assertIn('value="32"', (files["dictionary"] / "scene.xml").read_text())
+        with self.assertRaisesRegex(mote.Error, "arrays"):
+            ball = {"type": "arraymesh", "positions": np.eye(3), "triangles": [[0, 1, 2]]}
+            mote.trade(mote.Scene({**dictionary(), "mesh": ball}), output=Path(self.folder.name) / "none", passes=1)
+
+    def test_changes(self):
+        """Parameters by name: read, set, completed; the bits are those of a scene loaded with the same changes."""
+        scene = mote.Scene(dictionary())
+        self.assertEqual(set(scene), {"integrator", "sensor", "white", "floor", "ball", "lamp"})
+        self.assertEqual(scene["lamp"]["position"], (1, 3, 2))
+        self.assertEqual(scene["ball"].radius, 0.5)
+        self.assertEqual(scene["sensor"]["film"]["width"], 40)
+        self.assertIs(scene["integrator"]["hide_emitters"], False)  # a default
+        self.assertIn("intensity", scene["lamp"]._ipython_key_completions_())
+        self.assertIn("position", dir(scene["lamp"]))
+        scene["lamp"]["position"] = (0, 4, 2)
+        scene["ball"].radius = 0.25
+        scene["floor"].to_world = T().rotate([1, 0, 0], -90).scale(4)
+        self.assertEqual(scene["lamp"].position, (0, 4, 2))
+        other = dictionary()
+        other["lamp"]["position"], other["ball"]["radius"] = [0, 4, 2], 0.25
+        other["floor"]["to_world"] = T().rotate([1, 0, 0], -90).scale(4)
+        self.assertTrue(same_bits(mote.render(scene, passes=1), mote.render(mote.Scene(other), passes=1)))
+        with self.assertRaisesRegex(mote.Error, "position"):
+            scene["lamp"]["positoin"] = (0, 0, 0)
+        with self.assertRaises(KeyError):
+            scene["lump"]
+        with self.assertRaises(AttributeError):
+            scene["lamp"].nothing
+        self.assertEqual(scene["lamp"].position, (0, 4, 2))
+        self.assertIn("lamp", scene._repr_html_())
+        self.assertIn("<pre>", scene.plan()._repr_html_())
+        file = mote.load(self.path)
+        file["emitter"]["position"] = (0, 4, 2)
+        again = mote.load(self.path, define={"emitter.position": (0, 4, 2)})
+        self.assertEqual(file.hash, again.hash)
+
+    def test_grids_stay(self):
+        """A changed lamp does not read a grid again: its reader is gone by then. A changed file is read again."""
+        grid = Path(self.folder.name) / "ramp.vdb"
+        shutil.copy(ROOT / "tests/blender/ramp.vdb", grid)
+        fog = {"type": "cube", "interior": {"type": "heterogeneous", "sigma_t": {"type": "vdbvolume", "filename": str(grid)}}}
+        scene = mote.Scene({**dictionary(), "fog": fog})
+        os.environ["MOTE_GRID_READER"] = "/nowhere"
+        try:
+            scene["lamp"]["position"] = (0, 4, 2)
+            os.utime(grid, (1, 1))
+            with self.assertRaises(mote.Error):
+                scene["lamp"]["position"] = (0, 5, 2)
+        finally:
+            del os.environ["MOTE_GRID_READER"]
+        self.assertEqual(scene["lamp"]["position"], (0, 4, 2))
+
+    def test_pictures_of_files(self):
+        """What a file keeps of a picture, and previews."""
+        picture = mote.render(mote.load(self.path), passes=3)
+        folder = Path(self.folder.name)
+        picture.save(folder / "kept.exr")
+        kept = mote.Picture.load(folder / "kept.exr")
+        self.assertEqual((kept.passes, kept.interrupted), (3, False))
+        self.assertAlmostEqual(kept.noise, picture.noise, delta=1e-5 * picture.noise)
+        self.assertEqual(kept.layers, picture.layers)
+        self.assertNotEqual(kept.layers, sorted(kept.layers))
+        self.assertLessEqual(set(picture.metadata), set(kept.metadata))
+        self.assertEqual(kept._ipython_key_completions_(), kept.layers)
+        picture.save(folder / "kept.png")
+        self.assertEqual((folder / "kept.png").read_bytes(), picture.png())
+        shown = picture.srgb("direct", exposure=0.0)
+        self.assertEqual((shown.shape, shown.dtype), ((30, 40, 3), np.uint8))
+        expected = np.clip(picture["direct"], 0, 1)
+        expected = np.where(expected <= 0.0031308, 12.92 * expected, 1.055 * expected ** (1 / 2.4) - 0.055)
+        self.assertLessEqual(np.abs(shown - 255 * expected).max(), 0.51)
+        for name in ("kept.jpg", "missing/kept.png"):
+            with self.assertRaises(mote.Error):
+                picture.save(folder / name)
+
+    def test_command(self):
+        """python -m mote is the command."""
+        said = subprocess.run([sys.executable, "-m", "mote", "--version"], capture_output=True, text=True, check=True).stdout
+        self.assertEqual(said, f"mote {mote.__version__}\n")
 
     def test_plugins(self):
         """MOTE_PLUGINS holds for the module too, with the bits of the command."""
@@ -456,6 +576,9 @@ class ModuleTest(unittest.TestCase):
             del os.environ["MOTE_PLUGINS"]
         self.assertTrue(same_bits(ours, theirs))
         self.assertIn("indirect_ambient", ours)
+        plugin = Path(MOTE).parent / "stand_ins" / "my_integrator.so"
+        named = mote.load(self.path, integrator="my_ambient_occlusion", plugins=[plugin])
+        self.assertTrue(same_bits(ours, mote.render(named, passes=2, seed=5)))
         with self.assertRaisesRegex(mote.Error, "my_ambient_occlusion"):
             mote.load(self.path, integrator="my_ambient_occlusion")
 

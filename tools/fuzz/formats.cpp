@@ -140,9 +140,9 @@ Format mesh(const std::string& name, const std::string& extension, const std::ve
     return {name, extension, "assimp", read_mesh, [exported] { return exported_cubes(exported); }, {}};
 }
 
-Format picture(const std::string& name, const std::string& extension) {
-    return {name, extension, "OpenImageIO", read_picture, [extension] { return bitmap_seeds(extension); },
-            {}};
+Format picture(const std::string& name, const std::string& extension, std::vector<Bytes> (*seeds)(),
+               const std::string& reader = "mote") {
+    return {name, extension, reader, read_picture, seeds, {}};
 }
 
 Format textual(Format format) {
@@ -208,14 +208,14 @@ std::vector<Format> formats() {
     metadata.head = 2048;
     all.push_back(metadata);
     all.push_back({"exr", ".exr", "OpenEXR", read_picture, pictures, {}});
-    all.push_back(picture("png", ".png"));
+    all.push_back(picture("png", ".png", png_seeds, "libpng"));
     all.back().forge = forge_png;
-    all.push_back(picture("jpeg", ".jpg"));
-    all.push_back(picture("hdr", ".hdr"));
-    all.push_back(picture("pnm", ".ppm"));
-    all.push_back({"pfm", ".pfm", "OpenImageIO", read_picture, pfm_seeds, {}});
-    all.push_back(picture("bmp", ".bmp"));
-    all.push_back(picture("tga", ".tga"));
+    all.push_back(picture("jpeg", ".jpg", jpeg_seeds, "libjpeg"));
+    all.push_back(picture("hdr", ".hdr", hdr_seeds));
+    all.push_back(picture("pnm", ".ppm", pnm_seeds));
+    all.push_back(picture("pfm", ".pfm", pfm_seeds));
+    all.push_back(picture("bmp", ".bmp", bmp_seeds));
+    all.push_back(picture("tga", ".tga", targa_seeds));
     all.push_back({"vdb", ".vdb", "OpenVDB", read_vdb, [] { return std::vector<Bytes>(); }, {}});
     all.push_back(Format{"stl", ".stl", "assimp", read_mesh, stl_seeds, {}});
     all.push_back(mesh("glb", ".glb", {"glb2"}));

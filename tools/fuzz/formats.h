@@ -13,7 +13,7 @@ using Bytes = std::vector<std::uint8_t>;
 struct Format {
     std::string name;       ///< "ply", "checkpoint"
     std::string extension;  ///< of the file that is read, ".ply"
-    std::string reader;     ///< its reader, for the table: "mote", "OpenImageIO", "OpenEXR", ...
+    std::string reader;     ///< its reader, for the table: "mote", "libpng", "OpenEXR", ...
     /// Reads the file to the end of what mote does with it. Throws InputError where it refuses; whatever else
     /// it throws is a defect.
     std::function<void(const std::string& path)> read;

@@ -1,8 +1,6 @@
 // Sound files, small enough that an injury is likely to hit something that matters.
 #include "tools/fuzz/seeds.h"
 
-#include <OpenImageIO/imageio.h>
-
 #include <assimp/cexport.h>
 #include <assimp/Exporter.hpp>
 #include <assimp/Importer.hpp>
@@ -209,25 +207,6 @@ std::vector<Bytes> exr_seeds(const std::string& world_to_camera) {
                           {"worldToCamera", world_to_camera}};
         core::write_exr(file.path(), image, half);
         seeds.push_back(file.bytes());
-    }
-    return seeds;
-}
-
-std::vector<Bytes> bitmap_seeds(const std::string& extension) {
-    std::vector<Bytes> seeds;
-    const core::ImageChannels image = gradient(5, 4);
-    for (const int channels : {3, 1}) {
-        const ScratchFile file(extension);
-        const auto output = OIIO::ImageOutput::create(file.path());
-        if (!output) break;
-        const OIIO::ImageSpec spec(
-            5, 4, channels,
-            extension == ".hdr" || extension == ".pfm" ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
-        std::vector<float> values(std::size_t(20 * channels), 0.4f);
-        for (std::size_t i = 0; i < values.size(); i += 2) values[i] = image.channels[0][i % 20];
-        if (output->open(file.path(), spec) && output->write_image(OIIO::TypeDesc::FLOAT, values.data()) &&
-            output->close())
-            seeds.push_back(file.bytes());
     }
     return seeds;
 }

@@ -22,8 +22,13 @@ Bytes partial_film(std::uint32_t first, std::uint32_t end);
 std::vector<Bytes> partial_film_seeds();
 /// `world_to_camera`: 16 numbers.
 std::vector<Bytes> exr_seeds(const std::string& world_to_camera);
-/// A gradient as OpenImageIO writes it: "png", "jpeg", ...
-std::vector<Bytes> bitmap_seeds(const std::string& extension);
+/// Pictures of colours and grey, plain and packed (picture_seeds.cpp).
+std::vector<Bytes> png_seeds();
+std::vector<Bytes> jpeg_seeds();
+std::vector<Bytes> hdr_seeds();
+std::vector<Bytes> pnm_seeds();
+std::vector<Bytes> bmp_seeds();
+std::vector<Bytes> targa_seeds();
 /// A cube as assimp writes it: format "stlb", extension ".stl".
 std::vector<Bytes> exported_cubes(const std::vector<std::string>& formats);
 std::vector<Bytes> off_seeds();

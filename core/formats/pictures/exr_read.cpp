@@ -10,9 +10,12 @@
 #include <OpenEXR/ImfStringAttribute.h>
 
 #include <algorithm>
+#include <map>
 #include <new>
+#include <numeric>
 #include <sstream>
 
+#include "core/formats/pictures/channel_order.h"
 #include "core/formats/pictures/exr_preflight.h"
 #include "core/formats/pictures/image_file.h"
 #include "core/objects/error.h"
@@ -87,6 +90,27 @@ ImageChannels decode(const std::string& path, const ExrSummary& summary) {
     return image;
 }
 
+/// The order that the picture had when it was written; channels of others come last.
+void restore_order(ImageChannels& image) {
+    const auto found = image.metadata.find(channel_order);
+    if (found == image.metadata.end()) return;
+    std::map<std::string, std::size_t> places;
+    std::istringstream names(found->second);
+    for (std::string name; names >> name;) places.try_emplace(name, places.size());
+    std::vector<std::size_t> order(image.names.size());
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    const auto place = [&](std::size_t i) {
+        const auto at = places.find(image.names[i]);
+        return at == places.end() ? places.size() : at->second;
+    };
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return place(a) < place(b); });
+    ImageChannels sorted{image.width, image.height, {}, {}, std::move(image.metadata)};
+    for (const std::size_t i : order) sorted.add(image.names[i], std::move(image.channels[i]));
+    sorted.metadata.erase(channel_order);
+    image = std::move(sorted);
+}
+
 /// Converts exceptions of the library to an InputError that names the file once.
 template <typename Read>
 auto with_clear_errors(const std::string& path, const Read& read) {
@@ -110,14 +134,20 @@ auto with_clear_errors(const std::string& path, const Read& read) {
 
 ImageChannels read_exr(const std::string& path) {
     const ExrSummary summary = check_exr_header(path);
-    return with_clear_errors(path, [&] { return decode(path, summary); });
+    return with_clear_errors(path, [&] {
+        ImageChannels image = decode(path, summary);
+        restore_order(image);
+        return image;
+    });
 }
 
 std::map<std::string, std::string> read_exr_metadata(const std::string& path) {
     const ExrSummary summary = check_exr_header(path);
     return with_clear_errors(path, [&] {
         Imf::MultiPartInputFile file(path.c_str(), 0);
-        return read_metadata(Imf::InputPart(file, summary.part).header());
+        auto metadata = read_metadata(Imf::InputPart(file, summary.part).header());
+        metadata.erase(channel_order);
+        return metadata;
     });
 }
 

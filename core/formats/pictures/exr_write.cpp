@@ -16,6 +16,7 @@
 #include <thread>
 
 #include "core/files/atomic_file.h"
+#include "core/formats/pictures/channel_order.h"
 #include "core/formats/pictures/image_file.h"
 #include "core/objects/error.h"
 
@@ -73,6 +74,9 @@ Imf::Header make_header(const ImageChannels& image, bool use_half) {
     header.zipCompressionLevel() = 2;  // hardly larger than the default 4, and a Ctrl-C waits for it
     for (const std::string& name : image.names)
         header.channels().insert(name, Imf::Channel(use_half && !needs_float(name) ? Imf::HALF : Imf::FLOAT));
+    std::string order;
+    for (const std::string& name : image.names) order += (order.empty() ? "" : " ") + name;
+    header.insert(channel_order, Imf::StringAttribute(order));
     for (const auto& [name, text] : image.metadata)
         if (!insert_matrix(header, name, text)) header.insert(name, Imf::StringAttribute(text));
     return header;

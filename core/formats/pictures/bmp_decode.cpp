@@ -1,33 +1,48 @@
-// The walk over a BMP file (layout: BITMAPFILEHEADER and BITMAPINFOHEADER, learn.microsoft.com).
-#include "core/formats/pictures/bmp_preflight.h"
-
+// Windows bitmaps (layout: BITMAPFILEHEADER and BITMAPINFOHEADER, learn.microsoft.com): palettes, plain or in
+// runs, and colours of 16, 24 and 32 bits. Header, palette and every pixel are held against each other and
+// the size of the file.
+#include <array>
+#include <bit>
 #include <limits>
 #include <string>
 
+#include "core/formats/pictures/decoded_picture.h"
 #include "core/objects/error.h"
 
 namespace mote::core {
 
 namespace {
 
-constexpr std::int64_t bmp_file_header_bytes = 14, os2_bmp_header_bytes = 12;
+constexpr std::int64_t bmp_file_header_bytes = 14, os2_bmp_header_bytes = 12, fields_at = 54;
 enum BmpCompression : std::uint32_t { bmp_plain = 0, bmp_rle8 = 1, bmp_rle4 = 2, bmp_bit_fields = 3 };
 
 [[noreturn]] void damaged_bmp(const std::string& what) { throw InputError("damaged BMP file: " + what); }
 
-class BmpWalker {
-  public:
-    explicit BmpWalker(std::span<const std::byte> file) : file_(file) {}
+struct BmpHeader {
+    std::int64_t width = 0, height = 0;  ///< pixels
+    bool from_the_top = false;
+    std::int64_t bits = 0;     ///< per pixel: 1, 4, 8, 16, 24 or 32
+    std::int64_t colours = 0;  ///< in the palette; 0 without one
+    bool runs = false;         ///< run-length encoded
+};
 
-    BmpSummary run() {
+class BmpReader {
+  public:
+    explicit BmpReader(const PictureFile& file) : picture_file_(file), file_(file.bytes) {}
+
+    DecodedPicture run() {
         read_header();
         check_kind();
         read_palette_size();
-        if (found_.runs)
-            check_runs();
+        if (!found_.runs) check_rows();
+        picture_ = make_room(picture_file_, found_.width, found_.height, found_.bits == 32 ? 4 : 3, true);
+        if (found_.bits > 8)
+            read_colours();
+        else if (found_.runs)
+            read_runs();
         else
-            check_rows();
-        return found_;
+            read_indices();
+        return std::move(picture_);
     }
 
   private:
@@ -52,7 +67,7 @@ class BmpWalker {
         }
         found_.width = std::int32_t(u32(18)), found_.bits = u16(28), compression_ = u32(30);
         const std::int64_t height = std::int32_t(u32(22));  // negative: from the top
-        found_.height = height < 0 ? -height : height;
+        found_.height = height < 0 ? -height : height, found_.from_the_top = height < 0;
         declared_colours_ = u32(46);
     }
 
@@ -87,75 +102,100 @@ class BmpWalker {
                             std::to_string(size()) + " bytes");
         }
         if (pixels_ < palette_end_) damaged_bmp("its pixels begin within its header or palette");
-        // OpenImageIO decodes runs from the end of the palette, wherever the header says that they are.
-        if (found_.runs && pixels_ != palette_end_)
-            throw InputError("BMP file with a gap between palette and runs, which cannot be read");
     }
 
-    /// Rows of pixels, each padded to four bytes.
+    /// Rows of pixels are padded to four bytes each.
+    std::int64_t stride() const { return (found_.width * found_.bits + 31) / 32 * 4; }
     void check_rows() const {
-        const std::int64_t stride = (found_.width * found_.bits + 31) / 32 * 4;
-        if (pixels_ > size() || found_.height > (size() - pixels_) / stride)
+        if (pixels_ > size() || found_.height > (size() - pixels_) / stride())
             damaged_bmp(size_text() + " pixels do not fit in " + std::to_string(size()) + " bytes");
-        if (found_.bits > 8) return;
+    }
+    void read_indices() {
         const std::int64_t bits = found_.bits, per_byte = 8 / bits, mask = (1 << bits) - 1;
-        if (found_.colours > mask) return;  // every value has a colour
         for (std::int64_t y = 0; y < found_.height; ++y)
             for (std::int64_t x = 0; x < found_.width; ++x) {
-                const std::int64_t value = byte(pixels_ + y * stride + x / per_byte);
-                check_colour(value >> (8 - bits * (x % per_byte + 1)) & mask);
+                const std::int64_t value = byte(pixels_ + y * stride() + x / per_byte);
+                put_colour(x, y, value >> (8 - bits * (x % per_byte + 1)) & mask);
             }
+    }
+    void read_colours() {
+        const bool fields = compression_ == bmp_bit_fields;
+        std::array<std::uint32_t, 4> masks = {0xff0000u, 0xff00u, 0xffu, 0xff000000u};
+        if (found_.bits == 16) masks = {0x7c00u, 0x3e0u, 0x1fu, 0u};
+        for (std::size_t c = 0; fields && c < 3; ++c) masks[c] = u32(fields_at + 4 * std::int64_t(c));
+        for (std::int64_t y = 0; y < found_.height; ++y)
+            for (std::int64_t x = 0; x < found_.width; ++x) {
+                const std::int64_t at = pixels_ + y * stride() + x * found_.bits / 8;
+                const std::uint32_t value = found_.bits == 32   ? u32(at)
+                                            : found_.bits == 24 ? u16(at) | byte(at + 2) << 16
+                                                                : u16(at);
+                float* to = pixel(x, y);
+                for (int c = 0; c < picture_.channels; ++c) to[c] = masked(value, masks[std::size_t(c)]);
+            }
+    }
+    static float masked(std::uint32_t value, std::uint32_t mask) {
+        return mask == 0 ? 0.0f
+                         : fraction((value & mask) >> std::countr_zero(mask), mask >> std::countr_zero(mask));
     }
 
     /// Pairs of bytes: a run of one value, or an escape (0: end of line, 1: end of picture, 2: a step, more:
     /// so many values, padded to two bytes). RLE4 has two values in a byte.
-    void check_runs() const {
-        std::int64_t at = pixels_, y = 0;
+    void read_runs() {
+        for (std::int64_t y = 0; y < found_.height; ++y)  // pixels that are stepped over
+            for (std::int64_t x = 0; x < found_.width; ++x) put_colour(x, y, 0);
+        std::int64_t at = pixels_, x = 0, y = 0;
         for (;;) {
             const std::int64_t count = byte(at), value = byte(at + 1);
             at += 2;
             if (count == 0 && value == 1) return;
             if (count == 0 && value == 0) {
-                ++y;
+                ++y, x = 0;
             } else if (count == 0 && value == 2) {
-                y += byte(at + 1);
+                x += byte(at), y += byte(at + 1);
                 at += 2;
             } else {
                 if (y >= found_.height) damaged_bmp("runs beyond its last row");
-                if (count > 0) {
-                    check_values(value, count);
-                } else {
-                    const std::int64_t bytes = (value * found_.bits + 7) / 8;
-                    for (std::int64_t i = 0; i < bytes; ++i)
-                        check_values(byte(at + i), found_.bits == 8 ? 1 : value - 2 * i);
-                    at += (bytes + 1) / 2 * 2;
-                }
+                const bool single = count == 0;
+                for (std::int64_t i = 0, n = single ? value : count; i < n; ++i, ++x)
+                    put_colour(x, y,
+                               run_value(single ? byte(at + i * found_.bits / 8) : std::uint32_t(value), i));
+                if (single) at += ((value * found_.bits + 7) / 8 + 1) / 2 * 2;
             }
         }
     }
-    /// The first of up to `count` values in a byte of a run.
-    void check_values(std::int64_t byte, std::int64_t count) const {
-        if (found_.bits == 8) return check_colour(byte);
-        check_colour(byte >> 4);
-        if (count > 1) check_colour(byte & 15);
+    /// Value i of a run in this byte of it.
+    std::int64_t run_value(std::uint32_t byte, std::int64_t i) const {
+        return found_.bits == 8 ? byte : (i % 2 == 0 ? byte >> 4 : byte & 15u);
     }
-    void check_colour(std::int64_t index) const {
+    float* pixel(std::int64_t x, std::int64_t y) {
+        const std::int64_t row = found_.from_the_top ? y : found_.height - 1 - y;
+        return &picture_.values[std::size_t((row * found_.width + x) * picture_.channels)];
+    }
+    /// Pixels of a run past the end of its row are nowhere.
+    void put_colour(std::int64_t x, std::int64_t y, std::int64_t index) {
         if (index >= found_.colours)
             damaged_bmp("a pixel of colour " + std::to_string(index) + " in a palette of " +
                         std::to_string(found_.colours));
+        if (x >= found_.width) return;
+        const std::int64_t bytes = header_ == os2_bmp_header_bytes ? 3 : 4;
+        const std::int64_t at = bmp_file_header_bytes + header_ + index * bytes;
+        float* to = pixel(x, y);
+        for (std::int64_t c = 0; c < 3; ++c) to[c] = fraction(byte(at + 2 - c), 255);
     }
     std::string size_text() const {
         return std::to_string(found_.width) + " x " + std::to_string(found_.height);
     }
 
+    const PictureFile& picture_file_;
     std::span<const std::byte> file_;
-    BmpSummary found_;
+    BmpHeader found_;
+    DecodedPicture picture_;
     std::int64_t pixels_ = 0, header_ = 0, palette_end_ = 0, declared_colours_ = 0;
     std::uint32_t compression_ = bmp_plain;
 };
 
 }  // namespace
 
-BmpSummary check_bmp(std::span<const std::byte> file) { return BmpWalker(file).run(); }
+DecodedPicture decode_bmp(const PictureFile& file) { return BmpReader(file).run(); }
 
 }  // namespace mote::core

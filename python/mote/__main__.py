@@ -1,0 +1,4 @@
+"""python -m mote: the command."""
+from mote_command import main
+
+main()
