@@ -31,16 +31,16 @@ EpipolarPicture::EpipolarPicture(EpipolarLines lines, const LineSampling& settin
             const double weight = lines_.light_inside() ? double(s.texel) : 1.0;
             sum += weight * double(s.weight * max_component(s.light.radiance)), weights += weight;
         }
-    const float mean = weights > 0.0 ? float(sum / weights) : 0.0f;
+    mean_ = weights > 0.0 ? float(sum / weights) : 0.0f;
     loop(int(sampled_.size()), [&](int i) {
         const auto task = source.start();
-        sampled_[std::size_t(i)].finish(settings_, mean, *task);
+        sampled_[std::size_t(i)].finish(settings_, mean_, *task);
     });
 }
 
 /// The line's light at a position along it, where the end of the ray there continues `end`.
-std::optional<Rgb> EpipolarPicture::texel_light(const SampledLine& line, double texel, const RayEnd& end,
-                                                InScatteringTask& task) const {
+auto EpipolarPicture::texel_light(const SampledLine& line, double texel, const RayEnd& end,
+                                  InScatteringTask& task) const -> std::optional<TexelLight> {
     const auto& texels = line.texels();
     const double last = double(texels.size() - 1);
     if (texel < 0.0 || texel > last) return std::nullopt;
@@ -52,10 +52,14 @@ std::optional<Rgb> EpipolarPicture::texel_light(const SampledLine& line, double 
     const auto i = std::size_t(texel), j = std::min(i + 1, texels.size() - 1);
     const auto f = float(texel - double(i));
     const bool left = usable(i), right = usable(j);
-    if (left && right) return (1.0f - f) * texels[i].light + f * texels[j].light;
-    if (left) return texels[i].light;
-    if (right) return texels[j].light;
-    return std::nullopt;
+    if (!left && !right) return std::nullopt;
+    TexelLight found;
+    if (left) found.range.add(brightness(texels[i].light));
+    if (right) found.range.add(brightness(texels[j].light));
+    found.light = left && right ? (1.0f - f) * texels[i].light + f * texels[j].light
+                  : left        ? texels[i].light
+                                : texels[j].light;
+    return found;
 }
 
 EpipolarPicture::Tap EpipolarPicture::tap(std::size_t line, const Vec2d& film, double spacing,
@@ -66,7 +70,7 @@ EpipolarPicture::Tap EpipolarPicture::tap(std::size_t line, const Vec2d& film, d
     Tap result;
     result.distance = glm::length(film - sampled.line().at(fraction));
     if (const auto light = texel_light(sampled, texel, end, task)) {
-        result.light = *light, result.weight = 1.0f;
+        result.at = *light, result.weight = 1.0f;
         return result;
     }
     const double step =
@@ -74,9 +78,10 @@ EpipolarPicture::Tap EpipolarPicture::tap(std::size_t line, const Vec2d& film, d
     for (const double k : {-1.0, 1.0, -2.0, 2.0})
         if (const auto light = texel_light(sampled, texel + k * step, end, task)) {
             const auto weight = float(std::exp(-0.5 * k * k));  // w_G of Engelhardt 2013, Sec. 9.2.3
-            result.light += weight * *light, result.weight += weight;
+            result.at.light += weight * light->light, result.weight += weight;
+            result.at.range.add(light->range);
         }
-    if (result.weight > 0.0f) result.light /= result.weight;
+    if (result.weight > 0.0f) result.at.light /= result.weight;
     result.weight = std::min(result.weight, 1.0f);
     return result;
 }
@@ -101,7 +106,13 @@ std::optional<Rgb> EpipolarPicture::light_at(const Vec2d& film, const RayEnd& en
     const double fraction = total > 0.0 ? right.distance / total : 0.5;
     const double a = double(left.weight) * fraction, b = double(right.weight) * (1.0 - fraction);
     if (!(a + b > 0.1)) return std::nullopt;
-    return end.weight * Rgb((a * Vec3d(left.light) + b * Vec3d(right.light)) / (a + b));
+    if (settings_.tolerance > 0.0f) {
+        LightRange range;
+        if (a > 0.0) range.add(left.at.range);
+        if (b > 0.0) range.add(right.at.range);
+        if (range.is_edge(end.weight, mean_)) return std::nullopt;
+    }
+    return end.weight * Rgb((a * Vec3d(left.at.light) + b * Vec3d(right.at.light)) / (a + b));
 }
 
 PictureCounts EpipolarPicture::counts() const {

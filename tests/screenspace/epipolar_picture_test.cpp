@@ -52,6 +52,17 @@ class ShaftsTask final : public InScatteringTask {
     const Shafts& source_;
 };
 
+/// A medium that is a thousand times as bright below an edge that no depth shows.
+class BrightEdge final : public InScatteringSource, public InScatteringTask {
+  public:
+    static constexpr double edge = 40.2;
+    static Rgb light_of(const Vec2d& film) { return Rgb(film.y > edge ? 1000.0f : 1.0f); }
+    std::unique_ptr<InScatteringTask> start() const override { return std::make_unique<BrightEdge>(); }
+    Ray ray(const Vec2d& film) override { return Shafts::ray(film); }
+    RayEnd end_of(const Vec2d&) override { return {.distance = 4.0f}; }
+    MarchedRay march(const Vec2d& film, const RayEnd&) override { return {light_of(film), Rgb(1.0f)}; }
+};
+
 std::unique_ptr<InScatteringTask> Shafts::start() const { return std::make_unique<ShaftsTask>(*this); }
 
 const EpipolarPicture::Loop in_turn = [](int count, const std::function<void(int)>& body) {
@@ -133,6 +144,26 @@ TEST_CASE("Things that fall between lines are left to the caller", "[epipolar]")
     const Error e = epipolar(source, 8, {.initial = 16});
     CHECK(e.filled >= 1);
     CHECK(e.disc_worst == 0.0);
+}
+
+TEST_CASE("What is much brighter does not light the pixels beside it", "[epipolar]") {
+    const BrightEdge source;
+    const EpipolarPicture picture(EpipolarLines(light, frame, 200, 0.4), {}, source, in_turn);
+    const auto task = source.start();
+    int filled = 0;
+    double sum = 0.0, truth = 0.0;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const Vec2d film(x + 0.5, y + 0.5);
+            const auto found = picture.light_at(film, task->end_of(film), *task);
+            filled += !found;
+            const bool above = y < int(BrightEdge::edge);
+            if (above) sum += double(found.value_or(BrightEdge::light_of(film)).x);
+            if (above) truth += double(BrightEdge::light_of(film).x);
+        }
+    INFO(filled << " filled, mean above the edge " << sum / truth);
+    CHECK(std::abs(sum / truth - 1.0) < 1e-4);  // interpolation alone adds a tenth of the light below
+    CHECK(filled < 4 * width);
 }
 
 TEST_CASE("The cap holds, and what lies beyond it is left to the caller", "[epipolar]") {
