@@ -47,11 +47,12 @@ Plan MoteEpipolar::plan(const Scene& scene, const Requirements& r) const {
     plan.run("epipolar lines",
              fmt::format("{} for each of {} light{}", settings_.lines, lights, lights == 1 ? "" : "s"),
              "Engelhardt 2013, Sec. 9.2.1; a light at the eye gets a regular grid");
-    plan.run(
-        "samples of a line",
-        fmt::format("{} evenly spread, two at every discontinuity, {} at most", settings_.line.initial,
-                    settings_.line.cap),
-        "pixels that no line continues, and those at edges sharper than a pixel, are marched themselves");
+    plan.run("samples of a line",
+             fmt::format("{} evenly spread, two at every discontinuity, {} at most", settings_.line.initial,
+                         settings_.line.cap),
+             "pixels that no line continues are marched themselves");
+    plan.run("interpolation", fmt::format("between places {:.3g} pixel apart", 1.0 / settings_.line.texels),
+             "a voxel much brighter than what is around it is blurred so far, also into the film");
     if (settings_.line.tolerance > 0.0f)
         plan.run("refinement",
                  fmt::format("where light or transmittance varies by more than {}", settings_.line.tolerance),

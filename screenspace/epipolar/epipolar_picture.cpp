@@ -31,16 +31,16 @@ EpipolarPicture::EpipolarPicture(EpipolarLines lines, const LineSampling& settin
             const double weight = lines_.light_inside() ? double(s.texel) : 1.0;
             sum += weight * double(s.weight * max_component(s.light.radiance)), weights += weight;
         }
-    mean_ = weights > 0.0 ? float(sum / weights) : 0.0f;
+    const float mean = weights > 0.0 ? float(sum / weights) : 0.0f;
     loop(int(sampled_.size()), [&](int i) {
         const auto task = source.start();
-        sampled_[std::size_t(i)].finish(settings_, mean_, *task);
+        sampled_[std::size_t(i)].finish(settings_, mean, *task);
     });
 }
 
 /// The line's light at a position along it, where the end of the ray there continues `end`.
-auto EpipolarPicture::texel_light(const SampledLine& line, double texel, const RayEnd& end,
-                                  InScatteringTask& task) const -> std::optional<TexelLight> {
+std::optional<Rgb> EpipolarPicture::texel_light(const SampledLine& line, double texel, const RayEnd& end,
+                                                InScatteringTask& task) const {
     const auto& texels = line.texels();
     const double last = double(texels.size() - 1);
     if (texel < 0.0 || texel > last) return std::nullopt;
@@ -52,14 +52,10 @@ auto EpipolarPicture::texel_light(const SampledLine& line, double texel, const R
     const auto i = std::size_t(texel), j = std::min(i + 1, texels.size() - 1);
     const auto f = float(texel - double(i));
     const bool left = usable(i), right = usable(j);
-    if (!left && !right) return std::nullopt;
-    TexelLight found;
-    if (left) found.range.add(brightness(texels[i].light));
-    if (right) found.range.add(brightness(texels[j].light));
-    found.light = left && right ? (1.0f - f) * texels[i].light + f * texels[j].light
-                  : left        ? texels[i].light
-                                : texels[j].light;
-    return found;
+    if (left && right) return (1.0f - f) * texels[i].light + f * texels[j].light;
+    if (left) return texels[i].light;
+    if (right) return texels[j].light;
+    return std::nullopt;
 }
 
 EpipolarPicture::Tap EpipolarPicture::tap(std::size_t line, const Vec2d& film, double spacing,
@@ -70,7 +66,7 @@ EpipolarPicture::Tap EpipolarPicture::tap(std::size_t line, const Vec2d& film, d
     Tap result;
     result.distance = glm::length(film - sampled.line().at(fraction));
     if (const auto light = texel_light(sampled, texel, end, task)) {
-        result.at = *light, result.weight = 1.0f;
+        result.light = *light, result.weight = 1.0f;
         return result;
     }
     const double step =
@@ -78,10 +74,9 @@ EpipolarPicture::Tap EpipolarPicture::tap(std::size_t line, const Vec2d& film, d
     for (const double k : {-1.0, 1.0, -2.0, 2.0})
         if (const auto light = texel_light(sampled, texel + k * step, end, task)) {
             const auto weight = float(std::exp(-0.5 * k * k));  // w_G of Engelhardt 2013, Sec. 9.2.3
-            result.at.light += weight * light->light, result.weight += weight;
-            result.at.range.add(light->range);
+            result.light += weight * *light, result.weight += weight;
         }
-    if (result.weight > 0.0f) result.at.light /= result.weight;
+    if (result.weight > 0.0f) result.light /= result.weight;
     result.weight = std::min(result.weight, 1.0f);
     return result;
 }
@@ -106,13 +101,7 @@ std::optional<Rgb> EpipolarPicture::light_at(const Vec2d& film, const RayEnd& en
     const double fraction = total > 0.0 ? right.distance / total : 0.5;
     const double a = double(left.weight) * fraction, b = double(right.weight) * (1.0 - fraction);
     if (!(a + b > 0.1)) return std::nullopt;
-    if (settings_.tolerance > 0.0f) {
-        LightRange range;
-        if (a > 0.0) range.add(left.at.range);
-        if (b > 0.0) range.add(right.at.range);
-        if (range.is_edge(end.weight, mean_)) return std::nullopt;
-    }
-    return end.weight * Rgb((a * Vec3d(left.at.light) + b * Vec3d(right.at.light)) / (a + b));
+    return end.weight * Rgb((a * Vec3d(left.light) + b * Vec3d(right.light)) / (a + b));
 }
 
 PictureCounts EpipolarPicture::counts() const {

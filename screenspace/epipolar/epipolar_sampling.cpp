@@ -9,6 +9,8 @@ using namespace core;
 
 namespace {
 
+float brightness(const Rgb& c) { return max_component(glm::abs(c)); }
+
 /// True if the light or the transmittance of two rays differs by more than the tolerance. Light counts
 /// relative to that of either and to `mean`, whichever is more.
 bool differ(const LineSample& a, const LineSample& b, float tolerance, float mean) {

@@ -27,9 +27,6 @@ struct LineSampling {
     double shift = 0.0;   ///< of the spread samples, in [0, 1) of their distance
 };
 
-/// What light is compared by.
-inline float brightness(const core::Rgb& c) { return core::max_component(glm::abs(c)); }
-
 /// 24 bytes.
 struct LineTexel {
     core::Rgb light{0.0f};  ///< radiance over RayEnd::weight
