@@ -11,6 +11,7 @@
 #include "core/objects/error.h"
 #include "core/objects/memory_error.h"
 #include "core/render/checkpoint.h"
+#include "core/render/cpu_clock.h"
 #include "core/render/stop_clock.h"
 #include "session/add_statistics.h"
 #include "session/auxiliary_channels.h"
@@ -173,6 +174,7 @@ class RenderWork {
         if (!denoiser_ || settings_.range || result.interrupted || !result.finished_pixels.empty() ||
             !result.film.has_passes(1))
             return;
+        const core::Stopwatch stopwatch(result.statistics.seconds["denoise"]);
         try {
             denoiser_(image);
         } catch (const core::InputError& error) {

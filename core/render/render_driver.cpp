@@ -45,7 +45,9 @@ class PassLoop {
         if (request_.abandoned && request_.abandoned->load()) return;
         const Clock::time_point begin = Clock::now();
         try {
-            if (!result_.interrupted)
+            if (!result_.interrupted && finished_before_ && preview_passes_ == state_.passes)
+                result_.film.exchange_replaced(std::move(preview_means_));  // a preview was the last step
+            else if (!result_.interrupted)
                 with_memory_for("what '" + type + "' does after its passes",
                                 [&] { runner_.estimator().finish(result_.film, cancelled_flag()); });
         } catch (const Cancelled&) {
@@ -174,6 +176,7 @@ class PassLoop {
                                seconds_left(stop_, state_), known(state_.noise)});
         if (seconds_since(checkpoint_time_) >= request_.checkpoint_every_seconds) write_checkpoint_now();
         show_preview();
+        state_.seconds = seconds_since(start_);
     }
     bool noise_rule_looks() const {
         return runner_.estimator().changes_noise() ? filtered_noise_is_due(state_.passes)
@@ -201,7 +204,8 @@ class PassLoop {
         } catch (const Cancelled&) {
         }
         ++previews_, preview_time_ = Clock::now(), preview_seconds_ = seconds_since(begin);
-        result_.statistics.seconds["previews"] += preview_seconds_;
+        state_.seconds_of_previews += preview_seconds_;
+        result_.statistics.seconds["previews"] = state_.seconds_of_previews;
     }
     /// Shows the finished picture to `look`; the film is afterwards as it was. Throws Cancelled.
     template <typename Look>
