@@ -57,6 +57,8 @@ Plan MotePhotonMap::plan(const Scene& scene, const Requirements& r) const {
     if (r.media_scattering) {
         plan.run("multiple scattering", "beam radiance estimate: photons as discs that face the eye ray",
                  "one walk of the transmittance serves all photons of a ray");
+        plan.run("boundaries of media", "discs reach across them",
+                 "until kernels have shrunk, light lies beside media, most where they are thin or dense");
         plan.run("single scattering",
                  settings_.single_scattering ? "from photons" : "sampled at one collision of every ray",
                  settings_.single_scattering ? "requested" : "single_scattering is 'sampled'");

@@ -51,6 +51,8 @@ Plan MoteEpipolar::plan(const Scene& scene, const Requirements& r) const {
              fmt::format("{} evenly spread, two at every discontinuity, {} at most", settings_.line.initial,
                          settings_.line.cap),
              "pixels that no line continues are marched themselves");
+    plan.run("interpolation", fmt::format("between places {:.3g} pixel apart", 1.0 / settings_.line.texels),
+             "a voxel much brighter than what is around it is blurred so far, also into the film");
     if (settings_.line.tolerance > 0.0f)
         plan.run("refinement",
                  fmt::format("where light or transmittance varies by more than {}", settings_.line.tolerance),

@@ -52,6 +52,18 @@ class ShaftsTask final : public InScatteringTask {
     const Shafts& source_;
 };
 
+/// A disc of a medium that is a thousand times as bright as what is around it, which no depth shows.
+class BrightDisc final : public InScatteringSource, public InScatteringTask {
+  public:
+    static constexpr double radius = 6.0;
+    static double distance(const Vec2d& film) { return glm::length(film - Vec2d(60.3, 36.7)); }
+    static Rgb light_of(const Vec2d& film) { return Rgb(distance(film) < radius ? 1000.0f : 1.0f); }
+    std::unique_ptr<InScatteringTask> start() const override { return std::make_unique<BrightDisc>(); }
+    Ray ray(const Vec2d& film) override { return Shafts::ray(film); }
+    RayEnd end_of(const Vec2d&) override { return {.distance = 4.0f}; }
+    MarchedRay march(const Vec2d& film, const RayEnd&) override { return {light_of(film), Rgb(1.0f)}; }
+};
+
 std::unique_ptr<InScatteringTask> Shafts::start() const { return std::make_unique<ShaftsTask>(*this); }
 
 const EpipolarPicture::Loop in_turn = [](int count, const std::function<void(int)>& body) {
@@ -82,7 +94,7 @@ Error error_of(const Shafts& source, std::uint64_t marched, const LightAt& light
     return error;
 }
 
-EpipolarPicture sampled(const Shafts& source, EpipolarLines lines, const LineSampling& sampling) {
+EpipolarPicture sampled(const InScatteringSource& source, EpipolarLines lines, const LineSampling& sampling) {
     return {std::move(lines), sampling, source, in_turn};
 }
 
@@ -133,6 +145,35 @@ TEST_CASE("Things that fall between lines are left to the caller", "[epipolar]")
     const Error e = epipolar(source, 8, {.initial = 16});
     CHECK(e.filled >= 1);
     CHECK(e.disc_worst == 0.0);
+}
+
+TEST_CASE("What is much brighter is blurred over a pixel, and keeps its light", "[epipolar]") {
+    // Light over the truth, with every texel marched: of the whole picture, and of the pixels beside the
+    // disc.
+    const auto light_of = [](int lines, double texels) {
+        const BrightDisc source;
+        const auto task = source.start();
+        double sum = 0.0, truth = 0.0, beside = 0.0, true_beside = 0.0;
+        for (const double offset : {0.1, 0.3, 0.5, 0.7, 0.9}) {
+            const EpipolarPicture picture = sampled(source, EpipolarLines(light, frame, lines, offset),
+                                                    {.initial = 4096, .texels = texels});
+            for (int y = 0; y < height; ++y)
+                for (int x = 0; x < width; ++x) {
+                    const Vec2d film(x + 0.5, y + 0.5);
+                    const double own = double(BrightDisc::light_of(film).x);
+                    const double found = double(picture.light_at(film, task->end_of(film), *task)->x);
+                    sum += found, truth += own;
+                    if (BrightDisc::distance(film) > BrightDisc::radius) beside += found, true_beside += own;
+                }
+        }
+        return std::pair(sum / truth, beside / true_beside);
+    };
+    const auto [all, beside] = light_of(320, 1.0);
+    const auto [all_fine, beside_fine] = light_of(5120, 16.0);
+    INFO("whole " << all << ", beside the disc " << beside << "; fine " << all_fine << ", " << beside_fine);
+    CHECK(std::abs(all - 1.0) < 0.01);
+    CHECK(beside > 1.5);
+    CHECK(beside_fine - 1.0 < 0.25 * (beside - 1.0));
 }
 
 TEST_CASE("The cap holds, and what lies beyond it is left to the caller", "[epipolar]") {
