@@ -161,6 +161,8 @@ json View::frame_header(const std::string& name, const LivePicture& p) const {
     json header = {{"type", "frame"},    {"picture", name},       {"change", p.change},
                    {"passes", p.passes}, {"seconds", p.seconds},  {"noise", number_or_null(p.noise)},
                    {"coarse", p.coarse}, {"finished", p.finished}};
+    if (const auto stated = session::stated_error(p.image.metadata))
+        header["stated"] = {stated->low, stated->high};
     if (reference_ && !p.coarse && p.image.width == reference_->width &&
         p.image.height == reference_->height) {
         const std::vector<core::Rgb> pixels = p.image.rgb("");

@@ -23,10 +23,16 @@ struct Plan {
     /// The light that is found so rarely that the spread between passes misses it: no noise is stated. ""
     /// where the spread shows all.
     std::string noise_unknown;
+    /// The reason why halves of the passes do not show the error (core/metrics/halves_error.h). "" where they
+    /// do: passes have the light of the scene as their mean, and noise that is independent from pixel to
+    /// pixel.
+    std::string error_unknown = "its passes may err alike, or pixels in common";
 
     void run(std::string topic, std::string choice, std::string reason);
     void leave_out(std::string topic, std::string choice, std::string reason);
     void miss(std::string topic, std::string choice, std::string reason, std::string cure = "");
+    /// True where halves of the passes show the error of the image: nothing is missing either.
+    bool knows_error() const { return error_unknown.empty() && missing.empty(); }
     /// Messages for the user: a warning for each thing that takes very long or that this integrator cannot
     /// compute, and one line with the switches of a topic for what it leaves out by choice.
     std::vector<std::string> warnings() const;

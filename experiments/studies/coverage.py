@@ -1,0 +1,126 @@
+#!/usr/bin/python3
+"""How often the stated interval of 95 % contains the true error of an image (docs/testing.md, "An error that can be believed").
+
+Usage: coverage.py [--mote build/release/bin/mote] [--scenes A,B] [--methods "A;B"] [--seeds N] [--passes N] [--error E]
+                   [--references FOLDER] [--reference-passes N] [--threads N] [--quick]
+Renders each scene at 96 x 64 pixels with many seeds and compares each image, by `mote compare`, with two long references of
+other seeds, whose noise is in neither the error nor the interval. Prints for every scene and method the share of seeds whose
+interval contains the true error, how many miss it on either side, true error and ends of the interval (root mean squares over
+seeds), and the share of an optimist: an interval of the same width around the noise, which ignores the bias of filters. A
+method whose error is not known states no interval. --error E renders until the upper end is below E instead, and prints the
+share of seeds whose true error is between 0.6 and 1.0 of E: an interval that is looked at until it is short enough contains
+the error less often. The exit status is 1 where a share lies outside of 93 to 97 % by more than three standard deviations of
+so many seeds, and where the optimist is believed everywhere: then the study could not have found a wrong interval.
+"""
+import argparse
+import json
+import math
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+SIZE = ["-D", "film.width=96", "-D", "film.height=64"]
+SCENES = ("cornell_box", "window", "statue", "smoke_room", "fog_grille", "mist", "atrium", "city", "tree", "cloud")
+METHODS = {
+    "layers, own filter": ("mote_layers", {"filter": "own"}),
+    "layers, OIDN": ("mote_layers", {"filter": "oidn"}),
+    "layers, no filter": ("mote_layers", {"filter": "none"}),
+    "volpath": ("volpath", {}),
+    "mote_vpl": ("mote_vpl", {}),
+    "mote_vpl, unbounded": ("mote_vpl", {"bound": 0}),
+}
+
+
+def render(args, scene, method, rule, seed, output):
+    """The statistics of the image."""
+    integrator, settings = method
+    stats = output.with_suffix(".json")
+    defines = [x for k, v in settings.items() for x in ("-D", f"integrator.{k}={v}")]
+    subprocess.run([args.mote, "render", ROOT / f"scenes/{scene}.xml", "--integrator", integrator, "-t", str(args.threads),
+                    "--quiet", *SIZE, *rule, "--seed", str(seed), *defines, "-o", output, "--stats", stats], check=True)
+    return json.loads(stats.read_text())
+
+
+def true_error(args, image, references):
+    done = subprocess.run([args.mote, "compare", "--json", image, references[0], "--second", references[1]], check=True,
+                          capture_output=True, text=True)
+    return json.loads(done.stdout)["metrics"]["error"]["value"]
+
+
+def references_of(args, scene, folder):
+    files = [folder / f"{scene}.{number}.exr" for number in (1, 2)]
+    for number, file in enumerate(files):
+        if not file.exists():
+            render(args, scene, ("mote_layers", {"filter": "none"}), ["--passes", str(args.reference_passes)],
+                   1000001 + number, file)
+    return files
+
+
+def root_mean_square(values):
+    return math.sqrt(sum(v * v for v in values) / len(values))
+
+
+def study(args, scene, name, references, folder):
+    """Counts of seeds; None where the method does not know its error."""
+    rule = ["--error", str(args.error)] if args.error else ["--passes", str(args.passes)]
+    errors, lows, highs, counts = [], [], [], {"in": 0, "above": 0, "below": 0, "optimist": 0, "in time": 0}
+    for seed in range(1, args.seeds + 1):
+        file = folder / "image.exr"
+        said = render(args, scene, METHODS[name], rule, seed, file)
+        interval = said["error"]
+        if "unknown" in interval:
+            print(f"{scene:12} {name:20} unknown: {interval['unknown']}", flush=True)
+            return None
+        error, low, high = true_error(args, file, references), interval["low"], interval["high"]
+        counts["in"] += low <= error <= high
+        counts["above"] += error > high
+        counts["below"] += error < low
+        # The same width on the squares, around the noise.
+        middle, within = said["noise"] ** 2, (high ** 2 - low ** 2) / 2
+        counts["optimist"] += middle - within <= error ** 2 <= middle + within
+        counts["in time"] += bool(args.error) and 0.6 * args.error <= error <= args.error
+        errors.append(error), lows.append(low), highs.append(high)
+    n = args.seeds
+    print(f"{scene:12} {name:20} {100 * counts['in'] / n:5.0f} %  (above {counts['above']}, below {counts['below']} of {n})   "
+          f"true {root_mean_square(errors):7.2%}   stated {root_mean_square(lows):7.2%} to {root_mean_square(highs):7.2%}   "
+          f"optimist {100 * counts['optimist'] / n:4.0f} %"
+          + (f"   0.6 to 1.0 of the limit {100 * counts['in time'] / n:4.0f} %" if args.error else ""), flush=True)
+    return counts
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--mote", default=ROOT / "build/release/bin/mote")
+    parser.add_argument("--scenes", default=",".join(SCENES))
+    parser.add_argument("--methods", default=";".join(METHODS), help="names, separated by ';'")
+    parser.add_argument("--seeds", type=int, default=100)
+    parser.add_argument("--passes", type=int, default=32)
+    parser.add_argument("--error", type=float)
+    parser.add_argument("--references", type=Path, help="folder of references, made where they are missing")
+    parser.add_argument("--reference-passes", type=int, default=8192)
+    parser.add_argument("--threads", type=int, default=0)
+    parser.add_argument("--quick", action="store_true", help="tiny: numbers without a meaning")
+    args = parser.parse_args()
+    if args.quick:
+        args.scenes, args.seeds, args.passes, args.reference_passes = "cornell_box", 2, 8, 32
+        args.methods = "layers, own filter;mote_vpl"
+    found = []
+    with tempfile.TemporaryDirectory() as folder:
+        for scene in args.scenes.split(","):
+            references = references_of(args, scene, args.references or Path(folder))
+            found += [study(args, scene, name, references, Path(folder)) for name in args.methods.split(";")]
+    known = [counts for counts in found if counts]
+    if args.quick:
+        return 0 if known else 1
+    chance = 3 * math.sqrt(0.95 * 0.05 * args.seeds)
+    lowest, highest = 0.93 * args.seeds - chance, 0.97 * args.seeds + chance
+    wrong = sum(not lowest <= counts["in"] <= highest for counts in known)
+    fooled = bool(known) and all(counts["optimist"] >= lowest for counts in known)
+    print(f"{wrong} of {len(known)} shares outside of 93 to 97 %" + ("; the optimist was not found out" if fooled else ""))
+    return 1 if wrong or fooled else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
