@@ -20,10 +20,10 @@
 #include "core/objects/error.h"
 #include "session/compare.h"
 #include "session/denoise/denoised_layer.h"
-#include "session/render_report.h"
 #include "session/number_or_null.h"
 #include "session/output_files.h"
 #include "session/reference_metadata.h"
+#include "session/render_report.h"
 
 namespace mote::apps {
 
@@ -234,7 +234,8 @@ int compare_command(const CompareArguments& arguments) {
     for (const std::string& warning : warnings)
         std::fputs(("mote: warning: " + warning + "\n").c_str(), stderr);
     const ImageMetrics metrics = measured(image, references);
-    const std::optional<core::PictureError> stated = layer.empty() ? stated_error(image.metadata) : std::nullopt;
+    const std::optional<core::PictureError> stated =
+        layer.empty() ? stated_error(image.metadata) : std::nullopt;
     if (!arguments.map.empty())
         core::write_png(arguments.map, a.width, a.height, core::error_map(a.pixels, r.pixels));
     std::string difference;

@@ -16,19 +16,22 @@ double product(const Rgb& a, const Rgb& b, const Rgb& c, const Rgb& d) {
 
 /// Sums over the pixels of a block, each weighted by w.
 struct Sums {
-    double residuals = 0.0;  ///< <r_a, r_b>
-    double raw = 0.0;        ///< |a - b|^2
-    double shown = 0.0;      ///< |f_a - f_b|^2
-    double both = 0.0;       ///< <a - b, f_a - f_b>
-    double v = 0.0;          ///< v_a + v_b
-    double v_squared = 0.0;  ///< w v_a v_b
+    double residuals = 0.0;                        ///< <r_a, r_b>
+    double raw = 0.0;                              ///< |a - b|^2
+    double shown = 0.0;                            ///< |f_a - f_b|^2
+    double both = 0.0;                             ///< <a - b, f_a - f_b>
+    double raw_squared = 0.0, left_squared = 0.0;  ///< sum w^2 |a - b|^4, and that times (1 - 2 k)^2
+    double v = 0.0;                                ///< v_a + v_b
+    double v_squared = 0.0;                        ///< w v_a v_b
     double norm = 0.0, pixels = 0.0;
 
     void add(double w, const std::array<PictureHalf, 2>& halves, std::size_t p) {
         const Rgb &a = halves[0].passes[p], &b = halves[1].passes[p], &fa = halves[0].shown[p],
                   &fb = halves[1].shown[p];
-        residuals += w * product(a, fa, b, fb), raw += w * product(a, b, a, b);
-        shown += w * product(fa, fb, fa, fb), both += w * product(a, b, fa, fb);
+        const double of_raw = w * product(a, b, a, b), of_both = w * product(a, b, fa, fb);
+        residuals += w * product(a, fa, b, fb), raw += of_raw, both += of_both;
+        shown += w * product(fa, fb, fa, fb);
+        raw_squared += of_raw * of_raw, left_squared += sqr(of_raw - 2.0 * of_both);
         const double va = mean_of_channels(halves[0].variance[p]),
                      vb = mean_of_channels(halves[1].variance[p]);
         v += w * (va + vb), v_squared += w * va * w * vb, pixels += 1.0;
@@ -37,7 +40,8 @@ struct Sums {
     double variance() const {
         const double k = raw > 0.0 ? both / raw : 0.0;
         const double others = std::max(0.0, shown - k * k * raw);
-        return sqr(1.0 - 2.0 * k) * v_squared + (others + std::max(0.0, residuals)) / pixels * v;
+        const double left = raw_squared > 0.0 ? left_squared / raw_squared : 1.0;
+        return left * v_squared + (others + std::max(0.0, residuals)) / pixels * v;
     }
 };
 

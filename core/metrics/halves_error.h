@@ -20,9 +20,10 @@
 //
 // v_a and v_b being the variances of the halves, each measured in it alone: a square of one would count rare
 // bright passes many times; k is the weight of a pixel's own noise in what is shown of it, and o the noise of
-// other pixels. k, o and beta^2 are averages over blocks. The sum is nearly normal, so Eq. (1)
-// and (2) +- 1.96 s have 95 % confidence; no end is below the noise that is known, and none above where s is
-// not known.
+// other pixels. k, o and beta^2 are averages over blocks, (1 - 2 k)^2
+// one that is weighted by |a - b|^4: filters are not linear, and treat rare bright paths in a way of their
+// own. The sum is nearly normal, so Eq. (1) and (2) +- 1.96 s have 95 % confidence; no end is below the noise
+// that is known, and none above where s is not known.
 #pragma once
 
 #include <array>
