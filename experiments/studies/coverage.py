@@ -3,8 +3,9 @@
 
 Usage: coverage.py [--mote build/release/bin/mote] [--scenes A,B] [--methods "A;B"] [--seeds N] [--passes N] [--error E]
                    [--references FOLDER] [--reference-passes N] [--threads N] [--quick]
-Renders each scene at 96 x 64 pixels with many seeds and compares each image, by `mote compare`, with two long references of
-other seeds, whose noise is in neither the error nor the interval. Prints for every scene and method the share of seeds whose
+Renders each scene at 96 x 64 pixels with many seeds and compares each image, by `mote compare`, with a long reference of
+another seed, whose noise is subtracted (with two references the weights are those of neighbours, another measure where small
+lamps are in view). Prints for every scene and method the share of seeds whose
 interval contains the true error, how many miss it on either side, true error and ends of the interval (root mean squares over
 seeds), and the share of an optimist: an interval of the same width around the noise, which ignores the bias of filters. A
 method whose error is not known states no interval. --error E renders until the upper end is below E instead, and prints the
@@ -43,26 +44,23 @@ def render(args, scene, method, rule, seed, output):
     return json.loads(stats.read_text())
 
 
-def true_error(args, image, references):
-    done = subprocess.run([args.mote, "compare", "--json", image, references[0], "--second", references[1]], check=True,
-                          capture_output=True, text=True)
+def true_error(args, image, reference):
+    done = subprocess.run([args.mote, "compare", "--json", image, reference], check=True, capture_output=True, text=True)
     return json.loads(done.stdout)["metrics"]["error"]["value"]
 
 
-def references_of(args, scene, folder):
-    files = [folder / f"{scene}.{number}.exr" for number in (1, 2)]
-    for number, file in enumerate(files):
-        if not file.exists():
-            render(args, scene, ("mote_layers", {"filter": "none"}), ["--passes", str(args.reference_passes)],
-                   1000001 + number, file)
-    return files
+def reference_of(args, scene, folder):
+    file = folder / f"{scene}.exr"
+    if not file.exists():
+        render(args, scene, ("mote_layers", {"filter": "none"}), ["--passes", str(args.reference_passes)], 1000001, file)
+    return file
 
 
 def root_mean_square(values):
     return math.sqrt(sum(v * v for v in values) / len(values))
 
 
-def study(args, scene, name, references, folder):
+def study(args, scene, name, reference, folder):
     """Counts of seeds; None where the method does not know its error."""
     rule = ["--error", str(args.error)] if args.error else ["--passes", str(args.passes)]
     errors, lows, highs, counts = [], [], [], {"in": 0, "above": 0, "below": 0, "optimist": 0, "in time": 0}
@@ -73,7 +71,7 @@ def study(args, scene, name, references, folder):
         if "unknown" in interval:
             print(f"{scene:12} {name:20} unknown: {interval['unknown']}", flush=True)
             return None
-        error, low, high = true_error(args, file, references), interval["low"], interval["high"]
+        error, low, high = true_error(args, file, reference), interval["low"], interval["high"]
         counts["in"] += low <= error <= high
         counts["above"] += error > high
         counts["below"] += error < low
@@ -109,8 +107,8 @@ def main():
     found = []
     with tempfile.TemporaryDirectory() as folder:
         for scene in args.scenes.split(","):
-            references = references_of(args, scene, args.references or Path(folder))
-            found += [study(args, scene, name, references, Path(folder)) for name in args.methods.split(";")]
+            reference = reference_of(args, scene, args.references or Path(folder))
+            found += [study(args, scene, name, reference, Path(folder)) for name in args.methods.split(";")]
     known = [counts for counts in found if counts]
     if args.quick:
         return 0 if known else 1
