@@ -75,7 +75,7 @@ class RenderWork {
             throw core::InputError(
                 "the noise of this image is not known, and a limit on it would not end the render: " +
                 plan_.noise_unknown + "; give a number of passes or a time");
-        if (settings.stop.error && !plan_.knows_error())
+        if (settings.stop.error && !plan_.error_is_known())
             throw core::InputError(
                 "the error of this image is not known, and a limit on it would not end the render: " +
                 (plan_.missing.empty() ? plan_.error_unknown : plan_.missing.front().topic + " is missing"));
@@ -103,7 +103,7 @@ class RenderWork {
         const core::FilmSettings& size = scene_.scene().film();
         r.memory = settings_.memory.without(
             settings_.auxiliary ? center_bytes * double(size.width) * double(size.height) : 0.0);
-        r.noise_is_known = plan_.noise_unknown.empty(), r.halves = plan_.knows_error();
+        r.noise_is_known = plan_.noise_unknown.empty(), r.halves = plan_.error_is_known();
         r.content_hash = hash_, r.features = features_of(scene_, settings_);
         r.interrupted = &watched_.stop(), r.time_is_over = &watched_.time_is_over();
         r.keep_part_of_first_pass = !settings_.range;

@@ -34,7 +34,7 @@ class Film {
 
     /// `all_squares`: keep the sum of squares of every layer, not only of the beauty and of those that
     /// require it. `halves`: keep sums over the passes of odd index besides, of the beauty and of layers of
-    /// the beauty with squares; then the film knows its error(). Throws std::invalid_argument when two layers
+    /// the beauty with squares; then its error() is known. Throws std::invalid_argument when two layers
     /// have one name, a Layer::where names none or one of another part, or a part has no layer.
     Film(int width, int height, std::vector<Layer> layers, bool all_squares = false, bool halves = false);
 
@@ -182,7 +182,7 @@ class Film {
     /// Variance of that mean.
     std::vector<Rgb> half_variance(std::span<const std::size_t> layers, const ExactSums& squares,
                                    const ExactSums& odd, const ExactSums& odd_squares, int half) const;
-    /// What it keeps besides sums, for a file: bit 0 all squares, bit 1 halves.
+    /// Sums that are kept besides, for a file: bit 0 all squares, bit 1 halves.
     std::uint32_t kept() const { return (all_squares_ ? 1u : 0u) | (halves_ ? 2u : 0u); }
     void check_room(const Part& part, std::uint32_t more) const;
     std::vector<Rgb> mean_of_passes() const;  ///< of the beauty, whatever set_mean() says

@@ -32,7 +32,7 @@ struct Plan {
     void leave_out(std::string topic, std::string choice, std::string reason);
     void miss(std::string topic, std::string choice, std::string reason, std::string cure = "");
     /// True where halves of the passes show the error of the image: nothing is missing either.
-    bool knows_error() const { return error_unknown.empty() && missing.empty(); }
+    bool error_is_known() const { return error_unknown.empty() && missing.empty(); }
     /// Messages for the user: a warning for each thing that takes very long or that this integrator cannot
     /// compute, and one line with the switches of a topic for what it leaves out by choice.
     std::vector<std::string> warnings() const;

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""How often the stated interval of 95 % contains the true error of an image (docs/testing.md, "An error that can be believed").
+"""How often the stated interval of 95 % contains the true error of an image (docs/testing.md, "Error with the bias of filters").
 
 Usage: coverage.py [--mote build/release/bin/mote] [--scenes A,B] [--methods "A;B"] [--seeds N] [--passes N] [--error E]
                    [--references FOLDER] [--reference-passes N] [--threads N] [--quick]
@@ -9,9 +9,9 @@ lamps are in view). Prints for every scene and method the share of seeds whose
 interval contains the true error, how many miss it on either side, true error and ends of the interval (root mean squares over
 seeds), and the share of an optimist: an interval of the same width around the noise, which ignores the bias of filters. A
 method whose error is not known states no interval. --error E renders until the upper end is below E instead, and prints the
-share of seeds whose true error is between 0.6 and 1.0 of E: an interval that is looked at until it is short enough contains
+share of seeds whose true error is between 0.6 and 1.0 of E: an interval that is evaluated until it is short enough contains
 the error less often. The exit status is 1 where a share lies outside of 93 to 97 % by more than three standard deviations of
-so many seeds, and where the optimist is believed everywhere: then the study could not have found a wrong interval.
+so many seeds, and where the optimist is right everywhere: then the study could not have found a wrong interval.
 """
 import argparse
 import json
@@ -61,7 +61,7 @@ def root_mean_square(values):
 
 
 def study(args, scene, name, reference, folder):
-    """Counts of seeds; None where the method does not know its error."""
+    """Counts of seeds; None where the error is not known."""
     rule = ["--error", str(args.error)] if args.error else ["--passes", str(args.passes)]
     errors, lows, highs, counts = [], [], [], {"in": 0, "above": 0, "below": 0, "optimist": 0, "in time": 0}
     for seed in range(1, args.seeds + 1):

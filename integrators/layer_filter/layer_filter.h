@@ -38,7 +38,7 @@ class LayerFilter {
                 std::shared_ptr<const screenspace::OidnLibrary> library, std::vector<Choice> layers);
 
     /// Sets the means of the layers to the filtered ones: of each half of the passes by itself where the film
-    /// keeps them and has two passes a half, so that it knows its error. A film of fewer than two passes has
+    /// keeps them and has two passes a half, so that its error is known. A film of fewer than two passes has
     /// no variance and stays as it is. Throws std::invalid_argument where a layer has no squares, and
     /// Cancelled.
     void apply(core::Film& film, core::CancelToken cancelled = {});

@@ -401,7 +401,7 @@ TEST_CASE("The halves of a film are the passes of even and of odd index", "[film
     CHECK_THROWS_AS(film.half_mean(0, 0), std::logic_error);  // without squares
 }
 
-TEST_CASE("A film knows its error with what a filter of the halves has done", "[film][halves]") {
+TEST_CASE("The error of a film includes what a filter of its halves has done", "[film][halves]") {
     const int w = 40, h = 40;
     std::vector<Layer> with = layers;
     with[2].squares = true;
