@@ -107,8 +107,8 @@ class Film {
     /// variance of the layer's mean, averaged over channels, for noise(); needs has_squares(layer). Without
     /// it the layer counts there with the noise of its passes.
     void set_mean(std::size_t layer, std::span<const Rgb> values, std::span<const float> variance = {});
-    /// The same for a process that works on each half of the passes by itself: the mean becomes that of both
-    /// results, weighted by their passes, and its variance what they differ by. Needs has_halves(layer).
+    /// set_mean() for a process that works on each half of the passes by itself: the mean becomes that of
+    /// both results, weighted by their passes, and its variance what they differ by. Needs has_halves(layer).
     void set_halves(std::size_t layer, std::array<std::vector<Rgb>, 2> values);
     /// Mean that set_mean() has put in place of the passes'; empty where it has not.
     struct Replacement {
