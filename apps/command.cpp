@@ -56,6 +56,12 @@ void add_defines(CLI::App& command, std::vector<std::string>& defines, const std
     add_repeatable(command, "-D,--define", defines, description)->type_name("NAME=VALUE");
 }
 
+void add_plugins(CLI::App& command, std::vector<std::string>& plugins) {
+    add_repeatable(command, "--plugin", plugins,
+                   "Load types from this shared library (repeatable; MOTE_PLUGINS: for every command)")
+        ->type_name("FILE");
+}
+
 void add_scene_options(CLI::App& command, SceneArguments& arguments) {
     command.add_option("SCENE", arguments.scene, "The scene file")->required();
     add_lenient(command, arguments.lenient);
@@ -63,6 +69,7 @@ void add_scene_options(CLI::App& command, SceneArguments& arguments) {
         ->type_name("TYPE");
     add_defines(command, arguments.defines,
                 "Set a $parameter of the scene file, or a value such as integrator.paths (repeatable)");
+    add_plugins(command, arguments.plugins);
 }
 
 void add_render(CLI::App& app, RenderArguments& a, std::function<int()>& action) {
@@ -173,6 +180,7 @@ void add_view(CLI::App& app, ViewArguments& a, std::function<int()>& action) {
         ->type_name("TYPE");
     add_defines(command, a.scene.defines,
                 "Set a $parameter of the scene file, or a value such as integrator.paths (repeatable)");
+    add_plugins(command, a.scene.plugins);
     command.add_option("--reference", a.reference,
                        "An EXR file that is taken for right: the view draws error against time");
     command.add_option("--passes", a.passes, "Passes of a picture (default: the scene's sample_count)")
@@ -237,6 +245,7 @@ int parse_and_run(int argc, char** argv) {
         *app.add_subcommand("info", "Describe a scene, mesh, picture or volume in a few lines");
     info_app.add_option("FILE", info.file, "The file")->required();
     add_lenient(info_app, info.lenient);
+    add_plugins(info_app, info.plugins);
     info_app.callback([&] { action = [&] { return info_command(info); }; });
 
     ConvertArguments convert;
@@ -285,7 +294,9 @@ int parse_and_run(int argc, char** argv) {
     add_view(app, view, action);
 
     CLI::App& formats_app = *app.add_subcommand("formats", "Print the scene language as Markdown");
-    formats_app.callback([&] { action = [] { return formats_command(); }; });
+    std::vector<std::string> format_plugins;
+    add_plugins(formats_app, format_plugins);
+    formats_app.callback([&] { action = [&] { return formats_command(format_plugins); }; });
 
     try {
         app.parse(argc, argv);

@@ -8,7 +8,7 @@
 namespace mote::apps {
 
 int export_command(const ExportArguments& arguments) {
-    const core::Registry registry = make_registry();
+    const core::Registry registry = make_registry(arguments.scene.plugins);
     core::SceneDocument document = core::load_scene_elements(arguments.scene.scene, registry,
                                                              load_options(scene_changes(arguments.scene)));
     for (const std::string& text : document.approximations) std::printf("--lenient: %s\n", text.c_str());

@@ -1,5 +1,7 @@
 // mote formats: the scene language, from the manual pages that the program itself uses.
 #include <cstdio>
+#include <string>
+#include <vector>
 
 #include "apps/command.h"
 #include "apps/subcommands.h"
@@ -7,8 +9,8 @@
 
 namespace mote::apps {
 
-int formats_command() {
-    std::fputs(core::scene_format_markdown(make_registry()).c_str(), stdout);
+int formats_command(const std::vector<std::string>& plugins) {
+    std::fputs(core::scene_format_markdown(make_registry(plugins)).c_str(), stdout);
     return exit_ok;
 }
 

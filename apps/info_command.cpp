@@ -52,8 +52,8 @@ std::string range_text(std::span<const float> values) {
     return text;
 }
 
-void describe_scene(const std::string& path, bool lenient) {
-    const LoadedScene loaded = load({path, "", {}, lenient});
+void describe_scene(const std::string& path, const InfoArguments& arguments) {
+    const LoadedScene loaded = load({path, "", {}, arguments.lenient, {}, arguments.plugins});
     const core::Scene& scene = loaded.scene();
     const core::Requirements r = core::find_requirements(scene);
     const core::FilmSettings& film = scene.film();
@@ -162,7 +162,7 @@ int info_command(const InfoArguments& arguments) {
     require_input(path);
     const std::string extension = extension_of(path);
     if (extension == ".xml" || core::is_gltf(path))
-        describe_scene(path, arguments.lenient);
+        describe_scene(path, arguments);
     else if (extension == ".vdb")
         describe_vdb(path);
     else if (extension == ".vol")

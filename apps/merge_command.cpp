@@ -21,13 +21,10 @@ namespace {
 /// Films need no scene: what is known of the passes alone. The noise is that before filters of the whole
 /// picture.
 void write_statistics(const std::string& path, const MergedFilm& m) {
-    const nlohmann::json j = {{"mote", MOTE_VERSION},
-                              {"passes", m.film->pass_count()},
-                              {"first_pass", m.first},
-                              {"noise", number_or_null(m.film->noise())},
-                              {"content", m.content_hash},
-                              {"rays", m.statistics.rays},
-                              {"lookups", m.statistics.lookups},
+    const nlohmann::json j = {{"mote", MOTE_VERSION},           {"passes", m.film->pass_count()},
+                              {"first_pass", m.first},          {"noise", number_or_null(m.film->noise())},
+                              {"content", m.content_hash},      {"seed", m.render.seed},
+                              {"rays", m.statistics.rays},      {"lookups", m.statistics.lookups},
                               {"seconds", m.statistics.seconds}};
     write_text(path, j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }

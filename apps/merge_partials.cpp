@@ -67,6 +67,7 @@ Read read(const std::string& path) {
         RenderArguments a;
         j.at("scene").get_to(a.scene.scene), j.at("requested_integrator").get_to(a.scene.integrator);
         j.at("defines").get_to(a.scene.defines), j.at("lenient").get_to(a.scene.lenient);
+        a.scene.plugins = j.value("plugins", std::vector<std::string>());
         j.at("auxiliary").get_to(a.auxiliary), j.at("denoise").get_to(a.denoise), j.at("half").get_to(a.half);
         a.seed = whole<std::uint64_t>(j.at("seed"));
         for (const char* name : {"mote", "commit"}) j.at(name).get_ref<const std::string&>();

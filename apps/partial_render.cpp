@@ -35,6 +35,7 @@ json about(const MergedFilm& m) {
             {"requested_integrator", a.scene.integrator},
             {"defines", a.scene.defines},
             {"lenient", a.scene.lenient},
+            {"plugins", a.scene.plugins},
             {"auxiliary", a.auxiliary},
             {"denoise", a.denoise},
             {"half", a.half},

@@ -19,7 +19,8 @@ std::vector<std::pair<std::string, std::string>> split_defines(const std::vector
 }
 
 SceneChanges scene_changes(const SceneArguments& arguments) {
-    return {arguments.integrator, split_defines(arguments.defines), arguments.lenient, arguments.frame};
+    return {arguments.integrator, split_defines(arguments.defines), arguments.lenient, arguments.frame,
+            arguments.plugins};
 }
 
 LoadedScene load(const SceneArguments& arguments, std::shared_ptr<const core::Registry> registry) {

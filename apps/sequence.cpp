@@ -137,7 +137,7 @@ int render_sequence(const RenderArguments& arguments) {
         throw UsageError("the statistics of a sequence need #### where the frame's number goes");
     const std::string& define = arguments.scene.defines[parameter->define];
     const std::size_t frames = parameter->values.size();
-    SequenceFrame sequence{std::make_shared<const core::Registry>(make_registry())};
+    SequenceFrame sequence{std::make_shared<const core::Registry>(make_registry(arguments.scene.plugins))};
     for (std::size_t i = 0; i < frames; ++i) {
         const int number = parameter->numbers[i];
         RenderArguments frame = arguments;

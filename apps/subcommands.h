@@ -33,12 +33,14 @@ struct SceneArguments {
     std::string integrator;
     std::vector<std::string> defines;  ///< "name=value"
     bool lenient = false;
-    std::optional<int> frame = {};  ///< of a sequence
+    std::optional<int> frame = {};          ///< of a sequence
+    std::vector<std::string> plugins = {};  ///< files
 };
 
 struct InfoArguments {
     std::string file;
-    bool lenient = false;  ///< of a scene
+    bool lenient = false;                   ///< of a scene
+    std::vector<std::string> plugins = {};  ///< files
 };
 
 /// State that the frames of a sequence share.
@@ -144,7 +146,7 @@ bool is_film(const std::string& extension);
 int convert_scene(const ConvertArguments& arguments);
 int compare_command(const CompareArguments& arguments);
 int export_command(const ExportArguments& arguments);
-int formats_command();
+int formats_command(const std::vector<std::string>& plugins);
 int view_command(const ViewArguments& arguments);
 
 }  // namespace mote::apps

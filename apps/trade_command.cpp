@@ -110,6 +110,8 @@ void add_trade(CLI::App& app, TradeArguments& a, std::function<int()>& action) {
     command.add_option("--seeds", s.seeds, "Repetitions, each with a seed of its own")
         ->check(whole_number(1, 10000));
     add_repeatable(command, "-D,--define", a.defines, "As for render (repeatable)")->type_name("NAME=VALUE");
+    add_repeatable(command, "--plugin", a.settings.changes.plugins, "As for render (repeatable)")
+        ->type_name("FILE");
     add_threads(command, s.threads);
     command
         .add_option("--page-width", s.page_width, "Largest width of the pictures in the page (default: 640)")

@@ -7,6 +7,7 @@
 
 #include "apps/command.h"
 #include "apps/subcommands.h"
+#include "apps/view_comparison.h"
 #include "core/formats/pictures/image_file.h"
 #include "core/objects/error.h"
 #include "session/output_files.h"
@@ -71,7 +72,8 @@ int view_command(const ViewArguments& arguments) {
     }
     viewer::Server server(settings);
     viewer::View view(
-        [&server](int client, const viewer::SharedMessage& message) { server.send(client, message); });
+        [&server](int client, const viewer::SharedMessage& message) { server.send(client, message); },
+        std::make_unique<TradePage>());
     show(view, arguments);
     Clients clients(view);
     server.start(clients);

@@ -24,8 +24,8 @@ set(mote_include ${PROJECT_BINARY_DIR}/include/mote)
 configure_file(${PROJECT_SOURCE_DIR}/cmake/version.h.in ${mote_include}/version.h @ONLY)
 list(JOIN mote_package_folders "|" package_folders)
 set(write_headers ${CMAKE_COMMAND} -DSOURCE=${PROJECT_SOURCE_DIR} -DOUT=${mote_include} -DFOLDERS=${package_folders}
-    -P ${PROJECT_SOURCE_DIR}/cmake/package_headers.cmake)
-add_custom_target(mote_package_headers COMMAND ${write_headers} VERBATIM)
+    -DVERSION=${PROJECT_VERSION} -P ${PROJECT_SOURCE_DIR}/cmake/package_headers.cmake)
+add_custom_target(mote_package_headers COMMAND ${write_headers} BYPRODUCTS ${mote_include}/interface.h VERBATIM)
 if(NOT PROJECT_IS_TOP_LEVEL)
   add_dependencies(mote_core_runtime mote_package_headers)  # so they are there before a guest's files are compiled
 endif()
@@ -58,7 +58,7 @@ install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR}
 
 # ---- Libraries and headers
 install(CODE "execute_process(COMMAND ${CMAKE_COMMAND} \"-DSOURCE=${PROJECT_SOURCE_DIR}\" \"-DOUT=${mote_include}\"
-  \"-DFOLDERS=${package_folders}\" -P \"${PROJECT_SOURCE_DIR}/cmake/package_headers.cmake\"
+  \"-DFOLDERS=${package_folders}\" -DVERSION=${PROJECT_VERSION} -P \"${PROJECT_SOURCE_DIR}/cmake/package_headers.cmake\"
   COMMAND_ERROR_IS_FATAL ANY)" COMPONENT dev)
 install(DIRECTORY ${mote_include} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
 

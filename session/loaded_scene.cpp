@@ -11,6 +11,7 @@
 #include "core/render/render_driver.h"
 #include "session/borrowed_arena.h"
 #include "session/placement_notes.h"
+#include "session/plugins.h"
 #include "session/reference_metadata.h"
 #include "session/registry.h"
 
@@ -30,10 +31,20 @@ std::vector<std::string> define_texts(const SceneChanges& changes) {
     return texts;
 }
 
+std::vector<std::string> command_options(const SceneChanges& changes) {
+    std::vector<std::string> options;
+    if (!changes.integrator.empty()) options.insert(options.end(), {"--integrator", changes.integrator});
+    for (const std::string& define : define_texts(changes)) options.insert(options.end(), {"-D", define});
+    if (changes.lenient) options.emplace_back("--lenient");
+    for (const std::string& plugin : changes.plugins) options.insert(options.end(), {"--plugin", plugin});
+    return options;
+}
+
 std::vector<std::string> render_settings(const SceneChanges& changes, const std::string& integrator) {
     std::vector<std::string> settings = {MOTE_VERSION, integrator, changes.integrator};
     for (const std::string& define : define_texts(changes)) settings.push_back(define);
     if (changes.lenient) settings.emplace_back("--lenient");
+    for (std::string& plugin : plugin_settings(changes.plugins)) settings.push_back(std::move(plugin));
     return settings;
 }
 
@@ -56,7 +67,7 @@ void LoadedScene::load(const SceneChanges& changes, const Load& load_now) {
 }
 
 LoadedScene LoadedScene::from_file(const std::string& path, const SceneChanges& changes) {
-    return from_file(path, changes, std::make_shared<const core::Registry>(make_registry()));
+    return from_file(path, changes, std::make_shared<const core::Registry>(make_registry(changes.plugins)));
 }
 
 LoadedScene LoadedScene::from_file(const std::string& path, const SceneChanges& changes,
@@ -74,7 +85,8 @@ LoadedScene LoadedScene::from_file(const std::string& path, const SceneChanges& 
 
 LoadedScene LoadedScene::from_text(const std::string& xml, const std::string& folder,
                                    const SceneChanges& changes, const std::string& name) {
-    return from_text(xml, folder, changes, name, std::make_shared<const core::Registry>(make_registry()));
+    return from_text(xml, folder, changes, name,
+                     std::make_shared<const core::Registry>(make_registry(changes.plugins)));
 }
 
 LoadedScene LoadedScene::from_text(const std::string& xml, const std::string& folder,
@@ -93,7 +105,7 @@ LoadedScene LoadedScene::from_text(const std::string& xml, const std::string& fo
 }
 
 LoadedScene LoadedScene::from_tree(const SceneTree& tree, const SceneChanges& changes) {
-    core::Registry registry = make_registry();
+    core::Registry registry = make_registry(changes.plugins);
     register_arrays(registry, tree.array_store());
     return from_tree(std::make_shared<const SceneTree>(tree), changes,
                      std::make_shared<const core::Registry>(std::move(registry)));

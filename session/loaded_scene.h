@@ -22,12 +22,15 @@ struct SceneChanges {
     std::vector<std::pair<std::string, std::string>> defines;  ///< -D name=value
     bool lenient = false;                                      ///< leave out or approximate what is wrong
     std::optional<int> frame = {};                             ///< of a sequence: the number in file names
+    std::vector<std::string> plugins = {};  ///< files, besides those of MOTE_PLUGINS (session/plugins.h)
 };
 
 /// The options of the loader for them. A scene without an integrator gets `mote_layers`.
 core::LoadOptions load_options(const SceneChanges& changes);
 /// "name=value" of each definition.
 std::vector<std::string> define_texts(const SceneChanges& changes);
+/// The options of `mote render` that make these changes.
+std::vector<std::string> command_options(const SceneChanges& changes);
 /// Settings that determine the bits of a picture besides the contents of the scene's files: for
 /// core::content_hash().
 std::vector<std::string> render_settings(const SceneChanges& changes, const std::string& integrator);

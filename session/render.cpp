@@ -116,6 +116,7 @@ class RenderWork {
         r.abandoned = &watched_.abandoned();
         const RenderObserver& observer = watched_.observer();
         r.preview_every_seconds = observer.preview_every_seconds();
+        r.preview_share = observer.preview_share();
         r.preview_is_seen = [&observer] { return observer.preview_is_seen(); };
         if (wants_previews_)
             r.preview = [this, &observer](const core::Film& film) {

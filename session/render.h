@@ -26,14 +26,14 @@ class RenderObserver {
     virtual void progress(const core::RenderProgress&) {}  ///< after passes, the last one among them
     virtual bool cancelled() { return false; }             ///< true: stop, and keep what there is
     virtual bool wants_previews() const { return false; }  ///< true: preview() is called
-    /// The picture so far, its beauty alone, from the first pass on. Now and then, so that it takes a
-    /// twentieth of the time at most.
+    /// The picture so far, its beauty alone, from the first pass on, now and then.
     virtual void preview(const core::ImageChannels&) {}
     /// True: preview() receives every layer and variance, as a file has them, and "passes" (0: a part of the
     /// first ones is missing) "noise" and, where it is known,
     /// "errorInterval" as metadata.
     virtual bool wants_layers() const { return false; }
     virtual double preview_every_seconds() const { return 1.0; }  ///< shortest time between two previews
+    virtual double preview_share() const { return 0.05; }         ///< of the time, that previews take at most
     /// Called in the thread of the passes: false spares the work of a preview.
     virtual bool preview_is_seen() const { return true; }
     virtual void warning(const std::string&) {}  ///< at once: a checkpoint that could not be written

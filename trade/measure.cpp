@@ -10,6 +10,7 @@
 #include "core/objects/error.h"
 #include "session/denoise/denoised_layer.h"
 #include "session/output_files.h"
+#include "session/plugins.h"
 #include "session/reference_metadata.h"
 #include "session/render_report.h"
 #include "trade/draw.h"
@@ -90,6 +91,7 @@ Identity identity_of(const Settings& a, const Plan& plan) {
     identity.inputs = {{"mote", MOTE_VERSION},
                        {"error", "relative_error.h"},  // records of another measure are not to be continued
                        {"scene", plan.content},
+                       {"plugins", plugin_settings(a.changes.plugins)},
                        {"reference", pixels_hash(plan.reference)},
                        {"methods", methods},
                        {"time", optional_json(plan.limits.seconds)},
@@ -154,7 +156,7 @@ void check_inputs(const Settings& s, const MethodsFile& file, const core::Scene&
 
 std::vector<std::string> render_command_of(const Settings& s) {
     std::vector<std::string> command = {"mote", "render", s.scene};
-    for (const std::string& define : define_texts(s.changes)) command.insert(command.end(), {"-D", define});
+    for (std::string& option : command_options(s.changes)) command.push_back(std::move(option));
     return command;
 }
 

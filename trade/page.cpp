@@ -188,13 +188,15 @@ std::string commands(const Results& results, const Folder& folder) {
 std::string introduction(const Results& results) {
     const json& f = results.facts;
     std::string text = fmt::format(
-        "<p>{}, {} x {} pixels, {} thread{}, {} seed{} a method. Methods took turns pass by pass, so that "
-        "all of them saw the same machine. Lower and further left is better; a straight fall by half for "
+        "<p>{}, {} x {} pixels, {} thread{}, {} seed{} a method. {} Lower and further left is better; a "
+        "straight fall by half for "
         "four times the "
         "time is noise, a line that flattens out has reached its bias.</p>\n",
         escaped(f.value("scene", std::string())), f.value("width", 0), f.value("height", 0),
         f.value("threads", 0), f.value("threads", 0) == 1 ? "" : "s", f.at("seeds").size(),
-        f.at("seeds").size() == 1 ? "" : "s");
+        f.at("seeds").size() == 1 ? "" : "s",
+        escaped(f.value("turns", std::string("Methods took turns pass by pass, so that all of them saw the "
+                                             "same machine."))));
     if (results.judge.floor > 0.0)
         text += fmt::format(
             "<p>The reference ({}) has a noise of {:.2g} %, which is subtracted from the errors pixel by "

@@ -82,7 +82,9 @@ class LiveRender::Observer : public session::RenderObserver {
     }
     bool wants_previews() const override { return !coarse_; }
     bool wants_layers() const override { return true; }
-    double preview_every_seconds() const override { return 0.2; }
+    double preview_every_seconds() const override { return 0.25; }
+    /// Someone watches: denoising may take a fifth of the time.
+    double preview_share() const override { return 0.2; }
     bool preview_is_seen() const override { return render_.reports_.is_seen(); }
     void preview(const core::ImageChannels& image) override {
         session::Rendered rendered;
@@ -167,8 +169,8 @@ void LiveRender::show(const Wish& wish, std::uint64_t change) {
     }
 }
 
-/// One pass over fewer pixels, as many as take about a tenth of a second; then four times as many, where a
-/// whole pass takes longer than one likes to wait.
+/// One pass over as many pixels as take about a tenth of a second, reported at once; then four times as many,
+/// where a whole pass takes longer than one likes to wait.
 void LiveRender::show_coarse(const Wish& wish, std::uint64_t change) {
     constexpr double patience = 1.0;
     std::optional<LoadedScene> loaded;
@@ -178,7 +180,6 @@ void LiveRender::show_coarse(const Wish& wish, std::uint64_t change) {
     }
     const core::FilmSettings& film = loaded->scene().film();
     double fraction = double(coarse_pixels_) / (double(film.width) * double(film.height));
-    if (fraction >= 1.0 && !wish.moving) return;
     for (bool first = true;; first = false, fraction *= 4.0) {
         const double factor = std::sqrt(std::min(1.0, fraction));
         const auto shrunk = [&](int size) { return std::max(1, int(std::lround(factor * size))); };

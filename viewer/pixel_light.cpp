@@ -1,15 +1,13 @@
 #include "viewer/pixel_light.h"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/formats/xml/integrator_maker.h"
 #include "core/objects/error.h"
-#include "core/objects/number_text.h"
-#include "core/render/render_driver.h"
-#include "integrators/eye_path/eye_path.h"
-#include "integrators/virtual_point_lights/vpl_settings.h"
-#include "lights/virtual_lights/particle_tracer.h"
-#include "lights/virtual_lights/vpl_gather.h"
+#include "core/render/pass_runner.h"
+#include "viewer/eye_vertices.h"
 
 namespace mote::viewer {
 
@@ -18,156 +16,103 @@ namespace {
 using core::Rgb, core::Vec3;
 using nlohmann::json;
 
-json numbers(const Vec3& v) { return {v.x, v.y, v.z}; }
-
-/// Where a point is seen on the film; null outside of it.
-json film_position(const core::Scene& scene, const Vec3& p) {
-    const auto film = scene.camera().project(p, 0.0f);
-    return film ? json{film->x, film->y} : json();
-}
-
-core::RenderOptions options_of(const core::Scene& scene, std::uint64_t seed) {
-    const core::FilmSettings& film = scene.film();
-    return {seed, film.width, film.height,
-            film.sampler == "sobol" ? core::SamplerKind::sobol : core::SamplerKind::independent};
-}
-
-/// Paths and bound of the scene's `mote_vpl`, else the defaults.
-integrators::VplSettings vpl_settings(const core::Element& elements) {
-    integrators::VplSettings settings;
-    for (const core::Element& e : elements.children) {
-        if (e.tag != "integrator" || e.get("type") != "mote_vpl") continue;
-        for (const core::Element& value : e.children) {
-            const std::string text = value.get("value");
-            if (value.get("name") == "paths")
-                settings.paths = std::uint32_t(core::parse_integer_text(text, value.where));
-            if (value.get("name") == "bound" && text.find_first_of("0123456789") != std::string::npos)
-                settings.bound = float(core::parse_number(text, value.where));
-        }
-    }
-    return settings;
-}
-
-json first_hit(const core::Scene& scene, int x, int y) {
-    const core::Ray ray = scene.camera().sample_ray({float(x) + 0.5f, float(y) + 0.5f}, core::Vec2(0.5f));
-    const auto hit = scene.first_hit(ray);
-    if (!hit) return nullptr;
-    const core::MediumState state = scene.eye_medium_state(ray);
-    return {{"position", numbers(hit->position)},
-            {"depth", hit->t},
-            {"geometric_normal", numbers(hit->geometric_normal)},
-            {"shading_normal", numbers(hit->shading.n)},
-            {"shape", hit->shape->index + 1},
-            {"in_medium", state.current() != nullptr}};
-}
-
-/// The eye path of a pixel, as a path tracer continues it, and the first vertex that VPLs can light.
-template <bool Media>
-class TracedEyePath {
+/// Pass 0 of the method whose points are shown.
+class FirstPass {
   public:
-    TracedEyePath(const core::Scene& scene, const core::PassContext& pass, const core::RenderOptions& options,
-                  int x, int y)
-        : eye_(integrators::make_eye_ray(scene, options, pass, x, y)) {
-        context_.rng = eye_.rng;
-        integrators::EyePath<Media> path(scene, {}, eye_, context_);
-        integrators::TransportSum sum;
-        while (path.advance(context_, sum)) {
-            const core::ScatteringVertex& v = path.vertex();
-            vertices_.push_back({{"position", numbers(v.position)},
-                                 {"film", film_position(scene, v.position)},
-                                 {"kind", v.on_surface() ? "surface" : "medium"},
-                                 {"segment", path.segment_length()},
-                                 {"throughput", numbers(path.throughput())}});
-            if (!receiver_ && v.connectable())
-                receiver_ = v, throughput_ = path.throughput(), state_ = path.state(), rng_ = context_.rng;
-        }
+    FirstPass(const session::LoadedScene& scene, std::uint64_t seed)
+        : scene_(scene.scene()),
+          options_(core::render_options(scene_, seed)),
+          filter_(core::film_filter(scene_)),
+          method_(scene.integrator().type()),
+          lights_(scene.integrator().point_lights(scene_, options_)) {
+        if (lights_) return;
+        method_ = "mote_vpl";
+        std::vector<std::string> warnings;
+        vpls_ =
+            core::make_integrator(scene.registry(), scene_, method_, {}, {"light of a pixel", 0}, warnings);
+        lights_ = vpls_->point_lights(scene_, options_);
     }
-
-    const json& vertices() const { return vertices_; }
-    bool has_receiver() const { return receiver_.has_value(); }
-    /// Light of one VPL at the receiver.
-    template <typename Weight>
-    Rgb light_of(const lights::GatherContext& gather, const lights::VplSet& vpls, std::size_t index,
-                 const Weight& weight) const {
-        lights::ReceiverTile tile;
-        tile.clear();
-        tile.set(0, *receiver_, throughput_, state_, rng_, std::numeric_limits<std::int32_t>::max());
-        return lights::gather(gather, vpls, lights::VplRange::one(index), weight, tile)[0];
-    }
+    core::PassContext context() const { return {0, *filter_, never_}; }
+    const core::RenderOptions& options() const { return options_; }
+    core::PointLights& lights() { return *lights_; }
+    json header() const { return {{"kind", lights_->kind()}, {"method", method_}}; }
 
   private:
-    integrators::EyeRay eye_;
-    core::WalkContext context_;
-    json vertices_ = json::array();
-    std::optional<core::ScatteringVertex> receiver_;
-    Rgb throughput_{0.0f};
-    core::MediumState state_;
-    core::Rng rng_;
+    const core::Scene& scene_;
+    core::RenderOptions options_;
+    std::unique_ptr<core::PixelFilter> filter_;
+    std::atomic<bool> never_{false};
+    std::string method_;
+    std::shared_ptr<const core::Integrator> vpls_;  ///< instead of the scene's
+    std::unique_ptr<core::PointLights> lights_;
 };
 
-template <bool Media>
-void add_lights(json& result, const core::Scene& scene, const integrators::VplSettings& settings,
-                const TracedEyePath<Media>& eye, const core::RenderOptions& options) {
-    const float bound = settings.bound_for(scene.bounds());
-    const lights::VplSet vpls =
-        lights::trace_light_paths(scene, settings.light_paths(), options.seed, 0, options.sampler);
-    lights::GatherScratch scratch;
-    core::RayCounters rays;
-    core::TrackingCounters tracking;
-    const lights::GatherContext gather{scene, scratch, rays, tracking};
-    struct Contribution {
-        std::size_t index;
-        Rgb bounded, all;
-    };
-    std::vector<Contribution> found;
-    Rgb sum(0.0f), residual(0.0f);
-    for (std::size_t i = 0; eye.has_receiver() && i < vpls.lights.size(); ++i) {
-        const Rgb all = eye.light_of(gather, vpls, i, lights::UnboundedGeometry{});
-        if (core::is_black(all)) continue;
-        const Rgb bounded = eye.light_of(gather, vpls, i, lights::BoundedGeometry{bound});
-        found.push_back({i, bounded, all});
-        sum += bounded, residual += all - bounded;
-    }
-    std::ranges::stable_sort(found, std::ranges::greater(),
-                             [](const Contribution& c) { return core::max_component(c.all); });
-    json list = json::array();
-    for (const Contribution& c : std::span(found).first(std::min(found.size(), max_listed_lights))) {
-        const lights::VirtualPointLight& vpl = vpls.lights[c.index];
-        list.push_back({{"index", c.index},
-                        {"position", numbers(vpl.position)},
-                        {"film", film_position(scene, vpl.position)},
-                        {"depth", vpl.depth},
-                        {"bounded", numbers(c.bounded)},
-                        {"all", numbers(c.all)}});
-    }
-    result["paths"] = settings.paths, result["lights"] = vpls.lights.size();
-    result["lit_by"] = found.size(), result["vpls"] = std::move(list);
-    result["bound"] = std::isfinite(bound) ? json(bound) : json();
-    result["sum"] = numbers(sum), result["residual"] = numbers(residual);
+json source_json(const core::Scene& scene, const core::PixelLight::Source& s) {
+    json source = {{"index", s.index},
+                   {"position", numbers(s.point.position)},
+                   {"film", film_position(scene, s.point.position)},
+                   {"depth", s.point.depth},
+                   {"light", numbers(s.light)},
+                   {"weight", s.weight},
+                   {"cluster", s.cluster > 0 ? json(s.cluster) : json()},
+                   {"unbounded", nullptr}};
+    if (s.bounded > 0.0f) source["unbounded"] = numbers(s.light / s.bounded);
+    return source;
 }
 
-template <bool Media>
-json light_at(const core::Scene& scene, const integrators::VplSettings& settings, int x, int y,
-              std::uint64_t seed) {
-    const core::FilmSettings& film = scene.film();
-    const core::RenderOptions options = options_of(scene, seed);
-    const auto filter = core::make_pixel_filter(film.filter, film.filter_radius, film.filter_stddev);
-    const std::atomic<bool> never{false};
-    const TracedEyePath<Media> eye(scene, {0, *filter, never}, options, x, y);
-    json result = {{"x", x}, {"y", y}, {"first", first_hit(scene, x, y)}, {"path", eye.vertices()}};
-    add_lights(result, scene, settings, eye, options);
-    return result;
+/// True where the camera sees the point, or nothing but media lie before it.
+bool is_seen(const core::Scene& scene, const Vec3& p, const core::Vec2& film) {
+    const core::Ray ray = scene.camera().sample_ray(film, core::Vec2(0.5f));
+    const auto hit = scene.first_hit(ray);
+    constexpr float tolerance = 1e-3f;
+    return !hit || hit->t > (1.0f - tolerance) * glm::distance(ray.origin, p);
 }
 
 }  // namespace
 
-json pixel_light(const core::Scene& scene, const core::Element& elements, int x, int y, std::uint64_t seed) {
-    const core::FilmSettings& film = scene.film();
-    if (x < 0 || y < 0 || x >= film.width || y >= film.height)
+json pixel_light(const session::LoadedScene& loaded, int x, int y, std::uint64_t seed) {
+    const core::Scene& scene = loaded.scene();
+    if (x < 0 || y < 0 || x >= scene.film().width || y >= scene.film().height)
         throw core::InputError("the pixel is outside of the image");
-    const integrators::VplSettings settings = vpl_settings(elements);
-    return scene.attenuates() ? light_at<true>(scene, settings, x, y, seed)
-                              : light_at<false>(scene, settings, x, y, seed);
+    FirstPass pass(loaded, seed);
+    core::PixelLight light = pass.lights().light_of(pass.context(), x, y);
+    Rgb sum(0.0f);
+    for (const auto& s : light.sources) sum += s.light;
+    std::ranges::stable_sort(light.sources, std::ranges::greater(),
+                             [](const auto& s) { return core::max_component(s.light); });
+    json result = pass.header();
+    result.update({{"x", x},
+                   {"y", y},
+                   {"first", first_hit(scene, x, y)},
+                   {"path", eye_vertices(scene, pass.options(), pass.context(), x, y)},
+                   {"facts", light.facts},
+                   {"connected", light.connected},
+                   {"lit_by", light.sources.size()},
+                   {"sources", json::array()},
+                   {"sum", numbers(sum)},
+                   {"residual", numbers(light.residual)}});
+    for (const auto& s : std::span(light.sources).first(std::min(light.sources.size(), max_listed_lights)))
+        result["sources"].push_back(source_json(scene, s));
+    return result;
+}
+
+json light_points(const session::LoadedScene& loaded, std::uint64_t seed) {
+    const core::Scene& scene = loaded.scene();
+    FirstPass pass(loaded, seed);
+    const std::vector<core::LightPoint> points = pass.lights().points(pass.context());
+    float largest = 0.0f;
+    for (const core::LightPoint& p : points) largest = std::max(largest, core::max_component(p.power));
+    json result = pass.header();
+    result["count"] = points.size(), result["points"] = json::array();
+    const std::size_t step =
+        std::max<std::size_t>(1, (points.size() + max_shown_points - 1) / max_shown_points);
+    for (std::size_t i = 0; i < points.size(); i += step) {
+        const auto film = scene.camera().project(points[i].position, 0.0f);
+        if (!film || !is_seen(scene, points[i].position, *film)) continue;
+        const Rgb power = points[i].power / std::max(largest, 1e-30f);
+        result["points"].push_back({film->x, film->y, power.x, power.y, power.z});
+    }
+    return result;
 }
 
 }  // namespace mote::viewer

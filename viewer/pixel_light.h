@@ -1,27 +1,30 @@
-// The light of one pixel in one pass: the vertices of its eye path, and the virtual point lights that light
-// the first of them, by contribution. It is what `mote_vpl` computes there, by the same functions.
+// Light of a pixel in pass 0: the vertices of its eye path, and the points that brought it light, VPLs or
+// photons of the scene's method (core/render/point_lights.h).
 #pragma once
 
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 
-#include "core/formats/xml/scene_element.h"
-#include "core/scene/scene.h"
+#include "session/loaded_scene.h"
 
 namespace mote::viewer {
 
-/// Lights that are listed at most.
-inline constexpr std::size_t max_listed_lights = 100;
+/// Points that are listed, and shown over the image, at most.
+inline constexpr std::size_t max_listed_lights = 100, max_shown_points = 2000;
 
 /// {"first": position, depth, normals, shape of what the ray through the pixel's centre hits, or null;
-///  "path": vertices of the eye path of pass 0, with position, film position, throughput;
-///  "paths", "lights", "bound": size of the VPL set of pass 0 and the bound of the geometry term, those of
-///  the scene's `mote_vpl` or its defaults; "vpls": the brightest with index, position, film position, depth
-///  of the light path, contribution, bounded and unbounded; "sum", "residual": their bounded sum, and what
-///  the bound takes away}.
+///  "path": vertices of the eye path, with position, film position, throughput;
+///  "kind": "VPL" or "photon"; "method": of these points; "facts": [topic, sentence], choices of the method;
+///  "connected": points that were connected for the pixel; "lit_by": those with light; "sources": the
+///  brightest, with index, position, film position, depth of the light path, light, weight, cluster (VPLs
+///  that it represents) and unbounded light, each null where there is none; "sum", "residual": light of all,
+///  and light that the bound removed}.
+/// A method that has no such points is explained by `mote_vpl` with the scene's settings, else its defaults.
 /// Throws InputError for a pixel outside of the image.
-/// `elements`: of the scene, with its integrator.
-nlohmann::json pixel_light(const core::Scene& scene, const core::Element& elements, int x, int y,
-                           std::uint64_t seed);
+nlohmann::json pixel_light(const session::LoadedScene& scene, int x, int y, std::uint64_t seed);
+
+/// {"kind", "method", "count": of all points; "points": [x, y, r, g, b] of those that the camera sees, every
+///  n-th where they are many: film position, and power over the largest}.
+nlohmann::json light_points(const session::LoadedScene& scene, std::uint64_t seed);
 
 }  // namespace mote::viewer

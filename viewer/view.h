@@ -5,22 +5,23 @@
 // one gets fewer, and one that is gone costs nothing.
 #pragma once
 
-#include <condition_variable>
-#include <deque>
 #include <functional>
 #include <map>
 #include <mutex>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
-#include <thread>
 
 #include "core/formats/xml/scene_element.h"
-#include "core/metrics/relative_error.h"
+#include "viewer/comparison.h"
 #include "viewer/live_render.h"
 #include "viewer/message.h"
+#include "viewer/task_queue.h"
 
 namespace mote::viewer {
+
+/// Names of renders.
+inline const std::string first_render = "A", second_render = "B";
 
 struct ViewSettings {
     session::SceneChanges changes;
@@ -33,7 +34,8 @@ class View {
   public:
     /// Sends to a client; called in any thread, returns at once.
     using Send = std::function<void(int client, const SharedMessage&)>;
-    explicit View(Send send);
+    /// `page`: writer of comparisons.
+    explicit View(Send send, std::unique_ptr<const ComparisonPage> page = std::make_unique<ComparisonPage>());
     ~View();
     View(const View&) = delete;
     View& operator=(const View&) = delete;
@@ -58,16 +60,17 @@ class View {
         std::optional<Wish> wish;  ///< of a render; none: of a file
         SharedPicture picture;     ///< null: none yet
         std::uint64_t version = 0;
-        SharedMessage frame;  ///< of this version; null: not encoded yet
+        SharedMessage frame;             ///< of this version; null: not encoded yet
+        std::vector<ErrorPoint> errors;  ///< of the last change, against the reference
+        /// Of the picture; nothing where it is not known.
+        std::optional<ErrorPoint> error() const {
+            const bool has = picture && !errors.empty() && errors.back().seconds == picture->seconds;
+            return has ? std::optional(errors.back()) : std::nullopt;
+        }
     };
     struct Client {
         std::map<std::string, std::uint64_t> sent;       ///< version of each picture
         std::map<std::string, std::uint64_t> confirmed;  ///< by the client
-    };
-    struct Reference {
-        std::vector<core::Rgb> pixels;
-        core::RelativeWeights weights;
-        int width = 0, height = 0;
     };
 
     LiveRender::Reports reports_of(const std::string& name);
@@ -77,8 +80,10 @@ class View {
     void move_camera(const nlohmann::json& message);
     void set_second(const nlohmann::json& message);
     void answer_pixel(int client, const nlohmann::json& message);
+    void answer_lights(int client, const nlohmann::json& message);
     void answer_reproduce(int client, const nlohmann::json& message);
     void answer_save(int client, const nlohmann::json& message);
+    void answer_compare(int client);
     void confirm(int client, const nlohmann::json& message);
     void stop_all();
     void start_all();
@@ -86,27 +91,29 @@ class View {
     void send_frames(int client);
     void broadcast(const nlohmann::json& message);
     nlohmann::json scene_message() const;
-    nlohmann::json frame_header(const std::string& name, const LivePicture& picture) const;
+    nlohmann::json frame_header(const std::string& name, const LivePicture& picture,
+                                const std::optional<ErrorPoint>& point) const;
     const Shown& find(const std::string& name) const;
+    Shown shown(const std::string& name) const;
+    session::LoadedScene scene_of(const Shown& shown) const;
     core::Element elements_of(const Wish& wish) const;
     void require_knob(const std::string& path, const Wish& wish) const;
-    std::vector<std::string> command_of(const Wish& wish, std::uint32_t passes) const;
-    void work();
+    std::vector<std::string> command_of(const Wish& wish, std::optional<std::uint32_t> passes) const;
+    std::string exr_bytes(const LivePicture& picture) const;
+    int threads_of(const Wish& wish) const;
     void later(int client, std::function<void()> task);
 
     Send send_;
+    std::unique_ptr<const ComparisonPage> page_;
     std::optional<session::LoadedScene> scene_;  ///< without changes to its integrator
     std::optional<Reference> reference_;
     mutable std::mutex mutex_;  // guards what follows
     std::map<std::string, Shown> pictures_;
     std::vector<std::string> order_;  ///< of the names of pictures
     std::map<int, Client> clients_;
-    std::deque<std::function<void()>> tasks_;
-    std::condition_variable task_added_;
-    bool quit_ = false;
     std::atomic<int> watching_{0};  ///< number of clients
     std::map<std::string, std::unique_ptr<LiveRender>> renders_;
-    std::thread worker_;
+    TaskQueue tasks_;  // ends before the renders, which its tasks use
 };
 
 }  // namespace mote::viewer

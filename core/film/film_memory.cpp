@@ -8,7 +8,6 @@
 namespace mote::core {
 
 namespace {
-constexpr double sum = 2.0 * sizeof(std::int64_t) + 1.0;  ///< of ExactSums
 constexpr std::uint32_t unknown_passes = 1023;
 }  // namespace
 
@@ -16,6 +15,7 @@ FilmMemory::FilmMemory(int width, int height, std::span<const Layer> layers, boo
                        std::optional<std::uint32_t> passes, bool halves)
     : width_(width), height_(height), layers_(layers.size()) {
     const double pixels = double(width) * double(height);
+    constexpr double sum = 2.0 * sizeof(std::int64_t) + 1.0;  // of ExactSums
     double parts = 1.0, kept = 0.0, planes = 4.0;  // beauty and its variance, and two while they are found
     for (const Layer& layer : layers) {
         const bool squares = all_squares || layer.squares;

@@ -15,11 +15,12 @@ namespace mote::core::embree {
 /// Some builds of Embree (Debian's) abort on rays that are not finite or start beyond what it can trace, in
 /// the space of an instance too (ShapeScenes::max_ray_origin): those hit nothing.
 inline bool traceable(const Vec3& origin, const Vec3& direction, float t_min, float t_max, float max_origin) {
+    // Without branches: bits as integers, since Clang takes & of calls for a mistake.
     const auto below = [](const Vec3& v, float limit) {
-        return bool((std::fabs(v.x) < limit) & (std::fabs(v.y) < limit) & (std::fabs(v.z) < limit));
+        return int(std::fabs(v.x) < limit) & int(std::fabs(v.y) < limit) & int(std::fabs(v.z) < limit);
     };
-    return bool(below(origin, max_origin) & below(direction, largest_coordinate) &
-                (std::fabs(t_min) < infinity) & (t_max >= t_min));
+    const int inside = below(origin, max_origin) & below(direction, largest_coordinate);
+    return (inside & int(std::fabs(t_min) < infinity) & int(t_max >= t_min)) != 0;
 }
 
 /// The unit for a scene of these shapes.

@@ -22,31 +22,34 @@ namespace mote::core {
 /// as Rgb.
 using PropertyValue = std::variant<bool, std::int64_t, double, std::string, Rgb, Vec3d, Transform>;
 
+/// Contents of an element of a scene file.
 class Properties {
   public:
+    /// A parameter.
     struct Value {
-        PropertyValue value;
-        SourceLocation where;
+        PropertyValue value;   ///< converted
+        SourceLocation where;  ///< in the file
     };
+    /// A nested object.
     struct Child {
-        std::string name;  ///< the `name` attribute, or "" when it has none
-        Category category;
-        std::shared_ptr<Object> object;
-        SourceLocation where;
+        std::string name;                ///< the `name` attribute, or "" when it has none
+        Category category;               ///< of the object
+        std::shared_ptr<Object> object;  ///< never null
+        SourceLocation where;            ///< in the file
     };
 
-    Category category{};
-    std::string type, id;
-    SourceLocation where;
+    Category category{};   ///< of the element
+    std::string type, id;  ///< its attributes
+    SourceLocation where;  ///< in the file
     // The two sinks live as long as the call of the factory.
     std::vector<std::string> search_paths;         ///< folders that relative file names are looked up in
     std::vector<std::string>* warnings = nullptr;  ///< sink for warnings; may be null
     std::vector<std::string>* files = nullptr;     ///< sink for the paths find_file() found; may be null
 
-    std::map<std::string, Value> values;
-    std::vector<Child> children;
+    std::map<std::string, Value> values;  ///< by name
+    std::vector<Child> children;          ///< nested objects, in order
 
-    bool has(const std::string& name) const;
+    bool has(const std::string& name) const;  ///< is a parameter or an object of this name given?
     /// The file's full path: relative names are looked up in search_paths. Throws InputError when it is not
     /// there.
     std::string find_file(const std::string& name) const;
@@ -62,7 +65,8 @@ class Properties {
         }
         return nullptr;
     }
-    SourceLocation where_of(const std::string& name) const;
+    SourceLocation where_of(const std::string& name) const;  ///< the parameter's place, or the element's
+    /// Adds to `warnings`, with the element's place.
     void warn(const std::string& message) const;
 };
 

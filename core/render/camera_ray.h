@@ -22,8 +22,9 @@ inline Sampler pixel_sampler(const RenderOptions& options, const PassContext& pa
     return Sampler(options.sampler, options.seed, pass.index / 2, pixel_key(options, x, y), pass.index % 2);
 }
 
+/// An eye ray.
 struct CameraRay {
-    Ray ray;
+    Ray ray;    ///< in the world
     Vec2 film;  ///< its position in the picture [pixels]
 };
 
@@ -36,6 +37,7 @@ inline CameraRay camera_ray(const Camera& camera, const PassContext& pass, int x
     return {camera.sample_ray(film, lens ? *lens : sampler.next_2d()), film};
 }
 
+/// The ray of a pixel in a pass.
 inline Ray camera_ray(const Camera& camera, const RenderOptions& options, const PassContext& pass, int x,
                       int y) {
     Sampler sampler = pixel_sampler(options, pass, x, y);

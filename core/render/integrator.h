@@ -24,6 +24,7 @@
 #include "core/objects/memory_budget.h"
 #include "core/objects/object.h"
 #include "core/render/plan.h"
+#include "core/render/point_lights.h"
 #include "core/render/statistics.h"
 #include "core/scene/requirements.h"
 
@@ -100,6 +101,11 @@ class Integrator : public Object {
     /// Techniques that will run for this scene, with reasons.
     virtual Plan plan(const Scene& scene, const Requirements& requirements) const = 0;
     virtual std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const = 0;
+    /// The points that bring light to its pixels; null where the method has none.
+    virtual std::unique_ptr<PointLights> point_lights(const Scene& /*scene*/,
+                                                      const RenderOptions& /*options*/) const {
+        return nullptr;
+    }
 };
 
 }  // namespace mote::core

@@ -22,15 +22,6 @@ SamplerKind sampler_kind(const std::string& name) {
     throw InputError("unknown sampler '" + printable(name) + "'" + suggestion(name, known));
 }
 
-std::unique_ptr<PixelFilter> filter_of(const FilmSettings& film) {
-    return make_pixel_filter(film.filter, film.filter_radius, film.filter_stddev);
-}
-
-RenderOptions render_options(const Scene& scene, std::uint64_t seed, CancelToken cancelled = {}) {
-    const FilmSettings& film = scene.film();
-    return {seed, film.width, film.height, sampler_kind(film.sampler), cancelled};
-}
-
 std::unique_ptr<Estimator> timed_prepare(const Scene& scene, const Integrator& integrator,
                                          const RenderOptions& options, double& seconds) {
     const auto start = std::chrono::steady_clock::now();
@@ -41,6 +32,16 @@ std::unique_ptr<Estimator> timed_prepare(const Scene& scene, const Integrator& i
 
 }  // namespace
 
+std::unique_ptr<PixelFilter> film_filter(const Scene& scene) {
+    const FilmSettings& film = scene.film();
+    return make_pixel_filter(film.filter, film.filter_radius, film.filter_stddev);
+}
+
+RenderOptions render_options(const Scene& scene, std::uint64_t seed, CancelToken cancelled) {
+    const FilmSettings& film = scene.film();
+    return {seed, film.width, film.height, sampler_kind(film.sampler), cancelled};
+}
+
 std::vector<Layer> film_layers(const Scene& scene, const Integrator& integrator,
                                std::span<const HitFeature> features) {
     std::vector<Layer> layers = integrator.layers(scene);
@@ -50,7 +51,7 @@ std::vector<Layer> film_layers(const Scene& scene, const Integrator& integrator,
 
 PassRunner::PassRunner(const Scene& scene, const Integrator& integrator, std::uint64_t seed, Film& film,
                        std::vector<HitFeature> features, CancelToken cancelled, const MemoryBudget& memory)
-    : film_(film), filter_(filter_of(scene.film())) {
+    : film_(film), filter_(film_filter(scene)) {
     RenderOptions options = render_options(scene, seed, cancelled);
     options.memory = memory;
     estimator_ = timed_prepare(scene, integrator, options, build_seconds_);

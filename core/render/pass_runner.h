@@ -17,6 +17,11 @@ namespace mote::core {
 std::vector<Layer> film_layers(const Scene& scene, const Integrator& integrator,
                                std::span<const HitFeature> features);
 
+/// Filter of a scene's film. Throws InputError for an unknown one.
+std::unique_ptr<PixelFilter> film_filter(const Scene& scene);
+/// Size and sampler of a scene's film. Throws InputError for an unknown sampler.
+RenderOptions render_options(const Scene& scene, std::uint64_t seed, CancelToken cancelled = {});
+
 class PassRunner {
   public:
     /// Calls Integrator::prepare(), which has `memory`. `film` has the size of the scene's film and the

@@ -14,9 +14,10 @@ struct PlanEntry {
     std::string cure;    ///< of what is missing by choice: "integrator.compensation.depth=-1"; "" where none
 };
 
+/// Techniques of an integrator for a scene, with reasons.
 struct Plan {
-    std::string integrator;
-    std::vector<PlanEntry> runs;
+    std::string integrator;           ///< its type
+    std::vector<PlanEntry> runs;      ///< techniques
     std::vector<PlanEntry> left_out;  ///< code and data that this scene does not need
     std::vector<PlanEntry> missing;   ///< transport that this integrator cannot compute in this scene
     std::vector<std::string> costly;  ///< sentences on what takes very long in this scene, with its size
@@ -28,8 +29,11 @@ struct Plan {
     /// pixel.
     std::string error_unknown = "its passes may err alike, or pixels in common";
 
+    /// Adds to `runs`.
     void run(std::string topic, std::string choice, std::string reason);
+    /// Adds to `left_out`.
     void leave_out(std::string topic, std::string choice, std::string reason);
+    /// Adds to `missing`.
     void miss(std::string topic, std::string choice, std::string reason, std::string cure = "");
     /// True where halves of the passes show the error of the image: nothing is missing either.
     bool error_is_known() const { return error_unknown.empty() && missing.empty(); }

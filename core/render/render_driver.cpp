@@ -6,6 +6,7 @@
 #include <new>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include "core/film/film_memory.h"
 #include "core/objects/error.h"
@@ -195,7 +196,10 @@ class PassLoop {
         // After this time a preview is shown though some part of the picture is still black.
         constexpr double patience = 2.5;
         if (!result_.film.has_passes(1) && seconds_since(start_) < patience) return;
-        const double wait = std::max(seen ? request_.preview_every_seconds : 1.0, 20.0 * preview_seconds_);
+        // The first one also builds what all others need.
+        const double expected = previews_ == 1 ? 0.25 * preview_seconds_ : preview_seconds_;
+        const double wait =
+            std::max(seen ? request_.preview_every_seconds : 1.0, expected / request_.preview_share);
         if (previews_ > 0 && seconds_since(preview_time_) < wait) return;
         const Clock::time_point begin = Clock::now();
         try {
@@ -210,12 +214,15 @@ class PassLoop {
     /// Shows the finished picture to `look`; the film is afterwards as it was. Throws Cancelled.
     template <typename Look>
     void finish_for_now(const Look& look) {
+        const Clock::time_point begin = Clock::now();
         try {
             runner_.estimator().finish(result_.film, cancelled_flag());
         } catch (const Cancelled&) {
             result_.film.exchange_replaced();
             throw;
         }
+        // The first call also builds what all later ones use: about half of it.
+        state_.seconds_to_finish = (std::exchange(finished_before_, true) ? 1.0 : 0.5) * seconds_since(begin);
         look();
         const double finished = changes_noise() ? result_.film.noise() : 0.0;
         if (request_.halves) state_.error = stated(result_.film).value_or(PictureError());
@@ -256,6 +263,7 @@ class PassLoop {
     std::uint32_t preview_passes_ = 0;
     /// Noise of the picture when it was finished last, and relative to the noise of its passes.
     double finished_noise_ = infinity, left_of_noise_ = infinity;
+    bool finished_before_ = false;  ///< for a preview or the noise
     Clock::time_point preview_time_ = Clock::now();
     double noise_seconds_ = 0.0;  ///< cost of the last evaluation of the noise
     const Clock::time_point start_ = Clock::now();

@@ -18,9 +18,10 @@ namespace mote::core {
 /// passes.
 struct StopRule {
     std::optional<std::uint32_t> passes;  ///< this many in all, those of a checkpoint included
-    std::optional<double> seconds;  ///< wall time from RenderRequest::seconds_before on: ends as near to it
-                                    ///< as whole passes allow, after one at least
-    std::optional<double> noise;    ///< Film::noise() of the finished picture, tested from 8 passes on
+    /// Wall time from RenderRequest::seconds_before on, finishing included once a preview has shown how long
+    /// that takes: ends as near to it as whole passes allow, after one at least.
+    std::optional<double> seconds;
+    std::optional<double> noise;  ///< Film::noise() of the finished picture, tested from 8 passes on
     /// Upper end of the interval of Film::error() of the finished picture, tested from 8 passes on.
     std::optional<double> error = {};
 };
@@ -62,10 +63,10 @@ struct RenderRequest {
     std::function<bool(const Film&)> enough;  ///< a rule of the caller's, tested with the noise rule
     std::function<void(const RenderProgress&)> progress;  ///< called after every pass; may be empty
     /// Shown the picture so far, as Estimator::finish() leaves it, as soon as every part has a pass, after
-    /// some seconds those that have one, and then now and then: it takes a twentieth of the time at most. May
-    /// be empty.
+    /// some seconds those that have one, and then now and then. May be empty.
     std::function<void(const Film&)> preview;
     double preview_every_seconds = 1.0;     ///< shortest time between two of them
+    double preview_share = 0.05;            ///< of the time that they take at most
     std::function<bool()> preview_is_seen;  ///< false: a preview would have no use now; empty: always true
     std::function<void(const std::string&)> checkpoint_failed;  ///< called at once; retried later
     std::function<void()> building_is_over;           ///< called before the first pass; may be empty

@@ -1,6 +1,7 @@
 // The path tracer against the bare rays that it traces, and volpath against path where there are no media.
 #include <tbb/global_control.h>
 
+#include "core/formats/xml/scene_loader.h"
 #include "core/render/render_driver.h"
 #include "experiments/benchmarks/half_million.h"
 #include "experiments/benchmarks/ray_log.h"
@@ -16,8 +17,8 @@ constexpr int width = 192, height = 192;
 /// One integrator ready to render passes on one thread.
 class Renderer {
   public:
-    explicit Renderer(const std::string& type)
-        : scene_(make_room(type, width, height)),
+    explicit Renderer(std::unique_ptr<Scene> scene)
+        : scene_(std::move(scene)),
           estimator_(scene_->integrator()->prepare(*scene_, {1, width, height, SamplerKind::sobol})),
           filter_(make_pixel_filter("box", 0.5f, 0.5f)),
           image_(width, height, scene_->integrator()->layers(*scene_).size()) {}
@@ -58,20 +59,37 @@ double trace_bare(const std::vector<LoggedRay>& rays) {
     return seconds;
 }
 
-void path_against_bare_rays(benchmark::State& state) {
-    Renderer path("path");
+std::unique_ptr<Scene> half_million() { return make_room("path", width, height); }
+
+/// 32 triangles: rays are cheap, and what a path tracer does besides is dear.
+std::unique_ptr<Scene> cornell_box() {
+    LoadOptions options;
+    options.integrator = "path";
+    options.defines = {{"resx", std::to_string(width)}, {"resy", std::to_string(height)}};
+    return load_scene(MOTE_SOURCE_DIR "/scenes/cornell_box.xml", make_registry(), options);
+}
+
+void path_against_bare_rays(benchmark::State& state, std::unique_ptr<Scene> (*scene)(), double target) {
+    Renderer path(scene());
     RayLog log;
     path.pass();
     log.close();
     take_turns(
-        state, 1.6, double(log.rays.size()), [&] { return path.pass(); },
+        state, target, double(log.rays.size()), [&] { return path.pass(); },
         [&] { return trace_bare(log.rays); });
     state.counters["rays"] = double(log.rays.size());
 }
-BENCHMARK(path_against_bare_rays)->UseManualTime()->Iterations(15)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(path_against_bare_rays, half_million, half_million, 1.5)
+    ->UseManualTime()
+    ->Iterations(15)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(path_against_bare_rays, cornell_box, cornell_box, 2.5)
+    ->UseManualTime()
+    ->Iterations(15)
+    ->Unit(benchmark::kMillisecond);
 
 void volpath_against_path(benchmark::State& state) {
-    Renderer volpath("volpath"), path("path");
+    Renderer volpath(make_room("volpath", width, height)), path(half_million());
     take_turns(
         state, 1.03, double(width * height), [&] { return volpath.pass(); }, [&] { return path.pass(); });
 }

@@ -17,28 +17,24 @@ SurfacePhotonMap::SurfacePhotonMap(std::vector<Photon> photons) {
     tree_.forget_order();
 }
 
-Rgb SurfacePhotonMap::radiance(const ScatteringVertex& receiver, const DensityEstimate& estimate,
-                               int max_depth, std::vector<KdTree::Neighbour>& scratch) const {
-    constexpr float min_normal_cosine = 0.5f;
-    tree_.nearest(receiver.position, std::max<std::size_t>(estimate.neighbours, 2), infinity, scratch);
-    if (scratch.size() < 2) return Rgb(0.0f);
+float SurfacePhotonMap::find_photons(const ScatteringVertex& receiver, const DensityEstimate& estimate,
+                                     std::vector<KdTree::Neighbour>& found) const {
+    tree_.nearest(receiver.position, std::max<std::size_t>(estimate.neighbours, 2), infinity, found);
     // Photons strictly inside r: never the k-th one, which set it.
-    const float r2 = scratch.front().distance_squared * sqr(estimate.radius_fraction);
-    if (!(r2 > 0.0f)) return Rgb(0.0f);
+    return found.size() < 2 ? 0.0f : found.front().distance_squared * sqr(estimate.radius_fraction);
+}
+
+Rgb SurfacePhotonMap::reflected(const Photon& photon, const ScatteringVertex& receiver, int max_depth) {
+    constexpr float min_normal_cosine = 0.5f;
+    if (int(photon.depth) > max_depth) return Rgb(0.0f);
     const Vec3 normal = receiver.hit.geometric_normal;
-    Rgb sum(0.0f);
-    for (const KdTree::Neighbour& n : scratch) {
-        if (!(n.distance_squared < r2)) continue;
-        const Photon& photon = photons_[n.index];
-        if (int(photon.depth) > max_depth) continue;
-        if (std::fabs(glm::dot(decode_normal(photon.normal_or_medium), normal)) < min_normal_cosine) continue;
-        const Vec3 wi = decode_direction(photon.towards_light);
-        const float geometric = receiver.geometric_cosine(wi);
-        if (!(geometric > 0.0f)) continue;
-        // Photons measure light per area of the true surface; f* C* belongs to the shading normal.
-        sum += photon.power * receiver.eval_cos(wi, TransportMode::radiance) / geometric;
-    }
-    return sum * (inv_pi / r2);  // kappa of Engelhardt 2013, Eq. 4.5
+    if (std::fabs(glm::dot(decode_normal(photon.normal_or_medium), normal)) < min_normal_cosine)
+        return Rgb(0.0f);
+    const Vec3 wi = decode_direction(photon.towards_light);
+    const float geometric = receiver.geometric_cosine(wi);
+    if (!(geometric > 0.0f)) return Rgb(0.0f);
+    // Photons measure light per area of the true surface; f* C* belongs to the shading normal.
+    return photon.power * receiver.eval_cos(wi, TransportMode::radiance) / geometric;
 }
 
 }  // namespace mote::gathering

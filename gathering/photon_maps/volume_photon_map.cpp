@@ -5,8 +5,6 @@
 
 #include <algorithm>
 
-#include "core/scene/transmittance_along.h"
-
 namespace mote::gathering {
 
 using namespace core;
@@ -50,28 +48,12 @@ VolumePhotonMap::VolumePhotonMap(const RayQueries& scene, std::vector<Photon> ph
     discs_.build(std::move(discs));
 }
 
-BeamRadiance VolumePhotonMap::radiance(const Ray& ray, float t_max, const MediumState& state, int max_depth,
-                                       WalkContext& context,
-                                       std::vector<RayFacingDiscs::Hit>& scratch) const {
-    BeamRadiance sum;
-    if (photons_.empty()) return sum;
-    Ray beam = ray;
-    beam.t_max = t_max;
-    discs_.hits(beam, scratch);
-    TransmittanceAlong along(beam, state, context.boundary_hits, context.rng, context.tracking);
-    const Vec3 wo = -ray.direction;
-    for (const RayFacingDiscs::Hit& hit : scratch) {
-        const Photon& photon = photons_[hit.index];
-        if (int(photon.depth) > max_depth) continue;
-        const Rgb transmittance = along.advance_to(hit.t);
-        if (is_black(transmittance)) break;
-        const PhaseFunction& phase = scene_->media()[photon.normal_or_medium]->phase();
-        const float r2 = sqr(discs_.discs()[hit.index].radius);
-        const Rgb light = transmittance * photon.power *
-                          phase.eval(wo, decode_direction(photon.towards_light)) * (inv_pi / r2);
-        (photon.depth == 1 ? sum.single : sum.multiple) += light;
-    }
-    return sum;
+Rgb VolumePhotonMap::scattered(std::uint32_t index, const Rgb& transmittance, const Vec3& wo) const {
+    const Photon& photon = photons_[index];
+    const PhaseFunction& phase = scene_->media()[photon.normal_or_medium]->phase();
+    const float r2 = sqr(discs_.discs()[index].radius);
+    return transmittance * photon.power * phase.eval(wo, decode_direction(photon.towards_light)) *
+           (inv_pi / r2);
 }
 
 }  // namespace mote::gathering

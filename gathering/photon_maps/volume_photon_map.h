@@ -8,6 +8,7 @@
 
 #include "core/geometry/ray_facing_discs.h"
 #include "core/scene/ray_walk.h"
+#include "core/scene/transmittance_along.h"
 #include "gathering/photon_maps/photon.h"
 #include "gathering/photon_maps/surface_photon_map.h"
 
@@ -30,15 +31,38 @@ class VolumePhotonMap {
 
     /// Radiance arriving at ray.t_min along the ray from before `t_max`, its first surface. `state` holds the
     /// media at ray.t_min; context.boundary_hits the boundaries on the ray. From photons of depth up to
-    /// `max_depth`.
+    /// `max_depth`. Calls visit(index, term) with each term of the sum.
+    template <typename Visit = IgnoreTerms>
     BeamRadiance radiance(const core::Ray& ray, float t_max, const core::MediumState& state, int max_depth,
-                          core::WalkContext& context, std::vector<core::RayFacingDiscs::Hit>& scratch) const;
+                          core::WalkContext& context, std::vector<core::RayFacingDiscs::Hit>& scratch,
+                          const Visit& visit = {}) const {
+        BeamRadiance sum;
+        if (photons_.empty()) return sum;
+        core::Ray beam = ray;
+        beam.t_max = t_max;
+        discs_.hits(beam, scratch);
+        core::TransmittanceAlong along(beam, state, context.boundary_hits, context.rng, context.tracking);
+        for (const core::RayFacingDiscs::Hit& hit : scratch) {
+            const Photon& photon = photons_[hit.index];
+            if (int(photon.depth) > max_depth) continue;
+            const core::Rgb transmittance = along.advance_to(hit.t);
+            if (core::is_black(transmittance)) break;
+            const core::Rgb light = scattered(hit.index, transmittance, -ray.direction);
+            (photon.depth == 1 ? sum.single : sum.multiple) += light;
+            visit(hit.index, light);
+        }
+        return sum;
+    }
 
-    std::size_t size() const { return photons_.size(); }  ///< how many photons
+    std::span<const Photon> photons() const { return photons_; }  ///< by index
+    std::size_t size() const { return photons_.size(); }          ///< how many photons
     /// [B]
     std::size_t memory_bytes() const { return photons_.capacity() * sizeof(Photon) + discs_.memory_bytes(); }
 
   private:
+    /// tau f_p Phi_p K_p of a photon.
+    core::Rgb scattered(std::uint32_t index, const core::Rgb& transmittance, const core::Vec3& wo) const;
+
     const core::RayQueries* scene_ = nullptr;
     core::RayFacingDiscs discs_;
     std::vector<Photon> photons_;  ///< in the order of the discs

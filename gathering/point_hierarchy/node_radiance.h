@@ -18,7 +18,6 @@ class NodeRadiance {
     const core::Rgb& of(std::uint32_t node, bool back) const {
         return back ? (back_.empty() ? black_ : back_[node]) : front_[node];
     }
-    bool has_back() const { return !back_.empty(); }  ///< else backs are black
 
   private:
     std::vector<core::Rgb> front_, back_;

@@ -13,7 +13,7 @@ struct SurfacePoint {
     float u, v;              ///< barycentric: (1 - u - v) c0 + u c1 + v c2
 };
 
-/// Samples points on the surface of a list of triangles.
+/// Samples points on the surface of a list of triangles, with the density 1 / area() per area [1/m^2].
 class SurfacePoints {
   public:
     /// Orders the triangles along a Morton curve, so that a fraction of the area in this order is a patch.

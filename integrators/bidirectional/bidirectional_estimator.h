@@ -5,7 +5,6 @@
 
 namespace mote::integrators {
 
-template <bool Media>
 std::unique_ptr<core::Estimator> make_bidirectional_estimator(const core::Scene& scene,
                                                               const core::RenderOptions& options,
                                                               const BidirectionalSettings& settings);

@@ -22,8 +22,7 @@ class MoteBdpt final : public Integrator {
     }
     Plan plan(const Scene& scene, const Requirements& requirements) const override;
     std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
-        if (scene.has_media()) return make_bidirectional_estimator<true>(scene, options, settings_);
-        return make_bidirectional_estimator<false>(scene, options, settings_);
+        return make_bidirectional_estimator(scene, options, settings_);
     }
 
   private:

@@ -21,12 +21,13 @@ namespace mote::integrators {
 
 /// The part of a path between two vertices, for what is gathered along it.
 struct EyeSegment {
-    const core::Ray& ray;
+    const core::Ray& ray;             ///< from the one to the other
     const core::WalkEvent& event;     ///< at its end
     const core::MediumState& start;   ///< media at ray.t_min
     const core::PathWeights& before;  ///< weights at its start
 };
 
+/// A path from the eye, vertex by vertex.
 template <bool Media>
 class EyePath {
   public:
@@ -52,6 +53,7 @@ class EyePath {
         return advance_by([this](core::Rgb& emitted, core::WalkContext& c) { return next_event(emitted, c); },
                           context, sum, on_segment);
     }
+    /// Without.
     bool advance(core::WalkContext& context, TransportSum& sum) {
         return advance(context, sum, [](const EyeSegment&) {});
     }
@@ -104,6 +106,7 @@ class EyePath {
         return lights::begin_connection(vertex_, lights_.choose_light(vertex_.light_receiver(), choices_.x),
                                         sampler_.next_2d(), how, Media, connection);
     }
+    /// Light of a connection that nothing occludes.
     core::Rgb finish_light(const lights::LightConnection& connection, core::WalkContext& context,
                            const lights::LightSampling& how) {
         return lights::finish_connection<Media>(lights_, vertex_, weights_, state_, connection, context, how);
@@ -122,12 +125,13 @@ class EyePath {
     bool may_continue() const { return depth_ != limits_.max_depth; }
     /// Ends the path where it would leave the vertex by a mirror or through glass.
     void end_at_delta(bool ends) { ends_at_delta_ = ends; }
+    /// Multiplies its weight.
     void scale(float factor) { weights_.throughput *= factor; }
 
-    const core::Ray& ray() const { return ray_; }
-    core::MediumState& state() { return state_; }  ///< media on the side where the path is
-    core::PathWeights& weights() { return weights_; }
-    core::Sampler& sampler() { return sampler_; }
+    const core::Ray& ray() const { return ray_; }      ///< of the last segment
+    core::MediumState& state() { return state_; }      ///< media on the side where the path is
+    core::PathWeights& weights() { return weights_; }  ///< of the path so far
+    core::Sampler& sampler() { return sampler_; }      ///< of the path, for what is sampled at the vertex
     /// The weight of light that reaches the path's end.
     core::Rgb throughput() const { return lights::throughput_of<Media>(weights_); }
     /// The length of hidden lights' part of the first segment, which ray() no longer holds [m].
@@ -141,12 +145,15 @@ class EyePath {
     Transport layer_of_connection() const {
         return transport_layer(scatterings_ + 1, scatterings_ == 0 ? vertex_.on_surface() : surface_first_);
     }
+    /// See layer_of_connection().
     Transport layer_along() const {
         return transport_layer(scatterings_ + 1, scatterings_ > 0 && surface_first_);
     }
+    /// See layer_of_connection().
     Transport layer_of_emission() const { return transport_layer(scatterings_, surface_first_); }
     /// True where light joined to the vertex, or scattered along the segment, is wanted.
     bool wants_connection() const { return limits_.wanted[layer_of_connection()]; }
+    /// See wants_connection().
     bool wants_along() const { return limits_.wanted[layer_along()]; }
 
   private:

@@ -18,7 +18,8 @@ PacketLayout::PacketLayout(const RenderOptions& options, const ImageLoopSettings
     : width_(options.width),
       height_(options.height),
       interleaving_(settings.interleaving),
-      upsampling_(settings.upsampling) {
+      upsampling_(settings.upsampling),
+      across_(settings.by_rows ? width : side) {
     const int spacing = std::max(interleaving_, upsampling_);
     tile_size_ = side * spacing * std::max(1, 4 / spacing);  // a multiple of what a packet's pixels lie in
     const auto shares = std::uint64_t(interleaving_) * std::uint64_t(interleaving_);
@@ -39,15 +40,15 @@ std::size_t PacketLayout::share_of(int place, std::uint32_t pass) const {
 
 std::vector<PacketPixels> PacketLayout::packets(int x0, int y0, int x1, int y1, std::uint32_t pass,
                                                 const screenspace::ShadedLattice* lattice) const {
-    const int n = std::max(interleaving_, upsampling_);
+    const int n = std::max(interleaving_, upsampling_), down = width / across_;
     std::vector<PacketPixels> packets;
-    for (int y = y0; y < y1; y += side * n)
-        for (int x = x0; x < x1; x += side * n)
+    for (int y = y0; y < y1; y += down * n)
+        for (int x = x0; x < x1; x += across_ * n)
             for (int i = 0; i < n * n; ++i) {
                 PacketPixels packet;
                 const glm::ivec2 first(x + i % n, y + i / n);
                 for (int lane = 0; lane < width; ++lane) {
-                    const glm::ivec2 p = first + n * glm::ivec2(lane % side, lane / side);
+                    const glm::ivec2 p = first + n * glm::ivec2(lane % across_, lane / across_);
                     packet.pixels[std::size_t(lane)] = p.x < x1 && p.y < y1 ? p : glm::ivec2(-1);
                 }
                 packet.place = interleaving_ > 1 ? i : 0;

@@ -6,7 +6,7 @@
 
 #include "core/render/camera_ray.h"
 #include "core/render/first_hit_features.h"
-#include "core/render/render_driver.h"
+#include "core/render/pass_runner.h"
 #include "core/scene/media_along.h"
 #include "integrators/layer_filter/eye_march.h"
 
@@ -144,8 +144,7 @@ class FeatureRow {
 FilterFeatures find_filter_features(const Scene& scene, const RenderOptions& options,
                                     const FeatureSettings& settings) {
     FilterFeatures features(options.width, options.height, settings.samples);
-    const auto filter =
-        make_pixel_filter(scene.film().filter, scene.film().filter_radius, scene.film().filter_stddev);
+    const auto filter = film_filter(scene);
     const std::atomic<bool> never{false};
     const PassContext pass{0, *filter, never};
     std::vector<FeatureRow> rows(std::size_t(options.height), FeatureRow(scene, options, settings, pass));

@@ -6,6 +6,11 @@ namespace mote::integrators {
 using namespace core;
 namespace {
 
+/// With the n texels i of a receiver's micro-buffer, each 1/n of its cosine square, and the nodes of points
+/// that they see,
+///   L(x) = pi / n sum_i f(x, w_i) L(node_i)    (Engelhardt 2013, Sec. 8.1.2),
+/// of glossy receivers with the square warped by f. L of the points is that of gathering/stored_light; direct
+/// light is sampled.
 class MicroEstimator final : public Estimator {
   public:
     MicroEstimator(const Scene& scene, const RenderOptions& options, const MicroSettings& settings)

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/objects/error.h"
+#include "integrators/eye_path/light_path_limits.h"
 
 namespace mote::integrators {
 
@@ -23,12 +24,9 @@ MicroSettings defaults() {
 
 void MicroSettings::limit_bounces() {
     const bool photons = points.light == StoredLight::photons;
-    points.paths.paths = paths.value_or(photons ? 100000 : 256);
-    points.paths.rr_depth = eye.rr_depth;
-    if (max_bounces() < 0) return;
-    points.bounces = std::min(points.bounces, max_bounces());
     // A virtual point light is one bounce before the place, a photon arrives there.
-    points.paths.max_vertices = std::max(0, max_bounces() - (photons ? 0 : 1));
+    points.paths = light_path_settings(paths.value_or(photons ? 100000 : 256), eye, {}, photons ? 2 : 3);
+    if (max_bounces() >= 0) points.bounces = std::min(points.bounces, max_bounces());
 }
 
 void MicroSettings::check(bool media) const {

@@ -7,6 +7,8 @@
 // point, and over a texel.
 #include <fmt/format.h>
 
+#include "core/objects/error.h"
+#include "integrators/eye_path/few_reflections.h"
 #include "integrators/micro_rendering/micro_settings.h"
 #include "integrators/register_parts.h"
 
@@ -26,15 +28,25 @@ class MoteMicroRendering final : public Integrator {
     std::vector<Layer> layers(const Scene&) const override { return transport_layers(false); }
     Plan plan(const Scene& scene, const Requirements& requirements) const override;
     std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
-        settings_.check(scene.has_media());
+        check(scene);
         return make_micro_estimator(scene, options, settings_);
     }
 
   private:
+    /// Throws InputError for scenes that this method cannot render.
+    void check(const Scene& scene) const;
     void plan_light(Plan& plan) const;
     void plan_missing(Plan& plan, const Scene& scene, const Requirements& r) const;
     MicroSettings settings_;
 };
+
+void MoteMicroRendering::check(const Scene& scene) const {
+    settings_.check(scene.has_media());
+    const int bounces = settings_.points.bounces, wanted = settings_.max_bounces();
+    if (settings_.points.light == StoredLight::radiosity && (wanted < 0 || wanted > bounces))
+        require_reflections(scene, bounces, type(),
+                            "light = 'photons' or 'vpls' follows them all, as do path and mote_bdpt");
+}
 
 void MoteMicroRendering::plan_light(Plan& plan) const {
     const gathering::LitPointSettings& p = settings_.points;
@@ -98,7 +110,7 @@ Plan MoteMicroRendering::plan(const Scene& scene, const Requirements& r) const {
     plan_choice_of_lights(plan, scene);
     if (!r.any_media()) plan.leave_out("media", "no code for media runs", "the scene has none");
     try {
-        settings_.check(r.any_media());
+        check(scene);
     } catch (const InputError& error) {
         plan.miss("the whole picture", "refused", error.what());
     }

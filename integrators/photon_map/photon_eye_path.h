@@ -27,12 +27,21 @@ struct PhotonScratch {
     std::vector<core::RayFacingDiscs::Hit> hits;
 };
 
-template <bool Media>
+/// Photons of one kind.
+enum class PhotonPlace : std::uint8_t { surface, medium };
+
+/// For images, where the sums alone are wanted.
+struct IgnorePhotons {
+    void operator()(PhotonPlace, std::uint32_t /*photon*/, const core::Rgb& /*light*/) const {}
+};
+
+/// Calls visit(place, photon, light) with the light that each photon adds to the pixel.
+template <bool Media, typename Visit = IgnorePhotons>
 class PhotonEyePath {
   public:
     PhotonEyePath(const core::Scene& scene, const EyePathLimits& limits, const PhotonMaps& maps,
-                  core::WalkContext& context, PhotonScratch& scratch)
-        : scene_(scene), limits_(limits), maps_(maps), context_(context), scratch_(scratch) {}
+                  core::WalkContext& context, PhotonScratch& scratch, Visit visit = {})
+        : scene_(scene), limits_(limits), maps_(maps), context_(context), scratch_(scratch), visit_(visit) {}
 
     /// Radiance along the eye ray, by layer.
     TransportSum trace(const EyeRay& eye) {
@@ -65,15 +74,22 @@ class PhotonEyePath {
     void add_beam(TransportSum& sum, const EyeSegment& segment, int depth) {
         const core::Rgb throughput = lights::throughput_of<Media>(segment.before);
         const auto light = maps_.volume.radiance(segment.ray, segment.event.surface_distance, segment.start,
-                                                 photon_depth(depth), context_, scratch_.hits);
+                                                 photon_depth(depth), context_, scratch_.hits,
+                                                 [&](std::uint32_t photon, const core::Rgb& term) {
+                                                     visit_(PhotonPlace::medium, photon, throughput * term);
+                                                 });
         sum[Transport::single_scattering] += throughput * light.single;
         sum[Transport::multiple_scattering] += throughput * light.multiple;
     }
 
     void add_density(TransportSum& sum, const EyePath<Media>& path) {
+        const core::Rgb throughput = path.throughput();
         sum[Transport::indirect] +=
-            path.throughput() * maps_.surface.radiance(path.vertex(), maps_.estimate,
-                                                       photon_depth(path.depth()), scratch_.neighbours);
+            throughput * maps_.surface.radiance(path.vertex(), maps_.estimate, photon_depth(path.depth()),
+                                                scratch_.neighbours,
+                                                [&](std::uint32_t photon, const core::Rgb& term) {
+                                                    visit_(PhotonPlace::surface, photon, throughput * term);
+                                                });
     }
 
     const core::Scene& scene_;
@@ -81,6 +97,7 @@ class PhotonEyePath {
     const PhotonMaps& maps_;
     core::WalkContext& context_;
     PhotonScratch& scratch_;
+    Visit visit_;
 };
 
 }  // namespace mote::integrators

@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "core/math/bounds.h"
-#include "integrators/eye_path/eye_path_limits.h"
-#include "lights/virtual_lights/light_path.h"
+#include "core/render/integrator.h"
+#include "integrators/eye_path/light_path_limits.h"
 
 namespace mote::integrators {
 
@@ -31,11 +31,13 @@ struct RayLightSettings {
     }
     std::size_t candidate_count() const { return connections == 0 ? 0 : candidates; }
     lights::LightPathSettings light_paths(const core::MemoryBudget& memory = {}) const {
-        lights::LightPathSettings s;
-        s.memory = memory, s.paths = paths, s.rr_depth = eye.rr_depth;
-        s.max_vertices = eye.max_depth < 0 ? -1 : std::max(0, eye.max_depth - 2);
-        return s;
+        return light_path_settings(paths, eye, memory);
     }
 };
+
+/// The passes of `mote_ray_lights`: a fresh set of light paths each.
+std::unique_ptr<core::Estimator> make_ray_light_estimator(const core::Scene& scene,
+                                                          const core::RenderOptions& options,
+                                                          const RayLightSettings& settings);
 
 }  // namespace mote::integrators

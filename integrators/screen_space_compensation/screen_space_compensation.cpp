@@ -65,10 +65,11 @@ class PreparedScreenSpace final : public compensation::PreparedResidual {
         return media_->for_task(vpls, scratch, walk);
     }
     void begin(PassImage& image) override {
+        media_->begin(image);
         if (hidden_.any()) image.finish_late();
     }
     bool pass(const PassContext& context, const lights::VplSet& vpls, PassImage& image) override {
-        return hidden_.pass(context, vpls, hidden_layer(), image);
+        return media_->pass(context, vpls, image) && hidden_.pass(context, vpls, hidden_layer(), image);
     }
     void finish(Film& film, CancelToken cancelled) override;
     void add_statistics(Statistics& statistics) const override {
@@ -93,6 +94,7 @@ class PreparedScreenSpace final : public compensation::PreparedResidual {
 
 /// Fills the layer of what the bound took from light that surfaces send to the eye, direct and indirect.
 void PreparedScreenSpace::finish(Film& film, CancelToken cancelled) {
+    media_->finish(film, cancelled);
     const double begin = wall_seconds(), cpu_begin = process_cpu_seconds();
     const Scene& scene = view_.scene;
     const auto buffers =

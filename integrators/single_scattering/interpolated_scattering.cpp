@@ -11,8 +11,6 @@ using namespace screenspace;
 
 namespace {
 
-constexpr int tile_size = 16;
-
 EpipolarPicture::Loop loop_of(const PassContext& context) {
     return [&context](int count, const std::function<void(int)>& body) {
         for_each_tile(count, 1, 1, context.cancelled, [&](int i, int, int, int) { body(i); });
@@ -45,30 +43,26 @@ template <typename LightAt>
 bool InterpolatedScattering::upsample(const PassContext& context, const PassNumbers& numbers,
                                       const InScattering& light, const InScatteringRays& source,
                                       PassImage& image, const LightAt& light_at) {
-    return for_each_tile(
-        options_.width, options_.height, tile_size, context.cancelled, [&](int x0, int y0, int x1, int y1) {
-            const auto task = source.start();
-            std::uint64_t filled = 0, candidates = 0;
-            for (int y = y0; y < y1; ++y)
-                for (int x = x0; x < x1; ++x) {
-                    CancelToken(context.cancelled).check();
-                    const EyePoint& point =
-                        points_[std::size_t(y) * std::size_t(options_.width) + std::size_t(x)];
-                    const RayEnd end =
-                        lit_end(light, scene_.camera().sample_ray(point.film, numbers.lens), point.surface);
-                    if (end.dark()) continue;
-                    ++candidates;
-                    auto scattered = light_at(Vec2d(point.film), end, *task);
-                    if (!scattered) {
-                        scattered = task->march(Vec2d(point.film), end).radiance, ++filled;
-                        if (settings_.show_samples)
-                            image.at(ScatteringLayer::marched_rays, x, y) += Rgb(1.0f);
-                    }
-                    image.at(ScatteringLayer::single_scattering, x, y) += *scattered;
-                }
-            const std::lock_guard lock(mutex_);
-            counts_.filled += filled, counts_.candidates += candidates;
+    return loop_.run(context, image, {}, [&](EyeTask<true>& pixels) {
+        const auto task = source.start();
+        std::uint64_t filled = 0, candidates = 0;
+        pixels.for_each_pixel([&](int x, int y) {
+            CancelToken(context.cancelled).check();
+            const EyePoint& point = points_[std::size_t(y) * std::size_t(options_.width) + std::size_t(x)];
+            const RayEnd end =
+                lit_end(light, scene_.camera().sample_ray(point.film, numbers.lens), point.surface);
+            if (end.dark()) return;
+            ++candidates;
+            auto scattered = light_at(Vec2d(point.film), end, *task);
+            if (!scattered) {
+                scattered = task->march(Vec2d(point.film), end).radiance, ++filled;
+                if (settings_.show_samples) image.at(ScatteringLayer::marched_rays, x, y) += Rgb(1.0f);
+            }
+            image.at(ScatteringLayer::single_scattering, x, y) += *scattered;
         });
+        const std::lock_guard lock(mutex_);
+        counts_.filled += filled, counts_.candidates += candidates;
+    });
 }
 
 /// The light's lines, marched; null for a light at the eye.
@@ -130,6 +124,15 @@ bool InterpolatedScattering::run(const PassContext& context, const PassNumbers& 
     for (const InScattering& light : lights)
         if (!scatter(context, numbers, light, image)) return false;
     return true;
+}
+
+void InterpolatedScattering::add_statistics(Statistics& statistics) const {
+    statistics.values["lit_pixels"] += double(counts_.candidates);
+    statistics.values["filled_pixels"] += double(counts_.filled);
+    statistics.values["screen_space_bytes_peak"] = double(counts_.bytes);
+    if (settings_.sampling != ScatteringSampling::epipolar) return;
+    statistics.values["epipolar_lines"] += double(counts_.lines);
+    statistics.values["epipolar_texels"] += double(counts_.texels);
 }
 
 }  // namespace mote::integrators

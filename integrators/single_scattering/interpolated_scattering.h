@@ -5,7 +5,7 @@
 #include <memory>
 #include <mutex>
 
-#include "integrators/eye_path/counters.h"
+#include "integrators/eye_path/image_loop.h"
 #include "integrators/single_scattering/single_scattering_estimator.h"
 #include "screenspace/epipolar/epipolar_picture.h"
 #include "screenspace/in_scattering/in_scattering_rays.h"
@@ -25,18 +25,23 @@ struct EyePoint {
 };
 
 struct ScatteringCounts {
-    std::uint64_t rays = 0, steps = 0, unoccluded = 0,
-                  candidates = 0;                     ///< of marched rays; pixels that are lit
-    std::uint64_t filled = 0, lines = 0, texels = 0;  ///< of interpolation
+    std::uint64_t rays = 0, steps = 0, unoccluded = 0;  ///< of marched rays
+    std::uint64_t candidates = 0, filled = 0, lines = 0,
+                  texels = 0;  ///< of interpolation; pixels that are lit
     std::size_t bytes = 0;
 };
 
 class InterpolatedScattering {
   public:
-    /// Keeps references to all of them. The settings must not request every pixel.
+    /// Keeps references to all of them. The settings must not request every pixel. Rays are counted in
+    /// `counters`.
     InterpolatedScattering(const core::Scene& scene, const core::RenderOptions& options,
                            const ScatteringSettings& settings, SharedCounters& counters)
-        : scene_(scene), options_(options), settings_(settings), counters_(counters) {}
+        : scene_(scene),
+          options_(options),
+          settings_(settings),
+          loop_(scene, options, {.by_rows = true}),
+          counters_(counters) {}
 
     /// To be filled by the eye paths of a pass, a point for every pixel.
     void set_point(std::size_t pixel, const EyePoint& point) { points_[pixel] = point; }
@@ -47,6 +52,8 @@ class InterpolatedScattering {
     bool run(const core::PassContext& context, const PassNumbers& numbers,
              std::span<const screenspace::InScattering> lights, core::PassImage& image);
     const ScatteringCounts& counts() const { return counts_; }
+    /// Those of interpolation.
+    void add_statistics(core::Statistics& statistics) const;
 
   private:
     using Lines = std::unique_ptr<screenspace::EpipolarPicture>;
@@ -65,6 +72,7 @@ class InterpolatedScattering {
     const core::Scene& scene_;
     const core::RenderOptions& options_;
     const ScatteringSettings& settings_;
+    ImageLoop<true> loop_;
     SharedCounters& counters_;
     std::mutex mutex_;
     ScatteringCounts counts_;

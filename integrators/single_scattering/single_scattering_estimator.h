@@ -36,6 +36,14 @@ struct ScatteringSettings {
     screenspace::LineSampling line;
     bool show_samples = false;  ///< a layer that counts the marched rays of every pixel
 
+    /// March of a pass whose steps are moved by `offset`, in [0, 1).
+    screenspace::MarchSettings march_from(float offset) const {
+        screenspace::MarchSettings m = march;
+        m.offset = offset;
+        m.rule = in_scattering == AlongRay::uniform_steps ? screenspace::MarchRule::uniform
+                                                          : screenspace::MarchRule::equiangular;
+        return m;
+    }
     AccelerationSettings accelerations() const {
         return {in_scattering == AlongRay::exact, visibility->light_maps()};
     }

@@ -5,96 +5,14 @@
 // apart. Here every VPL is a sphere that reaches to its k-th nearest neighbour, so that nothing has to be
 // bounded, also between glossy surfaces. In return light is blurred over the spheres: a bias that more passes
 // do not reduce, since each has spheres of the same size; more light paths a pass do.
-#include "compensation/spherical_lights.h"
 #include "integrators/eye_path/eye_path_parameters.h"
-#include "integrators/eye_path/image_loop.h"
 #include "integrators/register_parts.h"
-#include "lights/virtual_lights/particle_tracer.h"
+#include "integrators/spherical_lights/vsl_settings.h"
 
 namespace mote::integrators {
 
 using namespace core;
 namespace {
-
-struct VslSettings {
-    EyePathLimits eye;  ///< max_depth counts the whole path from light to eye
-    std::uint32_t paths = 256;
-    compensation::SphericalGather gather;
-
-    lights::LightPathSettings light_paths(const MemoryBudget& memory = {}) const {
-        lights::LightPathSettings s;
-        s.memory = memory, s.paths = paths, s.rr_depth = eye.rr_depth;
-        s.max_vertices = eye.max_depth < 0 ? -1 : std::max(0, eye.max_depth - 2);
-        return s;
-    }
-};
-
-/// The lights of one pass.
-struct SphereSet {
-    lights::VplSet vpls;
-    std::vector<float> radii;
-
-    SphereSet(const Scene& scene, const VslSettings& settings, const RenderOptions& options,
-              std::uint32_t pass, CancelToken cancelled)
-        : vpls(lights::trace_light_paths(scene, settings.light_paths(options.memory), options.seed, pass,
-                                         options.sampler, cancelled)),
-          radii(compensation::sphere_radii(vpls, settings.gather.neighbours, settings.gather.radius_scale)) {}
-    std::size_t memory_bytes() const { return vpls.memory_bytes() + radii.size() * sizeof(float); }
-};
-
-class VslEstimator final : public Estimator {
-  public:
-    VslEstimator(const Scene& scene, const RenderOptions& options, const VslSettings& settings)
-        : scene_(scene), options_(options), settings_(settings), loop_(scene, options) {
-        settings_.eye.wanted = options.cells;
-    }
-
-    bool pass(const PassContext& context, PassImage& image) override {
-        if (context.cancelled) return false;
-        const SphereSet spheres(scene_, settings_, options_, context.index, context.cancelled);
-        loop_.counters().add(spheres.vpls.rays, spheres.vpls.tracking);
-        vpls_ += spheres.radii.size(), paths_ += spheres.vpls.paths;
-        bytes_ = std::max(bytes_, spheres.memory_bytes());
-        for (const float r : spheres.radii) radius_sum_ += double(r);
-        return loop_.run(context, image, {.limits = settings_.eye}, [&](EyeTask<false>& task) {
-            EyePacket<false>& packet = task.packet();
-            task.for_each([&](const PacketPixels&) {
-                packet.run([&] {
-                    packet.sample_lights();
-                    packet.for_each([&](int, auto& lane) {
-                        if (lane.alive && lane.path->vertex().connectable() &&
-                            settings_.eye.wanted[Transport::indirect])
-                            lane.sum[Transport::indirect] +=
-                                lane.path->throughput() *
-                                gather(lane.path->vertex(), lane.path->depth(), spheres, task.walk());
-                    });
-                });
-            });
-        });
-    }
-
-    void add_statistics(Statistics& statistics) const override {
-        loop_.add_statistics(statistics);
-        statistics.values["vpls"] += double(vpls_);
-        statistics.values["light_paths"] += double(paths_);
-        statistics.values["vpl_bytes_peak"] = double(bytes_);
-        if (vpls_ > 0) statistics.values["sphere_radius_mean"] = radius_sum_ / double(vpls_);
-    }
-
-  private:
-    Rgb gather(const ScatteringVertex& vertex, int depth, const SphereSet& spheres, WalkContext& walk) const {
-        return compensation::gather_spheres(scene_, spheres.vpls, spheres.radii, settings_.gather, vertex,
-                                            settings_.eye.light_depth(depth), walk.rng, walk.rays);
-    }
-
-    const Scene& scene_;
-    RenderOptions options_;
-    VslSettings settings_;
-    ImageLoop<false> loop_;
-    std::uint64_t vpls_ = 0, paths_ = 0;
-    std::size_t bytes_ = 0;
-    double radius_sum_ = 0.0;
-};
 
 class MoteVsl final : public Integrator {
   public:
@@ -109,7 +27,7 @@ class MoteVsl final : public Integrator {
         if (scene.has_media())
             throw InputError(
                 "mote_vsl renders surfaces only, and the scene has media; volpath and mote_vpl render them");
-        return std::make_unique<VslEstimator>(scene, options, settings_);
+        return make_vsl_estimator(scene, options, settings_);
     }
 
   private:

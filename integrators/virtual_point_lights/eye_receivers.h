@@ -106,7 +106,7 @@ class EyeReceivers {
     /// If true, a path whose media let little through continues behind them: by chance, which its weight
     /// makes up for.
     bool survives(EyePath<Media>& path) {
-        const float stays = core::max_component(path.throughput()) / rare_light;
+        const float stays = std::max(core::max_component(path.throughput()) / rare_light, min_survival);
         if (stays >= 1.0f) return true;
         if (!(walk_.rng.next_float() < stays)) return false;
         path.scale(1.0f / stays);
@@ -141,6 +141,8 @@ class EyeReceivers {
     /// Eye paths and scattering points that carry less than this share of the light are followed by chance:
     /// VPLs by the hundred cost the same wherever they are gathered.
     static constexpr float rare_light = 0.3f;
+    /// Behind thick media, which may be all that the eye sees, so many paths are followed at least.
+    static constexpr float min_survival = 1.0f / 32.0f;
 
     const lights::LightShadowMaps* maps_;
     PerLane<std::span<const core::ScatteringPoint>> points_;  ///< of the last segments

@@ -123,6 +123,10 @@ class MoteVpl final : public Integrator {
     std::unique_ptr<Estimator> prepare(const Scene& scene, const RenderOptions& options) const override {
         return make_vpl_estimator(scene, options, settings_);
     }
+    std::unique_ptr<PointLights> point_lights(const Scene& scene,
+                                              const RenderOptions& options) const override {
+        return make_vpl_point_lights(scene, options, settings_);
+    }
 
   private:
     void plan_choice_of_vpls(Plan& plan, const Scene& scene, const Requirements& r) const;

@@ -6,7 +6,7 @@
 
 #include "compensation/residual.h"
 #include "compensation/roughness_clamping.h"
-#include "integrators/eye_path/eye_path_limits.h"
+#include "integrators/eye_path/light_path_limits.h"
 #include "integrators/layer_filter/layer_filter.h"
 #include "lights/selection/selection.h"
 #include "lights/virtual_lights/light_source.h"
@@ -57,10 +57,8 @@ struct VplSettings {
         return radius > 0.0f ? float(paths) / core::sqr(radius) : core::infinity;
     }
     lights::LightPathSettings light_paths(const core::MemoryBudget& memory = {}) const {
-        lights::LightPathSettings s;
-        s.memory = memory, s.paths = paths, s.rr_depth = eye.rr_depth;
+        lights::LightPathSettings s = light_path_settings(paths, eye, memory);
         s.keep_states = selection->takes_all();  // else rays begin at receivers
-        s.max_vertices = eye.max_depth < 0 ? -1 : std::max(0, eye.max_depth - 2);
         return s;
     }
     std::unique_ptr<lights::LightSource> light_source(const core::LitScene& scene,
@@ -75,5 +73,9 @@ struct VplSettings {
 std::unique_ptr<core::Estimator> make_vpl_estimator(const core::Scene& scene,
                                                     const core::RenderOptions& options,
                                                     const VplSettings& settings);
+/// Its VPLs, connected as in the passes, but by shadow rays whatever the visibility is.
+std::unique_ptr<core::PointLights> make_vpl_point_lights(const core::Scene& scene,
+                                                         const core::RenderOptions& options,
+                                                         VplSettings settings);
 
 }  // namespace mote::integrators

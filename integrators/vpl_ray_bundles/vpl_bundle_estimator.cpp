@@ -18,6 +18,10 @@ std::vector<LayerFilter::Choice> filtered_layers(const VplBundleSettings& settin
     return {{std::size_t(Transport::indirect), screenspace::LayerKind::surface}};
 }
 
+/// With the VPLs j of a pass, of light L_j, and the points y that rays of the pass's directions k find, of
+/// the density p, a receiver x gets
+///   L(x) = sum_j w_j f*(x) G*(x, y_j) V L_j  +  sum_k w_k f(x, w_k) cos(w_k) L(y_k) / p(w_k)
+/// (Tokuyoshi & Ogaki 2012, Eqs. 3 and 7) with MIS weights w (gathering/eye_bundles/path_weights.h).
 class VplBundleEstimator final : public Estimator {
   public:
     VplBundleEstimator(const Scene& scene, const RenderOptions& options, const VplBundleSettings& settings)

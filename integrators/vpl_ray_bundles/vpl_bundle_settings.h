@@ -8,7 +8,7 @@
 #include "core/render/integrator.h"
 #include "gathering/eye_bundles/eye_bundles.h"
 #include "integrators/eye_path/eye_path_parameters.h"
-#include "lights/virtual_lights/light_path.h"
+#include "integrators/eye_path/light_path_limits.h"
 
 namespace mote::integrators {
 
@@ -78,9 +78,8 @@ struct VplBundleSettings {
     }
     bool has_bundles() const { return choice != BundleTechniques::vpls && directions > 0; }
     lights::LightPathSettings light_paths(const core::MemoryBudget& memory = {}) const {
-        lights::LightPathSettings s;
-        s.memory = memory, s.paths = paths, s.rr_depth = eye.rr_depth, s.keep_starts = true;
-        s.max_vertices = eye.max_depth < 0 ? -1 : std::max(0, eye.max_depth - 2);
+        lights::LightPathSettings s = light_path_settings(paths, eye, memory);
+        s.keep_starts = true;
         return s;
     }
 };

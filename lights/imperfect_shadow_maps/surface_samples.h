@@ -2,7 +2,9 @@
 //
 // They are where straight lines through everything meet surfaces. Lines that are uniform within a sphere of
 // radius R meet a piece of surface in proportion to its area, wherever and however it lies: A / (2 pi R^2)
-// times a line. So no shape needs a sampler of its own, and instances, meshes and balls are alike.
+// times a line: the density of a point is 1 / A per area A of all surfaces [1/m^2]. So no shape needs a
+// sampler of its own, and instances, meshes and balls are alike, also of scenes that are no list of triangles
+// (gathering/ray_bundles/surface_points.h samples those).
 #pragma once
 
 #include <vector>

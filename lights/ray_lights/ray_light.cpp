@@ -72,12 +72,23 @@ void append(RayLightSet& to, RayLightSet&& from) {
 /// Light scattered on the line, by its weights, over the root of its length. For a line of length L and power
 /// P that is P sqrt(L), which is how its light spreads: P / d within L of it, P L / d^2 farther away, so that
 /// the mean of the square over receivers on surfaces around it is P^2 L, but for logarithms. Sampled by P L,
-/// short lines would count so much where they are sampled that they were points again.
-double sampling_power(const RayLight& light) {
+/// short lines would count so much where they are sampled that they were points again. Lines below
+/// `shortest` count as if they had that length: few receivers are as near, and lines of nanometres, as in
+/// media of 1e9 optical depths a metre, would take all samples.
+double sampling_power(const RayLight& light, double shortest) {
     double sum = 0.0;
     for (const float weight : light.line.cell_weights()) sum += double(weight);
-    return double(average(light.power)) * sum * std::sqrt(double(light.line.length)) /
-           double(light.line.cells);
+    const double length = double(light.line.length);
+    return double(average(light.power)) * sum * length / double(light.line.cells) /
+           std::sqrt(std::max(length, shortest));
+}
+
+/// Length below which lines count as if they had it [m].
+double shortest_length(const std::vector<RayLight>& rays) {
+    constexpr float of_longest = 1e-3f;
+    float longest = 0.0f;
+    for (const RayLight& light : rays) longest = std::max(longest, light.line.length);
+    return double(of_longest * longest);
 }
 
 /// Power of a VPL, about: its intensity holds the BSDF where that is a constant.
@@ -106,8 +117,9 @@ RayLightSet trace_ray_lights(const LitScene& scene, const ScatteringMedia& media
                                     "the ray lights of " + std::to_string(settings.paths) + " light paths");
     }
     set.surface.paths = settings.paths;
+    const double shortest = shortest_length(set.rays);
     double sum = 0.0;
-    for (const RayLight& light : set.rays) set.ray_power.push_back(sum += sampling_power(light));
+    for (const RayLight& light : set.rays) set.ray_power.push_back(sum += sampling_power(light, shortest));
     sum = 0.0;
     for (const VirtualPointLight& vpl : set.surface.lights)
         set.surface_power.push_back(sum += reflected_power(vpl));

@@ -9,11 +9,11 @@ namespace mote::lights {
 /// all, uniform, lightcuts, multidimensional_lightcuts, stochastic_lightcuts, light_tree, resampling, matrix.
 void register_selection(core::Registry& registry);
 
-void register_uniform_selection(core::Registry& registry);
-void register_lightcuts(core::Registry& registry);
-void register_stochastic_selection(core::Registry& registry);
-void register_resampling_selection(core::Registry& registry);
-void register_matrix_selection(core::Registry& registry);
+void register_uniform_selection(core::Registry& registry);     ///< uniform
+void register_lightcuts(core::Registry& registry);             ///< lightcuts, multidimensional_lightcuts
+void register_stochastic_selection(core::Registry& registry);  ///< stochastic_lightcuts, light_tree
+void register_resampling_selection(core::Registry& registry);  ///< resampling
+void register_matrix_selection(core::Registry& registry);      ///< matrix
 
 /// A type of selection: a T of the settings and `more`.
 template <typename T, typename S, typename... More>

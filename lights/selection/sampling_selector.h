@@ -8,6 +8,7 @@ namespace mote::lights {
 
 class SamplingSelector : public TileSelector {
   public:
+    /// The VPLs must outlive it; `bound` as in SelectionPass.
     SamplingSelector(const VplSet& vpls, float bound) : vpls_(vpls), bound_{bound} {}
     TileLight gather(const GatherContext& context, ReceiverTile& receivers, const VplRange& range,
                      BatchVisibility& visibility, core::Rng& rng) final;

@@ -30,22 +30,30 @@ using LightByKind = std::array<TileLight, 2>;
 
 /// A vertex of an eye path that receives light.
 struct PathReceiver {
-    core::ScatteringVertex vertex;
-    core::Rgb throughput{1.0f};  ///< of the eye path up to the vertex
-    core::MediumState state;
-    std::int32_t max_vpl_depth = 0;
+    core::ScatteringVertex vertex;   ///< the receiver
+    core::Rgb throughput{1.0f};      ///< of the eye path up to the vertex
+    core::MediumState state;         ///< media there
+    std::int32_t max_vpl_depth = 0;  ///< of the VPLs that it may be connected to
+};
+
+/// A VPL that a selector connected with a receiver.
+struct ChosenVpl {
+    std::size_t vpl;          ///< its index
+    float weight;             ///< 1/p
+    std::size_t cluster = 0;  ///< VPLs that it represents; 0: not one of a cluster
+    core::Rgb light{0.0f};    ///< at the receiver
 };
 
 /// A pass, as selectors see it.
 struct SelectionPass {
-    const core::RayQueries& scene;
-    const VplSet& vpls;       ///< outlives the selector
-    float bound;              ///< b of the geometry term [1/m^2], infinity for none
-    std::uint64_t key;        ///< determines the random numbers of preparing
-    core::RayCounters& rays;  ///< counted up
-    core::TrackingCounters& tracking;
-    core::Statistics& statistics;  ///< of all passes
-    core::CancelToken cancelled;
+    const core::RayQueries& scene;     ///< where they are
+    const VplSet& vpls;                ///< outlives the selector
+    float bound;                       ///< b of the geometry term [1/m^2], infinity for none
+    std::uint64_t key;                 ///< determines the random numbers of preparing
+    core::RayCounters& rays;           ///< counted up
+    core::TrackingCounters& tracking;  ///< counted up
+    core::Statistics& statistics;      ///< of all passes
+    core::CancelToken cancelled;       ///< preparing throws Cancelled once it is set
     /// On about Selection::receiver_paths() eye paths, spread over the image.
     std::span<const PathReceiver> receivers = {};
     core::MemoryBudget memory = {};  ///< of the selector
@@ -66,6 +74,9 @@ class TileSelector {
     /// Scattering points of an eye ray that are receivers. More take memory and compensation, and gain little
     /// where they meet no more VPLs (docs/media.md).
     virtual std::size_t max_points() const { return 2; }
+    /// VPLs that brought a lane the light of the last gather() or gather_copied(), for selectors that connect
+    /// them without the BatchVisibility: until the next call.
+    virtual std::vector<ChosenVpl> chosen(int /*lane*/) const { return {}; }
     /// Adds what was counted since the selector was made.
     virtual void add_statistics(core::Statistics&) const {}
 
@@ -86,8 +97,11 @@ using VplSelector = std::function<std::unique_ptr<TileSelector>()>;
 
 /// Options of a many-light pass that not every selection goes with.
 struct GatherOptions {
-    bool interleaving = false, compensation = false, roughness_clamping = false;
-    bool shadow_maps = false, imperfect_shadow_maps = false;
+    bool interleaving = false;           ///< neighbouring pixels have different VPLs
+    bool compensation = false;           ///< of what the bound takes
+    bool roughness_clamping = false;     ///< of glossy peaks
+    bool shadow_maps = false;            ///< volumetric shadow maps instead of shadow rays
+    bool imperfect_shadow_maps = false;  ///< imperfect ones
 };
 
 /// Sizes that a plan states costs by.

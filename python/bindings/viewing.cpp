@@ -104,6 +104,7 @@ void bind_viewing(nb::module_& m) {
         .def("picture", &WidgetView::picture, nb::arg("name"))
         .def("close", &WidgetView::close)
         .def_prop_ro("closed", &WidgetView::closed);
+    m.def("page_script", viewer::page_script);
     m.def(
         "page_file",
         [](const std::string& name) {

@@ -13,9 +13,7 @@ from ._scene import Scene, load
 
 def _script() -> str:
     """The page's modules as one, which sends its messages through the widget."""
-    image = _mote.page_file("image.js").replace("export ", "")
-    viewer = _mote.page_file("viewer.js").replace("export ", "").replace('import { ImageCanvas, Picture } from "./image.js";', "")
-    return image + viewer + """
+    return _mote.page_script() + """
 export default {
   render({ model, el }) {
     const root = document.createElement("div");

@@ -93,7 +93,7 @@ class Film:
         self.command, self.path = command, path
         self.scratch = tempfile.TemporaryDirectory(prefix=path.name + ".", dir=path.parent)
         self.folder = Path(self.scratch.name)
-        self.passes, self.noise, self.content = 0, None, None
+        self.passes, self.noise, self.content, self.seed = 0, None, None, None
 
     def add(self, parts):
         """Adds the films that follow; without any reads what is there."""
@@ -104,7 +104,7 @@ class Film:
         said = json.loads(stats.read_text())
         if said["first_pass"] != 0:
             raise ClusterError(f"'{self.path}' does not begin with pass 0")
-        self.passes, self.noise, self.content = said["passes"], said["noise"], said["content"]
+        self.passes, self.noise, self.content, self.seed = said["passes"], said["noise"], said["content"], said["seed"]
 
 
 def pilot_shares(command, render, parts):
@@ -240,7 +240,7 @@ def render(scene, output, scheduler, *, passes=None, noise=None, block=USUAL_BLO
     arguments = [str(Path(scene).absolute()), *options]
     for define in defines:
         arguments += ["-D", define]
-    ours = identity(command, arguments)
+    ours = identity(command, [*arguments, "-o", str(out)])  # refuses to replace what mote did not write
     if ours["parts"] > 1 and not any(d.startswith("integrator.shares=") for d in defines):
         shares = pilot_shares(command, arguments, ours["parts"])
         if not quiet:
@@ -251,14 +251,14 @@ def render(scene, output, scheduler, *, passes=None, noise=None, block=USUAL_BLO
         passes = ours["sample_count"]
     film = Film(command, out.with_name(out.name + ".film"))
     if film.path.exists():
-        if resume:
-            film.add([])
-            if film.content != ours["content"]:
-                raise ClusterError(f"cannot resume: '{film.path}' is of another render")
-        elif film.path.open("rb").read(len(FILM_MAGIC)) != FILM_MAGIC:
+        if not film.path.is_file() or film.path.open("rb").read(len(FILM_MAGIC)) != FILM_MAGIC:
             raise ClusterError(f"'{film.path}' is no partial film of mote, and is not replaced")
-        else:
+        film.add([])
+        if (film.content, film.seed) != (ours["content"], ours["seed"]):
+            raise ClusterError(f"'{film.path}' is of another render, and is neither resumed nor replaced")
+        if not resume:
             film.path.unlink()
+            film.passes = 0
     job = {"id": f"{ours['content']}-{os.getpid()}-{os.urandom(4).hex()}", "mote": worker_mote, "render": arguments,
            "identity": ours, "threads": threads}
     settings = argparse.Namespace(passes=passes or max_passes, noise=noise, block=block, retries=retries, quiet=quiet,

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <set>
 
+#include "tests/apps/ball_under_sky.h"
 #include "tests/apps/run_mote.h"
 #include "tests/support/catch.h"
 
@@ -13,11 +14,7 @@ namespace {
 /// A scene, and bystanders that say what they are.
 struct Folder : TemporaryFolder {
     Folder() {
-        write_file(file("scene.xml"), R"(<scene version="3.0.0"><integrator type="path"/>
-            <sensor type="perspective"><film type="hdrfilm"><integer name="width" value="8"/>
-            <integer name="height" value="8"/></film><transform name="to_world">
-            <lookat origin="0, 0, 4" target="0, 0, 0" up="0, 1, 0"/></transform></sensor>
-            <shape type="sphere"><bsdf type="diffuse"/></shape><emitter type="constant"/></scene>)");
+        write_file(file("scene.xml"), ball_under_sky(8, 8));
         write_file(file("methods.json"),
                    R"({"passes": 2, "methods": [{"name": "one", "integrator": "path"}]})");
     }
@@ -187,6 +184,11 @@ TEST_CASE("No command writes or removes a path that is no output of its own", "[
         {{"compare", "in/a.exr", "in/a.exr", "--map", "c.png", "--difference", "x4", "-o", "d.png"},
          {"c.png", "d.png"}},
         {{"denoise", "in/a.exr", "-o", "a.exr", "--method", "bmfr"}, {"a.exr", "a.png"}},
+        {{"denoise", "in/f.####.exr", "-o", "d.####.exr", "--method", "bmfr"},
+         {"d.0001.exr", "d.0001.png", "d.0002.exr", "d.0002.png"}},
+        {{"ssbc", "in/v.exr", "-o", "w.exr"}, {"w.exr"}},
+        {{"export", "scene.xml", "--to", "mitsuba3", "-o", "e"}, {"e/scene.xml", "e/dropped.txt"}},
+        {{"formats"}, {}},
         {{"trade", "scene.xml", "--make-reference", "r.exr", "--resolve", "0.9", "--passes", "8"},
          {"r.exr", "r.png", "r.exr.checkpoint"}},
         {{"plan", "scene.xml"}, {}},
@@ -194,6 +196,12 @@ TEST_CASE("No command writes or removes a path that is no output of its own", "[
     const Folder inputs;
     REQUIRE(inputs.run({"render", "scene.xml", "-o", "a.exr", "--passes", "2", "--auxiliary"}).exit_code ==
             0);
+    REQUIRE(inputs
+                .run({"render", "scene.xml", "--integrator", "mote_vpl", "-D", "integrator.bound=5", "-o",
+                      "v.exr", "--passes", "1", "--auxiliary"})
+                .exit_code == 0);
+    for (const char* copy : {"f.0001.exr", "f.0002.exr"})
+        fs::copy_file(inputs.file("a.exr"), inputs.file(copy));
     for (const char* range : {"0:1", "1:2"})
         REQUIRE(
             inputs
@@ -202,17 +210,18 @@ TEST_CASE("No command writes or removes a path that is no output of its own", "[
     for (const Command& command : commands) {
         const Folder folder;
         fs::create_directory(folder.file("in"));
-        for (const char* name : {"a.exr", "0.film", "1.film"})
+        for (const char* name : {"a.exr", "v.exr", "f.0001.exr", "f.0002.exr", "0.film", "1.film"})
             fs::copy_file(inputs.file(name), folder.file(std::string("in/") + name));
         std::vector<std::string> bystanders;
-        for (const char* base : {"a", "b", "c", "d", "f", "m", "p", "r", "s", "scene", "in/a", "in/0"})
+        for (const char* base :
+             {"a", "b", "c", "d", "e", "f", "m", "p", "r", "s", "w", "scene", "in/a", "in/0"})
             for (const std::string& name : names_we_use(base))
                 if (!command.named.contains(name) && !fs::exists(folder.file(name)))
                     bystanders.push_back(name);
         for (const std::string& name : bystanders) folder.put(name);
         std::set<std::string> before = entries(folder);
         const RunResult r = folder.run(command.arguments);
-        INFO(command.arguments[0] << " " << command.arguments[1] << "\n" << r.err);
+        INFO(command.arguments[0] << "\n" << r.err);
         CHECK(r.exit_code == 0);
         for (const std::string& name : bystanders) {
             INFO(name);

@@ -1,6 +1,8 @@
-"""Runs inside of Blender: installs the add-on and renders a room made here. Arguments: pictures | parts | cancel, ZIP, FOLDER."""
+"""Runs inside of Blender: installs the add-on and renders a room made here. Arguments: pictures | parts | cancel | live | window, ZIP,
+FOLDER."""
 import math
 import sys
+import time
 from pathlib import Path
 
 import bpy
@@ -157,6 +159,92 @@ def cancelled(folder):
     check(np.isfinite(partial["R"]).all() and partial["R"].mean() > 0.01, "cancel keeps the picture so far")
 
 
+def live(folder):
+    """The live render of the viewport, without a window: the image of F12 where the view is the camera's, and it moves."""
+    from types import SimpleNamespace
+
+    from mote_render import viewport
+    from mote_render.export_camera import ViewCamera
+    from mote_render.export_scene import export_scene
+    from mote_render.live_view import LiveView
+    from mote_render.preferences import command
+    scene, _ = room()
+    still = colour(render(scene, folder))
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    seen = SimpleNamespace(view_matrix=scene.camera.matrix_world.inverted(),
+                           window_matrix=scene.camera.calc_matrix_camera(depsgraph, x=SIZE[0], y=SIZE[1]))
+    camera = ViewCamera(seen, SIZE)
+    export_scene(depsgraph, folder, SIZE, camera)
+    view = LiveView(command(), folder / "scene.xml", ["--passes", "4"], lambda: None)
+    try:
+        first = finished(view)
+        check(first.shape == (SIZE[1], SIZE[0], 3) and np.median(np.abs(first - still[..., :3])) < 1e-3 * first.mean(),
+              "the live image of the camera's view is that of F12")
+        origin, target, up = camera.pose
+        view.move(*((x, y, z + 0.5) for x, y, z in (origin, target)), up)
+        check(np.median(np.abs(finished(view) - first)) > 1e-2 * first.mean(), "a moved view shows something else")
+    finally:
+        view.close()
+    try:
+        viewport.require_drawing()
+    except RuntimeError as error:
+        check("drawing context" in str(error), f"without a window: {error}")
+    else:
+        raise AssertionError("the viewport was not refused")
+    print("checked: all")
+
+
+def finished(view):
+    end = time.monotonic() + 120
+    while not view.finished:
+        check_alive(view, end)
+    return view.image
+
+
+def check_alive(view, end):
+    if view.problem or time.monotonic() > end:
+        raise AssertionError(view.problem or "no image within 120 s")
+    time.sleep(0.02)
+
+
+def window(folder):
+    """In a window: the viewport shows the render. Runs after this script, as events do."""
+    bpy.context.preferences.view.show_splash = False
+    bpy.app.timers.register(lambda: show_room(folder), first_interval=1)
+
+
+def show_room(folder):
+    shown = bpy.context.window_manager.windows[0]
+    area = next(a for a in shown.screen.areas if a.type == "VIEW_3D")
+    with bpy.context.temp_override(window=shown, area=area, region=area.regions[-1]):
+        room()
+    space = area.spaces.active
+    space.region_3d.view_perspective = "CAMERA"
+    space.overlay.show_overlays = space.show_gizmo = False
+    space.shading.type = "RENDERED"
+    end = time.monotonic() + 60
+    bpy.app.timers.register(lambda: look(folder, shown, area, end), first_interval=1)
+
+
+def look(folder, shown, area, end):
+    """Every second until the viewport shows the red cube, or a minute has passed."""
+    area.tag_redraw()
+    path = str(folder / "window.png")
+    with bpy.context.temp_override(window=shown, area=area):
+        bpy.ops.screen.screenshot(filepath=path)
+    image = bpy.data.images.load(path)
+    pixels = np.array(image.pixels[:]).reshape(image.size[1], image.size[0], -1)
+    bpy.data.images.remove(image)
+    x, y = area.x + area.width // 2, area.y + area.height // 2
+    seen = pixels[y - 60:y + 60, x - 100:x + 100, :3]
+    red = ((seen[..., 0] > 1.5 * seen[..., 2] + 0.02) & (seen[..., 0] > 1.5 * seen[..., 1] + 0.02)).mean()
+    if red < 0.02 and time.monotonic() < end:
+        return 1
+    print(f"{'checked: all' if red >= 0.02 else 'FAILED'}, the red cube covers {100 * red:.0f} % of the viewport's middle", flush=True)
+    bpy.ops.wm.quit_blender()
+    return None
+
+
 def main():
     what, archive, folder = sys.argv[sys.argv.index("--") + 1:]
     bpy.ops.wm.read_factory_settings(use_empty=True)
@@ -165,7 +253,7 @@ def main():
     if what == "parts":
         from parts import parts
         return parts(Path(folder))
-    return (pictures if what == "pictures" else cancelled)(Path(folder))
+    return {"pictures": pictures, "cancel": cancelled, "live": live, "window": window}[what](Path(folder))
 
 
 main()

@@ -105,6 +105,34 @@ class Pictures(unittest.TestCase):
         self.assertGreaterEqual(passes, cluster.NOISE_RULE_FROM)
         one_machine(passes)
         self.same_as_one("noise.exr")
+
+    def test_what_was_not_named_is_left_alone(self):
+        """Beside the output nothing is replaced or removed; what would be is refused before workers begin."""
+        place = folder / "bystanders"
+        place.mkdir()
+        kept = {"c.film", "c.json", "c.csv", "c.part", "c.exr.part", "c.exr.sum.film", "sum.film", "sum.json", "0.film",
+                "part.film", "pilot.exr", "pilot.json", "c.exr.film.part", "c.1.film"}
+        for name in kept:
+            (place / name).write_text(f"this is {name}")
+        for _ in range(2):
+            self.assertEqual(self.render("bystanders/c.exr", passes=4, block=2), 4)
+        self.assertEqual({p.name for p in place.iterdir()}, kept | {"c.exr", "c.png"})
+        for name in kept:
+            self.assertEqual((place / name).read_text(), f"this is {name}")
+        never = wrapper("never", f'[[ "$*" == *--pass-range* ]] && touch {folder}/begun; exec {MOTE} "$@"')
+        for foreign in ("d.exr.film", "d.png"):
+            (place / foreign).write_text("a diary")
+            with self.assertRaisesRegex(cluster.ClusterError, foreign):
+                self.render("bystanders/d.exr", passes=4, worker_mote=never)
+            self.assertEqual((place / foreign).read_text(), "a diary")
+            (place / foreign).unlink()
+        mote("render", "scene.xml", "--quiet", "--pass-range", "0:1", "-o", "bystanders/d.exr.film", *PATH, "--seed", "7")
+        for resume in (False, True):
+            with self.assertRaisesRegex(cluster.ClusterError, "d.exr.film.*another render"):
+                self.render("bystanders/d.exr", passes=4, worker_mote=never, resume=resume)
+            self.assertTrue((place / "d.exr.film").exists())
+        self.assertFalse((folder / "begun").exists())
+
     def test_a_third_worker_is_killed_in_the_middle(self):
         one_machine(12)
         slow = wrapper("slow", f'[[ "$*" == *--pass-range* ]] && sleep 0.5\nexec {MOTE} "$@"')

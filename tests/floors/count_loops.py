@@ -44,6 +44,7 @@ IDEAS = {
     }),
     "the light of virtual lights at receivers": (r"(?<!bool )\bcontributions_of\(", {
         "lights/virtual_lights/vpl_gather.h": 1,
+        "lights/selection/recording_selector.cpp": 2,    # one chosen VPL with and without the bound, for a pixel's record
         "lights/virtual_lights/lobe_contributions.cpp": 1,    # pairs of groups, each remembered by itself
     }),
     "a gather over pairs": (r"(?<!void )\bgather_pairs\(", {

@@ -112,10 +112,24 @@ def check_examples(build, prefix):
     run(prefix / "bin/mote", "render", arguments.source / "examples/ssbc/room.xml", "--passes", 4, "--auxiliary",
         "--quiet", "-o", room)
     for folder in sorted(p for p in (arguments.source / "examples").iterdir() if p.is_dir() and p.name != "notebook"):
+        if folder.name.startswith("my_"):
+            continue  # plugins: check_plugins()
         more = {"ssbc": [room, work / "compensated.exr"],
                 "render_scene": [box, work / "box.exr", 1, "film.width=32", "film.height=24"],
                 "render_from_c": [box, work / "box_of_c.exr", 1, "film.width", 32, "film.height", 24]}.get(folder.name, [])
         print(f"{folder.name}: {run(examples / folder.name / folder.name, *more).splitlines()[-1]}")
+
+
+def check_plugins(build, prefix):
+    """The moved command renders with the plugins of the examples, which another compilation made."""
+    uses = {"my_integrator": ["--integrator", "my_ambient_occlusion", "-D", "integrator.distance=0.3"],
+            "my_selector": ["--integrator", "mote_vpl", "-D", "integrator.selection=by_intensity"]}
+    for name, words in uses.items():
+        picture = work / f"{name}.exr"
+        run(prefix / "bin/mote", "render", arguments.source / "scenes/cornell_box.xml", "--plugin",
+            build / "examples" / name / f"{name}.so", *words, "-D", "film.width=32", "-D", "film.height=24", "--passes", 1,
+            "--quiet", "-o", picture)
+        print(f"{name}: {run(prefix / 'bin/mote', 'info', picture).splitlines()[1].strip()}")
 
 
 def check_helper(build, prefix):
@@ -161,6 +175,7 @@ if same_layouts(inside, layouts.replace("alignment 64", "alignment 32")):
 if version.split()[-1] != layouts.split()[1]:
     fail(f"the command says {version}, the headers {layouts.split()[1]}")
 check_examples(build, prefix)
+check_plugins(build, prefix)
 check_helper(build, prefix)
 check_guest()
 if arguments.headers:

@@ -446,6 +446,19 @@ class ModuleTest(unittest.TestCase):
         with self.assertRaisesRegex(mote.Error, "did you mean"):
             mote.trade(self.path, [{"name": "x", "integrator": "paht"}], output=Path(self.folder.name) / "other", passes=1)
 
+    def test_plugins(self):
+        """MOTE_PLUGINS holds for the module too, with the bits of the command."""
+        os.environ["MOTE_PLUGINS"] = str(Path(MOTE).parent / "stand_ins" / "my_integrator.so")
+        try:
+            ours = mote.render(mote.load(self.path, integrator="my_ambient_occlusion"), passes=2, seed=5)
+            theirs = self.command("--integrator", "my_ambient_occlusion", "--passes", "2", "--seed", "5")
+        finally:
+            del os.environ["MOTE_PLUGINS"]
+        self.assertTrue(same_bits(ours, theirs))
+        self.assertIn("indirect_ambient", ours)
+        with self.assertRaisesRegex(mote.Error, "my_ambient_occlusion"):
+            mote.load(self.path, integrator="my_ambient_occlusion")
+
     def reference(self):
         path = Path(self.folder.name) / "reference.exr"
         subprocess.run([MOTE, "trade", self.path, "--make-reference", path, "--passes", "256", "--resolve", "0.5",

@@ -142,7 +142,7 @@ def throw_messages(program, count):
             client = program.connect()
         try:
             client.socket.sendall(frame(message()))
-            if not drain(client.socket, 0.002):
+            if not drain(client.socket, 0.05):  # until the answer, where there is one
                 raise OSError
         except OSError:
             client.close()

@@ -34,7 +34,7 @@ def main():
     with Program(mote, box, "--integrator", "mote_vpl", "--passes", "32", "-D", "film.width=320", "-D", "film.height=320") as program, \
             browser.Browser(program.url, 1120, 620) as page:
         page.wait("window.moteView && moteView.picture('A') && moteView.picture('A').finished", 300)
-        page.evaluate("document.querySelectorAll('.panel details')[2].open = true; moteView.drawHistogram()")
+        page.evaluate("document.querySelectorAll('.panel details')[2].open = true; moteView.update()")
         save(page, "view_scene.png")
         place = page.evaluate("moteView.place()")
         at = (place["x"] + 0.30 * place["width"], place["y"] + 0.90 * place["height"])
@@ -42,7 +42,7 @@ def main():
             page.mouse(kind, *at, button="left", clickCount=1)
         page.wait("moteView.light")
         page.evaluate("""document.querySelectorAll('.panel details').forEach((d) => { d.open = d.textContent.startsWith('light of'); });
-            moteView.drawOverlay()""")
+            moteView.draw()""")
         save(page, "view_pixel.png")
         page.evaluate("document.querySelectorAll('.panel details').forEach((d, i) => { d.open = i < 2 || d.textContent.startsWith('compare'); })")
         choose(page, "second", "mote_bdpt")

@@ -4,14 +4,14 @@ save; and what was saved against `mote render`. Prints LEFT OUT where there is n
 Usage: page_test.py MOTE SCENE [FOLDER for screenshots]
 """
 import base64
+import json
 import os
-import shlex
-import subprocess
 import sys
 import tempfile
 import time
 
 import browser
+from reproduced import same_bits
 from view_program import Program
 
 mote, scene = (os.path.abspath(path) for path in sys.argv[1:3])
@@ -45,17 +45,32 @@ def saved_picture(page):
     return base64.b64decode(text.split(",", 1)[1])
 
 
-def same_bits(page, folder, what):
+def check_bits(page, folder, what):
     """The saved picture against the command that the page prints."""
     page.evaluate("moteView.reproduced = null; moteView.send({type: 'reproduce', picture: 'A'})")
-    command = shlex.split(page.wait("moteView.reproduced && moteView.reproduced.command"))
-    saved, rendered = os.path.join(folder, "saved.exr"), os.path.join(folder, "view.exr")
-    with open(saved, "wb") as file:
-        file.write(saved_picture(page))
-    subprocess.run([mote, *command[1:], "--quiet"], check=True, cwd=folder)
-    hashes = [subprocess.run(["oiiotool", "--hash", path], check=True, capture_output=True, text=True).stdout.split()[-1]
-              for path in (saved, rendered)]  # of the pixels of every channel
-    check(hashes[0] == hashes[1], f"{what}: the saved picture has the bits of {' '.join(command[3:])}")
+    command = page.wait("moteView.reproduced && moteView.reproduced.command")
+    check(same_bits(mote, command, saved_picture(page), folder), f"{what}: the saved picture has the bits of {command}")
+
+
+def points_and_cuts(page):
+    """VPLs over the image, the cut of a selection, and photons."""
+    page.evaluate("moteView.pointsInput.click()")
+    page.wait("moteView.points")
+    check(page.evaluate("moteView.points.points.length") > 10, page.evaluate("moteView.pointsText.textContent"))
+    for define, kind in (({"integrator.selection": "lightcuts", "integrator.paths": "2000"}, "VPL"), (None, "photon")):
+        message = {"type": "set", "define": define} if define else {"type": "set", "integrator": "mote_photon_map"}
+        page.evaluate(f"moteView.send({json.dumps(message)})")
+        page.wait(f"moteView.points && moteView.points.kind === '{kind}'")
+        page.evaluate("moteView.light = null; moteView.askPixel(70, 80)")
+        light = page.wait("moteView.light && moteView.light.light")
+        total = [sum(s["light"][i] for s in light["sources"]) for i in range(3)]
+        check(light["kind"] == kind and light["lit_by"] > 0 and all(a <= b * 1.0001 for a, b in zip(total, light["sum"])),
+              f"{light['facts']}: {light['lit_by']} of {light['connected']} light the pixel")
+        if define:
+            check(any(s["cluster"] > 1 for s in light["sources"]), "clusters of the tile's cut")
+        page.screenshot(os.path.join(shots, f"{kind}.png"))
+    page.evaluate("moteView.pointsInput.click()")
+    page.evaluate("moteView.send({type: 'set', integrator: 'mote_vpl'})")
 
 
 def main():
@@ -107,7 +122,7 @@ def main():
         page.wait("moteView.scene.pictures[0].changes.defines['integrator.paths'] === '64'")
         page.wait("moteView.picture('A').finished && moteView.picture('A').passes === 40", 120)
         check(page.evaluate(PIXELS) != whole, "a knob of the integrator changes the picture")
-        same_bits(page, folder, "integrator")
+        check_bits(page, folder, "integrator")
         before = page.evaluate("moteView.statistics.frames")
         page.evaluate("document.querySelector('[data-twice=\"emitter:1.radiance\"]').click()")
         page.wait("moteView.scene.pictures[0].changes.defines['emitter:1.radiance']")
@@ -120,20 +135,21 @@ def main():
         coarse = page.evaluate("moteView.statistics.coarse")
         check(coarse > 3 and page.evaluate("moteView.camera.view") != view, "the camera turns, with coarse pictures")
         page.wait("!moteView.dragging && moteView.picture('A').finished && !moteView.picture('A').coarse", 120)
-        same_bits(page, folder, "lights and camera")
+        check_bits(page, folder, "lights and camera")
 
         page.mouse("mousePressed", 480, 600, button="left", clickCount=1)
         page.mouse("mouseReleased", 480, 600, button="left", clickCount=1)
         page.wait("moteView.light")
+        page.screenshot(os.path.join(shots, "pixel.png"))
         light = page.evaluate("moteView.light.light")
         x, y = page.evaluate("[moteView.light.x, moteView.light.y]")
         listed = next(v for v in page.evaluate("moteView.light.values") if v["layer"] == "beauty")
         shown = page.evaluate(f"moteView.picture('A').value(0, {x}, {y})")
         check(listed["channels"] == ["R", "G", "B"] and
               all(abs(a - b) <= 1e-3 * abs(a) + 1e-6 for a, b in zip(listed["values"], shown)), "its values are those of the picture")
-        check(light["vpls"] and light["path"] and light["first"]["depth"] > 0,
+        check(light["kind"] == "VPL" and light["sources"] and light["path"] and light["first"]["depth"] > 0,
               f"a pixel: {light['lit_by']} VPLs light it, {len(light['path'])} vertices on its eye path")
-        page.screenshot(os.path.join(shots, "pixel.png"))
+        points_and_cuts(page)
 
         page.evaluate("moteView.send({type: 'set', passes: 100000})")
         page.wait("moteView.state.A && moteView.state.A.passes > 3 && moteView.state.A.passes_wanted === 100000")
@@ -142,7 +158,7 @@ def main():
         passes = page.evaluate("moteView.picture('A').passes")
         time.sleep(0.5)
         check(page.evaluate("moteView.picture('A').passes") == passes > 0, f"stop keeps what there is: {passes} passes")
-        same_bits(page, folder, "interrupted")
+        check_bits(page, folder, "interrupted")
         check(not page.exceptions(), "the page raised no exception")
     print("passed")
 

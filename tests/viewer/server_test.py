@@ -3,7 +3,9 @@
 Usage: server_test.py MOTE SCENE
 """
 import http.client
+import os
 import sys
+import tempfile
 import time
 from urllib.parse import urlsplit
 
@@ -34,8 +36,35 @@ def refused(connect):
     return ""
 
 
+def with_bystanders(folder):
+    """What the folder holds: files that no client named."""
+    held = {}
+    for name in ("view.exr", "view.png", "A.exr", "scene.exr", "scene.png", "scene.json", "scene.exr.checkpoint"):
+        held[name] = f"this is {name}"
+        with open(os.path.join(folder, name), "w", encoding="ascii") as file:
+            file.write(held[name])
+    return held
+
+
+def contents(folder):
+    held = {}
+    for name in os.listdir(folder):
+        with open(os.path.join(folder, name), encoding="ascii") as file:
+            held[name] = file.read()
+    return held
+
+
 def main():
-    with Program(mote, scene, "-D", "film.width=64", "-D", "film.height=64", "--integrator", "path", "--passes", "4") as program:
+    with tempfile.TemporaryDirectory() as folder:
+        held = with_bystanders(folder)
+        attack(folder)
+        check(contents(folder) == held, "nothing is written into the folder of the program, nor removed")
+    print("passed")
+
+
+def attack(folder):
+    with Program(os.path.abspath(mote), os.path.abspath(scene), "-D", "film.width=64", "-D", "film.height=64", "--integrator", "path",
+                 "--passes", "4", cwd=folder) as program:
         parts = urlsplit(program.url)
         base = parts.path
         check(parts.hostname == "127.0.0.1" and len(base) == 34, "loopback, and 128 bits of token")
@@ -67,6 +96,8 @@ def main():
         check("max_depth" in problem or "many" in problem, f"a wrong value: {problem}")
         client.send({"type": "set", "define": {"integrator.max_depth": None}})
         client.frame(lambda h: h["finished"])
+        client.send({"type": "save", "picture": "A"})
+        check(client.wait_for(lambda h: h["type"] == "file")[1][:4] == b"\x76\x2f\x31\x01", "a saved picture is sent")
 
         others = [program.connect() for _ in range(9)]
         check("503" in refused(program.connect), "ten clients, and no more")
@@ -84,7 +115,6 @@ def main():
         other.frame(lambda h: h["finished"])
         check(time.monotonic() - begin < 5, "a client that floods delays no other")
         check(program.is_alive(), "alive")
-    print("passed")
 
 
 main()

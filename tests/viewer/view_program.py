@@ -6,8 +6,8 @@ from websocket import WebSocket, parsed
 
 
 class Program:
-    def __init__(self, mote, *arguments):
-        self.process = subprocess.Popen([mote, "view", *arguments, "--no-browser"], stdout=subprocess.PIPE, text=True)
+    def __init__(self, mote, *arguments, cwd=None):
+        self.process = subprocess.Popen([mote, "view", *arguments, "--no-browser"], stdout=subprocess.PIPE, text=True, cwd=cwd)
         self.url = self.process.stdout.readline().strip()
         if not self.url.startswith("http://"):
             raise RuntimeError(f"mote view printed no address: {self.url!r}")

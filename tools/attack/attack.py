@@ -9,10 +9,11 @@ import numpy as np
 
 from methods import REFERENCE
 from runner import Outcome
-from verdict import CONTINUE, LIE, STAGES, STAYS, STAYS_WHOLE, compare_means, noise_lies, threshold
+from verdict import CONTINUE, LIE, STAGES, STAYS, STAYS_WHOLE, compare_means, noise_lies, regions, threshold
 
 MORE_PASSES, MORE_SEEDS = 4, 8  # of the renders that separate a bias from a tail
 KERNEL_PASSES = 64  # times the passes, for methods whose kernels shrink
+SECOND, SECOND_PASSES, SECOND_WITHIN = "mote_bdpt", 64, 0.5  # where the reference is black: times its passes, and how far a mean may be off
 COMMAND_EVERY = 10  # scenes: the command takes longer to start than most of them to render
 
 
@@ -80,7 +81,7 @@ class Attack:
     def scene(self, scene, names, turn=0):
         """The record of a scene: findings, refusals, and what each integrator took. `turn` says which integrator comes first where not all may finish."""
         record = {"scene": scene.name, "facts": scene.facts, "findings": [], "refused": {}, "seconds": {}, "compared": [],
-                  "unfinished": [], "tails": []}
+                  "unfinished": [], "tails": [], "blind": []}
         allowance = copy.copy(self.allowance)
         reference = self.series(scene, REFERENCE, 1, allowance)
         others = [n for n in names if n != REFERENCE]
@@ -138,8 +139,12 @@ class Attack:
                 record["compared"].append(series.integrator)
             difference = compare_means(series.pictures[:seeds], reference.pictures[:seeds], series.method.bias)
             if difference.p < threshold(stage, self.pairs):
-                stays, after = self.with_more_passes(series, reference, difference)
+                stays, after, pictures = self.with_more_passes(series, reference, difference)
                 if stays:
+                    second = self.second_opinion(series, reference, difference, pictures)
+                    if second:
+                        record["blind"].append(f"{series.integrator}: {difference.text}, {second}")
+                        return []
                     return [find("mean", f"{difference.text}, {after}{self.unknown_noise(series)}")]
                 record["tails"].append(f"{series.integrator}: {difference.text}, {after}")
                 return []
@@ -153,20 +158,34 @@ class Attack:
         return ", its noise is unknown" if all(n is None for n in series.noises) else ""
 
     def with_more_passes(self, series, reference, difference):
-        """(True, text) where a difference stays with more passes and other seeds: a bias does; a tail moves, or shows in the spread; a kernel shrinks."""
+        """(True, text, pictures) where a difference stays with more passes and other seeds: a bias does; a tail moves, or shows in the spread; a
+        kernel shrinks."""
         factors = (MORE_PASSES, KERNEL_PASSES) if series.method.shrinks else (MORE_PASSES,)
         texts = []
         for factor in factors:
             longer = [self.series(s.scene, s.integrator, s.first + 5000, cells=s.method.cells, passes=factor * s.method.passes)
                       for s in (series, reference)]
             if any(s.at_least(MORE_SEEDS) for s in longer):
-                return True, "unclear: longer renders did not end"
+                return True, "unclear: longer renders did not end", []
             after = compare_means(longer[0].pictures, longer[1].pictures, series.method.bias, difference.region)
             stays = after.p < STAYS and after.absolute / difference.absolute > STAYS_WHOLE
             texts.append(f"{'stays' if stays else 'moves'} with {factor} times the passes: {100 * after.relative:+.3g} %, p {after.p:.2g}")
             if not stays:
                 break
-        return stays, ", ".join(texts)
+        return stays, ", ".join(texts), longer[0].pictures
+
+    def second_opinion(self, series, reference, difference, pictures):
+        """What SECOND says, where most renders of the reference are black in the region and SECOND agrees with `pictures`; else ""."""
+        lit = sum(regions(p)[difference.region] > 0.0 for p in reference.pictures)
+        if 2 * lit > len(reference.pictures) or series.integrator == SECOND or not pictures:
+            return ""
+        second = self.series(series.scene, SECOND, series.first + 7000, cells=series.method.cells,
+                             passes=SECOND_PASSES * self.methods[SECOND].passes)
+        if second.at_least(MORE_SEEDS):
+            return ""
+        after = compare_means(pictures, second.pictures, series.method.bias, difference.region)
+        agrees = after.p >= STAYS and abs(after.relative) < SECOND_WITHIN
+        return f"{SECOND} agrees: {after.text}" if agrees else ""
 
     def stated_noise(self, find, series):
         """The spread between seeds against what each picture states."""

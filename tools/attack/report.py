@@ -30,11 +30,12 @@ def holds(facts, condition):
 
 
 def mark_known(record, known):
-    """Gives the findings that are listed their reason."""
+    """Gives the findings that are listed their reason. The number of a random scene is a fact, too."""
+    facts = record["facts"] | ({"scene": int(record["scene"])} if record["scene"].isdigit() else {})
     for finding in record["findings"]:
         for entry in known:
             if (re.fullmatch(entry["integrator"], finding["integrator"]) and re.fullmatch(entry["what"], finding["what"])
-                    and re.search(entry.get("text", ""), finding["text"]) and holds(record["facts"], entry.get("where", {}))):
+                    and re.search(entry.get("text", ""), finding["text"]) and holds(facts, entry.get("where", {}))):
                 finding["known"] = entry["reason"]
 
 
@@ -70,7 +71,8 @@ def summary(records):
     early = sum(" at " in name for r in records for name in r["unfinished"])
     page = [f"{len(records)} scenes, {renders} pairs of scene and integrator, {compared} means compared: {len(findings)} findings, "
             f"{len(findings) - len(new)} of them known; {sum(unfinished.values())} pairs not finished in their time, {early} comparisons ended early, "
-            f"{sum(len(r['tails']) for r in records)} differences that did not stay; {sum(r['processor'] or 0 for r in records) / 60:.1f} min of the processor"]
+            f"{sum(len(r['tails']) for r in records)} differences that did not stay, "
+            f"{sum(len(r.get('blind', [])) for r in records)} where volpath is black and mote_bdpt agrees; {sum(r['processor'] or 0 for r in records) / 60:.1f} min of the processor"]
     for (what, integrator), count in sorted(Counter((f["what"], f["integrator"]) for f in new).items()):
         page.append(f"  {count:5}  {what:10} {integrator}")
     page.append("not finished: " + ", ".join(f"{name} {count}" for name, count in unfinished.most_common()))

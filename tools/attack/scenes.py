@@ -102,7 +102,7 @@ def write_scene(seed, n, folder, methods, registry):
     path.write_text(text)
     watched = {"integrator": (end[1],), "selection": ("mote_vpl",), "compensation": ("mote_vpl",),
                "visibility": ("mote_vpl",)}.get(end[0], ()) if end else ()
-    return Scene(str(n), path, {**axes.facts(), "end": " ".join(end) if end else "", **contents(text)}, watched=watched)
+    return Scene(str(n), path, {**axes.facts(), "seed": seed, "end": " ".join(end) if end else "", **contents(text)}, watched=watched)
 
 
 def hostile_scene(source, folder, methods, registry):
@@ -117,8 +117,9 @@ def hostile_scene(source, folder, methods, registry):
 
 
 def contents(text):
-    """Facts of scenes with media that vary, with surfaces that are not diffuse, and with a lamp twice at one place."""
+    """Facts of scenes with media that vary, with surfaces that are not diffuse, or mirror light, and with a lamp twice at one place."""
     lamps = [line for line in text.splitlines() if line.startswith("<shape") and '<emitter type="area"' in line]
     kinds = set(re.findall(r'<bsdf type="(\w+)"', text)) - {"diffuse", "twosided", "null", "mask", "bumpmap", "normalmap"}
-    return {"grids": "yes" if 'type="heterogeneous"' in text else "no", "lobes": "yes" if kinds else "no",
+    glass = {"dielectric", "conductor", "plastic"}
+    return {"glass": "yes" if kinds & glass else "no", "grids": "yes" if 'type="heterogeneous"' in text else "no", "lobes": "yes" if kinds else "no",
             "lamps": "coincide" if len(set(lamps)) < len(lamps) else "apart"}

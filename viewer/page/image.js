@@ -95,7 +95,7 @@ export class Picture {
 export class ImageCanvas {
   constructor(canvas) {
     const gl = canvas.getContext("webgl2", { preserveDrawingBuffer: true, antialias: false });
-    if (!gl) throw new Error("This browser offers no WebGL2, by which pictures are drawn.");
+    if (!gl) throw new Error("This browser offers no WebGL2, which shows the images.");
     this.canvas = canvas, this.gl = gl, this.textures = new Map();
     const program = gl.createProgram();
     for (const [type, source] of [[gl.VERTEX_SHADER, VERTEX], [gl.FRAGMENT_SHADER, FRAGMENT]]) {

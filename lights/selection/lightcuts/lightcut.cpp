@@ -235,6 +235,18 @@ void Lightcut::plan(GatherPoints& points, std::size_t size) {
     total_ = {};
 }
 
+std::vector<ChosenVpl> Lightcut::chosen(int lane) const {
+    std::vector<ChosenVpl> list;
+    for (std::size_t p = 0; p < pairs_.size(); ++p) {
+        const Pair& pair = pairs_[p];
+        const Estimate& e = estimates_[p];
+        list.push_back({lights_.light_at(pair.representative),
+                        lights_.weight(pair.lights) / lights_.weight_at(pair.representative),
+                        pair.lights.count, Rgb(e.r[lane], e.g[lane], e.b[lane])});
+    }
+    return list;
+}
+
 LightByKind Lightcut::gather(const GatherContext& context, GatherPoints& points, const Rng& rng) {
     rng_ = rng;
     pairs_.clear(), errors_.clear(), expected_.clear(), estimates_.clear(), waiting_.clear();

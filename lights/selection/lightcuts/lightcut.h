@@ -45,6 +45,8 @@ class Lightcut {
     /// Light at all points, by kind: traces shadow rays, and estimates transmittance with the generators of
     /// `points`. `rng` samples representatives.
     LightByKind gather(const GatherContext& context, GatherPoints& points, const core::Rng& rng);
+    /// Representatives of the last cut, and their light at the points of a lane.
+    std::vector<ChosenVpl> chosen(int lane) const;
     const LightcutCounters& counters() const { return counters_; }
 
   private:

@@ -37,6 +37,7 @@ class TileLightcuts final : public TileSelector {
     LightByKind gather_copied(const GatherContext& context, Rng& rng) override {
         return multidimensional_ ? gather_points(context, rng) : LightByKind{};
     }
+    std::vector<ChosenVpl> chosen(int lane) const override { return cut_.chosen(lane); }
     void add_statistics(Statistics& statistics) const override {
         const LightcutCounters& c = cut_.counters();
         if (c.cuts == 0) return;

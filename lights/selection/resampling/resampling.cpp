@@ -68,16 +68,17 @@ TileLight Resampling::connect(const GatherContext& context, std::span<RecordedRe
     for (const auto& chosen : choice_.chosen) rounds = std::max(rounds, chosen.size());
     const bool attenuates = context.scene.attenuates();
     sums_.assign(points.size(), {});
+    rounds_.resize(rounds);
     for (std::size_t first = 0; first < rounds; first += GatherScratch::batch) {
         context.cancelled.check();
         const std::size_t count = std::min(GatherScratch::batch, rounds - first);
         const auto packets = std::span(context.scratch.packets).first(count);
-        for (std::size_t r = 0; r < count; ++r) fill(first + r, packets[r], batch_[r]);
+        for (std::size_t r = 0; r < count; ++r) fill(first + r, packets[r], rounds_[first + r]);
         context.rays.occlusion += count_rays(packets);
         context.scene.find_occluded(packets);
         for (std::size_t r = 0; r < count; ++r)
             for (int i = 0; i < width; ++i) {
-                Sample& s = batch_[r][std::size_t(i)];
+                Sample& s = rounds_[first + r][std::size_t(i)];
                 if (!s.active) continue;
                 s.active = !packets[r].occluded(i);
                 if (s.active && attenuates)
@@ -87,7 +88,8 @@ TileLight Resampling::connect(const GatherContext& context, std::span<RecordedRe
             }
         for (std::size_t r = 0; r < count; ++r)
             for (std::size_t i = 0; i < std::size_t(width); ++i)
-                if (const Sample& s = batch_[r][i]; s.active) sums_[s.point][i] += s.weight * Vec3d(s.light);
+                if (const Sample& s = rounds_[first + r][i]; s.active)
+                    sums_[s.point][i] += s.weight * Vec3d(s.light);
     }
     TileLight light{};
     for (std::size_t p = 0; p < sums_.size(); ++p) {
@@ -95,6 +97,17 @@ TileLight Resampling::connect(const GatherContext& context, std::span<RecordedRe
         for (std::size_t i = 0; i < light.size(); ++i) light[i] += one[i];
     }
     return light;
+}
+
+std::vector<ChosenVpl> Resampling::chosen(int lane) const {
+    const auto i = std::size_t(lane);
+    std::vector<ChosenVpl> list;
+    for (std::size_t round = 0; round < choice_.chosen[i].size(); ++round) {
+        const Sample& s = rounds_[round][i];
+        list.push_back({pairs_[choice_.chosen[i][round].candidate].light, float(s.weight), 0,
+                        s.active ? Rgb(s.weight * Vec3d(s.light)) : Rgb(0.0f)});
+    }
+    return list;
 }
 
 TileLight Resampling::light_of(std::size_t point) const {

@@ -11,6 +11,7 @@
 #include "lights/selection/resampling/recorded_receivers.h"
 #include "lights/selection/resampling/resampling_target.h"
 #include "lights/selection/resampling/systematic_choice.h"
+#include "lights/selection/selection.h"
 
 namespace mote::lights {
 
@@ -42,6 +43,8 @@ class Resampling {
     std::span<const Found> found() const { return found_; }
     /// Light of the last gather() at one of its points.
     TileLight light_of(std::size_t point) const;
+    /// VPLs that a lane chose in the last gather().
+    std::vector<ChosenVpl> chosen(int lane) const;
     const ResamplingCounters& counters() const { return counters_; }
 
   private:
@@ -77,7 +80,7 @@ class Resampling {
     std::vector<std::array<core::Vec3d, width>> sums_;  ///< by point
     std::vector<core::Lanes> weights_;                  ///< by pair
     SystematicChoice choice_;
-    std::array<Samples, GatherScratch::batch> batch_;
+    std::vector<Samples> rounds_;  ///< of choices, one a lane each
 };
 
 }  // namespace mote::lights

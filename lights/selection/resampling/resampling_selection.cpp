@@ -6,12 +6,11 @@
 #include <deque>
 
 #include "core/math/morton.h"
-#include "lights/selection/hierarchy/build_statistics.h"
-#include "lights/selection/hierarchy/vertex_bounds.h"
 #include "lights/selection/register_selection.h"
 #include "lights/selection/resampling/recorded_receivers.h"
 #include "lights/selection/resampling/resampling.h"
 #include "lights/selection/stochastic/light_sampler.h"
+#include "lights/selection/tree_selection.h"
 
 namespace mote::lights {
 
@@ -68,6 +67,7 @@ class TileResampling final : public TileSelector {
         points_[0].used = points_[1].used = 0;
         return light;
     }
+    std::vector<ChosenVpl> chosen(int lane) const override { return resampling_.chosen(lane); }
     void add_statistics(Statistics& statistics) const override {
         statistics.values["resampling_candidates"] += double(resampling_.counters().candidates);
         statistics.values["resampling_chosen"] += double(resampling_.counters().chosen);
@@ -128,24 +128,17 @@ const ParameterList<ResamplingSettings> parameters{
         "VPLs of them that each pixel chooses: shadow rays, and most of the time."),
 };
 
-class ResamplingSelection final : public Selection {
+class ResamplingSelection final : public TreeSelection {
   public:
     explicit ResamplingSelection(const ResamplingSettings& settings) : settings_(settings) {}
     VplSelector prepare(const SelectionPass& pass) const override {
-        check_memory(pass);
-        const BuildStatistics timer(pass.statistics, "light_hierarchy");
-        const auto tree = std::make_shared<const WideLightTree>(VplLeaves(pass.vpls));
-        timer.built(tree->memory_bytes());
-        return [tree, &vpls = pass.vpls, bound = pass.bound, s = settings_] {
+        return [tree = build_tree(pass), &vpls = pass.vpls, bound = pass.bound, s = settings_] {
             return std::make_unique<TileResampling>(vpls, *tree, bound, s.candidates, s.samples);
         };
     }
     std::string excludes(const GatherOptions& options) const override {
         const std::string other = Selection::excludes(options);
         return other.empty() && options.imperfect_shadow_maps ? "imperfect shadow maps" : other;
-    }
-    std::size_t memory_bytes(std::size_t vpls) const override {
-        return vpls * (WideLightTree::bytes_a_light + WideLightTree::building_bytes_a_light);
     }
     void plan(Plan& plan, const SelectionSize& size) const override {
         plan.run("selection",

@@ -1,11 +1,10 @@
 // Stochastic lightcuts (Yuksel 2019) and sampling by a light tree (Estevez and Kulla 2018) as selections.
 #include <fmt/format.h>
 
-#include "lights/selection/hierarchy/build_statistics.h"
-#include "lights/selection/hierarchy/vertex_bounds.h"
 #include "lights/selection/register_selection.h"
 #include "lights/selection/sampling_selector.h"
 #include "lights/selection/stochastic/light_sampler.h"
+#include "lights/selection/tree_selection.h"
 
 namespace mote::lights {
 
@@ -48,22 +47,16 @@ const ParameterList<StochasticSettings> parameters{
         "inversely."),
 };
 
-class StochasticSelection final : public Selection {
+class StochasticSelection final : public TreeSelection {
   public:
     /// VPLs from the clusters of a cut, or each from the root of the tree.
     StochasticSelection(const StochasticSettings& settings, bool by_cut)
         : samples_(settings.samples), by_cut_(by_cut) {}
     VplSelector prepare(const SelectionPass& pass) const override {
-        check_memory(pass);
-        const BuildStatistics timer(pass.statistics, "light_hierarchy");
-        const auto tree = std::make_shared<const WideLightTree>(VplLeaves(pass.vpls));
-        timer.built(tree->memory_bytes());
-        return [tree, &vpls = pass.vpls, bound = pass.bound, samples = samples_, by_cut = by_cut_] {
+        return [tree = build_tree(pass), &vpls = pass.vpls, bound = pass.bound, samples = samples_,
+                by_cut = by_cut_] {
             return std::make_unique<TileStochastic>(vpls, *tree, bound, samples, by_cut);
         };
-    }
-    std::size_t memory_bytes(std::size_t vpls) const override {
-        return vpls * (WideLightTree::bytes_a_light + WideLightTree::building_bytes_a_light);
     }
     void plan(Plan& plan, const SelectionSize& size) const override {
         plan.run("selection",

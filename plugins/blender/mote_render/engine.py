@@ -1,11 +1,11 @@
-"""The render engine: export, run the command, show its picture and its layers."""
+"""The render engine: export, run the command, show its picture and its layers; in the viewport a live render."""
 import shutil
 import tempfile
 from pathlib import Path
 
 import bpy
 
-from . import command, passes, preferences
+from . import command, passes, preferences, viewport
 from .export_scene import export_scene
 
 
@@ -57,6 +57,18 @@ class MoteEngine(bpy.types.RenderEngine):
         """F12 shows it; Python gets it as RuntimeError of bpy.ops.render.render."""
         self.report({"ERROR"}, text)
         self.error_set(text)
+
+    def view_update(self, context, depsgraph):
+        """The scene has changed, or is shown for the first time."""
+        viewport.of(self).stop()
+
+    def view_draw(self, context, depsgraph):
+        shown = viewport.of(self)
+        shown.draw(depsgraph, context)
+        self.update_stats("mote", shown.problem)
+
+    def __del__(self):
+        viewport.forget(id(self))
 
     def update_render_passes(self, scene, view_layer):
         """Layers of the last picture: which there are the integrator decides."""

@@ -9,6 +9,7 @@ from mathutils import Matrix, Vector
 from .scene_xml import add, add_matrix
 
 TURNED = Matrix.Diagonal((-1, 1, -1, 1))
+BEHIND = 100.0  # a parallel view begins so far behind its origin [m]
 
 
 def add_camera(export, depsgraph, size):
@@ -63,3 +64,45 @@ def add_film(export, sensor, size, more):
     film = add(sensor, "film", "hdrfilm", width=size[0] + abs(more[0]), height=size[1] + abs(more[1]))
     add(film, "rfilter", export.pixel_filter)
     return max(more[0], 0), max(-more[1], 0)
+
+
+class ViewCamera:
+    """What a region of a window sees, without depth of field; shifts by less than half a pixel are left out."""
+
+    def __init__(self, region, size):
+        """`region`: a RegionView3D, `size` its pixels."""
+        self.size = size
+        p = region.window_matrix
+        self.parallel = p[3][3] == 1.0
+        self.matrix = region.view_matrix.inverted()
+        if self.parallel:  # sees what is behind it, too
+            self.matrix = self.matrix @ Matrix.Translation((0, 0, BEHIND))
+        self.extent = 1.0 / p[0][0]  # half the width, at distance 1 of a perspective
+        shift = (-p[0][3], -p[1][3]) if self.parallel else (p[0][2], p[1][2])  # of the middle, over half the extent
+        self.more = [round(s * n) for s, n in zip(shift, size)]
+
+    @property
+    def pose(self):
+        """Origin, target and up."""
+        origin, turned = self.matrix.translation, self.matrix.to_3x3().normalized()
+        return tuple(tuple(v) for v in (origin, origin - turned.col[2], turned.col[1]))
+
+    def same_lens(self, other):
+        """True where nothing but a pose of a perspective differs, which a message changes."""
+        if self.parallel and self.pose != other.pose:
+            return False
+        return (self.size, self.parallel, self.more) == (other.size, other.parallel, other.more) \
+            and abs(self.extent - other.extent) < 1e-5 * self.extent
+
+    def add_to(self, export):
+        """As add_camera()."""
+        size, more = self.size, self.more
+        width = self.extent * (size[0] + abs(more[0])) / size[0]
+        matrix = self.matrix.normalized() @ TURNED
+        if self.parallel:
+            sensor = add(export.root, "sensor", "orthographic")
+            add_matrix(sensor, matrix @ Matrix.Diagonal((width, width, 1, 1)))
+        else:
+            sensor = add(export.root, "sensor", "perspective", fov_axis="x", fov=math.degrees(2 * math.atan(width)))
+            add_matrix(sensor, matrix)
+        return add_film(export, sensor, size, more)

@@ -8,12 +8,14 @@ from .export_world import add_world
 from .scene_xml import Export, add, add_value
 
 
-def export_scene(depsgraph, folder, size):
-    """Writes folder/scene.xml; returns (where the picture begins in the film, what was approximated)."""
+def export_scene(depsgraph, folder, size, view=None):
+    """Writes folder/scene.xml; returns (where the picture begins in the film, what was approximated). `view`: a ViewCamera
+    instead of the scene's camera.
+    """
     export, settings = Export(folder), depsgraph.scene.mote
     export.pixel_filter = settings.pixel_filter
     add_integrator(export, settings)
-    begin = add_camera(export, depsgraph, size)
+    begin = view.add_to(export) if view else add_camera(export, depsgraph, size)
     render = depsgraph.scene.render
     for wrong, text in ((render.use_motion_blur, "motion blur"), (render.film_transparent, "the transparent film"),
                         (render.use_border, "the render region")):

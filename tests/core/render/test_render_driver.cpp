@@ -123,6 +123,10 @@ TEST_CASE("Stop rules", "[driver]") {
     CHECK_FALSE(must_stop({11, {}, {}}, s));
     CHECK(must_stop({{}, 4.4, {}}, s));        // a fifth pass would end at 5 s
     CHECK_FALSE(must_stop({{}, 4.6, {}}, s));  // nearer to it than 4 s
+    s.seconds_to_finish = 0.3;                 // four passes end at 4.3 s, five at 5.3 s
+    CHECK(must_stop({{}, 4.6, {}}, s));
+    CHECK_FALSE(must_stop({{}, 4.9, {}}, s));
+    s.seconds_to_finish = 0.0;
     CHECK(must_stop({{}, {}, 0.1}, s));
     CHECK_FALSE(must_stop({{}, {}, 0.09}, s));
     CHECK(must_stop({100, 4.0, 0.01}, s));                   // the first that holds
