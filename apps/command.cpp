@@ -119,7 +119,10 @@ void add_render(CLI::App& app, RenderArguments& a, std::function<int()>& action)
                      "Show the picture so far in the viewer tev, which may run elsewhere (--tev=HOST:PORT)");
     command.add_flag("--quiet", a.quiet, "No progress, no warnings");
     command.add_flag("-v,--verbose", a.verbose, "Also print the plan and where the time went");
-    command.callback([&a, &action] { action = [&a] { return render_sequence(a); }; });
+    command.callback([&a, &action] {
+        if (a.error) a.scene.defines.emplace_back("film.interval=true");
+        action = [&a] { return render_sequence(a); };
+    });
 }
 
 void add_merge(CLI::App& app, MergeArguments& a, std::function<int()>& action) {

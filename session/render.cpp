@@ -75,10 +75,14 @@ class RenderWork {
             throw core::InputError(
                 "the noise of this image is not known, and a limit on it would not end the render: " +
                 plan_.noise_unknown + "; give a number of passes or a time");
+        if (settings.stop.error && !scene.scene().film().interval)
+            throw core::InputError(
+                "a limit on the error needs the two halves of the passes: set the film's 'interval' "
+                "(film.interval=true)");
         if (settings.stop.error && !plan_.error_is_known())
             throw core::InputError(
                 "the error of this image is not known, and a limit on it would not end the render: " +
-                (plan_.missing.empty() ? plan_.error_unknown : plan_.missing.front().topic + " is missing"));
+                plan_.no_error_because());
         if (settings.begin_with && settings.begin_with->scene_hash != hash_)
             throw core::InputError(
                 "the passes that this render begins with are of another one: the scene, a file that it "
@@ -103,7 +107,8 @@ class RenderWork {
         const core::FilmSettings& size = scene_.scene().film();
         r.memory = settings_.memory.without(
             settings_.auxiliary ? center_bytes * double(size.width) * double(size.height) : 0.0);
-        r.noise_is_known = plan_.noise_unknown.empty(), r.halves = plan_.error_is_known();
+        r.noise_is_known = plan_.noise_unknown.empty();
+        r.halves = size.interval && plan_.error_is_known();
         r.content_hash = hash_, r.features = features_of(scene_, settings_);
         r.interrupted = &watched_.stop(), r.time_is_over = &watched_.time_is_over();
         r.keep_part_of_first_pass = !settings_.range;

@@ -29,8 +29,7 @@ class RenderObserver {
     /// The picture so far, its beauty alone, from the first pass on, now and then.
     virtual void preview(const core::ImageChannels&) {}
     /// True: preview() receives every layer and variance, as a file has them, and "passes" (0: a part of the
-    /// first ones is missing) "noise" and, where it is known,
-    /// "errorInterval" as metadata.
+    /// first ones is missing), "noise" and, where it is known, "error" with "errorInterval" as metadata.
     virtual bool wants_layers() const { return false; }
     virtual double preview_every_seconds() const { return 1.0; }  ///< shortest time between two previews
     virtual double preview_share() const { return 0.05; }         ///< of the time, that previews take at most

@@ -32,10 +32,8 @@ json entries_json(const std::vector<core::PlanEntry>& entries) {
 json error_json(const RenderReport& r) {
     if (const auto& e = r.result.error; e && std::isfinite(e->high))
         return {{"relative_rmse", e->error}, {"low", e->low}, {"high", e->high}, {"confidence", 0.95}};
-    const std::string why = !r.plan.missing.empty()         ? r.plan.missing.front().topic + " is missing"
-                            : !r.plan.error_unknown.empty() ? r.plan.error_unknown
-                                                            : "too few passes";
-    return {{"unknown", why}};
+    if (!r.plan.error_is_known()) return {{"unknown", r.plan.no_error_because()}};
+    return {{"unknown", r.scene.film().interval ? "too few passes" : "film.interval is not set"}};
 }
 
 double total_seconds(const core::Statistics& statistics) {

@@ -16,10 +16,9 @@ inline std::uint64_t pixel_key(const RenderOptions& options, int x, int y) {
     return std::uint64_t(y) * std::uint64_t(options.width) + std::uint64_t(x);
 }
 
-/// The numbers of a pixel in a pass. Passes of even and of odd index have Sobol points of two scrambles, so
-/// that the two halves of a film are independent of each other (core/film/film.h).
+/// The numbers of a pixel in a pass.
 inline Sampler pixel_sampler(const RenderOptions& options, const PassContext& pass, int x, int y) {
-    return Sampler(options.sampler, options.seed, pass.index / 2, pixel_key(options, x, y), pass.index % 2);
+    return Sampler(options.sampler, options.seed, pass.index, pixel_key(options, x, y));
 }
 
 /// An eye ray.

@@ -35,8 +35,10 @@ struct Plan {
     void leave_out(std::string topic, std::string choice, std::string reason);
     /// Adds to `missing`.
     void miss(std::string topic, std::string choice, std::string reason, std::string cure = "");
-    /// True where halves of the passes show the error of the image: nothing is missing either.
-    bool error_is_known() const { return error_unknown.empty() && missing.empty(); }
+    /// Reason why halves of the passes do not show the error of the image: error_unknown, noise_unknown, or
+    /// what is missing. "" where they do.
+    std::string no_error_because() const;
+    bool error_is_known() const { return no_error_because().empty(); }  ///< true where halves show it
     /// Messages for the user: a warning for each thing that takes very long or that this integrator cannot
     /// compute, and one line with the switches of a topic for what it leaves out by choice.
     std::vector<std::string> warnings() const;

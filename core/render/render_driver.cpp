@@ -225,7 +225,8 @@ class PassLoop {
         state_.seconds_to_finish = (std::exchange(finished_before_, true) ? 1.0 : 0.5) * seconds_since(begin);
         look();
         const double finished = changes_noise() ? result_.film.noise() : 0.0;
-        if (request_.halves) state_.error = stated(result_.film).value_or(PictureError());
+        if (request_.halves) finished_error_ = stated(result_.film).value_or(PictureError());
+        if (!stop_.error) state_.error = finished_error_;  // a rule must not depend on previews
         preview_means_ = result_.film.exchange_replaced(), preview_passes_ = state_.passes;
         if (!changes_noise()) return;
         finished_noise_ = finished, left_of_noise_ = finished / result_.film.noise();
@@ -233,7 +234,7 @@ class PassLoop {
     void refresh_noise() {
         const Clock::time_point begin = Clock::now();
         if (stop_.error || (stop_.noise && changes_noise()))  // rules must not depend on earlier previews
-            state_.noise = finished_noise_now();
+            state_.noise = finished_noise_now(), state_.error = finished_error_;
         else if (!changes_noise())
             state_.noise = result_.film.noise();
         else if (std::isfinite(left_of_noise_))
@@ -263,6 +264,7 @@ class PassLoop {
     std::uint32_t preview_passes_ = 0;
     /// Noise of the picture when it was finished last, and relative to the noise of its passes.
     double finished_noise_ = infinity, left_of_noise_ = infinity;
+    PictureError finished_error_;   ///< of the picture when it was finished last
     bool finished_before_ = false;  ///< for a preview or the noise
     Clock::time_point preview_time_ = Clock::now();
     double noise_seconds_ = 0.0;  ///< cost of the last evaluation of the noise

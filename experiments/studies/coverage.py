@@ -22,7 +22,7 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-SIZE = ["-D", "film.width=96", "-D", "film.height=64"]
+FILM = ["-D", "film.width=96", "-D", "film.height=64", "-D", "film.interval=true"]
 SCENES = ("cornell_box", "window", "statue", "smoke_room", "fog_grille", "mist", "atrium", "city", "tree", "cloud")
 METHODS = {
     "layers, own filter": ("mote_layers", {"filter": "own"}),
@@ -40,7 +40,7 @@ def render(args, scene, method, rule, seed, output):
     stats = output.with_suffix(".json")
     defines = [x for k, v in settings.items() for x in ("-D", f"integrator.{k}={v}")]
     subprocess.run([args.mote, "render", ROOT / f"scenes/{scene}.xml", "--integrator", integrator, "-t", str(args.threads),
-                    "--quiet", *SIZE, *rule, "--seed", str(seed), *defines, "-o", output, "--stats", stats], check=True)
+                    "--quiet", *FILM, *rule, "--seed", str(seed), *defines, "-o", output, "--stats", stats], check=True)
     return json.loads(stats.read_text())
 
 

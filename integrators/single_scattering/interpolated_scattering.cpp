@@ -20,8 +20,7 @@ EpipolarPicture::Loop loop_of(const PassContext& context) {
 }  // namespace
 
 PassNumbers::PassNumbers(const RenderOptions& options, std::uint32_t pass) {
-    // Apart for even and for odd passes, as those of pixels (core/render/camera_ray.h).
-    Sampler sampler(options.sampler, options.seed, pass / 2, ~std::uint64_t(0), 0x65706970u + pass % 2);
+    Sampler sampler(options.sampler, options.seed, pass, ~std::uint64_t(0), 0x65706970u);
     lens = sampler.next_2d(), lines = sampler.next_2d(), march = sampler.next_2d(), grid = sampler.next_2d();
 }
 
