@@ -191,8 +191,8 @@ void MoteLayers::plan_filter(const LayerChoice& choice, Plan& plan) const {
     if (const auto& library = library_->get(filters_)) {
         plan.run("filter", "OpenImageDenoise " + library->version() + " on " + names,
                  "biased by what it smoothes, less with every pass; filter=none leaves the noise. The noise "
-                 "that is stated, and --noise, are what it leaves, without that bias, where halves of the "
-                 "passes are filtered (the error is known), and else those of the passes");
+                 "that is stated, and --noise, are those of the passes, before the denoiser; with "
+                 "film.interval what it leaves, without that bias, which the stated error contains");
         return;
     }
     plan.run("filter", "our own on " + names,

@@ -26,8 +26,8 @@ def render(scene: Union[Scene, str, Path], *, passes: Optional[int] = None, seco
            callback: Optional[Callable[[Picture], Any]] = None, checkpoint: Union[str, Path, None] = None,
            checkpoint_every: float = 60.0, resume: bool = False, auxiliary: bool = False, denoise: str = "") -> Picture:
     """Renders until the first of these rules holds: so many passes, so many seconds (from the call on), a noise such as
-    0.02 (relative), or an error that is below this, bias of filters included, with 97.5 % confidence (where it is
-    known: docs/testing.md). Without any: the scene's sample_count of passes. Scene, seed and passes determine every bit of the
+    0.02 (relative), or an error whose interval is below this, bias of filters included (for a scene loaded with
+    define={"film.interval": True}, and a method whose error is known: docs/testing.md). Without any: the scene's sample_count of passes. Scene, seed and passes determine every bit of the
     picture, whatever the number of threads (0: one for every core).
 
     progress: True prints a line; a function is called with {"passes", "passes_of_this_run", "passes_wanted", "seconds",
