@@ -87,6 +87,12 @@ void add_render(CLI::App& app, RenderArguments& a, std::function<int()>& action)
         ->check(number_above_0());
     command.add_option("--noise", a.noise, "Stop when the noise is this, such as 0.02 (see docs/testing.md)")
         ->check(number_above_0());
+    command
+        .add_option(
+            "--error", a.error,
+            "Stop when the error, bias of filters included, is below this, such as 0.03: the upper end of "
+            "its interval (see docs/testing.md)")
+        ->check(number_above_0());
     command.add_option("--seed", a.seed, "Another seed gives another, independent picture")
         ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()));
     add_threads(command, a.threads);
@@ -114,7 +120,10 @@ void add_render(CLI::App& app, RenderArguments& a, std::function<int()>& action)
                      "Show the picture so far in the viewer tev, which may run elsewhere (--tev=HOST:PORT)");
     command.add_flag("--quiet", a.quiet, "No progress, no warnings");
     command.add_flag("-v,--verbose", a.verbose, "Also print the plan and where the time went");
-    command.callback([&a, &action] { action = [&a] { return render_sequence(a); }; });
+    command.callback([&a, &action] {
+        if (a.error) a.scene.defines.emplace_back("film.interval=true");
+        action = [&a] { return render_sequence(a); };
+    });
 }
 
 void add_merge(CLI::App& app, MergeArguments& a, std::function<int()>& action) {

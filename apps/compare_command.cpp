@@ -14,6 +14,7 @@
 #include "apps/subcommands.h"
 #include "core/formats/pictures/image_file.h"
 #include "core/metrics/error_map.h"
+#include "core/metrics/halves_error.h"
 #include "core/metrics/metrics.h"
 #include "core/metrics/reference_pair.h"
 #include "core/objects/error.h"
@@ -22,6 +23,7 @@
 #include "session/number_or_null.h"
 #include "session/output_files.h"
 #include "session/reference_metadata.h"
+#include "session/render_report.h"
 
 namespace mote::apps {
 
@@ -112,6 +114,12 @@ std::string headline(const ImageMetrics& m) {
     return text + "\n";
 }
 
+std::string stated_text(const std::optional<core::PictureError>& stated) {
+    if (!stated) return "";
+    return "           the image states " + percent(stated->low) + " to " + percent(stated->high) +
+           " with 95 % confidence\n";
+}
+
 /// Where a file is to be written: the difference's name, or none.
 std::string difference_file(const CompareArguments& a) {
     if (a.difference.empty()) {
@@ -126,7 +134,7 @@ std::string difference_file(const CompareArguments& a) {
 }
 
 void print_json(const CompareArguments& arguments, const core::Bitmap& size, const ImageMetrics& m,
-                const std::vector<std::string>& warnings) {
+                const std::optional<core::PictureError>& stated, const std::vector<std::string>& warnings) {
     nlohmann::ordered_json j;
     j["mote"] = MOTE_VERSION;
     j["image"] = arguments.image;
@@ -144,6 +152,11 @@ void print_json(const CompareArguments& arguments, const core::Bitmap& size, con
     j["mean_reference"] = mean_json(m.mean_reference, m.average_reference);
     for (const MetricDefinition& d : core::metric_definitions())
         j["metrics"][d.name] = {{"value", number_or_null(m.*d.value)}, {"definition", d.definition}};
+    if (stated)
+        j["stated_error"] = {
+            {"low", stated->low},
+            {"high", stated->high},
+            {"definition", "ends of the interval of 95 % confidence that the image states of its error"}};
     if (!arguments.map.empty())
         j["map"] = {{"file", arguments.map},
                     {"lowest", core::ErrorScale().lowest},
@@ -159,14 +172,15 @@ std::string mean_text(const std::array<double, 3>& rgb, double average) {
 }
 
 void print_text(const CompareArguments& arguments, const core::Bitmap& size, const ImageMetrics& m,
-                const std::string& difference) {
+                const std::optional<core::PictureError>& stated, const std::string& difference) {
     std::string text = fmt::format("image      {}\nreference  {}\n", core::printable(arguments.image, 400),
                                    core::printable(arguments.reference, 400));
     if (!arguments.second.empty())
         text += fmt::format("and        {}: errors and biases are free of the noise of both\n",
                             core::printable(arguments.second, 400));
     if (!arguments.layer.empty()) text += fmt::format("layer      {}\n", core::printable(arguments.layer));
-    text += fmt::format("pixels     {} x {}\n\n", size.width, size.height) + headline(m);
+    text +=
+        fmt::format("pixels     {} x {}\n\n", size.width, size.height) + headline(m) + stated_text(stated);
     text += fmt::format("non-finite {:.3g} % of the pixels ({} in the image, {} in the reference): {}\n",
                         100.0 * m.non_finite_fraction(), m.non_finite_image, m.non_finite_reference,
                         non_finite_definition);
@@ -220,6 +234,8 @@ int compare_command(const CompareArguments& arguments) {
     for (const std::string& warning : warnings)
         std::fputs(("mote: warning: " + warning + "\n").c_str(), stderr);
     const ImageMetrics metrics = measured(image, references);
+    const std::optional<core::PictureError> stated =
+        layer.empty() ? stated_error(image.metadata) : std::nullopt;
     if (!arguments.map.empty())
         core::write_png(arguments.map, a.width, a.height, core::error_map(a.pixels, r.pixels));
     std::string difference;
@@ -227,9 +243,9 @@ int compare_command(const CompareArguments& arguments) {
         difference = fmt::format("\ndifference {}: {}\n", core::printable(difference_path, 400),
                                  write_difference(difference_path, a, r, factor));
     if (arguments.json)
-        print_json(arguments, a, metrics, warnings);
+        print_json(arguments, a, metrics, stated, warnings);
     else
-        print_text(arguments, a, metrics, difference);
+        print_text(arguments, a, metrics, stated, difference);
     return exit_ok;
 }
 

@@ -23,11 +23,17 @@ std::string duration_text(double seconds) {
     return fmt::format("{}:{:02} h", s / 3600, s / 60 % 60);
 }
 
+std::string error_text(const core::PictureError& error) {
+    return fmt::format("error {:.2g} % ({:.2g} to {:.2g} %)", 100.0 * error.error, 100.0 * error.low,
+                       100.0 * error.high);
+}
+
 std::string progress_text(const core::RenderProgress& p) {
     std::string text = fmt::format("pass {}", p.passes);
     if (p.passes_wanted) text += fmt::format("/{}", *p.passes_wanted);
     if (p.seconds > 0.0) text += fmt::format(", {:.3g} passes/s", p.passes_of_this_run / p.seconds);
     if (p.seconds_left >= 0.0) text += ", " + duration_text(p.seconds_left) + " left";
+    if (std::isfinite(p.error.high)) text += ", " + error_text(p.error);
     if (std::isfinite(p.noise)) text += fmt::format(", noise {:.2g} %", 100.0 * p.noise);
     return text;
 }

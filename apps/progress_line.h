@@ -10,6 +10,8 @@ namespace mote::apps {
 
 /// "pass 12/64, 3.1 passes/s, 17 s left, noise 2.4 %"
 std::string progress_text(const core::RenderProgress& progress);
+/// "error 2.1 % (1.8 to 2.5 %)"
+std::string error_text(const core::PictureError& error);
 /// "17 s", "4:05 min", "2:30 h"
 std::string duration_text(double seconds);
 

@@ -51,7 +51,7 @@ class Threads {
 RenderSettings settings_of(const RenderArguments& a, const RenderFiles& files,
                            const std::optional<core::PassRange>& range, int threads) {
     RenderSettings s;
-    s.seed = a.seed, s.stop = {a.passes, a.seconds, a.noise}, s.range = range, s.threads = threads;
+    s.seed = a.seed, s.stop = {a.passes, a.seconds, a.noise, a.error}, s.range = range, s.threads = threads;
     s.checkpoint = files.checkpoint, s.checkpoint_every = a.checkpoint_every, s.resume = a.resume;
     s.auxiliary = a.auxiliary, s.denoise = a.denoise, s.command_line = a.command_line;
     if (a.merged) s.begin_with = {a.merged->film, a.merged->statistics, a.merged->content_hash};

@@ -32,9 +32,10 @@ std::optional<core::PassRange> pass_range(const RenderArguments& arguments) {
         range.end > core::Film::max_passes)
         throw UsageError(fmt::format("--pass-range {}: expected A:B, passes A to B - 1, with A < B <= {}",
                                      core::printable(text), core::Film::max_passes));
-    if (arguments.passes || arguments.seconds || arguments.noise)
+    if (arguments.passes || arguments.seconds || arguments.noise || arguments.error)
         throw UsageError(
-            "--pass-range says which passes are rendered: --passes, --time and --noise do not go with it");
+            "--pass-range says which passes are rendered: --passes, --time, --noise and --error do not go "
+            "with it");
     return range;
 }
 

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
+#include "apps/progress_line.h"
 #include "core/objects/error.h"
 #include "session/render_report.h"
 
@@ -42,6 +44,11 @@ void report_render(const RenderArguments& arguments, const Rendered& rendered) {
     const core::Statistics& counts = rendered.counts;
     if (!arguments.quiet)
         for (const std::string& warning : rendered.warnings) note("warning: " + warning);
+    if (!arguments.quiet && rendered.error && std::isfinite(rendered.error->high)) {
+        const std::string noise =
+            std::isfinite(rendered.noise) ? fmt::format(", noise {:.2g} %", 100.0 * rendered.noise) : "";
+        note(error_text(*rendered.error) + noise);
+    }
     if (!arguments.quiet && arguments.verbose) {
         for (const auto& [name, seconds] : counts.seconds)
             std::fputs(fmt::format("  {:12} {:9.3f} s\n", name, seconds).c_str(), stderr);

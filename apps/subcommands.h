@@ -57,7 +57,7 @@ struct RenderArguments {
     SceneArguments scene;
     std::string output;  ///< "": the scene's name with .exr, in the current folder
     std::optional<std::uint32_t> passes;
-    std::optional<double> seconds, noise;
+    std::optional<double> seconds, noise, error;
     std::uint64_t seed = 0;
     int threads = 0;  ///< 0: one for every core
     bool resume = false, quiet = false, verbose = false, half = false, auxiliary = false;

@@ -47,6 +47,7 @@ core::ImageChannels preview_of(const core::Film& film, bool with_layers) {
         image = core::film_image(film);
         image.metadata["passes"] = std::to_string(film.has_passes(1) ? film.pass_count() : 0);
         image.metadata["noise"] = fmt::format("{:.6g}", film.noise());
+        add_error(image.metadata, film.error());
         return image;
     }
     image.width = film.width(), image.height = film.height();
@@ -75,6 +76,14 @@ class RenderWork {
             throw core::InputError(
                 "the noise of this image is not known, and a limit on it would not end the render: " +
                 plan_.noise_unknown + "; give a number of passes or a time");
+        if (settings.stop.error && !scene.scene().film().interval)
+            throw core::InputError(
+                "a limit on the error needs the two halves of the passes: set the film's 'interval' "
+                "(film.interval=true)");
+        if (settings.stop.error && !plan_.error_is_known())
+            throw core::InputError(
+                "the error of this image is not known, and a limit on it would not end the render: " +
+                plan_.no_error_because());
         if (settings.begin_with && settings.begin_with->scene_hash != hash_)
             throw core::InputError(
                 "the passes that this render begins with are of another one: the scene, a file that it "
@@ -100,6 +109,7 @@ class RenderWork {
         r.memory = settings_.memory.without(
             settings_.auxiliary ? center_bytes * double(size.width) * double(size.height) : 0.0);
         r.noise_is_known = plan_.noise_unknown.empty();
+        r.halves = size.interval && plan_.error_is_known();
         r.content_hash = hash_, r.features = features_of(scene_, settings_);
         r.interrupted = &watched_.stop(), r.time_is_over = &watched_.time_is_over();
         r.keep_part_of_first_pass = !settings_.range;
@@ -188,6 +198,7 @@ class RenderWork {
         if (const auto noise = result.statistics.values.find("noise");
             noise != result.statistics.values.end())
             rendered.noise = noise->second;
+        rendered.error = result.error;
         rendered.interrupted = result.interrupted;
         rendered.missing_layers = layers_without_passes(result.film);
         rendered.finished_for = result.finished_for;

@@ -29,7 +29,7 @@ class RenderObserver {
     /// The picture so far, its beauty alone, from the first pass on, now and then.
     virtual void preview(const core::ImageChannels&) {}
     /// True: preview() receives every layer and variance, as a file has them, and "passes" (0: a part of the
-    /// first ones is missing) and "noise" as metadata.
+    /// first ones is missing), "noise" and, where it is known, "error" with "errorInterval" as metadata.
     virtual bool wants_layers() const { return false; }
     virtual double preview_every_seconds() const { return 1.0; }  ///< shortest time between two previews
     virtual double preview_share() const { return 0.05; }         ///< of the time, that previews take at most
@@ -90,7 +90,8 @@ struct Rendered {
     core::Statistics counts;         ///< numbers in it
     std::vector<std::string> warnings;
     std::uint32_t passes = 0;
-    double noise = core::infinity;  ///< Film::noise(); infinity: not known
+    double noise = core::infinity;            ///< Film::noise(); infinity: not known
+    std::optional<core::PictureError> error;  ///< Film::error(); nothing where it is not known
     bool interrupted = false;
     std::vector<std::uint8_t> finished_pixels;  ///< of a part of the first pass; else empty
     std::vector<std::string> missing_layers;    ///< those without a pass
@@ -99,9 +100,9 @@ struct Rendered {
 };
 
 /// Renders until a stop rule holds or the observer cancels, which takes effect within two seconds. Throws
-/// InputError where the scene has no integrator, the checkpoint or the earlier passes are of another render,
-/// something else stands where the checkpoint is to be written, or `denoise` is unknown, and
-/// core::OutOfMemory. Several may run at once.
+/// InputError where the scene has no integrator, StopRule::error is set and the error is not known, the
+/// checkpoint or the earlier passes are of another render, something else stands where the checkpoint is to
+/// be written, or `denoise` is unknown, and core::OutOfMemory. Several may run at once.
 Rendered render(const LoadedScene& scene, const RenderSettings& settings, RenderObserver& observer);
 Rendered render(const LoadedScene& scene, const RenderSettings& settings);
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "core/film/film_image.h"
 #include "git_hash.h"
@@ -26,6 +27,13 @@ json entries_json(const std::vector<core::PlanEntry>& entries) {
     for (const core::PlanEntry& e : entries)
         list.push_back({{"topic", e.topic}, {"choice", e.choice}, {"reason", e.reason}, {"cure", e.cure}});
     return list;
+}
+
+json error_json(const RenderReport& r) {
+    if (const auto& e = r.result.error; e && std::isfinite(e->high))
+        return {{"relative_rmse", e->error}, {"low", e->low}, {"high", e->high}, {"confidence", 0.95}};
+    if (!r.plan.error_is_known()) return {{"unknown", r.plan.no_error_because()}};
+    return {{"unknown", r.scene.film().interval ? "too few passes" : "film.interval is not set"}};
 }
 
 double total_seconds(const core::Statistics& statistics) {
@@ -86,6 +94,21 @@ core::ImageChannels make_picture(const RenderReport& report, const core::Registr
     return image;
 }
 
+void add_error(std::map<std::string, std::string>& metadata, const std::optional<core::PictureError>& error) {
+    if (!error || !std::isfinite(error->high)) return;
+    metadata["error"] = fmt::format("{:.6g}", error->error);
+    metadata["errorInterval"] = fmt::format("{:.6g} {:.6g}", error->low, error->high);
+}
+
+std::optional<core::PictureError> stated_error(const std::map<std::string, std::string>& metadata) {
+    const auto interval = metadata.find("errorInterval"), error = metadata.find("error");
+    if (interval == metadata.end() || error == metadata.end()) return std::nullopt;
+    core::PictureError stated;
+    std::istringstream ends(interval->second), middle(error->second);
+    if (!(ends >> stated.low >> stated.high) || !(middle >> stated.error)) return std::nullopt;
+    return stated;
+}
+
 std::map<std::string, std::string> picture_metadata(const RenderReport& r) {
     std::map<std::string, std::string> metadata = {
         {"software", std::string("mote ") + MOTE_VERSION},
@@ -112,6 +135,7 @@ std::map<std::string, std::string> picture_metadata(const RenderReport& r) {
     if (const auto bound = values.find("bound"); bound != values.end())
         metadata["bound"] = fmt::format("{:.9g}", bound->second);  // for mote ssbc
     if (std::isfinite(noise)) metadata["noise"] = fmt::format("{:.6g}", noise);
+    add_error(metadata, r.result.error);
     for (const core::PlanEntry& e : r.plan.runs)
         if (e.topic == "filter") metadata["filter"] = e.choice;  // with the version of a library
     for (const core::PlanEntry& e : r.plan.missing)
@@ -166,6 +190,7 @@ std::string statistics_json(const RenderReport& r) {
     j["values"] = values;
     j["peak_memory_bytes"] = peak_memory_bytes();
     j["noise"] = number_or_null(gain_and_noise(r.result).noise);
+    j["error"] = error_json(r);
     j["warnings"] = warnings;
     j["approximations"] = r.approximations;
     j["non_finite_samples"] = s.non_finite_samples;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -43,6 +44,11 @@ struct PictureExtras {
 /// light; one of a part of the first pass says in A which pixels are finished.
 core::ImageChannels make_picture(const RenderReport& report, const core::Registry& registry,
                                  const PictureExtras& extras);
+
+/// Entries "error" and "errorInterval", where an error is known.
+void add_error(std::map<std::string, std::string>& metadata, const std::optional<core::PictureError>& error);
+/// The ends that "errorInterval" states; nothing without it.
+std::optional<core::PictureError> stated_error(const std::map<std::string, std::string>& metadata);
 
 std::map<std::string, std::string> picture_metadata(const RenderReport& report);
 std::string statistics_json(const RenderReport& report);

@@ -92,8 +92,10 @@ double projection(const core::PassImage& image, const core::Film& film, std::siz
 core::Film make_film(const core::Scene& scene, const core::Integrator& integrator) {
     const core::FilmSettings& film = scene.film();
     std::vector<core::Layer> layers = integrator.layers(scene);
-    core::FilmMemory(film.width, film.height, layers).require({});
-    return {film.width, film.height, std::move(layers)};
+    const bool halves =
+        film.interval && integrator.plan(scene, core::find_requirements(scene)).error_is_known();
+    core::FilmMemory(film.width, film.height, layers, false, {}, halves).require({});
+    return {film.width, film.height, std::move(layers), false, halves};
 }
 
 }  // namespace
@@ -169,6 +171,8 @@ Record Contestant::judge(const core::Film& picture, double finish_wall, double f
     r.relmse = m.rel_mse, r.relmse_trimmed = m.rel_mse_trimmed;
     r.error = e.error, r.bias = e.bias;
     if (reference_.noise) r.error_se = e.error_standard_error;
+    if (const auto stated = picture.error(); stated && std::isfinite(stated->high))
+        r.stated_low = stated->low, r.stated_high = stated->high;
     const double bias_se = tally_.bias_standard_error();
     if (std::isfinite(bias_se)) r.bias_se = bias_se;
     r.non_finite = film_.non_finite();

@@ -76,7 +76,7 @@ RenderSettings render_settings_of(const Settings& s, const std::string& checkpoi
     render.checkpoint = checkpoint, render.checkpoint_every = s.checkpoint_every;
     render.resume = !s.fresh && fs::exists(checkpoint, ignored), render.keep_checkpoint = true;
     render.enough = [resolve = s.resolve](const core::Film& film) { return smallest_error(film) <= resolve; };
-    render.stop = {s.passes, s.seconds, {}};
+    render.stop = {s.passes, s.seconds, {}, {}};
     render.threads = s.threads, render.command_line = s.command_line;
     return render;
 }

@@ -72,6 +72,8 @@ std::vector<Column> columns() {
             number_column("build_s", &Record::build),
             number_column("error", &Record::error),
             number_column("error_se", &Record::error_se),
+            number_column("stated_low", &Record::stated_low),
+            number_column("stated_high", &Record::stated_high),
             number_column("relmse", &Record::relmse),
             number_column("relmse_trimmed", &Record::relmse_trimmed),
             number_column("bias", &Record::bias),

@@ -21,6 +21,7 @@ struct Record {
     double build = 0.0;         ///< the part of wall that was spent before the first pass
     double error = unknown;     ///< of core/metrics/relative_error.h, without the noise of the reference
     double error_se = unknown;  ///< its standard error, from the noise of the reference
+    double stated_low = unknown, stated_high = unknown;  ///< interval of 95 % that the picture states of it
     double relmse = unknown,
            relmse_trimmed = unknown;  ///< what other programs give, see core/metrics/metrics.h
     double bias = unknown;            ///< of core/metrics/relative_error.h

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "session/number_or_null.h"
+#include "session/render_report.h"
 #include "viewer/frame.h"
 #include "viewer/message_values.h"
 #include "viewer/view.h"
@@ -56,6 +57,8 @@ json View::frame_header(const std::string& name, const LivePicture& p,
     json header = {{"type", "frame"},    {"picture", name},       {"change", p.change},
                    {"passes", p.passes}, {"seconds", p.seconds},  {"noise", number_or_null(p.noise)},
                    {"coarse", p.coarse}, {"finished", p.finished}};
+    if (const auto stated = session::stated_error(p.image.metadata))
+        header["stated"] = {stated->low, stated->high};
     if (point)
         header["error"] = number_or_null(point->error.error),
         header["bias"] = number_or_null(point->error.bias);

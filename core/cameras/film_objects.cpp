@@ -54,14 +54,17 @@ void register_samplers(Registry& registry) {
 
 void register_film_objects(Registry& registry) {
     using S = FilmFormat;
-    add_type<S>(registry, Category::film, "hdrfilm", "The image: its size, filter and format.",
-                {row("width", &S::width, between(1, max_side, "pixels"), "Width of the image."),
-                 row("height", &S::height, between(1, max_side, "pixels"), "Height of the image."),
-                 row("component_format", &S::half, {{"float32", false}, {"float16", true}},
-                     "Numbers in the file: float16 takes half the size."),
-                 nested("rfilter", &S::filter, Category::rfilter, "gaussian", "Reconstruction filter.")},
-                R"(<film type="hdrfilm"><integer name="width" value="640"/><rfilter type="box"/></film>)",
-                make_film);
+    add_type<S>(
+        registry, Category::film, "hdrfilm", "The image: its size, filter and format.",
+        {row("width", &S::width, between(1, max_side, "pixels"), "Width of the image."),
+         row("height", &S::height, between(1, max_side, "pixels"), "Height of the image."),
+         row("component_format", &S::half, {{"float32", false}, {"float16", true}},
+             "Numbers in the file: float16 takes half the size."),
+         row("interval", &S::interval,
+             "State the error, bias of filters included, with an interval of 95 % confidence, where "
+             "the method allows it. The passes are two independent halves, and filters work on each."),
+         nested("rfilter", &S::filter, Category::rfilter, "gaussian", "Reconstruction filter.")},
+        R"(<film type="hdrfilm"><integer name="width" value="640"/><rfilter type="box"/></film>)", make_film);
     register_filters(registry);
     register_samplers(registry);
 }

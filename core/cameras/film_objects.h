@@ -19,6 +19,7 @@ struct SamplerSettings {
 struct FilmFormat {
     int width = 768, height = 576;  ///< pixels
     bool half = false;              ///< write float16
+    bool interval = false;          ///< FilmSettings::interval
     FilterSettings filter;
 };
 

@@ -56,7 +56,7 @@ FilmSettings film_settings(const Properties& properties) {
     const FilterSettings& filter = sensor.film.filter;
     FilmSettings settings;
     settings.width = sensor.film.width, settings.height = sensor.film.height;
-    settings.half = sensor.film.half;
+    settings.half = sensor.film.half, settings.interval = sensor.film.interval;
     settings.filter = filter.name;
     settings.filter_radius = filter.radius, settings.filter_stddev = filter.stddev;
     settings.sampler = sensor.sampler.kind, settings.sample_count = sensor.sampler.sample_count;

@@ -12,13 +12,12 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/film/for_each_pixel.h"
 #include "core/objects/error.h"
 
 namespace mote::core {
 
 namespace {
-
-constexpr std::size_t grain = 4096;  // pixels a task: large enough to hide the scheduling
 
 // Variance of a mean of n values from their sum and sum of squares: (sum of squares / n - mean^2) / (n - 1).
 // Rounding can leave a tiny negative number where all values are equal.
@@ -26,13 +25,6 @@ double variance_from_sums(double sum, double squares, double n) {
     if (n < 2.0) return 0.0;
     const double mean = sum / n;
     return std::fmax(0.0, (squares / n - mean * mean) / (n - 1.0));
-}
-
-template <typename Body>
-void for_each_pixel(std::size_t pixels, const Body& body) {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels, grain), [&](const auto& range) {
-        for (std::size_t p = range.begin(); p < range.end(); ++p) body(p);
-    });
 }
 
 bool pixel_is_finite(const PassImage& image, std::size_t pixel) {
@@ -86,12 +78,16 @@ class Film::NewBlock {
     std::size_t joins_ = 0, target_ = 0;
 };
 
-Film::Film(int width, int height, std::vector<Layer> layers, bool all_squares)
-    : width_(width), height_(height), layers_(std::move(layers)), all_squares_(all_squares) {
+Film::Film(int width, int height, std::vector<Layer> layers, bool all_squares, bool halves)
+    : width_(width), height_(height), layers_(std::move(layers)), all_squares_(all_squares), halves_(halves) {
     if (width < 1 || height < 1) throw std::invalid_argument("a film needs at least one pixel");
     sums_.assign(layers_.size(), ExactSums(3 * pixels()));
     for (const Layer& layer : layers_)
         layer_squares_.emplace_back(all_squares_ || layer.squares ? 3 * pixels() : 0);
+    for (std::size_t i = 0; i < layers_.size(); ++i) {
+        const std::size_t kept = halves_ && has_squares(i) && !layers_[i].auxiliary ? 3 * pixels() : 0;
+        odd_sums_.emplace_back(kept), odd_squares_.emplace_back(kept);
+    }
     replaced_.resize(layers_.size());
     find_parts();
     find_where();
@@ -101,7 +97,7 @@ void Film::find_parts() {
     std::size_t count = 1;
     for (const Layer& layer : layers_) count = std::max(count, layer.part + 1);
     if (count > layers_.size() && count > 1) throw std::invalid_argument("a part without layers");
-    parts_.assign(count, Part(pixels()));
+    parts_.assign(count, Part(pixels(), halves_));
     for (std::size_t i = 0; i < layers_.size(); ++i) {
         Part& part = parts_[layers_[i].part];
         part.layers.push_back(i);
@@ -151,6 +147,7 @@ double Film::passes_of(std::size_t layer, std::size_t pixel) const {
 }
 
 float Film::add_pixel(const PassImage& image, Part& part, std::size_t pixel) {
+    const bool odd = halves_ && part.odd_is_next();
     double beauty[3] = {0.0, 0.0, 0.0};
     for (std::size_t of_image = 0; of_image < part.layers.size(); ++of_image) {
         const std::size_t layer = part.layers[of_image];
@@ -160,10 +157,15 @@ float Film::add_pixel(const PassImage& image, Part& part, std::size_t pixel) {
             const std::size_t i = 3 * pixel + std::size_t(c);
             sums_[layer].add(i, v);
             if (has_squares(layer)) layer_squares_[layer].add(i, v * v);
+            if (odd && has_halves(layer)) odd_sums_[layer].add(i, v), odd_squares_[layer].add(i, v * v);
             if (!layers_[layer].auxiliary) beauty[c] += v;
         }
     }
-    for (int c = 0; c < 3; ++c) part.beauty_squares.add(3 * pixel + std::size_t(c), beauty[c] * beauty[c]);
+    for (int c = 0; c < 3; ++c) {
+        const std::size_t i = 3 * pixel + std::size_t(c);
+        part.beauty_squares.add(i, beauty[c] * beauty[c]);
+        if (odd) part.odd_beauty.add(i, beauty[c]), part.odd_squares.add(i, beauty[c] * beauty[c]);
+    }
     return float((beauty[0] + beauty[1] + beauty[2]) / 3.0);
 }
 
@@ -182,7 +184,7 @@ void Film::add_pass(const PassImage& image, std::size_t index, double work) {
     NewBlock block(part, 0, pixels());
     // Pixels are independent of each other, so the order of tasks does not matter to any bit.
     non_finite_ += tbb::parallel_reduce(
-        tbb::blocked_range<std::size_t>(0, pixels(), grain), std::uint64_t(0),
+        tbb::blocked_range<std::size_t>(0, pixels(), pixel_grain), std::uint64_t(0),
         [&](const auto& range, std::uint64_t dropped) {
             for (std::size_t pixel = range.begin(); pixel < range.end(); ++pixel) {
                 if (pixel_is_finite(image, pixel))
@@ -199,7 +201,7 @@ void Film::add_pass(const PassImage& image, std::size_t index, double work) {
 
 void Film::add(const Film& next) {
     bool fits = next.width_ == width_ && next.height_ == height_ && next.layers_.size() == layers_.size() &&
-                next.parts() == parts() && next.all_squares_ == all_squares_;
+                next.parts() == parts() && next.all_squares_ == all_squares_ && next.halves_ == halves_;
     for (std::size_t i = 0; fits && i < layers_.size(); ++i)
         fits = layers_[i].name == next.layers_[i].name && layers_[i].part == next.layers_[i].part &&
                has_squares(i) == next.has_squares(i);
@@ -209,16 +211,19 @@ void Film::add(const Film& next) {
     for (Replacement& replaced : replaced_) replaced = {};
 
     const auto add_sums = [](ExactSums& sums, const ExactSums& more) {
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, more.size(), 3 * grain), [&](const auto& range) {
-            for (std::size_t i = range.begin(); i < range.end(); ++i) sums.add(i, more);
-        });
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, more.size(), 3 * pixel_grain),
+                          [&](const auto& range) {
+                              for (std::size_t i = range.begin(); i < range.end(); ++i) sums.add(i, more);
+                          });
     };
     for (std::size_t i = 0; i < layers_.size(); ++i)
-        add_sums(sums_[i], next.sums_[i]), add_sums(layer_squares_[i], next.layer_squares_[i]);
+        add_sums(sums_[i], next.sums_[i]), add_sums(layer_squares_[i], next.layer_squares_[i]),
+            add_sums(odd_sums_[i], next.odd_sums_[i]), add_sums(odd_squares_[i], next.odd_squares_[i]);
     for (std::size_t i = 0; i < parts(); ++i) {
         Part& part = parts_[i];
         const Part& more = next.parts_[i];
-        add_sums(part.beauty_squares, more.beauty_squares);
+        add_sums(part.beauty_squares, more.beauty_squares), add_sums(part.odd_beauty, more.odd_beauty);
+        add_sums(part.odd_squares, more.odd_squares);
         while (part.half_squares.size() < more.half_squares.size()) part.half_squares.emplace_back(pixels());
         for (std::size_t k = 0; k < more.half_squares.size(); ++k)
             add_sums(part.half_squares[k], more.half_squares[k]);
@@ -294,7 +299,24 @@ void Film::set_mean(std::size_t layer, std::span<const Rgb> values, std::span<co
         throw std::invalid_argument("the layer does not fit the film");
     if (!variance.empty() && !has_squares(layer))
         throw std::invalid_argument("what is left of a variance that is not known");
-    replaced_.at(layer) = {{values.begin(), values.end()}, {variance.begin(), variance.end()}};
+    replaced_.at(layer) = {{values.begin(), values.end()}, {variance.begin(), variance.end()}, {}};
+}
+
+void Film::set_halves(std::size_t layer, std::array<std::vector<Rgb>, 2> values) {
+    if (!has_halves(layer)) throw std::logic_error("the film does not keep the halves of this layer");
+    if (values[0].size() != pixels() || values[1].size() != pixels())
+        throw std::invalid_argument("the halves do not fit the film");
+    const std::size_t part = layers_[layer].part;
+    const float odd = float(half_passes(part, 1)) / float(std::max(1u, pass_count(part)));
+    std::vector<Rgb> mean(pixels());
+    std::vector<float> variance(pixels());
+    for_each_pixel(pixels(), [&](std::size_t p) {
+        mean[p] = (1.0f - odd) * values[0][p] + odd * values[1][p];
+        const Rgb difference = values[0][p] - values[1][p];
+        variance[p] = odd * (1.0f - odd) * average(difference * difference);
+    });
+    set_mean(layer, mean, variance);
+    replaced_[layer].halves = std::move(values);
 }
 
 Film::Replacements Film::exchange_replaced(Replacements replaced) {

@@ -7,16 +7,23 @@
 // A picture may have several parts (Layer::part), each with passes of its own, as many as it needs: the mean
 // of a layer is its sum over the passes of its part, and the variance of the beauty the sum over its parts,
 // which are independent of each other.
+//
+// The passes of a part are two independent halves, those of even and those of odd index: their Sobol points
+// are of different scrambles (core/render/camera_ray.h). What a filter makes of one half can be held against
+// the other (core/metrics/halves_error.h).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/film/exact_sums.h"
 #include "core/film/pass_image.h"
+#include "core/metrics/halves_error.h"
 #include "core/objects/memory_budget.h"
 
 namespace mote::core {
@@ -26,9 +33,10 @@ class Film {
     static constexpr std::uint32_t max_passes = ExactSums::max_terms;  ///< of a part
 
     /// `all_squares`: keep the sum of squares of every layer, not only of the beauty and of those that
-    /// require it. Throws std::invalid_argument when two layers have one name, a Layer::where names none or
-    /// one of another part, or a part has no layer.
-    Film(int width, int height, std::vector<Layer> layers, bool all_squares = false);
+    /// require it. `halves`: keep sums over the passes of odd index besides, of the beauty and of layers of
+    /// the beauty with squares; then its error() is known. Throws std::invalid_argument when two layers
+    /// have one name, a Layer::where names none or one of another part, or a part has no layer.
+    Film(int width, int height, std::vector<Layer> layers, bool all_squares = false, bool halves = false);
 
     int width() const { return width_; }                                               ///< [pixels]
     int height() const { return height_; }                                             ///< [pixels]
@@ -36,6 +44,7 @@ class Film {
     std::span<const Layer> layers() const { return layers_; }  ///< all of them, in order
     std::size_t parts() const { return parts_.size(); }        ///< how many
     bool keeps_all_squares() const { return all_squares_; }    ///< of the constructor
+    bool keeps_halves() const { return halves_; }              ///< of the constructor
     std::uint32_t pass_count() const;                          ///< of all parts together
     std::uint32_t pass_count(std::size_t part) const { return parts_.at(part).passes; }  ///< of one part
     /// Index of the first pass of a part that the film holds, or will hold.
@@ -79,16 +88,33 @@ class Film {
     bool has_squares(std::size_t layer) const { return !layer_squares_.at(layer).empty(); }
     /// Variance of a layer's mean, over the passes of Layer::where; needs has_squares(layer).
     std::vector<Rgb> layer_variance_of_mean(std::size_t layer, double unit = 1.0) const;
+    /// True where the film keeps the halves of a layer.
+    bool has_halves(std::size_t layer) const { return !odd_sums_.at(layer).empty(); }
+    /// Number of passes of a half of a part: 0, of even index, or 1, of odd index.
+    std::uint32_t half_passes(std::size_t part, int half) const;
+    /// Mean over the passes of a half of a layer; needs has_halves(layer).
+    std::vector<Rgb> half_mean(std::size_t layer, int half) const;
+    /// Variance of that mean.
+    std::vector<Rgb> half_variance_of_mean(std::size_t layer, int half) const;
+    /// The beauty of a half of the passes, and what set_mean() has made of it.
+    struct HalfBeauty {
+        std::vector<Rgb> passes, shown, variance;  ///< of `passes`, as of independent ones
+    };
+    HalfBeauty half_beauty(int half) const;
     /// Replaces what mean() returns for a layer, for post-processes (Estimator::finish). The sums, and with
     /// them all variances and the serialised film, stay those of the passes.
     /// Without values it is the mean of the passes again. `variance`: what the process leaves of the
     /// variance of the layer's mean, averaged over channels, for noise(); needs has_squares(layer). Without
     /// it the layer counts there with the noise of its passes.
     void set_mean(std::size_t layer, std::span<const Rgb> values, std::span<const float> variance = {});
+    /// set_mean() for a process that works on each half of the passes by itself: the mean becomes that of
+    /// both results, weighted by their passes, and its variance what they differ by. Needs has_halves(layer).
+    void set_halves(std::size_t layer, std::array<std::vector<Rgb>, 2> values);
     /// Mean that set_mean() has put in place of the passes'; empty where it has not.
     struct Replacement {
-        std::vector<Rgb> mean;        ///< by pixel; empty: that of the passes
-        std::vector<float> variance;  ///< of that mean, by pixel; empty: not known
+        std::vector<Rgb> mean;                        ///< by pixel; empty: that of the passes
+        std::vector<float> variance;                  ///< of that mean, by pixel; empty: not known
+        std::array<std::vector<Rgb>, 2> halves = {};  ///< of set_halves(); empty: of one mean
     };
     using Replacements = std::vector<Replacement>;  ///< [layer]
     /// Puts others there, or none, and returns what was there.
@@ -104,6 +130,17 @@ class Film {
         double noise = std::numeric_limits<double>::infinity();
     };
     GainAndNoise gain_and_noise() const;  ///< noise() and what it is computed with
+    /// The error of the beauty with the bias of post-processes, from the two halves of the passes
+    /// (core/metrics/halves_error.h): for passes without bias whose noise is independent from pixel to pixel.
+    /// Nothing where the film keeps no halves, a half of a part has fewer than two passes, or a post-process
+    /// has not worked on the halves.
+    /// Weights of errors are relative to the light of a pixel, which is known with noise: the interval holds
+    /// what two kinds of weights make of it. By the picture, a rare bright path is taken for a bright place,
+    /// where it counts for little; by the darker half where the halves differ much, a lamp that one has
+    /// missed for a dark one.
+    std::optional<PictureError> error() const;
+    std::optional<std::array<BlockErrors, 2>> block_errors()
+        const;  ///< by blocks of pixels and kind of weights
 
     /// The bits of the film, for checkpoints: sums, counts, open blocks, and a checksum. Throws OutOfMemory
     /// where the budget has no room for them.
@@ -122,11 +159,17 @@ class Film {
         std::uint32_t first = 0, passes = 0;
         double work = 0.0;
         ExactSums beauty_squares;                ///< three channels
+        ExactSums odd_beauty, odd_squares;       ///< of the passes of odd index
         std::vector<Block> blocks;               ///< the largest that its passes consist of, in order
         std::vector<ExactSums> half_squares;     ///< [k]: how the halves of blocks of 2^(k+1) differ, squared
         std::vector<std::size_t> layers;         ///< in order
         std::vector<std::size_t> beauty_layers;  ///< those that are not auxiliary, in order
-        explicit Part(std::size_t pixels) : beauty_squares(3 * pixels) {}
+        Part(std::size_t pixels, bool halves)
+            : beauty_squares(3 * pixels),
+              odd_beauty(halves ? 3 * pixels : 0),
+              odd_squares(halves ? 3 * pixels : 0) {}
+        /// True if the next pass has an odd index.
+        bool odd_is_next() const { return (first + passes) % 2 == 1; }
         /// Number of complete blocks of 2^(k+1) passes.
         std::uint32_t complete_blocks(std::size_t k) const;
     };
@@ -134,14 +177,23 @@ class Film {
     void find_parts();
     void find_where();
     float add_pixel(const PassImage& image, Part& part, std::size_t pixel);
+    /// Mean over a half, from the sums over all passes and over those of odd index.
+    std::vector<Rgb> half_of(std::span<const std::size_t> layers, const ExactSums& odd, int half) const;
+    /// Variance of that mean.
+    std::vector<Rgb> half_variance(std::span<const std::size_t> layers, const ExactSums& squares,
+                                   const ExactSums& odd, const ExactSums& odd_squares, int half) const;
+    /// Sums that are kept besides, for a file: bit 0 all squares, bit 1 halves.
+    std::uint32_t kept() const { return (all_squares_ ? 1u : 0u) | (halves_ ? 2u : 0u); }
     void check_room(const Part& part, std::uint32_t more) const;
     std::vector<Rgb> mean_of_passes() const;  ///< of the beauty, whatever set_mean() says
     bool has_replaced_variance() const;
     /// Variance of the beauty as it is shown: that of set_mean() in place of the variance of a layer's
     /// passes.
     std::vector<Rgb> shown_variance_of_mean(double unit) const;
-    /// sum w v of a part as it is shown, where that of its passes is `of_passes`.
-    double shown_sum(const Part& part, double of_passes, std::span<const double> weights, double unit) const;
+    /// sum w v of a part as it is shown, with the gain of its passes, where that of its passes is `of_passes`
+    /// without it.
+    double shown_sum(const Part& part, double of_passes, double gain, std::span<const double> weights,
+                     double unit) const;
     /// d[k] of core/film/sobol_gain.h.
     std::vector<double> differences(const Part& part, std::span<const double> weights, double unit) const;
     std::vector<Rgb> variance_of_mean(std::span<const std::size_t> layers, const ExactSums& squares,
@@ -153,12 +205,13 @@ class Film {
 
     int width_, height_;
     std::vector<Layer> layers_;
-    bool all_squares_;
+    bool all_squares_, halves_;
     std::uint64_t non_finite_ = 0;
     std::vector<Part> parts_;
-    std::vector<ExactSums> sums_;           ///< one per layer: [3 pixel + channel]
-    std::vector<ExactSums> layer_squares_;  ///< one per layer, empty where not kept
-    std::vector<std::size_t> where_;        ///< index of Layer::where, or that of no layer
+    std::vector<ExactSums> sums_;                    ///< one per layer: [3 pixel + channel]
+    std::vector<ExactSums> layer_squares_;           ///< one per layer, empty where not kept
+    std::vector<ExactSums> odd_sums_, odd_squares_;  ///< of passes of odd index; of layers of the beauty
+    std::vector<std::size_t> where_;                 ///< index of Layer::where, or that of no layer
     Replacements replaced_;
 };
 

@@ -1,7 +1,8 @@
 // The noise of a film: what core/metrics/relative_error.h makes of the passes' spread, and
 // core/film/sobol_gain.h of the spread of blocks of passes. The gain is pooled over the picture, with the
 // weights of the noise: the pixels' own variances stay what they are. Every part has a gain of its own. Of a
-// layer that was filtered its filter says what is left.
+// layer that was filtered its filter says what is left, or what the filtered halves differ by, which have the
+// gain already.
 #include <algorithm>
 #include <cmath>
 
@@ -68,19 +69,20 @@ std::vector<Rgb> Film::shown_variance_of_mean(double unit) const {
     return result;
 }
 
-double Film::shown_sum(const Part& part, double of_passes, std::span<const double> weights,
+double Film::shown_sum(const Part& part, double of_passes, double gain, std::span<const double> weights,
                        double unit) const {
-    double rest = of_passes, filtered = 0.0;
+    double rest = of_passes, filtered = 0.0, measured = 0.0;
     for (const std::size_t layer : part.beauty_layers) {
         const std::vector<float>& left = replaced_[layer].variance;
         if (left.empty()) continue;
         const std::vector<Rgb> own = layer_variance_of_mean(layer, unit);
         for (std::size_t p = 0; p < pixels(); ++p) {
             if (weights[p] > 0.0) rest -= weights[p] * mean_of_channels(own[p]);
-            filtered += weights[p] * double(left[p]) / (unit * unit);
+            (replaced_[layer].halves[0].empty() ? filtered : measured) +=
+                weights[p] * double(left[p]) / (unit * unit);
         }
     }
-    return std::max(0.0, rest) + filtered;
+    return gain * (std::max(0.0, rest) + filtered) + measured;
 }
 
 Film::GainAndNoise Film::gain_and_noise() const {
@@ -113,7 +115,7 @@ Film::GainAndNoise Film::gain_and_noise() const {
         const auto passes = std::uint32_t(std::min<std::uint64_t>(parts_[i].passes, (2ull << d.size()) - 1));
         const double gain = sobol_gain(d, passes, sum * sum / squares);
         independent += sum, expected += gain * sum;
-        shown += gain * (replaced ? shown_sum(parts_[i], sum, weights.weight, unit) : sum);
+        shown += replaced ? shown_sum(parts_[i], sum, gain, weights.weight, unit) : gain * sum;
     }
     if (independent > 0.0) result.gain = expected / independent;
     result.noise = std::sqrt(shown / weights.noise_norm);

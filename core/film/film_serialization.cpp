@@ -20,8 +20,8 @@ namespace {
 
 struct Header {
     std::array<char, 8> magic = {'m', 'o', 't', 'e', 'f', 'i', 'l', 'm'};
-    std::uint32_t version = 4;
-    std::uint32_t width = 0, height = 0, layers = 0, all_squares = 0, parts = 0;
+    std::uint32_t version = 5;
+    std::uint32_t width = 0, height = 0, layers = 0, kept = 0, parts = 0;  // kept: 1 all squares, 2 halves
     std::uint64_t non_finite = 0;
 };
 static_assert(sizeof(Header) == 40, "the header has no padding whose bytes could vary");
@@ -61,8 +61,12 @@ template <typename AnyFilm, typename Body>
 void Film::for_each_array(AnyFilm& film, const Body& body) {
     for (auto& sums : film.sums_) ExactSums::for_each_array(sums, body);
     for (auto& sums : film.layer_squares_) ExactSums::for_each_array(sums, body);
+    for (auto& sums : film.odd_sums_) ExactSums::for_each_array(sums, body);
+    for (auto& sums : film.odd_squares_) ExactSums::for_each_array(sums, body);
     for (auto& part : film.parts_) {
         ExactSums::for_each_array(part.beauty_squares, body);
+        ExactSums::for_each_array(part.odd_beauty, body);
+        ExactSums::for_each_array(part.odd_squares, body);
         for (auto& block : part.blocks) body(block.sums);
         for (auto& sums : part.half_squares) ExactSums::for_each_array(sums, body);
     }
@@ -71,7 +75,7 @@ void Film::for_each_array(AnyFilm& film, const Body& body) {
 std::vector<std::byte> Film::serialize(const MemoryBudget& memory) const {
     Header header;
     header.width = std::uint32_t(width_), header.height = std::uint32_t(height_);
-    header.layers = std::uint32_t(layers_.size()), header.all_squares = all_squares_ ? 1 : 0;
+    header.layers = std::uint32_t(layers_.size()), header.kept = kept();
     header.parts = std::uint32_t(parts_.size()), header.non_finite = non_finite_;
 
     std::vector<PartHeader> heads;
@@ -111,8 +115,7 @@ void Film::deserialize(std::span<const std::byte> bytes) {
         throw InputError("the film has " + std::to_string(header.width) + " x " +
                          std::to_string(header.height) + " pixels, not " + std::to_string(width_) + " x " +
                          std::to_string(height_));
-    if (header.layers != layers_.size() || (header.all_squares != 0) != all_squares_ ||
-        header.parts != parts_.size())
+    if (header.layers != layers_.size() || header.kept != kept() || header.parts != parts_.size())
         throw InputError("the film has other layers");
     std::uint64_t sum;
     const auto content = bytes.first(bytes.size() - sizeof(sum));
@@ -136,7 +139,7 @@ void Film::deserialize(std::span<const std::byte> bytes) {
         least += min_packed_size(numbers);
         if (least > content.size()) throw InputError("the film is damaged: its length is wrong");
     };
-    Film read(width_, height_, layers_, all_squares_);
+    Film read(width_, height_, layers_, all_squares_, halves_);
     read.non_finite_ = header.non_finite;
     for (std::size_t i = 0; i < heads.size(); ++i) {
         Part& part = read.parts_[i];
@@ -169,10 +172,12 @@ void Film::deserialize(std::span<const std::byte> bytes) {
     });
     for (std::size_t i = 0; i < layers_.size(); ++i) {
         const std::uint32_t passes = read.parts_[layers_[i].part].passes;
-        fits = fits && can_be(read.sums_[i], passes) && can_be(read.layer_squares_[i], passes);
+        for (const auto* sums : {&read.sums_, &read.layer_squares_, &read.odd_sums_, &read.odd_squares_})
+            fits = fits && can_be((*sums)[i], passes);
     }
     for (const Part& part : read.parts_) {
-        fits = fits && can_be(part.beauty_squares, part.passes);
+        for (const ExactSums* sums : {&part.beauty_squares, &part.odd_beauty, &part.odd_squares})
+            fits = fits && can_be(*sums, part.passes);
         for (const ExactSums& squares : part.half_squares) fits = fits && can_be(squares, part.passes);
     }
     if (!fits) throw InputError("the film is damaged: it holds a number that cannot be");

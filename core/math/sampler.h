@@ -1,8 +1,11 @@
 // Points for one sample of one pixel (or one light path), keyed by (seed, pass, pixel, dimension).
 //
-// Two kinds: independent numbers, and Owen-scrambled Sobol points. The latter follow Burley 2020 ("Practical
+// Independent numbers, or Owen-scrambled Sobol points. The latter follow Burley 2020 ("Practical
 // hash-based Owen scrambling"): pairs of dimensions are padded, each with its own shuffle of the pass index
 // and its own nested uniform scramble, so that the passes of one pixel form a (0,2)-sequence in every pair.
+// In halves, passes of even and of odd index have two scrambles, so that their means are independent of each
+// other (core/film/film.h).
+//
 // Eight pairs are made at once, in vector instructions, when the first of them is wanted.
 #pragma once
 
@@ -12,15 +15,17 @@
 
 namespace mote::core {
 
-/// Independent numbers, or Owen-scrambled Sobol points.
-enum class SamplerKind : std::uint8_t { independent, sobol };
+/// Independent numbers, Owen-scrambled Sobol points, or those in halves.
+enum class SamplerKind : std::uint8_t { independent, sobol, sobol_halves };
 
 class Sampler {
   public:
     /// `item` is a pixel index or a light path's index; `stream` keeps unrelated uses of one item apart.
     Sampler(SamplerKind kind, std::uint64_t seed, std::uint32_t pass, std::uint64_t item,
             std::uint32_t stream = 0)
-        : kind_(kind), pass_(pass), key_(hash_keys(seed, item, stream)) {}
+        : kind_(kind), pass_(pass), key_(hash_keys(seed, item, stream)) {
+        if (kind == SamplerKind::sobol_halves) key_ = hash_keys(key_, pass % 2), pass_ = pass / 2;
+    }
 
     /// The next number in [0, 1); takes a pair of dimensions.
     float next_1d() { return next_2d().x; }

@@ -81,9 +81,9 @@ class Estimator {
     virtual std::size_t part_of_pass(std::uint32_t /*number*/) const { return 0; }
     /// Post-processes on the mean, after the last pass and for previews. May throw Cancelled.
     virtual void finish(Film& /*film*/, CancelToken /*cancelled*/) {}
-    /// True if finish() sets what it leaves of the variance (Film::set_mean): then the noise is that of the
-    /// finished picture.
-    virtual bool changes_noise() const { return false; }
+    /// True if finish() sets what it leaves of the variance (Film::set_mean, Film::set_halves): then the
+    /// noise is that of the finished picture.
+    virtual bool changes_noise(const Film& /*film*/) const { return false; }
     /// Adds this estimator's counters (rays, lookups, VPLs, ...).
     virtual void add_statistics(Statistics& /*statistics*/) const {}
 };

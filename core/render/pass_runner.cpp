@@ -39,7 +39,9 @@ std::unique_ptr<PixelFilter> film_filter(const Scene& scene) {
 
 RenderOptions render_options(const Scene& scene, std::uint64_t seed, CancelToken cancelled) {
     const FilmSettings& film = scene.film();
-    return {seed, film.width, film.height, sampler_kind(film.sampler), cancelled};
+    SamplerKind sampler = sampler_kind(film.sampler);
+    if (film.interval && sampler == SamplerKind::sobol) sampler = SamplerKind::sobol_halves;
+    return {seed, film.width, film.height, sampler, cancelled};
 }
 
 std::vector<Layer> film_layers(const Scene& scene, const Integrator& integrator,

@@ -31,6 +31,11 @@ void append_table(std::string& text, const std::string& title, const std::vector
 
 }  // namespace
 
+std::string Plan::no_error_because() const {
+    if (!missing.empty()) return missing.front().topic + " is missing";
+    return error_unknown.empty() ? noise_unknown : error_unknown;
+}
+
 void Plan::run(std::string topic, std::string choice, std::string reason) {
     runs.push_back({std::move(topic), std::move(choice), std::move(reason), ""});
 }

@@ -24,6 +24,10 @@ struct Plan {
     /// The light that is found so rarely that the spread between passes misses it: no noise is stated. ""
     /// where the spread shows all.
     std::string noise_unknown;
+    /// The reason why halves of the passes do not show the error (core/metrics/halves_error.h). "" where they
+    /// do: passes have the light of the scene as their mean, and noise that is independent from pixel to
+    /// pixel.
+    std::string error_unknown = "its passes may err alike, or pixels in common";
 
     /// Adds to `runs`.
     void run(std::string topic, std::string choice, std::string reason);
@@ -31,6 +35,10 @@ struct Plan {
     void leave_out(std::string topic, std::string choice, std::string reason);
     /// Adds to `missing`.
     void miss(std::string topic, std::string choice, std::string reason, std::string cure = "");
+    /// Reason why halves of the passes do not show the error of the image: error_unknown, noise_unknown, or
+    /// what is missing. "" where they do.
+    std::string no_error_because() const;
+    bool error_is_known() const { return no_error_because().empty(); }  ///< true where halves show it
     /// Messages for the user: a warning for each thing that takes very long or that this integrator cannot
     /// compute, and one line with the switches of a topic for what it leaves out by choice.
     std::vector<std::string> warnings() const;

@@ -65,6 +65,7 @@ class PassLoop {
             result_.statistics.warnings.emplace_back(
                 "no pass found any light but that of lights in view: how noisy the picture is, is not known");
         result_.statistics.values["varianceGain"] = found.gain;
+        if (!request_.range) result_.error = stated(result_.film);
     }
 
   private:
@@ -73,6 +74,11 @@ class PassLoop {
         const bool shown =
             request_.noise_is_known && !has_few_samples() && (noise > 0.0 || !found_no_light());
         return shown ? noise : infinity;
+    }
+    /// The error, or nothing where the passes do not show it.
+    std::optional<PictureError> stated(const Film& film) const {
+        if (!request_.halves || !std::isfinite(known(1.0)) || found_no_light()) return std::nullopt;
+        return film.error();
     }
     /// The variance of 64 normal samples has a relative standard error of sqrt(2 / 63), a sixth; that of
     /// fewer, or of light that few paths meet, may say nothing.
@@ -132,7 +138,7 @@ class PassLoop {
     }
 
     void run_passes() {
-        if (!stop_.noise || noise_rule_looks()) refresh_noise();
+        if (!rule_looks() || noise_rule_looks()) refresh_noise();
         while (!is_done()) {
             if (interrupted()) break;
             if (!runner_.run_pass(cancelled_flag())) {
@@ -171,22 +177,24 @@ class PassLoop {
         // The rule must not depend on the clock; for the eye twice a second will do, and a twentieth of the
         // time.
         const bool for_the_eye = seconds_since(noise_time_) > std::max(0.5, 20.0 * noise_seconds_);
-        if (stop_.noise ? noise_rule_looks() : for_the_eye || state_.passes == 2) refresh_noise();
+        if (rule_looks() ? noise_rule_looks() : for_the_eye || state_.passes == 2) refresh_noise();
         if (request_.progress)
             request_.progress({state_.passes, state_.passes_of_this_run, stop_.passes, state_.seconds,
-                               seconds_left(stop_, state_), known(state_.noise)});
+                               seconds_left(stop_, state_), known(state_.noise), state_.error});
         if (seconds_since(checkpoint_time_) >= request_.checkpoint_every_seconds) write_checkpoint_now();
         show_preview();
         state_.seconds = seconds_since(start_);
     }
+    /// True for a rule of noise or error, which must not depend on the clock.
+    bool rule_looks() const { return stop_.noise || stop_.error; }
     bool noise_rule_looks() const {
-        return runner_.estimator().changes_noise() ? filtered_noise_is_due(state_.passes)
-                                                   : noise_is_due(state_.passes);
+        return stop_.error || changes_noise() ? filtered_noise_is_due(state_.passes)
+                                              : noise_is_due(state_.passes);
     }
     /// The film is afterwards as it was: which part is next must not depend on previews.
     void show_preview() {
         // The noise in reports of progress is that of the picture that a preview would show.
-        const bool for_the_noise = request_.progress && !stop_.noise && runner_.estimator().changes_noise();
+        const bool for_the_noise = request_.progress && !rule_looks() && changes_noise();
         const bool seen = request_.preview && (!request_.preview_is_seen || request_.preview_is_seen());
         if ((!seen && !for_the_noise) || is_done()) return;
         // After this time a preview is shown though some part of the picture is still black.
@@ -228,17 +236,19 @@ class PassLoop {
         // The first call also builds what all later ones use: about half of it.
         state_.seconds_to_finish = (std::exchange(finished_before_, true) ? 1.0 : 0.5) * seconds_since(begin);
         look();
-        const double finished = runner_.estimator().changes_noise() ? result_.film.noise() : 0.0;
+        const double finished = changes_noise() ? result_.film.noise() : 0.0;
+        if (request_.halves) finished_error_ = stated(result_.film).value_or(PictureError());
+        if (!stop_.error) state_.error = finished_error_;  // a rule must not depend on previews
         preview_means_ = result_.film.exchange_replaced(), preview_passes_ = state_.passes;
-        if (!runner_.estimator().changes_noise()) return;
+        if (!changes_noise()) return;
         finished_noise_ = finished, left_of_noise_ = finished / result_.film.noise();
     }
     void refresh_noise() {
         const Clock::time_point begin = Clock::now();
-        if (!runner_.estimator().changes_noise())
+        if (stop_.error || (stop_.noise && changes_noise()))  // rules must not depend on earlier previews
+            state_.noise = finished_noise_now(), state_.error = finished_error_;
+        else if (!changes_noise())
             state_.noise = result_.film.noise();
-        else if (stop_.noise)  // the rule must not depend on earlier previews
-            state_.noise = finished_noise_now();
         else if (std::isfinite(left_of_noise_))
             state_.noise = left_of_noise_ * result_.film.noise();
         noise_seconds_ = seconds_since(begin), noise_time_ = Clock::now();
@@ -250,8 +260,9 @@ class PassLoop {
         } catch (const Cancelled&) {
             return infinity;  // the render ends here
         }
-        return finished_noise_;
+        return changes_noise() ? finished_noise_ : result_.film.noise();
     }
+    bool changes_noise() const { return runner_.estimator().changes_noise(result_.film); }
 
     const RenderRequest& request_;
     const StopRule& stop_;
@@ -265,6 +276,7 @@ class PassLoop {
     std::uint32_t preview_passes_ = 0;
     /// Noise of the picture when it was finished last, and relative to the noise of its passes.
     double finished_noise_ = infinity, left_of_noise_ = infinity;
+    PictureError finished_error_;   ///< of the picture when it was finished last
     bool finished_before_ = false;  ///< for a preview or the noise
     Clock::time_point preview_time_ = Clock::now();
     double noise_seconds_ = 0.0;  ///< cost of the last evaluation of the noise
@@ -316,14 +328,18 @@ RenderResult render(const Scene& scene, const Integrator& integrator, const Rend
     if (!request.checkpoint_path.empty() && !request.resume)
         require_own_checkpoint(request.checkpoint_path, request.content_hash);
     StopRule stop = request.stop;
-    if (!stop.passes && !stop.seconds && !stop.noise && !request.enough)
+    if (stop.error && !request.halves)
+        throw InputError("the error of this image is not known, and a limit on it would not end the render");
+    if (!stop.passes && !stop.seconds && !stop.noise && !stop.error && !request.enough)
         stop.passes = std::uint32_t(settings.sample_count);
-    if (request.range) stop = {request.range->end - request.range->first, {}, {}};
+    if (request.range) stop = {request.range->end - request.range->first, {}, {}, {}};
     const std::vector<Layer> layers = film_layers(scene, integrator, request.features);
-    const FilmMemory needed(settings.width, settings.height, layers, request.all_squares, stop.passes);
+    const FilmMemory needed(settings.width, settings.height, layers, request.all_squares, stop.passes,
+                            request.halves);
     needed.require(request.memory, request.resume ? needed.sums() : 0.0);  // a checkpoint is read beside it
     RenderResult result = with_memory_for(needed.purpose() + memory_text(needed.peak()), [&] {
-        return RenderResult{Film(settings.width, settings.height, layers, request.all_squares), {}, false, 0};
+        return RenderResult{
+            Film(settings.width, settings.height, layers, request.all_squares, request.halves), {}, false, 0};
     });
     if (request.begin_with) begin_with(*request.begin_with, result.film);
     if (request.resume) resume(request, result);  // before the work of prepare(): it may be refused

@@ -22,6 +22,8 @@ struct StopRule {
     /// that takes: ends as near to it as whole passes allow, after one at least.
     std::optional<double> seconds;
     std::optional<double> noise;  ///< Film::noise() of the finished picture, tested from 8 passes on
+    /// Upper end of the interval of Film::error() of the finished picture, tested from 8 passes on.
+    std::optional<double> error = {};
 };
 
 /// Passes first .. end - 1 of a picture, counted over all parts: one share of a render on several machines.
@@ -37,6 +39,8 @@ struct RenderProgress {
     /// Film::noise() of the finished picture; infinity: not known yet. Refreshed twice a second at most; what
     /// Estimator::finish() takes from it is that of the last preview.
     double noise;
+    PictureError error =
+        {};  ///< of the finished picture, when it was made last: by StopRule::error or a preview
 };
 
 /// Seeds, stop rules and limits of a render, and the functions that receive reports.
@@ -55,6 +59,7 @@ struct RenderRequest {
     std::vector<HitFeature> features;  ///< become layers of the film, behind those of the integrator
     MemoryBudget memory;               ///< of the film, and of what the integrator builds
     bool noise_is_known = true;        ///< false: none is stated (Plan::noise_unknown)
+    bool halves = false;               ///< the film keeps halves of the passes, and an error is stated
     std::function<bool(const Film&)> enough;  ///< a rule of the caller's, tested with the noise rule
     std::function<void(const RenderProgress&)> progress;  ///< called after every pass; may be empty
     /// Shown the picture so far, as Estimator::finish() leaves it, as soon as every part has a pass, after
@@ -89,6 +94,8 @@ struct RenderResult {
     std::optional<std::uint32_t> finished_for = {};
     /// Not empty: the film holds a part of one pass, the pixels with a 1, and zeros elsewhere.
     std::vector<std::uint8_t> finished_pixels = {};
+    /// Film::error() of the finished picture; nothing where it is not known.
+    std::optional<PictureError> error = {};
     std::string checkpoint_problem = "";  ///< why the last checkpoint could not be written
 };
 
@@ -96,10 +103,11 @@ struct RenderResult {
 inline constexpr double max_finish_seconds = 1.0;
 
 /// Renders until a stop rule holds. When interrupted, the running pass is dropped and everything before it
-/// kept. Throws InputError when a range of passes is requested and the integrator cannot determine which
-/// those are, when a checkpoint does not belong to this render or is damaged, and when something else stands
-/// where it is to be written; OutOfMemory when the film does not fit into the budget. One that cannot be
-/// written is a warning and another try later: the one before it stays intact.
+/// kept. Throws InputError when StopRule::error is set without RenderRequest::halves, when a range of passes
+/// is requested and the integrator cannot determine which those are, when a checkpoint does not belong to
+/// this render or is damaged, and when something else stands where it is to be written; OutOfMemory when the
+/// film does not fit into the budget. One that cannot be written is a warning and another try later: the one
+/// before it stays intact.
 RenderResult render(const Scene& scene, const Integrator& integrator, const RenderRequest& request);
 
 /// The filter of a film as a distribution of offsets. Throws InputError for an unknown name.

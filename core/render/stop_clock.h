@@ -15,6 +15,7 @@ struct RenderState {
     std::uint32_t passes = 0, passes_of_this_run = 0;
     double seconds = 0.0, noise = 0.0;
     double seconds_of_previews = 0.0;  ///< among `seconds`: passes take the others
+    PictureError error = {};           ///< for StopRule::error
     double seconds_before = 0.0;     ///< of loading and building: they count for the time, not for the speed
     double seconds_to_finish = 0.0;  ///< that Estimator::finish() will take, as far as previews have shown it
     double seconds_per_pass() const {
@@ -45,7 +46,8 @@ inline bool must_stop(const StopRule& rule, const RenderState& state) {
     if (rule.seconds && state.passes_of_this_run > 0 &&
         state.seconds_before + state.seconds + pass - late + state.seconds_to_finish >= *rule.seconds)
         return true;
-    return rule.noise && state.passes >= noise_rule_from && state.noise <= *rule.noise;
+    if (state.passes < noise_rule_from) return false;
+    return (rule.noise && state.noise <= *rule.noise) || (rule.error && state.error.high <= *rule.error);
 }
 
 /// Seconds until the first rule will hold, if passes take as long as before; negative where unknown.
@@ -60,6 +62,10 @@ inline double seconds_left(const StopRule& rule, const RenderState& state) {
     if (rule.noise && std::isfinite(state.noise) && per_pass > 0.0) {
         // The noise falls as 1 / sqrt(passes).
         const double ratio = state.noise / *rule.noise;
+        left = std::min(left, std::max(0.0, per_pass * state.passes * (ratio * ratio - 1.0)));
+    }
+    if (rule.error && std::isfinite(state.error.high) && per_pass > 0.0) {
+        const double ratio = state.error.high / *rule.error;  // at best: bias falls more slowly
         left = std::min(left, std::max(0.0, per_pass * state.passes * (ratio * ratio - 1.0)));
     }
     return std::isfinite(left) ? left : -1.0;

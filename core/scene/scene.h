@@ -27,6 +27,7 @@ struct Element;
 struct FilmSettings {
     int width = 768, height = 576;    ///< [pixels]
     bool half = false;                ///< write float16
+    bool interval = false;            ///< keep halves of the passes, for Film::error()
     std::string filter = "gaussian";  ///< box, tent, gaussian
     float filter_radius = 2.0f;       ///< pixels
     float filter_stddev = 0.5f;       ///< gaussian only

@@ -1,5 +1,7 @@
 #include "integrators/layer_filter/layer_filter.h"
 
+#include <algorithm>
+#include <array>
 #include <stdexcept>
 
 #include "core/render/cpu_clock.h"
@@ -55,6 +57,24 @@ void LayerFilter::find_features(CancelToken cancelled) {
     filter_ = make_(*features_);
 }
 
+bool LayerFilter::has_halves(const Film& film) const {
+    return !layers_.empty() && std::ranges::all_of(layers_, [&](const Choice& choice) {
+        const std::size_t part = film.layers()[choice.layer].part;
+        return film.has_halves(choice.layer) && film.half_passes(part, 0) >= 2 &&
+               film.half_passes(part, 1) >= 2;
+    });
+}
+
+void LayerFilter::apply_to_halves(Film& film, const Choice& choice, CancelToken cancelled) {
+    std::array<std::vector<Rgb>, 2> shown;
+    for (const int half : {0, 1}) {
+        const std::vector<Rgb> mean = film.half_mean(choice.layer, half),
+                               variance = film.half_variance_of_mean(choice.layer, half);
+        shown[std::size_t(half)] = filter_->filtered({mean, variance, choice.kind}, cancelled).mean;
+    }
+    film.set_halves(choice.layer, std::move(shown));
+}
+
 void LayerFilter::apply(Film& film, CancelToken cancelled) {
     for (const Choice& choice : layers_)
         if (!film.has_squares(choice.layer))
@@ -63,7 +83,12 @@ void LayerFilter::apply(Film& film, CancelToken cancelled) {
     variances_.clear();
     find_features(cancelled);
     const Stopwatch stopwatch(filter_seconds_);
+    const bool halves = has_halves(film);
     for (const Choice& choice : layers_) {
+        if (halves) {
+            apply_to_halves(film, choice, cancelled);
+            continue;
+        }
         const std::uint32_t passes = film.pass_count(film.layers()[choice.layer].part);
         if (passes == 0) continue;
         film.set_mean(choice.layer,

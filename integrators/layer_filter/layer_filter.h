@@ -37,16 +37,19 @@ class LayerFilter {
     LayerFilter(const core::Scene& scene, const core::RenderOptions& options, const FeatureSettings& features,
                 std::shared_ptr<const screenspace::OidnLibrary> library, std::vector<Choice> layers);
 
-    /// Sets the means of the layers to the filtered ones. Of a layer of one pass
-    /// the variance is not known: OpenImageDenoise smooths it as far as it likes, our own filter leaves all
-    /// layers as they are. Throws std::invalid_argument where a layer has no squares, and Cancelled.
+    /// Sets the means of the layers to the filtered ones: of each half of the passes by itself where the film
+    /// keeps them and has two passes a half, so that its error is known. Of a layer of one pass the variance
+    /// is not known: OpenImageDenoise smooths it as far as it likes, our own filter leaves all layers as they
+    /// are. Throws std::invalid_argument where a layer has no squares, and Cancelled.
     void apply(core::Film& film, core::CancelToken cancelled = {});
 
     const std::vector<Choice>& layers() const { return layers_; }
+    /// True where apply() filters the halves of this film.
+    bool has_halves(const core::Film& film) const;
     /// True if layers are filtered, and the filter needs their variance and says what it leaves: our own.
     bool has_variance() const { return has_variance_ && !layers_.empty(); }
-    /// Remaining variance of each layer of the last apply(), mean over channels, in its order; empty:
-    /// unknown.
+    /// Remaining variance of each layer of the last apply() of whole passes, mean over channels, in its
+    /// order; empty: unknown.
     const std::vector<std::vector<float>>& variances() const { return variances_; }
     /// Wall time of features and of all calls, where there are layers.
     void add_statistics(core::Statistics& statistics) const;
@@ -57,6 +60,7 @@ class LayerFilter {
     LayerFilter(const core::Scene& scene, const core::RenderOptions& options, const FeatureSettings& features,
                 std::vector<Choice> layers, bool has_variance, MakeFilter make);
     void find_features(core::CancelToken cancelled);
+    void apply_to_halves(core::Film& film, const Choice& choice, core::CancelToken cancelled);
 
     const core::Scene& scene_;
     core::RenderOptions options_;

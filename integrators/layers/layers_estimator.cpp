@@ -51,8 +51,8 @@ class LayersEstimator final : public Estimator {
             const auto layers =
                 std::count_if(filter_.layers().begin(), filter_.layers().end(),
                               [&](const auto& f) { return choice.layers[f.layer].part == i; });
-            left_.push_back(std::size_t(layers) == method.kept.size() && changes_noise() ? left_by_filter
-                                                                                         : 1.0);
+            left_.push_back(
+                std::size_t(layers) == method.kept.size() && filter_.has_variance() ? left_by_filter : 1.0);
         }
     }
 
@@ -78,7 +78,9 @@ class LayersEstimator final : public Estimator {
 
     void finish(Film& film, CancelToken cancelled) override { filter_.apply(film, cancelled); }
 
-    bool changes_noise() const override { return filter_.has_variance(); }
+    bool changes_noise(const Film& film) const override {
+        return filter_.has_variance() || filter_.has_halves(film);
+    }
 
     void add_statistics(Statistics& statistics) const override {
         for (const Part& part : parts_) part.estimator->add_statistics(statistics);

@@ -191,7 +191,8 @@ void MoteLayers::plan_filter(const LayerChoice& choice, Plan& plan) const {
     if (const auto& library = library_->get(filters_)) {
         plan.run("filter", "OpenImageDenoise " + library->version() + " on " + names,
                  "biased by what it smoothes, less with every pass; filter=none leaves the noise. The noise "
-                 "that is stated, and --noise, are those of the passes, before the denoiser");
+                 "that is stated, and --noise, are those of the passes, before the denoiser; with "
+                 "film.interval what it leaves, without that bias, which the stated error contains");
         return;
     }
     plan.run("filter", "our own on " + names,
@@ -203,6 +204,7 @@ void MoteLayers::plan_filter(const LayerChoice& choice, Plan& plan) const {
 Plan MoteLayers::plan(const Scene& scene, const Requirements& requirements) const {
     Plan plan;
     plan.integrator = type();
+    plan.error_unknown.clear();
     const LayerChoice choice = choose(scene);
     for (const LayerMethod& method : choice.methods)
         plan.run(transport_name(method.cells), method.integrator->type(), method.reason);
@@ -219,6 +221,8 @@ Plan MoteLayers::plan(const Scene& scene, const Requirements& requirements) cons
         add_entries(plan.runs, own.runs, method.integrator->type());
         add_entries(plan.missing, own.missing, method.integrator->type());
         if (plan.noise_unknown.empty()) plan.noise_unknown = own.noise_unknown;
+        if (plan.error_unknown.empty() && !own.error_unknown.empty())
+            plan.error_unknown = method.integrator->type() + ": " + own.error_unknown;
         plan.costly.insert(plan.costly.end(), own.costly.begin(), own.costly.end());
     }
     return plan;

@@ -13,8 +13,6 @@
 
 namespace mote::integrators {
 
-inline constexpr std::uint32_t pilot_passes = 2;  ///< of every part, before their variances are compared
-
 /// `left[i]` is the share of part i's variance that stays in the picture: below 1 where it is filtered.
 /// Errors are relative to the picture around them, as everywhere (core/metrics/relative_error.h).
 std::size_t next_part(const core::Film& film, std::span<const double> left);

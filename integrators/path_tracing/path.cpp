@@ -21,6 +21,7 @@ class Path final : public Integrator {
     Plan plan(const Scene& scene, const Requirements& requirements) const override {
         Plan plan;
         plan.integrator = type();
+        if (!scene.has_media()) plan.error_unknown.clear();
         plan.run("paths", "one per pixel and pass", "light and BSDF sampling combined at every vertex");
         if (requirements.any_media())
             plan.miss("media", std::to_string(requirements.media) + " not rendered",

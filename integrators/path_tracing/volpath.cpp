@@ -63,6 +63,10 @@ void Volpath::plan_equiangular(Plan& plan, const Requirements& r) const {
 Plan Volpath::plan(const Scene& scene, const Requirements& requirements) const {
     Plan plan;
     plan.integrator = type();
+    if (bounded())
+        plan.error_unknown = "passes are without the light that the bound takes";
+    else
+        plan.error_unknown.clear();
     plan.run("paths", "one per pixel and pass", "light and scattering directions combined at every vertex");
     plan_media(plan, requirements);
     plan_choice_of_lights(plan, scene);

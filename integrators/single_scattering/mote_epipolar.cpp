@@ -36,6 +36,7 @@ class MoteEpipolar final : public Integrator {
 Plan MoteEpipolar::plan(const Scene& scene, const Requirements& r) const {
     Plan plan;
     plan.integrator = type();
+    plan.error_unknown.clear();  // but for steps of marching and gaps between samples, whose bias is small
     plan_single_scattering(plan, scene, r, settings_);
     const std::size_t lights = positional_lights(scene).size();
     if (!r.media_scattering)

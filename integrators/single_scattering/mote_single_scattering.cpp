@@ -24,6 +24,12 @@ class MoteSingleScattering final : public Integrator {
     Plan plan(const Scene& scene, const Requirements& r) const override {
         Plan plan;
         plan.integrator = type();
+        // But for the step of marching, whose bias is small.
+        if (settings_.sampling == ScatteringSampling::full || !r.media_scattering ||
+            positional_lights(scene).empty())
+            plan.error_unknown.clear();
+        else
+            plan.error_unknown = "pixels between the marched rays share their errors";
         plan_single_scattering(plan, scene, r, settings_);
         if (!r.media_scattering || positional_lights(scene).empty()) return plan;
         if (settings_.sampling == ScatteringSampling::full)

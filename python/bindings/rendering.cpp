@@ -65,12 +65,12 @@ class PythonObserver : public session::RenderObserver {
 
 /// (picture, exception or None): what a signal or a callback raised ends the render, and what there is stays.
 nb::tuple render(const session::LoadedScene& scene, std::optional<std::uint32_t> passes,
-                 std::optional<double> seconds, std::optional<double> noise, std::uint64_t seed, int threads,
-                 const std::string& checkpoint, double checkpoint_every, bool resume, bool auxiliary,
-                 const std::string& denoise, const std::string& oidn_package,
+                 std::optional<double> seconds, std::optional<double> noise, std::optional<double> error,
+                 std::uint64_t seed, int threads, const std::string& checkpoint, double checkpoint_every,
+                 bool resume, bool auxiliary, const std::string& denoise, const std::string& oidn_package,
                  const std::vector<std::string>& command_line, nb::object progress, nb::object preview) {
     session::RenderSettings settings;
-    settings.stop = {passes, seconds, noise};
+    settings.stop = {passes, seconds, noise, error};
     settings.seed = seed, settings.threads = threads;
     settings.checkpoint = checkpoint, settings.checkpoint_every = checkpoint_every, settings.resume = resume;
     settings.auxiliary = auxiliary, settings.denoise = denoise, settings.oidn_package = oidn_package,
@@ -88,9 +88,9 @@ nb::tuple render(const session::LoadedScene& scene, std::optional<std::uint32_t>
 
 void bind_rendering(nb::module_& m) {
     m.def("render", &render, nb::arg("scene"), nb::arg("passes").none(), nb::arg("seconds").none(),
-          nb::arg("noise").none(), nb::arg("seed"), nb::arg("threads"), nb::arg("checkpoint"),
-          nb::arg("checkpoint_every"), nb::arg("resume"), nb::arg("auxiliary"), nb::arg("denoise"),
-          nb::arg("oidn_package"), nb::arg("command_line"), nb::arg("progress").none(),
+          nb::arg("noise").none(), nb::arg("error").none(), nb::arg("seed"), nb::arg("threads"),
+          nb::arg("checkpoint"), nb::arg("checkpoint_every"), nb::arg("resume"), nb::arg("auxiliary"),
+          nb::arg("denoise"), nb::arg("oidn_package"), nb::arg("command_line"), nb::arg("progress").none(),
           nb::arg("preview").none());
 }
 

@@ -7,7 +7,7 @@ import json
 import math
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Dict, Iterator, List, Optional, Union
+from typing import Any, Dict, Iterator, List, Optional, Tuple, Union
 
 import numpy as np
 
@@ -132,6 +132,12 @@ class Picture(Mapping):
     def noise(self) -> float:
         """The relative error that the passes are expected to have left (docs/testing.md); infinity: not known."""
         return self._picture.noise
+
+    @property
+    def error_interval(self) -> Optional[Tuple[float, float]]:
+        """Ends of the interval of 95 % confidence of the relative RMSE, bias of filters included; None: not known."""
+        text = self.metadata.get("errorInterval", "").split()
+        return (float(text[0]), float(text[1])) if len(text) == 2 else None
 
     @property
     def interrupted(self) -> bool:

@@ -21,12 +21,13 @@ def _line(progress: Dict[str, Any]) -> None:
 
 
 def render(scene: Union[Scene, str, Path], *, passes: Optional[int] = None, seconds: Optional[float] = None,
-           noise: Optional[float] = None, seed: int = 0, threads: int = 0,
+           noise: Optional[float] = None, error: Optional[float] = None, seed: int = 0, threads: int = 0,
            progress: Union[bool, Callable[[Dict[str, Any]], Any]] = False,
            callback: Optional[Callable[[Picture], Any]] = None, checkpoint: Union[str, Path, None] = None,
            checkpoint_every: float = 60.0, resume: bool = False, auxiliary: bool = False, denoise: str = "") -> Picture:
     """Renders until the first of these rules holds: so many passes, so many seconds (from the call on), a noise such as
-    0.02 (relative). Without any: the scene's sample_count of passes. Scene, seed and passes determine every bit of the
+    0.02 (relative), or an error whose interval is below this, bias of filters included (for a scene loaded with
+    define={"film.interval": True}, and a method whose error is known: docs/testing.md). Without any: the scene's sample_count of passes. Scene, seed and passes determine every bit of the
     picture, whatever the number of threads (0: one for every core).
 
     progress: True prints a line; a function is called with {"passes", "passes_of_this_run", "passes_wanted", "seconds",
@@ -49,7 +50,7 @@ def render(scene: Union[Scene, str, Path], *, passes: Optional[int] = None, seco
     """
     if not isinstance(scene, Scene):
         scene = load(scene)
-    for value, name in ((passes, "passes"), (seconds, "seconds"), (noise, "noise")):
+    for value, name in ((passes, "passes"), (seconds, "seconds"), (noise, "noise"), (error, "error")):
         if value is not None and not value > 0:
             raise ValueError(f"{name} must be above 0, not {value}")
     if not 0 <= checkpoint_every < math.inf:
@@ -62,8 +63,8 @@ def render(scene: Union[Scene, str, Path], *, passes: Optional[int] = None, seco
     preview = (lambda inner: callback(Picture._of(inner))) if callback else None
     words = ["mote.render", scene.path or "{...}"]
     words += [f"{name}={value}" for name, value in
-              (("passes", passes), ("seconds", seconds), ("noise", noise), ("seed", seed)) if value is not None]
-    inner, raised = _mote.render(scene._scene, passes, seconds, noise, seed, threads, path_text(checkpoint or ""),
+              (("passes", passes), ("seconds", seconds), ("noise", noise), ("error", error), ("seed", seed)) if value is not None]
+    inner, raised = _mote.render(scene._scene, passes, seconds, noise, error, seed, threads, path_text(checkpoint or ""),
                                  checkpoint_every, resume, auxiliary, denoise, oidn_package(denoise), words, reported, preview)
     picture = Picture._of(inner)
     if progress is True:

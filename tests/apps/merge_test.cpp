@@ -53,22 +53,27 @@ bool says(const RunResult& result, const std::string& text) {
 
 TEST_CASE("three ranges merged, in any order and in two steps, are the picture of one run", "[merge]") {
     const Folder folder;
-    {
-        const auto& how = layers;
+    for (const bool interval : {false, true}) {
+        CAPTURE(interval);
+        const auto how = interval ? layers + std::vector<std::string>{"-D", "film.interval=true"} : layers;
         REQUIRE(folder
-                    .run(std::vector<std::string>{"render", "scene.xml", "--quiet", "--passes", "8", "-o",
+                    .run(std::vector<std::string>{"render", "scene.xml", "--quiet", "--passes", "14", "-o",
                                                   "one.exr"} +
                          how)
                     .exit_code == 0);
         REQUIRE(folder.render("0:1", "a.film", how).exit_code == 0);
         REQUIRE(folder.render("1:5", "b.film", how).exit_code == 0);
-        REQUIRE(folder.render("5:8", "c.film", how + std::vector<std::string>{"-t", "1"}).exit_code == 0);
+        REQUIRE(folder.render("5:14", "c.film", how + std::vector<std::string>{"-t", "1"}).exit_code == 0);
         REQUIRE(
             folder.run({"merge", "c.film", "a.film", "b.film", "-o", "m.exr", "--stats", "m.json", "--quiet"})
                 .exit_code == 0);
         CHECK((folder.channels("m.exr") == folder.channels("one.exr")));
         const auto metadata = read_exr_metadata(folder.file("m.exr"));
-        CHECK(metadata.at("passes") == "8");
+        CHECK(metadata.at("passes") == "14");
+        CHECK(metadata.contains("errorInterval") == interval);
+        if (interval)
+            CHECK(metadata.at("errorInterval") ==
+                  read_exr_metadata(folder.file("one.exr")).at("errorInterval"));
         CHECK(metadata.at("noise") == read_exr_metadata(folder.file("one.exr")).at("noise"));
         REQUIRE(folder.run({"merge", "c.film", "b.film", "-o", "bc.film"}).exit_code == 0);
         REQUIRE(folder.run({"merge", "a.film", "bc.film", "-o", "two.exr", "--quiet"}).exit_code == 0);

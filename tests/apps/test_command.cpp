@@ -91,6 +91,7 @@ TEST_CASE("Wrong usage ends with 2 and one line", "[command]") {
     check_error(run_mote(folder, {"render", "scene.xml", "--passes", "many"}), 2, "--passes");
     check_error(run_mote(folder, {"render", "scene.xml", "--time", "-1"}), 2, "--time");
     check_error(run_mote(folder, {"render", "scene.xml", "--noise", "0"}), 2, "--noise");
+    check_error(run_mote(folder, {"render", "scene.xml", "--error", "0"}), 2, "--error");
     check_error(run_mote(folder, {"render", "scene.xml", "--threads", "-2"}), 2, "--threads");
     check_error(run_mote(folder, {"render", "scene.xml", "--seed", "-2"}), 2, "--seed");
     check_error(run_mote(folder, {"render", "scene.xml", "-D", "size"}), 2, "name=value");

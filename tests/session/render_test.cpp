@@ -20,13 +20,14 @@ using session::LoadedScene, session::Rendered, session::RenderSettings;
 
 namespace {
 
-LoadedScene scene_of(const std::string& integrator, int size = 16) {
+LoadedScene scene_of(const std::string& integrator, int size = 16, bool interval = false) {
     const std::string edge = std::to_string(size);
     return LoadedScene::from_text(R"(<scene version="3.0.0"><integrator type=")" + integrator + R"("/>
         <sensor type="perspective"><film type="hdrfilm"><integer name="width" value=")" +
                                       edge + R"("/>
         <integer name="height" value=")" +
-                                      edge + R"("/></film><transform name="to_world">
+                                      edge + R"("/><boolean name="interval" value=")" +
+                                      (interval ? "true" : "false") + R"("/></film><transform name="to_world">
         <lookat origin="0, 0, 4" target="0, 0, 0" up="0, 1, 0"/></transform></sensor>
         <shape type="sphere"><bsdf type="diffuse"/></shape><emitter type="constant"/></scene>)",
                                   "");
@@ -236,4 +237,63 @@ TEST_CASE("A noise that no passes have shown is unknown, not zero", "[session][n
     CHECK(nothing.interrupted);
     if (nothing.passes < 2) CHECK(std::isinf(nothing.noise));
     CHECK(std::isinf(Rendered().noise));
+}
+
+TEST_CASE("An interval of the error is stated where it was requested and is known", "[session][halves]") {
+    const auto unknown = [](const Rendered& rendered) {
+        const auto said = nlohmann::json::parse(rendered.statistics)["error"];
+        return said.contains("unknown") ? said["unknown"].get<std::string>() : "";
+    };
+    const Rendered without = session::render(scene_of("path"), passes(16));
+    CHECK(!without.error);
+    CHECK(unknown(without) == "film.interval is not set");
+    CHECK(!without.image.metadata.contains("errorInterval"));
+
+    const LoadedScene scene = scene_of("path", 32, true);
+    const Rendered with = session::render(scene, passes(16));
+    REQUIRE(with.error);
+    CHECK(unknown(with).empty());
+    CHECK(with.error->low < with.error->error);
+    CHECK(with.error->error < with.error->high);
+    CHECK(with.image.metadata.contains("errorInterval"));
+    RenderSettings one_thread = passes(16);
+    one_thread.threads = 1;
+    CHECK(session::render(scene, one_thread).image.channels == with.image.channels);
+
+    CHECK(unknown(session::render(scene, passes(3))) == "too few passes");
+    const Rendered of_other_method = session::render(scene_of("mote_vpl", 16, true), passes(16));
+    CHECK(!of_other_method.error);
+    CHECK(!unknown(of_other_method).empty());
+}
+
+TEST_CASE("A limit on the error ends where the interval is below it, with or without previews", "[session][halves]") {
+    const LoadedScene scene = scene_of("path", 32, true);
+    RenderSettings settings;
+    settings.threads = 2, settings.stop.error = 0.02;
+    const Rendered rendered = session::render(scene, settings);
+    REQUIRE(rendered.error);
+    CHECK(rendered.error->high <= 0.02);
+    CHECK(rendered.passes >= 8);
+    struct Watching : session::RenderObserver {
+        bool wants_previews() const override { return true; }
+        double preview_every_seconds() const override { return 0.0; }
+        double preview_share() const override { return 1.0; }
+    } watching;
+    CHECK(session::render(scene, settings, watching).passes == rendered.passes);
+    CHECK_THROWS_AS(session::render(scene_of("path"), settings), core::InputError);
+    CHECK_THROWS_AS(session::render(scene_of("mote_vpl", 16, true), settings), core::InputError);
+}
+
+TEST_CASE("A render with halves continues to the same bits", "[session][resume][halves]") {
+    const TemporaryFolder folder;
+    const LoadedScene scene = scene_of("mote_layers", 32, true);
+    const Rendered whole = session::render(scene, passes(13));
+    RenderSettings settings = passes(6);
+    settings.checkpoint = folder.file("film.checkpoint"), settings.keep_checkpoint = true;
+    session::render(scene, settings);
+    settings.stop.passes = 13, settings.resume = true;
+    const Rendered resumed = session::render(scene, settings);
+    CHECK(resumed.image.channels == whole.image.channels);
+    REQUIRE(resumed.error);
+    CHECK(resumed.error->high == whole.error->high);
 }

@@ -12,7 +12,8 @@ export function showStatus(viewer) {
     if (known) parts.push(`${known.seconds.toFixed(1)} s`);
     if (known && known.seconds_left !== null) parts.push(`${known.seconds_left.toFixed(0)} s left`);
     const noise = known ? known.noise : picture.noise;
-    parts.push(noise === null ? "noise unknown" : `noise ${percent(noise)} (interval unknown)`);
+    parts.push(noise === null ? "noise unknown" : `noise ${percent(noise)}`);
+    parts.push(picture.stated ? `error ${percent(picture.stated[0])} to ${percent(picture.stated[1])}` : "error unknown");
   }
   if (picture.error !== undefined && picture.error !== null)
     parts.push(`error ${percent(picture.error)}, bias ${percent(picture.bias)} against the reference`);

@@ -362,3 +362,72 @@ TEST_CASE("what a post-process leaves of a layer's variance is in the noise, in 
     CHECK_THROWS_AS(film.set_mean(1, mean, std::vector<float>(film.pixels())), std::invalid_argument);
     CHECK_THROWS_AS(film.set_mean(0, mean, std::vector<float>(3)), std::invalid_argument);
 }
+
+TEST_CASE("The halves of a film are the passes of even and of odd index", "[film][halves]") {
+    const int w = 6, h = 4;
+    std::vector<Layer> with = layers;
+    with[2].squares = true;
+    const auto filled = [&](std::uint32_t first, std::uint32_t end) {
+        Film film(w, h, with, false, true);
+        film.begin_at(0, first);
+        for (std::uint32_t i = first; i < end; ++i) film.add_pass(random_pass(w, h, i));
+        return film;
+    };
+    const Film film = filled(0, 7);
+    CHECK(film.half_passes(0, 0) == 4);
+    CHECK(film.half_passes(0, 1) == 3);
+    for (const int half : {0, 1}) {
+        Film alone(w, h, with);
+        for (std::uint32_t i = std::uint32_t(half); i < 7; i += 2) alone.add_pass(random_pass(w, h, i));
+        const auto mean = film.half_mean(2, half), expected = alone.mean(2);
+        const auto variance = film.half_variance_of_mean(2, half),
+                   expected_variance = alone.layer_variance_of_mean(2);
+        const auto beauty = film.half_beauty(half).passes, expected_beauty = alone.beauty();
+        for (std::size_t p = 0; p < film.pixels(); ++p)
+            for (int c = 0; c < 3; ++c) {
+                CHECK(mean[p][c] == Approx(expected[p][c]).epsilon(1e-6));
+                CHECK(variance[p][c] == Approx(expected_variance[p][c]).epsilon(1e-5));
+                CHECK(beauty[p][c] == Approx(expected_beauty[p][c]).epsilon(1e-6));
+            }
+    }
+    Film sum = filled(0, 3);
+    sum.add(filled(3, 7));
+    Film read(w, h, with, false, true);
+    read.deserialize(film.serialize());
+    for (const Film* other : {&sum, &read}) {
+        CHECK(other->serialize() == film.serialize());
+        for (const int half : {0, 1}) CHECK(other->half_mean(2, half) == film.half_mean(2, half));
+    }
+    CHECK_THROWS_AS(film.half_mean(0, 0), std::logic_error);  // without squares
+}
+
+TEST_CASE("The error of a film includes what a filter of its halves has done", "[film][halves]") {
+    const int w = 40, h = 40;
+    std::vector<Layer> with = layers;
+    with[2].squares = true;
+    Film film(w, h, with, false, true);
+    const auto unfiltered = [&] { return film.error(); };
+    for (std::uint32_t i = 0; i < 3; ++i) film.add_pass(random_pass(w, h, i));
+    CHECK(!unfiltered());  // a half of one pass
+    for (std::uint32_t i = 3; i < 16; ++i) film.add_pass(random_pass(w, h, i));
+    REQUIRE(unfiltered());
+    CHECK(unfiltered()->error == Approx(film.noise()).epsilon(0.1));
+    CHECK(unfiltered()->low < unfiltered()->error);
+    CHECK(unfiltered()->high > unfiltered()->error);
+
+    const std::vector<Rgb> half(film.pixels(), Rgb(3.0f));
+    const std::vector<Rgb> before = film.mean(2);
+    film.set_mean(2, half);
+    CHECK(!film.error());  // worked on the mean of all passes: nothing is known
+    film.set_halves(2, {half, half});
+    CHECK(film.mean(2) == half);
+    REQUIRE(film.error());
+    const double noisy = film.error()->high;
+    film.set_halves(2, {film.half_mean(2, 0), film.half_mean(2, 1)});
+    CHECK(film.error()->error == Approx(unfiltered()->error).epsilon(1e-4));
+    for (std::size_t p = 0; p < film.pixels(); ++p)
+        CHECK(film.mean(2)[p].x == Approx(before[p].x).epsilon(1e-5));
+    CHECK(std::isfinite(noisy));
+    CHECK_THROWS_AS(film.set_halves(0, {half, half}), std::logic_error);
+    CHECK_THROWS_AS(film.set_halves(2, {half, {}}), std::invalid_argument);
+}

@@ -1,6 +1,7 @@
 // Samplers: keyed by what they must be keyed by, stratified as promised, independent where promised.
 #include "core/math/sampler.h"
 
+#include <cmath>
 #include <set>
 #include <vector>
 
@@ -67,6 +68,32 @@ TEST_CASE("dimensions, pixels and seeds are not correlated", "[math][sampler]") 
         CHECK(std::fabs(between_seeds / n) < limit);
         CHECK(std::fabs(within / n) < limit);
         CHECK(std::fabs(between_passes / n) < limit);
+    }
+}
+
+TEST_CASE("halves of the passes are nets of their own, and independent of each other",
+          "[math][sampler][halves][statistics]") {
+    // Correlation of the errors of the means over even and over odd passes: of 4096 pixels within 4.5
+    // standard deviations of 0 in halves; of one sequence the second half fills the gaps of the first.
+    const auto correlation = [](SamplerKind kind) {
+        constexpr int pixels = 4096, passes = 8;
+        double product = 0.0, squares = 0.0;
+        for (std::uint64_t item = 0; item < pixels; ++item) {
+            double error[2] = {0.0, 0.0};
+            for (std::uint32_t pass = 0; pass < passes; ++pass)
+                error[pass % 2] += double(point(kind, 7, pass, item, 0).x) - 0.5;
+            product += error[0] * error[1], squares += error[0] * error[0];
+        }
+        return product / squares;
+    };
+    CHECK(std::fabs(correlation(SamplerKind::sobol_halves)) < 4.5 / 64.0);
+    CHECK(std::fabs(correlation(SamplerKind::independent)) < 4.5 / 64.0);
+    CHECK(correlation(SamplerKind::sobol) < -0.2);
+    for (const std::uint32_t half : {0u, 1u}) {
+        std::vector<Vec2> points;
+        for (std::uint32_t i = 0; i < 64; ++i)
+            points.push_back(point(SamplerKind::sobol_halves, 7, 2 * i + half, 3, 1));
+        CHECK(is_net(points, 6));
     }
 }
 

@@ -625,7 +625,7 @@ class FilteringIntegrator final : public Integrator {
             for (const Rgb& v : film.layer_variance_of_mean(0)) left.push_back(0.01f * average(v));
             film.set_mean(0, std::vector<Rgb>(film.pixels(), Rgb(1.0f)), left);
         }
-        bool changes_noise() const override { return true; }
+        bool changes_noise(const Film&) const override { return true; }
     };
 };
 
@@ -656,7 +656,7 @@ TEST_CASE("the noise that is stated is that of the finished picture", "[driver][
     // The rule evaluates it after 8, 10, 12, 14, 16, 20, 24, ... passes, whatever else evaluates it.
     RenderRequest rule = request_for(1000);
     const TemporaryFolder folder;
-    rule.stop = {{}, {}, expected(31)};
+    rule.stop = {{}, {}, expected(31), {}};
     const RenderResult straight = render(*scene, FilteringIntegrator(), rule);
     const std::uint32_t passes_of_rule = straight.film.pass_count();
     CHECK(straight.film.noise() <= *rule.stop.noise);

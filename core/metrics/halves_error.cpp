@@ -1,0 +1,102 @@
+#include "core/metrics/halves_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace mote::core {
+
+namespace {
+
+constexpr double quantile = 1.96;  ///< of the normal distribution, 95 % within
+
+double product(const Rgb& a, const Rgb& b, const Rgb& c, const Rgb& d) {
+    return glm::dot(glm::dvec3(a) - glm::dvec3(b), glm::dvec3(c) - glm::dvec3(d)) / 3.0;
+}
+
+/// Sums over the pixels of a block, each weighted by w.
+struct Sums {
+    double residuals = 0.0;                        ///< <r_a, r_b>
+    double raw = 0.0;                              ///< |a - b|^2
+    double shown = 0.0;                            ///< |f_a - f_b|^2
+    double both = 0.0;                             ///< <a - b, f_a - f_b>
+    double raw_squared = 0.0, left_squared = 0.0;  ///< sum w^2 |a - b|^4, and that times (1 - 2 k)^2
+    double v = 0.0;                                ///< v_a + v_b
+    double v_squared = 0.0;                        ///< w v_a v_b
+    double norm = 0.0, pixels = 0.0;
+
+    void add(double w, const std::array<PictureHalf, 2>& halves, std::size_t p) {
+        const Rgb &a = halves[0].passes[p], &b = halves[1].passes[p], &fa = halves[0].shown[p],
+                  &fb = halves[1].shown[p];
+        const double of_raw = w * product(a, b, a, b), of_both = w * product(a, b, fa, fb);
+        residuals += w * product(a, fa, b, fb), raw += of_raw, both += of_both;
+        shown += w * product(fa, fb, fa, fb);
+        raw_squared += of_raw * of_raw, left_squared += sqr(of_raw - 2.0 * of_both);
+        const double va = mean_of_channels(halves[0].variance[p]),
+                     vb = mean_of_channels(halves[1].variance[p]);
+        v += w * (va + vb), v_squared += w * va * w * vb, pixels += 1.0;
+    }
+    /// Eq. (3)
+    double variance() const {
+        const double k = raw > 0.0 ? both / raw : 0.0;
+        const double others = std::max(0.0, shown - k * k * raw);
+        const double left = raw_squared > 0.0 ? left_squared / raw_squared : 1.0;
+        return left * v_squared + (others + std::max(0.0, residuals)) / pixels * v;
+    }
+};
+
+PictureError interval(double noise, double rest, double variance, double norm) {
+    PictureError result;
+    if (!(norm > 0.0) || !std::isfinite(variance)) return result;
+    const double within = quantile * std::sqrt(variance), squared = noise + rest;
+    result.error = std::sqrt(std::max(squared, noise) / norm);
+    result.low = std::sqrt(std::max(0.0, squared - within) / norm);
+    result.high = std::sqrt(std::max(squared + within, noise) / norm);
+    return result;
+}
+
+double sum_of(const std::vector<double>& values) {
+    double sum = 0.0;
+    for (const double value : values) sum += value;
+    return sum;
+}
+
+}  // namespace
+
+PictureError BlockErrors::of_picture() const {
+    return interval(sum_of(noise), sum_of(rest), sum_of(variance), sum_of(norm));
+}
+
+PictureError BlockErrors::of_block(std::size_t block) const {
+    return interval(noise.at(block), rest.at(block), variance.at(block), norm.at(block));
+}
+
+BlockErrors halves_error(const std::array<PictureHalf, 2>& halves, std::span<const Rgb> r,
+                         const RelativeWeights& weights, int width, int height) {
+    const std::size_t pixels = std::size_t(width) * std::size_t(height);
+    bool fits = r.size() == pixels && weights.weight.size() == pixels;
+    for (const PictureHalf& half : halves)
+        fits = fits && half.passes.size() == pixels && half.shown.size() == pixels &&
+               half.variance.size() == pixels;
+    if (!fits) throw std::invalid_argument("the halves of a picture differ in size");
+
+    BlockErrors blocks;
+    constexpr int size = BlockErrors::size;
+    blocks.columns = (width + size - 1) / size, blocks.rows = (height + size - 1) / size;
+    std::vector<Sums> sums(std::size_t(blocks.columns) * std::size_t(blocks.rows));
+    // The norm has as little noise as that of the picture (RelativeWeights::noise_norm).
+    const double norm = weights.norm > 0.0 ? weights.noise_norm / weights.norm : 0.0;
+    for (std::size_t p = 0; p < pixels; ++p) {
+        const int x = int(p % std::size_t(width)), y = int(p / std::size_t(width));
+        Sums& block = sums[std::size_t(y / size * blocks.columns + x / size)];
+        block.add(weights.weight[p], halves, p);
+        block.norm += norm * weights.weight[p] * mean_square(r[p]);
+    }
+    for (const Sums& block : sums) {
+        blocks.noise.push_back(0.25 * block.shown), blocks.rest.push_back(block.residuals);
+        blocks.variance.push_back(block.variance()), blocks.norm.push_back(block.norm);
+    }
+    return blocks;
+}
+
+}  // namespace mote::core

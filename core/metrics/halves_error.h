@@ -1,0 +1,68 @@
+// The error of a picture, with the bias of a filter, from two independent halves of its passes.
+//
+// a and b are the means of the halves, mu is their expectation, and f_a, f_b is what a filter makes of each
+// by itself. With the errors e_a = f_a - mu, e_b and the noise d_a = a - mu, d_b, the picture (f_a + f_b) / 2
+// has the squared error
+//
+//   |(e_a + e_b) / 2|^2 = |f_a - f_b|^2 / 4 + <e_a, e_b>,                                                (1)
+//
+// the noise that the filter has left, which is known, and a term whose mean is the square of its bias. The
+// residuals r_a = a - f_a = d_a - e_a, r_b show that one:
+//
+//   <r_a, r_b> = <e_a, e_b> + t,  t = <d_a, d_b> - <d_a, e_b> - <e_a, d_b>,                              (2)
+//
+// and the mean of t is zero, since the halves are independent, whatever the filter is. No variance is
+// subtracted that would have to be known (dual buffers: Rousselle et al. 2012). Where the noise is
+// independent from pixel to pixel, and a filter is linear and symmetric, the sum of w t has the variance
+//
+//   s^2 = sum w^2 ((1 - 2 k)^2 v_a v_b + (o + beta^2) (v_a + v_b)),                                      (3)
+//   k = <a - b, f_a - f_b> / |a - b|^2,  o = |f_a - f_b|^2 - k^2 |a - b|^2,  beta^2 = <r_a, r_b>,
+//
+// v_a and v_b being the variances of the halves, each measured in it alone: a square of one would count rare
+// bright passes many times; k is the weight of a pixel's own noise in what is shown of it, and o the noise of
+// other pixels. k, o and beta^2 are averages over blocks, (1 - 2 k)^2
+// one that is weighted by |a - b|^4: filters are not linear, and treat rare bright paths in a way of their
+// own. The sum is nearly normal, so Eq. (1) and (2) +- 1.96 s have 95 % confidence; no end is below the noise
+// that is known, and none above where s is not known.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "core/metrics/relative_error.h"
+
+namespace mote::core {
+
+/// Half of the passes: their mean, what is shown of it, and the variance of the mean.
+struct PictureHalf {
+    std::span<const Rgb> passes, shown, variance;
+};
+
+/// Relative RMSE, Eq. (2) of relative_error.h, with the ends of its interval of 95 % confidence.
+struct PictureError {
+    double error = std::numeric_limits<double>::infinity();  ///< infinity: not known
+    double low = 0.0;                                        ///< end of the interval
+    double high = std::numeric_limits<double>::infinity();   ///< end of the interval
+};
+
+/// Error of blocks of pixels, row by row: the terms of the sums over the picture.
+struct BlockErrors {
+    static constexpr int size = 16;  ///< of a block [pixels]
+    int columns = 0, rows = 0;       ///< numbers of blocks
+    std::vector<double> noise;       ///< sum w |f_a - f_b|^2 / 4 of a block
+    std::vector<double> rest;        ///< sum w <r_a, r_b> of a block, Eq. (2)
+    std::vector<double> variance;    ///< of that sum, Eq. (3)
+    std::vector<double> norm;        ///< sum w |r|^2 of a block
+
+    PictureError of_picture() const;                 ///< of all blocks together
+    PictureError of_block(std::size_t block) const;  ///< of one, relative to its own light
+};
+
+/// `r`: the picture, whose light the errors are relative to. Throws std::invalid_argument when a size does
+/// not fit.
+BlockErrors halves_error(const std::array<PictureHalf, 2>& halves, std::span<const Rgb> r,
+                         const RelativeWeights& weights, int width, int height);
+
+}  // namespace mote::core

@@ -1,0 +1,49 @@
+#include "core/metrics/halves_weights.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+namespace mote::core {
+
+namespace {
+
+constexpr int median_reach = 2;  ///< neighbours within 5 x 5 pixels
+
+double median_around(const std::vector<double>& squares, int x, int y, int width, int height) {
+    std::array<double, (2 * median_reach + 1) * (2 * median_reach + 1)> around{};
+    std::size_t count = 0;
+    for (int v = std::max(0, y - median_reach); v <= std::min(height - 1, y + median_reach); ++v)
+        for (int u = std::max(0, x - median_reach); u <= std::min(width - 1, x + median_reach); ++u)
+            around[count++] = squares[std::size_t(v) * std::size_t(width) + std::size_t(u)];
+    const auto middle = around.begin() + std::ptrdiff_t(count / 2);
+    std::nth_element(around.begin(), middle, around.begin() + std::ptrdiff_t(count));
+    return *middle;
+}
+
+}  // namespace
+
+RelativeWeights weights_of_halves(std::span<const Rgb> a, std::span<const Rgb> b, int width, int height) {
+    const std::size_t pixels = std::size_t(width) * std::size_t(height);
+    if (a.size() != pixels || b.size() != pixels) throw std::invalid_argument("the halves differ in size");
+    std::vector<double> mean(pixels), squares(pixels);
+    for (std::size_t p = 0; p < pixels; ++p)
+        mean[p] = mean_square(0.5 * (glm::dvec3(a[p]) + glm::dvec3(b[p])));
+    tbb::parallel_for(0, height, [&](int y) {
+        for (int x = 0; x < width; ++x) {
+            const std::size_t p = std::size_t(y) * std::size_t(width) + std::size_t(x);
+            const double darker = std::min(mean_square(glm::dvec3(a[p])), mean_square(glm::dvec3(b[p])));
+            squares[p] = std::max(median_around(mean, x, y, width, height), darker);
+        }
+    });
+    RelativeWeights result{weights_of_squares(squares)};
+    for (std::size_t p = 0; p < pixels; ++p) {
+        result.norm += result.weight[p] * mean[p];
+        result.noise_norm += result.weight[p] * squares[p];
+    }
+    return result;
+}
+
+}  // namespace mote::core

@@ -1,0 +1,179 @@
+// The interval of a picture's error contains the true error as often as it says, whatever the filter is.
+#include "core/metrics/halves_error.h"
+
+#include <cmath>
+#include <functional>
+
+#include "core/math/random.h"
+#include "tests/support/catch.h"
+
+using namespace mote::core;
+
+namespace {
+
+constexpr int width = 64, height = 48;
+constexpr std::size_t pixels = std::size_t(width) * std::size_t(height);
+using Image = std::vector<Rgb>;
+using Filter = std::function<Image(const Image&)>;
+
+/// Stripes beside a smooth half, over two orders of magnitude.
+Image truth() {
+    Image image(pixels);
+    for (std::size_t p = 0; p < pixels; ++p) {
+        const auto x = int(p % width), y = int(p / width);
+        const float light = std::exp(4.6f * float(y) / float(height));
+        image[p] = light * (x < width / 2 ? Rgb(1.0f, 0.8f, 0.6f) : Rgb(x / 3 % 2 == 0 ? 1.0f : 0.7f));
+    }
+    return image;
+}
+
+/// Standard deviation of a half, relative to the light: now and then ten times as much.
+float deviation(std::size_t p) { return mix_bits(p) % 50 == 0 ? 2.0f : 0.2f; }
+
+Image noisy(const Image& image, std::uint64_t seed) {
+    Image result(pixels);
+    for (std::size_t p = 0; p < pixels; ++p) {
+        Rng rng(hash_keys(seed, p));
+        const float u = std::sqrt(-2.0f * std::log(1.0f - rng.next_float()));
+        result[p] = image[p] * (1.0f + deviation(p) * u * std::cos(6.2831853f * rng.next_float()));
+    }
+    return result;
+}
+
+Image same(const Image& image) { return image; }
+
+Image boxed(const Image& image, int reach) {
+    Image result(pixels);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            Rgb sum(0.0f);
+            float count = 0.0f;
+            for (int v = std::max(0, y - reach); v <= std::min(height - 1, y + reach); ++v)
+                for (int u = std::max(0, x - reach); u <= std::min(width - 1, x + reach); ++u)
+                    sum += image[std::size_t(v * width + u)], count += 1.0f;
+            result[std::size_t(y * width + x)] = sum / count;
+        }
+    return result;
+}
+
+/// A filter that is not linear: pixels far from their neighbours are pulled to them.
+Image clamped(const Image& image) {
+    Image result = boxed(image, 2);
+    for (std::size_t p = 0; p < pixels; ++p)
+        if (average(image[p]) < 1.3f * average(result[p])) result[p] = 0.5f * (image[p] + result[p]);
+    return result;
+}
+
+/// A fifth of the noise is left as it is.
+Image mostly_boxed(const Image& image) {
+    Image result = boxed(image, 2);
+    for (std::size_t p = 0; p < pixels; ++p) result[p] = 0.8f * result[p] + 0.2f * image[p];
+    return result;
+}
+
+struct Coverage {
+    double contained = 0.0;  ///< share of seeds
+    double optimist = 0.0;   ///< the same of an interval that ignores bias: around the noise that is left
+    double surprise = 0.0;   ///< mean of (stated - true squared error) over its standard error
+};
+
+bool contains(const PictureError& interval, double error) {
+    return error >= interval.low && error <= interval.high;
+}
+
+/// `shared`: share of a half's noise that the other has too; a planted fault.
+Coverage coverage(const Filter& filter, std::uint64_t seeds, float shared = 0.0f) {
+    const Image mu = truth();
+    const RelativeWeights weights = relative_weights(mu);
+    Image variance(pixels);
+    for (std::size_t p = 0; p < pixels; ++p) variance[p] = deviation(p) * deviation(p) * mu[p] * mu[p];
+    Coverage result;
+    double differences = 0.0, squares = 0.0;
+    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+        const Image a = noisy(mu, 2 * seed), own = noisy(mu, 2 * seed + 1);
+        Image b = own;
+        for (std::size_t p = 0; p < pixels; ++p)
+            b[p] = mu[p] + std::sqrt(1.0f - shared * shared) * (own[p] - mu[p]) + shared * (a[p] - mu[p]);
+        const Image fa = filter(a), fb = filter(b);
+        Image picture(pixels);
+        for (std::size_t p = 0; p < pixels; ++p) picture[p] = 0.5f * (fa[p] + fb[p]);
+        const BlockErrors blocks = halves_error({PictureHalf{a, fa, variance}, PictureHalf{b, fb, variance}},
+                                                picture, weights, width, height);
+        const PictureError said = blocks.of_picture();
+        const double error = relative_error(picture, mu, weights).error;
+        BlockErrors without_bias = blocks;
+        for (double& rest : without_bias.rest) rest = 0.0;
+        if (contains(said, error)) result.contained += 1.0 / double(seeds);
+        if (contains(without_bias.of_picture(), error)) result.optimist += 1.0 / double(seeds);
+        double sum = 0.0;
+        for (std::size_t i = 0; i < blocks.rest.size(); ++i) sum += blocks.noise[i] + blocks.rest[i];
+        const double difference = sum - error * error * weights.norm;
+        differences += difference, squares += difference * difference;
+    }
+    result.surprise = differences / std::sqrt(squares);
+    return result;
+}
+
+/// 95 % +- 3 standard deviations of a share of so many seeds.
+constexpr std::uint64_t seeds = 600;
+const double within = 3.0 * std::sqrt(0.95 * 0.05 / double(seeds));
+
+}  // namespace
+
+TEST_CASE("The interval of a filtered picture contains its error in 95 of 100 seeds",
+          "[metrics][halves][coverage][statistics]") {
+    const Filter filters[] = {same, [](const Image& i) { return boxed(i, 1); },
+                              [](const Image& i) { return boxed(i, 3); }, clamped, mostly_boxed};
+    for (const Filter& filter : filters) {
+        CAPTURE(&filter - filters);
+        const Coverage c = coverage(filter, seeds);
+        CHECK(c.contained > 0.95 - within);
+        CHECK(c.contained < 0.95 + within);
+        CHECK(std::fabs(c.surprise) < 4.0);
+    }
+}
+
+TEST_CASE("An interval that ignores bias is found out", "[metrics][halves][coverage][planted]") {
+    CHECK(coverage([](const Image& i) { return boxed(i, 3); }, 100).optimist < 0.05);
+}
+
+TEST_CASE("An interval ends nowhere below the noise that is known", "[metrics][halves]") {
+    const Image mu = truth(), a = noisy(mu, 1), b = noisy(mu, 2), f = boxed(a, 1), g = boxed(b, 1),
+                none(pixels, Rgb(0.0f));
+    const RelativeWeights weights = relative_weights(mu);
+    BlockErrors blocks =
+        halves_error({PictureHalf{a, f, none}, PictureHalf{b, g, none}}, mu, weights, width, height);
+    for (double& rest : blocks.rest) rest = -1e6;
+    double noise = 0.0;
+    for (const double of_block : blocks.noise) noise += of_block;
+    CHECK(noise > 0.0);
+    CHECK(blocks.of_picture().high == Approx(std::sqrt(noise / weights.norm)));
+    CHECK(blocks.of_picture().error == blocks.of_picture().high);
+}
+
+TEST_CASE("Halves that share noise are found out", "[metrics][halves][coverage][planted]") {
+    CHECK(coverage([](const Image& i) { return boxed(i, 1); }, 100, 0.3f).contained < 0.8);
+}
+
+TEST_CASE("The error of a picture without noise is that of its filter", "[metrics][halves]") {
+    const Image mu = truth(), f = boxed(mu, 2), none(pixels, Rgb(0.0f));
+    const RelativeWeights weights = relative_weights(mu);
+    const BlockErrors blocks =
+        halves_error({PictureHalf{mu, f, none}, PictureHalf{mu, f, none}}, mu, weights, width, height);
+    const double error = relative_error(f, mu, weights).error;
+    CHECK(blocks.of_picture().error == Approx(error).epsilon(1e-6));
+    CHECK(blocks.of_picture().low == Approx(error).epsilon(1e-6));
+    CHECK(blocks.of_picture().high == Approx(error).epsilon(1e-6));
+    CHECK(blocks.of_block(0).error < 0.5 * blocks.of_block(2).error);  // smooth, and stripes
+    CHECK_THROWS_AS(
+        halves_error({PictureHalf{mu, f, none}, PictureHalf{mu, {}, none}}, mu, weights, width, height),
+        std::invalid_argument);
+}
+
+TEST_CASE("A black picture has no relative error", "[metrics][halves]") {
+    const Image black(pixels, Rgb(0.0f));
+    const BlockErrors blocks =
+        halves_error({PictureHalf{black, black, black}, PictureHalf{black, black, black}}, black,
+                     relative_weights(black), width, height);
+    CHECK(std::isinf(blocks.of_picture().high));
+}
