@@ -59,15 +59,18 @@ void LayerFilter::apply(Film& film, CancelToken cancelled) {
     for (const Choice& choice : layers_)
         if (!film.has_squares(choice.layer))
             throw std::invalid_argument("a filtered layer needs its squares");
-    if (layers_.empty() || !film.has_passes(2)) return;
+    if (layers_.empty() || (has_variance_ && !film.has_passes(2))) return;
     variances_.clear();
     find_features(cancelled);
     const Stopwatch stopwatch(filter_seconds_);
     for (const Choice& choice : layers_) {
+        const std::uint32_t passes = film.pass_count(film.layers()[choice.layer].part);
+        if (passes == 0) continue;
         film.set_mean(choice.layer,
                       {});  // of the passes: an earlier call, for a preview, may have replaced it
         const std::vector<Rgb> mean = film.mean(choice.layer);
-        const std::vector<Rgb> variance = film.layer_variance_of_mean(choice.layer);
+        const std::vector<Rgb> variance = passes > 1 ? film.layer_variance_of_mean(choice.layer)
+                                                     : std::vector<Rgb>(mean.size(), Rgb(infinity));
         auto filtered = filter_->filtered({mean, variance, choice.kind}, cancelled);
         film.set_mean(choice.layer, filtered.mean, filtered.variance);
         variances_.push_back(std::move(filtered.variance));

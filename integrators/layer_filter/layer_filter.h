@@ -37,12 +37,13 @@ class LayerFilter {
     LayerFilter(const core::Scene& scene, const core::RenderOptions& options, const FeatureSettings& features,
                 std::shared_ptr<const screenspace::OidnLibrary> library, std::vector<Choice> layers);
 
-    /// Sets the means of the layers to the filtered ones. A film of fewer than two passes has no variance
-    /// and stays as it is. Throws std::invalid_argument where a layer has no squares, and Cancelled.
+    /// Sets the means of the layers to the filtered ones. Of a layer of one pass
+    /// the variance is not known: OpenImageDenoise smooths it as far as it likes, our own filter leaves all
+    /// layers as they are. Throws std::invalid_argument where a layer has no squares, and Cancelled.
     void apply(core::Film& film, core::CancelToken cancelled = {});
 
     const std::vector<Choice>& layers() const { return layers_; }
-    /// True if layers are filtered, and the filter says what variance it leaves: our own.
+    /// True if layers are filtered, and the filter needs their variance and says what it leaves: our own.
     bool has_variance() const { return has_variance_ && !layers_.empty(); }
     /// Remaining variance of each layer of the last apply(), mean over channels, in its order; empty:
     /// unknown.

@@ -20,6 +20,9 @@ namespace {
 
 using Handle = void*;  // OIDNDevice, OIDNFilter
 constexpr int cpu_device = 1, format_float3 = 3;
+/// The quality of features: 2.4 times as fast as the high one, for at most a hundredth more error of the
+/// picture (docs/denoising.md).
+constexpr int balanced_quality = 5;
 static_assert(sizeof(Rgb) == 3 * sizeof(float), "pixels are handed over as they lie");
 
 const char* const file_name = "libOpenImageDenoise.so.2";
@@ -65,6 +68,7 @@ struct OidnLibrary::Functions {
                       std::size_t height, std::size_t offset, std::size_t pixel_stride,
                       std::size_t row_stride);
     void (*set_filter_bool)(Handle filter, const char* name, bool value);
+    void (*set_filter_int)(Handle filter, const char* name, int value);
     void (*commit_filter)(Handle filter);
     void (*execute_filter)(Handle filter);
     void (*release_filter)(Handle filter);
@@ -77,6 +81,7 @@ struct OidnLibrary::Functions {
         find(library, "oidnCommitDevice", commit_device), find(library, "oidnReleaseDevice", release_device);
         find(library, "oidnNewFilter", new_filter), find(library, "oidnSetSharedFilterImage", set_image);
         find(library, "oidnSetFilterBool", set_filter_bool);
+        find(library, "oidnSetFilterInt", set_filter_int);
         find(library, "oidnCommitFilter", commit_filter), find(library, "oidnExecuteFilter", execute_filter);
         find(library, "oidnReleaseFilter", release_filter);
     }
@@ -109,6 +114,9 @@ struct OidnLibrary::Functions {
         }
         void flag(const char* name) const {
             if (filter_) f_.set_filter_bool(filter_, name, true);
+        }
+        void quality(int quality) const {
+            if (filter_) f_.set_filter_int(filter_, "quality", quality);
         }
         std::vector<Rgb> result() const {
             std::vector<Rgb> output(std::size_t(width_) * std::size_t(height_), Rgb(0.0f));
@@ -205,6 +213,7 @@ std::vector<Rgb> OidnLibrary::denoised_feature(Feature which, int width, int hei
     if (values.empty()) return {};
     const Functions::Run run(*functions_, device_, width, height);
     run.image(which == Feature::albedo ? "albedo" : "normal", values);
+    run.quality(balanced_quality);
     std::vector<Rgb> result = run.result();
     check("a feature was not denoised");
     return result;

@@ -21,6 +21,7 @@ struct Filter {
     Device* device;
     std::map<std::string, Image> images;
     std::map<std::string, bool> flags;
+    int quality = 0;
     bool committed = false;
     bool has(const std::string& name) const { return images.count(name) > 0; }
 };
@@ -36,9 +37,11 @@ std::string rule(const Filter& f, std::string& input, float& factor, float& more
     if (!f.committed || !f.device->committed || !f.has("output")) return "not committed";
     if (!f.has("color")) {
         input = f.has("albedo") ? "albedo" : "normal", factor = 1.0f, more = 1.0f;
+        if (f.quality != 5) return "a feature of other than balanced quality";
         return f.has(input) ? "" : "no input";
     }
     input = "color", more = 0.0f;
+    if (f.quality != 0) return "colour of other than the default quality";
     if (!f.flags.count("hdr")) return "colour without hdr";
     if (!f.has("albedo") && !f.has("normal")) return factor = 3.0f, "";
     if (!f.has("albedo") || !f.has("normal") || !f.flags.count("cleanAux")) return "half of the features";
@@ -69,7 +72,7 @@ int oidnGetDeviceError(void* device, const char** message) {
 void oidnCommitDevice(void* device) { static_cast<Device*>(device)->committed = true; }
 void oidnReleaseDevice(void* device) { delete static_cast<Device*>(device); }
 void* oidnNewFilter(void* device, const char* type) {
-    return std::string(type) == "RT" ? new Filter{static_cast<Device*>(device), {}, {}} : nullptr;
+    return std::string(type) == "RT" ? new Filter{static_cast<Device*>(device), {}, {}, 0} : nullptr;
 }
 void oidnSetSharedFilterImage(void* filter, const char* name, void* pixels, int format, std::size_t width,
                               std::size_t height, std::size_t, std::size_t, std::size_t) {
@@ -78,6 +81,9 @@ void oidnSetSharedFilterImage(void* filter, const char* name, void* pixels, int 
 }
 void oidnSetFilterBool(void* filter, const char* name, bool value) {
     if (value) static_cast<Filter*>(filter)->flags[name] = true;
+}
+void oidnSetFilterInt(void* filter, const char* name, int value) {
+    if (std::string(name) == "quality") static_cast<Filter*>(filter)->quality = value;
 }
 void oidnCommitFilter(void* filter) { static_cast<Filter*>(filter)->committed = true; }
 void oidnExecuteFilter(void* filter) {

@@ -1,7 +1,7 @@
 """A picture saved from the viewer equals `mote render` with the printed command, by many methods, after a knob was
 turned, the camera moved, and a light's or a medium's scale changed; another seed has other bits.
 
-Usage: same_bits_test.py MOTE BOX SMOKE
+Usage: same_bits_test.py MOTE BOX SMOKE_ROOM SMOKE      (two scenes, and a grid)
 """
 import os
 import sys
@@ -10,7 +10,7 @@ import tempfile
 from reproduced import same_bits
 from view_program import Program
 
-mote, box, smoke = (os.path.abspath(path) for path in sys.argv[1:4])
+mote, box, smoke, grid = (os.path.abspath(path) for path in sys.argv[1:5])
 SMALL = ["-D", "film.width=40", "-D", "film.height=24", "--passes", "3"]
 VPL = ["--integrator", "mote_vpl", "-D", "integrator.paths=40", "-D", "integrator.selection="]
 # scene, options, knob of the integrator and its value
@@ -70,7 +70,8 @@ def check(holds, what):
 
 def main():
     for scene_file, options, name, value in CASES:
-        with Program(mote, scene_file, *SMALL, *options) as program, tempfile.TemporaryDirectory() as folder:
+        grids = ["-D", f"smoke={grid}"] if scene_file == smoke else []
+        with Program(mote, scene_file, *SMALL, *grids, *options) as program, tempfile.TemporaryDirectory() as folder:
             client = program.connect()
             scene, _ = client.wait_for(lambda h: h["type"] == "scene")
             first, _ = client.frame(lambda h: h["finished"], 200)
