@@ -1,6 +1,6 @@
-// What a bound on the geometry term takes from virtual point lights, brought back over the callbacks of
-// another renderer's scene (examples/room.h, whose light is known): approximately by one step of the residual
-// transport, exactly by all.
+// Compensation of the light that a bound on the geometry term takes from virtual point lights, over the
+// callbacks of another renderer's scene (examples/room.h, whose light is known): approximately by one step of
+// the residual transport, exactly by all.
 #include <mote/compensation/light_compensation.h>
 #include <mote/compensation/vpl_compensation.h>
 #include <mote/lights/virtual_lights/particle_tracer.h>

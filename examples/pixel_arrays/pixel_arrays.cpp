@@ -16,7 +16,7 @@ namespace ss = screenspace;
 
 constexpr int width = 96, height = 96, pixels = width * height;
 
-/// What a renderer has of a pixel.
+/// First surface of a pixel.
 struct Seen {
     Vec3 position, normal;
     float distance, cosine;  ///< cosine of the normal with the way to the camera

@@ -16,7 +16,7 @@ constexpr double ray_nanoseconds = 60.0;
 constexpr double few_lights = 500.0;   // a cut evaluates as many
 constexpr double some_lights = 1e4;    // 64 samples leave more error than their gather saves
 constexpr double few_seconds = 1.0;    // of brute force: not worth an error
-constexpr double patience = 30.0;      // seconds of brute force that a user should know of
+constexpr double patience = 30.0;      // seconds of brute force without a warning
 constexpr double media_decide = 0.45;  // optical depth: the smoke room has 0.57, the atrium 0.34
 
 double rays_of(const GatherSize& size) { return size.vpls * size.receivers * size.points; }

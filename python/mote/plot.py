@@ -18,6 +18,7 @@ import argparse
 import csv
 import json
 import math
+import statistics
 import sys
 from pathlib import Path
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Union
@@ -48,8 +49,7 @@ def _bar(errors: List[float], noise: float, bars: str) -> tuple:
         return mean, mean
     spread = 0.0
     if n > 1:
-        variance = sum((e - mean) ** 2 for e in errors) / (n - 1)
-        spread = (_STUDENT[n - 2] if n - 2 < len(_STUDENT) else 1.96 + 2.8 / n) * math.sqrt(variance / n)
+        spread = (_STUDENT[n - 2] if n - 2 < len(_STUDENT) else 1.96 + 2.8 / n) * statistics.stdev(errors) / math.sqrt(n)
     half = math.hypot(spread, 1.96 * noise)
     return mean - half, mean + half
 

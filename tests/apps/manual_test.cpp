@@ -9,14 +9,13 @@ using namespace mote::tests;
 
 namespace {
 
-/// What bash offers for the last of these words.
+/// Completions by bash of the last of these words.
 std::string completed(const TemporaryFolder& folder, const std::string& words) {
     const std::string script =
         "source " + folder.file("bash-completion/completions/mote") + "; COMP_WORDS=(" + words +
-        "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _mote; echo \"${COMPREPLY[@]}\" > " +
-        folder.file("offered");
+        "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _mote; echo \"${COMPREPLY[@]}\" > " + folder.file("words");
     REQUIRE(std::system(("bash -c '" + script + "'").c_str()) == 0);
-    return read_file(folder.file("offered"));
+    return read_file(folder.file("words"));
 }
 
 }  // namespace
@@ -35,14 +34,14 @@ TEST_CASE("Man pages and completions hold every option of every command", "[comm
         CHECK(help.find("Examples:") != std::string::npos);
         // Every option of the help, and of the examples below it.
         const std::regex option("--[a-z][a-z-]+");
-        const std::string offered = completed(folder, "mote " + command + " --");
+        const std::string all = completed(folder, "mote " + command + " --");
         for (auto i = std::sregex_iterator(help.begin(), help.end(), option); i != std::sregex_iterator();
              ++i) {
             if (help.substr(std::size_t(i->position())).starts_with("--pass-range'"))
                 continue;  // of another command
             const std::string long_name = i->str();
             INFO(long_name);
-            CHECK((" " + offered).find(" " + long_name) != std::string::npos);
+            CHECK((" " + all).find(" " + long_name) != std::string::npos);
         }
     }
     CHECK(pages >= 13);

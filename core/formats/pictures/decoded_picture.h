@@ -26,7 +26,7 @@ struct PictureFile {
 /// of these formats could pack into the file.
 DecodedPicture make_room(const PictureFile& file, std::int64_t width, std::int64_t height, int channels,
                          bool eight_bits);
-/// The same limits without the room.
+/// Checks these limits alone.
 void check_picture_size(const PictureFile& file, std::int64_t width, std::int64_t height,
                         std::int64_t bytes_per_pixel);
 

@@ -1,5 +1,5 @@
-// Radiance pictures (Ward, Real pixels, Graphics Gems II, 1991): three mantissas and one exponent a pixel,
-// plain or run-length encoded by channels.
+// Radiance pictures (Ward, "Real pixels", in the second volume of Graphics Gems): three mantissas and one
+// exponent a pixel, plain or run-length encoded by channels.
 #include <array>
 #include <cmath>
 #include <cstdio>

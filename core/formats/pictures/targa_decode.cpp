@@ -1,4 +1,4 @@
-// Targa files (Truevision TGA, 1991): palettes, colours and grey, plain or run-length encoded.
+// Targa files (Truevision): palettes, colours and grey, plain or run-length encoded.
 #include <array>
 
 #include "core/formats/pictures/decoded_picture.h"
