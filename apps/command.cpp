@@ -102,8 +102,9 @@ void add_render(CLI::App& app, RenderArguments& a, std::function<int()>& action)
     command.add_option("--stats", a.stats, "Write statistics to this JSON file");
     add_exposure(command, a.exposure);
     command
-        .add_option("--pass-range", a.pass_range,
-                    "Render passes A to B - 1 alone, into a partial film for 'mote merge' (docs/howto/cluster.md)")
+        .add_option(
+            "--pass-range", a.pass_range,
+            "Render passes A to B - 1 alone, into a partial film for 'mote merge' (docs/howto/cluster.md)")
         ->type_name("A:B");
     command.add_flag("--identity", a.identity,
                      "Render nothing: print as JSON what partial films must have in common to be merged");

@@ -15,7 +15,8 @@ class CheckerboardTexture final : public Texture {
         : color0_(std::move(color0)), color1_(std::move(color1)), to_uv_(to_uv) {}
 
     Rgb eval(const TextureCoordinates& uv) const override { return (even(uv) ? color0_ : color1_)->eval(uv); }
-    /// The other way round, as in Mitsuba 3.9 (docs/measurements/peers.md): color1 is the number at the origin.
+    /// The other way round, as in Mitsuba 3.9 (docs/measurements/peers.md): color1 is the number at the
+    /// origin.
     float scalar(const TextureCoordinates& uv) const override {
         return (even(uv) ? color1_ : color0_)->scalar(uv);
     }

@@ -21,8 +21,8 @@ std::uint64_t seed_of_part(std::uint64_t seed, std::size_t part) {
 }
 
 /// The share of the variance that the filter leaves of a layer whose pixels err independently, about: what it
-/// was measured to leave lies between 0.006 and 0.2 (docs/methods/layers.md), and the best schedule goes with its
-/// root.
+/// was measured to leave lies between 0.006 and 0.2 (docs/methods/layers.md), and the best schedule goes with
+/// its root.
 constexpr double left_by_filter = 1.0 / 50.0;
 
 std::string shares_wanted(std::size_t parts) {

@@ -20,8 +20,8 @@ struct GatherSize {
 /// The mean optical depth of lines that cross media that scatter, side by side and along each axis.
 double depth_of_media(const core::Scene& scene);
 
-/// The choice by docs/methods/many_lights.md: brute force costs lights times receivers; the others differ in what
-/// they use before they trace a ray, and that is worth most where most lights are hidden.
+/// The choice by docs/methods/many_lights.md: brute force costs lights times receivers; the others differ in
+/// what they use before they trace a ray, and that is worth most where most lights are hidden.
 void plan_selection_advice(core::Plan& plan, const GatherSize& size);
 
 /// For receivers that take all VPLs: a warning where a pass takes more than half a minute of one processor.

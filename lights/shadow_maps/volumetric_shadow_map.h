@@ -4,8 +4,8 @@
 // A texel holds the optical depth along its ray between the points where the ray enters the media and where
 // it leaves them, or a little behind the first surface, at fixed intervals, in 16 bits a value and one piece
 // of memory with all else that a lookup needs. Optical depth is interpolated, not transmittance: between four
-// rays that is a fifth more accurate (docs/methods/media.md). A surface is kept as the plane through the point that
-// the ray met, so that walls seen at grazing angles do not shadow themselves.
+// rays that is a fifth more accurate (docs/methods/shadow_maps.md). A surface is kept as the plane through
+// the point that the ray met, so that walls seen at grazing angles do not shadow themselves.
 //
 // Maps are deterministic and biased: by the march's step, by the intervals, and most of all by what lies
 // between their rays. Transmittance is exactly 1 at the light, never rises along a ray, and is 0 behind the

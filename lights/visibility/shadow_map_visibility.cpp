@@ -11,7 +11,7 @@ using namespace core;
 
 namespace {
 
-/// Building a texel takes as long as tracing so many receivers (docs/methods/media.md).
+/// Building a texel takes as long as tracing so many receivers (docs/methods/shadow_maps.md).
 constexpr double receivers_per_texel = 5.0;
 
 /// Settings with what only scene files give.

@@ -254,9 +254,9 @@ typedef struct mote_ssbc_options {
     int replace;         /* not 0: take out the compensation that the picture holds */
 } mote_ssbc_options;
 
-/* Screen-space bias compensation (docs/methods/compensation.md): adds what a bound took to the beauty, and as the layer
- * "compensation_surface". The picture holds beauty, P, N and DiffuseAlbedo (or those of Center), and the
- * metadata "worldToCamera" unless positions are in camera space. `options` may be null. */
+/* Screen-space bias compensation (docs/methods/compensation.md): adds what a bound took to the beauty, and as
+ * the layer "compensation_surface". The picture holds beauty, P, N and DiffuseAlbedo (or those of Center),
+ * and the metadata "worldToCamera" unless positions are in camera space. `options` may be null. */
 MOTE_API mote_status mote_picture_compensate(mote_picture* picture, const mote_ssbc_options* options);
 
 /* Adds the layer "denoised": `method` is "bmfr" (regression on features) or "oidn" (where it is installed).
@@ -312,8 +312,8 @@ typedef struct mote_epipolar_options {
     void (*march)(void* user, double x, double y, double distance, float radiance[3]);
 } mote_epipolar_options;
 
-/* Epipolar sampling (docs/methods/epipolar.md): light that media scatter once, over a whole picture, from few rays
- * that `march` is called for. Fills light [height][width][3], room for `count` floats; `marched` (may be
+/* Epipolar sampling (docs/methods/epipolar.md): light that media scatter once, over a whole picture, from few
+ * rays that `march` is called for. Fills light [height][width][3], room for `count` floats; `marched` (may be
  * null): calls of `march`. */
 MOTE_API mote_status mote_epipolar(const mote_epipolar_options* options, float* light, size_t count,
                                    uint64_t* marched);

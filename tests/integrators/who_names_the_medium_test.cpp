@@ -185,7 +185,8 @@ TEST_CASE("bidirectional paths equal volpath, whatever names the fog", "[bdpt][e
 }
 
 TEST_CASE("VPLs with maps equal those by rays, whatever names the fog", "[vpl][shadow_map][naming]") {
-    // Lights and eye paths are the same; the interpolation error of maps is below 2 % here (docs/methods/media.md).
+    // Lights and eye paths are the same; the interpolation error of maps is below 2 % here
+    // (docs/methods/media.md).
     const std::string maps = R"(<visibility type="shadow_map"><integer name="size" value="32"/>
         <integer name="light_size" value="32"/></visibility>)";
     for_every_telling(Lamp::point, [&](const core::Scene& scene) {

@@ -1,6 +1,6 @@
 // Grids at the extremes: every estimator of the transmittance, from vacuum to lead, over density steps of a
-// million to one, under any placing, along boundaries, and beyond the step limit. docs/methods/media.md has the table
-// of what was tried and where it is tested.
+// million to one, under any placing, along boundaries, and beyond the step limit. docs/methods/media.md has
+// the table of what was tried and where it is tested.
 #include <array>
 #include <cmath>
 #include <ctime>

@@ -236,8 +236,8 @@ TEST_CASE("Shadow maps of the lights leave marched light as it is", "[in_scatter
                 return tests::render_statistics(*scene, *made, {4, 12, 5});
             };
             const auto traced = of(""), coarse = of(by_map(6)), fine = of(by_map(192));
-            // Tolerance: the error of a map of this size (docs/methods/media.md: 0.9 % at random points), and noise;
-            // passes have the same offsets, so most of it is common.
+            // Tolerance: the error of a map of this size (docs/methods/media.md: 0.9 % at random points), and
+            // noise; passes have the same offsets, so most of it is common.
             const double allowed = 0.01 * mean_of(traced) + 2.0 * (error_of(traced) + error_of(fine));
             INFO(light << medium);
             CHECK(std::abs(mean_of(fine) - mean_of(traced)) < allowed);
