@@ -11,6 +11,7 @@
 #include "core/objects/error.h"
 #include "core/objects/memory_error.h"
 #include "core/render/checkpoint.h"
+#include "core/render/cpu_clock.h"
 #include "core/render/stop_clock.h"
 #include "session/add_statistics.h"
 #include "session/auxiliary_channels.h"
@@ -122,6 +123,8 @@ class RenderWork {
         const RenderObserver& observer = watched_.observer();
         r.preview_every_seconds = observer.preview_every_seconds();
         r.preview_share = observer.preview_share();
+        r.first_preview_is_raw = observer.first_preview_is_raw();
+        r.finish = settings_.finish;
         r.preview_is_seen = [&observer] { return observer.preview_is_seen(); };
         if (wants_previews_)
             r.preview = [this, &observer](const core::Film& film) {
@@ -183,6 +186,7 @@ class RenderWork {
         if (!denoiser_ || settings_.range || result.interrupted || !result.finished_pixels.empty() ||
             !result.film.has_passes(1))
             return;
+        const core::Stopwatch stopwatch(result.statistics.seconds["denoise"]);
         try {
             denoiser_(image);
         } catch (const core::InputError& error) {

@@ -80,9 +80,10 @@ void check_denoised(const ImageChannels& image, float factor) {
 TEST_CASE("--denoise adds a layer and leaves all others as they were measured", "[command][denoise]") {
     const Folder folder;
     REQUIRE(folder.render("plain.exr", {}).exit_code == 0);
-    const RunResult r = folder.render("a.exr", {"--denoise"});
+    const RunResult r = folder.render("a.exr", {"--denoise", "--stats", folder.file("a.json")});
     INFO(r.err);
     REQUIRE(r.exit_code == 0);
+    CHECK(nlohmann::json::parse(read_file(folder.file("a.json")))["seconds"]["denoise"].get<double>() > 0.0);
     const ImageChannels plain = folder.read("plain.exr"), image = folder.read("a.exr");
     for (const std::string& name : plain.names) {
         CAPTURE(name);

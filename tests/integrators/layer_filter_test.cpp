@@ -138,7 +138,7 @@ TEST_CASE("A filtered render has less noise, and filtering it again changes noth
     CHECK(filter.variances().size() == choices.size());
 }
 
-TEST_CASE("Of one pass nobody knows the variance: OpenImageDenoise smooths it, our own filter leaves it",
+TEST_CASE("The variance of one pass is not known: OpenImageDenoise smooths it, our own filter leaves it",
           "[layer_filter]") {
     const auto scene = scene_from(box(grey, coloured_fog), 32);
     Film film = rendered(*scene, 1, 1);

@@ -127,6 +127,10 @@ TEST_CASE("Stop rules", "[driver]") {
     CHECK(must_stop({{}, 4.6, {}}, s));
     CHECK_FALSE(must_stop({{}, 4.9, {}}, s));
     s.seconds_to_finish = 0.0;
+    s.seconds_of_previews = 2.0;  // a fifth pass would end at 4.5 s
+    CHECK(must_stop({{}, 4.2, {}}, s));
+    CHECK_FALSE(must_stop({{}, 4.3, {}}, s));
+    s.seconds_of_previews = 0.0;
     CHECK(must_stop({{}, {}, 0.1}, s));
     CHECK_FALSE(must_stop({{}, {}, 0.09}, s));
     CHECK(must_stop({100, 4.0, 0.01}, s));                   // the first that holds
@@ -501,6 +505,33 @@ TEST_CASE("a preview shows the finished picture and leaves the film as it was", 
     REQUIRE_FALSE(shown.empty());
     CHECK(shown.front() == 7.0f);
     CHECK(seen == std::vector<float>{0.0f, 1.0f, 1.0f});
+    CHECK(result.film.mean(0)[0].x == 7.0f);
+}
+
+TEST_CASE("a quick look is not finished: the first preview, or the whole picture", "[driver]") {
+    const auto scene = fake_scene();
+    std::vector<float> seen, shown;
+    RenderRequest request = request_for(3);
+    request.preview = [&](const Film& film) { shown.push_back(film.mean(0)[0].x); };
+    request.preview_every_seconds = 0.0, request.preview_share = 1e9;
+    request.first_preview_is_raw = true;
+    CHECK(render(*scene, FinishingIntegrator(seen), request).film.mean(0)[0].x == 7.0f);
+    CHECK(shown == std::vector<float>{1.0f, 7.0f});
+    request.finish = false;
+    CHECK(render(*scene, FinishingIntegrator(seen), request).film.mean(0)[0].x == 1.0f);
+}
+
+TEST_CASE("a picture that a preview has finished is not finished again", "[driver]") {
+    const auto scene = fake_scene();
+    std::vector<float> seen;
+    int finishes = 0;
+    RenderRequest request = request_for(1000);
+    request.stop.seconds = 0.05;  // over after the preview of the first pass
+    request.preview = [](const Film&) { std::this_thread::sleep_for(std::chrono::milliseconds(100)); };
+    const InFinish count = [&](const Film&, CancelToken) { ++finishes; };
+    const RenderResult result = render(*scene, FinishingIntegrator(seen, count), request);
+    CHECK(result.film.pass_count() == 1);
+    CHECK(finishes == 1);
     CHECK(result.film.mean(0)[0].x == 7.0f);
 }
 
