@@ -100,7 +100,7 @@ class Film {
     struct HalfBeauty {
         std::vector<Rgb> passes, shown, variance;  ///< of `passes`, as of independent ones
     };
-    HalfBeauty half_beauty(int half) const;
+    HalfBeauty half_beauty(int half) const;  ///< 0 or 1, as of half_passes()
     /// Replaces what mean() returns for a layer, for post-processes (Estimator::finish). The sums, and with
     /// them all variances and the serialised film, stay those of the passes.
     /// Without values it is the mean of the passes again. `variance`: what the process leaves of the

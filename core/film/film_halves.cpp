@@ -91,10 +91,9 @@ std::optional<std::array<BlockErrors, 2>> Film::block_errors() const {
     for (std::size_t i = 0; i < layers_.size(); ++i)
         if (!layers_[i].auxiliary && !replaced_[i].mean.empty() && replaced_[i].halves[0].empty())
             return std::nullopt;
-    HalfBeauty a = half_beauty(0), b = half_beauty(1);
-    const auto gain = float(gain_and_noise().gain);
-    for (HalfBeauty* half : {&a, &b})
-        for (Rgb& variance : half->variance) variance *= gain;
+    // Without the gain of Sobol points, which is pooled over the picture: the pixels that Eq. (3) of
+    // halves_error.h depends on most are those of rare bright paths, where there is none.
+    const HalfBeauty a = half_beauty(0), b = half_beauty(1);
     const std::vector<Rgb> picture = beauty();
     const auto with = [&](const RelativeWeights& weights) {
         return halves_error(

@@ -23,7 +23,8 @@
 // other pixels. k, o and beta^2 are averages over blocks, (1 - 2 k)^2
 // one that is weighted by |a - b|^4: filters are not linear, and treat rare bright paths in a way of their
 // own. The sum is nearly normal, so Eq. (1) and (2) +- 1.96 s have 95 % confidence; no end is below the noise
-// that is known, and none above where s is not known.
+// that is known, and none above where s is not known. Where a few bright paths make up the error, s has a
+// long tail: it is mostly below what it is on average, and the interval contains the error less often.
 #pragma once
 
 #include <array>

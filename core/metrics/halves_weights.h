@@ -1,9 +1,10 @@
 // Weights of errors (relative_error.h, Eq. 1) of a picture whose light is known from two halves of its
 // passes.
 //
-// |r|^2 of a pixel is the median of its neighbours', 5 x 5 pixels, or that of the darker half where it is
-// brighter, such as a lamp. By the mean of the halves, a rare bright path or a small lamp that one half has
-// missed would be taken for a bright place, where an error counts for little.
+// |r|^2 of a pixel is the median of its neighbours' <a, b>, 5 x 5 pixels, whose mean has no noise in it since
+// the halves are independent; or |r|^2 of the darker half where it is brighter, such as a lamp. By the mean
+// of the halves, a rare bright path or a small lamp that one half has missed would be taken for a bright
+// place, where an error counts for little.
 #pragma once
 
 #include "core/metrics/relative_error.h"

@@ -14,8 +14,8 @@ namespace mote::core {
 struct RenderState {
     std::uint32_t passes = 0, passes_of_this_run = 0;
     double seconds = 0.0, noise = 0.0;
-    double seconds_of_previews = 0.0;  ///< among `seconds`: passes take the others
     PictureError error = {};           ///< for StopRule::error
+    double seconds_of_previews = 0.0;  ///< among `seconds`: passes take the others
     double seconds_before = 0.0;     ///< of loading and building: they count for the time, not for the speed
     double seconds_to_finish = 0.0;  ///< that Estimator::finish() will take, as far as previews have shown it
     double seconds_per_pass() const {
