@@ -129,8 +129,12 @@ def times():
     check(time_to(0.05, runs, "wall_s")[1] == "measured", "5 % is measured")
     value, how = time_to(0.01, runs, "wall_s")
     near(value, 400, "the time to 1 %", 1e-6)
-    check(how == "by 1/sqrt(t)", "1 % is not measured")
-    check(time_to(0.01, runs, "wall_s", (0.02, 0.001)) == (None, "bias"), "a bias of 2 % never comes to 1 %")
+    check(how == "by slope", "1 % is not measured")
+    slow = [{"wall_s": t, "error": 0.2 / t**0.25} for t in (1, 2, 4)]
+    near(time_to(0.05, slow, "wall_s", False)[0], 256, "the time to 5 % by the slope of the last two", 1e-6)
+    near(time_to(0.05, slow, "wall_s")[0], 32, "the time to 5 % by 1/sqrt(t)", 1e-6)
+    flat = [{"wall_s": t, "error": 0.02} for t in (1, 2)]
+    check(time_to(0.01, flat, "wall_s", False) == (None, "bias"), "an error that stays never comes to 1 %")
     check(time_to(0.3, runs, "wall_s") == (1, "below"), "30 % is below the first")
     near(noise_alone([{"error": 0.05}], (0.03, 0.001))[0]["error"], 0.04, "noise without what is systematic")
     check(next_passes(runs[:1], 64) == 4 and next_passes(runs[:2], 64) == 4, "passes that double")

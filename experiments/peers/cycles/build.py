@@ -59,7 +59,6 @@ def link(mesh, smooth, material):
         layer.data.foreach_set("uv", mesh.uvs[mesh.triangles.ravel()].astype(np.float32).ravel())
     data.update()
     if smooth and mesh.normals is not None:
-        data.use_auto_smooth = True
         data.normals_split_custom_set_from_vertices(mesh.normals.tolist())
     data.materials.append(material)
     made = bpy.data.objects.new("mesh", data)

@@ -65,7 +65,6 @@ def add_spot(emitter, _):
     cosine = nodes.math("MULTIPLY", direction, -1.0)
     angle = nodes.math("ARCCOSINE", cosine)
     share = nodes.math("DIVIDE", nodes.math("SUBTRACT", cutoff, angle), max(cutoff - beam, 1e-6), clamp=True)
-    share = nodes.math("DIVIDE", share, cosine)
     nodes.output("ShaderNodeOutputLight", Surface=nodes.add("ShaderNodeEmission", inputs={"Strength": share}))
 
 
@@ -95,7 +94,7 @@ def add_environment(emitter, folder):
     local = [nodes.add("ShaderNodeVectorMath", "Value", (seen, tuple(turn[i])), operation="DOT_PRODUCT")
              for i in (2, 0, 1)]
     image = bpy.data.images.load(str(folder / emitter.get("filename")))
-    image.colorspace_settings.name = "Linear"
+    image.colorspace_settings.name = "Linear Rec.709"
     colour = nodes.add("ShaderNodeTexEnvironment", inputs=(nodes.add("ShaderNodeCombineXYZ", inputs=local),), image=image)
     nodes.output("ShaderNodeOutputWorld", Surface=nodes.add(
         "ShaderNodeBackground", inputs={"Color": colour, "Strength": float(emitter.get("scale", 1.0))}))
@@ -111,7 +110,7 @@ def add_area(mesh, radiance):
     a, b = corners[1] - corners[0], corners[3] - corners[0]
     width, height, normal = np.linalg.norm(a), np.linalg.norm(b), np.cross(a, b) / np.linalg.norm(np.cross(a, b))
     centre = corners.mean(axis=0) + OFFSET * max(width, height) * normal
-    lamp = add_lamp("AREA", radiance, 4 * width * height, frame(normal, centre, a))
+    lamp = add_lamp("AREA", radiance, math.pi * width * height, frame(normal, centre, a))
     lamp.shape, lamp.size, lamp.size_y = "RECTANGLE", width, height
     return True
 

@@ -1,11 +1,12 @@
-"""Run inside of Blender: builds a scene and renders it again and again, each picture with its own seed.
+"""Builds a scene in Cycles (`bpy`) and renders it again and again, each picture with its own seed.
 
-    blender -b --factory-startup --python-exit-code 1 --python experiments/peers/cycles/render.py -- JOB.json
+    python experiments/peers/cycles/render.py JOB.json
 
-The job: folder (of the exported scene), vdb, output, threads, seed, budget (real_sizes/doubling.py), and step_rate,
-max_steps, cut_grids, volume_sampling (media.py), filter: box or gaussian.
-Writes output/N.exr (linear, float) and output/log.json. Raw: no view transform, denoiser, clamping, adaptive
-sampling, light threshold or blur; as many bounces as Cycles has.
+The job: folder (of the exported scene), vdb, output, threads, seed, budget (real_sizes/doubling.py), cut_grids and
+volume_sampling (media.py), filter: box or gaussian, denoise: by OpenImageDenoise with prefiltered albedo and normals,
+guiding: on surfaces and in volumes.
+Writes output/N.exr (linear, float) and output/log.json. No view transform, clamping, adaptive sampling, light threshold or
+blur; as many bounces as Cycles has; the light tree; media without bias.
 """
 import json
 import resource
@@ -27,7 +28,10 @@ def configure(job):
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
     cycles, render = scene.cycles, scene.render
-    cycles.device, cycles.use_denoising, cycles.use_adaptive_sampling = "CPU", False, False
+    cycles.device, cycles.use_denoising, cycles.use_adaptive_sampling = "CPU", job["denoise"], False
+    cycles.denoising_input_passes, cycles.denoising_prefilter = "RGB_ALBEDO_NORMAL", "ACCURATE"
+    cycles.use_guiding = cycles.use_surface_guiding = cycles.use_volume_guiding = job["guiding"]
+    cycles.use_light_tree, cycles.volume_biased = True, False
     cycles.time_limit, cycles.use_auto_tile = 0.0, False
     for name in ("max_bounces", "diffuse_bounces", "glossy_bounces", "transmission_bounces", "volume_bounces",
                  "transparent_max_bounces"):
@@ -38,7 +42,6 @@ def configure(job):
     cycles.pixel_filter_type = {"box": "BOX", "gaussian": "BLACKMAN_HARRIS"}[job["filter"]]
     # Mitsuba's Gaussian, within 0.3 % at an edge; that of Cycles ends at two standard deviations.
     cycles.filter_width = 3.55
-    cycles.volume_step_rate, cycles.volume_max_steps = job["step_rate"], job["max_steps"]
     render.threads_mode, render.threads = "FIXED", job["threads"]
     render.film_transparent, render.use_compositing, render.use_sequencer = False, False, False
     render.use_persistent_data = True  # the scene is loaded once
@@ -65,7 +68,7 @@ def picture(job, index, samples, seed):
 
 
 def main():
-    job = json.loads(Path(sys.argv[sys.argv.index("--") + 1]).read_text())
+    job = json.loads(Path(sys.argv[1]).read_text())
     start = time.monotonic()
     notes = build(job, Path(job["folder"]))
     configure(job)

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from measure import series_error
 from mote_runs import Mote
-from peer_runs import export, pictures, run_cycles, run_mitsuba
+from peer_runs import export, pictures, run_peer
 
 ROOT = Path(__file__).resolve().parent.parent.parent.parent
 HEAD = ("scene", "renderer", "mote", "peer", "difference", "standard error", "pattern", "its standard error")
@@ -39,8 +39,10 @@ def match(program, names, settings, output):
         method = {"integrator": scene["integrator"], "settings": scene.get("settings", {})}
         ours = list(pictures(folder / "mote", mote.run(method, folder / "mote", [s["ours"]] * s["pictures"], 1)))
         export(mote, scene["integrator"], folder / "exported")
-        for peer, action in (("mitsuba", run_mitsuba), ("cycles", run_cycles)):
-            log = action(mote, settings[peer], folder / "exported", folder / peer, [s["theirs"]] * s["pictures"], 1000)
+        for raw in (peer for peer in settings["peers"] if not peer["denoise"]):
+            peer = raw["program"]
+            log = run_peer(raw, mote, {**settings, "cycles": {**settings["cycles"], "filter": "box"}}, folder / "exported",
+                           folder / peer, [s["theirs"]] * s["pictures"], 1000)
             if log is None:
                 print(f"{peer} is not installed: left out")
                 continue

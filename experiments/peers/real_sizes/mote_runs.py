@@ -27,10 +27,13 @@ class Mote:
     def timed(self, output, method, passes, seed):
         """Passes, seed, file, and seconds without loading the scene and writing the file; `cpu_s` has those of writing."""
         before = processor_seconds()
-        statistics = self.render(output, method["integrator"], method.get("settings", {}), "--passes", passes, seed=seed)
+        denoise = ["--denoise=oidn", "--auxiliary"] if method.get("denoise") else []
+        statistics = self.render(output, method["integrator"], method.get("settings", {}), "--passes", passes, *denoise,
+                                 seed=seed)
         seconds = statistics["seconds"]
-        return {"passes": passes, "seed": seed, "file": output.name, "cpu_s": processor_seconds() - before,
-                "wall_s": seconds["build"] + seconds["render"] + seconds["finish"], "build_s": seconds["load"],
+        return {"layer": "denoised" if denoise else "", "passes": passes, "seed": seed, "file": output.name, "cpu_s": processor_seconds() - before,
+                "wall_s": seconds["build"] + seconds["render"] + seconds["finish"] + seconds.get("denoise", 0.0),
+                "build_s": seconds["load"],
                 "commit": statistics["git_hash"]}
 
     def loading(self, folder, method):

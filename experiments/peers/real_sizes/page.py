@@ -8,7 +8,7 @@ COLUMNS = ("scene", "method", "version", "settings", "passes", "seed", "wall_s",
            "bias", "bias_se", "mean", "mean_se", "non_finite", "samples_per_s")
 SPEED_COLUMNS = ("scene", "method", "version", "settings", "passes", "wall_s", "million_samples_per_s", "variance_time_s",
                  "variance_time_se")
-MARKS = {"measured": "", "below": "≤ ", "by 1/sqrt(t)": "≈ "}
+MARKS = {"measured": "", "below": "≤ ", "by slope": "≈ "}
 
 
 def write_csv(path, facts, scene, methods):
@@ -33,11 +33,10 @@ def seconds_text(value, how):
 
 
 def variance_time_of(m):
-    """Of unbiased methods, of peers without what their model differs."""
+    """Of unbiased methods, of peers without the difference of their model."""
     if not m["unbiased"]:
         return None
-    systematic = m["systematic"] if m["peer"] and m["systematic"][0] > 3 * m["systematic"][1] else (0.0, 0.0)
-    return variance_time(m["runs"], systematic)
+    return variance_time(m["runs"], m["model"])
 
 
 def variance_time_text(m):
@@ -68,11 +67,10 @@ def write_speed(folder, facts, scenes):
 
 def row(m):
     """Row of the table: name, times to the targets (wall, and processor seconds in brackets), the last image, bias."""
-    runs = noise_alone(m["runs"], m["systematic"]) if m["peer"] else m["runs"]
-    stays = (0.0, 0.0) if m["peer"] or m["unbiased"] else m["systematic"]
+    runs = noise_alone(m["runs"], m["model"])
     cells = [m["name"]]
     for target in TARGETS:
-        wall, cpu = (time_to(target, runs, seconds, stays) for seconds in ("wall_s", "cpu_s"))
+        wall, cpu = (time_to(target, runs, seconds, m["unbiased"]) for seconds in ("wall_s", "cpu_s"))
         cells.append(seconds_text(*wall) + (f" ({seconds_text(*cpu)})" if cpu[0] is not None else ""))
     last = m["runs"][-1]
     percent = lambda value, error, sign="": f"{100 * value:{sign}.2f} ± {100 * error:.2f} %"
@@ -96,12 +94,13 @@ def html_table(methods):
 
 
 LEGEND = """Seconds of rendering on the wall of two cores, loading and compiling apart; processor seconds in brackets.
-No mark: between two measured pictures; ≈: by 1/sqrt(t) from the last one; ≤: the first picture was better already.
+No mark: between two measured pictures; ≈: beyond the last one, by 1/sqrt(t) for unbiased methods, by the slope of the last two for
+others; ≤: the first picture was better already.
 The error is the relative RMSE of docs/testing.md, "Error and noise", Eq. 1 and 2, measured with two independent references
 so that it is free of their noise. Bias: signed, of the last picture. Systematic: what two
 independent pictures have in common, without noise; where it is below its
 standard error it is 0. Variance x time: the square of the last picture's error times its seconds, for unbiased methods.
-For other renderers the systematic part is taken off the times: there it is a difference of models."""
+From other renderers' errors the systematic part of their picture without denoiser is taken off: a difference of models."""
 
 
 def write_page(path, facts, scenes):

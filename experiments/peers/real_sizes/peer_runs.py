@@ -4,15 +4,16 @@ Both read the scene that `mote export --to mitsuba3` writes. `None` represents a
 """
 import json
 import os
-import shutil
 import subprocess
 import sys
+import venv
 from pathlib import Path
 
 import numpy as np
 from exr import read_exr
 
 PEERS = Path(__file__).resolve().parent.parent
+BPY_ENVIRONMENT = PEERS.parent.parent / "build" / "bpy_env"
 sys.path.insert(0, str(PEERS / "cycles"))
 from flat_scene import vdb_volumes  # noqa: E402
 from tight_boundaries import tighten  # noqa: E402
@@ -32,28 +33,47 @@ def export(mote, integrator, folder):
 
 def run_mitsuba(mote, settings, exported, folder, budget, seed):
     job = {"folder": str(exported), "budget": budget, "seed": seed, "threads": mote.threads,
-           "samples_at_once": settings["samples_at_once"]}
+           "samples_at_once": settings["samples_at_once"], "denoise": settings["denoise"]}
     command = [sys.executable, str(PEERS / "mitsuba.py"), "--variant", settings["variant"], "--timed", str(folder)]
     return run(command, job, folder)
 
 
 def run_cycles(mote, settings, exported, folder, budget, seed):
-    blender = shutil.which("blender")
-    if blender is None:
+    python = python_with_bpy()
+    if python is None:
         return None
     job = {**settings, "folder": str(exported), "vdb": vdb_volumes(mote.scene), "output": str(folder),
            "budget": budget, "seed": seed, "threads": mote.threads}
-    command = [blender, "-b", "--factory-startup", "--python-exit-code", "1", "--python",
-               str(PEERS / "cycles" / "render.py"), "--", str(folder / "job.json")]
-    # Blender takes the first Python of the path for its own, which then has to be the system's.
-    return run(command, job, folder, {**os.environ, "PATH": os.pathsep.join(["/usr/bin", "/bin", os.environ["PATH"]])})
+    return run([python, str(PEERS / "cycles" / "render.py"), str(folder / "job.json")], job, folder)
+
+
+def python_with_bpy():
+    """That of MOTE_BPY_PYTHON, or build/bpy_env's (--install makes it); None where neither is there."""
+    for python in (os.environ.get("MOTE_BPY_PYTHON"), BPY_ENVIRONMENT / "bin/python"):
+        if python and os.access(python, os.X_OK):
+            return str(python)
+    return None
+
+
+def install_cycles():
+    """Cycles as PyPI has it, in an environment of its own; it needs a Python of the version that it was built for."""
+    venv.create(BPY_ENVIRONMENT, with_pip=True)
+    subprocess.run([BPY_ENVIRONMENT / "bin/python", "-m", "pip", "install", "--quiet", "bpy==5.0.1", "numpy"], check=True)
+
+
+RUNS = {"mitsuba": run_mitsuba, "cycles": run_cycles}
+
+
+def run_peer(peer, mote, settings, *rest):
+    """The log of one of settings["peers"], or None where its program is not installed."""
+    return RUNS[peer["program"]](mote, {**settings[peer["program"]], **peer}, *rest)
 
 
 def pictures(folder, log):
     """Images of any program's log, in its order: arrays [height, width, 3]."""
     for run_ in log["runs"]:
         path = folder / run_["file"]
-        yield np.load(path) if path.suffix == ".npy" else read_exr(path)[""]
+        yield np.load(path) if path.suffix == ".npy" else read_exr(path)[run_.get("layer", "")]
 
 
 def run(command, job, folder, environment=None):

@@ -1,9 +1,11 @@
-"""An SVG of errors against time, both in logarithms: a line for each method, whiskers of one standard error."""
+"""An SVG of errors against time, both in logarithms: a line for each method, whiskers of one standard error. One colour a
+renderer; dashed: as the passes left it, without denoiser."""
 import math
 from xml.sax.saxutils import escape
 
 WIDTH, HEIGHT, LEFT, TOP, RIGHT, BOTTOM = 720, 430, 64, 40, 190, 48
-COLOURS = ("#1b6ca8", "#d1495b", "#e08e0b", "#5b8c5a", "#7a4fa3", "#333333", "#999999")
+COLOURS = {"mote path tracer": "#1b6ca8", "mote layers": "#d1495b", "mote VPL": "#e08e0b", "Mitsuba": "#5b8c5a",
+           "Cycles": "#7a4fa3", "Cycles, guided": "#333333"}
 
 
 def ticks(low, high):
@@ -47,11 +49,12 @@ def text(x, y, words, anchor="start", size=12):
     return f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}" font-size="{size}">{escape(words)}</text>'
 
 
-def series(axes, index, name, runs, dashed):
+def series(axes, index, name, runs, raw):
     """A line through the pictures, and its name on the right."""
-    colour, points = COLOURS[index % len(COLOURS)], [r for r in runs if r["error"] > 0]
+    colour = COLOURS[name.removesuffix(" + OIDN").removesuffix(", no filter")]
+    points = [r for r in runs if r["error"] > 0]
     corners = " ".join(f"{axes.x(r['wall_s']):.1f},{axes.y(r['error']):.1f}" for r in points)
-    style = ' stroke-dasharray="6 4"' if dashed else ""
+    style = ' stroke-dasharray="6 4"' if raw else ""
     marks = [f'<polyline points="{corners}" fill="none" stroke="{colour}" stroke-width="2"{style}/>']
     for r in points:
         x, low, high = axes.x(r["wall_s"]), r["error"] - r["error_se"], r["error"] + r["error_se"]
@@ -64,13 +67,13 @@ def series(axes, index, name, runs, dashed):
 
 
 def svg(title, methods):
-    """methods: (name, runs, is a peer)."""
+    """methods: (name, runs, without denoiser)."""
     lit = [run for _, runs, _ in methods for run in runs if run["error"] > 0]
     if not lit:
         return ""
     axes = Axes([r["wall_s"] for r in lit], [r["error"] for r in lit])
     body = axes.marks() + [text(LEFT, 22, title, size=15)]
-    for index, (name, runs, peer) in enumerate(methods):
-        body += series(axes, index, name, runs, peer)
+    for index, (name, runs, raw) in enumerate(methods):
+        body += series(axes, index, name, runs, raw)
     return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" font-family="sans-serif">\n'
             f'<rect width="{WIDTH}" height="{HEIGHT}" fill="white"/>\n' + "\n".join(body) + "\n</svg>\n")

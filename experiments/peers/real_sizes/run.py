@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Peers at real sizes: error against time of mote, Mitsuba 3 and Cycles on the same scenes.
+"""Peers at real sizes: error against time of mote, Mitsuba 3 and Cycles on the same scenes, with and without
+OpenImageDenoise (pyoidn, in the Python that runs this and in MOTE_PYTHON; Cycles has its own).
 
     experiments/trade/run --peers [SCENE...]           640 x 400, into out/peers/: some four minutes a scene
     experiments/trade/run --peers --quick [SCENE...]   80 x 50, into out/peers_quick/: some three minutes in all
@@ -16,6 +17,7 @@ peer that is not installed is left out with a notice.
 import argparse
 import json
 import os
+import subprocess
 import sys
 from pathlib import Path
 
@@ -27,7 +29,7 @@ from match import match  # noqa: E402
 from mote_runs import Mote, beauty_and_variance, filter_of, found_references, make_reference  # noqa: E402
 from origin import commit  # noqa: E402
 from page import markdown, write_csv, write_page, write_speed  # noqa: E402
-from peer_runs import export, pictures, run_cycles, run_mitsuba  # noqa: E402
+from peer_runs import export, install_cycles, pictures, run_peer  # noqa: E402
 from plot import svg  # noqa: E402
 from times import References, judged  # noqa: E402
 
@@ -40,6 +42,7 @@ def arguments():
     parser.add_argument("--match", action="store_true")
     parser.add_argument("--references", action="store_true")
     parser.add_argument("--fresh", action="store_true")
+    parser.add_argument("--install", action="store_true", help="make build/bpy_env with Cycles (bpy), then continue")
     parser.add_argument("--budget", type=float, help="seconds for all pictures of a method (settings.json: 34)")
     parser.add_argument("--mote", default=os.environ.get("MOTE", str(ROOT / "build/release/bin/mote")))
     options = parser.parse_args()
@@ -49,8 +52,8 @@ def arguments():
         parser.error(f"no scene {unknown[0]}: there are {' '.join(settings['scenes'])}")
     if options.quick:
         settings.update(settings["quick"])
-    settings["peers"] = ["mitsuba"] if options.paths else ["mitsuba", "cycles"]
     if options.paths:
+        settings["peers"] = settings["peers"][:1]
         settings["ours"] = [method for method in settings["ours"] if method.get("unbiased")]
     settings["budget"] = options.budget or settings["budget"]
     settings["reference_time"] = float(os.environ.get("REFERENCE_TIME", settings["reference_time"]))
@@ -75,31 +78,31 @@ def measured(folder, fresh, setup, action):
 
 
 def methods_of(mote, scene, settings, options, output):
-    """(name, settings as text, is a peer, is unbiased, folder, log) of each, one after the other."""
+    """Of each, one after the other: name, settings as text, program (of a peer, else ""), unbiased, folder, log."""
     budget, exported = settings["budget"], output / "exported"
     setup = [settings[key] for key in ("width", "height", "filter", "threads", "budget")]
     for index, method in enumerate(settings["ours"]):
         method = {"integrator": scene["integrator"], **({} if "integrator" in method else scene), **method,
                   "name": method["name"]}
-        folder = output / method["name"].replace(" ", "_").replace(",", "")
+        folder = output / folder_name(method)
         log = measured(folder, options.fresh, [*setup, method], lambda f: mote.run(method, f, budget, 100 * (index + 1)))
         text = " ".join([method["integrator"]] + [f"{k}={v}" for k, v in method.get("settings", {}).items()])
-        yield method["name"], text, False, method.get("unbiased", False), folder, log
+        yield method["name"], text, "", method.get("unbiased", False), folder, log
     notes = export(mote, scene["integrator"], exported)
-    for index, (name, action) in enumerate((("mitsuba", run_mitsuba), ("cycles", run_cycles))):
-        if name not in settings["peers"]:
-            continue
-        folder, s = output / name, settings[name]
-        log = measured(folder, options.fresh, [*setup, s], lambda f: action(mote, s, exported, f, budget, 1000 * (index + 1)))
+    for index, peer in enumerate(settings["peers"]):
+        folder, s = output / folder_name(peer), {**settings[peer["program"]], **peer}
+        log = measured(folder, options.fresh, [*setup, s],
+                       lambda f: run_peer(peer, mote, settings, exported, f, budget, 1000 * (index + 1)))
         if log is None:
-            print(f"{name} is not installed: left out", flush=True)
+            print(f"{peer['name']} is not installed: left out", flush=True)
             continue
-        log["notes"] += notes if name == "mitsuba" else []
-        yield log_name(name, log), " ".join(f"{k}={v}" for k, v in s.items()), True, True, folder, log
+        log["notes"] += notes if peer["program"] == "mitsuba" else []
+        text = " ".join(f"{k}={v}" for k, v in s.items() if k not in ("name", "program"))
+        yield peer["name"], text, peer["program"], not peer["denoise"], folder, log
 
 
-def log_name(name, log):
-    return log["version"].replace("_ad_rgb", "") if name == "mitsuba" else f"Cycles {log['version']}"
+def folder_name(method):
+    return method["name"].replace(" ", "_").replace(",", "").replace("+", "and")
 
 
 def scene_page(name, scene, settings, options):
@@ -121,10 +124,15 @@ def scene_page(name, scene, settings, options):
     settings["cycles"] = {**settings["cycles"], "filter": settings["filter"]}
     mote.sizes = [f"resx={settings['width']}", f"resy={settings['height']}", f"film.rfilter={settings['filter']}"]
     references, methods, notes = References([a, b], [va, vb]), [], []
-    for method, text, peer, unbiased, folder, log in methods_of(mote, scene, settings, options, output):
+    model = {}  # program: what its pictures differ by without denoiser
+    for method, text, program, unbiased, folder, log in methods_of(mote, scene, settings, options, output):
         systematic = judged(references, log["runs"], list(pictures(folder, log)))
-        methods.append({"name": method, "settings": text, "peer": peer, "unbiased": unbiased, "runs": log["runs"],
-                        "version": log["version"], "build_s": log["build_s"], "systematic": systematic})
+        if program and unbiased and systematic[0] > 3 * systematic[1]:
+            model[program] = systematic
+        methods.append({"name": method, "settings": text, "peer": program != "", "unbiased": unbiased, "runs": log["runs"],
+                        "version": log["version"], "build_s": log["build_s"], "systematic": systematic,
+                        "model": model.get(program, (0.0, 0.0)),
+                        "denoised": method.endswith("+ OIDN") or method == "mote layers"})
         notes += [f"{method}: {note}" for note in log["notes"]]
         last = log["runs"][-1]
         print(f"{name}: {method}: {last['passes']} passes, {last['wall_s']:.1f} s, error {100 * last['error']:.2f} ± "
@@ -138,7 +146,7 @@ def scene_page(name, scene, settings, options):
     facts = {**facts_of(settings, options), "References": " ".join(f"{f.name} ({f.stat().st_size} bytes)" for f in files)}
     write_csv(output / "peers.csv", facts, name, methods)
     drawing = svg(f"{scene['name']}, {settings['width']} x {settings['height']}",
-                  [(m["name"], m["runs"], m["peer"]) for m in methods])
+                  [(m["name"], m["runs"], not m["denoised"]) for m in methods])
     (output / "peers.svg").write_text(drawing, encoding="utf-8")
     (output / "peers.md").write_text(markdown(methods), encoding="utf-8")
     print(markdown(methods), flush=True)
@@ -159,6 +167,8 @@ def main():
         return 2
     pages = []
     try:
+        if options.install:
+            install_cycles()
         if options.match:
             return match(options.mote, options.scenes or settings["scenes"], settings, ROOT / "out" / "peers_match")
         for name in options.scenes or settings["scenes"]:
@@ -168,7 +178,7 @@ def main():
             write_page(options.output / "peers.html", facts_of(settings, options), pages)
             print(write_speed(options.output, facts_of(settings, options), [(p[0], p[2]) for p in pages]))
             print(options.output / "peers.html")
-    except (RuntimeError, OSError) as error:
+    except (RuntimeError, OSError, subprocess.CalledProcessError) as error:
         print(f"run.py: {error}", file=sys.stderr)
         return 2
     return 0

@@ -64,11 +64,12 @@ def variance_time(runs, systematic):
     return variance * last["wall_s"], 2 * last["error"] * last["error_se"] * last["wall_s"]
 
 
-def time_to(target, runs, seconds, systematic=(0.0, 0.0)):
-    """(seconds, how): `measured` between two pictures on a line in logarithms, `below` where the first has less error;
-    `by 1/sqrt(t)` from the last one, the systematic error kept as it is; (None, `bias`) where that alone is more.
+def time_to(target, runs, seconds, unbiased=True):
+    """(seconds, how): `measured` between two images on a line in logarithms, `below` where the first has less error;
+    beyond the last image `by slope`: -1/2 for unbiased methods, for others that of the last two images, at most as steep,
+    since what a filter smooths away falls more slowly than noise; (None, `bias`) where it is flatter than -1/20.
 
-    `seconds`: wall_s or cpu_s. A systematic error counts where it is more than three of its standard errors.
+    `seconds`: wall_s or cpu_s.
     """
     points = sorted((run[seconds], run["error"]) for run in runs if run["error"] > 0)
     if not points:
@@ -78,8 +79,11 @@ def time_to(target, runs, seconds, systematic=(0.0, 0.0)):
     for (t0, e0), (t1, e1) in zip(points, points[1:]):
         if e1 <= target < e0:
             return float(t0 * (t1 / t0)**(np.log(e0 / target) / np.log(e0 / e1))), "measured"
-    stays = systematic[0] if systematic[0] > 3 * systematic[1] else 0.0
-    if target <= stays:
+    steepness = 0.5
+    if not unbiased:
+        (t0, e0), (t1, e1) = points[-2:] if len(points) > 1 else (points[0], points[0])
+        steepness = min(0.5, np.log(e0 / e1) / np.log(t1 / t0)) if t1 > t0 else 0.0
+    if steepness < 0.05:
         return None, "bias"
     last, error = points[-1]
-    return float(last * max(error**2 - stays**2, 0.0) / (target**2 - stays**2)), "by 1/sqrt(t)"
+    return float(last * (error / target)**(1 / steepness)), "by slope"
