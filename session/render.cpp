@@ -113,6 +113,8 @@ class RenderWork {
         const RenderObserver& observer = watched_.observer();
         r.preview_every_seconds = observer.preview_every_seconds();
         r.preview_share = observer.preview_share();
+        r.first_preview_is_raw = observer.first_preview_is_raw();
+        r.finish = settings_.finish;
         r.preview_is_seen = [&observer] { return observer.preview_is_seen(); };
         if (wants_previews_)
             r.preview = [this, &observer](const core::Film& film) {

@@ -33,6 +33,8 @@ class RenderObserver {
     virtual bool wants_layers() const { return false; }
     virtual double preview_every_seconds() const { return 1.0; }  ///< shortest time between two previews
     virtual double preview_share() const { return 0.05; }         ///< of the time, that previews take at most
+    /// True: the first preview comes at once, before any filter.
+    virtual bool first_preview_is_raw() const { return false; }
     /// Called in the thread of the passes: false spares the work of a preview.
     virtual bool preview_is_seen() const { return true; }
     virtual void warning(const std::string&) {}  ///< at once: a checkpoint that could not be written
@@ -71,6 +73,7 @@ struct RenderSettings {
     bool resume = false;     ///< continue from the checkpoint, which must be of this very render
     bool auxiliary = false;  ///< also what is seen: positions, normals, depth, albedo, with variances
     std::optional<FrameBefore> frame_before;  ///< with `auxiliary`: for motion vectors
+    bool finish = true;                       ///< false: without the integrator's filter, for a quick look
     std::string denoise;                      ///< "oidn" or "bmfr": adds the layer `denoised`
     std::string oidn_package;                 ///< folder of Python's package pyoidn, as OidnLibrary takes it
     std::vector<std::string> command_line;    ///< for the metadata

@@ -85,6 +85,7 @@ class LiveRender::Observer : public session::RenderObserver {
     double preview_every_seconds() const override { return 0.25; }
     /// Someone watches: denoising may take a fifth of the time.
     double preview_share() const override { return 0.2; }
+    bool first_preview_is_raw() const override { return true; }
     bool preview_is_seen() const override { return render_.reports_.is_seen(); }
     void preview(const core::ImageChannels& image) override {
         session::Rendered rendered;
@@ -198,6 +199,7 @@ double LiveRender::show_at_size(const Wish& wish, std::uint64_t change, const Lo
     const LoadedScene scene = with_integrator(*coarse_scene_, changes);
     session::RenderSettings settings;
     settings.seed = wish.seed, settings.threads = wish.threads, settings.stop.passes = 1;
+    settings.finish = false;  // to denoise it takes longer than to render it
     Observer observer(*this, wish, change, true);
     session::Rendered rendered = session::render(scene, settings, observer);
     const double seconds = core::wall_seconds() - start;

@@ -42,6 +42,7 @@ class PassLoop {
     /// Estimator::finish() of the picture.
     void finish_picture(const std::string& type) {
         if (result_.film.pass_count() == 0 || !result_.finished_pixels.empty() || request_.range) return;
+        if (!request_.finish) return;
         if (request_.abandoned && request_.abandoned->load()) return;
         const Clock::time_point begin = Clock::now();
         try {
@@ -192,20 +193,27 @@ class PassLoop {
         constexpr double patience = 2.5;
         if (!result_.film.has_passes(1) && seconds_since(start_) < patience) return;
         // The first one also builds what all others need.
-        const double expected = previews_ == 1 ? 0.25 * preview_seconds_ : preview_seconds_;
+        const double expected = finished_previews_ == 1 ? 0.25 * preview_seconds_ : preview_seconds_;
         const double wait =
             std::max(seen ? request_.preview_every_seconds : 1.0, expected / request_.preview_share);
         if (previews_ > 0 && seconds_since(preview_time_) < wait) return;
         const Clock::time_point begin = Clock::now();
+        if (seen && previews_ == 0 && request_.first_preview_is_raw)
+            request_.preview(result_.film);
+        else
+            finish_for_preview(seen);
+        ++previews_, preview_time_ = Clock::now(), preview_seconds_ = seconds_since(begin);
+        state_.seconds_of_previews += preview_seconds_;
+        result_.statistics.seconds["previews"] = state_.seconds_of_previews;
+    }
+    void finish_for_preview(bool seen) {
+        ++finished_previews_;
         try {
             finish_for_now([&] {
                 if (seen) request_.preview(result_.film);
             });
         } catch (const Cancelled&) {
         }
-        ++previews_, preview_time_ = Clock::now(), preview_seconds_ = seconds_since(begin);
-        state_.seconds_of_previews += preview_seconds_;
-        result_.statistics.seconds["previews"] = state_.seconds_of_previews;
     }
     /// Shows the finished picture to `look`; the film is afterwards as it was. Throws Cancelled.
     template <typename Look>
@@ -251,7 +259,7 @@ class PassLoop {
     RenderResult& result_;
     const std::atomic<bool> never_{false};
     RenderState state_{.noise = infinity};
-    int previews_ = 0;
+    int previews_ = 0, finished_previews_ = 0;
     double preview_seconds_ = 0.0;  ///< that the last one took
     Film::Replacements preview_means_;
     std::uint32_t preview_passes_ = 0;

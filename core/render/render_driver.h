@@ -63,6 +63,8 @@ struct RenderRequest {
     double preview_every_seconds = 1.0;     ///< shortest time between two of them
     double preview_share = 0.05;            ///< of the time that they take at most
     std::function<bool()> preview_is_seen;  ///< false: a preview would have no use now; empty: always true
+    bool first_preview_is_raw = false;      ///< at once, without Estimator::finish()
+    bool finish = true;                     ///< false: the picture is left as the passes made it
     std::function<void(const std::string&)> checkpoint_failed;  ///< called at once; retried later
     std::function<void()> building_is_over;           ///< called before the first pass; may be empty
     std::function<void()> passes_are_over;            ///< called before Estimator::finish; may be empty

@@ -508,6 +508,19 @@ TEST_CASE("a preview shows the finished picture and leaves the film as it was", 
     CHECK(result.film.mean(0)[0].x == 7.0f);
 }
 
+TEST_CASE("a quick look is not finished: the first preview, or the whole picture", "[driver]") {
+    const auto scene = fake_scene();
+    std::vector<float> seen, shown;
+    RenderRequest request = request_for(3);
+    request.preview = [&](const Film& film) { shown.push_back(film.mean(0)[0].x); };
+    request.preview_every_seconds = 0.0, request.preview_share = 1e9;
+    request.first_preview_is_raw = true;
+    CHECK(render(*scene, FinishingIntegrator(seen), request).film.mean(0)[0].x == 7.0f);
+    CHECK(shown == std::vector<float>{1.0f, 7.0f});
+    request.finish = false;
+    CHECK(render(*scene, FinishingIntegrator(seen), request).film.mean(0)[0].x == 1.0f);
+}
+
 TEST_CASE("a picture that a preview has finished is not finished again", "[driver]") {
     const auto scene = fake_scene();
     std::vector<float> seen;
