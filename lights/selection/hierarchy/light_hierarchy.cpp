@@ -50,7 +50,7 @@ class Builder {
     /// Writes the nodes of a cluster.
     LightNode build(std::uint32_t number, const LightCluster& c, std::vector<LightNode>& nodes) const {
         if (c.single()) return leaves_.leaf(partition_.item(c.first).light);
-        const auto [n, left_nodes] = splits_[number];
+        const std::uint32_t n = splits_[number].left_count, left_nodes = splits_[number].left_nodes;
         LightNode a, b;
         do_both(
             c.count,
