@@ -266,7 +266,8 @@ TEST_CASE("An interval of the error is stated where it was requested and is know
     CHECK(!unknown(of_other_method).empty());
 }
 
-TEST_CASE("A limit on the error ends where the interval is below it, with or without previews", "[session][halves]") {
+TEST_CASE("A limit on the error ends where the interval is below it, with or without previews",
+          "[session][halves]") {
     const LoadedScene scene = scene_of("path", 32, true);
     RenderSettings settings;
     settings.threads = 2, settings.stop.error = 0.02;
