@@ -207,7 +207,7 @@ TEST_CASE("Libraries do not print", "[command][hostile]") {
     std::string png = read_file(folder.file("o2.png"));
     png[png.find("IDAT") + 8] = char(png[png.find("IDAT") + 8] ^ 0x55);
     write_file(folder.file("damaged.png"), png);
-    check_refused(folder, {"info", "damaged.png"}, "damaged picture");
+    check_refused(folder, {"info", "damaged.png"}, "damaged PNG file");
     write_file(folder.file("story.gltf"),
                R"({"asset": {"version": "2.0"}, "scene": ")" + std::string(3000, 'x') + "\"");
     const RunResult story = run_mote(folder, {"info", "story.gltf"});

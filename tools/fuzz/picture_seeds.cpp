@@ -63,7 +63,7 @@ Bytes hdr(bool packed) {
 }
 
 void put(std::string& bytes, std::uint32_t value, int count) {
-    for (int i = 0; i < count; ++i) bytes += char(value >> (8 * i) & 255u);
+    for (int i = 0; i < count; ++i) bytes += i < 4 ? char(value >> (8 * i) & 255u) : char(0);
 }
 Bytes bmp(std::uint32_t bits, std::uint32_t compression, const std::string& palette,
           const std::string& pixels) {

@@ -17,7 +17,10 @@ class PngReader {
     explicit PngReader(const PictureFile& file) : file_(file), left_(file.bytes) {
         png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, this, fail, ignore);
         if (png_) info_ = png_create_info_struct(png_);
-        if (!info_) throw std::bad_alloc();
+        if (!info_) {
+            png_destroy_read_struct(&png_, nullptr, nullptr);
+            throw std::bad_alloc();
+        }
         png_set_read_fn(png_, this, read);
         png_set_user_limits(png_, INT32_MAX, INT32_MAX);
     }
