@@ -6,7 +6,6 @@ import json
 import os
 import subprocess
 import sys
-import venv
 from pathlib import Path
 
 import numpy as np
@@ -48,17 +47,11 @@ def run_cycles(mote, settings, exported, folder, budget, seed):
 
 
 def python_with_bpy():
-    """That of MOTE_BPY_PYTHON, or build/bpy_env's (--install makes it); None where neither is there."""
-    for python in (os.environ.get("MOTE_BPY_PYTHON"), BPY_ENVIRONMENT / "bin/python"):
+    """That of MOTE_CYCLES_PYTHON, or build/bpy_env's (tools/install_bpy.sh 5.0.1 build/bpy_env); None where neither is there."""
+    for python in (os.environ.get("MOTE_CYCLES_PYTHON"), BPY_ENVIRONMENT / "bin/python"):
         if python and os.access(python, os.X_OK):
             return str(python)
     return None
-
-
-def install_cycles():
-    """Cycles as PyPI has it, in an environment of its own; it needs a Python of the version that it was built for."""
-    venv.create(BPY_ENVIRONMENT, with_pip=True)
-    subprocess.run([BPY_ENVIRONMENT / "bin/python", "-m", "pip", "install", "--quiet", "bpy==5.0.1", "numpy"], check=True)
 
 
 RUNS = {"mitsuba": run_mitsuba, "cycles": run_cycles}

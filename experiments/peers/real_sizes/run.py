@@ -17,7 +17,6 @@ peer that is not installed is left out with a notice.
 import argparse
 import json
 import os
-import subprocess
 import sys
 from pathlib import Path
 
@@ -29,7 +28,7 @@ from match import match  # noqa: E402
 from mote_runs import Mote, beauty_and_variance, filter_of, found_references, make_reference  # noqa: E402
 from origin import commit  # noqa: E402
 from page import markdown, write_csv, write_page, write_speed  # noqa: E402
-from peer_runs import export, install_cycles, pictures, run_peer  # noqa: E402
+from peer_runs import export, pictures, run_peer  # noqa: E402
 from plot import svg  # noqa: E402
 from times import References, judged  # noqa: E402
 
@@ -42,7 +41,6 @@ def arguments():
     parser.add_argument("--match", action="store_true")
     parser.add_argument("--references", action="store_true")
     parser.add_argument("--fresh", action="store_true")
-    parser.add_argument("--install", action="store_true", help="make build/bpy_env with Cycles (bpy), then continue")
     parser.add_argument("--budget", type=float, help="seconds for all pictures of a method (settings.json: 34)")
     parser.add_argument("--mote", default=os.environ.get("MOTE", str(ROOT / "build/release/bin/mote")))
     options = parser.parse_args()
@@ -167,8 +165,6 @@ def main():
         return 2
     pages = []
     try:
-        if options.install:
-            install_cycles()
         if options.match:
             return match(options.mote, options.scenes or settings["scenes"], settings, ROOT / "out" / "peers_match")
         for name in options.scenes or settings["scenes"]:
@@ -178,7 +174,7 @@ def main():
             write_page(options.output / "peers.html", facts_of(settings, options), pages)
             print(write_speed(options.output, facts_of(settings, options), [(p[0], p[2]) for p in pages]))
             print(options.output / "peers.html")
-    except (RuntimeError, OSError, subprocess.CalledProcessError) as error:
+    except (RuntimeError, OSError) as error:
         print(f"run.py: {error}", file=sys.stderr)
         return 2
     return 0
