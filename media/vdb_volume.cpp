@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <map>
+#include <mutex>
 #include <system_error>
 
 #include "core/parameters/add_type.h"
@@ -57,8 +58,8 @@ const core::ParameterList<VdbSettings>& vdb_rows() {
     return list;
 }
 
-/// Grids that a scene still holds, so that it is loaded again with other settings without reading them. Not
-/// for several threads.
+/// Grids that a scene still holds, so that it is loaded again with other settings without reading them. For
+/// several threads: the viewer's renders load their scenes by one registry, each in its own.
 class KeptGrids {
   public:
     std::shared_ptr<const VdbGrid> get(const VdbSettings& s) {
@@ -66,6 +67,7 @@ class KeptGrids {
         const auto written =
             std::filesystem::last_write_time(s.file.path, unknown).time_since_epoch().count();
         const auto size = std::filesystem::file_size(s.file.path, unknown);
+        const std::lock_guard lock(mutex_);
         auto& kept = grids_[fmt::format("{} {} {} {} {}", written, size, s.options.clamp_negative, s.grid,
                                         s.file.path)];
         std::shared_ptr<const VdbGrid> grid = kept.lock();
@@ -74,6 +76,7 @@ class KeptGrids {
     }
 
   private:
+    std::mutex mutex_;
     std::map<std::string, std::weak_ptr<const VdbGrid>> grids_;
 };
 

@@ -17,31 +17,17 @@ import numpy as np
 import pyoidn
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-sys.path[:0] = [str(ROOT / "experiments" / part) for part in ("peers/real_sizes", "figures")]
+sys.path[:0] = [str(ROOT / "experiments" / part) for part in ("peers/real_sizes", "peers/witness", "figures")]
 import measure  # noqa: E402
 from exr import _exr_file  # noqa: E402
 from mote_runs import Mote, beauty_and_variance, found_references  # noqa: E402
+from oidn import filtered  # noqa: E402
 from origin import commit  # noqa: E402
 from times import References  # noqa: E402
 
 SCENES = {"cornell_box": "path", "smoke_room": "volpath", "atrium": "volpath", "fog_grille": "volpath"}
 QUALITIES = {"high": pyoidn.OIDN_QUALITY_HIGH, "balanced": pyoidn.OIDN_QUALITY_BALANCED, "fast": pyoidn.OIDN_QUALITY_FAST}
 CHOICES = [("high", "high"), ("balanced", "high"), ("balanced", "balanced"), ("fast", "fast")]  # of features, of colour
-
-
-def filtered(device, images, quality, **flags):
-    output = np.empty_like(next(iter(images.values())))
-    with pyoidn.Filter(device, pyoidn.OIDN_FILTER_TYPE_RT) as one:
-        for name, image in {**images, "output": output}.items():
-            one.set_image(name, image, pyoidn.OIDN_FORMAT_FLOAT3)
-        for name, value in flags.items():
-            one.set_bool(name, value)
-        one.set_quality(QUALITIES[quality])
-        one.commit()
-        one.execute()
-    if device.get_error() is not None:
-        raise RuntimeError(device.get_error())
-    return output
 
 
 def processor_seconds():
@@ -52,8 +38,8 @@ def processor_seconds():
 def denoised(device, picture, of_features, of_colour):
     """The picture, and the processor seconds that it took."""
     before = processor_seconds()
-    clean = {name: filtered(device, {name: picture[name]}, of_features) for name in ("albedo", "normal")}
-    result = filtered(device, {"color": picture["color"], **clean}, of_colour, hdr=True, cleanAux=True)
+    clean = {name: filtered(device, {name: picture[name]}, QUALITIES[of_features]) for name in ("albedo", "normal")}
+    result = filtered(device, {"color": picture["color"], **clean}, QUALITIES[of_colour], hdr=True, cleanAux=True)
     return result, processor_seconds() - before
 
 

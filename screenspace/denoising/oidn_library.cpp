@@ -21,7 +21,7 @@ namespace {
 using Handle = void*;  // OIDNDevice, OIDNFilter
 constexpr int cpu_device = 1, format_float3 = 3;
 /// The quality of features: 2.4 times as fast as the high one, for at most a hundredth more error of the
-/// picture (docs/denoising.md).
+/// picture (docs/methods/denoising.md).
 constexpr int balanced_quality = 5;
 static_assert(sizeof(Rgb) == 3 * sizeof(float), "pixels are handed over as they lie");
 

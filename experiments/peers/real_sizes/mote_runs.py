@@ -31,7 +31,8 @@ class Mote:
         statistics = self.render(output, method["integrator"], method.get("settings", {}), "--passes", passes, *denoise,
                                  seed=seed)
         seconds = statistics["seconds"]
-        return {"layer": "denoised" if denoise else "", "passes": passes, "seed": seed, "file": output.name, "cpu_s": processor_seconds() - before,
+        return {"layer": "denoised" if denoise else "", "passes": passes, "seed": seed, "file": output.name,
+                "cpu_s": processor_seconds() - before,
                 "wall_s": seconds["build"] + seconds["render"] + seconds["finish"] + seconds.get("denoise", 0.0),
                 "build_s": seconds["load"],
                 "commit": statistics["git_hash"]}

@@ -3,7 +3,7 @@ import numpy as np
 import pyoidn
 
 
-def filtered(device, images, **flags):
+def filtered(device, images, quality=pyoidn.OIDN_QUALITY_DEFAULT, **flags):
     """The output of the RT filter over named images [height, width, 3]."""
     output = np.empty_like(images["color" if "color" in images else next(iter(images))])
     with pyoidn.Filter(device, pyoidn.OIDN_FILTER_TYPE_RT) as one:
@@ -11,6 +11,7 @@ def filtered(device, images, **flags):
             one.set_image(name, image, pyoidn.OIDN_FORMAT_FLOAT3)
         for name, value in flags.items():
             one.set_bool(name, value)
+        one.set_quality(quality)
         one.commit()
         one.execute()
     if device.get_error() is not None:
