@@ -1,20 +1,19 @@
 #!/bin/bash
 # On a Debian 12 that has nothing: do the packages bring what the command and the examples need?
 #
-#   tools/check_bare_debian.sh [--wheel] [--build BUILD] [ROOT]
+#   tools/check_bare_debian.sh [--build BUILD] [ROOT]
 #
 # Makes a Debian of the smallest kind in ROOT (build/bare_debian; debootstrap, kept for the next time, of which the
 # packages of the last check are taken away first), installs the .deb files of BUILD (build/release, built) by
 # `apt-get install` with what they declare, nothing that is merely recommended, renders a scene, installs g++ and cmake,
-# and builds and runs each example from an empty folder. --wheel: also builds the wheel here, installs it there by pip and
-# renders from Python. Needs root, debootstrap and Debian's packages (300 MB), PyPI for --wheel; not part of ./test. Its sibling check_bare_commands.sh runs
-# ./quickstart and ./test on a bare Debian 12 and 13.
+# and builds and runs each example from an empty folder. Needs root, debootstrap and Debian's packages (300 MB); not part of
+# ./test. Its siblings: check_bare_commands.sh runs ./quickstart and ./test on a bare Debian 12 and 13, check_bare_wheel.sh
+# installs the wheel there.
 set -euo pipefail
 source=$(cd "$(dirname "$0")/.." && pwd)
-build=$source/build/release root=$source/build/bare_debian wheel=0
+build=$source/build/release root=$source/build/bare_debian
 while (($#)); do
   case $1 in
-    --wheel) wheel=1 ;;
     --build) build=$(realpath "$2") && shift ;;
     *) root=$(realpath -m "$1") ;;
   esac
@@ -33,7 +32,7 @@ log=$build/bare_debian.log
 
 [[ -e $root/etc/debian_version ]] || { step "a Debian in $root" && debootstrap --variant=minbase bookworm "$root" >> "$log"; }
 inside apt-get update -q >> "$log"
-for package in mote-dev mote g++ cmake make python3-venv; do  # together they fail where one is not there
+for package in mote-dev mote g++ cmake make; do  # together they fail where one is not there
   inside apt-get purge -y -q "$package" >> "$log" 2>&1 || true
 done
 inside apt-get autoremove -y -q --purge >> "$log" 2>&1
@@ -71,16 +70,4 @@ for folder in "$root"/check/examples/*/; do
   echo "$example: $(inside "/check/build/$example/$example" "${words[@]}" 2>> "$log" | tail -n 1)"
 done
 
-if ((wheel)); then
-  step "the wheel"
-  python3 -m pip wheel -q --no-deps -w "$build/bare_debian" "$source" >> "$log" 2>&1
-  cp "$build"/bare_debian/mote-*.whl "$root/check"
-  install python3-venv
-  inside python3 -m venv /check/python
-  # PyPI as this machine reaches it.
-  [[ -z ${PIP_CERT:-} ]] || cp "$PIP_CERT" "$root/check/certificates.crt"
-  inside env ${PIP_CERT:+PIP_CERT=/check/certificates.crt} sh -c '/check/python/bin/pip install -q /check/mote-*.whl'
-  inside sh -c "cd /check && python/bin/python -c \"import mote; mote.render('scenes/cornell_box.xml', passes=1).save('box.exr')\""
-  inside /check/python/bin/python -c "import mote; p = mote.Picture.load('/check/box.exr'); print(mote.__version__, p['beauty'].shape, p['beauty'].mean())"
-fi
 echo "all good: $log"
