@@ -85,7 +85,7 @@ def methods_of(mote, scene, settings, options, output):
         folder = output / folder_name(method)
         log = measured(folder, options.fresh, [*setup, method], lambda f: mote.run(method, f, budget, 100 * (index + 1)))
         text = " ".join([method["integrator"]] + [f"{k}={v}" for k, v in method.get("settings", {}).items()])
-        yield method["name"], text, "", method.get("unbiased", False), folder, log
+        yield method["name"], text, "", method.get("unbiased", False), bool({"denoise", "filtered"} & method.keys()), folder, log
     notes = export(mote, scene["integrator"], exported)
     for index, peer in enumerate(settings["peers"]):
         folder, s = output / folder_name(peer), {**settings[peer["program"]], **peer}
@@ -96,7 +96,7 @@ def methods_of(mote, scene, settings, options, output):
             continue
         log["notes"] += notes if peer["program"] == "mitsuba" else []
         text = " ".join(f"{k}={v}" for k, v in s.items() if k not in ("name", "program"))
-        yield peer["name"], text, peer["program"], not peer["denoise"], folder, log
+        yield peer["name"], text, peer["program"], not peer["denoise"], peer["denoise"], folder, log
 
 
 def folder_name(method):
@@ -123,14 +123,14 @@ def scene_page(name, scene, settings, options):
     mote.sizes = [f"resx={settings['width']}", f"resy={settings['height']}", f"film.rfilter={settings['filter']}"]
     references, methods, notes = References([a, b], [va, vb]), [], []
     model = {}  # program: what its pictures differ by without denoiser
-    for method, text, program, unbiased, folder, log in methods_of(mote, scene, settings, options, output):
+    for method, text, program, unbiased, denoised, folder, log in methods_of(mote, scene, settings, options, output):
         systematic = judged(references, log["runs"], list(pictures(folder, log)))
         if program and unbiased and systematic[0] > 3 * systematic[1]:
             model[program] = systematic
         methods.append({"name": method, "settings": text, "peer": program != "", "unbiased": unbiased, "runs": log["runs"],
                         "version": log["version"], "build_s": log["build_s"], "systematic": systematic,
                         "model": model.get(program, (0.0, 0.0)),
-                        "denoised": method.endswith("+ OIDN") or method == "mote layers"})
+                        "denoised": denoised})
         notes += [f"{method}: {note}" for note in log["notes"]]
         last = log["runs"][-1]
         print(f"{name}: {method}: {last['passes']} passes, {last['wall_s']:.1f} s, error {100 * last['error']:.2f} ± "
