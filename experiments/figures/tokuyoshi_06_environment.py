@@ -3,7 +3,7 @@
 
 A bunny and a ball under the sky of scenes/generate represent the paper's scene of 87 thousand triangles. Light of the sky
 alone, without bounces. Directions that serve one way, as a shadow map tests, were measured at commit 05a8b1c, where their
-code last stood (docs/gallery/index.md). `time` turns the bunny. A full run takes half a minute of one core, --quick 10 s.
+code last stood (docs/gallery/tokuyoshi_06_environment.md). `time` turns the bunny. A full run takes half a minute of one core, --quick 10 s.
 
     experiments/figures/tokuyoshi_06_environment.py [--quick] [--redraw] [--output FOLDER] [--bin FOLDER]
 """

@@ -4,7 +4,7 @@
 A path continues along another of the pass's own directions, in random order, each at most once: then it is as good as one of
 fresh directions. Directions that are chosen again and again, as in the paper, bias the light by 0.6 over their number, for
 one path of two bounces in M goes straight back to where it came from: measured at commit 05a8b1c, where that code last
-stood (docs/gallery/index.md). Bundles are rays from the points themselves here, not grids that are kept. A full run takes 5
+stood (docs/gallery/tokuyoshi_11_reuse.md). Bundles are rays from the points themselves here, not grids that are kept. A full run takes 5
 minutes, --quick 10 s.
 
     experiments/figures/tokuyoshi_11_reuse.py [--quick] [--redraw] [--output FOLDER] [--bin FOLDER]

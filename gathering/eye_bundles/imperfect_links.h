@@ -16,7 +16,7 @@ namespace mote::gathering {
 struct ImperfectLinkSettings {
     std::uint32_t points = 16384;  ///< of a bundle, as in the poster
     /// ImperfectSettings. Wide enough to close most holes: at 1 half of the links are missing
-    /// (docs/gallery/index.md, tokuyoshi_b_imperfect).
+    /// (docs/gallery/tokuyoshi_b_imperfect.md).
     float splat_size = 1.4f;
     std::size_t memory_budget = std::size_t(2) << 30;  ///< of all bundles of a pass [B]
 };

@@ -18,7 +18,7 @@ namespace {
 constexpr int light_samples = 4;
 /// One place of 2^level gathers for those around it that face its way: a step of the radiosity then costs a
 /// small part of what the eye's receivers gather, and three bounces keep the mean of path within 0.1 %
-/// (docs/gallery/index.md, engelhardt_08_06_multibounce).
+/// (docs/gallery/engelhardt_08_06_multibounce.md).
 constexpr std::uint32_t radiosity_level = 6;
 /// Photons of an estimate, as in the first pass of mote_photon_map.
 constexpr DensityEstimate photon_estimate{50, 1.0f};
