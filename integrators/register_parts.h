@@ -10,6 +10,8 @@
 
 namespace mote::integrators {
 
+enum class ScatteringLights : std::uint8_t;  // single_scattering/single_scattering_estimator.h
+
 void register_screen_space_compensation(core::Registry& registry);
 void register_mote_layers(core::Registry& registry);
 void register_path(core::Registry& registry);
@@ -32,12 +34,11 @@ std::shared_ptr<const core::Integrator> make_volpath(const EyePathLimits& limits
 /// Virtual point lights by the ten thousand, resampled for pixels that do not lie side by side, as an image
 /// filter wants them. What their bound takes is missing.
 std::shared_ptr<const core::Integrator> make_sampled_vpls(const EyePathLimits& limits);
-/// Light of lights with a position, scattered once in media; light of all others, with all else that scatters
-/// at most once (lights = positional, other).
-std::shared_ptr<const core::Integrator> make_epipolar(const EyePathLimits& limits, int lines, int samples);
+/// Light of these lights, scattered once in media, along epipolar lines.
+std::shared_ptr<const core::Integrator> make_epipolar(const EyePathLimits& limits, ScatteringLights which,
+                                                      int lines, int samples);
+/// Light of lights without a position that scatters once in media, and all on surfaces.
 std::shared_ptr<const core::Integrator> make_single_scattering(const EyePathLimits& limits);
-/// Light of all lights that scatters at most once.
-std::shared_ptr<const core::Integrator> make_all_single_scattering(const EyePathLimits& limits);
 
 /// Light that passes delta surfaces last, for integrators that can only hit lights.
 void plan_caustics(core::Plan& plan, const core::Scene& scene, const core::Requirements& requirements);

@@ -26,54 +26,81 @@ bool lamps_in_media(const Scene& scene) {
     });
 }
 
-}  // namespace
+/// Everything but what is left to chance without need: the light of a few lights with a position, scattered
+/// once in media, is marched.
+struct Marching {
+    bool pays = false;
+    std::string why;  ///< it does not
+};
 
-std::vector<LayerMethod> choose_layer_methods(const Scene& scene, const Requirements& r,
-                                              const EyePathLimits& limits, FarLight far_light) {
-    const bool by_lights = far_light == FarLight::lights;
-    const std::string reason =
-        by_lights
-            ? "virtual point lights, sampled for pixels that lie apart: less noise than paths, and what "
-              "the bound takes is missing"
-            : "paths of pixels err independently of each other, which the filter takes";
-    const bool equiangular = r.media_scattering && lamps_in_media(scene);
-    const auto far = [&] {
-        if (by_lights) return make_sampled_vpls(limits);
-        return r.any_media() ? make_volpath(limits, equiangular) : make_path(limits);
-    };
-    constexpr TransportSet near = Transport::emission | Transport::direct,
-                           twice = Transport::indirect | Transport::multiple_scattering,
-                           single = Transport::single_scattering;
-    if (!r.any_media())
-        return {{make_path(limits), near, "one scattering: light and BSDF sampling"},
-                {far(), Transport::indirect, reason}};
-    if (depth_of_marching_step(scene, 1.0f) > thick_step) {
-        const std::string why = "; voxels are too dense to be marched";
-        if (!by_lights) return {{far(), near | single | twice, reason + why}};
-        return {{make_volpath(limits, equiangular), near | single, "paths" + why}, {far(), twice, reason}};
-    }
+Marching marching_of(const Scene& scene, const Requirements& r, const EyePathLimits& limits) {
     const std::size_t lights = positional_lights(scene).size();
-    const bool marched = r.media_scattering && lights > 0 && lights <= max_marched_lights &&
-                         (limits.max_depth < 0 || limits.max_depth > 1);
-    const std::string surfaces = "surfaces behind media whose transmittance is marched";
-    if (!marched) {
-        const std::string why =
-            lights > 0 ? "; too many lights to march each of them" : "; no light has a position to march to";
-        const LayerMethod seen{make_single_scattering(limits), near, surfaces};
-        if (!by_lights) return {seen, {far(), twice | single, reason + why}};
-        const LayerMethod others{far(), twice, reason};
-        if (lights > 0) return {seen, {make_volpath(limits, equiangular), single, "paths" + why}, others};
-        return {{make_all_single_scattering(limits), near | single, surfaces}, others};
-    }
+    if (depth_of_marching_step(scene, 1.0f) > thick_step)
+        return {false, "voxels are too dense to be marched"};
+    if (lights > max_marched_lights) return {false, "too many lights to march each of them"};
+    if (lights == 0) return {false, "no light has a position to march to"};
+    return {r.media_scattering && (limits.max_depth < 0 || limits.max_depth > 1),
+            "nothing scatters in media"};
+}
+
+LayerMethod marched_lights(const Scene& scene, const Requirements& r, const EyePathLimits& limits,
+                           ScatteringLights which) {
     // Lines end at the border of the picture: as many as there are pixels along half of it.
     const int lines = std::clamp(scene.film().width + scene.film().height, 16, 1024);
     // Refinement starts from the evenly spread samples: a gap in the smoke between two of them is not seen.
     const int samples = r.media_heterogeneous > 0 ? 64 : 16;
+    return {make_epipolar(limits, which, lines, samples), scattering_cell(which),
+            "lights with a position, marched along epipolar lines: nothing is left to chance"};
+}
+
+constexpr TransportSet near = Transport::emission | Transport::direct,
+                       twice = Transport::indirect | Transport::multiple_scattering,
+                       single = Transport::single_scattering;
+
+/// A path has the light of its first vertices for nothing: methods of their own for it cost more than they
+/// save, in time and in noise, with the denoiser as well as without (docs/methods/layers.md).
+std::vector<LayerMethod> choose_paths(const Scene& scene, const Requirements& r,
+                                      const EyePathLimits& limits) {
+    const std::string reason =
+        "one path has the light of all its vertices, and errs independently of those of other pixels";
+    if (!r.any_media()) return {{make_path(limits), near | Transport::indirect, reason}};
+    const auto paths = make_volpath(limits, r.media_scattering && lamps_in_media(scene));
+    const Marching marching = marching_of(scene, r, limits);
+    if (!marching.pays) return {{paths, near | single | twice, reason + "; " + marching.why}};
+    if (!has_other_lights(scene))
+        return {{paths, near | twice, reason}, marched_lights(scene, r, limits, ScatteringLights::all)};
+    return {{paths, near | twice, reason},
+            {make_single_scattering(limits), TransportSet::other_scattering(),
+             "one distance a ray for lights without a position"},
+            marched_lights(scene, r, limits, ScatteringLights::positional)};
+}
+
+std::vector<LayerMethod> choose_lights(const Scene& scene, const Requirements& r,
+                                       const EyePathLimits& limits) {
+    const std::string reason =
+        "virtual point lights, sampled for pixels that lie apart: less noise than paths, and what "
+        "the bound takes is missing";
+    const LayerMethod far{make_sampled_vpls(limits),
+                          r.any_media() ? twice : TransportSet(Transport::indirect), reason};
+    if (!r.any_media()) return {{make_path(limits), near, "one scattering: light and BSDF sampling"}, far};
+    const Marching marching = marching_of(scene, r, limits);
+    if (!marching.pays) {
+        const auto paths = make_volpath(limits, r.media_scattering && lamps_in_media(scene));
+        return {{paths, near | single, "paths; " + marching.why}, far};
+    }
     return {{make_single_scattering(limits), near | TransportSet::other_scattering(),
-             surfaces + "; one distance a ray for lights without a position"},
-            {make_epipolar(limits, lines, samples), TransportSet::positional_scattering(),
-             "lights with a position, marched along epipolar lines: nothing is left to chance"},
-            {far(), twice, reason}};
+             "surfaces behind media whose transmittance is marched; one distance a ray for lights without a "
+             "position"},
+            marched_lights(scene, r, limits, ScatteringLights::positional),
+            far};
+}
+
+}  // namespace
+
+std::vector<LayerMethod> choose_layer_methods(const Scene& scene, const Requirements& requirements,
+                                              const EyePathLimits& limits, FarLight far_light) {
+    return far_light == FarLight::paths ? choose_paths(scene, requirements, limits)
+                                        : choose_lights(scene, requirements, limits);
 }
 
 LayerChoice fill_layers(const Scene& scene, std::vector<LayerMethod> methods) {

@@ -68,8 +68,9 @@ Plan MoteEpipolar::plan(const Scene& scene, const Requirements& r) const {
 
 }  // namespace
 
-std::shared_ptr<const Integrator> make_epipolar(const EyePathLimits& limits, int lines, int samples) {
-    ScatteringSettings settings = scattering_settings(limits, ScatteringLights::positional);
+std::shared_ptr<const Integrator> make_epipolar(const EyePathLimits& limits, ScatteringLights which,
+                                                int lines, int samples) {
+    ScatteringSettings settings = scattering_settings(limits, which);
     settings.lines = lines, settings.line.initial = samples;
     return std::make_shared<const MoteEpipolar>(std::move(settings));
 }

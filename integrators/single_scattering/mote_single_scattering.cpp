@@ -54,10 +54,6 @@ std::shared_ptr<const Integrator> make_single_scattering(const EyePathLimits& li
     return std::make_shared<const MoteSingleScattering>(scattering_settings(limits, ScatteringLights::other));
 }
 
-std::shared_ptr<const Integrator> make_all_single_scattering(const EyePathLimits& limits) {
-    return std::make_shared<const MoteSingleScattering>(scattering_settings(limits, ScatteringLights::all));
-}
-
 void register_mote_single_scattering(Registry& registry) {
     using S = ScatteringSettings;
     const ParameterList<S> parameters{
