@@ -21,7 +21,9 @@ struct Folder : TemporaryFolder {
             <lookat origin="0, 0, 4" target="0, 0, 0" up="0, 1, 0"/></transform></sensor>
             <shape type="sphere"><bsdf type="diffuse"><rgb name="reflectance" value="$grey"/></bsdf></shape>
             <shape type="rectangle"><transform name="to_world"><scale value="4"/><rotate x="1" angle="-90"/>
-            <translate y="-1"/></transform></shape><emitter type="constant"/></scene>)");
+            <translate y="-1"/></transform></shape><emitter type="constant"/><integrator type="mote_layers">
+            <integrator type="path" name="emission, direct"/><integrator type="path" name="indirect"/>
+            </integrator></scene>)");
     }
     RunResult run(std::vector<std::string> arguments) const { return run_mote(*this, std::move(arguments)); }
     RunResult render(const std::string& range, const std::string& film,
@@ -36,8 +38,7 @@ struct Folder : TemporaryFolder {
     }
 };
 
-const std::vector<std::string> layers = {"--integrator", "mote_layers", "-D", "integrator.shares=1, 2",
-                                         "--auxiliary"};
+const std::vector<std::string> layers = {"-D", "integrator.shares=1, 2", "--auxiliary"};
 
 std::vector<std::string> operator+(std::vector<std::string> a, const std::vector<std::string>& b) {
     a.insert(a.end(), b.begin(), b.end());

@@ -28,7 +28,8 @@ SCENE = """<scene version="3.0.0"><default name="grey" value="0.5"/>
     <lookat origin="0, 0, 4" target="0, 0, 0" up="0, 1, 0"/></transform></sensor>
     <shape type="sphere"><bsdf type="diffuse"><rgb name="reflectance" value="$grey"/></bsdf></shape>
     <shape type="rectangle"><transform name="to_world"><scale value="4"/><rotate x="1" angle="-90"/>
-    <translate y="-1"/></transform></shape><emitter type="constant"/></scene>"""
+    <translate y="-1"/></transform></shape><emitter type="constant"/><integrator type="mote_layers">
+    <integrator type="path" name="emission, direct"/><integrator type="path" name="indirect"/></integrator></scene>"""
 PATH = ["--integrator", "path"]
 # Workers are forked off a process that has read distributed, which takes a second.
 dask.config.set({"distributed.worker.multiprocessing-method": "forkserver"})
@@ -206,7 +207,7 @@ class Pictures(unittest.TestCase):
                               cwd=folder, capture_output=True, text=True, env={**os.environ,
                                                                                "PYTHONPATH": str(SOURCE / "python")})
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("integrator.shares=", done.stderr)  # the default integrator, after a pilot
+        self.assertIn("integrator.shares=", done.stderr)  # a picture of two methods, after a pilot
         self.assertIn("pass 8/8", done.stderr)
         shares = done.stderr.split("integrator.shares=")[1].split("'")[0]
         mote("render", "scene.xml", "--quiet", "--passes", "8", "-D", f"integrator.shares={shares}", "-o", "one.exr")

@@ -346,7 +346,7 @@ TEST_CASE("every integrator gives the same bits on one thread, and on many after
                              [&](const std::string& text) { return text.find(why) != std::string::npos; });
     };
     CHECK(count("OpenImageDenoise is not loaded") == 1);
-    CHECK(count("mote_layers: shares has") == 4);  // two methods, or three, and other numbers of shares
+    CHECK(count("mote_layers: shares has") == 4);  // one method, or three, and other numbers of shares
     CHECK(count("'media' is compensated in the passes") == 1);
     // mote_vsl, mote_vpl_ray_bundles and mote_micro_rendering, alone and in mote_layers
     CHECK(count("renders surfaces only") == 6);
