@@ -24,7 +24,7 @@ class OidnLibrary {
 
     const std::string& version() const { return version_; }  ///< "2.5.1"
 
-    /// Of colours; features are denoised at the balanced one.
+    /// Quality of colours; features always have the balanced one.
     enum class Quality { high, balanced };
     /// Time of the high quality over that of the balanced one (docs/methods/denoising.md).
     static constexpr double high_per_balanced = 2.4;
