@@ -41,13 +41,14 @@ std::vector<std::string> layers_without_passes(const core::Film& film) {
     return names;
 }
 
-core::ImageChannels preview_of(const core::Film& film, bool with_layers) {
+core::ImageChannels preview_of(const core::Film& film, const std::optional<core::PictureError>& error,
+                               bool with_layers) {
     core::ImageChannels image;
     if (with_layers) {
         image = core::film_image(film);
         image.metadata["passes"] = std::to_string(film.has_passes(1) ? film.pass_count() : 0);
         image.metadata["noise"] = fmt::format("{:.6g}", film.noise());
-        add_error(image.metadata, film.error());
+        add_error(image.metadata, error);
         return image;
     }
     image.width = film.width(), image.height = film.height();
@@ -127,8 +128,9 @@ class RenderWork {
         r.finish = settings_.finish;
         r.preview_is_seen = [&observer] { return observer.preview_is_seen(); };
         if (wants_previews_)
-            r.preview = [this, &observer](const core::Film& film) {
-                watched_.report(preview_of(film, observer.wants_layers()));
+            r.preview = [this, &observer](const core::Film& film,
+                                          const std::optional<core::PictureError>& error) {
+                watched_.report(preview_of(film, error, observer.wants_layers()));
             };
         return r;
     }

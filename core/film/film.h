@@ -28,6 +28,15 @@
 
 namespace mote::core {
 
+/// Sums that a film keeps besides those of its layers.
+struct KeptSums {
+    bool all_squares = false;  ///< squares of every layer
+    bool halves = false;       ///< sums over the passes of odd index
+    /// For files.
+    std::uint32_t bits() const { return (all_squares ? 1u : 0u) | (halves ? 2u : 0u); }
+    static KeptSums from_bits(std::uint32_t bits) { return {(bits & 1u) != 0, (bits & 2u) != 0}; }
+};
+
 class Film {
   public:
     static constexpr std::uint32_t max_passes = ExactSums::max_terms;  ///< of a part
@@ -43,8 +52,7 @@ class Film {
     std::size_t pixels() const { return std::size_t(width_) * std::size_t(height_); }  ///< width times height
     std::span<const Layer> layers() const { return layers_; }  ///< all of them, in order
     std::size_t parts() const { return parts_.size(); }        ///< how many
-    bool keeps_all_squares() const { return all_squares_; }    ///< of the constructor
-    bool keeps_halves() const { return halves_; }              ///< of the constructor
+    KeptSums kept() const { return {all_squares_, halves_}; }  ///< of the constructor
     std::uint32_t pass_count() const;                          ///< of all parts together
     std::uint32_t pass_count(std::size_t part) const { return parts_.at(part).passes; }  ///< of one part
     /// Index of the first pass of a part that the film holds, or will hold.
@@ -134,13 +142,11 @@ class Film {
     /// (core/metrics/halves_error.h): for passes without bias whose noise is independent from pixel to pixel.
     /// Nothing where the film keeps no halves, a half of a part has fewer than two passes, or a post-process
     /// has not worked on the halves.
-    /// Weights of errors are relative to the light of a pixel, which is known with noise: the interval holds
-    /// what two kinds of weights make of it. By the picture, a rare bright path is taken for a bright place,
-    /// where it counts for little; by the darker half where the halves differ much, a lamp that one has
-    /// missed for a dark one.
+    /// Weights of errors are relative to the light of a pixel. Where every layer is filtered, that is the
+    /// picture's. Else it is known with noise, and the interval holds what two kinds of weights make of it:
+    /// by the picture, a rare bright path is taken for a bright place, where it counts for little; by the
+    /// darker half where the halves differ much, a lamp that one has missed for a dark one.
     std::optional<PictureError> error() const;
-    std::optional<std::array<BlockErrors, 2>> block_errors()
-        const;  ///< by blocks of pixels and kind of weights
 
     /// The bits of the film, for checkpoints: sums, counts, open blocks, and a checksum. Throws OutOfMemory
     /// where the budget has no room for them.
@@ -182,11 +188,10 @@ class Film {
     /// Variance of that mean.
     std::vector<Rgb> half_variance(std::span<const std::size_t> layers, const ExactSums& squares,
                                    const ExactSums& odd, const ExactSums& odd_squares, int half) const;
-    /// Sums that are kept besides, for a file: bit 0 all squares, bit 1 halves.
-    std::uint32_t kept() const { return (all_squares_ ? 1u : 0u) | (halves_ ? 2u : 0u); }
     void check_room(const Part& part, std::uint32_t more) const;
     std::vector<Rgb> mean_of_passes() const;  ///< of the beauty, whatever set_mean() says
     bool has_replaced_variance() const;
+    bool every_layer_is_filtered() const;  ///< by halves: set_halves()
     /// Variance of the beauty as it is shown: that of set_mean() in place of the variance of a layer's
     /// passes.
     std::vector<Rgb> shown_variance_of_mean(double unit) const;

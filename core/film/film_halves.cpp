@@ -84,7 +84,13 @@ Film::HalfBeauty Film::half_beauty(int half) const {
     return result;
 }
 
-std::optional<std::array<BlockErrors, 2>> Film::block_errors() const {
+bool Film::every_layer_is_filtered() const {
+    for (std::size_t i = 0; i < layers_.size(); ++i)
+        if (!layers_[i].auxiliary && replaced_[i].halves[0].empty()) return false;
+    return true;
+}
+
+std::optional<PictureError> Film::error() const {
     if (!halves_) return std::nullopt;
     for (std::size_t i = 0; i < parts(); ++i)
         if (half_passes(i, 1) < 2 || half_passes(i, 0) < 2) return std::nullopt;
@@ -94,20 +100,21 @@ std::optional<std::array<BlockErrors, 2>> Film::block_errors() const {
     // Without the gain of Sobol points, which is pooled over the picture: the pixels that Eq. (3) of
     // halves_error.h depends on most are those of rare bright paths, where there is none.
     const HalfBeauty a = half_beauty(0), b = half_beauty(1);
+    const std::array halves{PictureHalf{a.passes, a.shown, a.variance},
+                            PictureHalf{b.passes, b.shown, b.variance}};
     const std::vector<Rgb> picture = beauty();
-    const auto with = [&](const RelativeWeights& weights) {
-        return halves_error(
-            {PictureHalf{a.passes, a.shown, a.variance}, PictureHalf{b.passes, b.shown, b.variance}}, picture,
-            weights, width_, height_);
+    const auto blocks = [&](const RelativeWeights& weights) {
+        return halves_error(halves, picture, weights, width_, height_);
     };
-    return std::array{with(relative_weights(picture, shown_variance_of_mean(1.0), width_, height_)),
-                      with(weights_of_halves(a.shown, b.shown, width_, height_))};
-}
-
-std::optional<PictureError> Film::error() const {
-    const auto blocks = block_errors();
-    if (!blocks) return std::nullopt;
-    const PictureError low = (*blocks)[0].of_picture(), high = (*blocks)[1].of_picture();
+    if (every_layer_is_filtered()) {
+        BlockErrors of_picture = blocks(relative_weights(picture));
+        add_variance_of_weights(of_picture, halves, {relative_weights(a.shown), relative_weights(b.shown)},
+                                width_);
+        return of_picture.of_picture();
+    }
+    const PictureError low =
+        blocks(relative_weights(picture, shown_variance_of_mean(1.0), width_, height_)).of_picture();
+    const PictureError high = blocks(weights_of_halves(a.shown, b.shown, width_, height_)).of_picture();
     return PictureError{std::sqrt(0.5 * (low.error * low.error + high.error * high.error)),
                         std::min(low.low, high.low), std::max(low.high, high.high)};
 }

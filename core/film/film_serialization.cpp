@@ -21,7 +21,7 @@ namespace {
 struct Header {
     std::array<char, 8> magic = {'m', 'o', 't', 'e', 'f', 'i', 'l', 'm'};
     std::uint32_t version = 5;
-    std::uint32_t width = 0, height = 0, layers = 0, kept = 0, parts = 0;  // kept: 1 all squares, 2 halves
+    std::uint32_t width = 0, height = 0, layers = 0, kept = 0, parts = 0;
     std::uint64_t non_finite = 0;
 };
 static_assert(sizeof(Header) == 40, "the header has no padding whose bytes could vary");
@@ -75,7 +75,7 @@ void Film::for_each_array(AnyFilm& film, const Body& body) {
 std::vector<std::byte> Film::serialize(const MemoryBudget& memory) const {
     Header header;
     header.width = std::uint32_t(width_), header.height = std::uint32_t(height_);
-    header.layers = std::uint32_t(layers_.size()), header.kept = kept();
+    header.layers = std::uint32_t(layers_.size()), header.kept = kept().bits();
     header.parts = std::uint32_t(parts_.size()), header.non_finite = non_finite_;
 
     std::vector<PartHeader> heads;
@@ -115,7 +115,7 @@ void Film::deserialize(std::span<const std::byte> bytes) {
         throw InputError("the film has " + std::to_string(header.width) + " x " +
                          std::to_string(header.height) + " pixels, not " + std::to_string(width_) + " x " +
                          std::to_string(height_));
-    if (header.layers != layers_.size() || header.kept != kept() || header.parts != parts_.size())
+    if (header.layers != layers_.size() || header.kept != kept().bits() || header.parts != parts_.size())
         throw InputError("the film has other layers");
     std::uint64_t sum;
     const auto content = bytes.first(bytes.size() - sizeof(sum));

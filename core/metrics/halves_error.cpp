@@ -63,6 +63,11 @@ double sum_of(const std::vector<double>& values) {
 
 }  // namespace
 
+std::size_t BlockErrors::index_of(std::size_t pixel, int width) const {
+    const int x = int(pixel % std::size_t(width)), y = int(pixel / std::size_t(width));
+    return std::size_t(y / size * columns + x / size);
+}
+
 PictureError BlockErrors::of_picture() const {
     return interval(sum_of(noise), sum_of(rest), sum_of(variance), sum_of(norm));
 }
@@ -87,8 +92,7 @@ BlockErrors halves_error(const std::array<PictureHalf, 2>& halves, std::span<con
     // The norm has as little noise as that of the picture (RelativeWeights::noise_norm).
     const double norm = weights.norm > 0.0 ? weights.noise_norm / weights.norm : 0.0;
     for (std::size_t p = 0; p < pixels; ++p) {
-        const int x = int(p % std::size_t(width)), y = int(p / std::size_t(width));
-        Sums& block = sums[std::size_t(y / size * blocks.columns + x / size)];
+        Sums& block = sums[blocks.index_of(p, width)];
         block.add(weights.weight[p], halves, p);
         block.norm += norm * weights.weight[p] * mean_square(r[p]);
     }
@@ -97,6 +101,22 @@ BlockErrors halves_error(const std::array<PictureHalf, 2>& halves, std::span<con
         blocks.variance.push_back(block.variance()), blocks.norm.push_back(block.norm);
     }
     return blocks;
+}
+
+void add_variance_of_weights(BlockErrors& blocks, const std::array<PictureHalf, 2>& halves,
+                             const std::array<RelativeWeights, 2>& weights, int width) {
+    const double norm = sum_of(blocks.norm);
+    std::vector<double> differences(blocks.variance.size(), 0.0);
+    for (std::size_t p = 0; p < halves[0].passes.size(); ++p) {
+        const Rgb &a = halves[0].passes[p], &b = halves[1].passes[p], &fa = halves[0].shown[p],
+                  &fb = halves[1].shown[p];
+        const double error = 0.25 * product(fa, fb, fa, fb) + product(a, fa, b, fb);
+        double difference = 0.0;
+        for (const auto& [of_half, sign] : {std::pair(&weights[0], 1.0), std::pair(&weights[1], -1.0)})
+            if (of_half->norm > 0.0) difference += sign * of_half->weight[p] / of_half->norm;
+        differences[blocks.index_of(p, width)] += norm * difference * error;
+    }
+    for (std::size_t i = 0; i < differences.size(); ++i) blocks.variance[i] += 0.25 * sqr(differences[i]);
 }
 
 }  // namespace mote::core

@@ -25,6 +25,10 @@
 // own. The sum is nearly normal, so Eq. (1) and (2) +- 1.96 s have 95 % confidence; no end is below the noise
 // that is known, and none above where s is not known. Where a few bright paths make up the error, s has a
 // long tail: it is mostly below what it is on average, and the interval contains the error less often.
+//
+// Weights are relative to the light of a pixel, which is known with noise as well. With W_a and W_b, those of
+// either half by itself, a block has the sums X_a and X_b; they differ by twice the standard error of their
+// mean, and (X_a - X_b)^2 / 4 is added to s^2 (4).
 #pragma once
 
 #include <array>
@@ -57,13 +61,19 @@ struct BlockErrors {
     std::vector<double> variance;    ///< of that sum, Eq. (3)
     std::vector<double> norm;        ///< sum w |r|^2 of a block
 
-    PictureError of_picture() const;                 ///< of all blocks together
-    PictureError of_block(std::size_t block) const;  ///< of one, relative to its own light
+    std::size_t index_of(std::size_t pixel, int width) const;  ///< of the block of a pixel
+    PictureError of_picture() const;                           ///< of all blocks together
+    PictureError of_block(std::size_t block) const;            ///< of one, relative to its own light
 };
 
 /// `r`: the picture, whose light the errors are relative to. Throws std::invalid_argument when a size does
 /// not fit.
 BlockErrors halves_error(const std::array<PictureHalf, 2>& halves, std::span<const Rgb> r,
                          const RelativeWeights& weights, int width, int height);
+
+/// Adds Eq. (4) to the variance of each block of halves_error(): what noise in the weights does to its sums.
+/// `weights`: of what is shown of either half.
+void add_variance_of_weights(BlockErrors& blocks, const std::array<PictureHalf, 2>& halves,
+                             const std::array<RelativeWeights, 2>& weights, int width);
 
 }  // namespace mote::core

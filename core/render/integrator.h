@@ -12,6 +12,7 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -79,8 +80,16 @@ class Estimator {
     /// The part that has the pass of this number, counted over all parts, before any pass was made. Throws
     /// InputError where that depends on what passes find: such a picture cannot be shared out by passes.
     virtual std::size_t part_of_pass(std::uint32_t /*number*/) const { return 0; }
-    /// Post-processes on the mean, after the last pass and for previews. May throw Cancelled.
+    /// Post-processes on the mean, after the last pass. May throw Cancelled.
     virtual void finish(Film& /*film*/, CancelToken /*cancelled*/) {}
+    /// finish() for a preview, or less of it in less time: then it returns false.
+    virtual bool finish_preview(Film& film, CancelToken cancelled) {
+        finish(film, cancelled);
+        return true;
+    }
+    /// Wall time that finish() will take, where earlier calls have shown it [s]; nothing: about that of the
+    /// last preview.
+    virtual std::optional<double> seconds_to_finish(const Film& /*film*/) const { return std::nullopt; }
     /// True if finish() sets what it leaves of the variance (Film::set_mean, Film::set_halves): then the
     /// noise is that of the finished picture.
     virtual bool changes_noise(const Film& /*film*/) const { return false; }

@@ -19,7 +19,7 @@ PartialFilm read_from(std::span<const std::byte> bytes) {
     ByteReader& reader = file.fields;
     std::string about = reader.text();
     const auto width = reader.number<std::uint32_t>(), height = reader.number<std::uint32_t>();
-    const auto kept = reader.number<std::uint8_t>();  // 1 all squares, 2 halves
+    const KeptSums kept = KeptSums::from_bits(reader.number<std::uint8_t>());
     const auto count = reader.number<std::uint32_t>();
     if (width > max_edge || height > max_edge || count > max_layers)
         throw InputError("damaged (its size cannot be)");
@@ -38,8 +38,8 @@ PartialFilm read_from(std::span<const std::byte> bytes) {
     if (9 * std::uint64_t(count) * min_packed_size(std::uint64_t(width) * height) > file.film.size())
         throw InputError("damaged (its length is wrong)");
     try {
-        PartialFilm partial{std::move(about), Film(int(width), int(height), std::move(layers),
-                                                   (kept & 1) != 0, (kept & 2) != 0)};
+        PartialFilm partial{std::move(about),
+                            Film(int(width), int(height), std::move(layers), kept.all_squares, kept.halves)};
         partial.film.deserialize(file.film);
         return partial;
     } catch (const std::invalid_argument& error) {  // of the film's constructor
@@ -56,7 +56,7 @@ void write_partial_film(const std::string& path, const PartialFilm& partial) {
     ByteWriter head;
     head.text(partial.about);
     head.number(std::uint32_t(film.width())), head.number(std::uint32_t(film.height()));
-    head.number(std::uint8_t((film.keeps_all_squares() ? 1 : 0) | (film.keeps_halves() ? 2 : 0)));
+    head.number(std::uint8_t(film.kept().bits()));
     head.number(std::uint32_t(film.layers().size()));
     for (const Layer& layer : film.layers()) {
         head.text(layer.name), head.text(layer.description);

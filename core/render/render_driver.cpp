@@ -46,7 +46,7 @@ class PassLoop {
         if (request_.abandoned && request_.abandoned->load()) return;
         const Clock::time_point begin = Clock::now();
         try {
-            if (!result_.interrupted && finished_before_ && preview_passes_ == state_.passes)
+            if (!result_.interrupted && preview_is_whole_ && preview_passes_ == state_.passes)
                 result_.film.exchange_replaced(std::move(preview_means_));  // a preview was the last step
             else if (!result_.interrupted)
                 with_memory_for("what '" + type + "' does after its passes",
@@ -207,7 +207,7 @@ class PassLoop {
         if (previews_ > 0 && seconds_since(preview_time_) < wait) return;
         const Clock::time_point begin = Clock::now();
         if (seen && previews_ == 0 && request_.first_preview_is_raw)
-            request_.preview(result_.film);
+            request_.preview(result_.film, stated(result_.film));
         else
             finish_for_preview(seen);
         ++previews_, preview_time_ = Clock::now(), preview_seconds_ = seconds_since(begin);
@@ -217,27 +217,36 @@ class PassLoop {
     void finish_for_preview(bool seen) {
         ++finished_previews_;
         try {
-            finish_for_now([&] {
-                if (seen) request_.preview(result_.film);
+            finish_for_now(true, [&](const std::optional<PictureError>& error) {
+                if (seen) request_.preview(result_.film, error);
             });
         } catch (const Cancelled&) {
         }
     }
-    /// Shows the finished picture to `look`; the film is afterwards as it was. Throws Cancelled.
+    /// Shows the finished picture's error to `look`, while the film holds the picture; the film is afterwards
+    /// as it was. Throws Cancelled.
     template <typename Look>
-    void finish_for_now(const Look& look) {
+    void finish_for_now(bool preview, const Look& look) {
         const Clock::time_point begin = Clock::now();
         try {
-            runner_.estimator().finish(result_.film, cancelled_flag());
+            Estimator& estimator = runner_.estimator();
+            if (preview)
+                preview_is_whole_ = estimator.finish_preview(result_.film, cancelled_flag());
+            else
+                estimator.finish(result_.film, cancelled_flag()), preview_is_whole_ = true;
         } catch (const Cancelled&) {
             result_.film.exchange_replaced();
             throw;
         }
         // The first call also builds what all later ones use: about half of it.
-        state_.seconds_to_finish = (std::exchange(finished_before_, true) ? 1.0 : 0.5) * seconds_since(begin);
-        look();
+        const double half_if_first = std::exchange(finished_before_, true) ? 1.0 : 0.5;
+        state_.seconds_to_finish = runner_.estimator()
+                                       .seconds_to_finish(result_.film)
+                                       .value_or(half_if_first * seconds_since(begin));
+        const std::optional<PictureError> error = stated(result_.film);
+        look(error);
         const double finished = changes_noise() ? result_.film.noise() : 0.0;
-        if (request_.halves) finished_error_ = stated(result_.film).value_or(PictureError());
+        if (request_.halves) finished_error_ = error.value_or(PictureError());
         if (!stop_.error) state_.error = finished_error_;  // a rule must not depend on previews
         preview_means_ = result_.film.exchange_replaced(), preview_passes_ = state_.passes;
         if (!changes_noise()) return;
@@ -256,7 +265,7 @@ class PassLoop {
     double finished_noise_now() {
         if (!result_.film.has_passes(2) || state_.passes < noise_rule_from) return infinity;
         try {
-            finish_for_now([] {});
+            finish_for_now(false, [](const std::optional<PictureError>&) {});
         } catch (const Cancelled&) {
             return infinity;  // the render ends here
         }
@@ -276,8 +285,9 @@ class PassLoop {
     std::uint32_t preview_passes_ = 0;
     /// Noise of the picture when it was finished last, and relative to the noise of its passes.
     double finished_noise_ = infinity, left_of_noise_ = infinity;
-    PictureError finished_error_;   ///< of the picture when it was finished last
-    bool finished_before_ = false;  ///< for a preview or the noise
+    PictureError finished_error_;    ///< of the picture when it was finished last
+    bool finished_before_ = false;   ///< for a preview or the noise
+    bool preview_is_whole_ = false;  ///< the last one is what Estimator::finish() makes
     Clock::time_point preview_time_ = Clock::now();
     double noise_seconds_ = 0.0;  ///< cost of the last evaluation of the noise
     const Clock::time_point start_ = Clock::now();

@@ -10,6 +10,49 @@ namespace mote::integrators {
 
 using namespace core;
 
+namespace {
+
+/// Mean and its variance, by the passes alone: an earlier call, for a preview, may have replaced them.
+struct LayerOfPasses {
+    std::vector<Rgb> mean;
+    std::vector<Rgb> variance;  ///< infinity after one pass
+};
+
+LayerOfPasses of_passes(Film& film, std::size_t layer) {
+    film.set_mean(layer, {});
+    const bool known = film.pass_count(film.layers()[layer].part) > 1;
+    return {film.mean(layer),
+            known ? film.layer_variance_of_mean(layer) : std::vector<Rgb>(film.pixels(), Rgb(infinity))};
+}
+
+/// The filtered sum of layers, of which each keeps its fraction of a pixel.
+std::vector<std::vector<Rgb>> filtered_sum(const screenspace::ViewFilter& filter,
+                                           std::vector<LayerOfPasses> layers, screenspace::LayerKind kind,
+                                           CancelToken cancelled) {
+    std::vector<Rgb> sum(layers[0].mean.size(), Rgb(0.0f)), variance = sum;
+    for (const LayerOfPasses& layer : layers)
+        for (std::size_t p = 0; p < sum.size(); ++p)
+            sum[p] += layer.mean[p], variance[p] += layer.variance[p];
+    const std::vector<Rgb> shown =
+        filter.filtered({sum, variance, kind, screenspace::FilterQuality::preview}, cancelled).mean;
+    std::vector<std::vector<Rgb>> result;
+    for (LayerOfPasses& layer : layers) {
+        for (std::size_t p = 0; p < sum.size(); ++p)
+            for (int c = 0; c < 3; ++c) {
+                const float of_none = result.empty() ? shown[p][c] : 0.0f;
+                layer.mean[p][c] = sum[p][c] > 0.0f ? shown[p][c] * (layer.mean[p][c] / sum[p][c]) : of_none;
+            }
+        result.push_back(std::move(layer.mean));
+    }
+    return result;
+}
+
+bool has_passes(const Film& film, std::size_t layer) {
+    return film.pass_count(film.layers()[layer].part) > 0;
+}
+
+}  // namespace
+
 const ParameterList<LayerFilterParameters>& layer_filter_rows() {
     using S = LayerFilterParameters;
     using Filter = screenspace::LayerFilterSettings;
@@ -82,24 +125,71 @@ void LayerFilter::apply(Film& film, CancelToken cancelled) {
     if (layers_.empty() || (has_variance_ && !film.has_passes(2))) return;
     variances_.clear();
     find_features(cancelled);
-    const Stopwatch stopwatch(filter_seconds_);
     const bool halves = has_halves(film);
-    for (const Choice& choice : layers_) {
-        if (halves) {
-            apply_to_halves(film, choice, cancelled);
-            continue;
+    double seconds = 0.0;
+    {
+        const Stopwatch stopwatch(seconds);
+        for (const Choice& choice : layers_) {
+            if (halves)
+                apply_to_halves(film, choice, cancelled);
+            else if (has_passes(film, choice.layer))
+                apply_to_mean(film, choice, cancelled);
         }
-        const std::uint32_t passes = film.pass_count(film.layers()[choice.layer].part);
-        if (passes == 0) continue;
-        film.set_mean(choice.layer,
-                      {});  // of the passes: an earlier call, for a preview, may have replaced it
-        const std::vector<Rgb> mean = film.mean(choice.layer);
-        const std::vector<Rgb> variance = passes > 1 ? film.layer_variance_of_mean(choice.layer)
-                                                     : std::vector<Rgb>(mean.size(), Rgb(infinity));
-        auto filtered = filter_->filtered({mean, variance, choice.kind}, cancelled);
-        film.set_mean(choice.layer, filtered.mean, filtered.variance);
-        variances_.push_back(std::move(filtered.variance));
     }
+    filter_seconds_ += seconds;
+    seconds_per_layer_ = seconds / (double(layers_.size()) * (halves ? 2.0 : 1.0));
+}
+
+void LayerFilter::apply_to_mean(Film& film, const Choice& choice, CancelToken cancelled) {
+    const LayerOfPasses layer = of_passes(film, choice.layer);
+    auto filtered = filter_->filtered({layer.mean, layer.variance, choice.kind}, cancelled);
+    film.set_mean(choice.layer, filtered.mean, filtered.variance);
+    variances_.push_back(std::move(filtered.variance));
+}
+
+bool LayerFilter::apply_for_preview(Film& film, CancelToken cancelled) {
+    if (layers_.empty() || has_variance_) {
+        apply(film, cancelled);
+        return true;
+    }
+    find_features(cancelled);
+    const bool halves = has_halves(film);
+    double seconds = 0.0, runs = 0.0;
+    {
+        const Stopwatch stopwatch(seconds);
+        for (const auto kind : {screenspace::LayerKind::surface, screenspace::LayerKind::volume}) {
+            std::vector<std::size_t> layers;
+            for (const Choice& choice : layers_)
+                if (choice.kind == kind && has_passes(film, choice.layer)) layers.push_back(choice.layer);
+            if (layers.empty()) continue;
+            apply_to_sum(film, layers, kind, cancelled);
+            runs += halves ? 2.0 : 1.0;
+        }
+    }
+    filter_seconds_ += seconds;
+    if (runs > 0.0) seconds_per_layer_ = filter_->full_per_preview() * seconds / runs;
+    return false;
+}
+
+void LayerFilter::apply_to_sum(Film& film, std::span<const std::size_t> layers, screenspace::LayerKind kind,
+                               CancelToken cancelled) {
+    const auto shown = [&](const auto& layer_of) {
+        std::vector<LayerOfPasses> all;
+        for (const std::size_t layer : layers) all.push_back(layer_of(layer));
+        return filtered_sum(*filter_, std::move(all), kind, cancelled);
+    };
+    if (!has_halves(film)) {
+        const auto means = shown([&](std::size_t layer) { return of_passes(film, layer); });
+        for (std::size_t i = 0; i < layers.size(); ++i) film.set_mean(layers[i], means[i]);
+        return;
+    }
+    std::array<std::vector<std::vector<Rgb>>, 2> means;
+    for (const int half : {0, 1})
+        means[std::size_t(half)] = shown([&](std::size_t layer) {
+            return LayerOfPasses{film.half_mean(layer, half), film.half_variance_of_mean(layer, half)};
+        });
+    for (std::size_t i = 0; i < layers.size(); ++i)
+        film.set_halves(layers[i], {std::move(means[0][i]), std::move(means[1][i])});
 }
 
 void LayerFilter::add_statistics(Statistics& statistics) const {

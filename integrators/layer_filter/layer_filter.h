@@ -43,6 +43,14 @@ class LayerFilter {
     /// are. Throws std::invalid_argument where a layer has no squares, and Cancelled.
     void apply(core::Film& film, core::CancelToken cancelled = {});
 
+    /// apply() for a preview: OpenImageDenoise takes the sum of all layers of a kind at once, and quickly;
+    /// each layer keeps its fraction of a pixel. Returns true where it is the same: for our own filter.
+    bool apply_for_preview(core::Film& film, core::CancelToken cancelled = {});
+    /// Wall time of apply() without features, by that of the last call of either [s].
+    double seconds_to_apply(const core::Film& film) const {
+        return seconds_per_layer_ * double(layers_.size()) * (has_halves(film) ? 2.0 : 1.0);
+    }
+
     const std::vector<Choice>& layers() const { return layers_; }
     /// True where apply() filters the halves of this film.
     bool has_halves(const core::Film& film) const;
@@ -61,6 +69,9 @@ class LayerFilter {
                 std::vector<Choice> layers, bool has_variance, MakeFilter make);
     void find_features(core::CancelToken cancelled);
     void apply_to_halves(core::Film& film, const Choice& choice, core::CancelToken cancelled);
+    void apply_to_mean(core::Film& film, const Choice& choice, core::CancelToken cancelled);
+    void apply_to_sum(core::Film& film, std::span<const std::size_t> layers, screenspace::LayerKind kind,
+                      core::CancelToken cancelled);
 
     const core::Scene& scene_;
     core::RenderOptions options_;
@@ -72,6 +83,7 @@ class LayerFilter {
     std::unique_ptr<screenspace::ViewFilter> filter_;  ///< from the features
     std::vector<std::vector<float>> variances_;
     double feature_seconds_ = 0.0, filter_seconds_ = 0.0;
+    double seconds_per_layer_ = 0.0;  ///< at full quality, by the last call
 };
 
 }  // namespace mote::integrators

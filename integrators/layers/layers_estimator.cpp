@@ -77,6 +77,12 @@ class LayersEstimator final : public Estimator {
     }
 
     void finish(Film& film, CancelToken cancelled) override { filter_.apply(film, cancelled); }
+    bool finish_preview(Film& film, CancelToken cancelled) override {
+        return filter_.apply_for_preview(film, cancelled);
+    }
+    std::optional<double> seconds_to_finish(const Film& film) const override {
+        return filter_.seconds_to_apply(film);
+    }
 
     bool changes_noise(const Film& film) const override {
         return filter_.has_variance() || filter_.has_halves(film);

@@ -202,6 +202,7 @@ std::vector<Rgb> OidnLibrary::denoised(const Picture& picture) const {
     run.image("albedo", picture.albedo);
     if (!picture.albedo.empty()) run.image("normal", picture.normal);  // it takes no normal alone
     run.flag("hdr");
+    if (picture.quality == Quality::balanced) run.quality(balanced_quality);
     if (!picture.albedo.empty()) run.flag("cleanAux");
     std::vector<Rgb> result = run.result();
     check("a layer was not denoised");

@@ -24,11 +24,16 @@ class OidnLibrary {
 
     const std::string& version() const { return version_; }  ///< "2.5.1"
 
+    /// Quality of colours; features always have the balanced one.
+    enum class Quality { high, balanced };
+    /// Time of the high quality over that of the balanced one (docs/methods/denoising.md).
+    static constexpr double high_per_balanced = 2.4;
     /// Features of the pixels; empty: none.
     struct Picture {
         int width = 0, height = 0;
         std::span<const core::Rgb> colour;          ///< radiance
         std::span<const core::Rgb> albedo, normal;  ///< without noise: those of denoised_feature()
+        Quality quality = Quality::high;
     };
     /// Throws InputError where the library fails.
     std::vector<core::Rgb> denoised(const Picture& picture) const;

@@ -27,10 +27,14 @@ struct LayerFilterSettings {
 /// Where the light of a layer comes from as seen from the eye.
 enum class LayerKind : std::uint8_t { surface, volume };
 
+/// A preview may have a somewhat larger error in less time.
+enum class FilterQuality : std::uint8_t { full, preview };
+
 struct LayerToFilter {
     std::span<const core::Rgb> mean;      ///< of the passes
     std::span<const core::Rgb> variance;  ///< of that mean
     LayerKind kind = LayerKind::surface;
+    FilterQuality quality = FilterQuality::full;
 };
 
 struct FilteredLayer {

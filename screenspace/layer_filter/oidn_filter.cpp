@@ -44,14 +44,17 @@ class OidnFilter final : public ViewFilter {
         for (Rgb& c : colour)
             if (!is_finite(c)) c = Rgb(0.0f);
         const std::vector<Rgb>& albedo = layer.kind == LayerKind::surface ? reflected_ : scattering_;
-        const std::vector<Rgb> denoised =
-            blend_by_variance(width_, height_, library_->denoised({width_, height_, colour, albedo, normal_}),
-                              colour, layer.variance, blend_radius, blend_deviations);
+        const auto quality = layer.quality == FilterQuality::full ? OidnLibrary::Quality::high
+                                                                  : OidnLibrary::Quality::balanced;
+        const std::vector<Rgb> denoised = blend_by_variance(
+            width_, height_, library_->denoised({width_, height_, colour, albedo, normal_, quality}), colour,
+            layer.variance, blend_radius, blend_deviations);
         for (std::size_t i = 0; i < denoised.size(); ++i)
             if (is_finite(layer.mean[i]) && is_finite(denoised[i]))
                 result.mean[i] = glm::max(denoised[i], glm::min(layer.mean[i], Rgb(0.0f)));
         return result;
     }
+    double full_per_preview() const override { return OidnLibrary::high_per_balanced; }
 
   private:
     std::shared_ptr<const OidnLibrary> library_;

@@ -14,6 +14,8 @@ class ViewFilter {
     /// Nowhere negative where the layer is not; pixels that are not finite stay as they are. The variance is
     /// empty where it is not known. Throws Cancelled, and std::invalid_argument when sizes differ.
     virtual FilteredLayer filtered(const LayerToFilter& layer, core::CancelToken cancelled) const = 0;
+    /// Time of a layer at full quality over that for a preview, about.
+    virtual double full_per_preview() const { return 1.0; }
 };
 
 /// filter_layer() with these settings. The features must outlive it.

@@ -161,6 +161,47 @@ TEST_CASE("The variance of one pass is not known: OpenImageDenoise smooths it, o
     CHECK(doubled == lit);
 }
 
+TEST_CASE("A preview shows the filtered sum of the layers of a kind", "[layer_filter]") {
+    const auto scene = scene_from(box(grey, coloured_fog), 32);
+    Film film = rendered(*scene, 1, 1);  // whose variance is not known: what is shown is all the library's
+    const std::array layers{layer_called(film, "direct"), layer_called(film, "indirect")};
+    const std::vector<LayerFilter::Choice> choices = {{layers[0], LayerKind::surface},
+                                                      {layers[1], LayerKind::surface}};
+    const std::vector<Rgb> before[] = {film.mean(layers[0]), film.mean(layers[1])};
+    const Environment stand_in("MOTE_OIDN", MOTE_BINARY_DIR "/stand_ins");
+    LayerFilter filter(*scene, options_of(*scene), FeatureSettings(), std::make_shared<const OidnLibrary>(),
+                       choices);
+    CHECK(!filter.apply_for_preview(film));
+    CHECK(filter.seconds_to_apply(film) > 0.0);
+    for (std::size_t p = 0; p < film.pixels(); ++p)
+        for (int c = 0; c < 3; ++c) {
+            const float sum = before[0][p][c] + before[1][p][c],
+                        shown = film.mean(layers[0])[p][c] + film.mean(layers[1])[p][c];
+            CHECK(shown == Approx(4.0f * sum));  // at balanced quality the stand-in quadruples
+            if (sum > 0.0f) CHECK(film.mean(layers[1])[p][c] / shown == Approx(before[1][p][c] / sum));
+        }
+    // A picture after a preview is what it is without one.
+    filter.apply(film);
+    const std::vector<Rgb> after = film.mean(layers[1]);
+    film.set_mean(layers[1], {});
+    LayerFilter(*scene, options_of(*scene), FeatureSettings(), std::make_shared<const OidnLibrary>(), choices)
+        .apply(film);
+    CHECK(film.mean(layers[1]) == after);
+}
+
+TEST_CASE("A preview by our own filter is its picture", "[layer_filter]") {
+    const auto scene = scene_from(box(grey, coloured_fog), 32);
+    Film film = rendered(*scene, 8, 1);
+    const std::size_t layer = layer_called(film, "indirect");
+    const std::vector<Rgb> before = film.mean(layer);
+    LayerFilter own(*scene, options_of(*scene), {}, {{layer, LayerKind::surface}});
+    CHECK(own.apply_for_preview(film));
+    const std::vector<Rgb> previewed = film.mean(layer);
+    CHECK(previewed != before);
+    own.apply(film);
+    CHECK(film.mean(layer) == previewed);
+}
+
 TEST_CASE("What cannot be filtered is said", "[layer_filter]") {
     const auto scene = scene_from(box(grey, ""), 8);
     Film film(8, 8, {{"indirect", ""}});

@@ -41,11 +41,11 @@ std::string rule(const Filter& f, std::string& input, float& factor, float& more
         return f.has(input) ? "" : "no input";
     }
     input = "color", more = 0.0f;
-    if (f.quality != 0) return "colour of other than the default quality";
+    if (f.quality != 0 && f.quality != 5) return "colour of other than the default or balanced quality";
     if (!f.flags.count("hdr")) return "colour without hdr";
     if (!f.has("albedo") && !f.has("normal")) return factor = 3.0f, "";
     if (!f.has("albedo") || !f.has("normal") || !f.flags.count("cleanAux")) return "half of the features";
-    factor = 2.0f;
+    factor = f.quality == 5 ? 4.0f : 2.0f;
     return denoised_before(f.images.at("albedo")) && denoised_before(f.images.at("normal"))
                ? ""
                : "noisy features";

@@ -137,6 +137,34 @@ TEST_CASE("An interval that ignores bias is found out", "[metrics][halves][cover
     CHECK(coverage([](const Image& i) { return boxed(i, 3); }, 100).optimist < 0.05);
 }
 
+TEST_CASE("Noise in the weights widens the interval", "[metrics][halves][statistics]") {
+    const Image mu = truth(), none(pixels, Rgb(0.0f));
+    const RelativeWeights exact = relative_weights(mu);
+    // Both halves are off by 1/10; the light of one is known with noise, so a block's sum is as well.
+    Image off(pixels);
+    for (std::size_t p = 0; p < pixels; ++p) off[p] = 1.1f * mu[p];
+    const std::array halves{PictureHalf{mu, off, none}, PictureHalf{mu, off, none}};
+    const auto with = [&](const RelativeWeights& a, const RelativeWeights& b) {
+        BlockErrors blocks = halves_error(halves, mu, exact, width, height);
+        add_variance_of_weights(blocks, halves, {a, b}, width);
+        return blocks;
+    };
+    const BlockErrors same_weights = with(exact, exact);
+    for (const double variance : same_weights.variance) CHECK(variance == 0.0);
+    // The sum of a block is sum w 0.01 |mu|^2 by either weights; half of its difference is its standard
+    // error.
+    const RelativeWeights other = relative_weights(noisy(mu, 1));
+    const BlockErrors blocks = with(exact, other);
+    std::vector<double> differences(blocks.variance.size(), 0.0);
+    for (std::size_t p = 0; p < pixels; ++p)
+        differences[blocks.index_of(p, width)] +=
+            0.01 * mean_square(mu[p]) * (exact.weight[p] / exact.norm - other.weight[p] / other.norm) *
+            exact.norm;
+    for (std::size_t i = 0; i < differences.size(); ++i)
+        CHECK(blocks.variance[i] == Approx(0.25 * differences[i] * differences[i]).epsilon(1e-3));
+    CHECK(blocks.of_picture().high > same_weights.of_picture().high);
+}
+
 TEST_CASE("An interval ends nowhere below the noise that is known", "[metrics][halves]") {
     const Image mu = truth(), a = noisy(mu, 1), b = noisy(mu, 2), f = boxed(a, 1), g = boxed(b, 1),
                 none(pixels, Rgb(0.0f));

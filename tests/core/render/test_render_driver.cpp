@@ -500,7 +500,7 @@ TEST_CASE("a preview shows the finished picture and leaves the film as it was", 
     std::vector<float> seen;
     std::vector<float> shown;
     RenderRequest request = request_for(3);
-    request.preview = [&](const Film& film) { shown.push_back(film.mean(0)[0].x); };
+    request.preview = [&](const Film& film, const auto&) { shown.push_back(film.mean(0)[0].x); };
     const RenderResult result = render(*scene, FinishingIntegrator(seen), request);
     REQUIRE_FALSE(shown.empty());
     CHECK(shown.front() == 7.0f);
@@ -512,7 +512,7 @@ TEST_CASE("a quick look is not finished: the first preview, or the whole picture
     const auto scene = fake_scene();
     std::vector<float> seen, shown;
     RenderRequest request = request_for(3);
-    request.preview = [&](const Film& film) { shown.push_back(film.mean(0)[0].x); };
+    request.preview = [&](const Film& film, const auto&) { shown.push_back(film.mean(0)[0].x); };
     request.preview_every_seconds = 0.0, request.preview_share = 1e9;
     request.first_preview_is_raw = true;
     CHECK(render(*scene, FinishingIntegrator(seen), request).film.mean(0)[0].x == 7.0f);
@@ -527,7 +527,9 @@ TEST_CASE("a picture that a preview has finished is not finished again", "[drive
     int finishes = 0;
     RenderRequest request = request_for(1000);
     request.stop.seconds = 0.05;  // over after the preview of the first pass
-    request.preview = [](const Film&) { std::this_thread::sleep_for(std::chrono::milliseconds(100)); };
+    request.preview = [](const Film&, const auto&) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    };
     const InFinish count = [&](const Film&, CancelToken) { ++finishes; };
     const RenderResult result = render(*scene, FinishingIntegrator(seen, count), request);
     CHECK(result.film.pass_count() == 1);
@@ -560,7 +562,7 @@ TEST_CASE("an interrupted render has the finished picture where that is quick, a
     const RenderResult without = render(*scene, FinishingIntegrator(seen, slow), request);
     CHECK(without.finished_for == 0u);
     CHECK(mean(without) == 1.0f);
-    stop = false, request.preview = [](const Film&) {};  // after the first pass
+    stop = false, request.preview = [](const Film&, const auto&) {};  // after the first pass
     const RenderResult with = render(*scene, FinishingIntegrator(seen, slow), request);
     CHECK(with.finished_for == 1u);
     CHECK(mean(with) == 7.0f);
@@ -664,7 +666,7 @@ TEST_CASE("the noise that is stated is that of the finished picture", "[driver][
     CHECK(looks.contains(passes_of_rule));
     CHECK(render(*scene, FilteringIntegrator(), request_for(passes_of_rule - 1)).film.noise() >
           0.9 * *rule.stop.noise);
-    rule.preview = [](const Film&) {};
+    rule.preview = [](const Film&, const auto&) {};
     CHECK(bits(render(*scene, FilteringIntegrator(), rule)) == bits(straight));
     rule.checkpoint_path = folder.file("c");
     std::atomic<bool> stop{false};
