@@ -4,10 +4,9 @@
 Usage: guiding.py [--mote build/release/bin/mote] [--seconds 120] [--seeds 4] [--size 320x200] [--scenes NAME,...]
                   [--set NAME=VALUE ...] [--quick]
 Every scene is rendered for the same time with `guiding` off and on (--set adds settings of the guided renders), with
-several seeds. The variance of a picture is that between seeds, over the square of the mean of all pictures plus a
-hundredth of its average, averaged over pixels and channels; `trimmed` leaves out the hundredth of pixels with most of
-it, where a bright path decides. A gain above 1: guiding pays. The last column is the share of the time that training
-took. Run it on an idle machine.
+several seeds. The variance is that between seeds, relative and weighted as the error of docs/testing.md, Eq. 1; `trimmed`
+leaves out the hundredth of pixels with most of it, where a bright path decides. A gain above 1: guiding pays. The last
+column is the share of the time that training took. Run it on an idle machine.
 """
 import argparse
 import json
@@ -56,10 +55,13 @@ def measure(args, scene, settings, folder):
 
 
 def variance(pictures, mean):
-    """Relative variance of one picture: all pixels, and without the hundredth with most of it."""
-    relative = pictures.var(axis=0, ddof=1) / (mean ** 2 + (0.01 * mean.mean()) ** 2)
-    pixels = np.sort(relative.mean(axis=2).ravel())
-    return pixels.mean(), pixels[: len(pixels) - len(pixels) // 100].mean()
+    """Relative variance of one picture (docs/testing.md, Eq. 1): all pixels, and without the hundredth with most of it."""
+    squares, noise = (mean ** 2).mean(axis=2), pictures.var(axis=0, ddof=1).mean(axis=2)
+    median = np.median(np.sqrt(squares[squares > 0.0]))
+    weight = 1.0 / (squares + (median / 10.0) ** 2)
+    terms = np.sort((weight * noise).ravel())
+    whole = (weight * squares).sum()
+    return terms.sum() / whole, terms[: len(terms) - len(terms) // 100].sum() / whole
 
 
 def main():

@@ -26,8 +26,8 @@ struct EyePacketSettings {
     /// Scattering points a ray: until it has scattered, a path continues to surfaces and leaves points in the
     /// media before them (EyePath::advance_to_surface()). Nothing: distances in media are sampled.
     std::optional<int> scattering_points{};
-    bool records_seen = false;               ///< Lane::seen is filled
-    const core::LitScene* lights = nullptr;  ///< sampled lights, where these are not all
+    bool records_seen = false;                                  ///< Lane::seen is filled
+    const core::LitScene* lights = nullptr;                     ///< sampled lights, where these are not all
     const lights::ScatteringGuide& guide = lights::no_guide();  ///< of the paths' directions
 };
 

@@ -116,7 +116,8 @@ class EyePath {
             return false;
         const core::DirectSample& light = connection.light;
         if (!light.delta)
-            connection.pdf_scatter = lights::guided_pdf(guided_, light.wi, connection.pdf_scatter, light.line_density);
+            connection.pdf_scatter =
+                lights::guided_pdf(guided_, light.wi, connection.pdf_scatter, light.line_density);
         return true;
     }
     /// Light of a connection that nothing occludes.
@@ -198,8 +199,8 @@ class EyePath {
     bool surface_first_ = true, ends_at_delta_ = false;
     int depth_ = 0, scatterings_ = 0;
     float eta_ = 1.0f;
-    /// Density of its directions over that without a guide. Times the throughput it is what surfaces and media
-    /// let through, which roulette follows: light from directions that the guide prefers weighs less.
+    /// Density of its directions over that without a guide. Times the throughput it is what surfaces and
+    /// media let through, which roulette follows: throughput alone is low towards bright light.
     float guide_ratio_ = 1.0f;
     float first_cosine_ = 1.0f, segment_length_ = 0.0f, passed_ = 0.0f;
 };

@@ -26,10 +26,12 @@ void plan_guiding(Plan& plan, const GuidingSettings& s) {
     if (s.mode == Guiding::off)
         plan.leave_out("guiding", "directions by BSDF and phase function alone", "guiding is off");
     else
-        plan.run("guiding",
-                 fmt::format("{} training passes of {} paths before the first pass, none of them in the picture",
-                             s.passes, s.paths),
-                 s.mode == Guiding::on ? "requested" : "kept where trial passes find less noise for the same work");
+        plan.run(
+            "guiding",
+            fmt::format("{} training passes of {} paths before the first pass, none of them in the picture",
+                        s.passes, s.paths),
+            s.mode == Guiding::on ? "requested"
+                                  : "kept where trial passes find less noise for the same work");
 }
 
 }  // namespace mote::integrators

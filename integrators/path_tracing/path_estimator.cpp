@@ -19,7 +19,8 @@ class PathEstimator final : public Estimator {
         : scene_(scene), settings_(settings), loop_(scene, options) {
         settings_.limits.wanted = options.cells;
         if (settings_.guiding.mode != Guiding::off) train(options);
-        if (!Media && !guide_ && WavefrontScene::suits(scene, settings_)) wavefront_.emplace(scene, settings_.limits);
+        if (!Media && !guide_ && WavefrontScene::suits(scene, settings_))
+            wavefront_.emplace(scene, settings_.limits);
     }
 
     bool pass(const PassContext& context, PassImage& image) override {
@@ -37,8 +38,10 @@ class PathEstimator final : public Estimator {
     }
     void add_statistics(Statistics& statistics) const override {
         loop_.add_statistics(statistics);
-        if (!guide_) return;
+        if (settings_.guiding.mode == Guiding::off) return;
         statistics.seconds["guiding"] += training_seconds_;
+        statistics.values["guided"] = guide_ ? 1.0 : 0.0;
+        if (!guide_) return;
         statistics.values["guiding_leaves"] +=
             double(guide_->surfaces().leaves().size() + guide_->media().leaves().size());
     }
@@ -47,8 +50,14 @@ class PathEstimator final : public Estimator {
     void train(const RenderOptions& options) {
         const auto start = std::chrono::steady_clock::now();
         guide_ = train_guide<Media>(scene_, options, settings_, loop_.counters());
+        if (settings_.guiding.mode == Guiding::automatic &&
+            !guide_pays<Media>(scene_, options, settings_, *guide_, guided_ray_work(), loop_.counters()))
+            guide_.reset();
         training_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }
+    /// Processor time of a guided path's ray over that of an unguided one: the guide's own, and what unguided
+    /// paths gain by wavefronts (docs/methods/guiding.md, "Cost").
+    double guided_ray_work() const { return !Media && WavefrontScene::suits(scene_, settings_) ? 2.5 : 1.3; }
 
     const Scene& scene_;
     PathSettings settings_;

@@ -1,8 +1,9 @@
-// Records the radiance that arrives at the vertices of a packet's paths, as samples that a guiding field learns from.
+// Records the radiance that arrives at the vertices of a packet's paths, as samples that a guiding field
+// learns from.
 //
-// What a path finds after vertex k, over its weight behind that vertex, is the radiance that arrives there from the
-// direction in which it went on. Light that next-event estimation could have found as well has its MIS weight in it:
-// the field learns what is left to directions.
+// What a path finds after vertex k, over its weight behind that vertex, is the radiance that arrives there
+// from the direction in which it went on. Light that next-event estimation could have found as well has its
+// MIS weight in it: the field learns what is left to directions.
 #pragma once
 
 #include "integrators/eye_path/eye_packet.h"
@@ -20,11 +21,14 @@ class PathRecorder {
     void on_segment(int i, const Lane& lane, const EyeSegment& segment) {
         const core::ScatteringVertex& left = lane.path->vertex();
         std::vector<Record>& records = records_[std::size_t(i)];
-        if (lane.path->depth() == 1 || !lights::LearnedGuide::guides(left) || records.size() == max_records) return;
+        if (lane.path->depth() == 1 || !lights::LearnedGuide::guides(left) || records.size() == max_records)
+            return;
         const core::PathWeights& w = segment.before;
-        if (!(w.light.x > 0.0f)) return;  // a delta scattering
+        const float inverse_distance = 1.0f / segment.event.distance;
+        if (!(w.light.x > 0.0f)) return;                                              // a delta scattering
+        if (!(inverse_distance >= 0.0f) || !std::isfinite(inverse_distance)) return;  // it went nowhere
         const float inverse_pdf = w.light.x / (Media ? w.unidirectional.x : 1.0f);
-        records.push_back({{left.position, segment.ray.direction, inverse_pdf, 1.0f / segment.event.distance},
+        records.push_back({{left.position, segment.ray.direction, inverse_pdf, inverse_distance},
                            lights::throughput_of<Media>(w),
                            found_[std::size_t(i)],
                            left.on_surface()});

@@ -25,7 +25,8 @@ struct VolpathSettings {
 
 class Volpath final : public Integrator {
   public:
-    explicit Volpath(const VolpathSettings& s) : settings_{.limits = s.limits, .guiding = s.guiding}, equiangular_(s.equiangular) {
+    explicit Volpath(const VolpathSettings& s)
+        : settings_{.limits = s.limits, .guiding = s.guiding}, equiangular_(s.equiangular) {
         if (s.vpl_bound > 0.0f) settings_.bound = s.vpl_bound;
     }
 

@@ -31,7 +31,8 @@ struct Spread {
 
 GuidingField::GuidingField(const Settings& settings, const core::MemoryBudget& memory)
     : leaf_samples_(settings.leaf_samples),
-      max_leaves_(std::max(std::size_t(1), std::size_t(settings.bytes / (sizeof(MixtureFit) + 2 * sizeof(Node))))),
+      max_leaves_(
+          std::max(std::size_t(1), std::size_t(settings.bytes / (sizeof(MixtureFit) + 2 * sizeof(Node))))),
       nodes_(1) {
     memory.require(settings.bytes, "the field of guided paths");
     leaves_.reserve(max_leaves_), nodes_.reserve(2 * max_leaves_);
@@ -49,7 +50,8 @@ std::size_t GuidingField::leaf_of(const Vec3& position) const {
 
 void GuidingField::add(std::vector<GuidingSample>& samples) {
     for (const GuidingSample& s : samples)
-        if (!(s.weight >= 0.0f) || !std::isfinite(s.weight) || !(s.inverse_distance >= 0.0f))
+        if (!(s.weight >= 0.0f) || !std::isfinite(s.weight) || !(s.inverse_distance >= 0.0f) ||
+            !std::isfinite(s.inverse_distance))
             throw std::invalid_argument("a sample of the guiding field has a weight that is no radiance");
     if (samples.empty()) return;
     if (leaves_.empty()) leaves_.emplace_back(Vec3(Spread(samples).mean));

@@ -7,11 +7,13 @@
 
 namespace mote::lights {
 
+/// Guide of what arrives on surfaces, and in media.
 class LearnedGuide final : public ScatteringGuide {
   public:
     /// Throws OutOfMemory where the fields do not fit.
     LearnedGuide(const GuidingField::Settings& settings, bool media, const core::MemoryBudget& memory);
 
+    /// Sets `lobes` to the product at the vertex.
     void find(const core::ScatteringVertex& vertex, VmfMixture& lobes) const override;
     /// True where the vertex takes directions of a guide: it has no delta part, and light stays on its side.
     static bool guides(const core::ScatteringVertex& vertex);

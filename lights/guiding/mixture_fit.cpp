@@ -21,7 +21,7 @@ struct Sight {
     float inverse_distance;
 };
 
-/// What is seen from `from`, as seen from `to`; unchanged where it lies at `to`.
+/// Moves the observer from `from` to `to`. Unchanged where the point that is seen lies at `to`.
 Sight by_parallax(const Sight& s, const Vec3& from, const Vec3& to) {
     const Vec3 seen = s.direction + (from - to) * s.inverse_distance;
     const float length = glm::length(seen);

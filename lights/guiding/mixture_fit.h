@@ -1,14 +1,14 @@
 // Weighted stepwise expectation maximisation of a mixture of von Mises-Fisher lobes (Vorba et al. 2014), with
-// priors that keep few samples from being believed (Ruppert et al. 2020).
+// priors that keep lobes of few samples wide (Ruppert et al. 2020).
 //
 // Sums over samples i with weights w_i and responsibilities g_ik of lobe k,
 //   W_k = sum g w,   R_k = sum g w omega,   Q_k = sum g w^2,
-// add up over batches. A lobe has n_k = W_k^2 / Q_k effective samples (Kish 1965); a lone firefly is one, however
-// bright it is. With them
+// add up over batches. A lobe has n_k = W_k^2 / Q_k effective samples (Kish 1965); a lone firefly is one,
+// however bright it is. With them
 //   weight_k     = (n W_k / W + a) / (n + K a),
 //   mean cosine  = n_k / (n_k + b) |R_k| / W_k,
-// are the maximum a posteriori. Each lobe also has the weighted mean of its samples' inverse distances, from which
-// the mixture of a leaf is seen by parallax from any of its points.
+// are the maximum a posteriori. Each lobe also has the weighted mean of its samples' inverse distances, from
+// which the mixture of a leaf is seen by parallax from any of its points.
 #pragma once
 
 #include <span>
@@ -35,16 +35,16 @@ class MixtureFit {
     void add(std::span<const GuidingSample> samples);
     /// All that was learned so far counts this much; the mixture stays.
     void scale(double factor);
-    /// The same as seen from another point.
+    /// Copy as seen from another point.
     MixtureFit moved_to(const core::Vec3& pivot) const;
 
     /// The mixture at a point, by parallax. Empty before light was found.
     VmfMixture at(const core::Vec3& position) const;
 
-    double samples() const { return samples_; }                     ///< those without light too
-    double light() const;                                           ///< sum of all weights
-    const VmfMixture& mixture() const { return mixture_; }          ///< as seen from pivot()
-    const core::Vec3& pivot() const { return pivot_; }              ///< [m]
+    double samples() const { return samples_; }                    ///< those without light too
+    double light() const;                                          ///< sum of all weights
+    const VmfMixture& mixture() const { return mixture_; }         ///< as seen from pivot()
+    const core::Vec3& pivot() const { return pivot_; }             ///< [m]
     float inverse_distance(int k) const { return distances_[k]; }  ///< of lobe k [1/m]
 
   private:

@@ -25,14 +25,15 @@ const ScatteringGuide& no_guide() {
     return none;
 }
 
-std::optional<GuidedSample> sample_guided(const ScatteringVertex& vertex, const VmfMixture& lobes, float u_lobe,
-                                          const Vec2& u, TransportMode mode) {
+std::optional<GuidedSample> sample_guided(const ScatteringVertex& vertex, const VmfMixture& lobes,
+                                          float u_lobe, const Vec2& u, TransportMode mode) {
     if (lobes.empty) {
         const auto own = vertex.sample(u_lobe, u, mode);
         return own ? std::optional(GuidedSample{*own}) : std::nullopt;
     }
     if (u_lobe >= guide_probability) {
-        const float rest = std::min((u_lobe - guide_probability) / (1.0f - guide_probability), one_minus_epsilon);
+        const float rest =
+            std::min((u_lobe - guide_probability) / (1.0f - guide_probability), one_minus_epsilon);
         const auto own = vertex.sample(rest, u, mode);
         if (!own) return std::nullopt;
         const float pdf = guided_pdf(lobes, own->wi, own->pdf_solid_angle);

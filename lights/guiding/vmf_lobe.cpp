@@ -23,7 +23,8 @@ float VmfLobe::pdf_solid_angle(const Vec3& w) const {
 }
 
 Vec3 VmfLobe::sample(const Vec2& u) const {
-    // The inverse of the distribution of h = 1 - cos: h = -log(1 - u (1 - exp(-2 kappa))) / kappa (Jakob 2012).
+    // The inverse of the distribution of h = 1 - cos: h = -log(1 - u (1 - exp(-2 kappa))) / kappa (Jakob
+    // 2012).
     const float h = kappa > 1e-4f ? -std::log1p(u.x * std::expm1(-2.0f * kappa)) / kappa : 2.0f * u.x;
     const float bounded = std::clamp(h, 0.0f, 2.0f);
     const float sine = core::safe_sqrt(bounded * (2.0f - bounded)), phi = 2.0f * core::pi * u.y;
@@ -32,12 +33,13 @@ Vec3 VmfLobe::sample(const Vec2& u) const {
 }
 
 VmfProduct product(const VmfLobe& a, const VmfLobe& b) {
-    // kappa mu = kappa_a mu_a + kappa_b mu_b. The exponent kappa - kappa_a - kappa_b is written as a quotient, in
-    // which nothing cancels.
+    // kappa mu = kappa_a mu_a + kappa_b mu_b. The exponent kappa - kappa_a - kappa_b is written as a
+    // quotient, in which nothing cancels.
     const Vec3 sum = a.kappa * a.mean + b.kappa * b.mean;
     const float kappa = glm::length(sum), kappas = a.kappa + b.kappa;
     const float exponent =
-        kappas > 0.0f ? -2.0f * a.kappa * b.kappa * one_minus_cosine(a.mean, b.mean) / (kappa + kappas) : 0.0f;
+        kappas > 0.0f ? -2.0f * a.kappa * b.kappa * one_minus_cosine(a.mean, b.mean) / (kappa + kappas)
+                      : 0.0f;
     const VmfLobe lobe{kappa > 0.0f ? sum / kappa : a.mean, kappa};
     return {lobe, vmf_normalization(a.kappa) * vmf_normalization(b.kappa) / vmf_normalization(kappa) *
                       exp_of_negative(exponent)};

@@ -2,8 +2,8 @@
 //   f(w) = c exp(kappa (mu.w - 1)),   c = kappa / (2 pi (1 - exp(-2 kappa))).
 //
 // The product of two lobes is a lobe times a constant, which makes mixtures of them the tool of path guiding
-// (Vorba et al. 2014; Herholz et al. 2019). mu.w - 1 is computed as half the squared distance of unit vectors,
-// so that nothing cancels at large kappa; kappa = 0 is the uniform sphere.
+// (Vorba et al. 2014; Herholz et al. 2019). mu.w - 1 is computed as half the squared distance of unit
+// vectors, so that nothing cancels at large kappa; kappa = 0 is the uniform sphere.
 #pragma once
 
 #include <bit>
@@ -25,16 +25,18 @@ inline float exp_of_negative(float x) {
     return (p * r * r + r + 1.0f) * std::bit_cast<float>((n + 127) << 23);
 }
 
-/// c of a lobe. At small kappa by its series, where 1 - exp(-2 kappa) would cancel.
+/// c of a lobe. At small kappa by its series, where 1 - exp(-2 kappa) would cancel; without a branch.
 inline float vmf_normalization(float kappa) {
+    const float small = kappa < 0.05f ? 1.0f : 0.0f, large = kappa < 0.05f ? 0.05f : kappa;
     const float series = core::inv_four_pi * (1.0f + kappa * (1.0f + kappa * (1.0f / 3.0f)));
-    const float closed = core::inv_two_pi * kappa / (1.0f - exp_of_negative(-2.0f * kappa));
-    return kappa < 0.05f ? series : closed;
+    const float closed = core::inv_two_pi * large / (1.0f - exp_of_negative(-2.0f * large));
+    return small * series + (1.0f - small) * closed;
 }
 
 /// Largest concentration of a lobe: beyond it unit vectors in single precision do not resolve the lobe.
 inline constexpr float max_kappa = 1e6f;
 
+/// A lobe.
 struct VmfLobe {
     core::Vec3 mean{0.0f, 0.0f, 1.0f};  ///< mu, unit
     float kappa = 0.0f;                 ///< concentration, from 0 to max_kappa
@@ -47,9 +49,10 @@ struct VmfLobe {
 
 /// f_a f_b = integral * f of `lobe`.
 struct VmfProduct {
-    VmfLobe lobe;
+    VmfLobe lobe;    ///< f
     float integral;  ///< over all directions [1/sr]
 };
+/// The product of two lobes.
 VmfProduct product(const VmfLobe& a, const VmfLobe& b);
 
 /// Mean cosine of a lobe: coth kappa - 1 / kappa.

@@ -28,8 +28,8 @@ float VmfMixture::pdf_solid_angle(const Vec3& w) const {
     MOTE_INDEPENDENT_LANES
     for (int k = 0; k < capacity; ++k) {
         const float dx = x[k] - w.x, dy = y[k] - w.y, dz = z[k] - w.z;
-        density[k] = weight[k] * normalization[k] *
-                     exp_of_negative(-0.5f * kappa[k] * (dx * dx + dy * dy + dz * dz));
+        density[k] =
+            weight[k] * normalization[k] * exp_of_negative(-0.5f * kappa[k] * (dx * dx + dy * dy + dz * dz));
     }
     return sum_of(density);
 }
@@ -42,22 +42,24 @@ Vec3 VmfMixture::sample(float u_lobe, const Vec2& u) const {
 }
 
 void VmfMixture::multiply(const VmfLobe& f) {
-    float total = 0.0f;
-    const float factor = vmf_normalization(f.kappa);
+    // product() with each lobe; f is copied: the compiler has to assume that it lies in the arrays.
+    const Vec3 mean = f.mean;
+    const float concentration = f.kappa, factor = vmf_normalization(f.kappa);
     MOTE_INDEPENDENT_LANES
-    for (int k = 0; k < capacity; ++k) {  // product() of each lobe
-        const float dx = x[k] - f.mean.x, dy = y[k] - f.mean.y, dz = z[k] - f.mean.z;
-        const float kappas = kappa[k] + f.kappa, both = kappa[k] * f.kappa * (dx * dx + dy * dy + dz * dz);
-        const float sx = kappa[k] * x[k] + f.kappa * f.mean.x, sy = kappa[k] * y[k] + f.kappa * f.mean.y,
-                    sz = kappa[k] * z[k] + f.kappa * f.mean.z;
-        const float length = std::sqrt(sx * sx + sy * sy + sz * sz), c = vmf_normalization(length);
-        const float integral = factor * normalization[k] / c * exp_of_negative(-both / (length + kappas + 1e-30f));
-        const float scale = length > 0.0f ? 1.0f / length : 0.0f;
-        x[k] = length > 0.0f ? sx * scale : x[k], y[k] = length > 0.0f ? sy * scale : y[k],
-        z[k] = length > 0.0f ? sz * scale : z[k];
-        kappa[k] = length, normalization[k] = c, weight[k] *= integral;
+    for (int k = 0; k < capacity; ++k) {
+        const float dx = x[k] - mean.x, dy = y[k] - mean.y, dz = z[k] - mean.z;
+        const float sx = kappa[k] * x[k] + concentration * mean.x,
+                    sy = kappa[k] * y[k] + concentration * mean.y,
+                    sz = kappa[k] * z[k] + concentration * mean.z;
+        const float length = std::sqrt(sx * sx + sy * sy + sz * sz), scale = 1.0f / (length + 1e-30f);
+        const float exponent = -kappa[k] * concentration * (dx * dx + dy * dy + dz * dz) /
+                               (length + kappa[k] + concentration + 1e-30f);
+        const float c = vmf_normalization(length);
+        x[k] = sx * scale, y[k] = sy * scale, z[k] = sz * scale;
+        weight[k] *= factor * normalization[k] / c * exp_of_negative(exponent);
+        kappa[k] = length, normalization[k] = c;
     }
-    total = sum_of(weight);
+    const float total = sum_of(weight);
     empty = !(total > 0.0f) || !std::isfinite(total);
     if (empty) return;
     for (float& w : weight) w /= total;

@@ -6,8 +6,9 @@
 
 namespace mote::lights {
 
+/// Eight lobes, or none.
 struct alignas(32) VmfMixture {
-    static constexpr int capacity = 8;
+    static constexpr int capacity = 8;  ///< lobes
 
     float x[capacity], y[capacity], z[capacity];      ///< mean directions of the lobes
     float kappa[capacity];                            ///< concentrations
@@ -16,6 +17,7 @@ struct alignas(32) VmfMixture {
 
     /// Lobe k.
     VmfLobe lobe(int k) const { return {{x[k], y[k], z[k]}, kappa[k]}; }
+    /// Sets lobe k, and the weight of it.
     void set(int k, const VmfLobe& l, float w);
 
     /// Density [1/sr]; not of an empty mixture.

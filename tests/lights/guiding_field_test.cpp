@@ -1,4 +1,5 @@
-// What guided paths learn: mixtures from samples of known ones, leaves, parallax, and samples that teach little.
+// Fields of guided paths: mixtures from samples of known ones, leaves, parallax, and samples that teach
+// little.
 #include "lights/guiding/guiding_field.h"
 
 #include "core/math/random.h"
@@ -48,7 +49,8 @@ double divergence(const VmfMixture& p, const VmfMixture& q) {
 }
 
 /// Samples on the floor of a square of edge `size` lit by a point at height `size` above its middle.
-std::vector<GuidingSample> lit_floor(float size, int count, std::uint64_t seed, const Vec3& offset = Vec3(0.0f)) {
+std::vector<GuidingSample> lit_floor(float size, int count, std::uint64_t seed,
+                                     const Vec3& offset = Vec3(0.0f)) {
     Rng rng(seed);
     std::vector<GuidingSample> samples;
     for (int i = 0; i < count; ++i) {
@@ -131,7 +133,8 @@ TEST_CASE("A near light is seen by parallax from anywhere in a leaf", "[guiding]
         for (const Vec3& place : {Vec3(0.4f, 0.4f, 0), Vec3(-0.5f, 0, 0), Vec3(0.0f)}) {
             const Vec3 to = glm::normalize(Vec3(0, 0, 1) - place);
             INFO("size " << size);
-            CHECK(f.at(size * place).pdf_solid_angle(to) > 100.0f);  // without parallax 3 and less in the corner
+            CHECK(f.at(size * place).pdf_solid_angle(to) >
+                  100.0f);  // without parallax 3 and less in the corner
         }
     }
 }

@@ -117,7 +117,9 @@ TEST_CASE("The product of two lobes is a lobe with the integral of their product
             const VmfLobe second{b > 100.0f ? near : direction(rng), b};
             const VmfProduct p = product(first, second);
             INFO("kappa " << a << " and " << b);
-            const auto f = [&](const Vec3& w) { return first.pdf_solid_angle(w) * second.pdf_solid_angle(w); };
+            const auto f = [&](const Vec3& w) {
+                return first.pdf_solid_angle(w) * second.pdf_solid_angle(w);
+            };
             CHECK(integral(p.lobe.mean, f) == Approx(double(p.integral)).epsilon(4e-3).margin(1e-12));
             const Vec3 w = p.lobe.sample({0.4f, 0.3f});
             CHECK(f(w) == Approx(p.integral * p.lobe.pdf_solid_angle(w)).epsilon(2e-3).margin(1e-12));
@@ -133,13 +135,13 @@ TEST_CASE("The product of two lobes is a lobe with the integral of their product
 TEST_CASE("A mixture times a lobe is the normalised product of densities", "[guiding]") {
     Rng rng(4);
     const VmfMixture m = some_mixture(rng, 6.0f);
-    for (const VmfLobe& lobe : {cosine_lobe({0, 0, 1}), phase_lobe({0, 1, 0}, 0.8f), phase_lobe({0, 1, 0}, -0.3f),
-                                phase_lobe({0, 1, 0}, 0.0f)}) {
+    for (const VmfLobe& lobe : {cosine_lobe({0, 0, 1}), phase_lobe({0, 1, 0}, 0.8f),
+                                phase_lobe({0, 1, 0}, -0.3f), phase_lobe({0, 1, 0}, 0.0f)}) {
         VmfMixture both = m;
         both.multiply(lobe);
         REQUIRE_FALSE(both.empty);
-        const double total =
-            integral(lobe.mean, [&](const Vec3& w) { return m.pdf_solid_angle(w) * lobe.pdf_solid_angle(w); });
+        const double total = integral(
+            lobe.mean, [&](const Vec3& w) { return m.pdf_solid_angle(w) * lobe.pdf_solid_angle(w); });
         for (int i = 0; i < 50; ++i) {
             const Vec3 w = direction(rng);
             CHECK(both.pdf_solid_angle(w) ==
