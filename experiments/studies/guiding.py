@@ -33,7 +33,6 @@ def render(args, scene, seed, settings, folder):
     exr, stats = folder / "p.exr", folder / "p.json"
     width, height = args.size.split("x")
     defined = [f"resx={width}", f"resy={height}", *settings]
-    # A short time is for passes counted beforehand by hand: an unfinished first pass is no estimate.
     stop = ["--passes", args.passes] if args.passes else ["--time", args.seconds]
     subprocess.run([args.mote, "render", ROOT / SCENES[scene], "--integrator", "volpath", "--quiet", "--seed", seed,
                     *(word for d in defined for word in ("-D", d)), *stop, "-o", exr, "--stats", stats],
@@ -78,14 +77,15 @@ def main():
     if args.quick:
         args.passes, args.seeds, args.size, args.scenes = "2", 2, "16x10", "cornell_box,door_ajar"
         args.set = ["guiding_passes=3", "guiding_paths=256"]
-    print("scene: variance x seconds off, on (trimmed off, on); gain (trimmed); passes off, on; training")
+    print("scene: variance off, on; gain in variance (trimmed); in variance x seconds (trimmed); passes off, on; training")
     with tempfile.TemporaryDirectory() as folder:
         for scene in args.scenes.split(","):
-            on = ["integrator.guiding=on", *(f"integrator.{s}" for s in args.set)]
-            runs = [measure(args, scene, settings, Path(folder)) for settings in (["integrator.guiding=off"], on)]
+            guided = ["integrator.guiding=on", *(f"integrator.{s}" for s in args.set)]
+            runs = [measure(args, scene, settings, Path(folder)) for settings in (["integrator.guiding=off"], guided)]
             mean = np.concatenate([r[0] for r in runs]).mean(axis=0)
-            (a, at), (b, bt) = (np.array(variance(r[0], mean)) * r[1] for r in runs)
-            print(f"{scene}: {a:.4g}, {b:.4g} ({at:.4g}, {bt:.4g}); {a / b:.2f} ({at / bt:.2f}); "
+            off, on = (np.array(variance(r[0], mean)) for r in runs)
+            gain, timed = off / on, off * runs[0][1] / (on * runs[1][1])
+            print(f"{scene}: {off[0]:.4g}, {on[0]:.4g}; {gain[0]:.2f} ({gain[1]:.2f}); {timed[0]:.2f} ({timed[1]:.2f}); "
                   f"{runs[0][2]:.0f}, {runs[1][2]:.0f}; {100 * runs[1][3]:.0f} %", flush=True)
 
 

@@ -116,22 +116,28 @@ double variance_of(const Trials& trials, std::size_t pixel) {
     return std::max(0.0, squares - sum * sum / trial_passes) / (trial_passes - 1.0);
 }
 
-/// Variances of both kinds, relative as errors are (docs/testing.md, Eq. 1).
+/// Variances of both kinds over the squared mean around each path. That is taken from a run of neighbouring
+/// paths: from those of a pixel alone, a bright one would hide itself.
 std::array<double, 2> relative_variances(const Trials& plain, const Trials& guided) {
-    std::vector<double> means(plain.front().size()), lit;
-    for (std::size_t i = 0; i < means.size(); ++i) {
-        for (std::uint32_t k = 0; k < trial_passes; ++k)
-            means[i] += double(plain[k][i]) + double(guided[k][i]);
-        means[i] /= 2.0 * trial_passes;
-        if (means[i] > 0.0) lit.push_back(means[i]);
+    constexpr std::size_t run = 256;
+    std::vector<std::array<double, 3>> runs;  // mean of both kinds, variances
+    for (std::size_t first = 0; first < plain.front().size(); first += run) {
+        const std::size_t end = std::min(first + run, plain.front().size());
+        auto& [mean, without, with] = runs.emplace_back();
+        for (std::size_t i = first; i < end; ++i) {
+            for (std::uint32_t k = 0; k < trial_passes; ++k)
+                mean += double(plain[k][i]) + double(guided[k][i]);
+            without += variance_of(plain, i), with += variance_of(guided, i);
+        }
+        mean /= 2.0 * trial_passes * double(end - first);
     }
-    if (lit.empty()) return {0.0, 0.0};
-    std::nth_element(lit.begin(), lit.begin() + std::ptrdiff_t(lit.size() / 2), lit.end());
-    const double median = lit[lit.size() / 2];
+    double whole = 0.0;
+    for (const auto& r : runs) whole += r[0] / double(runs.size());
     std::array<double, 2> sums{};
-    for (std::size_t i = 0; i < means.size(); ++i) {
-        const double weight = 1.0 / (means[i] * means[i] + 0.01 * median * median);
-        sums[0] += weight * variance_of(plain, i), sums[1] += weight * variance_of(guided, i);
+    for (const auto& [mean, without, with] : runs) {
+        if (!(mean > 0.0)) continue;
+        const double weight = 1.0 / (mean * mean + 0.01 * whole * whole);
+        sums[0] += weight * without, sums[1] += weight * with;
     }
     return sums;
 }

@@ -179,13 +179,50 @@ TEST_CASE("A black scene and a scene of mirrors have nothing to learn", "[guidin
     check_mean_is(render_statistics(*scene_from(mirror, 8), *paths("path", "on"), {4, 16, 1}), "beauty", 1.0);
 }
 
-TEST_CASE("Guided paths are quieter where light comes through a gap", "[guiding]") {
-    // A lamp that shines through a gap on the far side of a wall: nearly all light of the near room was
-    // scattered in the far one.
-    const auto scene = scene_from(box(grey, ""), 16);
+namespace {
+
+/// The box whose lamp, a small one, shines at the ceiling from close by: all other light comes from a spot
+/// there.
+std::string lamp_upwards() {
+    std::string xml = box(grey, "");
+    const auto replace = [&](const std::string& old, const std::string& with) {
+        xml.replace(xml.find(old), old.size(), with);
+    };
+    replace(R"(<scale value="0.25"/><rotate x="1" angle="90"/>)",
+            R"(<scale value="0.06"/><rotate x="1" angle="-90"/>)");
+    replace(R"(<translate y="0.95"/>)", R"(<translate y="0.9"/>)");
+    return xml;
+}
+
+bool automatic_guides(const Scene& scene) {
+    RenderOptions options;
+    options.width = options.height = 16;
+    const auto integrator =
+        integrator_from(R"(<integrator type="path"><string name="guiding" value="automatic"/>
+        <integer name="guiding_passes" value="15"/><integer name="guiding_paths" value="8192"/></integrator>)");
+    Statistics statistics;
+    integrator->prepare(scene, options)->add_statistics(statistics);
+    return statistics.values.at("guided") > 0.0;
+}
+
+}  // namespace
+
+TEST_CASE("Guided paths are quieter under a bright spot, by far", "[guiding]") {
+    const auto scene = scene_from(lamp_upwards(), 16);
     const auto noise = [&](const char* guiding) {
-        const auto r = render_statistics(*scene, *paths("path", guiding), {16, 512, 1});
+        const auto r = render_statistics(*scene, *paths("path", guiding), {16, 256, 1});
         return r.whole[r.layer("indirect")][1].variance_of_mean;
     };
-    CHECK(noise("on") < 0.95 * noise("off"));
+    const double guided = noise("on"), plain = noise("off");
+    CAPTURE(guided, plain);
+    CHECK(guided < 0.5 * plain);
+}
+
+TEST_CASE("Guiding is automatic where it pays", "[guiding]") {
+    CHECK(automatic_guides(*scene_from(lamp_upwards(), 16)));
+    // Under an even sky, cosines are the best directions.
+    CHECK_FALSE(automatic_guides(*scene_from(
+        R"(<scene version="3.0.0"><shape type="sphere"><point name="center" x="0" y="0" z="4"/><bsdf type="diffuse"/>
+        </shape><emitter type="constant"/><sensor type="perspective"/></scene>)",
+        16)));
 }
